@@ -351,6 +351,20 @@ def inner_parts_of_rooms(source: Source) -> Iterable[object]:
             yield f"{room}: {module}"
 
 
+def readers_of_python(source: Source) -> Iterable[object]:
+    modules = {
+        name
+        for node in source.nodes
+        if isinstance(node, ast.Import | ast.ImportFrom)
+        for name in (
+            [node.module]
+            if isinstance(node, ast.ImportFrom)
+            else [alias.name for alias in node.names]
+        )
+    }
+    return modules & {"ast", "dis", "symtable"}
+
+
 def slow_data_classes(source: Source) -> Iterable[object]:
     """Imports of Python's own data class, which is compiled at each start."""
     for node in source.nodes:
@@ -397,6 +411,17 @@ RULES: dict[str, tuple[Callable[[Source], Iterable[object]], list[Path]]] = {
         [path for path in OUTSIDE_TERMINAL if path.name not in ("data_class.py", "spec_fields.py")],
     ),
     "rooms are entered by their doors": (inner_parts_of_rooms, PACKAGE),
+    "programs are read in their room": (
+        readers_of_python,
+        # Expressions and literals in logs are no programs.
+        [
+            path
+            for path in PACKAGE
+            if not path.is_relative_to(ROOT / "tuisim" / "programs")
+            and not path.is_relative_to(ROOT / "tuisim" / "engine")
+            and path.name not in ("syntax_tree.py", "expressions.py", "json_rows.py")
+        ],
+    ),
 }
 
 

@@ -55,6 +55,16 @@ CALLS = {
         "EV3Brick.speaker.beep",
         [3],
     ),
+    "a class of Pybricks, imported in a function": (
+        "def go():\n    from pybricks.robotics import DriveBase\n    DriveBase(l, r, 56, 114).straight(100)\n",
+        "DriveBase.straight",
+        [3],
+    ),
+    "a name of another function": (
+        "from ev3dev2.motor import MoveTank\ndef f():\n    t = MoveTank('outB', 'outC')\ndef g(t):\n    t.on(1, 1)\n",
+        "tank_drive.on",
+        [],
+    ),
     "a class of that name of its own": (
         "from mine import DriveBase\nDriveBase().straight(100)\n",
         "pybricks.robotics.DriveBase.straight",

@@ -1,6 +1,6 @@
 """Which calls the text of a program has, whatever it calls them.
 
-Names are resolved as far as they are clear from the text: imports under other names, a variable that is assigned
+Names are followed as far as they are clear from the text: imports under other names, a variable that is assigned
 another name or a new object of a class, and the names that a prelude defines. Nothing is executed.
 """
 
@@ -14,89 +14,77 @@ from functools import lru_cache
 from tuisim.base.data_class import dataclass
 from tuisim.base.source import PRELUDE_TEXTS, PYBRICKS
 from tuisim.base.syntax_tree import parse_module
+from tuisim.programs.robot.scopes import Binding, Bound, Imported, Scope, scope_of
+from tuisim.programs.robot.source import Module
 
 _MAX_MEANING = 200
 """Longer meanings of names, in characters, are not followed."""
+_MAX_MEANINGS = 24
+"""More meanings of one expression are not followed."""
 _DEFAULT_PRELUDE = "preloaded"
 """Its names mean the same in a goals file, whichever prelude a program has."""
 
 
-@dataclass
+@dataclass(slots=True)
 class _Names:
-    """What the names of a program stand for."""
+    """What the names of a program stand for.
 
-    meanings: dict[str, str] = field(default_factory=dict)
-    """By name, or by attribute such as `self.tank`."""
-    all_of: list[str] = field(default_factory=list)
-    """Modules of which everything is imported."""
+    Args:
+        prelude: The scope of its prelude.
+    """
 
-    def of(self, node: ast.expr) -> str:
-        """Return what an expression stands for, such as `ev3dev2.motor.MoveTank().on`; empty if that is not clear."""
+    prelude: Scope
+    _known: dict[tuple[ast.expr, Scope], tuple[str, ...]] = field(default_factory=dict)
+
+    def list_meanings(self, node: ast.expr, scope: Scope) -> tuple[str, ...]:
+        """Return what an expression can stand for, such as `ev3dev2.motor.MoveTank().on`."""
+        key = (node, scope)
+        if key not in self._known:
+            # Where a name refers to itself, nothing is known.
+            self._known[key] = ()
+            meanings = (
+                meaning for meaning in self._follow(node, scope) if len(meaning) <= _MAX_MEANING
+            )
+            self._known[key] = tuple(dict.fromkeys(meanings))[:_MAX_MEANINGS]
+        return self._known[key]
+
+    def _follow(self, node: ast.expr, scope: Scope) -> Iterator[str]:
         match node:
             case ast.Name(id=name):
-                return self.meanings.get(name, name)
+                bindings = scope.find_bindings(name) or self.prelude.find_bindings(name)
+                yield from self._follow_bindings(name, bindings)
             case ast.Attribute(value=value, attr=attr):
-                known = self.meanings.get(ast.unparse(node))
-                inner = self.of(value)
-                return known or (f"{inner}.{attr}" if inner else "")
+                if isinstance(value, ast.Name) and value.id == "self" and scope.owner:
+                    for binding in scope.owner.attributes.get(attr, ()):
+                        yield from self._follow_bindings("", [binding])
+                yield from (f"{inner}.{attr}" for inner in self.list_meanings(value, scope))
             case ast.Call(func=func):
-                inner = self.of(func)
-                return f"{inner}()" if inner else ""
-        return ""
+                yield from (f"{inner}()" for inner in self.list_meanings(func, scope))
 
-    def take_in(self, tree: ast.AST) -> None:
-        """Note the names that a program imports and assigns."""
-        for node in ast.walk(tree):
-            match node:
-                case ast.Import(names=names):
-                    for alias in names:
-                        first = alias.name if alias.asname else alias.name.partition(".")[0]
-                        self.meanings[alias.asname or first] = first
-                case ast.ImportFrom(module=str(module), names=names, level=0):
-                    for alias in names:
-                        if alias.name == "*":
-                            self.all_of.append(module)
-                        else:
-                            self.meanings[alias.asname or alias.name] = f"{module}.{alias.name}"
-        # Assignments in the order of the text: one may use another.
-        for node in ast.walk(tree):
-            match node:
-                case ast.Assign(
-                    targets=targets, value=ast.Name() | ast.Attribute() | ast.Call() as value
-                ):
-                    meaning = self.of(value)
-                    for target in targets:
-                        self._assign(target, meaning)
-                case (
-                    ast.NamedExpr(target=target, value=value)
-                    | ast.AnnAssign(target=target, value=ast.expr() as value)
-                ):
-                    self._assign(target, self.of(value))
-
-    def _assign(self, target: ast.expr, meaning: str) -> None:
-        # `x = x.y` in many lines would take a long time.
-        if not 0 < len(meaning) <= _MAX_MEANING:
-            return
-        if isinstance(target, ast.Name | ast.Attribute) and meaning != ast.unparse(target):
-            self.meanings[ast.unparse(target)] = meaning
-
-    def may_be(self, meaning: str, whole: set[str]) -> bool:
-        """Return whether what an expression stands for is one of several names."""
-        return meaning in whole or any(f"{module}.{meaning}" in whole for module in self.all_of)
+    def _follow_bindings(self, name: str, bindings: list[Binding]) -> Iterator[str]:
+        meanings: list[str] = []
+        for binding in bindings:
+            match binding:
+                case Imported(module=module, name=imported):
+                    meanings.append(f"{module}.{imported}" if imported else module)
+                case Bound(node=node, scope=scope, path=(), is_item=False):
+                    meanings += self.list_meanings(node, scope)
+        yield from meanings or ([name] if name else [])
 
 
 @lru_cache
-def _prelude_names(prelude: str) -> _Names:
-    names = _Names()
-    names.take_in(parse_module(PRELUDE_TEXTS.get(prelude, "")))
-    return names
+def _scope_prelude(prelude: str) -> Scope:
+    return scope_of(Module("", "", parse_module(PRELUDE_TEXTS.get(prelude, ""))))
 
 
-def _calls(tree: ast.AST, names: _Names) -> Iterator[tuple[str, str, int]]:
-    """Yield what each call stands for, its text, and its line."""
-    for node in ast.walk(tree):
-        if isinstance(node, ast.Call):
-            yield names.of(node.func), ast.unparse(node.func), node.lineno
+def _name_prelude(name: str, prelude: str) -> str:
+    """Return what a name stands for in a prelude; itself if that does not define it."""
+    names = _Names(_scope_prelude(prelude))
+    return next(iter(names.list_meanings(ast.Name(name), names.prelude)))
+
+
+def _list_scopes(scope: Scope) -> list[Scope]:
+    return [scope, *(each for inner in scope.inner.values() for each in _list_scopes(inner))]
 
 
 def list_calls(tree: ast.Module, prelude: str, wanted: str) -> list[int]:
@@ -108,29 +96,34 @@ def list_calls(tree: ast.Module, prelude: str, wanted: str) -> list[int]:
         wanted: The call: a name such as `time.sleep`, a method of an object that the prelude defines such as
             `tank_drive.on`, or the name of a function or method alone. An object of the same class counts as well.
     """
-    names = _Names(dict(_prelude_names(prelude).meanings))
-    names.take_in(tree)
+    scopes = _list_scopes(scope_of(Module("", "", tree)))
+    names = _Names(_scope_prelude(prelude))
+    calls = [
+        ({ast.unparse(call.func), *names.list_meanings(call.func, scope)}, call.lineno)
+        for scope in scopes
+        for call in scope.body
+        if isinstance(call, ast.Call)
+    ]
     wanted = wanted.removesuffix("()")
     head, _, rest = wanted.partition(".")
     # `sleep` alone is any function or method of that name.
     if not rest:
         return sorted(
-            {
-                line
-                for meaning, said, line in _calls(tree, names)
-                if wanted in (said.rpartition(".")[2], meaning.rpartition(".")[2])
-            }
+            {line for said, line in calls if any(wanted == one.rpartition(".")[2] for one in said)}
         )
-    meant = _prelude_names(_DEFAULT_PRELUDE).meanings.get(head, head)
-    whole = {wanted, f"{meant}.{rest}"}
+    meant = _name_prelude(head, _DEFAULT_PRELUDE)
     # `MoveTank.on` is also a method of an object of the class.
     owner, _, method = f"{meant}.{rest}".rpartition(".")
-    whole |= {f"{owner}().{method}"}
+    whole = {wanted, f"{meant}.{rest}", f"{owner}().{method}"}
     # `DriveBase.straight` is one of the class that the program imports from Pybricks.
-    own = names.meanings.get(head, "")
-    if own.partition(".")[0] == PYBRICKS:
-        whole |= {f"{own}.{rest}", f"{own}().{rest}"}
-    calls = _calls(tree, names)
-    return sorted(
-        {line for meaning, said, line in calls if names.may_be(meaning, whole) or said == wanted}
-    )
+    for own in {one for scope in scopes for one in names.list_meanings(ast.Name(head), scope)}:
+        if own.partition(".")[0] == PYBRICKS:
+            whole |= {f"{own}.{rest}", f"{own}().{rest}"}
+    # What is imported with everything else may be of any of these modules.
+    whole |= {
+        one.removeprefix(f"{module}.")
+        for module in (star for scope in scopes for star in scope.stars)
+        for one in whole
+        if one.startswith(f"{module}.")
+    }
+    return sorted({line for said, line in calls if said & whole})

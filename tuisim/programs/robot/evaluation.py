@@ -120,17 +120,11 @@ class Evaluation:
     # Names
 
     def _named(self, name: str, scope: Scope) -> Iterator[Value]:
-        at: Scope | None = scope
-        while at is not None:
-            # The names of a class are not seen in its methods.
-            if (bindings := at.names.get(name)) and (
-                at is scope or not isinstance(at.node, ast.ClassDef)
-            ):
-                for binding in bindings:
-                    yield from self._bound(binding)
-                return
-            at = at.outer
-        yield from self._from_stars(scope.top, name)
+        bindings = scope.find_bindings(name)
+        for binding in bindings:
+            yield from self._bound(binding)
+        if not bindings:
+            yield from self._from_stars(scope.top, name)
 
     def _from_stars(self, scope: Scope, name: str) -> Iterator[Value]:
         for module in scope.stars:

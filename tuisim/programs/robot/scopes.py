@@ -81,6 +81,16 @@ class Scope:
             return self
         return self.outer.owner if self.outer is not None else None
 
+    def find_bindings(self, name: str) -> list[Binding]:
+        """Return what a name may be bound to where this scope uses it; empty if the program does not bind it."""
+        scope: Scope | None = self
+        while scope is not None:
+            # The names of a class are not seen in its methods.
+            if name in scope.names and (scope is self or not isinstance(scope.node, ast.ClassDef)):
+                return scope.names[name]
+            scope = scope.outer
+        return []
+
     @property
     def top(self) -> Scope:
         """The scope of the module."""

@@ -164,8 +164,7 @@ def _reads(
         case ast.NamedExpr(value=value):
             yield from _reads(mentions, scope, value, steps)
         case ast.Name(id=name) if steps < _MOST_STEPS:
-            owner = next((one for one in (scope, scope.top) if name in one.names), None)
-            for binding in owner.names[name] if owner else ():
+            for binding in scope.find_bindings(name):
                 if isinstance(binding, Bound) and not binding.path and not binding.is_item:
                     yield from _reads(mentions, binding.scope, binding.node, steps + 1)
 
