@@ -124,7 +124,7 @@ def _replay_run(task: Task, run: StoredRun, ended: Ended) -> tuple[StoredRun, En
     # Imported on demand: most batches need it not.
     from tuisim.engine.runs.replayed_run import replay_run
 
-    run, parted = replay_run(run, task.options.actions)
+    run, parted = replay_run(run, task.options.actions, task.real_time_limit_s or math.inf)
     if not parted:
         return run, ended
     why = describe_falsified(f"it differs from what the program did from {parted} on")

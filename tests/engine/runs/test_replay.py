@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from itertools import count
 from math import inf, nan
 from random import Random
 from typing import Any
@@ -135,6 +136,17 @@ def test_time_does_not_go_back() -> None:
     _replay((10, 0, *stop), (10, 1, *stop))
     with pytest.raises(LogError, match=r"at 0\.50 s there is a command that goes back in time"):
         _replay((600_000_000, 0, *stop), (500_000_000, 0, *stop))
+
+
+def test_what_takes_too_long_to_work_out_again_ends() -> None:
+    spec = RunSpec(RobotSpec(), WorldSpec(), PROFILES["robolab"])
+
+    def command() -> Iterator[SimulationCommand]:
+        for time_ns in count():
+            yield SimulationCommand(time_ns, 0, Call.STOP, (0.0,) * MAX_VALUES)
+
+    with pytest.raises(LogError, match=r"takes more than 0\.2 s to work out again"):
+        replay(spec, command(), (), 100_000, limit_s=0.2)
 
 
 def test_commands_cost_time() -> None:

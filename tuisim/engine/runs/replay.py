@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
+from math import inf
+from time import thread_time
 from typing import TYPE_CHECKING
 
 from tuisim.base.data_class import dataclass
@@ -23,6 +25,10 @@ from tuisim.engine.runs.user_changes import change_simulation
 
 if TYPE_CHECKING:
     from tuisim.engine.core.spec import RobotSpec, RunSpec
+
+
+_LOOK_EVERY = 1000
+"""After so many commands it is looked how long they take."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,6 +88,7 @@ def replay(
     commands: Iterable[SimulationCommand],
     actions: Iterable[UserAction],
     last_tick: int,
+    limit_s: float = inf,
 ) -> ReplayedTicks:
     """Work a run out from what is known of it, and what its program did.
 
@@ -90,15 +97,19 @@ def replay(
         commands: Those of the program in their order, with all values of their records.
         actions: What a user did, in the order of the ticks.
         last_tick: The last tick that is wanted.
+        limit_s: Seconds of processor time that it may take.
 
     Raises:
-        LogError: no program can have given these commands.
+        LogError: no program can have given these commands, or they take longer than they may.
     """
     ticks, motors = _Ticks(), _Motors(spec.robot)
     sim = simulation_of(spec, NoRecording())
     sim.restart(spec, ticks, motors if sim.notices else None)
     advance, check = _build_advance(sim, actions), CommandCheck(sim)
-    for command in commands:
+    give_up_s = thread_time() + limit_s
+    for number, command in enumerate(commands):
+        if not number % _LOOK_EVERY and thread_time() > give_up_s:
+            raise LogError(f"what the program did takes more than {limit_s:g} s to work out again")
         tick = sim.ticks_at(command.time_ns)
         fault = check.find_disorder(command.time_ns)
         if tick > last_tick:

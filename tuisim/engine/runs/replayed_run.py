@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from dataclasses import replace
+from math import inf
 from typing import TYPE_CHECKING, Any
 
 from tuisim.base.atomic import replacing
@@ -30,7 +31,9 @@ if TYPE_CHECKING:
     Array = np.ndarray[Any, Any]
 
 
-def replay_run(run: StoredRun, actions: Sequence[UserAction]) -> tuple[StoredRun, str]:
+def replay_run(
+    run: StoredRun, actions: Sequence[UserAction], limit_s: float = inf
+) -> tuple[StoredRun, str]:
     """Work a run that is over out again, and put what comes out in place of what was recorded.
 
     The lines of the program stay as they were recorded, and so does its output.
@@ -38,12 +41,14 @@ def replay_run(run: StoredRun, actions: Sequence[UserAction]) -> tuple[StoredRun
     Args:
         run: The run.
         actions: What a user has done, as whoever started the run knows it.
+        limit_s: Seconds of processor time that it may take.
 
     Returns:
         The run with these ticks and actions, and from when on its recording differs, in words; empty if it does not.
 
     Raises:
-        LogError: the commands are damaged, no program can have given them, or the disk refuses what comes out.
+        LogError: the commands are damaged, take too long, no program can have given them, or the disk refuses what
+            comes out.
     """
     import numpy as np
 
@@ -51,7 +56,7 @@ def replay_run(run: StoredRun, actions: Sequence[UserAction]) -> tuple[StoredRun
     if not len(recorded):
         return run, ""
     last_tick = len(recorded) - 1
-    ticks = _replay_commands(run, actions, last_tick)
+    ticks = _replay_commands(run, actions, last_tick, limit_s)
     records = np.frombuffer(ticks.telemetry, recorded.dtype)
     records["line"] = recorded["line"]
     done = tuple(action for action in actions if action.tick < last_tick)
@@ -69,13 +74,13 @@ def replay_run(run: StoredRun, actions: Sequence[UserAction]) -> tuple[StoredRun
 
 
 def _replay_commands(
-    run: StoredRun, actions: Sequence[UserAction], last_tick: int
+    run: StoredRun, actions: Sequence[UserAction], last_tick: int, limit_s: float
 ) -> ReplayedTicks:
     commands = read_commands(run.folder)
     if commands.left_out:
         raise LogError(f"the program gave more than {len(commands.rows):,} commands")
     try:
-        ticks = replay(run.first_spec, commands.unpack(), actions, last_tick)
+        ticks = replay(run.first_spec, commands.unpack(), actions, last_tick, limit_s)
     except ValueError as error:
         raise LogError("damaged: these are no commands", file=str(run.folder)) from error
     if ticks.robot != run.spec.robot:
