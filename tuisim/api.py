@@ -226,8 +226,7 @@ def experiment(
     """
     from tuisim.batch.parameters import SEED, checked_seeds, parse_seeds
     from tuisim.batch.plan import Plan, Subject
-    from tuisim.batch.sweep import Workers, run_plan
-    from tuisim.batch.table import Row, check_expressions, frame_of
+    from tuisim.batch.sweep import Sweep, Workers
     from tuisim.tasks.goals.files import load_goals
     from tuisim.tasks.task import MAX_JOBS, Keep
 
@@ -267,10 +266,10 @@ def experiment(
 
     judged = task.goals if task else ()
     plan = Plan(tuple(subjects), varied, Path("parameters"), judged, Keep(keep), options_of)
-    check_expressions(expressions or {}, plan.names, (goal.name for goal in judged))
-    rows: dict[int, Row] = {}
-    run_plan(plan, rows, workers=Workers(jobs))
-    return frame_of(rows.values(), expressions)
+    plan.check_expressions(expressions or {})
+    sweep = Sweep(plan, expressions or {})
+    sweep.run(Workers(jobs))
+    return sweep.build_frame()
 
 
 def _choice(name: str, values: str | Value | Iterable[Value]) -> Choice:

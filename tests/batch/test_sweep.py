@@ -8,20 +8,24 @@ import pytest
 
 from tests.batch.stand_in import run_backwards
 from tests.batch.test_plan import plan, subject
+from tuisim.base.errors import ConfigError
 from tuisim.batch import sweep
-from tuisim.batch.partial import PartialTable
-from tuisim.batch.sweep import Workers, run_plan
+from tuisim.batch.partial import PartialTable, partial_of
+from tuisim.batch.sweep import Sweep, Workers
 from tuisim.batch.table import RUN, Row
 
 
 def test_what_is_not_done_is_executed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sweep, "run_many", run_backwards)
-    partial = PartialTable(tmp_path / "part", {})
-    rows: dict[int, Row] = {1: {RUN: 2, "end": "kept"}}
+    out, several = tmp_path / "out.csv", plan({"seed": (5, 6)}, subject("a.py"), subject("b.py"))
+    identity = {"version": "1", **several.identity()}
+    PartialTable(partial_of(out), identity).open({1: {RUN: 2, "end": "kept"}}).close()
+    with pytest.raises(ConfigError, match="holds the rows of an interrupted batch"):
+        Sweep(several, {}, out, "1")
     told: list[Row] = []
-    several = plan({"seed": (5, 6)}, subject("a.py"), subject("b.py"))
-    run_plan(several, rows, workers=Workers(), partial=partial.open(rows), on_row=told.append)
-    partial.close()
+    begun = Sweep(several, {}, out, "1", resumes=True)
+    begun.run(Workers(), told.append)
+    rows = begun.rows
     assert [row[RUN] for row in told] == [4, 3, 1]
     assert [(rows[at]["program"], rows[at]["seed"]) for at in (0, 2, 3)] == [
         ("a.py", 5),
@@ -29,7 +33,15 @@ def test_what_is_not_done_is_executed(tmp_path: Path, monkeypatch: pytest.Monkey
         ("b.py", 6),
     ]
     assert rows[1] == {RUN: 2, "end": "kept"}
-    assert partial.rows() == rows
-    alone: dict[int, Row] = {}
-    run_plan(plan({"seed": (5,)}), alone, workers=Workers())
-    assert "program" not in alone[0]
+    assert PartialTable(partial_of(out), identity).rows() == rows
+    begun.finish()
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_table_has_expressions_and_a_summary(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sweep, "run_many", run_backwards)
+    alone = Sweep(plan({"seed": (5,)}), {"next": "seed + 1"})
+    alone.run(Workers())
+    frame = alone.build_frame()
+    assert ("program" in frame.columns, frame["next"].tolist()) == (False, [6.0])
+    assert "next" in {line.column for line in alone.summarize(frame)}

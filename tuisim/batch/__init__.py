@@ -3,7 +3,6 @@
 __all__ = [
     "batch_file",
     "parameters",
-    "partial",
     "plan",
     "sweep",
     "table",

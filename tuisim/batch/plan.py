@@ -14,6 +14,7 @@ from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ConfigError
 from tuisim.base.source import Program
 from tuisim.batch.parameters import SEED, Choice, Grid, checked_seeds, grid_of
+from tuisim.batch.table import check_expressions
 from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.core.tree import to_plain
 from tuisim.engine.runs.handle import RunOptions, in_surroundings
@@ -103,6 +104,14 @@ class Plan:
     def names(self) -> tuple[str, ...]:
         """The parameters."""
         return self.grid.names
+
+    def check_expressions(self, expressions: Mapping[str, str]) -> None:
+        """Check the expressions of further columns of the table, by name, before anything is run.
+
+        Raises:
+            ConfigError: one cannot be read, names a column that there will not be, or is called like one.
+        """
+        check_expressions(expressions, self.names, [goal.name for goal in self.goals])
 
     def subject_at(self, index: int) -> Subject:
         """Return the program of a run; `index` counts from 0."""

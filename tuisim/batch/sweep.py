@@ -2,18 +2,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator, Iterable, MutableMapping
+import os
+from collections.abc import Callable, Generator, Iterable, Mapping
 from contextlib import closing
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from tuisim.base.data_class import dataclass
+from tuisim.base.errors import ConfigError
+from tuisim.batch.partial import PartialTable, partial_of, rows_of_table
 from tuisim.batch.plan import Plan
-from tuisim.batch.table import Row, row_of
+from tuisim.batch.table import (
+    PROGRAM,
+    ColumnSummary,
+    Row,
+    frame_of,
+    metadata_of,
+    result_columns,
+    row_of,
+    summaries,
+    usual_columns,
+)
+from tuisim.logs.export import export_frame
 from tuisim.tasks.pool import run_many
 from tuisim.tasks.task import Result, Task
 
 if TYPE_CHECKING:
-    from tuisim.batch.partial import PartialTable
+    import pandas as pd
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,38 +52,111 @@ class Workers:
         return run_on_cluster(tasks, self.scheduler, self.dask_workers)
 
 
-def run_plan(
-    plan: Plan,
-    rows: MutableMapping[int, Row],
-    *,
-    workers: Workers,
-    partial: PartialTable | None = None,
-    on_row: Callable[[Row], None] = lambda _: None,
-) -> None:
-    """Execute the tasks of a plan that are not done, and block until they are.
-
-    An interrupt stops the tasks that are running and is raised; the rows of those that are done stay.
+class Sweep:
+    """The runs of a plan: those that are done, and the table that they become.
 
     Args:
-        rows: Rows by the index of their task; those that are there are done, the others are added as they finish.
-        workers: The processes that execute the tasks.
-        partial: An open file that gets each row as well.
-        on_row: Called with each new row.
+        plan: The plan.
+        expressions: Columns of the table, by name.
+        out: The table that is written; None for none.
+        version: That of tuisim: a batch goes on with the same.
+        resumes: Whether an interrupted batch goes on.
+
+    Attributes:
+        rows: What is done, by the index of the task.
 
     Raises:
-        ConfigError, HostError: there is no such cluster, or it is lost.
-        ExportError: the partial file cannot be written.
-        LogError: the folder for the recordings cannot be created.
+        ConfigError: there is an interrupted batch that does not go on, or the rows are of another one.
+        ExportError: the rows cannot be written.
     """
-    several = len(plan.subjects) > 1
-    # What is done by now is taken out of the tasks before the first new row comes.
-    tasks = plan.tasks(frozenset(rows))
-    # Closed, the results stop the tasks that are running.
-    with closing(workers.run(tasks)) as results:
-        for result in results:
-            label = plan.subject_at(result.index).label if several else ""
-            row = row_of(result, label, plan.seed_at(result.index))
-            rows[result.index] = row
-            if partial is not None:
-                partial.add(row)
-            on_row(row)
+
+    def __init__(
+        self,
+        plan: Plan,
+        expressions: Mapping[str, str],
+        out: Path | None = None,
+        version: str = "",
+        *,
+        resumes: bool = False,
+    ) -> None:
+        self._plan, self._expressions, self._out = plan, expressions, out
+        self.rows: dict[int, Row] = {}
+        self._identity: dict[str, Any] = {}
+        """What identifies the batch in its files; empty if none are written."""
+        self._partial: PartialTable | None = None
+        if out is not None:
+            self._identity = plan.identity()
+            self._partial = self._open_partial(out, version, resumes)
+
+    def _open_partial(self, out: Path, version: str, resumes: bool) -> PartialTable:
+        path = partial_of(out)
+        partial = PartialTable(path, {"version": version, **self._identity})
+        if resumes:
+            columns = usual_columns(self._plan.names, [goal.name for goal in self._plan.goals])
+            self.rows = partial.rows() or rows_of_table(out, self._identity, columns)
+        elif os.path.exists(path):
+            hint = "--resume goes on with it; remove the file to begin again"
+            raise ConfigError("holds the rows of an interrupted batch", hint, file=str(path))
+        return partial.open(self.rows)
+
+    def run(self, workers: Workers, on_row: Callable[[Row], None] = lambda _: None) -> None:
+        """Execute the tasks that are not done, and block until they are.
+
+        An interrupt stops the tasks that are running and is raised; the rows of those that are done stay.
+
+        Args:
+            workers: The processes that execute the tasks.
+            on_row: Called with each new row.
+
+        Raises:
+            ConfigError, HostError: there is no such cluster, or it is lost.
+            ExportError: the rows cannot be written.
+            LogError: the folder for the recordings cannot be created.
+        """
+        plan, several = self._plan, len(self._plan.subjects) > 1
+        # What is done by now is taken out of the tasks before the first new row comes.
+        tasks = plan.tasks(frozenset(self.rows))
+        try:
+            # Closed, the results stop the tasks that are running.
+            with closing(workers.run(tasks)) as results:
+                for result in results:
+                    label = plan.subject_at(result.index).label if several else ""
+                    row = row_of(result, label, plan.seed_at(result.index))
+                    self.rows[result.index] = row
+                    if self._partial is not None:
+                        self._partial.add(row)
+                    on_row(row)
+        finally:
+            if self._partial is not None:
+                self._partial.close()
+
+    def build_frame(self) -> pd.DataFrame:
+        """Return the table of what is done.
+
+        Raises:
+            LogError: an expression is invalid, or names a column that there is not.
+        """
+        return frame_of(self.rows.values(), self._expressions if self.rows else {})
+
+    def export(self, frame: pd.DataFrame) -> None:
+        """Write the table.
+
+        Raises:
+            ExportError: it cannot be written.
+        """
+        if self._out is not None:
+            export_frame(frame, self._out, metadata_of(frame, self._identity))
+
+    def finish(self) -> None:
+        """Remove the rows that are kept for an interrupted batch.
+
+        Raises:
+            ExportError: they cannot be removed.
+        """
+        if self._partial is not None:
+            self._partial.remove()
+
+    def summarize(self, frame: pd.DataFrame) -> list[ColumnSummary]:
+        """Return statistics of what a summary is about, for each combination of parameters unless these are many."""
+        parameters = [*([PROGRAM] if PROGRAM in frame.columns else []), *self._plan.names]
+        return summaries(frame, parameters, result_columns(frame, self._expressions))

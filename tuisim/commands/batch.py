@@ -3,32 +3,17 @@
 from __future__ import annotations
 
 import math
-import os
 import shutil
 import time
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import field
 from typing import TYPE_CHECKING, Any
 
 from tuisim import __version__
-from tuisim.base.data_class import dataclass
-from tuisim.base.errors import ConfigError, counted
+from tuisim.base.errors import counted
 from tuisim.base.faults import UNJUDGED, report_file
-from tuisim.batch.partial import PartialTable, partial_of, rows_of_table
-from tuisim.batch.sweep import run_plan
-from tuisim.batch.table import (
-    GOAL,
-    PROGRAM,
-    RUN_ID,
-    ColumnSummary,
-    Row,
-    frame_of,
-    metadata_of,
-    result_columns,
-    summaries,
-    usual_columns,
-)
+from tuisim.batch.sweep import Sweep
+from tuisim.batch.table import GOAL, RUN_ID, ColumnSummary, Row
 from tuisim.commands import exit_status
 from tuisim.commands.batch_request import OPTIONS, Request, read_request
 from tuisim.commands.echo import (
@@ -46,7 +31,6 @@ from tuisim.commands.echo import (
 from tuisim.commands.exit_status import Interrupted, signals_raise
 from tuisim.commands.listings import names_of
 from tuisim.engine.protocol import End
-from tuisim.logs.export import export_frame
 from tuisim.logs.signals import QUANTILES
 from tuisim.settings.command_line import Arguments, command
 from tuisim.settings.options import APP, PANEL
@@ -102,65 +86,38 @@ def batch(**given: Any) -> int:
     return _Batch(read_request(arguments), as_json=arguments.as_json).run()
 
 
-@dataclass(slots=True)
 class _Batch:
     """The run of a batch."""
 
-    request: Request
-    as_json: bool
-    rows: dict[int, Row] = field(default_factory=dict, init=False)
-    """What is done, by the index of the task."""
-    identity: dict[str, Any] = field(default_factory=dict, init=False)
-    """What identifies the batch in its files; empty if none are written."""
+    def __init__(self, request: Request, *, as_json: bool) -> None:
+        self.request, self.as_json = request, as_json
+        self.sweep = Sweep(
+            request.plan, request.expressions, request.out, __version__, resumes=request.resume
+        )
+        self.rows = self.sweep.rows
 
     def run(self) -> int:
         """Run what is not done, write the table, print the results and return the exit code."""
-        partly = self._begin()
         plan, code = self.request.plan, 0
         with Progress(counted(len(plan), "run"), len(plan), in_lines=True):
             try:
                 with signals_raise():
-                    run_plan(
-                        plan,
-                        self.rows,
-                        workers=self.request.workers,
-                        partial=partly,
-                        on_row=self._rate(),
-                    )
+                    self.sweep.run(self.request.workers, self._rate())
             except Interrupted as interrupted:
                 code = interrupted.exit_code
-            finally:
-                if partly is not None:
-                    partly.close()
-            frame = frame_of(self.rows.values(), self.request.expressions if self.rows else {})
+            frame = self.sweep.build_frame()
             if self.request.out is not None and self.rows:
                 tell(f"writing {self.request.out}")
-                export_frame(frame, self.request.out, metadata_of(frame, self.identity))
+                self.sweep.export(frame)
                 echo_written(self.request.out)
-        if partly is not None and not code:
-            partly.remove()
+        if not code:
+            self.sweep.finish()
         self._print(frame)
         if any(str(row["summary"]).startswith(UNJUDGED) for row in self.rows.values()):
             echo_error(f"tuisim: the report of what went wrong is in {report_file()}")
         if code:
             self._tell_interrupted()
         return max([code, *map(_exit_code, self.rows.values())])
-
-    def _begin(self) -> PartialTable | None:
-        """Read the rows of an interrupted batch that goes on; return the open file for all rows, if any is written."""
-        if self.request.out is None:
-            return None
-        path = partial_of(self.request.out)
-        self.identity = self.request.plan.identity()
-        partly = PartialTable(path, {"version": __version__, **self.identity})
-        if self.request.resume:
-            plan = self.request.plan
-            columns = usual_columns(plan.names, [goal.name for goal in plan.goals])
-            self.rows = partly.rows() or rows_of_table(self.request.out, self.identity, columns)
-        elif os.path.exists(path):
-            hint = "--resume goes on with it; remove the file to begin again"
-            raise ConfigError("holds the rows of an interrupted batch", hint, file=str(path))
-        return partly.open(self.rows)
 
     def _rate(self) -> Any:
         """Return a function that shows how many runs are done, how many there are a second, and how long it takes."""
@@ -182,7 +139,6 @@ class _Batch:
             self._print_summary(frame)
 
     def _print_summary(self, frame: pd.DataFrame) -> None:
-        plan = self.request.plan
         ends = Counter(
             str(row["end"]).replace("_", " ") or "not started" for row in self.rows.values()
         )
@@ -199,11 +155,7 @@ class _Batch:
             echo(
                 f"{name.removeprefix(GOAL)}: met in {met:,} of {len(frame):,} ({100 * met / len(frame):.0f} %)"
             )
-        lines = summaries(
-            frame,
-            [*([PROGRAM] if PROGRAM in frame.columns else []), *plan.names],
-            result_columns(frame, self.request.expressions),
-        )
+        lines = self.sweep.summarize(frame)
         echo_lines(_summary_table(lines[:MOST_LINES], shutil.get_terminal_size().columns))
         if len(lines) > MOST_LINES:
             echo(f"and {len(lines) - MOST_LINES:,} more lines; --out FILE writes everything")

@@ -14,7 +14,6 @@ from tuisim.batch.batch_file import BatchFile, load_batch, means_batch
 from tuisim.batch.parameters import SEED, Choice, parse_seeds, parse_set
 from tuisim.batch.plan import Plan, Subject
 from tuisim.batch.sweep import Workers
-from tuisim.batch.table import check_expressions
 from tuisim.commands.batch_options import jobs_option, keep_option, workers_option
 from tuisim.commands.echo import echo_error
 from tuisim.commands.listings import WORLD, names_of
@@ -132,7 +131,7 @@ def read_request(arguments: Arguments) -> Request:
         options_of=lambda spec, settings: _run_options(spec, settings, arguments, goals),
     )
     expressions = {**file.expressions, **dict(map(_expression, arguments.expressions))}
-    check_expressions(expressions, plan.names, [goal.name for goal in plan.goals])
+    plan.check_expressions(expressions)
     out = arguments.out or file.out
     if arguments.resume and out is None:
         raise ConfigError("needs the table to go on with", "--out FILE", key="--resume")

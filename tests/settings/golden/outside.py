@@ -19,10 +19,9 @@ from unittest.mock import patch
 from tuisim import api
 from tuisim.base.errors import TuisimError
 from tuisim.base.folders import programs_folder
-from tuisim.batch import sweep
+from tuisim.batch.sweep import Sweep
 from tuisim.cli import run_command
 from tuisim.commands import app as app_command
-from tuisim.commands import batch as batch_command
 from tuisim.commands import resolve
 from tuisim.commands import run as run_command_module
 from tuisim.engine.core.spec import RunSpec
@@ -67,7 +66,8 @@ def _hold_run(program: Any, spec: RunSpec, options: Any, _store: object = None) 
     raise _Held([spec], [{**of_program, "live": options.live, "speed": options.speed}])
 
 
-def _hold_plan(plan: Any, *_: object, **__: object) -> NoReturn:
+def _hold_sweep(sweep: Any, *_: object) -> NoReturn:
+    plan = sweep._plan
     tasks = list(islice(plan.tasks(), MOST_TASKS))
     more = [
         {"values": task.parameters, "arguments": list(task.program.arguments)} for task in tasks
@@ -97,8 +97,7 @@ def nothing_starts() -> Iterator[None]:
         for place, name, held in (
             (run_command_module, "start_run", _hold_run),
             (api, "start_run", _hold_run),
-            (batch_command, "run_plan", _hold_plan),
-            (sweep, "run_plan", _hold_plan),
+            (Sweep, "run", _hold_sweep),
             (app_command, "has_terminal", lambda: True),
             ("tuisim.app.app", "run_app", _hold_app),
             (display.Stage, "show", lambda *_: None),
