@@ -87,6 +87,11 @@ BAD = [
     pytest.param(holding(b"hello"), "is not a readable image", id="text"),
     pytest.param(holding(bytes(range(256)) * 40), "is not a readable image", id="binary rubbish"),
     pytest.param(
+        holding(b"%!PS-Adobe-3.0 EPSF-3.0\n%%BoundingBox: 0 0 100 100\n%%EndComments\nshowpage\n"),
+        "is PostScript, a program",
+        id="PostScript",
+    ),
+    pytest.param(
         holding(b"\x89PNG\r\n\x1a\n" + bytes(40)), "is not a readable image", id="broken header"
     ),
     pytest.param(

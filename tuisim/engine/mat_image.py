@@ -1,6 +1,6 @@
 """Any image as a mat: checked before it is decoded, and placed on the field.
 
-Every format of Pillow is accepted, in any size and mode within the two limits below. An image
+Every format that Pillow itself decodes is accepted, in any size and mode within the two limits below. An image
 is rotated according to its EXIF data and put on white. It is placed on the field by one of
 `engine.core.spec.BACKGROUND_FITS`:
 
@@ -27,6 +27,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     from PIL.Image import Image
 
+POSTSCRIPT = "EPS"
+"""The format that Pillow lets another program draw, which runs what is in the file: it is refused."""
 MAX_MEGAPIXELS = 40
 """Images with more pixels are rejected before they are decoded."""
 
@@ -139,6 +141,8 @@ def decode(content: bytes, path: Path, fit: str) -> NDArray[np.uint8]:
         except Exception as error:
             raise _error("is not a readable image", path) from error
         with picture:
+            if picture.format == POSTSCRIPT:
+                raise _error("is PostScript, a program", path)
             _check_size(picture, path)
             try:
                 ImageOps.exif_transpose(picture, in_place=True)
