@@ -217,7 +217,7 @@ def test_nothing_that_cannot_help_is_advised_to_a_program_for_another_hub(case: 
     told = "p.py: it is a program for a SPIKE hub; tuisim simulates the EV3"
     assert program_settings(source).decided.note == ""
     with pytest.raises(RobotError, match=told):
-        robot_for(source)
+        robot_for(source, "it")
     if "pybricks" in SPIKE[case]:
         with pytest.raises(ProfileError) as caught:
             program_settings(source, {"profile": "ev3"})

@@ -93,7 +93,7 @@ def test_a_failure_of_the_reader_gives_the_default_robot_and_a_sentence(
         f"p.py runs as on a brick (profile ev3); {why}: it gets the default robot. "
     )
     with pytest.raises(RobotError, match="ZeroDivisionError"):
-        robot_for(source)
+        robot_for(source, "it")
 
 
 def test_an_impossible_size_gives_the_default_robot_and_a_sentence() -> None:
@@ -113,4 +113,4 @@ def test_an_impossible_size_gives_the_default_robot_and_a_sentence() -> None:
     )
     assert "robot" not in decided.layer
     with pytest.raises(RobotError, match="got 12000"):
-        robot_for(source)
+        robot_for(source, "it")

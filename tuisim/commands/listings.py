@@ -195,17 +195,15 @@ def _robot_from(program: str, out: str | None, *, as_json: bool) -> int:
         return _print_robot_of_run(program, out, as_json=as_json)
     from tuisim.programs.program_file import find_program, read_program
     from tuisim.programs.program_settings import robot_for
-    from tuisim.programs.robot.report import USUAL, robot_file_of, save_robot_of
 
-    source = read_program(find_program(program))
-    built = robot_for(source)
+    robot = robot_for(read_program(find_program(program)), program)
     if as_json:
-        echo_json([asdict(built.choice.spec if built else USUAL)])
+        echo_json([asdict(robot.spec)])
     elif out is not None:
-        save_robot_of(program, built, Path(out))
+        robot.save(Path(out))
         echo_error(f"{out}: the robot of {program}; `tuisim run {program} -r {out}` takes it")
     else:
-        echo_lines("\n".join(robot_file_of(program, built)))
+        echo_lines("\n".join(robot.list_lines()))
     return 0
 
 

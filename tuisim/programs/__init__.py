@@ -12,6 +12,5 @@ __all__ = [
     "plugged_words",
     "program_file",
     "program_settings",
-    "robot.report",
     "tokens",
 ]

@@ -32,6 +32,7 @@ from tuisim.settings.robots import RobotChoice
 if TYPE_CHECKING:
     from tuisim.programs.robot.assembly import BuiltRobot
     from tuisim.programs.robot.brick_syntax import RefusedLine
+    from tuisim.programs.robot.report import ProgramRobot
 
 BRICK_PROFILE = "ev3"
 """The profile of programs that are for a real brick."""
@@ -325,12 +326,18 @@ def _misfit(program: Program, library: Library, profile: ProfileSpec) -> Profile
     )
 
 
-def robot_for(source: ProgramSource) -> BuiltRobot | None:
-    """Return the robot on which a program runs without further options; None for the default one.
+def robot_for(source: ProgramSource, name: str) -> ProgramRobot:
+    """Return the robot on which a program runs without further options.
+
+    Args:
+        source: The program.
+        name: What the program is called.
 
     Raises:
         RobotError: the program has parts that its text does not show.
     """
+    from tuisim.programs.robot.report import ProgramRobot
+
     facts = _facts_in_run(source)
     if facts.robot is None and (facts.unread or facts.hides_parts):
         raise RobotError(
@@ -338,7 +345,7 @@ def robot_for(source: ProgramSource) -> BuiltRobot | None:
             "`tuisim robots Default_Robot` shows the robot that it gets",
             file=source.program.name,
         )
-    return facts.robot
+    return ProgramRobot(name, facts.robot)
 
 
 def _facts_in_run(source: ProgramSource) -> SourceFacts:

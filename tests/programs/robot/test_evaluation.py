@@ -26,14 +26,6 @@ PORTS: Mapping[str, tuple[str, str]] = {
     "unpacked": ("a, b = OUTPUT_A, OUTPUT_D\nMediumMotor(b)", "D medium motor"),
     "list item": ("ports = [OUTPUT_A, OUTPUT_D]\nMediumMotor(ports[-1])", "D medium motor"),
     "dict.get": ("ports = {'x': OUTPUT_D}\nMediumMotor(ports.get('x'))", "D medium motor"),
-    "keywords from a dict": (
-        "def make(arm, other=None):\n    MediumMotor(arm)\nPORTS = {'arm': OUTPUT_D}\nmake(**PORTS)",
-        "D medium motor",
-    ),
-    "arguments from a list": (
-        "def make(arm):\n    MediumMotor(arm)\nmake(*[OUTPUT_D])",
-        "D medium motor",
-    ),
     "default argument": (
         "def make(port=OUTPUT_D):\n    MediumMotor(port)\nmake()",
         "D medium motor",

@@ -89,7 +89,7 @@ def test_a_module_elsewhere_in_the_repository_is_named(folder: Path) -> None:
     assert facts.unread == "it imports my_robot, which is in ../libs: PYTHONPATH=../libs finds it"
     (folder / "main.py").write_text(_USE)
     with pytest.raises(RobotError, match=r"PYTHONPATH=\.\./libs"):
-        robot_for(read_program(folder / "main.py"))
+        robot_for(read_program(folder / "main.py"), "it")
     decided = program_settings(read_program(folder / "main.py")).decided
     assert decided.note.startswith("main.py: it imports my_robot, which is in ../libs")
 
@@ -98,6 +98,6 @@ def test_no_default_robot_stands_for_parts_that_are_not_found(folder: Path) -> N
     text = f"{HEAD}for kind in (LargeMotor, MediumMotor):\n    made = [build(kind, eval(one)) for one in PORTS]\n"
     (folder / "main.py").write_text(text)
     with pytest.raises(RobotError, match="where tuisim cannot read their ports"):
-        robot_for(read_program(folder / "main.py"))
+        robot_for(read_program(folder / "main.py"), "it")
     (folder / "main.py").write_text(f"{HEAD}print(1)\n")
-    assert robot_for(read_program(folder / "main.py")) is None
+    assert robot_for(read_program(folder / "main.py"), "it").built is None

@@ -10,7 +10,7 @@ from dataclasses import field, replace
 from tuisim.base.data_class import dataclass
 from tuisim.base.source import LIBRARIES
 from tuisim.programs.robot import library
-from tuisim.programs.robot.calls import Call, argument_of
+from tuisim.programs.robot.calls import Call, argument_node, find_default
 from tuisim.programs.robot.scopes import (
     FUNCTIONS,
     Bound,
@@ -346,6 +346,15 @@ class Evaluation:
 
     # Arguments
 
+    def find_argument(self, call: Call, name: str, at: int | None) -> Sequence[Value] | None:
+        """Return what a call gives for a parameter; None if nothing, empty if unknown, as it is with `*…` and `**…`."""
+        if (node := argument_node(call, name, at)) is not None:
+            return self.values(node, call.scope)
+        is_unpacked = any(isinstance(one, ast.Starred) for one in call.node.args) or any(
+            keyword.arg is None for keyword in call.node.keywords
+        )
+        return () if is_unpacked else None
+
     def arguments(self, parameter: Parameter) -> list[tuple[Value, Call | None]]:
         """Return what a parameter can be, each with the call that says so; None for its default."""
         name = parameter.argument.arg
@@ -365,14 +374,14 @@ class Evaluation:
 
     def _arguments(self, parameter: Parameter, names: list[str]) -> list[tuple[Value, Call | None]]:
         name, owner = parameter.argument.arg, parameter.scope.outer
-        default = _default_of(parameter.function, name)
+        default = find_default(parameter.function, name)
         usual: list[tuple[Value, Call | None]] = []
         if default is not None and owner is not None:
             usual = [(value, None) for value in self.values(default, owner)]
         found: list[tuple[Value, Call | None]] = []
         for call in self.calls.get(parameter.function, ()):
             at = names.index(name) - (1 if call.is_bound else 0) if name in names else None
-            given = argument_of(call, name, at, self)
+            given = self.find_argument(call, name, at)
             if given is None:
                 found += [(value, call) for value, _ in usual]
             else:
@@ -401,13 +410,3 @@ def _distinct(values: Iterable[Value]) -> tuple[Value, ...]:
         if len(found) >= MAX_VALUES:
             break
     return tuple(found)
-
-
-def _default_of(function: Function, name: str) -> ast.expr | None:
-    arguments = function.args
-    usual = [*arguments.posonlyargs, *arguments.args]
-    pairs = [
-        *zip(usual[len(usual) - len(arguments.defaults) :], arguments.defaults, strict=True),
-        *zip(arguments.kwonlyargs, arguments.kw_defaults, strict=True),
-    ]
-    return next((default for argument, default in pairs if argument.arg == name), None)

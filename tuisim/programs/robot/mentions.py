@@ -9,7 +9,7 @@ from dataclasses import field, replace
 from tuisim.base.data_class import dataclass
 from tuisim.engine.core.profile import Library
 from tuisim.programs.robot import library
-from tuisim.programs.robot.calls import Call, argument_node, argument_of
+from tuisim.programs.robot.calls import Call, argument_node
 from tuisim.programs.robot.evaluation import Evaluation
 from tuisim.programs.robot.library import DeviceKind, PairClass
 from tuisim.programs.robot.reach import reachable, skipped
@@ -298,7 +298,7 @@ class _Reader:
 
     def _devices(self, name: str, call: Call) -> Iterator[Mention]:
         kind, where = library.DEVICES[name], _where(call)
-        driver = argument_of(call, "driver_name", None, self.evaluation)
+        driver = self.evaluation.find_argument(call, "driver_name", None)
         if driver:
             told = [library.kind_of_driver(one) for one in self._flat(driver)]
             if not told or told[0] is None:
@@ -337,13 +337,13 @@ class _Reader:
     def _mounted(self, motor: Mention, call: Call) -> Mention:
         """Return a motor with the direction and the gears that the call says."""
         is_turned = library.INVERSED in (
-            argument_of(call, library.DIRECTION, 1, self.evaluation) or ()
+            self.evaluation.find_argument(call, library.DIRECTION, 1) or ()
         )
         return replace(motor, is_turned=is_turned, gear_ratio=self._gear_ratio(call))
 
     def _gear_ratio(self, call: Call) -> float:
         """Return the turns of a motor per turn of what it drives: its gears are one train, or a list of trains."""
-        parts = [*self._flat(argument_of(call, library.GEARS, 2, self.evaluation) or ())]
+        parts = [*self._flat(self.evaluation.find_argument(call, library.GEARS, 2) or ())]
         trains = [
             [*self._flat([part])] for part in parts if isinstance(part, SourceCollection)
         ] or [parts]
@@ -360,7 +360,7 @@ class _Reader:
         return tuple(dict.fromkeys((*self.hints.get(call.node, ()), *outside)))
 
     def _given(self, call: Call, word: str) -> Sequence[Value]:
-        return argument_of(call, word, 0, self.evaluation) or ()
+        return self.evaluation.find_argument(call, word, 0) or ()
 
     def _takes_any(self, call: Call, word: str) -> bool:
         node = argument_node(call, word, 0)
@@ -372,7 +372,7 @@ class _Reader:
         """Yield the ports that an argument can be, each with what the program calls the device."""
         node = argument_node(call, name, at)
         if node is None:
-            given: Iterable[Value] = argument_of(call, name, at, self.evaluation) or ()
+            given: Iterable[Value] = self.evaluation.find_argument(call, name, at) or ()
             yield from ((port, names) for value in given if (port := library.port_of(value)))
             return
         own = _names_in(node)
@@ -427,7 +427,7 @@ class _Reader:
 
     def _motor_set(self, call: Call) -> Iterator[Mention]:
         owner, where = call.scope.owner, _where(call)
-        for table in argument_of(call, "motor_specs", 0, self.evaluation) or ():
+        for table in self.evaluation.find_argument(call, "motor_specs", 0) or ():
             if isinstance(table, SourceCollection) and isinstance(table.node, ast.Dict):
                 for key, item in zip(table.keys, table.items, strict=True):
                     ports = self.evaluation.values(key, table.scope) if key is not None else ()
@@ -458,7 +458,7 @@ class _Reader:
         """
         known, names = library.PAIRS[name], self._called(call)
         polarities = [
-            str(value) for value in argument_of(call, library.POLARITY, 2, self.evaluation) or ()
+            str(value) for value in self.evaluation.find_argument(call, library.POLARITY, 2) or ()
         ]
         for one, other in self._ends(known, call, names, devices):
             if one != other and one.startswith("out") and other.startswith("out"):
@@ -503,7 +503,7 @@ class _Reader:
         """Return the ports of the motors that an argument can be."""
         given = [
             one
-            for one in argument_of(call, name, at, self.evaluation) or ()
+            for one in self.evaluation.find_argument(call, name, at) or ()
             if isinstance(one, Instance)
         ]
         made = [
@@ -533,17 +533,17 @@ class _Reader:
         )
 
     def _size(self, call: Call, name: str, at: int) -> float | None:
-        given = argument_of(call, name, at, self.evaluation) or ()
+        given = self.evaluation.find_argument(call, name, at) or ()
         return next((float(value) for value in given if isinstance(value, int | float)), None)
 
     def _motor_kind(self, name: str, known: PairClass, call: Call) -> DeviceKind:
-        given = argument_of(
-            call, library.MOTOR_CLASS, library.MOTOR_CLASS_AT.get(name), self.evaluation
+        given = self.evaluation.find_argument(
+            call, library.MOTOR_CLASS, library.MOTOR_CLASS_AT.get(name)
         )
         return next((kind for value in given or () if (kind := _motor_of(value))), known.kind)
 
     def _wheel(self, call: Call) -> tuple[float, float] | None:
-        for value in argument_of(call, library.WHEEL_CLASS, 2, self.evaluation) or ():
+        for value in self.evaluation.find_argument(call, library.WHEEL_CLASS, 2) or ():
             if found := self._size_of(value, ()):
                 return found
         return None
@@ -558,7 +558,7 @@ class _Reader:
                         sizes = [
                             [
                                 one
-                                for one in argument_of(call, key, at, self.evaluation) or ()
+                                for one in self.evaluation.find_argument(call, key, at) or ()
                                 if _is_number(one)
                             ]
                             for at, key in enumerate(("diameter_mm", "width_mm"))

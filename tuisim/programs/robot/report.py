@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+from tuisim.base.data_class import dataclass
 from tuisim.base.errors import RobotError
 from tuisim.engine.core.spec import RobotSpec
 from tuisim.engine.files import Location, save_toml, toml_key, toml_lines
@@ -38,46 +39,62 @@ def in_words(built: BuiltRobot) -> str:
     return ", ".join(part.what for part in built.parts if part.changes)
 
 
-def robot_file_of(program: str, built: BuiltRobot | None) -> list[str]:
-    """Return the lines of a robot file with what a program changes in the default robot, and why.
+@dataclass(frozen=True, slots=True)
+class ProgramRobot:
+    """The robot that a program talks about, as a robot file."""
 
-    Args:
-        program: What the program is called.
-        built: The robot; None if the program needs no other than the default one.
-    """
-    lines = [
-        f"# The robot that {program} talks about: {DEFAULT_ROBOT} with these parts changed. -r takes this file.",
-        "# Lengths in mm, angles in degrees; x to the right of the midpoint between the wheels, y forward of it.",
-    ]
-    top = f'base = "{DEFAULT_ROBOT}"'
-    if built is None:
-        return [
-            *lines,
-            "# It has everything on the ports that the program names.",
-            "",
-            top,
-            f'name = "{USUAL.name}"',
+    program: str
+    """What the program is called."""
+    built: BuiltRobot | None
+    """None if the program needs no other than the default one."""
+
+    @property
+    def spec(self) -> RobotSpec:
+        """The robot."""
+        return self.built.choice.spec if self.built else USUAL
+
+    def list_lines(self) -> list[str]:
+        """Return the lines of a robot file with what the program changes in the default robot, and why."""
+        lines = [
+            f"# The robot that {self.program} talks about: {DEFAULT_ROBOT} with these parts changed. "
+            "-r takes this file.",
+            "# Lengths in mm, angles in degrees; x to the right of the midpoint between the wheels, y forward of it.",
         ]
-    lines += [f"# Another reading is possible: {doubt}." for doubt in built.doubts]
-    same = [part for part in built.parts if not part.changes and part.where]
-    lines += [f"# As in {DEFAULT_ROBOT}: {part.what} ({part.where})." for part in same]
-    changed = _difference(_table(built.choice.spec), _table(USUAL))
-    said = {
-        part.path: f"{part.where}: {part.what}" if part.where else part.what for part in built.parts
-    }
-    return [*lines, "", top, *_lines(changed, "", said)]
+        top = f'base = "{DEFAULT_ROBOT}"'
+        built = self.built
+        if built is None:
+            return [
+                *lines,
+                "# It has everything on the ports that the program names.",
+                "",
+                top,
+                f'name = "{USUAL.name}"',
+            ]
+        lines += [f"# Another reading is possible: {doubt}." for doubt in built.doubts]
+        same = [part for part in built.parts if not part.changes and part.where]
+        lines += [f"# As in {DEFAULT_ROBOT}: {part.what} ({part.where})." for part in same]
+        changed = _difference(_table(built.choice.spec), _table(USUAL))
+        said = {
+            part.path: f"{part.where}: {part.what}" if part.where else part.what
+            for part in built.parts
+        }
+        return [*lines, "", top, *_lines(changed, "", said)]
 
+    def save(self, path: Path) -> None:
+        """Write the robot atomically to a robot file; comments in an existing file stay.
 
-def save_robot_of(program: str, built: BuiltRobot | None, path: Path) -> None:
-    """Write the robot of a program atomically to a robot file; comments in an existing file stay.
-
-    Raises:
-        RobotError: the file cannot be written, or is no robot file.
-    """
-    at = Location(str(path), RobotError)
-    spec = built.choice.spec if built else USUAL
-    lines = robot_file_of(program, built)
-    save_toml(path, lines, at, lambda data: robot_from_table(data, spec.name, at).spec, spec)
+        Raises:
+            RobotError: the file cannot be written, or is no robot file.
+        """
+        at = Location(str(path), RobotError)
+        name = self.spec.name
+        save_toml(
+            path,
+            self.list_lines(),
+            at,
+            lambda data: robot_from_table(data, name, at).spec,
+            self.spec,
+        )
 
 
 def _table(spec: RobotSpec) -> dict[str, Any]:
