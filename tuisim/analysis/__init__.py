@@ -8,6 +8,5 @@ __all__ = [
     "remembered",
     "report",
     "source",
-    "table",
     "traces",
 ]

@@ -13,7 +13,6 @@ import numpy as np
 
 from tuisim.analysis.events import Events
 from tuisim.analysis.source import Note, OpenedLog, read_notes, write_notes
-from tuisim.analysis.table import Rows
 from tuisim.analysis.traces import TIME, LogTrace, LogTraces, aligned
 from tuisim.base.errors import LogError, among
 from tuisim.engine.runs.arrays import FloatArray
@@ -28,6 +27,7 @@ from tuisim.logs.derived import (
 )
 from tuisim.logs.plateaus import Search, plateaus
 from tuisim.logs.signals import Summary, known_at, summary_of
+from tuisim.logs.table import Rows
 from tuisim.pictures.charts.axes import Limits
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ from tuisim.app.actions import robot
 from tuisim.app.actions.files import open_brought
 from tuisim.base.errors import TuisimError
 from tuisim.base.source import Program
-from tuisim.engine.runs.run_options import RunOptions
+from tuisim.engine.runs.handle import RunOptions
 from tuisim.programs.program_file import ProgramSource
 
 if TYPE_CHECKING:

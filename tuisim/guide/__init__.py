@@ -6,5 +6,4 @@ __all__ = [
     "search",
     "tables",
     "text",
-    "words",
 ]

@@ -25,6 +25,11 @@ from tuisim.guide.catalogue import pages
 from tuisim.guide.tables import markdown_of
 from tuisim.guide.words import stems_of, words_of
 
+_LEAST_LETTERS, _ENDING = 4, 2
+"""Letters that tell a word, and those at its end that may be others in another form of it."""
+_PLAIN = ("not", "one")
+"""Words of a question that say too little to stand out."""
+
 
 @cache
 def asked_questions() -> Mapping[str, Mapping[str, tuple[str, ...]]]:
@@ -285,6 +290,13 @@ def _parts(question: str) -> list[str]:
         part for part in _JOINT.split(question) if len(list(words_of(part))) >= _WORDS_OF_A_PART
     ]
     return parts if len(parts) > 1 else []
+
+
+def pattern_of(question: str) -> re.Pattern[str] | None:
+    """Return what finds the words of a question in an answer, in other forms, too."""
+    words = [word for word in words_of(question) if word not in _PLAIN]
+    begins = [re.escape(word[: max(_LEAST_LETTERS, len(word) - _ENDING)]) for word in words]
+    return re.compile(rf"(?i)\b(?:{'|'.join(begins)})\w*") if begins else None
 
 
 def search(question: str) -> list[SearchResult]:

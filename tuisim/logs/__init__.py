@@ -1,7 +1,6 @@
 """Logs: readers, columns, bands, signals, expressions, exports. Without Textual."""
 
 __all__ = [
-    "arrow",
     "bands",
     "choices",
     "columns",
@@ -17,5 +16,6 @@ __all__ = [
     "plateaus",
     "reader",
     "signals",
+    "table",
     "units",
 ]

@@ -1,4 +1,4 @@
-"""Files as frames of pandas."""
+"""Files and logs as frames of pandas."""
 
 from __future__ import annotations
 
@@ -8,16 +8,21 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
 import pyarrow as pa
 
 from tuisim.base.errors import LogError
+from tuisim.engine.runs.arrays import FloatArray
 from tuisim.logs import arrow
 from tuisim.logs.blocks import Block
 from tuisim.logs.choices import NO_CHOICES, ReadChoices
-from tuisim.logs.columns import ROW
+from tuisim.logs.columns import ROW, numeric_columns
 from tuisim.logs.export import EXPORTERS, companion_of, typed_frame
+from tuisim.logs.expressions import evaluate
 from tuisim.logs.json_rows import JsonReader
+from tuisim.logs.log import Log, Series
 from tuisim.logs.reader import joined, open_log, read_companion, read_parts
+from tuisim.logs.signals import Between, known_at
 from tuisim.logs.text_tables import exported_csv
 from tuisim.logs.units import TEXT, TIMEDELTA
 from tuisim.logs.warnings import Notes
@@ -100,3 +105,37 @@ def _exported(source: Path, notes: Notes) -> pa.Table:
         }
         return pa.schema(kinds).empty_table() if table is None else table
     return joined([table for _, table in read_parts(source, notes) if table is not None])
+
+
+def sampled_frame(
+    moments_s: FloatArray, all_series: Sequence[Series], between: Between = Between.HOLD
+) -> pd.DataFrame:
+    """Return the values of each series at given times: one column each, with unique names."""
+    import pandas as pd
+
+    names = arrow.unique_names(["time", *(one.name for one in all_series)])
+    known = [known_at(one.time_s, one.values, moments_s, between) for one in all_series]
+    return pd.DataFrame(dict(zip(names, [moments_s, *known], strict=True)))
+
+
+def computed_frame(log: Log, expression: str) -> pd.DataFrame:
+    """Return a log with one column per variable, and the value of an expression over them.
+
+    Raises:
+        LogError: the expression is invalid, or names a column that there is not.
+    """
+    frame = _wide_frame(log)
+    columns = {str(name): frame[name].to_numpy(np.float64) for name in frame.columns}
+    result = arrow.unique_names([*columns, "result"])[-1]
+    return frame.assign(**{result: evaluate(expression, columns)})
+
+
+def _wide_frame(log: Log) -> pd.DataFrame:
+    """Return a log in wide format; rows of a long log are forward-filled."""
+    import pandas as pd
+
+    if not log.layout.variable:
+        return pd.DataFrame({name: log.numbers(name) for name in numeric_columns(log.table.schema)})
+    series = [one for one in map(log.series, log.names) if len(one.rows)]
+    moments = np.unique(np.concatenate([one.time_s for one in series]))
+    return sampled_frame(moments, series)

@@ -11,13 +11,13 @@ from tests.tasks.goals.recorded import goals_of
 from tuisim.analysis.events import events_of, thresholds_of
 from tuisim.analysis.model import Model, derive
 from tuisim.analysis.source import LogRequest, opening
-from tuisim.analysis.table import conditions_of
 from tuisim.cli import run_command
 from tuisim.engine.core.columns import column_name
 from tuisim.engine.core.sensors import columns_of
 from tuisim.engine.runs.frames import column_values
 from tuisim.engine.runs.run_folder import StoredRun, open_mat
 from tuisim.engine.runs.store import RunStore
+from tuisim.logs.table import conditions_of
 from tuisim.settings.build import build_run_spec
 from tuisim.settings.options import Settings
 from tuisim.tasks.goals.judge import judge

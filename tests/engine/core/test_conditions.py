@@ -11,7 +11,6 @@ import pyarrow as pa
 import pytest
 
 from tuisim.analysis.events import FORM, Threshold, threshold_of, thresholds_of
-from tuisim.analysis.table import Rows, conditions_of
 from tuisim.app.timeline import find
 from tuisim.base.errors import ConfigError, LogError
 from tuisim.engine.breakpoints import parse_break
@@ -29,6 +28,7 @@ from tuisim.engine.runs.records import OutputRow, Stream
 from tuisim.logs.columns import Layout
 from tuisim.logs.expressions import evaluate
 from tuisim.logs.log import Log
+from tuisim.logs.table import Rows, conditions_of
 
 VALUES = (40.0, 50.0, 60.0)
 

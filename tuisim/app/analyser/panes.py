@@ -17,7 +17,6 @@ from textual.worker import get_current_worker
 
 from tuisim.analysis.events import CommandRow, Event
 from tuisim.analysis.model import Model
-from tuisim.analysis.table import AT_ONCE
 from tuisim.app import background
 from tuisim.app.analyser.table_pane import (
     DIM,
@@ -35,6 +34,7 @@ from tuisim.base.errors import TuisimError
 from tuisim.logs.bands import Band, count_samples, width_in_words
 from tuisim.logs.plateaus import Search, plateaus, plateaus_in_subprocess
 from tuisim.logs.signals import QUANTILES
+from tuisim.logs.table import AT_ONCE
 from tuisim.terminal.cell_view import LinesPanel
 from tuisim.terminal.text_runs import Line, cut, first_shown
 

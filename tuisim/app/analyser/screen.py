@@ -19,7 +19,6 @@ from tuisim.analysis.events import CommandRow
 from tuisim.analysis.model import RECKONING, Model
 from tuisim.analysis.remembered import is_readable_again, read_doubtful, remember_choices
 from tuisim.analysis.source import LogRequest, opening
-from tuisim.analysis.table import AT_ONCE, TableTask
 from tuisim.app import background
 from tuisim.app.action import ActionHost, KeyFooter
 from tuisim.app.analyser.chart import LogChart
@@ -37,6 +36,7 @@ from tuisim.logs.derived import SIGNALS, TIME, computed_columns
 from tuisim.logs.expressions import CONSTANTS, FUNCTIONS
 from tuisim.logs.log import Log
 from tuisim.logs.reader import read_beginning
+from tuisim.logs.table import AT_ONCE, TableTask
 from tuisim.terminal.cell_view import LinesView
 
 _POLL_S = 1.0

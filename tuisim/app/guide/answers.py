@@ -14,8 +14,7 @@ from textual.widgets.option_list import Option
 from tuisim.base import palette
 from tuisim.guide.catalogue import pages
 from tuisim.guide.excerpt import excerpt_of
-from tuisim.guide.search import SearchResult
-from tuisim.guide.words import words_of
+from tuisim.guide.search import SearchResult, pattern_of
 
 _FIRST_LINES, _LINES = 11, ((9, 1), (6, 1), (3, 1), (3, 0))
 """Lines of the best answer; of each other, with those between two: as many as leave all in sight, else the fewest."""
@@ -23,10 +22,6 @@ _EDGES = 3
 """Columns beside the text: a space at each side, and the scroll bar."""
 _LEAST_COLUMNS = 20
 _ITEM = "• "
-_LEAST_LETTERS, _ENDING = 4, 2
-"""Letters that tell a word, and those at its end that may be others in another form of it."""
-_PLAIN = ("not", "one")
-"""Words of a question that say too little to stand out."""
 STANDS_OUT = Style(bold=True, color=palette.WHITE)
 """A word of the question."""
 _SECTION, _PAGE, _TEXT = (
@@ -52,7 +47,7 @@ class AnswerList(OptionList):
             found: The best one first.
             size: Columns and rows of the list.
         """
-        self._found, self._asked = found, _pattern_of(question)
+        self._found, self._asked = found, pattern_of(question)
         self.fit(size)
         self.highlighted = 0 if found else None
         self.scroll_home(animate=False)
@@ -104,10 +99,3 @@ def _passage_of(one: SearchResult, columns: int, most: int, asked: re.Pattern[st
     """Return what is shown of an answer, as an item of a list."""
     lines = [Text.assemble(*line) for line in excerpt_of(one, columns - len(_ITEM), most, asked)]
     return Text(_ITEM, _TEXT, no_wrap=True).append_text(Text(f"\n{' ' * len(_ITEM)}").join(lines))
-
-
-def _pattern_of(question: str) -> re.Pattern[str] | None:
-    """Return what finds the words of a question in an answer, in other forms, too."""
-    words = [word for word in words_of(question) if word not in _PLAIN]
-    begins = [re.escape(word[: max(_LEAST_LETTERS, len(word) - _ENDING)]) for word in words]
-    return re.compile(rf"(?i)\b(?:{'|'.join(begins)})\w*") if begins else None

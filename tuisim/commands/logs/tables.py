@@ -36,16 +36,13 @@ from tuisim.engine.core.conditions import Operator
 from tuisim.engine.runs.arrays import FloatArray
 from tuisim.engine.runs.command_events import CommandIndex, parse_command_search
 from tuisim.logs import signals
-from tuisim.logs.arrow import unique_names
 from tuisim.logs.bands import BandReport, Column, band_report, in_words, items_of, width_in_words
-from tuisim.logs.columns import numeric_columns
 from tuisim.logs.csv_cells import write_csv
 from tuisim.logs.derived import reckoned_series
 from tuisim.logs.export import check_target, export_frame, export_log, table_metadata
-from tuisim.logs.expressions import evaluate
+from tuisim.logs.frames import computed_frame, sampled_frame
 from tuisim.logs.log import Log, LogTable, Series
 from tuisim.logs.mcap_export import POSE, SUFFIX, export_mcap, load_writer
-from tuisim.logs.signals import Between
 from tuisim.settings.command_line import Arguments
 
 if TYPE_CHECKING:
@@ -254,19 +251,8 @@ def even(arguments: Arguments) -> int:
     start = min(float(series.time_s.min()) for series in all_series)
     stop = max(float(series.time_s.max()) for series in all_series)
     moments = signals.even_moments(start, stop, arguments.period)
-    show_frame(_sampled_at(moments, all_series, arguments.between), arguments)
+    show_frame(sampled_frame(moments, all_series, arguments.between), arguments)
     return 0
-
-
-def _sampled_at(
-    moments_s: FloatArray, all_series: Sequence[Series], between: Between = Between.HOLD
-) -> pd.DataFrame:
-    """Return the values of each series at given times: one column each, with unique names."""
-    import pandas as pd
-
-    names = unique_names(["time", *(one.name for one in all_series)])
-    known = [signals.known_at(one.time_s, one.values, moments_s, between) for one in all_series]
-    return pd.DataFrame(dict(zip(names, [moments_s, *known], strict=True)))
 
 
 def calculate(arguments: Arguments) -> int:
@@ -276,22 +262,8 @@ def calculate(arguments: Arguments) -> int:
             "no expression given", "such as --expression '(left + right) / 2'", key="calc"
         )
     log = the_source(arguments)
-    frame = wide_frame(log)
-    columns = {str(name): frame[name].to_numpy(np.float64) for name in frame.columns}
-    result = unique_names([*columns, "result"])[-1]
-    show_frame(frame.assign(**{result: evaluate(arguments.expression, columns)}), arguments)
+    show_frame(computed_frame(log, arguments.expression), arguments)
     return 0
-
-
-def wide_frame(log: Log) -> pd.DataFrame:
-    """Return a log in wide format: one column per variable; rows of a long log are forward-filled."""
-    import pandas as pd
-
-    if not log.layout.variable:
-        return pd.DataFrame({name: log.numbers(name) for name in numeric_columns(log.table.schema)})
-    series = [one for one in map(log.series, log.names) if len(one.rows)]
-    moments = np.unique(np.concatenate([one.time_s for one in series]))
-    return _sampled_at(moments, series)
 
 
 def reckon(arguments: Arguments) -> int:

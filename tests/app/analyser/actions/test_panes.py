@@ -10,8 +10,8 @@ import pytest
 from tests.app.analyser.test_screen import open_analyser, text_of, typed
 from tests.app.app_help import notices, until
 from tuisim.analysis.model import Model
-from tuisim.analysis.table import TableTask
 from tuisim.app.analyser import screen as screen_module
+from tuisim.logs.table import TableTask
 
 STEPS: list[tuple[list[str], Callable[[Model], bool]]] = [
     (["F", "=value < 50 and name == a", "enter"], lambda model: len(model.rows) == 50),

@@ -7,11 +7,11 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from tuisim.analysis.events import CommandRow, Event, EventChoice, events_of, thresholds_of
-from tuisim.analysis.table import TableTask, TableView, conditions_of
 from tuisim.app.analyser.world import NO_POSES, has_poses
 from tuisim.base.errors import LogError
 from tuisim.engine.core.conditions import spelled
 from tuisim.logs.log import Log
+from tuisim.logs.table import TableTask, TableView, conditions_of
 
 if TYPE_CHECKING:
     from tuisim.analysis.model import Model

@@ -7,10 +7,10 @@ import random
 import pytest
 
 from tests.app.analyser.logs import long_log, model_of
-from tuisim.analysis import table as rows_module
 from tuisim.analysis.model import Model
-from tuisim.analysis.table import TableTask, conditions_of
 from tuisim.base.errors import LogError
+from tuisim.logs import table as rows_module
+from tuisim.logs.table import TableTask, conditions_of
 
 
 def test_a_search_goes_round_in_stretches(monkeypatch: pytest.MonkeyPatch) -> None:
