@@ -11,7 +11,6 @@ from tests.cases import cases
 from tests.conftest import Command
 from tests.programs.test_notebook_file import BESIDE, LESSON, VARIABLES, write
 
-WHERE = "%%sim_magic\nprint('x: ' + str({}))\n"
 RGB = "%%sim_magic_preloaded\nprint(colorLeft.rgb)\n"
 
 

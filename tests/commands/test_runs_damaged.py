@@ -110,7 +110,7 @@ def row(stream: int, content: bytes) -> Damage:
     return harm
 
 
-NAN, INF = struct.pack("<d", float("nan")), struct.pack("<d", float("inf"))
+NAN = struct.pack("<d", float("nan"))
 DAMAGES: dict[str, Damage] = {
     "a heading that is no number": at(TELEMETRY_FILE, 64 + 64 * 9 + 24, NAN),
     "the last record": at(TELEMETRY_FILE, 64 + 64 * 120, b"\xff" * 64),

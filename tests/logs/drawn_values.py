@@ -127,8 +127,6 @@ HEADINGS: dict[str, tuple[tuple[str, ...], ...]] = {
 }
 OF_DATES = (("timestamp",), ("time",), ("date",), ("Zeitpunkt",), ("recorded",))
 TIME_UNITS = {"seconds": ("s",), "milliseconds": ("ms",), "secs and nsecs": ("s", "ns")}
-RELATIVE = ("none", "seconds", "milliseconds", "time of day")
-"""Forms of which times are not counted from the first one."""
 
 
 def draw_clock(random: Random, kind: str, count: int, decimal: str, fraction: str) -> Clock:

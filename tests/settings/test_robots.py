@@ -62,9 +62,6 @@ def test_a_preset_that_was_saved_there_is_the_one_here(name: str, tmp_path: Path
     assert (choice.motor_noise, choice.light_noise, choice.notes) == (0, 0, ())
 
 
-DEFAULT, TINY = ROBOTS["Default_Robot"], ROBOTS["Small_Robot"]
-
-
 def test_unknown_keys_are_noted_once_in_the_shell(here: Command, tmp_path: Path) -> None:
     (tmp_path / "mine.json").write_text(json.dumps({**LARGE, "owner": "Ann"}))
     (tmp_path / "p.py").write_text("print('ran')")

@@ -21,7 +21,6 @@ from tuisim.terminal.cells import MONO, PALETTE_8, PALETTE_16, PALETTE_256
 from tuisim.terminal.frame_buffer import FrameBuffer, TextMode
 from tuisim.terminal.glyphs import GLYPHS
 
-WIDTH, ROWS = 60, 12
 FULL, MODE_256, MODE_16 = TextMode(), TextMode(PALETTE_256), TextMode(PALETTE_16)
 MODE_8, PLAIN = TextMode(PALETTE_8), TextMode(MONO, is_ascii=True)
 STYLES = (

@@ -18,8 +18,6 @@ from tuisim.pictures.scene.robot import COLORED, draw_robot
 from tuisim.pictures.scene.view import whole_field
 from tuisim.settings.robots import ROBOTS
 
-HERE = Pose(1000.0, 500.0, 0.0)
-
 
 def near(x_mm: float, y_mm: float, places: Sequence[tuple[float, float]]) -> bool:
     return any(hypot(x_mm - x, y_mm - y) < 20 for x, y in places)
