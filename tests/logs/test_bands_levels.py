@@ -8,6 +8,7 @@ import numpy as np
 import pyarrow as pa
 import pytest
 
+from tests.cases import for_each
 from tuisim.engine.core.noise import clamping
 from tuisim.engine.core.profile import EV3
 from tuisim.engine.core.spec import RobotSpec, RunSpec, WorldSpec
@@ -25,8 +26,7 @@ from tuisim.logs.levels import (
 from tuisim.logs.log import Log
 
 
-@pytest.mark.parametrize("value", [0, 3, 10, 128, 240, 250, 255])
-@pytest.mark.parametrize("noise", [5, 20, 128])
+@for_each(value=[0, 3, 10, 128, 240, 250, 255], noise=[5, 20, 128])
 def test_clamping_is_undone(value: int, noise: int) -> None:
     mean_percent = np.array([(value + clamping(noise).shift[value]) / 2.55])
     assert without_clamping(mean_percent, noise) == pytest.approx(

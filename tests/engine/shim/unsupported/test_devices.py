@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from tests.cases import cases
+from tests.cases import cases, for_each
 from tests.running import Run
 from tuisim.base.errors import NotSimulated
 from tuisim.engine.shim.unsupported.devices import DRIVERS, SIMULATED, of_driver, refused_device
@@ -118,12 +118,12 @@ def test_a_sensor_of_no_kind_may_be_one_that_is_not_simulated(run: Run) -> None:
     )
 
 
-@pytest.mark.parametrize("name", [*sorted(SIMULATED), "lego-ev3"])
+@for_each(name=[*sorted(SIMULATED), "lego-ev3"])
 def test_a_simulated_driver_is_not_refused(name: str) -> None:
     assert of_driver(name) is None
 
 
-@pytest.mark.parametrize("pattern", DRIVERS)
+@for_each(pattern=DRIVERS)
 def test_each_kind_is_found(pattern: str) -> None:
     assert (
         of_driver(
