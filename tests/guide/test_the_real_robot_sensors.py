@@ -13,7 +13,6 @@ from tuisim.engine.core.drift import draw_echo_bias_mm
 from tuisim.engine.core.drift_spec import DriftSpec
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.profile import EV3, PROFILES
-from tuisim.engine.core.sensors.gyro import angle_deg, rate_dps
 from tuisim.engine.core.sensors.ultrasonic import reading_mm
 from tuisim.engine.core.servo.motor import ServoMotor
 from tuisim.engine.core.simulation import Simulation
@@ -123,13 +122,13 @@ def test_infrared(tell: Callable[..., str], tmp_path: Path) -> None:
 @pytest.mark.parametrize(("name", "sign"), [("clockwise", 1), ("counter-clockwise", -1)])
 def test_turns(name: str, sign: int) -> None:
     sim = spin(sign, RobotSpec(), DriftSpec(gyro_scale_pc=TYPICAL.gyro_scale_pc))
-    counted_deg = 360 * angle_deg(sim.instant()) / abs(sim.pose.heading_deg)
+    counted_deg = 360 * sim.instant().gyro_deg / abs(sim.pose.heading_deg)
     assert is_in_table(f"a whole turn {name}", f"{abs(counted_deg):.0f}°, with typical drift")
 
 
 def test_fastest_turn() -> None:
     instant = spin(1, RobotSpec(wheel_spacing_mm=60.0), DriftSpec()).instant()
-    assert is_in_table("highest rate of turn", f"{rate_dps(instant)}°/s")
+    assert is_in_table("highest rate of turn", f"{instant.gyro_rate_dps}°/s")
 
 
 def test_distances() -> None:

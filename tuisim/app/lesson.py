@@ -251,7 +251,7 @@ class LessonController:
         except TuisimError as error:
             self._app.complain(error)
         # What a run from elsewhere needs depends on whether it is over.
-        self._follow(Change.SHOW if change is Change.NONE and session.is_elsewhere else change)
+        self._follow(Change.SHOW if change is Change.NONE and session.attempt.elsewhere else change)
 
     def _look(self) -> Sight:
         """Return what the student sees."""
@@ -288,7 +288,7 @@ class LessonController:
                 self._app.say(f"✓ {session.done.title}{over}")
             return
         self._save(session)
-        if change is Change.TRY and (trial := session.trial):
+        if change is Change.TRY and (trial := session.attempt.trial):
             then = partial(self._take_trial, session, trial)
             background.run(self._panel_area, trial.run, then, self._app.complain, group="lesson")
         self.show()
@@ -313,7 +313,7 @@ class LessonController:
         """Return how the run has failed that the goals were judged on; empty if it has not."""
         run, (recording, _) = self._run_controller.run, self._goals.judged
         if (
-            not session.judgements
+            not session.attempt.judgements
             or run is None
             or recording is None
             or run.run_id != recording.run_id
@@ -361,12 +361,12 @@ class LessonController:
             states=tuple(session.progress.of(step.name).state for step in session.lesson.steps),
             at=session.at,
             hints=session.hints,
-            judgements=session.judgements,
+            judgements=session.attempt.judgements,
             good_runs=session.good_runs,
             elsewhere=session.describe_elsewhere(runs.pose, in_run=runs.in_run),
             done=session.done,
             story=session.story if session.done else "",
             error=self._error(session),
-            remark=session.remark,
+            remark=session.attempt.remark,
             next_title="" if session.step else self._next_title(),
         )

@@ -66,7 +66,7 @@ def find(
     if session is not None:
         check = session.step.check if session.step else None
         asked = check.goals if isinstance(check, RunCheck) else ()
-        judgements = tuple(each for each in session.judgements if each.goal.name in asked)
+        judgements = tuple(each for each in session.attempt.judgements if each.goal.name in asked)
     elif file is not None and context.loader.goals.is_of_task(recording):
         goals = file.goals
     mat = context.runs.mat_for(recording.spec)

@@ -12,7 +12,7 @@ from tuisim.base.data_class import dataclass
 from tuisim.base.source import Program
 from tuisim.engine.core.field import Field
 from tuisim.engine.core.geometry import Pose
-from tuisim.engine.core.sensors import color, gyro, readings, ultrasonic
+from tuisim.engine.core.sensors import color, readings, ultrasonic
 from tuisim.engine.core.sensors.color import ColorReading
 from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.core.state import Instant
@@ -130,12 +130,12 @@ class Snapshot:
     @cached_property
     def gyro_deg(self) -> int:
         """The angle; 0 without a gyro."""
-        return gyro.angle_deg(self.instant) if self.spec.robot.gyro is not None else 0
+        return self.instant.gyro_deg if self.spec.robot.gyro is not None else 0
 
     @cached_property
     def gyro_rate_dps(self) -> int:
         """The rate of turn; 0 without a gyro."""
-        return gyro.rate_dps(self.instant) if self.spec.robot.gyro is not None else 0
+        return self.instant.gyro_rate_dps if self.spec.robot.gyro is not None else 0
 
     @cached_property
     def further(self) -> Mapping[str, float]:

@@ -21,7 +21,6 @@ from tuisim.engine.core.drift import (
 from tuisim.engine.core.drift_spec import NO_DRIFT, DriftSpec
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.profile import PROFILES
-from tuisim.engine.core.sensors.gyro import angle_deg
 from tuisim.engine.core.servo.motor import ServoMotor
 from tuisim.engine.core.simulation import Simulation
 from tuisim.engine.core.spec import (
@@ -213,9 +212,9 @@ def test_the_gyro_drifts_while_the_robot_stands_and_begins_anew_at_its_reset() -
     sim.advance(20_000)
     expected = drawn_errors(drift, 1).gyro_dps * 200
     assert abs(expected) > 5
-    assert angle_deg(sim.instant()) == pytest.approx(expected, abs=0.51)
+    assert sim.instant().gyro_deg == pytest.approx(expected, abs=0.51)
     sim.reset_gyro()
-    assert angle_deg(sim.instant()) == 0
+    assert sim.instant().gyro_deg == 0
 
 
 @for_each(seed=range(4))

@@ -98,14 +98,14 @@ def test_runs_count_in_any_order_of_their_trials_and_the_newest_is_told_of(home:
     trials = []
     for run_id in "ab":
         assert session.look(_sight(_run(run_id))) is Change.TRY
-        trials.append(session.trial)
+        trials.append(session.attempt.trial)
     first, second = trials
-    assert first and second and session.remark.endswith("also tried from farther back …")
+    assert first and second and session.attempt.remark.endswith("also tried from farther back …")
     assert session.take_trial(first, [(BACK, _judged(GoalState.MISSED))]) is Change.SHOW
-    assert "also tried" in session.remark
+    assert "also tried" in session.attempt.remark
     session.take_trial(second, [(BACK, _judged(GoalState.MISSED))])
     missed = "Also tried from farther back, it does not work (start x = 460 mm): It was too short."
-    assert session.remark == missed
+    assert session.attempt.remark == missed
     session.take_trial(first, [(BACK, _judged(GoalState.MET))])
     assert session.take_trial(second, [(BACK, _judged(GoalState.MET))]) is Change.GO_ON
     assert session.take_trial(second, []) is Change.NONE
@@ -118,7 +118,7 @@ def test_a_note_that_does_not_pass_is_told_why(home: Path, monkeypatch: pytest.M
     monkeypatch.setattr(sessions, "_read_notes", lambda _: [Noted("dark", levels[0])])
     sight = Sight(frozenset(), _run("a"))
     assert session.look(sight) is Change.SHOW
-    assert session.remark.startswith("Your note “dark” is on samples with a mean of 50.0;")
+    assert session.attempt.remark.startswith("Your note “dark” is on samples with a mean of 50.0;")
     assert session.look(sight) is Change.NONE
     levels[0] = 86.0
     assert session.look(sight) is Change.GO_ON

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from math import inf
 from typing import TypeAlias
 
 from tuisim.base.data_class import dataclass
@@ -37,6 +38,17 @@ class Instant:
     seed: int = 0
     motors: tuple[MotorValues, ...] = ()
     """What the drivers know of all motors, if they have drivers and it was asked for."""
+
+    @property
+    def gyro_deg(self) -> int:
+        """The clockwise angle since the gyro's last reset, in whole degrees, not wrapped."""
+        return round(self.gyro_zero_deg - self.pose.heading_deg)
+
+    @property
+    def gyro_rate_dps(self) -> int:
+        """The clockwise rate of turn, in whole degrees per second, as far as a gyro measures it."""
+        fastest = self.profile.gyro_max_dps or inf
+        return round(max(-fastest, min(fastest, -self.turn_rate_dps)))
 
     def stop(self) -> Instant:
         """Return the same instant with motors that stand, and of which nothing is asked."""

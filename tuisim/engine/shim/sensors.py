@@ -14,7 +14,7 @@ from tuisim.engine.core.commands.calls import Call
 from tuisim.engine.core.commands.table import obey
 from tuisim.engine.core.drift import find_drift
 from tuisim.engine.core.profile import ProfileSpec
-from tuisim.engine.core.sensors import SENSORS, color, gyro, infrared, touch, ultrasonic
+from tuisim.engine.core.sensors import SENSORS, color, infrared, touch, ultrasonic
 from tuisim.engine.core.spec import (
     ColorSensorSpec,
     GyroSpec,
@@ -295,10 +295,10 @@ class GyroDevice(LegoSensor):
         read = sim.spec.profile.gyro_read_ns
 
         def angle() -> int:
-            return gyro.angle_deg(sim.instant())
+            return sim.instant().gyro_deg
 
         def rate() -> int:
-            return max(-MAX_RATE_DPS, min(MAX_RATE_DPS, gyro.rate_dps(sim.instant())))
+            return max(-MAX_RATE_DPS, min(MAX_RATE_DPS, sim.instant().gyro_rate_dps))
 
         modes = {
             "GYRO-ANG": Mode(lambda: (angle(),), read, 0, "deg", "s16"),

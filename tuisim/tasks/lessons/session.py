@@ -75,7 +75,7 @@ class Change(StrEnum):
     SHOW = "show"
     """What is known of the step is to be shown."""
     TRY = "try"
-    """So it is, and `LessonSession.trial` is to run in the background, and go to `take_trial`."""
+    """So it is, and `Attempt.trial` is to run in the background, and go to `take_trial`."""
     GO_ON = "go on"
     """The step is over: `begin_step` follows."""
 
@@ -122,7 +122,7 @@ class WorldTrial:
 
 
 @dataclass(slots=True)
-class _Attempt:
+class Attempt:
     """What a student has done since a step began."""
 
     run_before: str = ""
@@ -131,13 +131,15 @@ class _Attempt:
     seen: set[str] = field(default_factory=set)
     """What of `SEEABLE` was on the screen."""
     judgements: tuple[Judgement, ...] = ()
+    """Those of the last run."""
     elsewhere: RunSpec | None = None
     """What a run was that did not begin in the lesson's world; None if the last one did."""
     run_counted: str = ""
     """Id of the last run that was counted as a try."""
     trial: WorldTrial | None = None
-    """The last program that was tried in other worlds."""
+    """The program that is to be tried in other worlds, or was tried last."""
     remark: str = ""
+    """Why the last note, or the last program in another world, does not pass."""
 
 
 class LessonSession:
@@ -147,6 +149,7 @@ class LessonSession:
         lesson: The lesson.
         progress: What is done; `save` stores it.
         done: The step that has just been done.
+        attempt: What was done since the step began.
         story: What the run did that has passed it; empty if it was not about a run.
     """
 
@@ -156,7 +159,7 @@ class LessonSession:
         self.done: LessonStep | None = None
         self.story = ""
         self._saved = self.progress
-        self._attempt = _Attempt()
+        self.attempt = Attempt()
         self._next_look_s = 0.0
 
     def resume(self) -> None:
@@ -186,7 +189,7 @@ class LessonSession:
 
     def begin_step(self, run_id: str) -> None:
         """Begin the step to do; the run in view, if there is one, does not count."""
-        self._attempt = _Attempt(run_id)
+        self.attempt = Attempt(run_id)
 
     # What is known
 
@@ -212,32 +215,12 @@ class LessonSession:
         return self.progress.of(self.step.name).hints if self.step else 0
 
     @property
-    def judgements(self) -> tuple[Judgement, ...]:
-        """Those of the last run since the step began."""
-        return self._attempt.judgements
-
-    @property
     def good_runs(self) -> int:
         """How many runs have passed the step so far."""
         step = self.step
         if step is None or not isinstance(step.check, RunCheck):
             return 0
-        return good_runs(step.check, self._attempt.events)
-
-    @property
-    def remark(self) -> str:
-        """Why the last note, or the last program in another world, does not pass."""
-        return self._attempt.remark
-
-    @property
-    def trial(self) -> WorldTrial | None:
-        """The program that is to be tried in other worlds, or was tried last."""
-        return self._attempt.trial
-
-    @property
-    def is_elsewhere(self) -> bool:
-        """Whether the last run did not begin in the lesson's world."""
-        return self._attempt.elsewhere is not None
+        return good_runs(step.check, self.attempt.events)
 
     def describe_elsewhere(self, pose: Pose, *, in_run: bool) -> str:
         """Return why the last run does not count, in a sentence, and what to do; empty if it does.
@@ -246,7 +229,7 @@ class LessonSession:
             pose: The robot's.
             in_run: Whether a run has begun that is not over.
         """
-        elsewhere = self._attempt.elsewhere
+        elsewhere = self.attempt.elsewhere
         if elsewhere is None:
             return ""
         world = self._build_spec().world
@@ -279,13 +262,13 @@ class LessonSession:
             raise TuisimError("Type an answer")
         if form := wanted_form(check, text):
             raise TuisimError(f"{text}: type {form}")
-        self._attempt.seen |= sight.panels
+        self.attempt.seen |= sight.panels
         # A run may have printed millions of lines, which most questions are not about.
         printed: tuple[str, ...] = ()
         if sight.recording is not None and check.printed:
             output = load_run(sight.recording.folder).output
             printed = tuple(row.text for row in output.all_rows())
-        seen = frozenset(self._attempt.seen)
+        seen = frozenset(self.attempt.seen)
         typed = Typed(text, x_mm, seen, printed, sight.recording is not None)
         # What is measured elsewhere is not wrong, it is about something else.
         if first := unready(check, typed):
@@ -325,7 +308,7 @@ class LessonSession:
         step = self.step
         if step is None:
             return Change.NONE
-        self._attempt.seen |= sight.panels
+        self.attempt.seen |= sight.panels
         events: Sequence[Event] = ()
         match step.check:
             case RunCheck():
@@ -348,7 +331,7 @@ class LessonSession:
         return Change.GO_ON if any(map(self._take, events)) else Change.NONE
 
     def _look_at_run(self, step: LessonStep, check: RunCheck, sight: Sight) -> Change:
-        attempt, run, judgements = self._attempt, sight.judged, sight.judgements
+        attempt, run, judgements = self.attempt, sight.judged, sight.judgements
         if run is None or run.run_id == attempt.run_before or judgements is attempt.judgements:
             return Change.NONE
         attempt.judgements = judgements
@@ -387,8 +370,8 @@ class LessonSession:
             if missed and not remark:
                 remark = f"Also tried {other.where}, it does not work{_at_start(other)}: {_why_elsewhere(missed[0])}"
         # The student may have begun another run meanwhile: this one counts, but what is told is about that one.
-        if self.trial is trial:
-            self._attempt.remark = remark
+        if self.attempt.trial is trial:
+            self.attempt.remark = remark
         return Change.SHOW
 
     def _look_at_notes(self, check: NoteCheck, sight: Sight) -> Change:
@@ -400,13 +383,13 @@ class LessonSession:
         if any(map(self._take, notes)):
             return Change.GO_ON
         remark = note_fault(check, notes[-1]) if notes else ""
-        is_new = remark != self._attempt.remark
-        self._attempt.remark = remark
+        is_new = remark != self.attempt.remark
+        self.attempt.remark = remark
         return Change.SHOW if is_new else Change.NONE
 
     def _take(self, event: Event) -> bool:
         """Add what has happened. Return whether the step is done now."""
-        step, events = self.step, self._attempt.events
+        step, events = self.step, self.attempt.events
         if step is None or event in events:
             return False
         if isinstance(event, JudgedRun):
@@ -419,7 +402,7 @@ class LessonSession:
 
     def _leave_step(self, step: LessonStep, state: StepState) -> None:
         goals = step.check.goals if isinstance(step.check, RunCheck) else ()
-        self.story = story(each for each in self.judgements if each.goal.name in goals)
+        self.story = story(each for each in self.attempt.judgements if each.goal.name in goals)
         self.progress = self.progress.with_step(step.name, state=state, at=now())
         self.done = step if state is StepState.DONE else None
 

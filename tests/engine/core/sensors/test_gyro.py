@@ -9,7 +9,6 @@ import pytest
 from tests.engine.core.memory_sink import MemorySink
 from tuisim.engine.core.drift_spec import NO_DRIFT, DriftSpec
 from tuisim.engine.core.profile import PROFILES
-from tuisim.engine.core.sensors.gyro import angle_deg, rate_dps
 from tuisim.engine.core.servo.motor import ServoMotor
 from tuisim.engine.core.simulation import Simulation
 from tuisim.engine.core.spec import RobotSpec, RunSpec, WorldSpec
@@ -36,7 +35,7 @@ def test_an_angle_misses_what_is_faster_than_the_gyro_senses(sign: int) -> None:
     sim = spin(sign, "lego-micropython", NO_DRIFT, 300, SMALL)
     instant = sim.instant()
     assert abs(instant.turn_rate_dps) > 600
-    assert rate_dps(instant) == sign * 440
+    assert instant.gyro_rate_dps == sign * 440
     last_s = sim.instant().gyro_zero_deg - sim.instant().pose.heading_deg
     sim.advance(100)
     now = sim.instant().gyro_zero_deg - sim.instant().pose.heading_deg
@@ -61,11 +60,11 @@ def test_it_counts_too_little_of_a_clockwise_turn(sign: int, share: float) -> No
     instant = sim.instant()
     turned_deg = -instant.pose.heading_deg
     assert sign * turned_deg > 600
-    assert angle_deg(instant) == pytest.approx(share * turned_deg, abs=0.51)
-    assert rate_dps(instant) == pytest.approx(-share * instant.turn_rate_dps / share, abs=0.51)
+    assert instant.gyro_deg == pytest.approx(share * turned_deg, abs=0.51)
+    assert instant.gyro_rate_dps == pytest.approx(-share * instant.turn_rate_dps / share, abs=0.51)
 
 
 def test_no_limit_without_one() -> None:
     instant = spin(1, "lego-micropython", NO_DRIFT, 300, SMALL).instant()
     free = replace(instant, profile=PROFILES["robolab"])
-    assert rate_dps(free) == round(-instant.turn_rate_dps) > 440
+    assert free.gyro_rate_dps == round(-instant.turn_rate_dps) > 440
