@@ -7,6 +7,7 @@ import shutil
 import signal
 import subprocess
 import sys
+from concurrent.futures import Future
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -15,6 +16,7 @@ import pytest
 
 from tuisim.base.errors import LogError
 from tuisim.base.source import Program
+from tuisim.engine.protocol import End
 from tuisim.engine.runs import store, temporary
 from tuisim.engine.runs.store import RunStore
 from tuisim.settings.build import build_run_spec
@@ -86,6 +88,24 @@ def test_a_run_whose_storing_is_interrupted_is_not_listed(
     assert RunStore().runs() == []
     kept = execute(task("x = 1", keep=Keep.ALL), folder)
     assert [run.id for run in RunStore().runs()] == [kept.run_id]
+
+
+def test_a_result_that_cannot_be_sent_costs_no_other_one(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def submit(running: pool._Pool, chunk: list[Task]) -> None:
+        future = Future[list[Result]]()
+        if any(one.index == 2 for one in chunk):
+            future.set_exception(MemoryError())
+        else:
+            future.set_result([pool.nothing_known_of(one, End.KILLED, "") for one in chunk])
+        running._pending[future] = chunk
+
+    monkeypatch.setattr(pool._Pool, "_start", lambda _: None)
+    monkeypatch.setattr(pool._Pool, "_submit", submit)
+    results = pool._Pool(1, tmp_path).results(task("x = 1", index) for index in range(7))
+    ends = [one.end for one in by_index(list(results))]
+    assert ends == ["killed", "killed", "", "killed", "killed", "killed", "killed"]
 
 
 @pytest.mark.slow

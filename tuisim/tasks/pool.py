@@ -81,6 +81,8 @@ class _Pool:
         self._jobs, self._folder = jobs, folder
         self._pending: dict[Future[list[Result]], list[Task]] = {}
         self._tries: dict[int, int] = {}
+        self._alone: list[Task] = []
+        """Those of a chunk whose results could not be sent: one of them is to blame, and the others lose nothing."""
         self._start()
 
     def _start(self) -> None:
@@ -91,7 +93,7 @@ class _Pool:
         """Yield the results of tasks as they finish."""
         while True:
             while len(self._pending) < self._jobs * CHUNKS_AHEAD and (
-                chunk := list(islice(tasks, CHUNK))
+                chunk := self._take_chunk(tasks)
             ):
                 self._submit(chunk)
             if not self._pending:
@@ -99,11 +101,20 @@ class _Pool:
             done, _ = wait(self._pending, return_when=FIRST_COMPLETED)
             try:
                 for future in done:
-                    found = _take_results(future, self._pending[future])
+                    chunk = self._pending[future]
+                    found: list[Result] = []
+                    if len(chunk) > 1 and _is_unsent(future):
+                        self._alone += chunk
+                    else:
+                        found = _take_results(future, chunk)
                     del self._pending[future]
                     yield from found
             except BrokenProcessPool:
                 yield from self._start_again()
+
+    def _take_chunk(self, tasks: Iterator[Task]) -> list[Task]:
+        """Return the tasks that are next."""
+        return [self._alone.pop()] if self._alone else list(islice(tasks, CHUNK))
 
     def _submit(self, chunk: list[Task]) -> None:
         self._pending[self._executor.submit(_execute_all, chunk, self._folder)] = chunk
@@ -146,8 +157,14 @@ def _take_results(future: Future[list[Result]], tasks: Sequence[Task]) -> list[R
         return future.result()
     except BrokenProcessPool:
         raise
-    except Exception as error:  # One that cannot be sent, or is too large: the others go on.
+    except Exception as error:  # See `_is_unsent`.
         return [build_unjudged(task, describe_fault(error)) for task in tasks]
+
+
+def _is_unsent(future: Future[list[Result]]) -> bool:
+    """Return whether results cannot be sent, or are too large."""
+    error = future.exception()
+    return isinstance(error, Exception) and not isinstance(error, BrokenProcessPool)
 
 
 def _is_done(future: Future[list[Result]]) -> bool:
