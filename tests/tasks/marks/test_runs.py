@@ -69,8 +69,8 @@ CLASS = {
     "tells": "first = colorLeft.reflected_light_intensity_pc\n"
     + LOOK
     + "if 300 < tank_drive.left_motor.position < 400:\n    raise ValueError('secret 4711')\n",
-    "dies": "import os, signal\n"
-    "tank_drive.on_for_rotations(30, 30, 3.5)\nprint('black')\nos.kill(os.getpid(), signal.SIGKILL)\n",
+    "dies": "import ctypes\n"
+    "tank_drive.on_for_rotations(30, 30, 3.5)\nprint('black')\nctypes.CDLL(None)._exit(3)\n",
     "hangs": LOOK.replace(
         "off()", "off()\nwhile 300 < tank_drive.left_motor.position < 400:\n    x = 1"
     ),
