@@ -319,3 +319,14 @@ async def test_editing_begins_where_the_program_is_paused() -> None:
         await until_typing(pilot)
         assert app.panel_area.code is not None
         assert app.panel_area.code.cursor_line == app.run_controller.snapshot().line > 1
+
+
+async def test_a_step_back_has_the_time_of_its_tick() -> None:
+    text = "import time\ntime.sleep(0.0199)\nx = 1\ntime.sleep(1)\ny = 2\n"
+    async with open_lab(text, speed=0.0) as (pilot, app):
+        await press(pilot, app, "n", 1, 2, 3, 4)
+        await press(pilot, app, "N", 3)
+        assert app.debugger.view is not None
+        paused, snapshot = app.debugger.view.paused, app.run_controller.snapshot()
+        assert paused.tick == snapshot.instant.tick
+        assert paused.time_ns / 1e9 == snapshot.time_s

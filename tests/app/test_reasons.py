@@ -40,6 +40,33 @@ async def test_it_goes_to_each_reason_and_back_to_the_end() -> None:
         assert timeline.at is None
 
 
+LEAVES_THE_MAT = """\
+while True:
+    if colorLeft.reflected_light_intensity_pc < 101:
+        tank_drive.on(SpeedPercent(60), SpeedPercent(60))
+    if colorLeft.reflected_light_intensity_pc < 101:
+        pass
+"""
+
+
+async def test_the_arrow_stays_on_the_line_of_the_reason() -> None:
+    async with open_lab(LEAVES_THE_MAT, speed=0.0, size=SIZE) as (pilot, app):
+        await pilot.press("R")
+        await until(pilot, lambda: app.run_controller.snapshot().time_s > 20.0)
+        await pilot.press("S")
+        await until_state(pilot, RunPhase.ENDED)
+        await until(pilot, lambda: bool(app.context.reasons.reasons))
+        for reason in app.context.reasons.reasons:
+            await ask(pilot, app, reason.words)
+            if app.run_controller.in_past:
+                await until(pilot, lambda: app.debugger.view is not None and not app.debugger.busy)
+                assert app.debugger.view is not None
+                assert app.debugger.current_line == reason.line
+                assert app.debugger.view.paused.line == reason.line
+        await pilot.press("comma")
+        await until(pilot, lambda: app.run_controller.chosen_line is None)
+
+
 async def test_after_a_run_that_went_wrong_the_footer_names_it() -> None:
     async with open_lab(STRAIGHT, speed=0.0, size=SIZE) as (pilot, app):
         assert "! wrong?" not in screen_text(app)

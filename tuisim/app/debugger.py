@@ -23,6 +23,7 @@ from tuisim.engine.breakpoints import (
     moved,
     parse_break,
 )
+from tuisim.engine.core.profile import NS_PER_S
 from tuisim.engine.files import MAX_FILE_BYTES
 from tuisim.engine.protocol import UNKNOWN_ORDINAL, Inspected, Message, Paused, PauseReason
 from tuisim.engine.runs.replay_debugger import Position, ReplayDebugger
@@ -250,7 +251,7 @@ class DebugController:
     def run_changed(self) -> None:
         """Reset the state for another run, or none."""
         self._paused = self.position = self.view = self._run_controller.paused_line = None
-        self._run_controller.printed_line = None
+        self._run_controller.chosen_line = None
         self._frame, self._thread, self._wanted = 0, "", None
         self._panels_opened, self._breakpoints_unsent = False, bool(self.breaks)
         self._first, self._more_back = None, 0
@@ -281,6 +282,7 @@ class DebugController:
                 self._set_paused(PauseView(self._paused, event, False))
 
     def _handle_pause(self, paused: Paused) -> None:
+        paused = self._set_tick_time(paused)
         self._paused, self.position = paused, None
         self._frame, self._thread = 0, ""
         if self._first is not None and paused.reason is not PauseReason.BREAK:
@@ -293,6 +295,12 @@ class DebugController:
             met = f": {paused.value}" if paused.value else ""
             self._app.say(f"Break {paused.detail}{met} at {paused.time_ns / 1e9:.2f} s")
         self._inspect_again()
+
+    def _set_tick_time(self, paused: Paused) -> Paused:
+        """Return a pause with the time of its tick, as every panel shows it: the program's own is somewhat later."""
+        return replace(
+            paused, time_ns=paused.tick * NS_PER_S // self._run_controller.timeline.tick_hz
+        )
 
     def _open_panels(self) -> None:
         if self._panels_opened:
@@ -356,6 +364,9 @@ class DebugController:
         timeline = self._run_controller.timeline
         if self.position is not None and timeline.at not in (None, self.position.tick):
             self.position = None
+        chosen = self._run_controller.chosen_line
+        if chosen and chosen[0] != timeline.tick:
+            self._run_controller.chosen_line = None
         if not self.looks_back:
             if self.view and self.view.past and not self.busy:
                 self._back_to_now()
@@ -374,8 +385,11 @@ class DebugController:
         return self._panel_area.shown("debug") or (is_own and self._panel_area.shown("code"))
 
     def choose_line(self, tick: int, line: int) -> None:
-        """Stand at a line of an instant that is gone to next, such as the one that printed a sample; 0 for none."""
-        self._run_controller.printed_line = (tick, line) if line else None
+        """Stand at a line of an instant that is gone to next, such as the one that printed a sample; 0 for none.
+
+        It stays the line of this instant until another one, or another line of it, is gone to.
+        """
+        self._run_controller.chosen_line = (tick, line) if line else None
         self.position = self._wanted = None
 
     def to_now(self) -> None:
@@ -402,9 +416,9 @@ class DebugController:
         ):
             return
         self._wanted = position
-        printed = self._run_controller.printed_line
-        if printed and printed[0] == position.tick and position == Position(position.tick):
-            self.replay.go_to_line(timeline.recording, *printed, self.inspect_request)
+        chosen = self._run_controller.chosen_line
+        if chosen and chosen[0] == position.tick and position == Position(position.tick):
+            self.replay.go_to_line(timeline.recording, *chosen, self.inspect_request)
         else:
             self.replay.go(timeline.recording, position, self.inspect_request)
         self.show()
@@ -422,9 +436,13 @@ class DebugController:
             self._wanted = None
             return
         elif here.ordinal != protocol.BEFORE_NEXT_TICK:
-            # At the line that printed a chosen sample.
+            # At the chosen line.
             self.position = here
-        self._set_paused(PauseView(paused, inspected, True))
+        chosen = self._run_controller.chosen_line
+        if chosen and chosen[0] == paused.tick:
+            # The program may have gone on to another line within this tick.
+            paused = replace(paused, line=chosen[1], file="")
+        self._set_paused(PauseView(self._set_tick_time(paused), inspected, True))
         self._app.situation_changed()
         if self._more_back:
             self.lines_back(0)
@@ -449,7 +467,8 @@ class DebugController:
         self.view = view
         line = view.paused.line if not view.paused.file else 0
         self._run_controller.paused_line = view.paused.tick, line
-        self._run_controller.printed_line = None
+        if not view.past:
+            self._run_controller.chosen_line = None
         self.show()
         self._app.draw(force=True)
 
@@ -506,7 +525,7 @@ class DebugController:
         self._open_panels()
         here = self._here()
         assert here is not None
-        self.position, self._wanted = None, None
+        self.position = self._wanted = self._run_controller.chosen_line = None
         self.replay.go_on(timeline.recording, here, command, self.inspect_request)
         self.show()
 
@@ -520,7 +539,7 @@ class DebugController:
         else:
             self._run_controller.pause()
             self._open_panels()
-            self.position, self._wanted = None, None
+            self.position = self._wanted = self._run_controller.chosen_line = None
             count, self._more_back = count + self._more_back, 0
             self.replay.lines_back(recording, here, count, self.inspect_request)
             self.show()

@@ -136,8 +136,8 @@ class RunController:
         """Called instead of a user action while a past instant is in view: the action is only possible in a branch."""
         self.paused_line: tuple[int, int] | None = None
         """Tick and line at which the program is paused: more exact than the record of that tick."""
-        self.printed_line: tuple[int, int] | None = None
-        """Tick and line of the sample that was clicked in the chart."""
+        self.chosen_line: tuple[int, int] | None = None
+        """Tick and line of what was gone to: a sample that was clicked in the chart, or a reason."""
 
     @property
     def spec(self) -> RunSpec:
@@ -271,7 +271,7 @@ class RunController:
             if self._is_of_run
             else self.next_run.spec.robot.pen.down
         )
-        exact = dict(known for known in (self.paused_line, self.printed_line) if known)
+        exact = dict(known for known in (self.paused_line, self.chosen_line) if known)
         instant = recording.instant(record, self.spec, noise)
         line = exact.get(record.tick, record.line)
         if self.in_run and not self.in_past:
