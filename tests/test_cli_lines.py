@@ -58,6 +58,7 @@ LOG_OPTIONS = (
     "from",
     "to",
     "against",
+    "when",
     "size",
 )
 LOG_DEFAULTS = {"between": "hold", "width": 5}
