@@ -54,6 +54,19 @@ async def test_keys_change_the_text(keys: Keys, after: str) -> None:
         assert area.program_text == after
 
 
+async def test_the_start_of_the_lines_returns_once_the_cursor_fits_beside_it() -> None:
+    async with CodeApp().run_test(size=(40, 12)) as pilot:
+        _, area = await alone(pilot)
+        await pilot.press("enter", *"x" * 40)
+        await until(pilot, lambda: area.scroll_offset.x > 0)
+        await pilot.press("enter")
+        await until(pilot, lambda: area.scroll_offset.x == 0)
+        assert area.cursor_location == (1, 0)
+        # In a line that has a start in view, too.
+        await pilot.press(*"x" * 28)
+        await until(pilot, lambda: area.scroll_offset.x == 0)
+
+
 async def test_the_keys_of_layouts_select_text_only_while_one_types() -> None:
     async with CodeApp().run_test(size=(60, 12)) as pilot:
         _, area = await alone(pilot)

@@ -24,6 +24,7 @@ from textual.widgets.text_area import Edit, EditResult, Selection
 from tuisim.app.editor import text_lines
 from tuisim.app.editor.candidate_list import CandidateList
 from tuisim.app.editor.completion import Candidate, candidates, word_before
+from tuisim.app.editor.strips import cut_strip, light_strip
 from tuisim.app.editor.syntax import KINDS, Colouring
 from tuisim.app.snapshot import short_value
 from tuisim.base.data_class import dataclass
@@ -40,6 +41,8 @@ _UNSHOWN = re.compile(r"[\x00-\x08\x0a-\x1f\x7f-\x9f\uf700-\uf707]")
 
 VALUE_GAP, LEAST_VALUE = 2, 10
 """Cells between a line and the values behind it, and those that the line leaves to values that need more than half."""
+_CURSOR_COLS = 3
+"""Cells of the cursor and of what follows it that are scrolled into view."""
 
 EDITOR_KEYS = (
     ("Enter", "Start editing; Escape ends it"),
@@ -198,6 +201,14 @@ class CodeArea(TextArea):
         """Allow scrolling of long lines, without a scroll bar, which would take a row."""
         return True
 
+    def scroll_cursor_visible(self, center: bool = False, animate: bool = False) -> Offset:
+        """Scroll to the cursor, and to the start of the lines if it is visible there; see `TextArea`."""
+        scrolled = super().scroll_cursor_visible(center, animate)
+        x = self.wrapped_document.location_to_offset(self.cursor_location).x
+        if x + _CURSOR_COLS + self.gutter_width <= self.scrollable_content_region.width:
+            self.scroll_to(x=0, animate=animate, force=True)
+        return scrolled
+
     def on_resize(self) -> None:
         """Scroll back to the start of the lines, and to the highlighted one, unless the user types."""
         if not self.typing:
@@ -296,13 +307,13 @@ class CodeArea(TextArea):
         number_style = base + self._component("number-column")
         if lit := "error" if line == self._error else "lit" if line == self._lit else "":
             number_style = base + self._component(lit)
-            text = _on(text, base, number_style)
+            text = light_strip(text, base, number_style)
         room = self.scrollable_content_region.width - gutter
         is_typed = self.typing and line_index == self.cursor_location[0]
         if (values := self._values.get(line)) and section == 0 and not is_typed:
             text = self._with_values(text, values, room, number_style)
         elif cell_len(text.text.rstrip()) > room and not is_typed:
-            text = _cut(text, room, number_style)
+            text = cut_strip(text, room, number_style)
         run_mark = {"error": "✗", "lit": "▶"}.get(lit, " ") if section == 0 else " "
         number = f"{line if section == 0 else '':>{gutter - 3}}"
         mark = self._breaks.get(line, " ") if section == 0 else " "
@@ -336,7 +347,7 @@ class CodeArea(TextArea):
         start = min(used, room - (width if width <= room // 2 else LEAST_VALUE))
         shown = [Segment(piece, style) for piece, style in cut_line(line, room - start)]
         if start < used:
-            text = Strip.join([_cut(text, start - 1, style), Strip([Segment(" ", style)], 1)])
+            text = Strip.join([cut_strip(text, start - 1, style), Strip([Segment(" ", style)], 1)])
         return Strip.join([text.crop(0, start), Strip(shown)]).extend_cell_length(room, style)
 
     # Keys and mouse
@@ -569,19 +580,3 @@ _CHANGES: Mapping[str, text_lines.Change] = {
     "ctrl+underscore": text_lines.comment_toggled,
     "ctrl+slash": text_lines.comment_toggled,
 }
-
-
-def _on(strip: Strip, base: Style, lit: Style) -> Strip:
-    """Return a row with the highlight's background where the panel's own was: a cursor or a selection stays."""
-    background = Style(bgcolor=lit.bgcolor)
-    pieces = ((piece.text, piece.style or base) for piece in strip)
-    shown = [
-        Segment(text, style + background if style.bgcolor == base.bgcolor else style)
-        for text, style in pieces
-    ]
-    return Strip(shown, strip.cell_length)
-
-
-def _cut(strip: Strip, width: int, style: Style) -> Strip:
-    """Return a row that is too long, or is to give way, with a mark that more follows."""
-    return Strip.join([strip.crop(0, width - 1), Strip([Segment("…", style)], 1)])

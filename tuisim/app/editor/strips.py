@@ -1,0 +1,23 @@
+"""Rows of the code, lit or cut."""
+
+from __future__ import annotations
+
+from rich.segment import Segment
+from rich.style import Style
+from textual.strip import Strip
+
+
+def light_strip(strip: Strip, base: Style, lit: Style) -> Strip:
+    """Return a row with the highlight's background where the panel's own was: a cursor or a selection stays."""
+    background = Style(bgcolor=lit.bgcolor)
+    pieces = ((piece.text, piece.style or base) for piece in strip)
+    shown = [
+        Segment(text, style + background if style.bgcolor == base.bgcolor else style)
+        for text, style in pieces
+    ]
+    return Strip(shown, strip.cell_length)
+
+
+def cut_strip(strip: Strip, width: int, style: Style) -> Strip:
+    """Return a row that is too long, or is to give way, with a mark that more follows."""
+    return Strip.join([strip.crop(0, width - 1), Strip([Segment("…", style)], 1)])
