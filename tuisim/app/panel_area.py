@@ -172,12 +172,12 @@ class PanelArea(Container):
             self.keep_panels()
 
     def awaits_focus(self, panel: str) -> bool:
-        """Return whether a panel that takes keys as a whole is shown beside others, one of which has the focus.
+        """Return whether a panel that can have the focus is shown beside others, one of which has it.
 
         One that has just been shown will have it in a moment.
         """
         beside = self.shown(panel) and not self.alone and not self.is_single
-        return beside and self.panels[panel].focusable and panel != self.front
+        return beside and panel != self.front and self._can_focus(panel)
 
     def open(self, panel: str) -> None:
         """Show a panel for now, without keeping this for the next start."""

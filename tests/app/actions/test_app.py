@@ -33,14 +33,15 @@ async def test_every_panels_key_shows_and_hides_it() -> None:
                 ), panel.id
 
 
-async def test_the_key_of_a_panel_that_is_shown_focuses_it_first() -> None:
+@pytest.mark.parametrize(("panel", "key"), [("chart", "c"), ("noise", "z")])
+async def test_the_key_of_a_panel_that_is_shown_focuses_it_first(panel: str, key: str) -> None:
     async with open_lab(size=(200, 60)) as (pilot, app):
-        assert app.panel_area.shown("chart") and app.panel_area.focused_panel() == "world"
-        await pilot.press("c")
-        await until(pilot, lambda: app.panel_area.focused_panel() == "chart")
-        await pilot.press("c")
+        assert app.panel_area.shown(panel) and app.panel_area.focused_panel() == "world"
+        await pilot.press(key)
+        await until(pilot, lambda: app.panel_area.focused_panel() == panel)
+        await pilot.press(key)
         await until(pilot, lambda: app.panel_area.focused_panel() == "world")
-        assert not app.panel_area.shown("chart")
+        assert not app.panel_area.shown(panel)
 
 
 @pytest.mark.slow
