@@ -23,6 +23,7 @@ from tuisim.programs.waits import (
     find_uncalled_stop,
     list_loop_ends,
 )
+from tuisim.programs.wheel_turns import WheelTurn, list_wheel_turns
 
 __all__ = [
     "STRUCTURES",
@@ -30,6 +31,7 @@ __all__ = [
     "ProgramFacts",
     "ProgramThreshold",
     "Question",
+    "WheelTurn",
     "read_facts",
 ]
 
@@ -99,6 +101,11 @@ class ProgramFacts:
     def find_turns(self, line: int) -> tuple[float, str] | None:
         """Return how far a call on a line turns a motor or both wheels, and whether in rotations or in degrees."""
         return find_turns(self._short_tree, line)
+
+    @cached_property
+    def wheel_turns(self) -> tuple[WheelTurn, ...]:
+        """The calls that turn both wheels against each other by an angle that could be meant for the robot."""
+        return tuple(list_wheel_turns(self._short_tree))
 
     @cached_property
     def first_drive(self) -> int:

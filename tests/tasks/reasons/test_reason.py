@@ -56,6 +56,17 @@ CASES = {
         ReasonKind.ENDED,
         "line 2: tank_drive.off without () does nothing: tank_drive.off() stops",
     ),
+    "degrees of the wheels": (
+        "for side in range(4):\n    tank_drive.on_for_degrees(30, -30, 90)\n",
+        ReasonKind.TURNED,
+        "0.01 s, line 2: this line turned the robot by 28°: on_for_degrees counts degrees of the "
+        "wheels; 289 turn the robot by 90°",
+    ),
+    "rotations of the wheels": (
+        "tank_turn.on_for_rotations(-100, SpeedPercent(20), 0.25)\n",
+        ReasonKind.TURNED,
+        "wheels; 0.80 turn the robot by 90°",
+    ),
     "off the mat": (OFF_THE_MAT, ReasonKind.LOST, "line 2: the robot left the mat"),
 }
 
@@ -66,6 +77,19 @@ def test_a_reason_says_when_at_which_line_and_why(name: str) -> None:
     first = find_reasons(run_text(text))[0]
     assert first.kind is kind
     assert words in first.words
+
+
+@cases(
+    "text",
+    {
+        "another angle": "tank_drive.on_for_degrees(30, -30, 289)\n",
+        "a curve": "tank_drive.on_for_degrees(30, 10, 90)\n",
+        "straight": "tank_drive.on_for_degrees(30, 30, 90)\n",
+        "a whole rotation": "tank_drive.on_for_rotations(30, -30, 1)\n",
+    },
+)
+def test_a_turn_that_is_meant_is_no_reason(text: str) -> None:
+    assert find_reasons(run_text(text)) == ()
 
 
 END = {

@@ -47,6 +47,7 @@ class ReasonKind(IntEnum):
     LOST = auto()
     ENDED = auto()
     DIFFERS = auto()
+    TURNED = auto()
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,9 +94,9 @@ def find_reasons(
         reasons += [
             *_find_blocked(run, waits),
             *_find_lost(run, mat, is_seen),
-            *_find_left_mat(run),
         ]
-        reasons += _find_ended(run, mat)
+        left_mat = [*_find_left_mat(run)]
+        reasons += [*left_mat, *_find_turned(run, bool(left_mat)), *_find_ended(run, mat)]
     if earlier is not None:
         reasons += _find_difference(run, earlier)
     return tuple(sorted(reasons, key=lambda reason: (reason.kind, reason.time_s)))
@@ -191,6 +192,15 @@ def _find_left_mat(run: StoredRun) -> Iterator[Reason]:
     is_off = (x_mm < 0) | (x_mm > FIELD_WIDTH_MM) | (y_mm < 0) | (y_mm > FIELD_HEIGHT_MM)
     if is_off.any():
         yield _lost_at(run, int(is_off.argmax()), "the robot left the mat")
+
+
+def _find_turned(run: StoredRun, has_left_mat: bool) -> Iterator[Reason]:
+    """Yield that the wheels turned by an angle that was meant for the robot, if it was: why the robot left the mat."""
+    from tuisim.tasks.reasons.wheel_turn import find_mistaken_turn
+
+    if turn := find_mistaken_turn(run):
+        kind = ReasonKind.LOST if has_left_mat else ReasonKind.TURNED
+        yield Reason(kind, turn.tick / run.spec.profile.tick_hz, turn.line, turn.text)
 
 
 def _find_ended(run: StoredRun, mat: Field | None) -> Iterator[Reason]:

@@ -1,0 +1,71 @@
+"""Where a robot turned by another angle than its program says, because that is one of the wheels."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tuisim.base.data_class import dataclass
+from tuisim.programs.facts import WheelTurn, read_facts
+
+if TYPE_CHECKING:
+    from tuisim.engine.runs.run_folder import StoredRun
+
+_MIN_SHARE = 0.95
+"""Wheels that turned less were stopped by something else."""
+_ROUND_DEG = 45.0
+"""Robots are turned by its multiples."""
+_NEAR_DEG = 3.0
+"""A turn that is so near to a multiple is meant."""
+
+
+@dataclass(frozen=True, slots=True)
+class MistakenTurn:
+    """A turn of the wheels that the program may have taken for one of the robot."""
+
+    tick: int
+    """When it began."""
+    line: int
+    text: str
+    """What it did, a sentence that begins small and has no full stop."""
+
+
+def find_mistaken_turn(run: StoredRun) -> MistakenTurn | None:
+    """Return the first turn on the spot whose wheels turned by an angle that the robot did not turn by.
+
+    Args:
+        run: The run.
+    """
+    turns = [_measure(run, turn) for turn in read_facts(run.program).wheel_turns]
+    return min((turn for turn in turns if turn), key=lambda turn: turn.tick, default=None)
+
+
+def _measure(run: StoredRun, turn: WheelTurn) -> MistakenTurn | None:
+    """Return what a turn did to the robot when its line ran first; None if nothing is wrong with that."""
+    records = run.telemetry.array()
+    lines = records["line"]
+    is_on = (lines >= turn.first_line) & (lines <= turn.last_line)
+    edges = np.flatnonzero(np.diff(is_on, prepend=False, append=False))
+    if not len(edges):
+        return None
+    first, end = int(edges[0]), int(edges[1])
+    span = records[max(0, first - 1) : end]
+    wheels = [span[f"{side}_position_deg"] for side in ("left", "right")]
+    wheel_deg = float(np.mean([abs(positions[-1] - positions[0]) for positions in wheels]))
+    steps_deg = (np.diff(span["heading_deg"]) + 180) % 360 - 180
+    if wheel_deg < turn.angle_deg * _MIN_SHARE:
+        return None
+    # The line may have run several times without another one between.
+    robot_deg = abs(float(steps_deg.sum())) / wheel_deg * turn.angle_deg
+    off_deg = abs(robot_deg - round(robot_deg / _ROUND_DEG) * _ROUND_DEG)
+    if robot_deg < 1 or (robot_deg > _ROUND_DEG / 2 and off_deg <= _NEAR_DEG):
+        return None
+    needed_deg = turn.angle_deg**2 / robot_deg
+    counted = "rotations" if turn.method.endswith("rotations") else "degrees"
+    needed = f"{needed_deg / 360:.2f}" if counted == "rotations" else f"{needed_deg:.0f}"
+    text = (
+        f"this line turned the robot by {robot_deg:.0f}°: {turn.method} counts {counted} of the "
+        f"wheels; {needed} turn the robot by {turn.angle_deg:.0f}° (tuisim guide motion-and-drift)"
+    )
+    return MistakenTurn(first, turn.first_line, text)
