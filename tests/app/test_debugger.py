@@ -100,6 +100,22 @@ async def test_steps_from_the_first_line() -> None:
         await until(pilot, lambda: "line 4" in drawn(app))
 
 
+async def test_every_press_counts_though_a_step_is_on_its_way() -> None:
+    async with open_lab(COUNTS) as (pilot, app):
+        await pilot.press(*"nnnnn")
+        await stands(pilot, app, 5)
+        await until(pilot, lambda: "line 5" in drawn(app))
+        await pilot.press(*"nnn")
+        await stands(pilot, app, 4)
+        assert values(app) == {"total": "0", "i": "1"}
+        await pilot.press("N")
+        await pilot.press(*"nnnn")
+        # One of them leads back to now, and the others on from there.
+        await stands(pilot, app, 3)
+        await until(pilot, lambda: not app.debugger.is_away)
+        assert values(app) == {"total": "1", "i": "1"}
+
+
 @pytest.mark.slow
 async def test_one_line_back_and_on_again() -> None:
     async with open_lab(COUNTS) as (pilot, app):

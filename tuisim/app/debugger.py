@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections import deque
 from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -102,6 +103,9 @@ def following(breaks: tuple[Breakpoint, ...], before: str, now: str) -> tuple[Br
 SHOWS_PANELS = frozenset({PauseReason.STEP, PauseReason.LINE, PauseReason.BREAK})
 """Pause reasons that open the debug panels automatically."""
 
+_GOES_ON = frozenset({PauseReason.STEP, PauseReason.LINE, PauseReason.INSTANT})
+"""Pause reasons after which the steps that wait go on: those that a step, or a start for one, ends with."""
+
 
 class DebugController:
     """The debugger of the app.
@@ -136,8 +140,10 @@ class DebugController:
         self.replay = ReplayDebugger(self._arrived, self._not_there, self._reached_now)
         self._wanted: Position | None = None
         """The instant that the replay debugger was last sent to."""
-        self._first: Message | None = None
-        """Called when a run that was started for it pauses at its first line."""
+        self._is_stepping = False
+        """Whether a step of the live run is on its way."""
+        self._steps: deque[Message] = deque()
+        """The steps that wait until the one on its way has arrived, in the past as well."""
         self._more_back = 0
         """Number of further lines back that were requested while the first ones were being computed."""
         self._panels_opened = False
@@ -254,7 +260,8 @@ class DebugController:
         self._run_controller.chosen_line = None
         self._frame, self._thread, self._wanted = 0, "", None
         self._panels_opened, self._breakpoints_unsent = False, bool(self.breaks)
-        self._first, self._more_back = None, 0
+        self._more_back = 0
+        self._forget_steps()
         self.replay.close()
         self.show()
 
@@ -262,6 +269,7 @@ class DebugController:
         """Handle the end of the run: it is no longer paused; a past instant stays in view."""
         self._paused = None
         if not self.is_away:
+            self._forget_steps()
             self.view = self._run_controller.paused_line = None
             self.show()
 
@@ -285,10 +293,10 @@ class DebugController:
         paused = self._set_tick_time(paused)
         self._paused, self.position = paused, None
         self._frame, self._thread = 0, ""
-        if self._first is not None and paused.reason is not PauseReason.BREAK:
-            first, self._first = self._first, None
-            self._run_controller.send(first)
+        if self._steps and paused.reason in _GOES_ON and not self.looks_back:
+            self._send_step(self._steps.popleft())
             return
+        self._forget_steps()
         if paused.reason in SHOWS_PANELS:
             self._open_panels()
         if paused.reason is PauseReason.BREAK:
@@ -395,6 +403,7 @@ class DebugController:
     def to_now(self) -> None:
         """Return to the newest instant, also from earlier lines of its own tick."""
         self.position, self._more_back = None, 0
+        self._steps.clear()
         if self.replay.busy:
             # The result still being computed is no longer wanted.
             self.replay.close()
@@ -446,6 +455,8 @@ class DebugController:
         self._app.situation_changed()
         if self._more_back:
             self.lines_back(0)
+        elif self._steps:
+            self._in_past(self._steps.popleft())
 
     def _is_past(self, at: Position) -> bool:
         """Return whether an instant is in the past; a re-run may get farther than the current run."""
@@ -455,11 +466,16 @@ class DebugController:
         return at.is_before(Position(now.tick, now.ordinal))
 
     def _reached_now(self) -> None:
+        steps = tuple(self._steps)
         self._app.to_now()
         self._back_to_now()
+        if self._paused is not None:
+            for step in steps:
+                self.go_on(step)
 
     def _not_there(self, why: str) -> None:
         self._wanted, self._more_back = None, 0
+        self._steps.clear()
         self._app.say(why)
         self.show()
 
@@ -506,21 +522,34 @@ class DebugController:
             self._app.say("This line is not in the running text")
 
     def go_on(self, command: Message) -> None:
-        """Send a command that continues the program until it pauses again."""
+        """Send a command that continues the program until it pauses again, once the step on its way has arrived."""
         if self.is_away:
             self._in_past(command)
+        elif self._run_controller.in_run and self._is_stepping:
+            self._steps.append(command)
         elif self._run_controller.in_run:
-            self._run_controller.send(command)
-        else:
+            self._send_step(command)
+        elif self._app.start_run(paused=True):
+            self._is_stepping = True
             # A program started for this pauses at its first line anyway.
-            first = None if isinstance(command, protocol.StepLine) else command
-            if self._app.start_run(paused=True):
-                self._first = first
-                self._open_panels()
+            if not isinstance(command, protocol.StepLine):
+                self._steps.append(command)
+            self._open_panels()
+
+    def _send_step(self, command: Message) -> None:
+        self._is_stepping = isinstance(command, protocol.StepLine)
+        self._run_controller.send(command)
+
+    def _forget_steps(self) -> None:
+        self._is_stepping = False
+        self._steps.clear()
 
     def _in_past(self, command: Message) -> None:
         timeline = self._run_controller.timeline
-        if timeline.recording is None or self.replay.busy:
+        if timeline.recording is None:
+            return
+        if self.replay.busy:
+            self._steps.append(command)
             return
         self._open_panels()
         here = self._here()
@@ -534,7 +563,9 @@ class DebugController:
         here, recording = self._here(), self._run_controller.timeline.recording
         if here is None or recording is None:
             self._app.say("No run yet: {run} runs the program")
-        elif self.replay.busy:
+            return
+        self._forget_steps()
+        if self.replay.busy:
             self._more_back += count
         else:
             self._run_controller.pause()

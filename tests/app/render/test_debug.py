@@ -14,13 +14,16 @@ def text(view: DebugView, width: int) -> list[str]:
 
 
 @pytest.mark.parametrize("width", [26, 38])
-@pytest.mark.parametrize(
-    "state", [RunPhase.IDLE, RunPhase.RUNNING, RunPhase.WAITING, RunPhase.ENDED]
-)
+@pytest.mark.parametrize("state", list(RunPhase))
 def test_all_keys_are_told_in_a_narrow_panel_too(state: RunPhase, width: int) -> None:
     narrow, wide = text(DebugView(state), width), text(DebugView(state), 80)
     assert max(map(len, narrow)) <= width
     assert " ".join(narrow).split() == " ".join(wide).split()
+
+
+def test_a_program_that_runs_is_not_said_not_to_have_started() -> None:
+    without = [state for state in RunPhase if "not started" not in text(DebugView(state), 80)[0]]
+    assert without == [state for state in RunPhase if state is not RunPhase.IDLE]
 
 
 def test_what_is_known_of_another_instant_has_the_time_that_is_looked_at() -> None:

@@ -35,8 +35,7 @@ _OVER = (
     "g  go to …          <  a second back",
     "n  step through it again",
 )
-_EMPTY = (
-    "The program has not started.",
+_KEYS = (
     "",
     "n  next line      t  breakpoint",
     "s  into a call    u  out of it",
@@ -109,8 +108,12 @@ def _hint(state: RunPhase, width: int) -> list[Line]:
             return _text("waiting", ("Answer in the Output panel.",), width)
         case RunPhase.ENDED:
             return _text("", _OVER, width)
-        case RunPhase.IDLE | RunPhase.STARTING | RunPhase.PAUSED:
-            return _text("", _EMPTY, width)
+        case RunPhase.IDLE:
+            return _text("", ("The program has not started.", *_KEYS), width)
+        case RunPhase.STARTING:
+            return _text("", ("The program is starting.", *_KEYS), width)
+        case RunPhase.PAUSED:
+            return _text("paused", ("reading the variables …", *_KEYS), width)
         case _:
             assert_never(state)
 
