@@ -10,7 +10,7 @@ import pytest
 
 from tests.cases import cases
 from tuisim.analysis.source import read_notes
-from tuisim.app import debugger
+from tuisim.app import kept_breaks
 from tuisim.app.editor import text_file
 from tuisim.base.errors import LogError
 from tuisim.batch.partial import _decoded
@@ -55,8 +55,8 @@ def of_draft(_folder: Path) -> object:
 
 
 def of_breakpoints(_folder: Path) -> object:
-    deep(text_file.file_of_program(debugger.FOLDER, PROGRAM))
-    return debugger.load_kept(PROGRAM)
+    deep(text_file.file_of_program(kept_breaks.FOLDER, PROGRAM))
+    return kept_breaks.load_kept(PROGRAM)
 
 
 def of_companion(folder: Path) -> object:
@@ -82,7 +82,7 @@ def of_batch(_folder: Path) -> object:
     [
         (of_preferences, None),
         (of_draft, None),
-        (of_breakpoints, debugger.Kept()),
+        (of_breakpoints, kept_breaks.Kept()),
         (of_companion, {}),
         (of_schema, {}),
         (of_journal, {}),

@@ -19,7 +19,7 @@ from tests.app.app_help import (
     until_typing,
 )
 from tuisim.app.app import LabApp
-from tuisim.app.debugger import Kept, following, keep, load_kept
+from tuisim.app.kept_breaks import Kept, keep, load_kept
 from tuisim.app.panels.chart import Chart
 from tuisim.app.snapshot import RunPhase
 from tuisim.engine.breakpoints import parse_breakpoints
@@ -285,28 +285,6 @@ async def test_run_to_the_cursor_starts_the_program() -> None:
         await stands(pilot, app, 6)
         await pilot.press("S")
         await until(pilot, lambda: not app.run_controller.in_run)
-
-
-@pytest.mark.parametrize(
-    "before, now, expected",
-    [
-        ("a\nb\nc", "a\nb\nc", ["2", "3 if x"]),
-        ("a\nb\nc", "new\na\nb\nc", ["3", "4 if x"]),
-        ("a\nb\nc", "a\nb\nnew\nc", ["2", "4 if x"]),
-        ("a\nb\nc", "a\nc", ["2 if x"]),
-    ],
-    ids=["same", "line before", "line between", "line gone"],
-)
-def test_breaks_follow_their_lines(before: str, now: str, expected: list[str]) -> None:
-    breaks = parse_breakpoints(("2", "3 if x", "time 3"))
-    assert [one.text for one in following(breaks, before, now)] == [*expected, "time 3"]
-
-
-def test_what_is_kept_comes_back(home: object) -> None:
-    kept = Kept(parse_breakpoints(("12 if x > 3", "# time 3.5")), ("len(x)",))
-    keep("/some/where.py", kept)
-    assert load_kept("/some/where.py") == kept
-    assert load_kept("/else/where.py") == Kept()
 
 
 async def test_breaks_are_kept_with_a_program_that_no_panel_shows() -> None:

@@ -11,8 +11,8 @@ import pytest
 
 from tests.conftest import Command
 from tuisim.analysis.source import Note, notes_of_file, write_notes
-from tuisim.app.debugger import Kept, keep
 from tuisim.app.editor.text_file import keep_draft
+from tuisim.app.kept_breaks import Kept, keep
 from tuisim.app.setup.poses import save_pose
 from tuisim.engine.core.geometry import Pose
 

@@ -18,7 +18,7 @@ from tests.proof.kind import FaultError, Kind, home, temporary_sample
 from tests.proof.mutations import damaged, damaged_at_edge
 from tests.proof.odd_values import Syntax, with_odd_text, with_odd_value
 from tuisim.analysis.source import read_notes
-from tuisim.app import debugger
+from tuisim.app import kept_breaks
 from tuisim.app.editor import text_file
 from tuisim.app.layout.arrangement import load_layout
 from tuisim.app.panels import TerminalSize
@@ -202,7 +202,7 @@ def _world(path: str) -> object:
 
 
 def _breaks() -> Path:
-    return text_file.file_of_program(debugger.FOLDER, "program.py")
+    return text_file.file_of_program(kept_breaks.FOLDER, "program.py")
 
 
 def _draft() -> Path:
@@ -269,7 +269,7 @@ FORMATS: Mapping[str, Format] = {
     ),
     "layout": Format("preferences.json", _home(_layout, preferences_file), Syntax.JSON),
     "breaks": Format(
-        "breaks.json", _home(lambda: debugger.load_kept("program.py"), _breaks), Syntax.JSON
+        "breaks.json", _home(lambda: kept_breaks.load_kept("program.py"), _breaks), Syntax.JSON
     ),
     "draft": Format(
         "draft.json", _home(lambda: text_file.find_draft("program.py"), _draft), Syntax.JSON

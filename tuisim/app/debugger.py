@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-import json
 from collections import deque
 from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from tuisim.app.editor.text_file import file_of_program, write_json
-from tuisim.app.editor.text_lines import same_lines
+from tuisim.app.kept_breaks import Kept, following, keep, load_kept
 from tuisim.app.snapshot import PauseView
-from tuisim.base.data_class import dataclass
-from tuisim.base.errors import ConfigError, TuisimError
-from tuisim.base.regular_file import read_regular
+from tuisim.base.errors import TuisimError
 from tuisim.base.source import find_code_line, source_lines
 from tuisim.engine import protocol
 from tuisim.engine.breakpoints import (
@@ -25,7 +21,6 @@ from tuisim.engine.breakpoints import (
     parse_break,
 )
 from tuisim.engine.core.profile import NS_PER_S
-from tuisim.engine.files import MAX_FILE_BYTES
 from tuisim.engine.protocol import UNKNOWN_ORDINAL, Inspected, Message, Paused, PauseReason
 from tuisim.engine.runs.replay_debugger import Position, ReplayDebugger
 
@@ -35,70 +30,6 @@ if TYPE_CHECKING:
     from tuisim.app.panel_area import PanelArea
     from tuisim.app.run_controller import RunController
     from tuisim.base.source import Program
-
-FOLDER = "breaks"
-MAX_KEPT = 200
-"""Breakpoints and watches of one program."""
-
-
-@dataclass(frozen=True, slots=True)
-class Kept:
-    """The stored breakpoints and watches of one program."""
-
-    breaks: tuple[Breakpoint, ...] = ()
-    watches: tuple[str, ...] = ()
-
-
-def load_kept(program: str) -> Kept:
-    """Return what is stored for a program; empty if there is nothing or it cannot be read.
-
-    Args:
-        program: Its path, or its name if it is in no file.
-    """
-    try:
-        data = json.loads(read_regular(file_of_program(FOLDER, program), MAX_FILE_BYTES))
-        breaks = tuple(parse_break(text) for text in data["breaks"][:MAX_KEPT])
-        return Kept(breaks, tuple(str(text) for text in data["watches"][:MAX_KEPT]))
-    except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError, ConfigError):
-        return Kept()
-
-
-def keep(program: str, kept: Kept) -> None:
-    """Store the breakpoints and watches of a program.
-
-    Raises:
-        ConfigError: they cannot be written.
-    """
-    file = file_of_program(FOLDER, program)
-    data = {
-        "program": program,
-        "breaks": [one.written() for one in kept.breaks],
-        "watches": list(kept.watches),
-    }
-    try:
-        write_json(file, data)
-    except OSError as error:
-        raise ConfigError(
-            f"breakpoints cannot be saved: {error.strerror or error}", file=str(file)
-        ) from None
-
-
-def following(breaks: tuple[Breakpoint, ...], before: str, now: str) -> tuple[Breakpoint, ...]:
-    """Move breakpoints along with their lines after one edit of the text; those on deleted lines are dropped."""
-    old, new = source_lines(before), source_lines(now)
-    shift = len(new) - len(old)
-    if not shift:
-        return breaks
-    same = same_lines(old, new)
-    kept = []
-    for one in breaks:
-        line = break_line_of(one)
-        if line <= same or not line:
-            kept.append(one)
-        elif line + shift > same:
-            kept.append(moved(one, line + shift))
-    return tuple(kept)
-
 
 SHOWS_PANELS = frozenset({PauseReason.STEP, PauseReason.LINE, PauseReason.BREAK})
 """Pause reasons that open the debug panels automatically."""

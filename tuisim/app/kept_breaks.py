@@ -1,0 +1,77 @@
+"""The breakpoints and watches that are stored for each program, and how they follow the lines of an edited text."""
+
+from __future__ import annotations
+
+import json
+
+from tuisim.app.editor.text_file import file_of_program, write_json
+from tuisim.app.editor.text_lines import same_lines
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import ConfigError
+from tuisim.base.regular_file import read_regular
+from tuisim.base.source import source_lines
+from tuisim.engine.breakpoints import Breakpoint, break_line_of, moved, parse_break
+from tuisim.engine.files import MAX_FILE_BYTES
+
+FOLDER = "breaks"
+MAX_KEPT = 200
+"""Breakpoints and watches of one program."""
+
+
+@dataclass(frozen=True, slots=True)
+class Kept:
+    """The stored breakpoints and watches of one program."""
+
+    breaks: tuple[Breakpoint, ...] = ()
+    watches: tuple[str, ...] = ()
+
+
+def load_kept(program: str) -> Kept:
+    """Return what is stored for a program; empty if there is nothing or it cannot be read.
+
+    Args:
+        program: Its path, or its name if it is in no file.
+    """
+    try:
+        data = json.loads(read_regular(file_of_program(FOLDER, program), MAX_FILE_BYTES))
+        breaks = tuple(parse_break(text) for text in data["breaks"][:MAX_KEPT])
+        return Kept(breaks, tuple(str(text) for text in data["watches"][:MAX_KEPT]))
+    except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError, ConfigError):
+        return Kept()
+
+
+def keep(program: str, kept: Kept) -> None:
+    """Store the breakpoints and watches of a program.
+
+    Raises:
+        ConfigError: they cannot be written.
+    """
+    file = file_of_program(FOLDER, program)
+    data = {
+        "program": program,
+        "breaks": [one.written() for one in kept.breaks],
+        "watches": list(kept.watches),
+    }
+    try:
+        write_json(file, data)
+    except OSError as error:
+        raise ConfigError(
+            f"breakpoints cannot be saved: {error.strerror or error}", file=str(file)
+        ) from None
+
+
+def following(breaks: tuple[Breakpoint, ...], before: str, now: str) -> tuple[Breakpoint, ...]:
+    """Move breakpoints along with their lines after one edit of the text; those on deleted lines are dropped."""
+    old, new = source_lines(before), source_lines(now)
+    shift = len(new) - len(old)
+    if not shift:
+        return breaks
+    same = same_lines(old, new)
+    kept = []
+    for one in breaks:
+        line = break_line_of(one)
+        if line <= same or not line:
+            kept.append(one)
+        elif line + shift > same:
+            kept.append(moved(one, line + shift))
+    return tuple(kept)
