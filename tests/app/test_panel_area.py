@@ -12,7 +12,7 @@ from textual.content import Content
 from textual.widget import Widget
 from textual.widgets import Static
 
-from tests.app.app_help import LOGS, open_lab, screen_text, until
+from tests.app.app_help import LOGS, open_lab, screen_text, until, until_typing
 from tests.app.layout.test_arrangement_presets import KEYS, SIZES
 from tuisim.app.app import LabApp
 from tuisim.app.panels.world import WorldView
@@ -100,6 +100,17 @@ async def test_the_panel_with_the_focus_stays_when_the_keyboard_of_a_phone_takes
             await pilot.resize_terminal(64, rows)
             await until(pilot, lambda rows=rows: area.size.height == rows - 1)  # type: ignore[misc]
             assert (area.shown("code"), area.focused_panel()) == (True, "code"), rows
+
+
+async def test_a_large_terminal_edits_in_a_high_panel_beside_the_world() -> None:
+    async with open_lab(LOGS, size=(200, 60)) as (pilot, app):
+        boxes = app.panel_area.arrangement.boxes
+        assert boxes["code"].width >= 80 and boxes["world"].width >= 150
+        await pilot.press("d")
+        await until_typing(pilot)
+        boxes = app.panel_area.arrangement.boxes
+        assert boxes["code"].width >= 86 and boxes["code"].height >= 35
+        assert boxes["world"].x == boxes["code"].width
 
 
 def test_panels_and_what_they_ask_are_imported_when_they_are_shown() -> None:

@@ -11,6 +11,9 @@ from textual.widget import Widget
 from tuisim.app.actions import ActionContext, time_travel
 from tuisim.app.dialogs.dialog import ClosesOnce
 from tuisim.app.host import LabHost
+from tuisim.app.layout.arrangement import EDITOR_COLS
+from tuisim.app.layout.forms import DISCS_COLS
+from tuisim.app.panel_area import PanelArea
 from tuisim.app.setup.next_run import with_obstacles
 from tuisim.base.errors import TuisimError
 
@@ -26,8 +29,10 @@ if TYPE_CHECKING:
     from tuisim.app.panels.time_bar import TimeBar
     from tuisim.app.panels.world import World
 
-ROOMY_COLUMNS, ROOMY_ROWS = 86, 15
-"""A code panel smaller than this grows while the user types, so that lines of 79 characters are visible."""
+ROOMY_ROWS = 15
+"""A code panel with fewer rows, or too narrow for lines of 79 characters, grows while the user types."""
+_HIGH_ROWS = 35
+"""It grows from fewer rows, too, if lines are whole beside the world."""
 _LESSON_COLUMNS = 74
 """Columns that are enough while the text of a lesson is beside the code."""
 
@@ -41,6 +46,14 @@ _BUTTONS = re.compile(
 def looks_at_buttons(program: str) -> bool:
     """Return whether the text of a program uses the brick's buttons."""
     return bool(_BUTTONS.search(program))
+
+
+def _find_typing_room(area: PanelArea) -> tuple[int, int]:
+    """Return the columns and rows of the code panel that are room enough for who types in it."""
+    if area.shown("lesson"):
+        return _LESSON_COLUMNS, ROOMY_ROWS
+    is_wide = area.shown("world") and area.size.width >= EDITOR_COLS + DISCS_COLS
+    return EDITOR_COLS, _HIGH_ROWS if is_wide else ROOMY_ROWS
 
 
 class PanelMessages(LabHost):
@@ -69,8 +82,7 @@ class PanelMessages(LabHost):
                 # Once the panel has its new size.
                 code.call_after_refresh(code.show_cursor)
         else:
-            columns = _LESSON_COLUMNS if area.shown("lesson") else ROOMY_COLUMNS
-            area.make_room("code", columns, ROOMY_ROWS)
+            area.make_room("code", *_find_typing_room(area))
         if area.lesson:
             area.lesson.set_typing(message.typing, is_low=area.is_stacked)
 

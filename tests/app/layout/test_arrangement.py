@@ -69,11 +69,12 @@ def test_the_most_wanted_panel_gets_the_room() -> None:
 
 
 @pytest.mark.parametrize("width, height", [(200, 59), (220, 64), (237, 70), (300, 99)])
-def test_a_wide_screen_has_a_chart_of_80_columns(width: int, height: int) -> None:
+def test_a_wide_screen_shows_whole_lines_of_code_beside_a_chart(width: int, height: int) -> None:
     panels, fill = wanted_panels(Preset.STANDARD, {}, width, height)
     boxes = arrange(panels, width, height, fill).boxes
-    assert boxes["chart"].width >= 80 and boxes["code"].width >= 46
+    assert boxes["chart"].width >= 74 and boxes["code"].width >= 80
     assert boxes["output"].width >= PANELS["output"].min_cols
+    assert boxes["world"].width >= 3 * width // 4
 
 
 @pytest.mark.parametrize("panel", ["debug", "noise", "lesson", "arrays"])

@@ -48,7 +48,7 @@ _CODE_FROM_COLS = 120
 """From this width on, code is shown beside them."""
 _EDITOR_FROM_COLS = 110
 """From this width on, the code that is typed in stands beside the world."""
-_EDITOR_COLS = 86
+EDITOR_COLS = 86
 """Columns in which lines of 79 characters are whole."""
 _MAX_WASTE = 0.3
 """A panel with more empty space beside its mat counts as a poor form."""
@@ -305,7 +305,11 @@ def _scored(
         place(node, PanelBox(0, 0, width, height), layout)
         if form is not forms[0] and not _fills(layout, _LEAST_FILLED):
             continue
-        crowded = not plan.compact and fair_rows(node, width) > height
+        crowded = not plan.compact and any(
+            box.height < PANELS[panel].fair_rows
+            for panel, box in layout.boxes.items()
+            if panel != "world"
+        )
         yield _score(layout, sum(panel in kept for panel in panels), crowded), node
 
 
@@ -329,7 +333,7 @@ def arrange_beside_world(
     """
     if width < _EDITOR_FROM_COLS or "world" not in panels or "lesson" in panels:
         return None
-    wide = min(_EDITOR_COLS, width - DISCS_COLS)
+    wide = min(EDITOR_COLS, width - DISCS_COLS)
     right = ["world"]
     for other in ("output", "instrumentation", "arrays", "chart"):
         if (

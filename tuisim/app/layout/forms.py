@@ -38,6 +38,12 @@ _CODE_COLS = 64
 """Columns in which most lines of code are whole, with the values beside them."""
 _CHART_COLS, _LEAST_CODE_COLS = 80, 46
 """Columns of the strip of a wide screen in which a chart is read, if so many are left to the code."""
+_LINE_COLS, _LEAST_CHART_COLS = 80, 64
+"""Columns of code in which lines of an example are whole, and those that the chart then has above the output."""
+_STACKED_ROWS = 14, 7
+"""Rows of such a chart and of the output below it."""
+_MAX_TAKEN_ROWS = 7
+"""So many rows such a strip takes from the world."""
 _ERROR_ROWS = 8
 """Rows of the panels below it, so that *Output* shows an error with its traceback."""
 COLUMN_COLS = 40
@@ -118,11 +124,30 @@ def _strip(panels: Sequence[str], width: int, height: int) -> list[Node]:
             return [
                 Split(Axis.ROWS, tuple(stacked), least=(0, *(_ERROR_ROWS for _ in stacked[1:])))
             ]
+    if _needs_stack(panels, width, height):
+        return [_stack_output(width)]
     count = ceil(len(panels) / columns)
     stacks = [
         joined(Axis.ROWS, panels[first : first + count]) for first in range(0, len(panels), count)
     ]
     return [joined(Axis.COLUMNS, stacks, _find_strip_shares(stacks, width))]
+
+
+def _needs_stack(panels: Sequence[str], width: int, height: int) -> bool:
+    """Return whether lines of code are whole beside the chart above the output, but not beside both."""
+    beside = _LINE_COLS + _CHART_COLS + PANELS["output"].min_cols
+    return (
+        set(panels) == {"output", "code", "chart"}
+        and _LINE_COLS + _LEAST_CHART_COLS <= width < beside
+        and sum(_STACKED_ROWS) <= height + _MAX_TAKEN_ROWS
+    )
+
+
+def _stack_output(width: int) -> Node:
+    """Return code beside the chart, with the output below that."""
+    code = max(_LINE_COLS, width - _CHART_COLS) / width
+    stack = Split(Axis.ROWS, ("chart", "output"), least=_STACKED_ROWS)
+    return joined(Axis.COLUMNS, ["code", stack], shares=(code, 1 - code))
 
 
 def _find_strip_shares(stacks: Sequence[Node], width: int) -> list[float]:
