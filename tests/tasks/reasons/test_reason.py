@@ -98,6 +98,11 @@ END = {
         ", line 4: the right sensor left the black, and saw it no more",
     ),
     "at once": ("tank_drive.on(20, 20)\n", "0.00 s, line 1: the program was over when"),
+    "a band between two reads": (
+        "# %%sim_magic_preloaded -b Grey_bands\nimport time\ntank_drive.on(80, 80)\n"
+        "while colorLeft.reflected_light_intensity_pc > 10:\n    time.sleep(1.02)\n",
+        " s, line 4: what this line waited for came between two reads: it was ",
+    ),
     "as it should": ("tank_drive.on_for_seconds(20, 20, 1)\n", ""),
     "a wait": (WAITS, ""),
 }

@@ -40,7 +40,8 @@ VAIN = {
     ),
     "a text for a number": (
         f"{DRIVES}while colorLeft.color != 'White':\n    print(1)\n",
-        "the colour sensor on in2 to see 'White': it saw only 1, 6",
+        "the colour sensor on in2 to see 'White': it saw only 1, 6; "
+        "color is a number (6 for 'White'), color_name is the word",
     ),
     "read once": (
         f"{DRIVES}from time import sleep\nv = {LIGHT}\nwhile v > 20:\n    sleep(1)\n",
@@ -87,6 +88,31 @@ def test_a_level_that_is_a_little_too_low_just_misses_a_band() -> None:
     assert miss is not None
     assert miss.text == "50.2 just missed the 50 or less that it waited for"
     assert miss.time_s == pytest.approx(4.53, abs=0.05)
+
+
+FAST = f"{BANDS}import time\ntank_drive.on(SpeedPercent(80), SpeedPercent(80))\n"
+SELDOM = f"{FAST}while {LIGHT} > {{limit}}:\n    print({LIGHT})\n    time.sleep({{pause}})\n"
+SKIP = "at 3.61 s, but it was read only at 3.07 s and 4.09 s: line 6 takes too long"
+
+
+def test_a_band_between_two_reads_is_told() -> None:
+    miss = find_near_miss(run_text(SELDOM.format(limit=10, pause=1)))
+    assert miss is not None
+    assert miss.text == f"what this line waited for came between two reads: it was 6.27 % {SKIP}"
+
+
+def test_a_loop_that_goes_on_says_what_came_between_two_reads() -> None:
+    text = SELDOM.format(limit=10, pause=1).replace(
+        "on(SpeedPercent(80), SpeedPercent(80))", "on_for_seconds(80, 80, 5, block=False)"
+    )
+    unmet = find_unmet(run_text(text))
+    assert unmet is not None
+    assert "to read 10 % or less: it was " in unmet.text
+    assert unmet.text.endswith("line 6 takes too long")
+
+
+def test_a_loop_that_reads_often_misses_no_band() -> None:
+    assert find_near_miss(run_text(SELDOM.format(limit=10, pause=0.01))) is None
 
 
 OLD_LIBRARY = """\

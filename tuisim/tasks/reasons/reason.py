@@ -219,8 +219,8 @@ def _find_ended(run: StoredRun, mat: Field | None) -> Iterator[Reason]:
 def describe_end(run: StoredRun) -> str:
     """Return in a sentence without its full stop what a run ended with.
 
-    That is where it lost a line for good, if something cut it off that waited for nothing, or why it was over too
-    early. Empty if nothing of this is so.
+    That is where it lost a line for good, if something cut it off that waited for nothing, where light just missed what
+    it waited for, or why it was over too early. Empty if nothing of this is so.
     """
     if run.end is None:
         return ""
@@ -232,6 +232,8 @@ def describe_end(run: StoredRun) -> str:
         for lost in find_lost_lines(records, run.spec, open_mat(run), read_ticks):
             if lost.seen_again is None:
                 return _describe_loss(run, lost).words
+    if missed := find_near_miss(run):
+        return Reason(ReasonKind.LOST, missed.time_s, missed.line, missed.text).words
     early = find_early_end(run)
     return Reason(ReasonKind.ENDED, early.time_s, early.line, early.text).words if early else ""
 

@@ -11,6 +11,7 @@ from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ConfigError, LogError
 from tuisim.engine.core.columns import COLOR_NAMES
 from tuisim.engine.core.conditions import COMPARE
+from tuisim.engine.core.profile import Library
 from tuisim.engine.core.spec import (
     ColorSensorSpec,
     GyroSpec,
@@ -38,6 +39,8 @@ _MIN_RUN_S, _MIN_WAY_MM, _MIN_TURN_DEG = 0.5, 10.0, 5.0
 """A program that is over earlier, with its robot nearer to the start, gave its motors no time."""
 _NEAR, _AWAY = 1.0, 5.0
 """Light that came so near to what was waited for, in percent, and went so far away again, was just missed."""
+_MIN_PAUSE_S = 0.1
+"""A loop that reads again sooner does not read too seldom."""
 _WORDS = {
     ">=": "{} or more",
     ">": "more than {}",
@@ -210,13 +213,17 @@ class _Search:
                 yield Unmet(stay[0] / self._hz, loop.line, text)
 
     def find_near_misses(self) -> Iterator[Unmet]:
-        """Yield where light just missed what a loop waited for that the program has left."""
+        """Yield where light just missed what a loop waited for that the program has left, or came between two reads."""
         is_finished = self._run.end is not None and self._run.end.end is End.FINISHED
         for loop in self._loops:
             stay = self._find_stay(loop)
             has_left = is_finished or (stay and stay[1] < len(self._records))
             if stay and has_left and (miss := self._find_miss(loop, stay)):
                 yield miss
+            if stay and has_left and (skip := self._find_skip(loop, stay)):
+                tick, what = skip
+                text = f"what this line waited for came between two reads: {what}"
+                yield Unmet(tick / self._hz, loop.line, text)
 
     def find_met(self) -> Iterator[Unmet]:
         """Yield the loops for whose end nothing had to happen: the first reading was what they waited for."""
@@ -282,11 +289,14 @@ class _Search:
         if series is None:
             return ""
         if series.column == "color":
-            return _describe_colors(loop, series)
+            has_codes = self._run.spec.profile.motor_law.library is not Library.PYBRICKS
+            return _describe_colors(loop, series, has_codes)
         if isinstance(loop.limit, str) or COMPARE[loop.operator](series.values, loop.limit).any():
             return ""
         goal = _name_goal(loop, f"{loop.limit:g}{series.unit}")
-        return f"{series.device} to read {goal}: {self._name_nearest(loop, series)}"
+        skip = self._find_skip(loop, stay)
+        came = skip[1] if skip else self._name_nearest(loop, series)
+        return f"{series.device} to read {goal}: {came}"
 
     def _name_nearest(self, loop: LoopEnd, series: _Series) -> str:
         """Return what came nearest to a number, or where the values went if that was the first one."""
@@ -320,8 +330,40 @@ class _Search:
         text = f"{_round(values[nearest])} just missed the {goal} that it waited for"
         return Unmet(ticks[nearest] / self._hz, loop.line, text)
 
-    def _measure(self, loop: LoopEnd, stay: tuple[int, int]) -> _Series | None:
-        """Return what a loop read of what it waits for.
+    def _find_skip(self, loop: LoopEnd, stay: tuple[int, int]) -> tuple[int, str] | None:
+        """Return the first tick at which light was what a loop waited for, but was not read, and in words how it came.
+
+        None if there is none, or if light is not what the loop reads.
+        """
+        import numpy as np
+
+        reads, every = self._measure(loop, stay), self._measure(loop, stay, is_between=True)
+        is_light = reads and reads.column in _LIGHT and not isinstance(loop.limit, str)
+        if not reads or not every or not is_light:
+            return None
+        meets = COMPARE[loop.operator]
+        # The last read may have ended the loop.
+        first = int(meets(every.values, loop.limit).argmax())
+        tick = int(every.ticks[first])
+        after = int(np.searchsorted(reads.ticks, tick))
+        is_met = meets(every.values[first], loop.limit)
+        if not is_met or not 0 < after < len(reads.ticks):
+            return None
+        start, end = (int(reads.ticks[place]) for place in (after - 1, after))
+        if end - start < _MIN_PAUSE_S * self._hz or meets(reads.values[after], loop.limit):
+            return None
+        lines, counts = np.unique(self._records["line"][start + 1 : end], return_counts=True)
+        what = (
+            f"it was {_round(every.values[first])}{every.unit} at {tick / self._hz:.2f} s, but it "
+            f"was read only at {start / self._hz:.2f} s and {end / self._hz:.2f} s: "
+            f"line {lines[counts.argmax()]} takes too long"
+        )
+        return tick, what
+
+    def _measure(
+        self, loop: LoopEnd, stay: tuple[int, int], *, is_between: bool = False
+    ) -> _Series | None:
+        """Return what a loop read of what it waits for; with `is_between` what it would have read at each tick.
 
         None if that is not known, or if light noise or a pen would make it take long.
         """
@@ -334,6 +376,8 @@ class _Search:
         sensors = [each for each in self._run.spec.robot.sensors if each.port in ports]
         if not len(ticks):
             return None
+        if is_between:
+            ticks = np.arange(ticks[0], ticks[-1] + 1)
         if wheel := self._find_wheel(ports):
             return self._measure_wheel(loop, wheel, ports[0], ticks)
         mode = READING_MODES[rows["mode"][0]]
@@ -392,13 +436,24 @@ def _name_goal(loop: LoopEnd, limit: str) -> str:
     return _WORDS[loop.operator].format(limit)
 
 
-def _describe_colors(loop: LoopEnd, series: _Series) -> str:
-    """Return the colour that a loop waited for and what was seen; empty if it came."""
+def _describe_colors(loop: LoopEnd, series: _Series, has_codes: bool) -> str:
+    """Return the colour that a loop waited for and what was seen; empty if it came.
+
+    Args:
+        loop: The loop.
+        series: What it read.
+        has_codes: Whether `color` is a number in the program's library.
+    """
     seen = _name_seen(loop, series.values)
     color = _name_limit(loop)
     if loop.operator != "==" or color in {"", *seen}:
         return ""
-    return f"{series.device} to see {color}: it saw only {', '.join(seen)}"
+    text = f"{series.device} to see {color}: it saw only {', '.join(seen)}"
+    names = [name.lower() for name in COLOR_NAMES]
+    if not has_codes or loop.attribute != "color" or not loop.color or not _is_text(loop):
+        return text
+    code = names.index(loop.color)
+    return f"{text}; color is a number ({code} for {color}), color_name is the word"
 
 
 def _is_text(loop: LoopEnd) -> bool:
