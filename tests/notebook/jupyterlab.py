@@ -107,12 +107,20 @@ def _find_server_files(folder: Path) -> list[Path]:
 
 
 @asynccontextmanager
-async def jupyterlab(folder: Path, cells: dict[str, NotebookNode]) -> AsyncIterator[Lab]:
+async def jupyterlab(
+    folder: Path,
+    cells: dict[str, NotebookNode],
+    host: str = "127.0.0.1",
+    *,
+    is_private: bool = False,
+) -> AsyncIterator[Lab]:
     """Open a notebook in JupyterLab, with the kernel "Python 3".
 
     Args:
         folder: Where all files are kept.
         cells: The cells of the notebook, by name.
+        host: The name of this machine in the address that the browser opens.
+        is_private: Whether the browser's window is a private one.
     """
     kernel = {"name": "python3", "display_name": "Python 3", "language": "python"}
     notebook = nbformat.v4.new_notebook(cells=[*cells.values()], metadata={"kernelspec": kernel})
@@ -139,9 +147,11 @@ async def jupyterlab(folder: Path, cells: dict[str, NotebookNode]) -> AsyncItera
             while not (texts := [*filter(None, map(Path.read_text, _find_server_files(folder)))]):
                 await asyncio.sleep(0.05)
         port = json.loads(texts[0])["port"]
-        async with chromium(folder / "browser", 1200, 900, 1, fingers=False) as page:
+        async with chromium(
+            folder / "browser", 1200, 900, 1, fingers=False, is_private=is_private
+        ) as page:
             lab = Lab(page, file, [*cells])
-            await lab.open(f"http://127.0.0.1:{port}/lab/tree/{file.name}?token={_TOKEN}")
+            await lab.open(f"http://{host}:{port}/lab/tree/{file.name}?token={_TOKEN}")
             yield lab
     finally:
         process.terminate()

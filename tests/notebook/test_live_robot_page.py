@@ -90,3 +90,13 @@ async def test_a_saved_notebook_that_is_not_trusted_keeps_its_picture(tmp_path: 
     async with jupyterlab(tmp_path / "second", saved) as lab:
         assert SENTENCE in await lab.text()
         assert await lab.pictures() == 1
+
+
+async def test_the_picture_becomes_the_app_at_the_first_address_that_jupyter_prints(
+    tmp_path: Path,
+) -> None:
+    cells = code({name: STEPS[name] for name in ("load", "picture")})
+    async with jupyterlab(tmp_path, cells, "localhost", is_private=True) as lab:
+        await lab.run("load", "picture")
+        await lab.until_live()
+        assert await lab.pictures() == 0

@@ -97,7 +97,7 @@ class Chromium:
 
 @asynccontextmanager
 async def chromium(
-    folder: Path, width: int, height: int, scale: float, *, fingers: bool
+    folder: Path, width: int, height: int, scale: float, *, fingers: bool, is_private: bool = False
 ) -> AsyncIterator[Chromium]:
     """Open a browser.
 
@@ -107,10 +107,12 @@ async def chromium(
         height: Its height.
         scale: Pixels of the screen for one of those.
         fingers: Whether it is a device that is touched, and not one with a mouse.
+        is_private: Whether its window is a private one, which lets no frame of another site keep anything.
     """
     process = await asyncio.create_subprocess_exec(
         *("chromium", "--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage"),
         *(
+            *(["--incognito"] if is_private else []),
             f"--force-device-scale-factor={scale}",
             f"--user-data-dir={folder}",
             "--remote-debugging-port=0",

@@ -186,3 +186,23 @@ async def test_two_fingers_change_the_size_of_the_text(serve: Serve, tmp_path: P
         await page.until("columns.at(-1) >= 40 && columns.at(-1) < 45")
         await page.js("document.querySelector('[data-text=\"-1\"]').click()")
         await page.until("columns.at(-1) >= 42")
+
+
+WITHOUT_STORAGE = """
+Object.defineProperty(window, "sessionStorage", {
+  get() {
+    throw new DOMException("Access is denied for this document.", "SecurityError");
+  },
+});
+"""
+
+
+async def test_the_page_shows_the_app_where_it_may_keep_nothing(
+    serve: Serve, tmp_path: Path
+) -> None:
+    serving = await serve(DRIVES)
+    async with chromium(tmp_path / "browser", 1000, 700, 1, fingers=False) as page:
+        await page.do("Page.addScriptToEvaluateOnNewDocument", source=WITHOUT_STORAGE)
+        await page.do("Page.navigate", url=serving.address)
+        await until_seen(page, is_whole)
+        assert page.complaints == []

@@ -1,10 +1,19 @@
 // Keeps the session of a tab: finds its app again after a reload or a lost line, and asks where there is a choice.
 "use strict";
 
+// A frame in a page of another site may have no storage: then nothing is kept.
+const findStorage = () => {
+  try {
+    return sessionStorage;
+  } catch {
+    return { getItem: () => null, setItem: () => {}, removeItem: () => {} };
+  }
+};
+
 const session = (() => {
   const top = location.origin + location.pathname;
   const framed = window.parent !== window;
-  const kept = sessionStorage;
+  const kept = findStorage();
   const [LOST, TAKEN_OVER, REFUSED] = [1006, 4001, 403];
   // A line that says nothing for so long is asked, and has so long to answer; a request, too.
   const [SILENT_MS, ANSWER_MS, RETRY_MS] = [10000, 10000, 1000];
