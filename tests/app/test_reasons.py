@@ -10,6 +10,7 @@ from tests.app.app_help import notices, open_lab, run_from_start, screen_text, u
 from tests.cases import cases
 from tuisim.app.app import LabApp
 from tuisim.app.snapshot import RunPhase
+from tuisim.engine.runs.handle import RunOptions
 from tuisim.tasks.goals.files import load_goals
 
 STRAIGHT = "tank_drive.on_for_seconds(20, 20, 1)\n"
@@ -24,11 +25,15 @@ async def ask(pilot: Pilot[None], app: LabApp, words: str) -> None:
 
 
 async def test_it_goes_to_each_reason_and_back_to_the_end() -> None:
-    text = "tank_drive.on_for_seconds(20, 20, 1)\nprint(colour)\n"
+    text = "tank_drive.on_for_seconds(20, int(input()), 1)\nprint(colour)\n"
     async with open_lab(STRAIGHT, speed=0.0, size=SIZE) as (pilot, app):
         await run_from_start(pilot, app, STRAIGHT)
         await ask(pilot, app, "No reason found")
-        await run_from_start(pilot, app, text.replace("20, 20", "20, 10"))
+        for speed, kinds in (("20", 1), ("10", 2)):
+            app.run_controller.next_options = RunOptions(live=True, speed=0.0, answers=(speed,))
+            await run_from_start(pilot, app, text)
+            # The way of the former text is no measure, that of the same text is one.
+            await until(pilot, lambda kinds=kinds: len(app.context.reasons.reasons) == kinds)
         await ask(pilot, app, "1.00 s, line 2: NameError: name 'colour' is not defined")
         timeline = app.run_controller.timeline
         assert not app.run_controller.in_past

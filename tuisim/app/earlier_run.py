@@ -12,6 +12,7 @@ from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.runs.recorded_run import Recording
 from tuisim.engine.runs.run_folder import StoredRun
+from tuisim.tasks.reasons.reason import is_repeat
 
 
 def is_comparable(earlier: Recording, later: Recording) -> bool:
@@ -26,13 +27,13 @@ def pose_at(run: Recording, time_s: float) -> Pose:
 
 
 def stored_before(later: Recording) -> Recording | None:
-    """Return the last stored run of the same program file on the same mat, before another run; None if there is none.
+    """Return the last stored run of a program file before another one that repeats it; None if there is none.
 
     Raises:
         LogError: the store cannot be read.
     """
     before = map(Recording, _load_runs(later.program, later.run_id))
-    return next((run for run in before if is_comparable(run, later)), None)
+    return next((run for run in before if is_repeat(later, run)), None)
 
 
 def find_last_like(program: Program, spec: RunSpec) -> StoredRun | None:

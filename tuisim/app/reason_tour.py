@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from tuisim.tasks.reasons.reason import is_repeat
+
 if TYPE_CHECKING:
     from tuisim.app.run_controller import RunController
     from tuisim.engine.runs.recorded_run import Recording
@@ -26,9 +28,11 @@ class ReasonTour:
         return recording is not None and self._of is recording
 
     def are_of(self, runs: RunController) -> bool:
-        """Return whether the run in view is known to have gone wrong, or can be compared with another one."""
-        has_gone_wrong = self.is_of(runs.timeline.recording) and bool(self.reasons)
-        return has_gone_wrong or runs.earlier is not None
+        """Return whether the run in view is known to have gone wrong, or repeats the one beside it."""
+        recording, earlier = runs.timeline.recording, runs.earlier
+        has_gone_wrong = self.is_of(recording) and bool(self.reasons)
+        can_differ = recording is not None and earlier is not None and is_repeat(recording, earlier)
+        return has_gone_wrong or can_differ
 
     def begin(self, recording: Recording) -> None:
         """Forget another run."""

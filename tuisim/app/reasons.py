@@ -9,7 +9,7 @@ from tuisim.app.earlier_run import stored_before
 from tuisim.app.snapshot import RunPhase
 from tuisim.engine.runs.store import load_run
 from tuisim.tasks.lessons.spec import RunCheck
-from tuisim.tasks.reasons.reason import find_reasons
+from tuisim.tasks.reasons.reason import find_reasons, is_repeat
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -56,9 +56,9 @@ def find(
     Args:
         context: The parts of the app.
         recording: The run.
-        earlier: The run to compare with.
+        earlier: The run to compare with, if the one in view repeats it.
         then: Called with what was found.
-        searches: Whether the store is searched for a run to compare with, if there is none.
+        searches: Whether the store is searched for a run to compare with, if that is none.
     """
     session, file = context.lesson.session, context.loader.goals.file
     judgements: tuple[Judgement, ...] = ()
@@ -72,7 +72,9 @@ def find(
     mat = context.runs.mat_for(recording.spec)
 
     def work() -> FoundReasons:
-        before = earlier or (stored_before(recording) if searches else None)
+        before = earlier if earlier is not None and is_repeat(recording, earlier) else None
+        if before is None and searches:
+            before = stored_before(recording)
         return _read(recording.folder, goals, judgements, before, mat), before
 
     failed = context.app.complain if searches else lambda _: None

@@ -191,7 +191,7 @@ class Situation:
     has_pixels: bool = False
     """Whether pictures are drawn with pixels, or were until the user switched to characters."""
     has_reasons: bool = False
-    """Whether the run in view went wrong, or there is an earlier run that it is compared with."""
+    """Whether the run in view went wrong, or repeats an earlier one that it is compared with."""
     can_undo: bool = False
     """Whether there is something to take back."""
 

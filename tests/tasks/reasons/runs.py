@@ -17,11 +17,11 @@ LIMIT_S = 30.0
 """Simulated seconds after which a run ends."""
 
 
-def run_text(text: str, name: str = "task.py") -> StoredRun:
+def run_text(text: str, name: str = "task.py", answers: tuple[str, ...] = ()) -> StoredRun:
     """Run a program to its end, or to the time limit."""
     source = parse_program(text, name)
     spec = build_run_spec(program_settings(source, {}, {}).settings)
-    run = start_run(source.program, spec, RunOptions(time_limit_s=LIMIT_S))
+    run = start_run(source.program, spec, RunOptions(time_limit_s=LIMIT_S, answers=answers))
     assert run.wait(PATIENCE_S)
     return RunStore().load_run(run.run_id)
 

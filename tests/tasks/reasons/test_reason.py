@@ -130,7 +130,8 @@ hidden = {hidden}
 
 
 def test_they_come_in_order_and_a_hidden_goal_is_not_told(tmp_path: Path) -> None:
-    run, earlier = run_text(MISTAKE), run_text(MISTAKE.replace("20)", "30)"))
+    text = MISTAKE.replace("20)", "int(input()))", 1)
+    run, earlier = (run_text(text, answers=(speed,)) for speed in ("20", "30"))
     mine, other = Recording(run), Recording(earlier)
     assert find_reasons(run)[0].line == 2
     for hidden, missed in (("false", 2), ("true", 1)):
@@ -138,6 +139,12 @@ def test_they_come_in_order_and_a_hidden_goal_is_not_told(tmp_path: Path) -> Non
         kinds = [reason.kind for reason in find_reasons(run, judgements, other)]
         assert kinds == [ReasonKind.RAISED, *[ReasonKind.MISSED] * missed, ReasonKind.DIFFERS]
     assert find_reasons(run, (), mine) == find_reasons(run)
+
+
+def test_a_run_of_another_text_is_no_measure() -> None:
+    run = run_text("tank_drive.on_for_seconds(20, 20, 1)\n")
+    for text in ("tank_drive.on_for_seconds(20, 30, 1)\n", "# -x 700\ntank_drive.off()\n"):
+        assert find_reasons(run, (), Recording(run_text(text))) == ()
 
 
 def test_a_run_that_met_its_goals_has_lost_nothing(tmp_path: Path) -> None:

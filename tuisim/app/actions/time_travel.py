@@ -178,7 +178,7 @@ def go_wrong(context: ActionContext) -> None:
     tour = context.reasons
     if not tour.is_of(recording):
         tour.begin(recording)
-    before = context.runs.earlier or tour.earlier
+    before = tour.earlier or context.runs.earlier
 
     def show(found: reasons.FoundReasons) -> None:
         reasons.note(context, recording, found)
@@ -195,7 +195,7 @@ def _show_reason(context: ActionContext, earlier: Recording | None) -> None:
         to_now(context)
         context.app.say(tour.words if tour.reasons else _say_nothing_wrong(context))
         return
-    if reason.kind is ReasonKind.DIFFERS and context.runs.earlier is None:
+    if reason.kind is ReasonKind.DIFFERS and context.runs.earlier is not earlier:
         context.runs.show_earlier(earlier)
     tick = round(reason.time_s * context.runs.timeline.tick_hz)
     context.debugger.choose_line(tick, reason.line)

@@ -1,5 +1,5 @@
 """Where a stored run went wrong, and why: what raised, what blocked, what a goal missed, what a sensor lost, and the
-first difference from the run before.
+first difference from an earlier run of the same text and settings.
 """
 
 from __future__ import annotations
@@ -80,7 +80,7 @@ def find_reasons(
         run: The run; it may still be running.
         judgements: How it did on the goals of its task. A run that met them all went wrong by none of what blocked it
             or what a sensor lost.
-        earlier: The run to compare with; None for none.
+        earlier: The run to compare with, if this one repeats it; None for none.
         mat: The mat of the run; None opens it.
 
     Raises:
@@ -97,9 +97,22 @@ def find_reasons(
         ]
         left_mat = [*_find_left_mat(run)]
         reasons += [*left_mat, *_find_turned(run, bool(left_mat)), *_find_ended(run, mat)]
-    if earlier is not None:
+    if earlier is not None and is_repeat(run, earlier):
         reasons += _find_difference(run, earlier)
     return tuple(sorted(reasons, key=lambda reason: (reason.kind, reason.time_s)))
+
+
+def is_repeat(run: StoredRun | Recording, earlier: StoredRun | Recording) -> bool:
+    """Return whether a run is of the same text, with the same arguments and settings, as an earlier one.
+
+    Only then has something gone wrong where the two part: another text means to drive another way.
+    """
+    program, before = run.program, earlier.program
+    return (program.text, program.arguments, run.spec) == (
+        before.text,
+        before.arguments,
+        earlier.spec,
+    )
 
 
 def _line_at(run: StoredRun, time_s: float) -> int:
@@ -270,7 +283,7 @@ def _describe_loss(run: StoredRun, lost: LostLine) -> Reason:
 
 
 def _find_difference(run: StoredRun, earlier: Recording) -> Iterator[Reason]:
-    """Yield where the robot left the way of the run before."""
+    """Yield where the robot left the way of an earlier run."""
     hz = run.spec.profile.tick_hz, earlier.spec.profile.tick_hz
     time_s = parted_at_s(run.telemetry.array(), earlier.telemetry.array(), hz)
     if time_s is not None:
