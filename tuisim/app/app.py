@@ -523,16 +523,11 @@ class LabApp(PanelMessages):
         return self._situation(self.run_controller.state)
 
     def _situation(self, phase: RunPhase) -> Situation:
-        runs, timeline, code = (
-            self.run_controller,
-            self.run_controller.timeline,
-            self.panel_area.code,
-        )
+        runs, code = self.run_controller, self.panel_area.code
+        timeline = runs.timeline
         facts = runs.program is not None, timeline.recording is not None, timeline.at is not None
-        is_away, reads_code = (
-            self._looks_back or self.debugger.replay.busy,
-            code is not None and code.is_read,
-        )
+        is_away = self._looks_back or self.debugger.replay.busy
+        reads_code = code is not None and code.is_read
         return Situation(
             phase,
             *facts,
@@ -541,6 +536,7 @@ class LabApp(PanelMessages):
             self.has_pixels,
             self.context.reasons.are_of(runs),
             self.undo is not None,
+            self.lesson.step_actions,
         )
 
     @property

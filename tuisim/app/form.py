@@ -16,7 +16,7 @@ from textual.widget import Widget
 from textual.widgets import Input, Label, Static
 from textual.widgets.input import Selection
 
-from tuisim.app.action import ActionHost
+from tuisim.app.action import ActionHost, KeyWord
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ConfigError, TuisimError
 
@@ -241,6 +241,7 @@ class Slider(_Control):
     """
 
     DEFAULT_CSS = "Slider { height: 1; width: 1fr; min-width: 6; }"
+    FOOTER_KEYS: ClassVar[tuple[KeyWord, ...]] = (("← →", "set"), ("0…9", "number"))
     COMPONENT_CLASSES: ClassVar[set[str]] = {"slider--filled", "slider--empty", "slider--knob"}
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("left", f"move({-STEP})", "Less", show=False),

@@ -77,6 +77,16 @@ class LessonController:
 
     # Opening
 
+    @property
+    def step_actions(self) -> tuple[str, ...]:
+        """Ids of the actions that help in the step to do, the most useful first; empty without a lesson."""
+        if self.lesson is None:
+            return ()
+        if (step := self.step) is None:
+            return ("lesson-menu",)
+        answer = ("answer",) if isinstance(step.check, QuestionCheck) else ()
+        return (*answer, "hint", "lesson-menu")
+
     def begin(self) -> None:
         """Begin with the lesson that was opened at the start."""
         if self.session is not None:

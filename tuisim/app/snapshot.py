@@ -194,6 +194,8 @@ class Situation:
     """Whether the run in view went wrong, or repeats an earlier one that it is compared with."""
     can_undo: bool = False
     """Whether there is something to take back."""
+    lesson_actions: tuple[str, ...] = ()
+    """Ids of the actions that help in the step of the open lesson."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -121,7 +121,8 @@ async def test_letters_and_signs_do_nothing_in_a_field_for_numbers() -> None:
 
 
 @pytest.mark.parametrize(
-    "key, own", [("c", "← → cursor 1…9 traces"), ("Z", "↑ ↓ fields ← → choices")]
+    "key, own",
+    [("c", "← → cursor 1…9 traces"), ("Z", "↑ ↓ fields ← → choices"), ("z", "← → set 0…9 number")],
 )
 async def test_the_keys_of_the_panel_with_the_focus_come_first(key: str, own: str) -> None:
     async with open_lab("x = 1\n", size=(80, 24)) as (pilot, _):
@@ -129,6 +130,20 @@ async def test_the_keys_of_the_panel_with_the_focus_come_first(key: str, own: st
         await until(pilot, lambda: last_line(pilot).startswith(f" {own} R run "))
         await pilot.press(key)
         await until(pilot, lambda: own not in last_line(pilot))
+
+
+async def test_in_a_lesson_the_footer_offers_its_keys() -> None:
+    async with open_lab("x = 1\n", size=(80, 24)) as (pilot, app):
+        await until(pilot, lambda: "R run" in last_line(pilot))
+        assert "lessons" not in last_line(pilot)
+        app.lesson.open("first-run")
+        await until(pilot, lambda: "Y hint M lessons" in last_line(pilot))
+
+
+def test_a_question_of_a_lesson_offers_to_answer_it() -> None:
+    now = Situation(RunPhase.IDLE, True, False, lesson_actions=("answer", "hint", "lesson-menu"))
+    shown = fitting(footer_actions(ACTIONS, working(now), now, playing=False), 70, 9)
+    assert [action.id for action in shown if action.group == "Lesson"] == [*now.lesson_actions]
 
 
 async def test_under_a_dialog_the_footer_names_only_keys_that_work_in_it() -> None:

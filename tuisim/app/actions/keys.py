@@ -550,9 +550,24 @@ ACTIONS: Mapping[str, LabAction] = {
             LESSON,
             lesson.menu,
             _can_change_world,
+            "lessons",
         ),
-        Action("answer", "Q", "Answer the question of the lesson", LESSON, lesson.answer),
-        Action("hint", "Y", "Next hint of the lesson", LESSON, lambda lab: lab.lesson.hint()),
+        Action(
+            "answer",
+            "Q",
+            "Answer the question of the lesson",
+            LESSON,
+            lesson.answer,
+            footer="answer",
+        ),
+        Action(
+            "hint",
+            "Y",
+            "Next hint of the lesson",
+            LESSON,
+            lambda lab: lab.lesson.hint(),
+            footer="hint",
+        ),
         _scroll("lesson-up", "pageup", "or the code: up", -8),
         _scroll("lesson-down", "pagedown", "or the code: down", 8),
         _scroll("lesson-back", "ctrl+up", "also while you type: up", -4),
@@ -613,10 +628,11 @@ def _next_steps(now: Situation) -> tuple[str, ...]:
         return ("stop", "pause", "went-wrong")
     if now.reads_code:
         results = ("analyse", "panel-chart") if now.has_run else ()
-        return ("run", *wrong, *mended, *results, "edit", *code)
+        return ("run", *now.lesson_actions, *wrong, *mended, *results, "edit", *code)
     if now.has_run:
-        return ("run", *wrong, *mended, "analyse", "export", "panel-chart", "edit", "back")
-    return ("run", "open", "edit", "mats")
+        results = ("analyse", "export", "panel-chart")
+        return ("run", *now.lesson_actions, *wrong, *mended, *results, "edit", "back")
+    return ("run", *now.lesson_actions, "open", "edit", "mats")
 
 
 PAGES = frozenset({"lesson-up", "lesson-down"})
@@ -628,7 +644,10 @@ TEXT_KEYS = frozenset({"lesson-back", "lesson-on"})
 def footer_actions(
     table: Mapping[str, LabAction], names: Iterable[str], now: Situation, playing: bool
 ) -> list[LabAction]:
-    """Return actions of a table with the words of the footer: the pause key says what it does now."""
+    """Return actions of a table with the words of the footer: the pause key says what it does now.
+
+    Keys of lessons are left out that do nothing in the step to do.
+    """
     word = ""
     if now.in_past:
         word = "" if playing else "play"
@@ -639,6 +658,7 @@ def footer_actions(
     return [
         replace(table[name], footer=word) if word and name == "pause" else table[name]
         for name in steps
+        if table[name].group != LESSON or name in now.lesson_actions
     ]
 
 
