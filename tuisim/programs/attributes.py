@@ -8,7 +8,8 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 
 from tuisim.base.errors import did_you_mean
-from tuisim.programs.names import UnknownName, column_of, likely, readable_tree
+from tuisim.base.meant import find_meant_names
+from tuisim.programs.names import UnknownName, column_of, readable_tree
 from tuisim.programs.program_file import parse_unfinished
 
 _IMPORTS = (ast.Import, ast.ImportFrom)
@@ -59,8 +60,7 @@ class AttributeCheck:
             row, end = _place_after(lines, node)
             start = end - len(node.attr)
             if lines[row][start:end] == node.attr:
-                close = likely(node.attr, members)
-                hint = did_you_mean([f"`{close}`"]) if close else ""
+                hint = did_you_mean([f"`{one}`" for one in find_meant_names(node.attr, members)])
                 found.append(UnknownName(node.attr, row, start, end, hint, name.id))
         return tuple(found)
 

@@ -13,6 +13,7 @@ from tuisim.base.data_class import dataclass
 from tuisim.base.errors import counted
 from tuisim.base.source import source_lines
 from tuisim.engine.runtime import wallclock
+from tuisim.engine.runtime.hints import add_hint
 from tuisim.engine.runtime.modules import OWN_FILES, is_own, remember_source
 from tuisim.engine.runtime.stack import show_whole_stacks
 
@@ -60,8 +61,10 @@ def report_error(error: BaseException, file: str, source: str, alone: bool = Fal
             )
         if alone:
             trace.__cause__ = trace.__context__ = trace.__notes__ = None
-        elif sys.version_info < (3, 12):
-            _add_suggestions(trace, error)
+        else:
+            if sys.version_info < (3, 12):
+                _add_suggestions(trace, error)
+            add_hint(trace, error)
         chain = _keep_program_frames(trace, own_files(file))
         text, summary = _text_of(chain), _summary(trace)
     except Exception as problem:
