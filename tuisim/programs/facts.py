@@ -21,6 +21,7 @@ from tuisim.programs.waits import (
     find_first_drive,
     find_turns,
     find_uncalled_stop,
+    list_counts,
     list_loop_ends,
 )
 from tuisim.programs.wheel_turns import WheelTurn, list_wheel_turns
@@ -97,6 +98,11 @@ class ProgramFacts:
     def loop_ends(self) -> tuple[LoopEnd, ...]:
         """The loops of which its text tells what ends them, the inner ones first."""
         return list_loop_ends(self._short_tree)
+
+    @cached_property
+    def counts(self) -> tuple[tuple[int, LoopEnd], ...]:
+        """The lines that only count in a loop while something compares with a constant, with the comparison."""
+        return tuple(list_counts(self._short_tree))
 
     def find_turns(self, line: int) -> tuple[float, str] | None:
         """Return how far a call on a line turns a motor or both wheels, and whether in rotations or in degrees."""

@@ -14,8 +14,7 @@ from tuisim.programs.robot.source import SIGNS, TURNED
 
 _OPPOSITE = {">=": "<", ">": "<=", "<=": ">", "<": ">=", "!=": "==", "==": "!="}
 """What ends a loop that goes on while a comparison holds."""
-
-
+_Loop = ast.For | ast.While
 _COMPUTE: Mapping[type[ast.operator], Callable[..., float]] = {
     ast.Add: operator.add,
     ast.Sub: operator.sub,
@@ -60,6 +59,49 @@ def list_loop_ends(tree: ast.Module) -> tuple[LoopEnd, ...]:
     loops.sort(key=lambda loop: -loop.lineno)
     constants = _list_constants(tree)
     return tuple(end for loop in loops for end in _find_ends(loop, tree, constants))
+
+
+def list_counts(tree: ast.Module) -> Iterator[tuple[int, LoopEnd]]:
+    """Yield each line that only counts in a loop while something compares with a constant, and the comparison.
+
+    Its variable starts somewhere, and nothing else changes or divides it.
+    """
+    constants = _list_constants(tree)
+    loops = [node for node in ast.walk(tree) if isinstance(node, _Loop)]
+    for loop in loops:
+        for step in loop.body:
+            match step:
+                case ast.If(test=ast.Compare() as test, body=[count, *rest], orelse=[]) if (
+                    (name := _find_counted(count))
+                    and all(isinstance(each, ast.Expr) for each in rest)
+                    and _is_only_counted(name, tree)
+                ):
+                    for end in _find_end(loop, test, tree, constants, is_break=True):
+                        yield count.lineno, end
+
+
+def _find_counted(node: ast.stmt) -> str:
+    """Return the variable to which a statement adds 1; empty for none."""
+    match node:
+        case ast.AugAssign(target=ast.Name(id=name), op=ast.Add(), value=ast.Constant(value=1)):
+            return name
+        case ast.Assign(
+            targets=[ast.Name(id=name)],
+            value=ast.BinOp(left=ast.Name(id=other), op=ast.Add(), right=ast.Constant(value=1)),
+        ) if name == other:
+            return name
+    return ""
+
+
+def _is_only_counted(name: str, tree: ast.Module) -> bool:
+    """Return whether a variable is set twice, so that one place counts it, and is no part of a share."""
+    nodes = [*ast.walk(tree)]
+    places = [node for node in nodes if isinstance(node, ast.Name) and node.id == name]
+    shares = [
+        node for node in nodes if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Div)
+    ]
+    parts = {part for share in shares for part in ast.walk(share)}
+    return sum(map(_is_set, places)) == 2 and parts.isdisjoint(places)
 
 
 def find_turns(tree: ast.Module, line: int) -> tuple[float, str] | None:
@@ -126,7 +168,7 @@ def _find_ends(
 
 
 def _find_end(
-    loop: ast.While,
+    loop: _Loop,
     test: ast.expr,
     tree: ast.Module,
     words: Mapping[str, Word],
@@ -176,7 +218,7 @@ def _read_comparison(
     return None if limit is None or not ending else (left, ending, limit)
 
 
-def _has_any(loop: ast.While, *kinds: type[ast.AST]) -> bool:
+def _has_any(loop: _Loop, *kinds: type[ast.AST]) -> bool:
     return any(isinstance(node, kinds) for node in ast.walk(loop))
 
 

@@ -40,6 +40,17 @@ OFF_THE_MAT = """\
 # %%sim_magic_preloaded -b Empty_Map -x 2100 -a 0
 tank_drive.on_for_seconds(SpeedPercent(40), SpeedPercent(40), 3)
 """
+COUNTS = """\
+# %%sim_magic_preloaded -b Grey_bands
+import time
+count = 0
+tank_drive.on(SpeedPercent(50), SpeedPercent(50))
+for i in range(20):
+    if colorLeft.reflected_light_intensity_pc < 90: {step}
+    time.sleep(0.1)
+    {more}
+tank_drive.off()
+"""
 CASES = {
     "raised": (MISTAKE, ReasonKind.RAISED, "1.00 s, line 2: NameError: name 'colour' is not"),
     "in a thread": (IN_A_THREAD, ReasonKind.RAISED, "1.00 s, line 4: ZeroDivisionError: division"),
@@ -58,14 +69,20 @@ CASES = {
     ),
     "degrees of the wheels": (
         "for side in range(4):\n    tank_drive.on_for_degrees(30, -30, 90)\n",
-        ReasonKind.TURNED,
+        ReasonKind.MISTAKEN,
         "0.01 s, line 2: this line turned the robot by 28°: on_for_degrees counts degrees of the "
         "wheels; 289 turn the robot by 90°",
     ),
     "rotations of the wheels": (
         "tank_turn.on_for_rotations(-100, SpeedPercent(20), 0.25)\n",
-        ReasonKind.TURNED,
+        ReasonKind.MISTAKEN,
         "wheels; 0.80 turn the robot by 90°",
+    ),
+    "each reading": (
+        COUNTS.format(step="count += 1", more="pass"),
+        ReasonKind.MISTAKEN,
+        ", line 6: this line counted at 0.67 s and 0.78 s on the same band: it counts each reading "
+        "that is less than 90 %, not each band",
     ),
     "off the mat": (OFF_THE_MAT, ReasonKind.LOST, "line 2: the robot left the mat"),
 }
@@ -85,6 +102,12 @@ def test_a_reason_says_when_at_which_line_and_why(name: str) -> None:
         "another angle": "tank_drive.on_for_degrees(30, -30, 289)\n",
         "a curve": "tank_drive.on_for_degrees(30, 10, 90)\n",
         "straight": "tank_drive.on_for_degrees(30, 30, 90)\n",
+        "dark and bright readings": COUNTS.format(step="count += 1", more="print(count / 20)"),
+        "readings in a row": COUNTS.format(step="count += 1", more="if i % 5 == 0: count = 0"),
+        "a wait after each band": COUNTS.format(step="count += 1; time.sleep(1.2)", more="pass"),
+        "a robot that stands": COUNTS.format(step="count += 1", more="pass")
+        .replace("tank_drive.on(", "print(")
+        .replace("-b Grey_bands", "-b Grey_bands -x 350"),
         "a whole rotation": "tank_drive.on_for_rotations(30, -30, 1)\n",
     },
 )

@@ -20,7 +20,7 @@ from tuisim.engine.runs.run_folder import open_mat
 from tuisim.engine.runs.standstill import standstill_of
 from tuisim.programs.facts import read_facts
 from tuisim.tasks.goals.judgement import GoalState, Judgement
-from tuisim.tasks.reasons.unmet import find_early_end, find_near_miss
+from tuisim.tasks.reasons.unmet import find_early_end, find_near_miss, find_recount
 from tuisim.tasks.reasons.waited import Subject
 from tuisim.tasks.reasons.waited_words import Wait, find_waits
 
@@ -47,7 +47,8 @@ class ReasonKind(IntEnum):
     LOST = auto()
     ENDED = auto()
     DIFFERS = auto()
-    TURNED = auto()
+    MISTAKEN = auto()
+    """What the program did, and may not have been meant to do."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,7 +97,7 @@ def find_reasons(
             *_find_lost(run, mat, is_seen),
         ]
         left_mat = [*_find_left_mat(run)]
-        reasons += [*left_mat, *_find_turned(run, bool(left_mat)), *_find_ended(run, mat)]
+        reasons += [*left_mat, *_find_mistaken(run, mat, bool(left_mat)), *_find_ended(run, mat)]
     if earlier is not None and is_repeat(run, earlier):
         reasons += _find_difference(run, earlier)
     return tuple(sorted(reasons, key=lambda reason: (reason.kind, reason.time_s)))
@@ -207,13 +208,18 @@ def _find_left_mat(run: StoredRun) -> Iterator[Reason]:
         yield _lost_at(run, int(is_off.argmax()), "the robot left the mat")
 
 
-def _find_turned(run: StoredRun, has_left_mat: bool) -> Iterator[Reason]:
-    """Yield that the wheels turned by an angle that was meant for the robot, if it was: why the robot left the mat."""
+def _find_mistaken(run: StoredRun, mat: Field | None, has_left_mat: bool) -> Iterator[Reason]:
+    """Yield what the program may not have been meant to do.
+
+    That is to turn the wheels by an angle of the robot, which may be why it left the mat, and to count a band twice.
+    """
     from tuisim.tasks.reasons.wheel_turn import find_mistaken_turn
 
     if turn := find_mistaken_turn(run):
-        kind = ReasonKind.LOST if has_left_mat else ReasonKind.TURNED
+        kind = ReasonKind.LOST if has_left_mat else ReasonKind.MISTAKEN
         yield Reason(kind, turn.tick / run.spec.profile.tick_hz, turn.line, turn.text)
+    if recount := find_recount(run, mat):
+        yield Reason(ReasonKind.MISTAKEN, recount.time_s, recount.line, recount.text)
 
 
 def _find_ended(run: StoredRun, mat: Field | None) -> Iterator[Reason]:

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ConfigError, LogError
-from tuisim.engine.core.columns import COLOR_NAMES
 from tuisim.engine.core.conditions import COMPARE
 from tuisim.engine.core.profile import Library
 from tuisim.engine.core.spec import (
@@ -24,6 +23,7 @@ from tuisim.engine.runs.frames import column_values
 from tuisim.engine.runs.readings import READING_MODES, READING_PORTS, find_ticks, read_readings
 from tuisim.engine.runs.run_folder import StoredRun, open_mat
 from tuisim.programs.facts import LoopEnd, read_facts
+from tuisim.tasks.reasons.seen_colors import describe_colors, name_limit, name_seen
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -140,6 +140,16 @@ def find_near_miss(run: StoredRun, mat: Field | None = None) -> Unmet | None:
     return _find_first(_Search.find_near_misses, run, mat)
 
 
+def find_recount(run: StoredRun, mat: Field | None = None) -> Unmet | None:
+    """Return where a line counted light twice on one band; None if nowhere, or if that is not known.
+
+    Args:
+        run: The run.
+        mat: Its mat; None opens it.
+    """
+    return _find_first(_Search.find_recounts, run, mat)
+
+
 def find_early_end(run: StoredRun, mat: Field | None = None) -> Unmet | None:
     """Return that a program was over before the motors that it started could turn; None if it was not.
 
@@ -233,9 +243,9 @@ class _Search:
                 continue
             text = f"the loop was over at once: {series.device} read"
             if series.column == "color":
-                (name,) = _name_seen(loop, series.values[:1])
-                if loop.operator == "!=" and name != _name_limit(loop):
-                    text = f"{text} {name}, not {_name_limit(loop)}"
+                (name,) = name_seen(loop, series.values[:1])
+                if loop.operator == "!=" and name != name_limit(loop):
+                    text = f"{text} {name}, not {name_limit(loop)}"
                     yield Unmet(series.ticks[0] / self._hz, loop.line, text)
             elif not isinstance(loop.limit, str):
                 first = series.values[0]
@@ -243,6 +253,25 @@ class _Search:
                     goal = _name_goal(loop, f"{loop.limit:g}{series.unit}")
                     text = f"{text} {_round(first)}{series.unit}, already {goal}"
                     yield Unmet(series.ticks[0] / self._hz, loop.line, text)
+
+    def find_recounts(self) -> Iterator[Unmet]:
+        """Yield where a moving robot counted at two readings in a row."""
+        for line, test in read_facts(self._run.program).counts:
+            series = self._measure(test, (0, len(self._records)))
+            if series is None or series.column not in _LIGHT or isinstance(test.limit, str):
+                continue
+            is_met = COMPARE[test.operator](series.values, test.limit)
+            x_mm, y_mm = (self._records[name][series.ticks] for name in ("x_mm", "y_mm"))
+            moves = (x_mm[1:] != x_mm[:-1]) | (y_mm[1:] != y_mm[:-1])
+            again = is_met[1:] & is_met[:-1] & moves
+            if again.any():
+                first_s, next_s = series.ticks[again.argmax() :][:2] / self._hz
+                goal = _name_goal(test, f"{test.limit:g}{series.unit}")
+                text = (
+                    f"this line counted at {first_s:.2f} s and {next_s:.2f} s on the same band: "
+                    f"it counts each reading that is {goal}, not each band"
+                )
+                yield Unmet(next_s, line, text)
 
     def _is_long(self, tick: int) -> bool:
         """Return whether the program has waited long enough since a tick."""
@@ -290,7 +319,7 @@ class _Search:
             return ""
         if series.column == "color":
             has_codes = self._run.spec.profile.motor_law.library is not Library.PYBRICKS
-            return _describe_colors(loop, series, has_codes)
+            return describe_colors(loop, series.device, series.values, has_codes)
         if isinstance(loop.limit, str) or COMPARE[loop.operator](series.values, loop.limit).any():
             return ""
         goal = _name_goal(loop, f"{loop.limit:g}{series.unit}")
@@ -434,41 +463,3 @@ def _round(value: float) -> str:
 
 def _name_goal(loop: LoopEnd, limit: str) -> str:
     return _WORDS[loop.operator].format(limit)
-
-
-def _describe_colors(loop: LoopEnd, series: _Series, has_codes: bool) -> str:
-    """Return the colour that a loop waited for and what was seen; empty if it came.
-
-    Args:
-        loop: The loop.
-        series: What it read.
-        has_codes: Whether `color` is a number in the program's library.
-    """
-    seen = _name_seen(loop, series.values)
-    color = _name_limit(loop)
-    if loop.operator != "==" or color in {"", *seen}:
-        return ""
-    text = f"{series.device} to see {color}: it saw only {', '.join(seen)}"
-    names = [name.lower() for name in COLOR_NAMES]
-    if not has_codes or loop.attribute != "color" or not loop.color or not _is_text(loop):
-        return text
-    code = names.index(loop.color)
-    return f"{text}; color is a number ({code} for {color}), color_name is the word"
-
-
-def _is_text(loop: LoopEnd) -> bool:
-    """Return whether a loop compares with a text that is not the name of a constant, as it stands in a program."""
-    return isinstance(loop.limit, str) and not loop.limit.isupper()
-
-
-def _name_seen(loop: LoopEnd, codes: Array) -> list[str]:
-    """Return the colours that were seen: as the program reads them if it compares them with a text."""
-    names = {COLOR_NAMES[int(code)]: f"{code:g}" for code in codes}
-    if not _is_text(loop):
-        return sorted("no colour" if name == COLOR_NAMES[0] else name.lower() for name in names)
-    return sorted(names.values() if loop.attribute == "color" else map(repr, names))
-
-
-def _name_limit(loop: LoopEnd) -> str:
-    """Return the colour that a loop compares with, in the same way."""
-    return repr(loop.limit) if _is_text(loop) else loop.color
