@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 
 from textual.pilot import Pilot
@@ -29,11 +30,15 @@ async def test_it_goes_to_each_reason_and_back_to_the_end() -> None:
     async with open_lab(STRAIGHT, speed=0.0, size=SIZE) as (pilot, app):
         await run_from_start(pilot, app, STRAIGHT)
         await ask(pilot, app, "No reason found")
+
+        def has_reasons(count: int) -> bool:
+            return len(app.context.reasons.reasons) == count
+
         for speed, kinds in (("20", 1), ("10", 2)):
             app.run_controller.next_options = RunOptions(live=True, speed=0.0, answers=(speed,))
             await run_from_start(pilot, app, text)
             # The way of the former text is no measure, that of the same text is one.
-            await until(pilot, lambda kinds=kinds: len(app.context.reasons.reasons) == kinds)
+            await until(pilot, partial(has_reasons, kinds))
         await ask(pilot, app, "1.00 s, line 2: NameError: name 'colour' is not defined")
         timeline = app.run_controller.timeline
         assert not app.run_controller.in_past
