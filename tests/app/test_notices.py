@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import inf
+
 import pytest
 
 from tests.app.app_help import notices, until
@@ -32,6 +34,19 @@ def test_a_message_is_shown_whole_in_as_few_parts_as_it_needs(
 
 def test_lines_become_one() -> None:
     assert split_message("one\n  two", 40) == ["one two"]
+
+
+async def test_an_answer_stays_below_until_it_is_released() -> None:
+    app = TerminalApp()
+    async with app.run_test(notifications=True, size=(60, 20)) as pilot:
+        app.notify(LONG, timeout=inf)
+        await until(pilot, lambda: bool(app.query(NoticeRow)) and app.query_one(NoticeRow).is_read)
+        row = app.query_one(NoticeRow)
+        await until(pilot, lambda: row.region.height == 2)
+        # The row of the keys is below it.
+        assert row.region.bottom == 19
+        app.notices.release()
+        await until(pilot, lambda: not app.query(NoticeRow))
 
 
 async def test_an_error_stays_until_it_is_read_and_the_newest_notice_follows() -> None:

@@ -7,9 +7,19 @@ from pathlib import Path
 
 from textual.pilot import Pilot
 
-from tests.app.app_help import notices, open_lab, run_from_start, screen_text, until, until_state
+from tests.app.app_help import (
+    notices,
+    open_lab,
+    ready,
+    run_from_start,
+    screen_text,
+    settings,
+    until,
+    until_state,
+)
 from tests.cases import cases
 from tuisim.app.app import LabApp
+from tuisim.app.notices import NoticeRow
 from tuisim.app.snapshot import RunPhase
 from tuisim.engine.runs.handle import RunOptions
 from tuisim.tasks.goals.files import load_goals
@@ -57,6 +67,22 @@ while True:
     if colorLeft.reflected_light_intensity_pc < 101:
         pass
 """
+
+
+async def test_the_answer_stays_until_a_key_does_something() -> None:
+    async with LabApp(settings(STRAIGHT, speed=0.0)).run_test(
+        size=SIZE, notifications=True
+    ) as pilot:
+        app = await ready(pilot)
+        await run_from_start(pilot, app, "tank_drive.on_for_seconds(20, 20, 1)\nprint(colour)\n")
+
+        def stays() -> bool:
+            return any(row.notice.stays for row in app.query(NoticeRow))
+
+        await ask(pilot, app, "NameError")
+        await until(pilot, stays)
+        await pilot.press("comma")
+        await until(pilot, lambda: not stays())
 
 
 async def test_the_arrow_stays_on_the_line_of_the_reason() -> None:

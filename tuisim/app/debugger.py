@@ -187,6 +187,7 @@ class DebugController:
 
     def run_changed(self) -> None:
         """Reset the state for another run, or none."""
+        self._app.notices.release()
         self._paused = self.position = self.view = self._run_controller.paused_line = None
         self._run_controller.chosen_line = None
         self._frame, self._thread, self._wanted = 0, "", None

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Callable
+from math import inf
 from typing import TYPE_CHECKING
 
 from tuisim.app.action import ActionHost
@@ -18,6 +19,14 @@ class LabHost(ActionHost, TerminalApp):
 
     undo: Callable[[], None] | None = None
     """Takes back what the last key has changed at once; None if there is nothing to take back."""
+
+    def action_act(self, name: str) -> None:
+        self.notices.release()
+        super().action_act(name)
+
+    def answer(self, text: str) -> None:
+        """Show what a key has found out until the next one does something; ids of actions are in braces."""
+        self.notify(self.with_keys(text), timeout=inf)
 
     def offer_undo(self, undo: Callable[[], None] | None) -> None:
         """Offer a key that takes something back, until a run starts or another key changes something."""

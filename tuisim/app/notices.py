@@ -36,7 +36,12 @@ class Notice:
     message: str
     severity: SeverityLevel
     timeout_s: float
-    """How long it is shown; longer if it takes longer to read."""
+    """How long it is shown; longer if it takes longer to read. Infinite: until the next key does something."""
+
+    @property
+    def stays(self) -> bool:
+        """Whether it is shown until the next key does something."""
+        return self.timeout_s == inf
 
 
 def split_message(message: str, columns: int) -> list[str]:
@@ -63,6 +68,8 @@ def split_message(message: str, columns: int) -> list[str]:
 class NoticeRow(Static):
     """The row of a notice; a long one has more rows, at the top, where neither keys nor the axis of a chart are.
 
+    One that stays has them at the bottom, where no title of a panel is.
+
     Args:
         notice: What it shows.
         ended: Called once all of it has been shown, or a click has closed it.
@@ -82,6 +89,7 @@ class NoticeRow(Static):
         border-left: outer $success;
     }}
     NoticeRow.-long {{ dock: top; height: auto; margin: 0; }}
+    NoticeRow.-long.-stays {{ dock: bottom; margin-bottom: 1; }}
     NoticeRow.-warning {{ border-left: outer $warning; }}
     NoticeRow.-error {{ border-left: outer $error; }}
     """
@@ -89,6 +97,7 @@ class NoticeRow(Static):
 
     def __init__(self, notice: Notice, ended: Callable[[], None]) -> None:
         super().__init__(markup=False, classes=f"-{notice.severity}")
+        self.set_class(notice.stays, "-stays")
         self.notice = notice
         self._ended = ended
         self._parts: deque[str] = deque()
@@ -117,7 +126,8 @@ class NoticeRow(Static):
         reading_s = max(_MIN_PART_S, len(part) / CHARACTERS_A_SECOND)
         self._part_until_s = time.monotonic() + reading_s
         shown_s = reading_s if self._parts else max(reading_s, self.notice.timeout_s)
-        self.set_timer(shown_s, self._show_next)
+        if shown_s < inf:
+            self.set_timer(shown_s, self._show_next)
 
 
 class Notices:
@@ -148,6 +158,17 @@ class Notices:
         """Return the messages whose time has not passed."""
         now_s = time.monotonic()
         return [notice.message for until_s, notice in self._told if until_s > now_s]
+
+    def release(self) -> None:
+        """Show no longer what stays until a key does something."""
+        now_s = time.monotonic()
+        self._told = [
+            (now_s + len(one.message) / CHARACTERS_A_SECOND if one.stays else until_s, one)
+            for until_s, one in self._told
+        ]
+        self._waiting = deque(one for one in self._waiting if not one.stays)
+        if self._row is not None and self._row.notice.stays:
+            self._end_turn()
 
     def clear(self) -> None:
         """Forget all notices."""

@@ -29,6 +29,7 @@ def to_tick(context: ActionContext, tick: int | None) -> None:
     recording = context.runs.timeline.recording
     if recording is None or (tick is not None and not _is_laid_out(context, recording)):
         return
+    context.app.notices.release()
     if tick is not None:
         context.runs.pause()
     else:
@@ -193,7 +194,7 @@ def _show_reason(context: ActionContext, earlier: Recording | None) -> None:
     tour = context.reasons
     if (reason := tour.advance()) is None:
         to_now(context)
-        context.app.say(tour.words if tour.reasons else _say_nothing_wrong(context))
+        context.app.answer(tour.words if tour.reasons else _say_nothing_wrong(context))
         return
     if reason.kind is ReasonKind.DIFFERS and context.runs.earlier is not earlier:
         context.runs.show_earlier(earlier)
@@ -201,7 +202,7 @@ def _show_reason(context: ActionContext, earlier: Recording | None) -> None:
     context.debugger.choose_line(tick, reason.line)
     to_tick(context, tick)
     so_far = "So far: " if context.runs.in_run else ""
-    context.app.say(f"{so_far}{tour.words}")
+    context.app.answer(f"{so_far}{tour.words}")
 
 
 def _say_nothing_wrong(context: ActionContext) -> str:
