@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from tests.cases import cases
 from tests.conftest import Command
 from tests.engine.runs.run_recorder import PROGRAM, begun
 from tests.running import told
@@ -147,6 +148,15 @@ def test_a_run_without_samples_has_no_chart(here: Command, tmp_path: Path) -> No
     assert ["".join(node.itertext()) for node in texts] == ["1.00 s"]
 
 
+@cases("size, has_chart", {"small": ("600x359", False), "large": ("600x360", True)})
+def test_a_small_picture_has_no_chart_unless_it_is_asked_for(
+    here: Command, tmp_path: Path, size: str, has_chart: bool
+) -> None:
+    for words, is_charted in (((), has_chart), (("--panels", "world,chart"), True)):
+        here("runs", "picture", "last", "--out", "a.svg", "--size", size, *words)
+        assert ("time (s)" in (tmp_path / "a.svg").read_text()) == is_charted
+
+
 def test_without_a_file_it_is_named_after_the_program(here: Command, tmp_path: Path) -> None:
     assert here("runs", "picture", "last").stdout == "log-picture.png\n"
     assert (tmp_path / "log-picture.png").is_file()
@@ -196,7 +206,7 @@ BAD = {
         "--size: no such size '20x20' (width and height in pixels, 160x120 to 3840x2160)",
     ),
     "no room": (
-        "movie last --size 160x120",
+        "movie last --size 160x120 --panels world,chart",
         "--size: 160x120 is too small (no room for the panel world)",
     ),
     "too large": (

@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     from tuisim.pictures.movies.painter import Size
 
 _PANELS = "world, chart, arrays"
+_MIN_CHARTED_PX = 360
+"""A lower picture has no room for a chart whose labels can be read."""
 _FAST_S = 60
 """A longer run is shown faster, unless the speed is given."""
 
@@ -26,7 +28,7 @@ _run = argument("word", "RUN", lambda: ("last",))
 _panels = option(
     "--panels",
     metavar="NAMES",
-    help=f"What is shown: some of {_PANELS} (world, and chart if there are samples).",
+    help=f"What is shown: some of {_PANELS} (world, and chart if there are samples and room).",
 )
 _size = option("--size", default="", metavar="WxH", help="Width and height in pixels (600 wide).")
 
@@ -76,7 +78,7 @@ def movie(
         recorded = _recorded(run)
         span_s = recorded.span_s(start_s, stop_s)
         speed = speed or max(1, math.ceil((span_s[1] - span_s[0]) / _FAST_S))
-        clip = Clip(recorded, shown or _useful(recorded), span_s, speed, fps, sides)
+        clip = Clip(recorded, shown or _useful(recorded, sides), span_s, speed, fps, sides)
         size_bytes = save_movie(clip, path, partial(tell, f"drawing {path.name}"))
     shots = clip.shots
     lasts_s = sum(shot.duration_ms for shot in shots) / 1000
@@ -109,7 +111,7 @@ def picture(word: str, out: str | None, time_s: float | None, panels: str | None
         recorded = _recorded(run)
         at_s = recorded.end_s if time_s is None else time_s
         _check_number(at_s, 0, recorded.end_s, "--at")
-        save_picture(recorded, shown or _useful(recorded), at_s, path, sides)
+        save_picture(recorded, shown or _useful(recorded, sides), at_s, path, sides)
     echo(str(path))
     return 0
 
@@ -135,11 +137,13 @@ def _check_number(value: float, low: float, high: float, key: str) -> None:
         raise ConfigError(f"must be from {low:g} to {high:g}, got {value:g}", key=key)
 
 
-def _useful(recorded: Recorded) -> tuple[ClipPanel, ...]:
-    """Return the panels that have something to show."""
+def _useful(recorded: Recorded, size: Size | None) -> tuple[ClipPanel, ...]:
+    """Return the panels that have something to show, and room for it."""
     from tuisim.pictures.movies.clip import ClipPanel
 
-    return (ClipPanel.WORLD, ClipPanel.CHART) if recorded.samples else (ClipPanel.WORLD,)
+    has_room = size is None or size[1] >= _MIN_CHARTED_PX
+    has_chart = bool(recorded.samples) and has_room
+    return (ClipPanel.WORLD, ClipPanel.CHART) if has_chart else (ClipPanel.WORLD,)
 
 
 def _panels_of(text: str | None) -> tuple[ClipPanel, ...]:

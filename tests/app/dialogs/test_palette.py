@@ -7,6 +7,7 @@ from textual.widgets import Input
 
 from tests.app.app_help import open_lab, until, until_shown
 from tuisim.app.actions.keys import ACTIONS
+from tuisim.app.analyser.actions.keys import ACTIONS as ANALYSER_ACTIONS
 from tuisim.app.dialogs.palette import Entry, ThemeChooser, matching
 from tuisim.app.guide.screen import GuideScreen
 
@@ -35,6 +36,18 @@ ENTRIES = [
 )
 def test_words_that_people_use_find_an_action(typed: str, first: str) -> None:
     assert matching(ENTRIES, typed)[0].id == first
+
+
+def test_the_analyser_offers_all_that_saves_a_picture() -> None:
+    entries = [
+        Entry(one.id, one.title, one.group, one.key_label, one.words)
+        for one in ANALYSER_ACTIONS.values()
+    ]
+    assert [one.id for one in matching(entries, "picture")] == [
+        "save-chart",
+        "report",
+        "screenshot",
+    ]
 
 
 async def test_the_palette_keeps_its_place_while_the_list_becomes_shorter() -> None:

@@ -292,9 +292,16 @@ ACTIONS: Mapping[str, LogAction] = {
             FILES,
             files.chart,
             _rows,
+            words="picture image graph plot file",
         ),
         Action(
-            "report", "E", "Write a report: one page with everything", FILES, files.report, _log
+            "report",
+            "E",
+            "Write a report: one page with everything",
+            FILES,
+            files.report,
+            _log,
+            words="picture chart html print",
         ),
         Action("delete-note", "delete", "Delete the selected note", LOG, log.delete_note, _rows),
         Action("telemetry", "T", "Telemetry or printed samples", LOG, log.telemetry, _log),
@@ -326,6 +333,7 @@ ACTIONS: Mapping[str, LogAction] = {
             APP,
             _app("save_screen"),
             shown_key="I",
+            words="picture image capture",
         ),
         Action("suspend", "ctrl+z", "Suspend; fg in the shell resumes", APP, _suspend),
         Action(
