@@ -9,10 +9,12 @@ from textual.geometry import Region
 from textual.pilot import Pilot
 from textual.widget import Widget
 
-from tests.app.app_help import LOGS, ready, settings, until
+from tests.app.app_help import LOGS, ready, settings, until, until_state
 from tuisim.app.app import LabApp
+from tuisim.app.dialogs.dialog import Dialog
 from tuisim.app.guide.screen import GuideScreen
 from tuisim.app.notices import NoticeRow
+from tuisim.app.snapshot import RunPhase
 
 
 async def shown_row(pilot: Pilot[Any], app: LabApp, message: str) -> NoticeRow:
@@ -53,6 +55,21 @@ async def test_a_notice_lies_on_the_border_and_leaves_axis_and_keys_free(
         assert not row.overlaps(app.key_footer.region)
         for panel in app.panel_area.on_screen():
             assert not row.overlaps(cast(Widget, panel).region.shrink((1, 1, 1, 1)))
+
+
+@pytest.mark.parametrize("key", ["g", "question_mark", "o"])
+async def test_a_notice_covers_nothing_that_a_dialog_says(key: str) -> None:
+    opened = settings(LOGS, autorun=True, speed=0.0)
+    async with LabApp(opened).run_test(size=(80, 24), notifications=True) as pilot:
+        app = await ready(pilot)
+        await until_state(pilot, RunPhase.ENDED)
+        await pilot.press(key)
+        await until(pilot, lambda: isinstance(app.screen, Dialog))
+        app.say(SHORT)
+        row = await shown_row(pilot, app, SHORT)
+        frame = app.screen.query_one(".dialog").region
+        await until(pilot, lambda: not row.region.overlaps(frame.shrink((1, 1, 1, 1))))
+        assert app.screen.region.contains_region(row.region)
 
 
 async def test_a_notice_outlives_the_screen_that_it_is_on() -> None:

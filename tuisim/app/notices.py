@@ -112,6 +112,17 @@ class NoticeRow(Static):
         self._parts.extend(split_message(self.notice.message, self.app.size.width - _EDGES))
         self._show_next()
 
+    def on_resize(self) -> None:
+        self.call_after_refresh(self._leave_dialog)
+
+    def _leave_dialog(self) -> None:
+        """Lie on the lower border of a dialog instead of on what that says."""
+        if not self.is_attached or self.has_class("-long"):
+            return
+        for frame in self.screen.query(".dialog"):
+            if self.region.overlaps(frame.region.shrink((1, 1, 1, 1))):
+                self.styles.offset = (0, frame.region.bottom - 1 - self.region.y)
+
     def on_click(self) -> None:
         """Close it."""
         self._ended()

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tuisim.app.dialogs.robots import part_lines, robot_picture, view_of
+from tests.app.app_help import open_lab, screen_text, until
+from tuisim.app.dialogs.robots import RobotPicker, part_lines, robot_picture, view_of
 from tuisim.engine.core.spec import RobotSpec
 from tuisim.pictures.scene.robot import COLORED
 from tuisim.settings.robots import ROBOTS
@@ -38,3 +39,13 @@ def test_a_robot_is_whole_in_its_picture(robot: str, size: tuple[int, int]) -> N
     assert not drawn[[0, -1]].any() and not drawn[:, [0, -1]].any()
     for part in (COLORED.body, COLORED.wheel, COLORED.marker):
         assert (np.abs(picture - part).sum(axis=2) < 90).any(), part
+
+
+async def test_what_names_no_robot_shows_none() -> None:
+    async with open_lab() as (pilot, app):
+        await pilot.press("r")
+        await until(pilot, lambda: isinstance(app.screen, RobotPicker))
+        await until(pilot, lambda: "wheels" in screen_text(app))
+        await pilot.press(*"xyz")
+        await until(pilot, lambda: "no name has these words" in screen_text(app))
+        await until(pilot, lambda: "wheels" not in screen_text(app))

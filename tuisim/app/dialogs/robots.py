@@ -89,6 +89,11 @@ class RobotPicker(Chooser):
                 yield RobotParts()
         yield from self.asked()
 
+    def nothing_found(self) -> None:
+        """Show no robot."""
+        self.query_one(RobotParts).show([])
+        self.query_one(RobotPicture).show(None)
+
     @on(OptionList.OptionHighlighted)
     def _highlighted(self, event: OptionList.OptionHighlighted) -> None:
         robot = self._robot(event.option.id or "")
