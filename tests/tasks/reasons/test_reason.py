@@ -101,6 +101,8 @@ def test_a_reason_says_when_at_which_line_and_why(name: str) -> None:
     {
         "another angle": "tank_drive.on_for_degrees(30, -30, 289)\n",
         "a curve": "tank_drive.on_for_degrees(30, 10, 90)\n",
+        "curves by steering": "for i in range(4):\n    tank_turn.on_for_degrees(-30, 30, 90)\n",
+        "curves at full speed": "for i in range(4):\n    tank_drive.on_for_degrees(100, 30, 90)\n",
         "straight": "tank_drive.on_for_degrees(30, 30, 90)\n",
         "dark and bright readings": COUNTS.format(step="count += 1", more="print(count / 20)"),
         "readings in a row": COUNTS.format(step="count += 1", more="if i % 5 == 0: count = 0"),

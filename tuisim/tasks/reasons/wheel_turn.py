@@ -52,9 +52,12 @@ def _measure(run: StoredRun, turn: WheelTurn) -> MistakenTurn | None:
     first, end = int(edges[0]), int(edges[1])
     span = records[max(0, first - 1) : end]
     wheels = [span[f"{side}_position_deg"] for side in ("left", "right")]
-    wheel_deg = float(np.mean([abs(positions[-1] - positions[0]) for positions in wheels]))
+    left_deg, right_deg = (float(positions[-1] - positions[0]) for positions in wheels)
+    wheel_deg = abs(left_deg - right_deg) / 2
     steps_deg = (np.diff(span["heading_deg"]) + 180) % 360 - 180
-    if wheel_deg < turn.angle_deg * _MIN_SHARE:
+    # Two numbers may be speeds, or the steering of a curve and a speed.
+    is_on_the_spot = abs(left_deg + right_deg) <= (1 - _MIN_SHARE) * wheel_deg
+    if not is_on_the_spot or wheel_deg < turn.angle_deg * _MIN_SHARE:
         return None
     # The line may have run several times without another one between.
     robot_deg = abs(float(steps_deg.sum())) / wheel_deg * turn.angle_deg
