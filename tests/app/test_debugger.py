@@ -14,6 +14,7 @@ from tests.app.app_help import (
     press_and_stand,
     program_of,
     ready,
+    screen_text,
     settings,
     until,
     until_typing,
@@ -324,3 +325,17 @@ async def test_a_step_back_has_the_time_of_its_tick() -> None:
         paused, snapshot = app.debugger.view.paused, app.run_controller.snapshot()
         assert paused.tick == snapshot.instant.tick
         assert paused.time_ns / 1e9 == snapshot.time_s
+
+
+async def test_a_breakpoint_without_a_line_is_told_of_before_it_pauses_a_run() -> None:
+    opened = settings(COUNTS)
+    async with open_lab(opened) as (pilot, app):
+        assert app.panel_area.code is not None
+        app.debugger.set_breaks(parse_breakpoints(("4", "time 3.5")))
+        await until(pilot, lambda: "2 breakpoints: T" in screen_text(app))
+        app.debugger.set_breaks(parse_breakpoints(("4", "# time 3.5")))
+        await until(pilot, lambda: "2 breakpoints" not in screen_text(app))
+    async with open_lab(opened, size=(80, 24)) as (pilot, app):
+        app.debugger.set_breaks(parse_breakpoints(("time 3.5",)))
+        await pilot.press("R")
+        await until(pilot, lambda: "1 breakpoint: T" in notices(app))

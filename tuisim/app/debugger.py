@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from tuisim.app.kept_breaks import Kept, following, keep, load_kept
 from tuisim.app.snapshot import PauseView
-from tuisim.base.errors import TuisimError
+from tuisim.base.errors import TuisimError, counted
 from tuisim.base.source import find_code_line, source_lines
 from tuisim.engine import protocol
 from tuisim.engine.breakpoints import (
@@ -145,7 +145,15 @@ class DebugController:
         """Show the breakpoints in the code."""
         if code := self._panel_area.code:
             marks = {line: _mark(one) for line, one in break_lines(self.breaks).items()}
-            code.set_marks(marks)
+            code.set_marks(marks, self._count_words)
+
+    @property
+    def _count_words(self) -> str:
+        """How many breakpoints can pause a run, if one of them is on no line, where its mark would tell."""
+        active = [one for one in self.breaks if not one.disabled]
+        if all(map(break_line_of, active)):
+            return ""
+        return self._app.with_keys(f"{counted(len(active), 'breakpoint')}: {{breaks}}")
 
     def toggle_line(self, line: int, which: str = "") -> None:
         """Set or remove the breakpoint on a line, or the next line of code; a disabled one is enabled. Say so.
@@ -194,6 +202,8 @@ class DebugController:
         self._panels_opened, self._breakpoints_unsent = False, bool(self.breaks)
         self._more_back = 0
         self._forget_steps()
+        if self._run_controller.in_run and self._count_words and not self._panel_area.shown("code"):
+            self._app.say(self._count_words)
         self.replay.close()
         self.show()
 

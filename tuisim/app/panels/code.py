@@ -103,6 +103,7 @@ class Code(Vertical):
         self._said = (_INFO.title, "")
         self._error_words = ""
         """What is wrong in the line that is marked as an error, as far as it is known."""
+        self._break_words = ""
         self._pause: PauseView | None = None
         self._tick = 0
         """Of the instant in view."""
@@ -180,7 +181,7 @@ class Code(Vertical):
         title, edited = self._said
         self.border_title = title + edited
         words = fitting(self._error_words, self.size.width - _FRAME) if self.error_line else ""
-        told = words or ("running text differs" if self.differs else "")
+        told = words or ("running text differs" if self.differs else self._break_words)
         helped = Text() if words else self._assistant.said(self.size.width - _FRAME)
         if self._area.is_completing:
             helped = Text("looking up …")
@@ -206,9 +207,16 @@ class Code(Vertical):
         self._say()
         self._show_values()
 
-    def set_marks(self, breaks: Mapping[int, str]) -> None:
-        """Set the breakpoint markers: `●` a breakpoint, `○` a disabled one, `◆` one with a condition."""
+    def set_marks(self, breaks: Mapping[int, str], words: str = "") -> None:
+        """Set the breakpoint markers: `●` a breakpoint, `○` a disabled one, `◆` one with a condition.
+
+        Args:
+            breaks: The markers by line.
+            words: What the frame tells of breakpoints that have no line.
+        """
         self._area.set_breaks(breaks)
+        self._break_words = words
+        self._say()
 
     def mark_run_error(self, line: int, words: str = "") -> None:
         """Mark the line of the run's text at which the run ended with an error, if it still exists; 0 for none.
