@@ -27,7 +27,7 @@ from tests.cases import cases
 from tests.conftest import Command
 from tests.running import PATIENCE_S
 from tuisim.app.app import AppSettings
-from tuisim.app.dialogs.runs import RunChooser, heads, matching, run_line
+from tuisim.app.dialogs.runs import RunChooser, find_likeliest, heads, matching, run_line
 from tuisim.app.snapshot import RunPhase
 from tuisim.engine.protocol import End, SetNoise, UserAction
 from tuisim.engine.runs.catalogue import RunInfo
@@ -262,3 +262,22 @@ def test_the_namespace_of_the_command_has_the_run() -> None:
     assert (run.id, prepared.settings["rays"]) == (run_id, True)
     assert prepared.program is not None
     assert prepared.program.text == "print('A: 1')\n"
+
+
+LISTED = [
+    info(7, program="other.py"),
+    info(6, program="line.py"),
+    info(5, program="line.py"),
+    info(2, program="maze.py"),
+]
+LIKELIEST = {
+    "the same program": (info(8, program="line.py"), 6),
+    "a branch": (info(8, program="line.py", tags="branch-of-5 at-1.00s"), 5),
+    "a branch of a run that is gone": (info(8, program="maze.py", tags="branch-of-1 at-1.00s"), 2),
+    "a new program": (info(8, program="new.py"), 7),
+}
+
+
+@cases("this, number", LIKELIEST)
+def test_a_run_is_compared_with_the_likeliest_one(this: RunInfo, number: int) -> None:
+    assert LISTED[find_likeliest(LISTED, this)].number == number

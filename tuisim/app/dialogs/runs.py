@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from datetime import datetime
 from functools import partial
 from pathlib import Path
@@ -130,6 +130,16 @@ def branch_root(run: RunInfo) -> int | None:
     return int(number) if number.isdecimal() else None
 
 
+def find_likeliest(listed: Sequence[RunInfo], this: RunInfo) -> int:
+    """Return the place in a list of the run with which another one is compared most often: the run that it branched off
+    from, else the first of the same program, else the first of all.
+    """
+    root = branch_root(this)
+    likely = [at for at, run in enumerate(listed) if run.number == root]
+    likely += [at for at, run in enumerate(listed) if run.program == this.program]
+    return likely[0] if likely else 0
+
+
 class RunChooser(ListDialog):
     """Returns the id of the chosen run.
 
@@ -180,11 +190,9 @@ class RunChooser(ListDialog):
         self._runs = [run for run in runs if run.id != self._left_out]
         self._list("")
         this = next((run for run in runs if run.id == self._left_out), None)
-        root = branch_root(this) if this else None
-        options = self.query_one(OptionList)
-        if any(run.number == root for run in self._runs):
-            numbers = [run.number for run in matching(self._runs, "")[:MOST_LISTED]]
-            options.highlighted = numbers.index(root) if root in numbers else 0
+        if this is not None and self._runs:
+            listed = matching(self._runs, "")[:MOST_LISTED]
+            self.query_one(OptionList).highlighted = find_likeliest(listed, this)
 
     def line(self, run: RunInfo) -> Text:
         """Return one line of the list."""
