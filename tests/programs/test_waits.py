@@ -127,3 +127,27 @@ def test_a_call_turns_so_far(call: str, turns: tuple[float, str] | None) -> None
 )
 def test_the_first_line_that_starts_motors_is_told(text: str, line: int) -> None:
     assert read(text).first_drive == line
+
+
+@cases(
+    "text, idle",
+    {
+        "no return": (
+            "def near():\n    us < 9\n",
+            (2, "near() returns nothing: return is missing before us < 9"),
+        ),
+        "another return": (
+            "def near():\n    if 1: return 2\n    us < 9\n",
+            (3, "us < 9 alone does nothing: the answer is not used"),
+        ),
+        "no assignment": ("x = 1\nx == 3\n", (2, "x == 3 only compares: x = 3 sets it")),
+        "the first": (
+            "if 1:\n    a < b\nb < a\n",
+            (2, "a < b alone does nothing: the answer is not used"),
+        ),
+        "whether it raises": ("try:\n    a < b\nexcept TypeError:\n    pass\n", None),
+        "what is used": ("x = a < b\nprint(a == b)\nwhile a < b: pass\n'a < b'\n", None),
+    },
+)
+def test_a_comparison_that_nothing_uses_is_named(text: str, idle: tuple[int, str] | None) -> None:
+    assert read(text).idle_comparison == idle

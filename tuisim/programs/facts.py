@@ -19,6 +19,7 @@ from tuisim.programs.structure import STRUCTURES
 from tuisim.programs.waits import (
     LoopEnd,
     find_first_drive,
+    find_idle_comparison,
     find_turns,
     find_uncalled_stop,
     list_counts,
@@ -122,6 +123,11 @@ class ProgramFacts:
     def uncalled_stop(self) -> tuple[int, str] | None:
         """The first line that names what stops motors without calling it, with that name; None for none."""
         return find_uncalled_stop(self._short_tree)
+
+    @cached_property
+    def idle_comparison(self) -> tuple[int, str] | None:
+        """The first line that compares and does nothing with the answer, and why that is wrong; None for none."""
+        return find_idle_comparison(self._short_tree)
 
     @cached_property
     def light_read(self) -> LightRead:

@@ -127,6 +127,39 @@ def find_uncalled_stop(tree: ast.Module) -> tuple[int, str] | None:
     return None
 
 
+def find_idle_comparison(tree: ast.Module) -> tuple[int, str] | None:
+    """Return the first line that compares and does nothing with the answer, and why that is wrong; None for none.
+
+    One in a `try` is left out: whether it raises is an answer too.
+    """
+    nodes = [*ast.walk(tree)]
+    tried = {part for node in nodes if isinstance(node, ast.Try) for part in ast.walk(node)}
+    functions = {
+        node.body[-1]: node.name
+        for node in nodes
+        if isinstance(node, ast.FunctionDef)
+        and not any(isinstance(part, ast.Return | ast.Yield) for part in ast.walk(node))
+    }
+    idle = [
+        (node.lineno, _describe_idle(node.value, functions.get(node, "")))
+        for node in nodes
+        if isinstance(node, ast.Expr) and isinstance(node.value, ast.Compare) and node not in tried
+    ]
+    return min(idle, default=None)
+
+
+def _describe_idle(test: ast.Compare, function: str) -> str:
+    """Return why a comparison whose answer is lost is wrong; it may be the last line of a function."""
+    words = ast.unparse(test)
+    match test:
+        case ast.Compare() if function:
+            return f"{function}() returns nothing: return is missing before {words}"
+        case ast.Compare(left=ast.Name(id=name), ops=[ast.Eq()], comparators=[value]):
+            return f"{words} only compares: {name} = {ast.unparse(value)} sets it"
+        case _:
+            return f"{words} alone does nothing: the answer is not used"
+
+
 def find_first_drive(tree: ast.Module) -> int:
     """Return the first line of a program that starts motors; 0 for none.
 

@@ -67,6 +67,11 @@ CASES = {
         ReasonKind.ENDED,
         "line 2: tank_drive.off without () does nothing: tank_drive.off() stops",
     ),
+    "not returned": (
+        "def is_grey():\n    colorLeft.reflected_light_intensity_pc < 90\nis_grey()\n",
+        ReasonKind.ENDED,
+        "line 2: is_grey() returns nothing: return is missing before colorLeft.reflected_light",
+    ),
     "degrees of the wheels": (
         "for side in range(4):\n    tank_drive.on_for_degrees(30, -30, 90)\n",
         ReasonKind.MISTAKEN,
