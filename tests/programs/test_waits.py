@@ -151,3 +151,20 @@ def test_the_first_line_that_starts_motors_is_told(text: str, line: int) -> None
 )
 def test_a_comparison_that_nothing_uses_is_named(text: str, idle: tuple[int, str] | None) -> None:
     assert read(text).idle_comparison == idle
+
+
+@cases(
+    "text, equal",
+    {
+        "else": ("if a:\n    b()\nelse:\n    b()\n", (1, "if and else do the same")),
+        "the opposite": (
+            "while 1:\n    if a < 5:\n        b(1)\n    if a > 5:\n        b(1)\n",
+            (2, "line 4 asks the opposite, and does the same"),
+        ),
+        "something else": ("if a < 5:\n    b(1)\nif a > 5:\n    b(2)\nelse:\n    b(3)\n", None),
+        "another limit": ("if a < 5:\n    b(1)\nif a > 6:\n    b(1)\n", None),
+        "one of three": ("if a:\n    b()\nelif c:\n    b()\nelse:\n    d()\n", None),
+    },
+)
+def test_two_ways_that_do_the_same_are_named(text: str, equal: tuple[int, str] | None) -> None:
+    assert read(text).equal_branches == equal

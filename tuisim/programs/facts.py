@@ -18,6 +18,7 @@ from tuisim.programs.robot.thresholds import ProgramThreshold, find_light_read, 
 from tuisim.programs.structure import STRUCTURES
 from tuisim.programs.waits import (
     LoopEnd,
+    find_equal_branches,
     find_first_drive,
     find_idle_comparison,
     find_turns,
@@ -128,6 +129,11 @@ class ProgramFacts:
     def idle_comparison(self) -> tuple[int, str] | None:
         """The first line that compares and does nothing with the answer, and why that is wrong; None for none."""
         return find_idle_comparison(self._short_tree)
+
+    @cached_property
+    def equal_branches(self) -> tuple[int, str] | None:
+        """The first line with an `if` of which both ways do the same, and what is wrong; None for none."""
+        return find_equal_branches(self._short_tree)
 
     @cached_property
     def light_read(self) -> LightRead:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import ast
 import operator
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from itertools import pairwise
 from typing import TypeGuard
 
 from tuisim.base.data_class import dataclass
@@ -125,6 +126,42 @@ def find_uncalled_stop(tree: ast.Module) -> tuple[int, str] | None:
             case ast.Expr(value=ast.Attribute(attr="off" | "stop" | "brake" | "hold") as name):
                 return node.lineno, ast.unparse(name)
     return None
+
+
+def find_equal_branches(tree: ast.Module) -> tuple[int, str] | None:
+    """Return the first line with an `if` whose `else` does the same, or the `if` after it that asks the opposite.
+
+    With it comes what is wrong. None for none.
+    """
+    pairs: list[tuple[int, str]] = []
+    for node in ast.walk(tree):
+        if isinstance(node, ast.If) and node.orelse and _dump(node.body) == _dump(node.orelse):
+            pairs.append((node.lineno, "if and else do the same"))
+        block = getattr(node, "body", [])
+        for first, second in pairwise(block if isinstance(block, list) else []):
+            if _is_opposite(first, second):
+                text = f"line {second.lineno} asks the opposite, and does the same"
+                pairs.append((first.lineno, text))
+    return min(pairs, default=None)
+
+
+def _is_opposite(first: ast.stmt, second: ast.stmt) -> bool:
+    """Return whether two statements do the same, one if something is below a limit, the other if it is above."""
+    match first, second:
+        case (
+            ast.If(test=ast.Compare(ops=[way]) as test, orelse=[]),
+            ast.If(test=ast.Compare(ops=[other]) as opposite, orelse=[]),
+        ):
+            is_below = [isinstance(each, ast.Lt | ast.LtE) for each in (way, other)]
+            is_above = [isinstance(each, ast.Gt | ast.GtE) for each in (way, other)]
+            parts = [_dump([each.left, *each.comparators]) for each in (test, opposite)]
+            are_opposite = (is_below[0] and is_above[1]) or (is_above[0] and is_below[1])
+            return are_opposite and parts[0] == parts[1] and _dump(first.body) == _dump(second.body)
+    return False
+
+
+def _dump(nodes: Sequence[ast.AST]) -> list[str]:
+    return [ast.dump(each) for each in nodes]
 
 
 def find_idle_comparison(tree: ast.Module) -> tuple[int, str] | None:

@@ -67,6 +67,12 @@ CASES = {
         ReasonKind.ENDED,
         "line 2: tank_drive.off without () does nothing: tank_drive.off() stops",
     ),
+    "both ways alike": (
+        "if colorLeft.reflected_light_intensity_pc < 50:\n    tank_drive.off()\n"
+        "else:\n    tank_drive.off()\n",
+        ReasonKind.ENDED,
+        "line 1: if and else do the same",
+    ),
     "not returned": (
         "def is_grey():\n    colorLeft.reflected_light_intensity_pc < 90\nis_grey()\n",
         ReasonKind.ENDED,

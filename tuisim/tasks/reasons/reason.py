@@ -228,6 +228,9 @@ def _find_ended(run: StoredRun, mat: Field | None) -> Iterator[Reason]:
         line, name = uncalled
         text = f"{name} without () does nothing: {name}() stops"
         yield Reason(ReasonKind.ENDED, run.time_s, line, text)
+    if run.end and (equal := read_facts(run.program).equal_branches):
+        line, text = equal
+        yield Reason(ReasonKind.ENDED, run.time_s, line, text)
     if run.end and (idle := read_facts(run.program).idle_comparison):
         line, text = idle
         yield Reason(ReasonKind.ENDED, run.time_s, line, text)
