@@ -136,3 +136,9 @@ def test_keys_move_the_robot_unless_a_program_drives_it(state: RunPhase, looks_b
     moves = [action for action in ACTIONS.values() if action.id.startswith("nudge-")]
     assert moves
     assert all(bool(action.why_not(now)) is drives for action in moves)
+
+
+async def test_the_key_that_runs_while_one_types_runs_elsewhere_too() -> None:
+    async with open_lab("print('Colour: 1')\n", speed=0.0) as (pilot, app):
+        await pilot.press("ctrl+r")
+        await until(pilot, lambda: app.run_controller.state is RunPhase.ENDED)

@@ -35,8 +35,8 @@ def test_after_a_run_the_next_steps_of_a_student_come_first(
         Situation(RunPhase.ENDED, has_program=True, has_run=True, reads_code=reads_code)
     )
     shown = fitting([ACTIONS[name] for name in names], width - len(status), 9)
-    assert shown[0].key == "R"
-    assert keys < {action.key for action in shown}
+    assert shown[0].key_label == "R"
+    assert keys < {action.key_label for action in shown}
 
 
 @pytest.mark.slow

@@ -152,7 +152,7 @@ async def test_a_robot_is_saved_edited_and_loaded_again(
     monkeypatch.chdir(tmp_path)
     async with open_settings() as (pilot, app):
         await enter(pilot, "wheel_diameter_mm", "77")
-        await pilot.press("ctrl+r")
+        await pilot.press("ctrl+b")
         app.screen.query_one(Input).value = "mine.toml"
         await pilot.press("enter")
         await until(pilot, lambda: len(app.screen_stack) == 1)

@@ -376,7 +376,16 @@ _WORDS: Mapping[str, str] = {
 ACTIONS: Mapping[str, LabAction] = {
     action.id: replace(action, words=_WORDS.get(action.id, ""))
     for action in (
-        Action("run", "R", "Run the program", PROGRAM, program.run, _can_run, "run"),
+        Action(
+            "run",
+            "R,ctrl+r",
+            "Run the program",
+            PROGRAM,
+            program.run,
+            _can_run,
+            "run",
+            shown_key="R",
+        ),
         Action(
             "stop", "S", "Stop the program", PROGRAM, lambda lab: lab.runs.stop(), _can_stop, "stop"
         ),
@@ -517,7 +526,7 @@ ACTIONS: Mapping[str, LabAction] = {
             files.save_world,
             footer="save",
         ),
-        Action("save-robot", "ctrl+r", "Save the robot to a file", FILES, files.save_robot),
+        Action("save-robot", "ctrl+b", "Save the robot to a file", FILES, files.save_robot),
         Action(
             "save-obstacles", "ctrl+o", "Save the obstacles to a file", FILES, files.save_obstacles
         ),
@@ -630,8 +639,8 @@ def _next_steps(now: Situation) -> tuple[str, ...]:
         results = ("analyse", "panel-chart") if now.has_run else ()
         return ("run", *now.lesson_actions, *wrong, *mended, *results, "edit", *code)
     if now.has_run:
-        results = ("analyse", "export", "panel-chart")
-        return ("run", *now.lesson_actions, *wrong, *mended, *results, "edit", "back")
+        records = ("analyse", "export", "panel-chart")
+        return ("run", *now.lesson_actions, *wrong, *mended, *records, "edit", "back")
     return ("run", *now.lesson_actions, "open", "edit", "mats")
 
 
