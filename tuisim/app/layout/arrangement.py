@@ -13,6 +13,7 @@ from tuisim.app.layout.forms import (
     DISCS_COLS,
     LOW_COLS,
     LOW_ROWS,
+    MAX_TAKEN_ROWS,
     MIN_LARGE_COLS,
     Form,
     build_board,
@@ -48,6 +49,8 @@ _CODE_FROM_COLS = 120
 """From this width on, code is shown beside them."""
 _EDITOR_FROM_COLS = 110
 """From this width on, the code that is typed in stands beside the world."""
+_STRIP_FROM_COLS = 190
+"""From this width on, the world may give rows to what is below it."""
 EDITOR_COLS = 86
 """Columns in which lines of 79 characters are whole."""
 _MAX_WASTE = 0.3
@@ -305,11 +308,8 @@ def _scored(
         place(node, PanelBox(0, 0, width, height), layout)
         if form is not forms[0] and not _fills(layout, _LEAST_FILLED):
             continue
-        crowded = not plan.compact and any(
-            box.height < PANELS[panel].fair_rows
-            for panel, box in layout.boxes.items()
-            if panel != "world"
-        )
+        room = height + (MAX_TAKEN_ROWS if width >= _STRIP_FROM_COLS else 0)
+        crowded = not plan.compact and fair_rows(node, width) > room
         yield _score(layout, sum(panel in kept for panel in panels), crowded), node
 
 

@@ -42,7 +42,7 @@ _LINE_COLS, _LEAST_CHART_COLS = 80, 64
 """Columns of code in which lines of an example are whole, and those that the chart then has above the output."""
 _STACKED_ROWS = 14, 7
 """Rows of such a chart and of the output below it."""
-_MAX_TAKEN_ROWS = 7
+MAX_TAKEN_ROWS = 7
 """So many rows such a strip takes from the world."""
 _ERROR_ROWS = 8
 """Rows of the panels below it, so that *Output* shows an error with its traceback."""
@@ -139,7 +139,7 @@ def _needs_stack(panels: Sequence[str], width: int, height: int) -> bool:
     return (
         set(panels) == {"output", "code", "chart"}
         and _LINE_COLS + _LEAST_CHART_COLS <= width < beside
-        and sum(_STACKED_ROWS) <= height + _MAX_TAKEN_ROWS
+        and sum(_STACKED_ROWS) <= height + MAX_TAKEN_ROWS
     )
 
 
