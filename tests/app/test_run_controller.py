@@ -117,7 +117,7 @@ async def test_an_error_is_readable_in_a_small_terminal_until_the_next_run() -> 
     # The output is narrow there: the line goes on in the next row.
     parts = "NameError: name 'nothing' is ", "not defined"
     async with open_lab("print('A: 1')\nprint(nothing)\n", size=(80, 24)) as (pilot, app):
-        await pilot.press("O")
+        await pilot.press("O", "O")
         assert not app.panel_area.shown("output")
         await pilot.press("R")
         await until(pilot, lambda: all(part in screen_text(app) for part in parts))

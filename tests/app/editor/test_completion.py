@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -214,12 +213,3 @@ def test_whether_a_place_is_in_a_call(lines: Sequence[str], is_in: bool) -> None
 )
 def test_the_first_sentence(documentation: str, first: str) -> None:
     assert first_sentence(documentation) == first
-
-
-def test_the_recursion_limit_stays_while_jedi_is_asked(
-    home: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    limits: list[int] = []
-    monkeypatch.setattr(sys, "setrecursionlimit", limits.append)
-    assert at_end("import time\ntime.sl")
-    assert limits == []
