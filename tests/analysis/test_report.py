@@ -6,7 +6,7 @@ import base64
 import io
 import re
 from contextlib import redirect_stdout
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from html.parser import HTMLParser
 from pathlib import Path
 from shutil import copytree
@@ -16,8 +16,10 @@ from PIL import Image
 
 from tests.cases import cases
 from tests.conftest import Command
+from tuisim.analysis.report import run_facts
 from tuisim.analysis.source import NOTES_FILE, Note, notes_of_file, write_notes
 from tuisim.cli import run_command
+from tuisim.engine.protocol import End
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.engine.runs.store import RunStore
 
@@ -125,6 +127,12 @@ def test_a_run_is_told_whole(driven: Driven) -> None:
         *("2.00", "Colour", "at once"),
     ]
     assert {"Colour", "Way_mm (mm)", "time (s)", "86.27"} <= set(driven.page.section["Chart"])
+
+
+def test_an_end_is_said_once(driven: Driven) -> None:
+    assert driven.run.end is not None
+    stopped = replace(driven.run.end, end=End.STOPPED, summary="stopped")
+    assert ("end", "stopped") in run_facts([replace(driven.run, end=stopped)])
 
 
 def test_the_program_has_its_line_numbers(driven: Driven) -> None:

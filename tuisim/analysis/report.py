@@ -346,7 +346,8 @@ def _at(entry: Mapping[str, Any], path: Sequence[str]) -> str:
 
 def _end(run: StoredRun) -> str:
     state = run.state.replace("_", " ")
-    return f"{state}: {run.end.summary}" if run.end and run.end.summary else state
+    summary = run.end.summary if run.end else ""
+    return f"{state}: {summary}" if summary not in ("", state) else state
 
 
 def _time_s(run: StoredRun) -> str:
