@@ -73,7 +73,7 @@ def test_the_tour_can_be_typed(terminal: Terminal, tmp_path: Path) -> None:
         if row[0] == "arrows":
             # Without code, chart and debugger there is room for the position among the readings.
             # The first press of a key focuses the panel.
-            terminal.keys("D", "c", "c", "G", "G")
+            terminal.keys("D", "D", "c", "c", "G", "G")
             terminal.until(
                 lambda text: (
                     not re.search("D Code|c Chart|G Debug", text)

@@ -150,7 +150,7 @@ async def test_a_flood_of_prints_leaves_the_app_usable() -> None:
     flood = "for n in range(200_000):\n    print('line', n)\n"
     async with open_lab(flood, autorun=True) as (pilot, app):
         await until_state(pilot, RunPhase.RUNNING)
-        await pilot.press("D")
+        await pilot.press("D", "D")
         assert not app.panel_area.shown("code")
         await until_shown(pilot, "line 199999")
 

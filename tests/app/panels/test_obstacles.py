@@ -140,7 +140,7 @@ async def test_a_click_chooses_and_the_mouse_draws_only_while_the_panel_is_shown
         await pilot.pause()
         await pilot.click(WorldView, offset=cell(app, 550, 250))
         await until(pilot, lambda: app.query_one(Obstacles).at == 0)
-        await pilot.press("B")
+        await pilot.press("B", "B")
         await drag(pilot, cell(app, 1000, 900), cell(app, 1300, 600))
         assert boxes(app) == OBSTACLES["Square_posts"]
         assert "drag to draw" not in screen_text(app)
