@@ -94,6 +94,10 @@ _MARKED_IN = str(Path(tempfile.gettempdir(), "tuisim-mark-"))
 """Where programs are marked."""
 
 
+_OWN_RESULTS = "concurrent.futures.process", "tuisim.tasks.task"
+"""What the processes of a pool send back, which run no program themselves."""
+
+
 class _Watch:
     """What this process does while a case runs, by an audit hook, which cannot be removed."""
 
@@ -105,6 +109,8 @@ class _Watch:
     def hook(cls, event: str, args: tuple[Any, ...]) -> None:
         """Note what must not happen."""
         if not cls.folder:
+            return
+        if event == "pickle.find_class" and args[0].startswith(_OWN_RESULTS):
             return
         if event in ("pickle.find_class", "os.system", "os.exec", "os.posix_spawn"):
             cls.faults.append(f"{event} {args[:2]}")
