@@ -323,6 +323,11 @@ def _of_last_run(operation: Operation, path: str, place: Path) -> bytes | None:
         return Path(folder, path).read_bytes()
 
 
+def _list_left_over(place: Path) -> list[str]:
+    """Return the names of temporary folders; a file by which `tempfile` tries whether it can write is Python's."""
+    return [path.name for path in temporary_folder(place).iterdir() if path.is_dir()]
+
+
 def check_after(name: str, place: Path, ended: Ended) -> None:
     """Check what must hold after an operation to which something has happened."""
     operation, sound = OPERATIONS[name], undisturbed(name)
@@ -357,5 +362,5 @@ def check_after(name: str, place: Path, ended: Ended) -> None:
         done = run((*operation.words, *operation.again), place)
         if done.code or contents(operation, place) != sound.after:
             raise FaultError(f"it does not go on with {' '.join(operation.again)}: {done.err}")
-        if left := [path.name for path in temporary_folder(place).iterdir()]:
+        if left := _list_left_over(place):
             raise FaultError(f"what was killed has left {left}, also after the next start")
