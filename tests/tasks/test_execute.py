@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import shutil
 from concurrent.futures import Future
 from dataclasses import replace
@@ -159,6 +160,16 @@ def test_a_run_that_cannot_be_stored_counts(
     monkeypatch.setattr(owner, step, MagicMock(side_effect=LogError("cannot be stored")))
     result = execute(replace(task("1 / 0"), keep=Keep.ALL), tmp_path)
     assert (result.end, result.run_id) == ("raised", "")
+
+
+def test_a_run_that_a_full_disk_refuses_is_not_judged(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    refusal = LogError("cannot be stored")
+    refusal.__cause__ = OSError(errno.ENOSPC, "no space")
+    monkeypatch.setattr(RunStore, "adopt", MagicMock(side_effect=refusal))
+    result = execute(replace(task("1 / 0"), keep=Keep.ALL), tmp_path)
+    assert (result.end, result.exit_code) == ("", 2)
 
 
 def test_a_result_that_cannot_be_sent_is_told() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+import sqlite3
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from functools import lru_cache
@@ -150,11 +151,20 @@ def _is_kept(task: Task, run: StoredRun, ended: Ended, judgements: Sequence[Judg
 
 
 def _keep(temporary: TemporaryRun, ended: Ended) -> str:
-    """Store a run; return its id, or none if it cannot be stored: it has been judged, and counts."""
+    """Store a run; return its id, or none if its program has left nothing to be stored: it has been judged, and counts.
+
+    Raises:
+        LogError: the machine refuses to store it.
+    """
     try:
         temporary.write_end(ended)
         return RunStore().adopt(temporary.folder).id
-    except LogError:
+    except LogError as error:
+        cause = error.__cause__
+        if isinstance(cause, sqlite3.Error) or (
+            isinstance(cause, OSError) and of_the_machine(cause)
+        ):
+            raise
         return ""
 
 
