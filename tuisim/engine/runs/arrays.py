@@ -1,4 +1,4 @@
-"""The array types for logs, and arrays from the poses of a recording."""
+"""The array types for logs, stretches of arrays, and arrays from the poses of a recording."""
 
 from __future__ import annotations
 
@@ -13,6 +13,12 @@ FloatArray = NDArray[np.float64]
 
 IntArray = NDArray[np.int64]
 """Row numbers, shape (n,)."""
+
+
+def find_spans(is_so: NDArray[np.bool_]) -> IntArray:
+    """Return the first index of each stretch of true values, and the one after its last, shape (n, 2)."""
+    edges: IntArray = np.flatnonzero(np.diff(is_so, prepend=False, append=False))
+    return edges.reshape(-1, 2)
 
 
 def world_points_mm(

@@ -140,6 +140,7 @@ def _stretches(records: NDArray[Any], spec: RunSpec) -> Iterator[_Stretch]:
     from tuisim.engine.core.collision import Solids
     from tuisim.engine.core.motion import stall_ticks
     from tuisim.engine.core.motors import STANDSTILL_DEG
+    from tuisim.engine.runs.arrays import find_spans
 
     runs = (records["flags"] & (FLAG_LEFT_RUNNING | FLAG_RIGHT_RUNNING)) != 0
     # The first record is the state before any motion.
@@ -147,10 +148,9 @@ def _stretches(records: NDArray[Any], spec: RunSpec) -> Iterator[_Stretch]:
     pushes = runs.copy()
     for name in ("left_speed_dps", "right_speed_dps"):
         pushes &= np.abs(records[name]) < STANDSTILL_DEG * spec.profile.tick_hz
-    edges = np.flatnonzero(np.diff(pushes, prepend=False, append=False))
     solids, shortest = Solids(spec.world, spec.robot), stall_ticks(spec.profile.tick_hz)
     now: _Stretch | None = None
-    for start, end in edges.reshape(-1, 2).tolist():
+    for start, end in find_spans(pushes).tolist():
         if at := _touched(solids, records, start, spec):
             goes_on = now is not None and start - now.end < shortest and runs[now.end : start].all()
             if now is not None and not goes_on and now.end - now.start >= shortest:

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from tuisim.base.data_class import dataclass
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, ColorSensorSpec
-from tuisim.engine.runs.arrays import world_points_mm
+from tuisim.engine.runs.arrays import find_spans, world_points_mm
 from tuisim.engine.runs.sensor_arrays import quiet_color_columns
 
 if TYPE_CHECKING:
@@ -189,8 +189,7 @@ class _Way:
         turned_deg = np.diff(records["heading_deg"], prepend=records["heading_deg"][:1])
         self._turned_deg = ((turned_deg + 180) % 360 - 180)[moved]
         self._is_dark = is_dark[moved]
-        edges = np.flatnonzero(np.diff(self._is_dark, prepend=False, append=False))
-        self._starts, self._ends = edges[::2], edges[1::2]
+        self._starts, self._ends = find_spans(self._is_dark).T
         """Where the stretches over the dark begin and end, the end exclusive."""
         self._next = np.append(self._starts[1:], len(self._ticks))
         self._last_tick = len(records) - 1

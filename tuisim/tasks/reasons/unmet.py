@@ -297,12 +297,13 @@ class _Search:
 
     def _find_stay(self, loop: LoopEnd) -> tuple[int, int] | None:
         """Return the first tick in a loop and the one after the last; None if it was entered twice, or never."""
-        import numpy as np
+        # Imported on demand, as numpy is.
+        from tuisim.engine.runs.arrays import find_spans
 
         lines = self._records["line"]
         is_in = (lines >= loop.first_line) & (lines <= loop.last_line)
-        edges = np.flatnonzero(np.diff(is_in, prepend=False, append=False))
-        return (int(edges[0]), int(edges[1])) if len(edges) == 2 else None
+        stays = find_spans(is_in).tolist()
+        return (stays[0][0], stays[0][1]) if len(stays) == 1 else None
 
     def _describe(self, loop: LoopEnd, stay: tuple[int, int]) -> str:
         """Return what a loop waited for, and what came; empty if that came, or is not known."""

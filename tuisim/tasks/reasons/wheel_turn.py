@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tuisim.base.data_class import dataclass
+from tuisim.engine.runs.arrays import find_spans
 from tuisim.programs.facts import WheelTurn, read_facts
 
 if TYPE_CHECKING:
@@ -46,10 +47,10 @@ def _measure(run: StoredRun, turn: WheelTurn) -> MistakenTurn | None:
     records = run.telemetry.array()
     lines = records["line"]
     is_on = (lines >= turn.first_line) & (lines <= turn.last_line)
-    edges = np.flatnonzero(np.diff(is_on, prepend=False, append=False))
-    if not len(edges):
+    spans = find_spans(is_on).tolist()
+    if not spans:
         return None
-    first, end = int(edges[0]), int(edges[1])
+    first, end = spans[0]
     span = records[max(0, first - 1) : end]
     wheels = [span[f"{side}_position_deg"] for side in ("left", "right")]
     left_deg, right_deg = (float(positions[-1] - positions[0]) for positions in wheels)
