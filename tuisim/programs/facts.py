@@ -12,17 +12,16 @@ from tuisim.engine.core.sensors.color import LightRead
 from tuisim.engine.core.spec import RobotSpec
 from tuisim.programs.calls import list_calls
 from tuisim.programs.mistakes import find_fault
-from tuisim.programs.questions import Question, QuestionReader
+from tuisim.programs.questions import Question, QuestionReader, Word
 from tuisim.programs.robot.source import parsed
 from tuisim.programs.robot.thresholds import ProgramThreshold, find_light_read, find_thresholds
+from tuisim.programs.slips import list_slips
 from tuisim.programs.structure import STRUCTURES
 from tuisim.programs.waits import (
     LoopEnd,
-    find_equal_branches,
     find_first_drive,
-    find_idle_comparison,
     find_turns,
-    find_uncalled_stop,
+    list_constants,
     list_counts,
     list_loop_ends,
 )
@@ -97,18 +96,22 @@ class ProgramFacts:
         return self._question_reader.find_question(line)
 
     @cached_property
+    def _constants(self) -> Mapping[str, Word]:
+        return list_constants(self._short_tree)
+
+    @cached_property
     def loop_ends(self) -> tuple[LoopEnd, ...]:
         """The loops of which its text tells what ends them, the inner ones first."""
-        return list_loop_ends(self._short_tree)
+        return list_loop_ends(self._short_tree, self._constants)
 
     @cached_property
     def counts(self) -> tuple[tuple[int, LoopEnd], ...]:
         """The lines that only count in a loop while something compares with a constant, with the comparison."""
-        return tuple(list_counts(self._short_tree))
+        return tuple(list_counts(self._short_tree, self._constants))
 
     def find_turns(self, line: int) -> tuple[float, str] | None:
         """Return how far a call on a line turns a motor or both wheels, and whether in rotations or in degrees."""
-        return find_turns(self._short_tree, line)
+        return find_turns(self._short_tree, self._constants, line)
 
     @cached_property
     def wheel_turns(self) -> tuple[WheelTurn, ...]:
@@ -121,19 +124,9 @@ class ProgramFacts:
         return find_first_drive(self._short_tree)
 
     @cached_property
-    def uncalled_stop(self) -> tuple[int, str] | None:
-        """The first line that names what stops motors without calling it, with that name; None for none."""
-        return find_uncalled_stop(self._short_tree)
-
-    @cached_property
-    def idle_comparison(self) -> tuple[int, str] | None:
-        """The first line that compares and does nothing with the answer, and why that is wrong; None for none."""
-        return find_idle_comparison(self._short_tree)
-
-    @cached_property
-    def equal_branches(self) -> tuple[int, str] | None:
-        """The first line with an `if` of which both ways do the same, and what is wrong; None for none."""
-        return find_equal_branches(self._short_tree)
+    def slips(self) -> tuple[tuple[int, str], ...]:
+        """The lines that do nothing, or always the same, and why, in words."""
+        return tuple(list_slips(self._short_tree))
 
     @cached_property
     def light_read(self) -> LightRead:

@@ -3,25 +3,17 @@
 from __future__ import annotations
 
 import ast
-import operator
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from itertools import pairwise
+from collections.abc import Iterable, Iterator, Mapping
 from typing import TypeGuard
 
 from tuisim.base.data_class import dataclass
 from tuisim.programs.questions import COLOR_WORDS, Word, shorten
-from tuisim.programs.robot.source import SIGNS, TURNED
+from tuisim.programs.robot.source import OPERATORS, SIGNS, TURNED
 
 _OPPOSITE = {">=": "<", ">": "<=", "<=": ">", "<": ">=", "!=": "==", "==": "!="}
 """What ends a loop that goes on while a comparison holds."""
 _Loop = ast.For | ast.While
-_COMPUTE: Mapping[type[ast.operator], Callable[..., float]] = {
-    ast.Add: operator.add,
-    ast.Sub: operator.sub,
-    ast.Mult: operator.mul,
-    ast.Div: operator.truediv,
-}
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,20 +46,23 @@ class LoopEnd:
         return COLOR_WORDS.get(shorten(self.limit), "")
 
 
-def list_loop_ends(tree: ast.Module) -> tuple[LoopEnd, ...]:
-    """Return the loops of a program of which its text tells what ends them, the inner ones first."""
+def list_loop_ends(tree: ast.Module, constants: Mapping[str, Word]) -> tuple[LoopEnd, ...]:
+    """Return the loops of a program of which its text tells what ends them, the inner ones first.
+
+    Args:
+        tree: The program.
+        constants: Those of its names; see `list_constants`.
+    """
     loops = [node for node in ast.walk(tree) if isinstance(node, ast.While)]
     loops.sort(key=lambda loop: -loop.lineno)
-    constants = _list_constants(tree)
     return tuple(end for loop in loops for end in _find_ends(loop, tree, constants))
 
 
-def list_counts(tree: ast.Module) -> Iterator[tuple[int, LoopEnd]]:
+def list_counts(tree: ast.Module, constants: Mapping[str, Word]) -> Iterator[tuple[int, LoopEnd]]:
     """Yield each line that only counts in a loop while something compares with a constant, and the comparison.
 
-    Its variable starts somewhere, and nothing else changes or divides it.
+    Its variable starts somewhere, and nothing else changes or divides it. Arguments as of `list_loop_ends`.
     """
-    constants = _list_constants(tree)
     loops = [node for node in ast.walk(tree) if isinstance(node, _Loop)]
     for loop in loops:
         for step in loop.body:
@@ -105,96 +100,22 @@ def _is_only_counted(name: str, tree: ast.Module) -> bool:
     return sum(map(_is_set, places)) == 2 and parts.isdisjoint(places)
 
 
-def find_turns(tree: ast.Module, line: int) -> tuple[float, str] | None:
-    """Return how far a call on a line turns a motor or both wheels, and whether in rotations or in degrees."""
+def find_turns(
+    tree: ast.Module, constants: Mapping[str, Word], line: int
+) -> tuple[float, str] | None:
+    """Return how far a call on a line turns a motor or both wheels, and whether in rotations or in degrees.
+
+    Arguments as of `list_loop_ends`.
+    """
     for node in ast.walk(tree):
         match node:
             case ast.Call(func=ast.Attribute(attr=attr), lineno=lineno) if lineno == line:
                 amounts = [*node.args, *(each.value for each in node.keywords)]
-                constants = _list_constants(tree)
                 values = [_find_constant(each, constants) for each in amounts]
                 numbers = [each for each in values if isinstance(each, int | float)]
                 if numbers and attr in ("on_for_rotations", "on_for_degrees"):
                     return numbers[-1], attr.removeprefix("on_for_")
     return None
-
-
-def find_uncalled_stop(tree: ast.Module) -> tuple[int, str] | None:
-    """Return the first line that names what stops motors without calling it, with that name; None for none."""
-    for node in ast.walk(tree):
-        match node:
-            case ast.Expr(value=ast.Attribute(attr="off" | "stop" | "brake" | "hold") as name):
-                return node.lineno, ast.unparse(name)
-    return None
-
-
-def find_equal_branches(tree: ast.Module) -> tuple[int, str] | None:
-    """Return the first line with an `if` whose `else` does the same, or the `if` after it that asks the opposite.
-
-    With it comes what is wrong. None for none.
-    """
-    pairs: list[tuple[int, str]] = []
-    for node in ast.walk(tree):
-        if isinstance(node, ast.If) and node.orelse and _dump(node.body) == _dump(node.orelse):
-            pairs.append((node.lineno, "if and else do the same"))
-        block = getattr(node, "body", [])
-        for first, second in pairwise(block if isinstance(block, list) else []):
-            if _is_opposite(first, second):
-                text = f"line {second.lineno} asks the opposite, and does the same"
-                pairs.append((first.lineno, text))
-    return min(pairs, default=None)
-
-
-def _is_opposite(first: ast.stmt, second: ast.stmt) -> bool:
-    """Return whether two statements do the same, one if something is below a limit, the other if it is above."""
-    match first, second:
-        case (
-            ast.If(test=ast.Compare(ops=[way]) as test, orelse=[]),
-            ast.If(test=ast.Compare(ops=[other]) as opposite, orelse=[]),
-        ):
-            is_below = [isinstance(each, ast.Lt | ast.LtE) for each in (way, other)]
-            is_above = [isinstance(each, ast.Gt | ast.GtE) for each in (way, other)]
-            parts = [_dump([each.left, *each.comparators]) for each in (test, opposite)]
-            are_opposite = (is_below[0] and is_above[1]) or (is_above[0] and is_below[1])
-            return are_opposite and parts[0] == parts[1] and _dump(first.body) == _dump(second.body)
-    return False
-
-
-def _dump(nodes: Sequence[ast.AST]) -> list[str]:
-    return [ast.dump(each) for each in nodes]
-
-
-def find_idle_comparison(tree: ast.Module) -> tuple[int, str] | None:
-    """Return the first line that compares and does nothing with the answer, and why that is wrong; None for none.
-
-    One in a `try` is left out: whether it raises is an answer too.
-    """
-    nodes = [*ast.walk(tree)]
-    tried = {part for node in nodes if isinstance(node, ast.Try) for part in ast.walk(node)}
-    functions = {
-        node.body[-1]: node.name
-        for node in nodes
-        if isinstance(node, ast.FunctionDef)
-        and not any(isinstance(part, ast.Return | ast.Yield) for part in ast.walk(node))
-    }
-    idle = [
-        (node.lineno, _describe_idle(node.value, functions.get(node, "")))
-        for node in nodes
-        if isinstance(node, ast.Expr) and isinstance(node.value, ast.Compare) and node not in tried
-    ]
-    return min(idle, default=None)
-
-
-def _describe_idle(test: ast.Compare, function: str) -> str:
-    """Return why a comparison whose answer is lost is wrong; it may be the last line of a function."""
-    words = ast.unparse(test)
-    match test:
-        case ast.Compare() if function:
-            return f"{function}() returns nothing: return is missing before {words}"
-        case ast.Compare(left=ast.Name(id=name), ops=[ast.Eq()], comparators=[value]):
-            return f"{words} only compares: {name} = {ast.unparse(value)} sets it"
-        case _:
-            return f"{words} alone does nothing: the answer is not used"
 
 
 def find_first_drive(tree: ast.Module) -> int:
@@ -296,7 +217,7 @@ def _last_line(node: ast.stmt) -> int:
     return node.end_lineno or node.lineno
 
 
-def _list_constants(tree: ast.Module) -> dict[str, Word]:
+def list_constants(tree: ast.Module) -> dict[str, Word]:
     """Return the names that are set once, to a text or a number, and parameters that each call gives the same one."""
     nodes = [*ast.walk(tree)]
     functions = [node for node in nodes if isinstance(node, ast.FunctionDef)]
@@ -340,10 +261,10 @@ def _find_constant(node: ast.expr, constants: Mapping[str, Word]) -> Word | None
     match node:
         case ast.Name(id=name):
             return constants.get(name)
-        case ast.BinOp(left=left, op=op, right=right) if type(op) in _COMPUTE:
-            numbers = [_find_constant(part, constants) for part in (left, right)]
-            if all(isinstance(number, int | float) for number in numbers) and numbers[1]:
-                return _COMPUTE[type(op)](*numbers)
+        case ast.BinOp(left=left, op=op, right=right) if type(op) in OPERATORS:
+            match _find_constant(left, constants), _find_constant(right, constants):
+                case (int() | float() as number, int() | float() as other) if other:
+                    return OPERATORS[type(op)](number, other)
             return None
         case ast.Constant(value=str() | int() | float() as value) if not isinstance(value, bool):
             return value

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import ast
-import operator
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import field, replace
 
 from tuisim.base.data_class import dataclass
@@ -20,6 +19,7 @@ from tuisim.programs.robot.scopes import (
     Parameter,
     Scope,
 )
+from tuisim.programs.robot.source import OPERATORS
 from tuisim.programs.robot.values import (
     Instance,
     LibraryClass,
@@ -36,12 +36,6 @@ MAX_VALUES = 24
 MAX_DEPTH = 40
 MAX_STEPS = 20_000
 
-_OPERATORS: Mapping[type[ast.operator], Callable[[float, float], float]] = {
-    ast.Add: operator.add,
-    ast.Sub: operator.sub,
-    ast.Mult: operator.mul,
-    ast.Div: operator.truediv,
-}
 _CONVERTED = {"str", "int", "float", "list", "tuple", "set", "sorted", "reversed", "iter", "const"}
 """Functions whose result is taken to be their argument."""
 
@@ -303,10 +297,10 @@ class Evaluation:
                 match one, other:
                     case (str(), str()) if isinstance(sign, ast.Add):
                         yield one + other
-                    case (int() | float(), int() | float()) if type(sign) in _OPERATORS and (
+                    case (int() | float(), int() | float()) if type(sign) in OPERATORS and (
                         other or not isinstance(sign, ast.Div)
                     ):
-                        yield _OPERATORS[type(sign)](one, other)
+                        yield OPERATORS[type(sign)](one, other)
                     case (str(), str() | int()) if (
                         isinstance(sign, ast.Mod) and one.count("%") == 1
                     ):

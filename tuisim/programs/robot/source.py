@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import ast
+import operator
 import os
 import sys
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from functools import lru_cache
 from pathlib import Path
 
@@ -39,6 +40,13 @@ SIGNS: Mapping[type[ast.cmpop], str] = {
 """Comparisons of numbers in a syntax tree, as they are written."""
 TURNED = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}
 """What a comparison becomes if its sides change places; others stay."""
+OPERATORS: Mapping[type[ast.operator], Callable[[float, float], float]] = {
+    ast.Add: operator.add,
+    ast.Sub: operator.sub,
+    ast.Mult: operator.mul,
+    ast.Div: operator.truediv,
+}
+"""Computing with numbers in a syntax tree."""
 MAX_MODULES = 100
 MAX_MODULE_BYTES = 1 << 20
 

@@ -224,15 +224,7 @@ def _find_mistaken(run: StoredRun, mat: Field | None, has_left_mat: bool) -> Ite
 
 def _find_ended(run: StoredRun, mat: Field | None) -> Iterator[Reason]:
     """Yield that the program was over too early, or did not stop its motors."""
-    if run.end and (uncalled := read_facts(run.program).uncalled_stop):
-        line, name = uncalled
-        text = f"{name} without () does nothing: {name}() stops"
-        yield Reason(ReasonKind.ENDED, run.time_s, line, text)
-    if run.end and (equal := read_facts(run.program).equal_branches):
-        line, text = equal
-        yield Reason(ReasonKind.ENDED, run.time_s, line, text)
-    if run.end and (idle := read_facts(run.program).idle_comparison):
-        line, text = idle
+    for line, text in read_facts(run.program).slips if run.end else ():
         yield Reason(ReasonKind.ENDED, run.time_s, line, text)
     if early := find_early_end(run, mat):
         yield Reason(ReasonKind.ENDED, early.time_s, early.line, early.text)

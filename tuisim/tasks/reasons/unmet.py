@@ -228,9 +228,12 @@ class _Search:
         for loop in self._loops:
             stay = self._find_stay(loop)
             has_left = is_finished or (stay and stay[1] < len(self._records))
-            if stay and has_left and (miss := self._find_miss(loop, stay)):
+            series = self._measure(loop, stay) if stay and has_left else None
+            if not stay or not series or series.column not in _LIGHT:
+                continue
+            if miss := self._find_miss(loop, series):
                 yield miss
-            if stay and has_left and (skip := self._find_skip(loop, stay)):
+            if skip := self._find_skip(loop, stay, series):
                 tick, what = skip
                 text = f"what this line waited for came between two reads: {what}"
                 yield Unmet(tick / self._hz, loop.line, text)
@@ -324,7 +327,7 @@ class _Search:
         if isinstance(loop.limit, str) or COMPARE[loop.operator](series.values, loop.limit).any():
             return ""
         goal = _name_goal(loop, f"{loop.limit:g}{series.unit}")
-        skip = self._find_skip(loop, stay)
+        skip = self._find_skip(loop, stay, series) if series.column in _LIGHT else None
         came = skip[1] if skip else self._name_nearest(loop, series)
         return f"{series.device} to read {goal}: {came}"
 
@@ -340,12 +343,11 @@ class _Search:
             return f"it stayed at {_round(values[0])}"
         return f"it went from {_round(values[0])} to {_round(values[-1])}"
 
-    def _find_miss(self, loop: LoopEnd, stay: tuple[int, int]) -> Unmet | None:
+    def _find_miss(self, loop: LoopEnd, series: _Series) -> Unmet | None:
         """Return where light came near to what a loop waited for, and went away again; None if nowhere."""
         import numpy as np
 
-        series = self._measure(loop, stay)
-        if series is None or series.column not in _LIGHT or isinstance(loop.limit, str):
+        if isinstance(loop.limit, str):
             return None
         ticks, values = series.ticks, series.values
         misses = abs(values - loop.limit)
@@ -360,16 +362,17 @@ class _Search:
         text = f"{_round(values[nearest])} just missed the {goal} that it waited for"
         return Unmet(ticks[nearest] / self._hz, loop.line, text)
 
-    def _find_skip(self, loop: LoopEnd, stay: tuple[int, int]) -> tuple[int, str] | None:
+    def _find_skip(
+        self, loop: LoopEnd, stay: tuple[int, int], reads: _Series
+    ) -> tuple[int, str] | None:
         """Return the first tick at which light was what a loop waited for, but was not read, and in words how it came.
 
-        None if there is none, or if light is not what the loop reads.
+        None if there is none.
         """
         import numpy as np
 
-        reads, every = self._measure(loop, stay), self._measure(loop, stay, is_between=True)
-        is_light = reads and reads.column in _LIGHT and not isinstance(loop.limit, str)
-        if not reads or not every or not is_light:
+        every = None if isinstance(loop.limit, str) else self._measure(loop, stay, is_between=True)
+        if every is None:
             return None
         meets = COMPARE[loop.operator]
         # The last read may have ended the loop.

@@ -1,0 +1,55 @@
+"""Lines of a program that do nothing, or always the same."""
+
+from __future__ import annotations
+
+from tests.cases import cases
+from tuisim.base.source import Program
+from tuisim.programs.facts import read_facts
+
+
+def find_slip(text: str) -> tuple[int, str] | None:
+    """The only slip of a program; None for none."""
+    slips = read_facts(Program("p.py", text)).slips
+    assert len(slips) < 2
+    return slips[0] if slips else None
+
+
+@cases(
+    "text, idle",
+    {
+        "no return": (
+            "def near():\n    us < 9\n",
+            (2, "near() returns nothing: return is missing before us < 9"),
+        ),
+        "another return": (
+            "def near():\n    if 1: return 2\n    us < 9\n",
+            (3, "us < 9 alone does nothing: the answer is not used"),
+        ),
+        "no assignment": ("x = 1\nx == 3\n", (2, "x == 3 only compares: x = 3 sets it")),
+        "the first": (
+            "if 1:\n    a < b\nb < a\n",
+            (2, "a < b alone does nothing: the answer is not used"),
+        ),
+        "whether it raises": ("try:\n    a < b\nexcept TypeError:\n    pass\n", None),
+        "what is used": ("x = a < b\nprint(a == b)\nwhile a < b: pass\n'a < b'\n", None),
+    },
+)
+def test_a_comparison_that_nothing_uses_is_named(text: str, idle: tuple[int, str] | None) -> None:
+    assert find_slip(text) == idle
+
+
+@cases(
+    "text, equal",
+    {
+        "else": ("if a:\n    b()\nelse:\n    b()\n", (1, "if and else do the same")),
+        "the opposite": (
+            "while 1:\n    if a < 5:\n        b(1)\n    if a > 5:\n        b(1)\n",
+            (2, "line 4 asks the opposite, and does the same"),
+        ),
+        "something else": ("if a < 5:\n    b(1)\nif a > 5:\n    b(2)\nelse:\n    b(3)\n", None),
+        "another limit": ("if a < 5:\n    b(1)\nif a > 6:\n    b(1)\n", None),
+        "one of three": ("if a:\n    b()\nelif c:\n    b()\nelse:\n    d()\n", None),
+    },
+)
+def test_two_ways_that_do_the_same_are_named(text: str, equal: tuple[int, str] | None) -> None:
+    assert find_slip(text) == equal

@@ -1,0 +1,90 @@
+"""Lines of a program that do nothing, or always the same, although they look as if they did more."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+
+
+def list_slips(tree: ast.Module) -> Iterator[tuple[int, str]]:
+    """Yield the first line with each kind of slip, and why it is one, in words."""
+    for find_slip in _find_uncalled_stop, _find_equal_branches, _find_idle_comparison:
+        if slip := find_slip(tree):
+            yield slip
+
+
+def _find_uncalled_stop(tree: ast.Module) -> tuple[int, str] | None:
+    """Return the first line that names what stops motors without calling it."""
+    for node in ast.walk(tree):
+        match node:
+            case ast.Expr(value=ast.Attribute(attr="off" | "stop" | "brake" | "hold") as name):
+                words = ast.unparse(name)
+                return node.lineno, f"{words} without () does nothing: {words}() stops"
+    return None
+
+
+def _find_equal_branches(tree: ast.Module) -> tuple[int, str] | None:
+    """Return the first line with an `if` whose `else` does the same, or the `if` after it that asks the opposite."""
+    pairs: list[tuple[int, str]] = []
+    for node in ast.walk(tree):
+        if isinstance(node, ast.If) and node.orelse and _dump(node.body) == _dump(node.orelse):
+            pairs.append((node.lineno, "if and else do the same"))
+        block = getattr(node, "body", [])
+        for first, second in pairwise(block if isinstance(block, list) else []):
+            if _is_opposite(first, second):
+                text = f"line {second.lineno} asks the opposite, and does the same"
+                pairs.append((first.lineno, text))
+    return min(pairs, default=None)
+
+
+def _is_opposite(first: ast.stmt, second: ast.stmt) -> bool:
+    """Return whether two statements do the same, one if something is below a limit, the other if it is above."""
+    match first, second:
+        case (
+            ast.If(test=ast.Compare(ops=[way]) as test, orelse=[]),
+            ast.If(test=ast.Compare(ops=[other]) as opposite, orelse=[]),
+        ):
+            is_below = [isinstance(each, ast.Lt | ast.LtE) for each in (way, other)]
+            is_above = [isinstance(each, ast.Gt | ast.GtE) for each in (way, other)]
+            parts = [_dump([each.left, *each.comparators]) for each in (test, opposite)]
+            are_opposite = (is_below[0] and is_above[1]) or (is_above[0] and is_below[1])
+            return are_opposite and parts[0] == parts[1] and _dump(first.body) == _dump(second.body)
+    return False
+
+
+def _dump(nodes: Sequence[ast.AST]) -> list[str]:
+    return [ast.dump(each) for each in nodes]
+
+
+def _find_idle_comparison(tree: ast.Module) -> tuple[int, str] | None:
+    """Return the first line that compares and does nothing with the answer.
+
+    One in a `try` is left out: whether it raises is an answer too.
+    """
+    nodes = [*ast.walk(tree)]
+    tried = {part for node in nodes if isinstance(node, ast.Try) for part in ast.walk(node)}
+    functions = {
+        node.body[-1]: node.name
+        for node in nodes
+        if isinstance(node, ast.FunctionDef)
+        and not any(isinstance(part, ast.Return | ast.Yield) for part in ast.walk(node))
+    }
+    idle = [
+        (node.lineno, _describe_idle(node.value, functions.get(node, "")))
+        for node in nodes
+        if isinstance(node, ast.Expr) and isinstance(node.value, ast.Compare) and node not in tried
+    ]
+    return min(idle, default=None)
+
+
+def _describe_idle(test: ast.Compare, function: str) -> str:
+    """Return why a comparison whose answer is lost is wrong; it may be the last line of a function."""
+    words = ast.unparse(test)
+    match test:
+        case ast.Compare() if function:
+            return f"{function}() returns nothing: return is missing before {words}"
+        case ast.Compare(left=ast.Name(id=name), ops=[ast.Eq()], comparators=[value]):
+            return f"{words} only compares: {name} = {ast.unparse(value)} sets it"
+        case _:
+            return f"{words} alone does nothing: the answer is not used"
