@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from array import array
+from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
@@ -17,7 +18,7 @@ from tuisim.engine.core.profile import NS_PER_S
 from tuisim.engine.core.spec import RobotSpec, RunSpec
 from tuisim.engine.core.tick_record import FLAG_LEFT_RUNNING, FLAG_RIGHT_RUNNING
 from tuisim.engine.runs.command_records import read_command_rows
-from tuisim.engine.runs.command_words import CALL_WORDS, describe_command
+from tuisim.engine.runs.command_words import CALL_WORDS, Aim, describe_command
 from tuisim.engine.runs.records import Mark
 
 if TYPE_CHECKING:
@@ -37,29 +38,9 @@ _FINEST = 500
 """Events closer than the elapsed time divided by this have one mark, so that marks stay few."""
 _STILL_DPS = 0.5
 """A motor that is slower stands still."""
-_OF_PARTS = {Call.RESET_GYRO: "gyro", Call.MOVE_PEN: "pen", Call.PLUG: "ports"}
-_SPEEDS = frozenset(
-    (
-        Call.RUN,
-        Call.RUN_UNTIL,
-        Call.SET_SPEED,
-        Call.RUN_FOREVER,
-        Call.RUN_TIMED,
-        Call.RUN_DIRECT,
-        Call.SET_DUTY,
-        Call.RUN_FREELY,
-        Call.RUN_AT,
-    )
-)
-"""Calls that ask a motor for a speed or a power."""
-_GOALS = frozenset((Call.RUN_TO, Call.RUN_TO_ABS_POS, Call.HOLD_MILLI))
-"""Calls that ask a motor for a position."""
-_TURNS = frozenset(
-    (Call.STOP, Call.STOP_DRIVER, Call.RESET_DRIVER, Call.HOLD, Call.RUN_TO_REL_POS, Call.MOVE)
-)
-"""Calls after which a motor turns by an angle, and stops."""
 _WORDS = re.compile(r"command(?:\s+(?P<words>.+))?", re.IGNORECASE)
-_OF_BASES = frozenset((Call.MOVE_BASE, Call.DRIVE_BASE, Call.STOP_BASE))
+_SPEEDS = (Aim.SPEED, Aim.BASE_SPEED)
+_OF_BASES = (Aim.BASE_SPEED, Aim.BASE_WAY)
 
 
 class CommandedRun(Protocol):
@@ -253,14 +234,14 @@ class CommandIndex:
             text,
             self._counts[number],
             self._lasts[number] / NS_PER_S,
-            self._measure(number, call, is_relative=call is Call.MOVE and bool(values[3])),
+            self._measure(number, _find_aim(call, values)),
         )
 
     def _name_part(self, code: int) -> str:
         """Return the part that an event is for."""
         call, number = _find_call(code), code & 0xFF
-        if call in _OF_PARTS:
-            return _OF_PARTS[call]
+        if CALL_WORDS[call].part:
+            return CALL_WORDS[call].part
         if call >= Call.BUILD_BASE:
             return f"drive base {number + 1}" if number else "drive base"
         motors = self._robots[code >> 16].motors
@@ -269,20 +250,20 @@ class CommandIndex:
 
     # What came
 
-    def _measure(self, number: int, call: Call, *, is_relative: bool) -> str:
+    def _measure(self, number: int, aim: Aim) -> str:
         """Return what came of an event, as far as telemetry knows: of the wheels."""
         import numpy as np
 
         part = self._codes[number] & 0xFF
-        is_speed = call in _SPEEDS or call is Call.DRIVE_BASE
-        if call not in _SPEEDS | _GOALS | _TURNS | _OF_BASES or part > 1:
+        is_speed = aim in _SPEEDS
+        if aim is Aim.NONE or part > 1:
             return ""
         start = self._find_tick((self._firsts if is_speed else self._lasts)[number])
         records = self._run.telemetry.array(start)[: self._find_end(number) - start + 1]
         if len(records) < 2:
             return ""
         flags, after = records["flags"][1:], records[1:]
-        if call in _OF_BASES:
+        if aim in _OF_BASES:
             speeds = np.abs(after["left_speed_dps"]) + np.abs(after["right_speed_dps"])
             is_running = flags & (FLAG_LEFT_RUNNING | FLAG_RIGHT_RUNNING) != 0
         else:
@@ -290,19 +271,19 @@ class CommandIndex:
             speeds = after[f"{side}_speed_dps"].astype(float)
             is_running = flags & (FLAG_LEFT_RUNNING, FLAG_RIGHT_RUNNING)[part] != 0
         idle = np.flatnonzero(~is_running & (is_speed | (np.abs(speeds) < _STILL_DPS)))
-        if call is Call.DRIVE_BASE:
+        if aim is Aim.BASE_SPEED:
             idle = idle[:0]
         count = int(idle[0]) + 1 if len(idle) else len(after)
         when = f"by {(start + count) / self._hz:.2f} s"
-        if call in _OF_BASES:
+        if aim in _OF_BASES:
             driven_mm, turned_deg = _measure_way(records[: count + 1])
-            if call is Call.DRIVE_BASE:
+            if aim is Aim.BASE_SPEED:
                 rate = self._hz / count
                 return f"mean {_round(driven_mm * rate)} mm/s, {_round(turned_deg * rate)} °/s"
             return f"{_round(driven_mm)} mm, {_round(turned_deg)}° {when}"
         if is_speed:
             return f"mean {_round(speeds[:count].mean())} °/s"
-        if call in _GOALS or (call is Call.MOVE and not is_relative):
+        if aim is Aim.POSITION:
             return f"{_round(after[f'{side}_position_deg'][count - 1])}° {when}"
         return f"turned {_round(speeds[:count].sum() / self._hz)}° {when}"
 
@@ -320,7 +301,7 @@ class CommandIndex:
             code = self._codes[number]
             call, part = _find_call(code), (code >> 8 & 0xFF >= Call.BUILD_BASE, code & 0xFF)
             ends[number] = min(following.get(part, newest), newest)
-            if call in _SPEEDS | _GOALS | _TURNS | _OF_BASES:
+            if CALL_WORDS[call].aim is not Aim.NONE:
                 following[part] = self.tick(number)
         return ends
 
@@ -331,6 +312,12 @@ def _round(value: float) -> str:
 
 def _find_call(code: int) -> Call:
     return Call(code >> 8 & 0xFF)
+
+
+def _find_aim(call: Call, values: Sequence[float]) -> Aim:
+    """Return what a call with these values asks for."""
+    is_to_position = call is Call.MOVE and not values[3]
+    return Aim.POSITION if is_to_position else CALL_WORDS[call].aim
 
 
 def _name_call(code: int) -> str:

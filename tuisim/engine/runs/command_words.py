@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from enum import Enum, auto
 from math import isnan
 
 from tuisim.base.data_class import dataclass
@@ -44,6 +45,23 @@ _ENDING = Quantity(names=[ending.name.lower().replace("none", "go on") for endin
 _SETTING = Quantity(names=[name.replace("_", " ") for name in SETTINGS])
 
 
+class Aim(Enum):
+    """What a call asks for, by which is told what came of it."""
+
+    NONE = auto()
+    """Nothing that telemetry tells."""
+    SPEED = auto()
+    """A speed or a power of a motor."""
+    POSITION = auto()
+    """A position of a motor."""
+    ANGLE = auto()
+    """A motor turns by an angle, and stops."""
+    BASE_SPEED = auto()
+    """A drive base drives on."""
+    BASE_WAY = auto()
+    """It drives so far, and stops."""
+
+
 @dataclass(frozen=True, slots=True)
 class CallWords:
     """How a call is written."""
@@ -54,6 +72,9 @@ class CallWords:
     """Of its first values."""
     main: int = 0
     """The number of the value that differs most when the call is repeated."""
+    aim: Aim = Aim.NONE
+    part: str = ""
+    """The part that the call is for; empty for a motor or a drive base."""
 
 
 def _name_driver_calls() -> dict[Call, CallWords]:
@@ -61,57 +82,61 @@ def _name_driver_calls() -> dict[Call, CallWords]:
     action = Quantity(names=STOP_ACTIONS)
     points = _DPS, _DEG, _PERCENT, _MS, _MS, _MS, action
     texts = {
-        Command.RUN_FOREVER: (" {0}", 0),
-        Command.RUN_TO_ABS_POS: (" {1} at {0}, then {6}", 1),
-        Command.RUN_TO_REL_POS: (" {1} at {0}, then {6}", 1),
-        Command.RUN_TIMED: (" {3} at {0}, then {6}", 0),
-        Command.RUN_DIRECT: (" {2}", 2),
-        Command.STOP: (", {6}", 0),
-        Command.RESET: ("", 0),
+        Command.RUN_FOREVER: (" {0}", 0, Aim.SPEED),
+        Command.RUN_TO_ABS_POS: (" {1} at {0}, then {6}", 1, Aim.POSITION),
+        Command.RUN_TO_REL_POS: (" {1} at {0}, then {6}", 1, Aim.ANGLE),
+        Command.RUN_TIMED: (" {3} at {0}, then {6}", 0, Aim.SPEED),
+        Command.RUN_DIRECT: (" {2}", 2, Aim.SPEED),
+        Command.STOP: (", {6}", 0, Aim.ANGLE),
+        Command.RESET: ("", 0, Aim.ANGLE),
     }
     return {
-        COMMAND_CALLS[command]: CallWords(command + text, points, main)
-        for command, (text, main) in texts.items()
+        COMMAND_CALLS[command]: CallWords(command + text, points, main, aim)
+        for command, (text, main, aim) in texts.items()
     }
 
 
 CALL_WORDS: Mapping[Call, CallWords] = {
-    Call.RESET_GYRO: CallWords("reset"),
-    Call.MOVE_PEN: CallWords("{0}", (Quantity(names=("up", "down")),)),
-    Call.PLUG: CallWords("plug in"),
-    Call.RUN: CallWords("run {0}", (_DPS,)),
-    Call.RUN_UNTIL: CallWords("run {0} until {1}", (_DPS, _TICKS)),
-    Call.RUN_TO: CallWords("run to {0} at {1}", (_DEG, _DPS)),
-    Call.STOP: CallWords("stop"),
+    Call.RESET_GYRO: CallWords("reset", part="gyro"),
+    Call.MOVE_PEN: CallWords("{0}", (Quantity(names=("up", "down")),), part="pen"),
+    Call.PLUG: CallWords("plug in", part="ports"),
+    Call.RUN: CallWords("run {0}", (_DPS,), aim=Aim.SPEED),
+    Call.RUN_UNTIL: CallWords("run {0} until {1}", (_DPS, _TICKS), aim=Aim.SPEED),
+    Call.RUN_TO: CallWords("run to {0} at {1}", (_DEG, _DPS), aim=Aim.POSITION),
+    Call.STOP: CallWords("stop", aim=Aim.ANGLE),
     Call.SET_COUNT: CallWords("set position {0}", (_DEG,)),
     Call.LIMIT_RAMPS: CallWords("set ramps {0}, {1}", (_DPS2, _DPS2)),
-    Call.SET_SPEED: CallWords("set speed {0}", (_DPS,)),
+    Call.SET_SPEED: CallWords("set speed {0}", (_DPS,), aim=Aim.SPEED),
     Call.SET_BACKWARDS: CallWords(
         "set direction {0}", (Quantity(names=("forwards", "backwards")),)
     ),
     Call.SET_ROLL: CallWords("set roll {0}", (_PLAIN,)),
     **_name_driver_calls(),
-    Call.SET_DUTY: CallWords("set duty {0}", (_PERCENT,)),
+    Call.SET_DUTY: CallWords("set duty {0}", (_PERCENT,), aim=Aim.SPEED),
     Call.RENUMBER: CallWords("set position {0}", (_DEG,)),
     Call.SET_CONSTANT: CallWords(
         "set {0} {1} {2}", (Quantity(names=CONTROLS), Quantity(names=CONSTANTS), _PLAIN), 2
     ),
     Call.SET_UP: CallWords("set up, direction {0}, gears {1}", (_PLAIN, _PLAIN)),
-    Call.RUN_FREELY: CallWords("power {0}", (_POWER,)),
+    Call.RUN_FREELY: CallWords("power {0}", (_POWER,), aim=Aim.SPEED),
     Call.SET_MILLI: CallWords("set angle {0}", (_MILLI_COUNTS,)),
-    Call.HOLD: CallWords("hold"),
-    Call.HOLD_MILLI: CallWords("track {0}", (_MILLI_COUNTS,)),
-    Call.RUN_AT: CallWords("run {0} for {2}", (_COUNTS_PER_S, _PLAIN, _US)),
+    Call.HOLD: CallWords("hold", aim=Aim.ANGLE),
+    Call.HOLD_MILLI: CallWords("track {0}", (_MILLI_COUNTS,), aim=Aim.POSITION),
+    Call.RUN_AT: CallWords("run {0} for {2}", (_COUNTS_PER_S, _PLAIN, _US), aim=Aim.SPEED),
     Call.MOVE: CallWords(
-        "run {3} {0} at {1}", (_COUNTS, _COUNTS_PER_S, _PLAIN, Quantity(names=("to", "by")))
+        "run {3} {0} at {1}",
+        (_COUNTS, _COUNTS_PER_S, _PLAIN, Quantity(names=("to", "by"))),
+        aim=Aim.ANGLE,
     ),
     Call.FOLLOW: CallWords("then {0}", (_ENDING,)),
     Call.LIMIT_DUTY: CallWords("limit power {0}", (_POWER,)),
     Call.SET_CONTROL: CallWords("set {0} {1}", (_SETTING, _PLAIN), 1),
     Call.BUILD_BASE: CallWords("build, wheels {2}, track {3}", (_PLAIN, _PLAIN, _MM, _MM), 2),
-    Call.MOVE_BASE: CallWords("drive {0}, turn {1}, then {2}", (_MM, _DEG, _ENDING)),
-    Call.DRIVE_BASE: CallWords("drive {0}, turn {1}", (_MM_PER_S, _DPS), 1),
-    Call.STOP_BASE: CallWords("stop, power {0}", (_POWER,)),
+    Call.MOVE_BASE: CallWords(
+        "drive {0}, turn {1}, then {2}", (_MM, _DEG, _ENDING), aim=Aim.BASE_WAY
+    ),
+    Call.DRIVE_BASE: CallWords("drive {0}, turn {1}", (_MM_PER_S, _DPS), 1, Aim.BASE_SPEED),
+    Call.STOP_BASE: CallWords("stop, power {0}", (_POWER,), aim=Aim.BASE_WAY),
     Call.SET_BASE: CallWords("set {0}, {1}, {2}, {3}", (_MM_PER_S, _MM_PER_S2, _DPS, _DPS2)),
     Call.SET_BASE_CONTROL: CallWords(
         "set {0} {1} {2}", (Quantity(names=("distance", "heading")), _SETTING, _PLAIN), 2

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from tuisim.engine.core.commands.calls import Call, SimulationCommand
-from tuisim.engine.core.commands.table import CALLS, Range
+from tuisim.engine.core.commands.table import CALLS, Range, Target
 from tuisim.engine.core.driver.regulator import MODELS
 from tuisim.engine.core.profile import MotorLaw
 
@@ -15,15 +15,6 @@ if TYPE_CHECKING:
 MAX_AN_INSTANT = 10_000
 """No program gives more commands at one time: what costs nothing costs something from the hundredth call on, and a
 loop in which no time passes does, too."""
-_OF_BASES = frozenset(range(Call.MOVE_BASE, Call.SET_BASE_CONTROL + 1))
-_OF_ROBOTS = frozenset((Call.RESET_GYRO, Call.MOVE_PEN, Call.PLUG, Call.BUILD_BASE))
-_SPEED_PLACES = {
-    Call.RUN: 0,
-    Call.RUN_UNTIL: 0,
-    Call.RUN_TO: 1,
-    **dict.fromkeys(range(Call.RUN_FOREVER, Call.RESET_DRIVER + 1), 0),
-}
-"""Which value of a call is a speed that the kind of the motor limits."""
 
 
 class CommandCheck:
@@ -74,15 +65,18 @@ class CommandCheck:
 
 def _count_parts(call: Call, sim: Simulation) -> int:
     """Return how many parts there are of the kind that a call is for."""
-    if call in _OF_ROBOTS:
-        return 1
-    return len(sim.bases) if call in _OF_BASES else len(sim.motors)
+    match CALLS[call].target:
+        case Target.ROBOT:
+            return 1
+        case Target.MOTOR:
+            return len(sim.motors)
+        case Target.BASE:
+            return len(sim.bases)
 
 
 def _narrow_ranges(call: Call, part: int, sim: Simulation) -> tuple[Range, ...]:
     """Return the ranges of the values of a call, that of a speed as the kind of its motor has it."""
-    ranges = [*CALLS[call].ranges]
-    place = _SPEED_PLACES.get(call)
+    ranges, place = [*CALLS[call].ranges], CALLS[call].speed_place
     if place is not None and sim.spec.profile.motor_law is not MotorLaw.NBEV3DEVSIM:
         max_dps = float(MODELS[sim.spec.robot.motors[part].kind].max_speed_dps)
         ranges[place] = -max_dps, max_dps

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from enum import Enum, auto
 from typing import TYPE_CHECKING
 
 from tuisim.base.data_class import dataclass
@@ -31,6 +32,15 @@ _RAMP_MS: Range = 0.0, 60_000.0
 _SET_POINTS = (_SPEED, _INT, (-100.0, 100.0), _INT, _RAMP_MS, _RAMP_MS, (0.0, 2.0))
 
 
+class Target(Enum):
+    """What a call is for."""
+
+    ROBOT = auto()
+    MOTOR = auto()
+    BASE = auto()
+    """A drive base that the program has made."""
+
+
 @dataclass(frozen=True, slots=True)
 class CallSpec:
     """One call."""
@@ -42,17 +52,23 @@ class CallSpec:
     laws: frozenset[MotorLaw] = ALL_LAWS
     may_be_missing: bool = False
     """Whether values may be NaN."""
+    target: Target = Target.MOTOR
+    speed_place: int | None = None
+    """Which value is a speed that the kind of the motor limits; None for none."""
 
 
 CALLS: Mapping[Call, CallSpec] = {
-    Call.RESET_GYRO: CallSpec(robot.reset_gyro),
-    Call.MOVE_PEN: CallSpec(robot.move_pen, (_FLAG,)),
+    Call.RESET_GYRO: CallSpec(robot.reset_gyro, target=Target.ROBOT),
+    Call.MOVE_PEN: CallSpec(robot.move_pen, (_FLAG,), target=Target.ROBOT),
     Call.PLUG: CallSpec(
-        robot.plug, ((0.0, robot.PART_CODES - 1.0),) * MAX_VALUES, may_be_missing=True
+        robot.plug,
+        ((0.0, robot.PART_CODES - 1.0),) * MAX_VALUES,
+        may_be_missing=True,
+        target=Target.ROBOT,
     ),
-    Call.RUN: CallSpec(motors.start, (_ANY,), DRIVEN_LAWS),
-    Call.RUN_UNTIL: CallSpec(motors.start_timed, (_ANY, _ANY), DRIVEN_LAWS),
-    Call.RUN_TO: CallSpec(motors.start_move, (_ANY, _ANY, _FLAG), DRIVEN_LAWS),
+    Call.RUN: CallSpec(motors.start, (_ANY,), DRIVEN_LAWS, speed_place=0),
+    Call.RUN_UNTIL: CallSpec(motors.start_timed, (_ANY, _ANY), DRIVEN_LAWS, speed_place=0),
+    Call.RUN_TO: CallSpec(motors.start_move, (_ANY, _ANY, _FLAG), DRIVEN_LAWS, speed_place=1),
     Call.STOP: CallSpec(motors.stop, (), DRIVEN_LAWS),
     Call.SET_COUNT: CallSpec(motors.set_count, (_ANY,), DRIVEN_LAWS),
     Call.LIMIT_RAMPS: CallSpec(
@@ -62,7 +78,9 @@ CALLS: Mapping[Call, CallSpec] = {
     Call.SET_BACKWARDS: CallSpec(motors.set_backwards, (_FLAG,), frozenset({MotorLaw.NBEV3DEVSIM})),
     Call.SET_ROLL: CallSpec(motors.set_roll, ((-1.0, 1.0),), frozenset({MotorLaw.NBEV3DEVSIM})),
     **{
-        call: CallSpec(driver.build_effect(command), _SET_POINTS, frozenset({MotorLaw.EV3DEV}))
+        call: CallSpec(
+            driver.build_effect(command), _SET_POINTS, frozenset({MotorLaw.EV3DEV}), speed_place=0
+        )
         for command, call in driver.COMMAND_CALLS.items()
     },
     Call.SET_DUTY: CallSpec(driver.set_duty, ((-100.0, 100.0),), frozenset({MotorLaw.EV3DEV})),
@@ -83,14 +101,26 @@ CALLS: Mapping[Call, CallSpec] = {
     Call.LIMIT_DUTY: CallSpec(servo.limit_duty, (_DUTY,), SERVO_LAWS, may_be_missing=True),
     Call.SET_CONTROL: CallSpec(servo.set_control, (_POSITIVE, _POSITIVE), SERVO_LAWS),
     Call.BUILD_BASE: CallSpec(
-        servo.build_base, (_POSITIVE, _POSITIVE, _POSITIVE, _POSITIVE), SERVO_LAWS
+        servo.build_base,
+        (_POSITIVE, _POSITIVE, _POSITIVE, _POSITIVE),
+        SERVO_LAWS,
+        target=Target.ROBOT,
     ),
-    Call.MOVE_BASE: CallSpec(servo.move_base, (_ANY, _ANY, _ENDING), SERVO_LAWS),
-    Call.DRIVE_BASE: CallSpec(servo.drive_base, (_ANY, _ANY), SERVO_LAWS),
-    Call.STOP_BASE: CallSpec(servo.stop_base, (_DUTY,), SERVO_LAWS, may_be_missing=True),
-    Call.SET_BASE: CallSpec(servo.set_base, (_ANY, _ANY, _ANY, _ANY), SERVO_LAWS),
+    Call.MOVE_BASE: CallSpec(
+        servo.move_base, (_ANY, _ANY, _ENDING), SERVO_LAWS, target=Target.BASE
+    ),
+    Call.DRIVE_BASE: CallSpec(servo.drive_base, (_ANY, _ANY), SERVO_LAWS, target=Target.BASE),
+    Call.STOP_BASE: CallSpec(
+        servo.stop_base, (_DUTY,), SERVO_LAWS, may_be_missing=True, target=Target.BASE
+    ),
+    Call.SET_BASE: CallSpec(
+        servo.set_base, (_ANY, _ANY, _ANY, _ANY), SERVO_LAWS, target=Target.BASE
+    ),
     Call.SET_BASE_CONTROL: CallSpec(
-        servo.set_base_control, (_FLAG, _POSITIVE, _POSITIVE), SERVO_LAWS
+        servo.set_base_control,
+        (_FLAG, _POSITIVE, _POSITIVE),
+        SERVO_LAWS,
+        target=Target.BASE,
     ),
 }
 EFFECTS = {call: spec.apply for call, spec in CALLS.items()}
