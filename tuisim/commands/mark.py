@@ -43,12 +43,11 @@ from tuisim.settings.command_line import Arguments, WordType, argument, command,
 from tuisim.settings.options import APP, PANEL, parse
 from tuisim.settings.shared_options import shared_options
 from tuisim.tasks.goals.files import GoalsFile, load_goals
-from tuisim.tasks.marks.marking import Marking, MarkRequest, open_marking
+from tuisim.tasks.marks.marking import GRADEBOOKS, Marking, MarkRequest, open_marking
 from tuisim.tasks.marks.sheet import Sheet
 from tuisim.tasks.task import TIME_LIMIT_S, Keep
 
 PAGE_SUFFIXES = (".html", ".htm")
-GRADEBOOKS = ("moodle", "canvas")
 DEFAULT_SEEDS = "0..19"
 USUAL_KEEP = Keep.FAILED
 

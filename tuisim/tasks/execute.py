@@ -12,7 +12,7 @@ from pathlib import Path
 
 from tuisim.base.errors import LogError, TuisimError
 from tuisim.base.faults import describe_fault
-from tuisim.base.regular_file import of_the_machine
+from tuisim.base.regular_file import has_machine_cause
 from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.mat_cache import FieldFiles, prepare
 from tuisim.engine.mats import background
@@ -72,8 +72,7 @@ def _run_task(task: Task, folder: Path) -> Result:
             judgements = _judged(task, run)
             result = _result(task, run, told, judgements)
         except LogError as error:
-            cause = error.__cause__
-            if isinstance(cause, OSError) and of_the_machine(cause):
+            if has_machine_cause(error):
                 return build_unjudged(task, str(error))
             # Where the recording was differs from machine to machine.
             text = error.message.replace(f"{temporary.folder}{os.sep}", "")
@@ -160,10 +159,7 @@ def _keep(temporary: TemporaryRun, ended: Ended) -> str:
         temporary.write_end(ended)
         return RunStore().adopt(temporary.folder).id
     except LogError as error:
-        cause = error.__cause__
-        if isinstance(cause, sqlite3.Error) or (
-            isinstance(cause, OSError) and of_the_machine(cause)
-        ):
+        if has_machine_cause(error) or isinstance(error.__cause__, sqlite3.Error):
             raise
         return ""
 

@@ -10,7 +10,7 @@ from typing import Any
 from tuisim.base.errors import ConfigError, ProfileError, printable
 from tuisim.base.faults import describe_fault
 from tuisim.base.folders import backgrounds_folder
-from tuisim.base.regular_file import of_the_machine
+from tuisim.base.regular_file import has_machine_cause
 from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.mat_image import decode, read_file
 from tuisim.engine.mats import background
@@ -48,10 +48,11 @@ def entries_of(
                 student = entries[-1].student
             except ConfigError as error:
                 misfits += [error] if isinstance(error, ProfileError) and names_profile else []
-                cause = error.__cause__
-                is_unread = isinstance(cause, OSError) and of_the_machine(cause)
                 student = replace(
-                    student, source=None, problem=_told(error, student), is_unread=is_unread
+                    student,
+                    source=None,
+                    problem=_told(error, student),
+                    is_unread=has_machine_cause(error),
                 )
             except Exception as error:  # Whatever it is, the others go on.
                 student = replace(

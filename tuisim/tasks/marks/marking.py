@@ -34,6 +34,8 @@ from tuisim.tasks.task import TIME_LIMIT_S, Keep
 
 Tell = Callable[[str, float, float], None]
 """Is told what is done, how much of it, and how much there is."""
+GRADEBOOKS: Sequence[str] = [*GradebookKind]
+"""Kinds of gradebooks, as options are called."""
 
 
 @dataclass(frozen=True, slots=True)
