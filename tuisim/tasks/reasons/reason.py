@@ -236,8 +236,8 @@ def _find_ended(run: StoredRun, mat: Field | None) -> Iterator[Reason]:
 def describe_end(run: StoredRun) -> str:
     """Return in a sentence without its full stop what a run ended with.
 
-    That is where it lost a line for good, if something cut it off that waited for nothing, where light just missed what
-    it waited for, or why it was over too early. Empty if nothing of this is so.
+    That is where it lost a line for good, if a limit or the user cut it off, where light just missed what it waited for
+    or came between two reads, or why it was over too early. Empty if nothing of this is so.
     """
     if run.end is None:
         return ""
