@@ -252,8 +252,9 @@ def _library_move(random: Random, model: TachoMotor) -> list[Step]:
             model, seen
         )
 
-    # It returns while the motor may still swing or roll.
-    text = f"m.{call}({percent}, {degrees}, brake={brake}); assert not m.is_running; time.sleep(8)"
+    # It returns while the motor may still swing or roll, and takes a start that a long ramp makes slow for a stall.
+    ended = "assert m.is_stalled or not m.is_running; time.sleep(70)"
+    text = f"m.{call}({percent}, {degrees}, brake={brake}); {ended}"
     return [Step(text, does)]
 
 
