@@ -204,6 +204,7 @@ def test_a_program_that_is_over_at_once_says_why(text: str, words: str) -> None:
         f"{DRIVES}while {LIGHT} > 55:\n    pass\ntank_drive.off()\n",
         f"{DRIVES}print(x)\n",
         f"{BANDS}tank_drive.on_for_degrees(80, 80, 60)\n",
+        "from ev3dev2.motor import MediumMotor\nMediumMotor('outA').on_for_degrees(50, 60)\n",
     ],
 )
 def test_a_program_that_drives_no_motor_or_far_enough_is_not_over_early(text: str) -> None:

@@ -21,6 +21,7 @@ from tuisim.engine.core.spec import (
 from tuisim.engine.protocol import End
 from tuisim.engine.runs.frames import column_values
 from tuisim.engine.runs.readings import READING_MODES, READING_PORTS, find_ticks, read_readings
+from tuisim.engine.runs.records import Stream
 from tuisim.engine.runs.run_folder import StoredRun, open_mat
 from tuisim.programs.facts import LoopEnd, read_facts
 from tuisim.tasks.reasons.seen_colors import describe_colors, name_limit, name_seen
@@ -169,7 +170,8 @@ def find_early_end(run: StoredRun, mat: Field | None = None) -> Unmet | None:
         return None
     way_mm = math.dist((last.pose.x_mm, last.pose.y_mm), (start.x_mm, start.y_mm))
     turn_deg = abs(last.pose.heading_deg - start.heading_deg)
-    if way_mm >= _MIN_WAY_MM or turn_deg >= _MIN_TURN_DEG:
+    has_turned_part = any(row.stream is Stream.MOTORS for row in run.output.rows())
+    if way_mm >= _MIN_WAY_MM or turn_deg >= _MIN_TURN_DEG or has_turned_part:
         return None
     text = (
         "the program was over when the motors that this line starts had moved the robot by "
