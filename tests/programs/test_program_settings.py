@@ -152,6 +152,21 @@ CASES: Mapping[str, tuple[str, dict[str, Any], tuple[str, str, tuple[float, floa
         {"below": {"profile": "pybricks4"}},
         ("pybricks4", "Default_Robot", MIDDLE),
     ),
+    "names of Pybricks 4": (
+        f"{PYBRICKS}from pybricks.tools import run_task\n",
+        {},
+        ("pybricks4", "Default_Robot", MIDDLE),
+    ),
+    "names of Pybricks 4 and the earlier profile": (
+        f"{PYBRICKS}from pybricks.tools import run_task\n",
+        {"above": {"profile": "lego-micropython"}},
+        ("lego-micropython", "Default_Robot", MIDDLE),
+    ),
+    "names of Pybricks 4 and a magic line": (
+        f"# %%sim_magic\n{BASE}base.arc(100, 90)\n",
+        {},
+        ("pybricks4", "Robot of p.py", (136, 800)),
+    ),
     "the older library": (
         "from ev3dev.ev3 import *\nm = LargeMotor('outB')\n",
         {},
@@ -222,6 +237,12 @@ def test_nothing_that_cannot_help_is_advised_to_a_program_for_another_hub(case: 
         with pytest.raises(ProfileError) as caught:
             program_settings(source, {"profile": "ev3"})
         assert str(caught.value) == told
+
+
+def test_the_name_that_chooses_pybricks_4_is_said() -> None:
+    source = parse_program(f"{BASE}base.straight(100, wait=False)\n", "p.py")
+    note = program_settings(source).decided.note
+    assert "Pybricks 4, whose wait= of straight() it uses (profile pybricks4)" in note
 
 
 def test_a_program_for_more_than_one_hub_is_one_for_the_brick() -> None:

@@ -18,6 +18,7 @@ from tuisim.base.source import FOR_SPIKE, Program
 from tuisim.engine.core.profile import PROFILES, PYBRICKS_4, Library, MotorLaw, ProfileSpec
 from tuisim.programs.program_file import ProgramSource
 from tuisim.programs.robot.course import uses_course_names
+from tuisim.programs.robot.pybricks_version import find_version_4_name
 from tuisim.programs.robot.source import (
     Module,
     is_for_other_hub,
@@ -70,6 +71,14 @@ class SourceFacts:
     """Whether it names classes of motors or sensors, and its text shows no part that is made."""
     for_other_hub: bool = False
     """Whether it is for a hub that no profile is for."""
+    version_4_name: str = ""
+    """A name in it that Pybricks has from version 4 on; empty for none."""
+
+    @property
+    def brick_profile(self) -> str:
+        """The profile with the rules of a real brick that it is for; it imports a library."""
+        assert self.library is not None
+        return PYBRICKS_4.name if self.version_4_name else PROFILE_OF[self.library]
 
 
 OF_THE_GROUND = ("floor", "walls")
@@ -130,30 +139,31 @@ class ProgramSettings:
 
 def facts_of(program: Program) -> SourceFacts:
     """Return what the source of a program says; nothing if it is not Python, or too deeply nested to be read."""
-    library = None
+    facts = SourceFacts()
     try:
         modules = read_modules(program)
         library = _library_in(program, modules)
+        facts = SourceFacts(library)
+        if library is Library.PYBRICKS:
+            facts = replace(facts, version_4_name=find_version_4_name(modules.values()))
         if is_for_other_hub(modules):
-            return SourceFacts(library, unread=f"it is {FOR_SPIKE}", for_other_hub=True)
+            return replace(facts, unread=f"it is {FOR_SPIKE}", for_other_hub=True)
         if not modules or library is None:
-            return SourceFacts(library, unread=missing_module(program, modules))
+            return replace(facts, unread=missing_module(program, modules))
         # Most programs are the course's, and need no reading of their own.
-        return _facts_in(program, modules, library)
+        return _facts_in(program, modules, facts)
     except (RecursionError, SyntaxError):
         # What is wrong with the program is said when it runs.
         return SourceFacts()
     except RobotError as error:
         why = f"no robot can be what its text says ({error.message})"
-        unread = f"{why}: it gets the default robot"
-        return SourceFacts(library, unread=unread, shown_ports=() if library else None)
     except Exception as error:  # no text ends a run before it begins
         why = f"tuisim failed to read the robot from its text ({type(error).__name__})"
-        unread = f"{why}: it gets the default robot"
-        return SourceFacts(library, unread=unread, shown_ports=() if library else None)
+    unread = f"{why}: it gets the default robot"
+    return replace(facts, unread=unread, shown_ports=() if facts.library else None)
 
 
-def _facts_in(program: Program, modules: dict[str, Module], library: Library) -> SourceFacts:
+def _facts_in(program: Program, modules: dict[str, Module], facts: SourceFacts) -> SourceFacts:
     from tuisim.programs.robot.assembly import build_robot, find_shown_ports
     from tuisim.programs.robot.brick_syntax import refused_lines
     from tuisim.programs.robot.library import SENSES_WALLS
@@ -162,15 +172,15 @@ def _facts_in(program: Program, modules: dict[str, Module], library: Library) ->
 
     mentions = mentions_in(modules)
     robot = build_robot(mentions, program.name, USUAL)
-    return SourceFacts(
-        library,
-        uses_course_names(modules, program.text),
-        robot,
-        refused_lines(modules.values()) if library is Library.PYBRICKS else (),
-        missing_module(program, modules),
-        find_shown_ports(mentions, robot.choice.spec if robot else USUAL),
-        any(one.kind in SENSES_WALLS for one in mentions.devices),
-        hides_parts(mentions),
+    return replace(
+        facts,
+        of_course=uses_course_names(modules, program.text),
+        robot=robot,
+        refused=refused_lines(modules.values()) if facts.library is Library.PYBRICKS else (),
+        unread=missing_module(program, modules),
+        shown_ports=find_shown_ports(mentions, robot.choice.spec if robot else USUAL),
+        senses_walls=any(one.kind in SENSES_WALLS for one in mentions.devices),
+        hides_parts=hides_parts(mentions),
     )
 
 
@@ -247,13 +257,11 @@ def decide(
         layer["robot"] = facts.robot.choice
     by_brick_rules = not for_course and _brings_rules(source, facts)
     if facts.library and by_brick_rules and "profile" in free:
-        layer["profile"] = PROFILE_OF[facts.library]
+        layer["profile"] = facts.brick_profile
     elif facts.library and not _fits(settings, facts.library):
         if insists and settings.given.get("profile") is not None:
             raise _misfit(source.program, facts.library, _profile(settings["profile"]))
-        layer["profile"] = (
-            DEFAULT_PROFILE if for_course or facts.of_course else PROFILE_OF[facts.library]
-        )
+        layer["profile"] = DEFAULT_PROFILE if for_course or facts.of_course else facts.brick_profile
     profile = layer.get("profile", settings["profile"])
     has_rules = has_brick_rules(profile)
     if "for_brick" in free and (by_brick_rules or (has_rules and not source.has_magic)):
@@ -371,7 +379,10 @@ def _in_words(program: Program, facts: SourceFacts, layer: Mapping[str, Any]) ->
     if facts.for_other_hub:
         # Nothing of that helps.
         return "", ""
-    rules = f"as on a brick (profile {layer['profile']})" if "profile" in layer else ""
+    profile = layer.get("profile", "")
+    uses = f" with Pybricks 4, whose {facts.version_4_name} it uses"
+    version = uses if profile == PYBRICKS_4.name else ""
+    rules = f"as on a brick{version} (profile {profile})" if profile else ""
     if facts.robot and "robot" in layer:
         from tuisim.programs.robot.report import in_words
 

@@ -22,7 +22,7 @@ def uses_course_names(modules: Mapping[str, Module], text: str) -> bool:
         text: The text of the program, whose names may be those of a prelude.
     """
     trees = [module.tree for module in modules.values()]
-    defined = {name for tree in trees for name in _defined(tree)}
+    defined = {name for tree in trees for name in find_definitions(tree)}
     if any(
         name == COURSE_MODULE or (name in _ATTRIBUTES - defined)
         for tree in trees
@@ -49,12 +49,13 @@ def _used(tree: ast.Module) -> Iterator[str]:
                 yield name
 
 
-def _defined(tree: ast.Module) -> Iterator[str]:
+def find_definitions(tree: ast.Module) -> Iterator[str]:
     """Yield the names that a module defines itself, at whatever place."""
     for node in ast.walk(tree):
         match node:
             case (
                 ast.FunctionDef(name=name)
+                | ast.AsyncFunctionDef(name=name)
                 | ast.ClassDef(name=name)
                 | ast.Name(id=name, ctx=ast.Store())
             ):
