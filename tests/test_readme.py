@@ -17,13 +17,13 @@ from tuisim.cli import COMMANDS
 from tuisim.commands.log import SUBCOMMANDS
 from tuisim.engine.core.profile import PROFILES
 from tuisim.engine.core.spec import MOUNTS
-from tuisim.guide.catalogue import pages
-from tuisim.guide.tables import markdown_of
+from tuisim.guide.catalogue import load_pages
+from tuisim.guide.tables import build_markdown
 from tuisim.logs.export import EXPORTERS
 from tuisim.settings.options import OPTIONS
 
 README = (ROOT / "README.md").read_text(encoding="utf-8")
-GUIDE = "\n\n".join(markdown_of(page).replace("\\|", "|") for page in pages().values())
+GUIDE = "\n\n".join(build_markdown(page).replace("\\|", "|") for page in load_pages().values())
 HOW_TO_ADD = GUIDE.partition("| to add | you need |")[2].partition("\n\n")[0].splitlines()[2:]
 QUOTED = set(re.findall(r"`([^`\n]+)`", GUIDE))
 """Everything in backticks."""

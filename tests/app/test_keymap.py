@@ -90,9 +90,9 @@ async def test_a_wrong_file_is_told_and_the_app_works_with_what_is_right(tmp_pat
 
 def test_the_guide_shows_the_keys_of_the_user(tmp_path: Path) -> None:
     (tmp_path / "config.toml").write_text("[keys]\npen = '%'\n")
-    tables.table.cache_clear()
+    tables.load_table.cache_clear()
     try:
-        mine = tables.table("keys").markdown()
+        mine = tables.load_table("keys").to_markdown()
     finally:
-        tables.table.cache_clear()
+        tables.load_table.cache_clear()
     assert "| `%` | Pen up or down |" in mine

@@ -31,7 +31,7 @@ from tuisim.engine.core.spec import (
 )
 from tuisim.engine.core.values import values_of
 from tuisim.engine.obstacles import OBSTACLES, load_obstacles, save_obstacles
-from tuisim.guide.catalogue import pages as guide_pages
+from tuisim.guide.catalogue import load_pages as guide_pages
 from tuisim.settings.build import build_run_spec
 from tuisim.settings.options import Settings, settings_of
 from tuisim.settings.profiles import load_profile

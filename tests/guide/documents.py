@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from tests.conftest import ROOT
-from tuisim.guide.catalogue import pages
-from tuisim.guide.tables import markdown_of
+from tuisim.guide.catalogue import load_pages
+from tuisim.guide.tables import build_markdown
 
 _FENCE = re.compile(r"^```([^\n]*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 _NAME = re.compile(r"# ([\w-]+\.\w+)\n")
@@ -38,7 +38,7 @@ class Block:
 
 
 DOCUMENTS = {"README": (ROOT / "README.md").read_text(encoding="utf-8")} | {
-    name: markdown_of(page) for name, page in pages().items()
+    name: build_markdown(page) for name, page in load_pages().items()
 }
 """The texts by name."""
 

@@ -14,8 +14,8 @@ from tuisim.app.actions.keys import ACTIONS
 from tuisim.cli import COMMANDS
 from tuisim.engine.core.profile import PROFILES
 from tuisim.engine.runs.frames import SAMPLE_COLUMNS
-from tuisim.guide.catalogue import GuidePart, pages
-from tuisim.guide.tables import TABLES, table
+from tuisim.guide.catalogue import GuidePart, load_pages
+from tuisim.guide.tables import TABLES, load_table
 from tuisim.settings.options import OPTIONS
 from tuisim.settings.user_config import SETTINGS
 
@@ -33,25 +33,27 @@ WORDS_OF = {
 
 def test_every_file_is_a_page_of_the_contents() -> None:
     files = {path.stem for path in (ROOT / "tuisim" / "guide" / "pages").iterdir()}
-    assert files == set(pages())
-    assert {page.part for page in pages().values()} == set(GuidePart)
+    assert files == set(load_pages())
+    assert {page.part for page in load_pages().values()} == set(GuidePart)
 
 
 def test_every_table_is_in_a_page() -> None:
     marks = re.compile(r"<!-- table: ([\w-]+) -->")
-    assert {name for page in pages().values() for name in marks.findall(page.source)} == set(TABLES)
+    assert {name for page in load_pages().values() for name in marks.findall(page.source)} == set(
+        TABLES
+    )
 
 
 @pytest.mark.parametrize("name", TABLES)
 def test_a_table_has_a_cell_for_each_column(name: str) -> None:
-    made = table(name)
+    made = load_table(name)
     assert made.rows
     assert {len(row) for row in made.rows} == {len(made.columns)}
 
 
 @pytest.mark.parametrize("name", WORDS_OF)
 def test_a_table_says_what_the_code_says(name: str) -> None:
-    text = table(name).markdown()
+    text = load_table(name).to_markdown()
     missing = [
         word
         for word in WORDS_OF[name]
@@ -86,21 +88,21 @@ def test_the_pages_that_errors_name_exist() -> None:
         re.findall(r"`tuisim guide ([a-z-]+)`", sources)
     )
     assert len(named) > 4
-    assert named <= set(pages())
+    assert named <= set(load_pages())
 
 
-@pytest.mark.parametrize("name", pages())
+@pytest.mark.parametrize("name", load_pages())
 def test_the_shell_prints_a_page(name: str, here: Command) -> None:
     done = here("guide", name)
     assert (done.returncode, done.stderr) == (0, "")
-    assert pages()[name].title in done.stdout.splitlines()[0]
+    assert load_pages()[name].title in done.stdout.splitlines()[0]
     assert "\x1b" not in done.stdout
     assert max(map(len, done.stdout.splitlines())) <= 100
 
 
 def test_the_shell_lists_the_contents_and_searches(here: Command) -> None:
     listed = here("guide").stdout
-    assert [name for name in pages() if name not in listed] == []
+    assert [name for name in load_pages() if name not in listed] == []
     assert here("guide", "--search", "wheel diameter").stdout.split()[1] == "world-files"
 
 

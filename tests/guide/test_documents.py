@@ -18,7 +18,7 @@ from tests.guide.documents import DOCUMENTS, Block, blocks, commands_in_text, pr
 from tuisim.app import app as lab_app
 from tuisim.cli import COMMANDS
 from tuisim.commands import app as app_command
-from tuisim.guide.catalogue import pages
+from tuisim.guide.catalogue import load_pages
 from tuisim.settings.command_line import Group
 
 
@@ -169,8 +169,8 @@ def test_each_link_leads_to_a_page(name: str) -> None:
     folder = ROOT if name == "README" else ROOT / "tuisim" / "guide" / "pages"
     assert [link for link in links if "://" not in link and not (folder / link).exists()] == []
     topics = re.findall(r"`tuisim guide ([a-z-]+)`", DOCUMENTS[name])
-    assert [topic for topic in topics if topic not in pages()] == []
+    assert [topic for topic in topics if topic not in load_pages()] == []
 
 
 def test_no_page_bears_a_commands_name() -> None:
-    assert [name for name in pages() if name in COMMANDS] == []
+    assert [name for name in load_pages() if name in COMMANDS] == []

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from tests.conftest import Command
-from tuisim.guide.catalogue import pages
+from tuisim.guide.catalogue import load_pages
 
 IMPORTS = {
     "ev3dev2": """\
@@ -37,7 +37,7 @@ from pybricks.tools import StopWatch, wait
 
 def rows() -> list[tuple[str, str]]:
     """The calls in each row of the table: of ev3dev2, of Pybricks."""
-    table = pages()["ev3dev2-and-pybricks"].source.partition("## What to mind")[0]
+    table = load_pages()["ev3dev2-and-pybricks"].source.partition("## What to mind")[0]
     found = [re.findall(r"`([^`]+)`", line) for line in table.splitlines() if line.startswith("| ")]
     return [(cells[0], cells[1]) for cells in found if len(cells) == 2]
 

@@ -8,10 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from tuisim.guide.catalogue import pages
-from tuisim.guide.excerpt import excerpt_of, passage_text
+from tuisim.guide.catalogue import load_pages
+from tuisim.guide.excerpt import draw_excerpt, flatten_passage
 from tuisim.guide.search import SearchResult, search
-from tuisim.guide.text import end_of_passage, page_lines, rows_of
+from tuisim.guide.text import draw_page, find_passage_end, find_rows
 
 STUDENTS = tomllib.loads((Path(__file__).parent / "questions.toml").read_text(encoding="utf-8"))
 """What students ask, with the pages that answer it."""
@@ -26,13 +26,13 @@ def shown_of(
     one: SearchResult, width: int, most: int, asked: re.Pattern[str] | None = None
 ) -> list[str]:
     """What is shown of an answer."""
-    return ["".join(text for text, _ in line) for line in excerpt_of(one, width, most, asked)]
+    return ["".join(text for text, _ in line) for line in draw_excerpt(one, width, most, asked)]
 
 
 @pytest.mark.parametrize("written, least", [("first", 20), ("later", 48)])
 def test_questions_in_words_find_their_page(written: str, least: int) -> None:
     asked = STUDENTS[written]
-    assert all({*one["pages"]} <= {*pages()} for one in asked)
+    assert all({*one["pages"]} <= {*load_pages()} for one in asked)
     assert sum(not {*one["pages"]}.isdisjoint(names(one["ask"])) for one in asked) >= least
 
 
@@ -69,8 +69,8 @@ def test_a_row_of_a_table_is_found_in_each_width(width: int, begins: str) -> Non
     found = next(
         one for one in search("gyro angle INPUT_4 Port.S4") if one.name == "ev3dev2-and-pybricks"
     )
-    lines = page_lines(pages()[found.name], width)
-    _, row = rows_of(lines, found.heading, found.passage)
+    lines = draw_page(load_pages()[found.name], width)
+    _, row = find_rows(lines, found.heading, found.passage)
     assert "".join(part for part, _ in lines[row]).startswith(begins)
 
 
@@ -78,12 +78,12 @@ def test_a_row_of_a_table_is_found_in_each_width(width: int, begins: str) -> Non
 @pytest.mark.parametrize("question", ["why does the sensor say White on grey", "threshold"])
 def test_a_passage_ends_where_the_next_one_begins(question: str, width: int) -> None:
     first = search(question)[0]
-    lines = page_lines(pages()[first.name], width)
-    _, row = rows_of(lines, first.heading, first.passage)
-    end = end_of_passage(lines, row, first.passage)
+    lines = draw_page(load_pages()[first.name], width)
+    _, row = find_rows(lines, first.heading, first.passage)
+    end = find_passage_end(lines, row, first.passage)
     shown = "".join("".join(part for part, _ in line) for line in lines[row:end])
     assert sorted(re.findall(r"\w", shown)) == sorted(
-        re.findall(r"\w", passage_text(first.passage))
+        re.findall(r"\w", flatten_passage(first.passage))
     )
 
 

@@ -4,22 +4,22 @@ from __future__ import annotations
 
 import pytest
 
-from tuisim.guide.catalogue import pages
-from tuisim.guide.search import asked_questions, search
-from tuisim.guide.tables import markdown_of
+from tuisim.guide.catalogue import load_pages
+from tuisim.guide.search import load_questions, search
+from tuisim.guide.tables import build_markdown
 
 
 def test_each_answer_is_in_its_page() -> None:
-    for name, answers in asked_questions().items():
-        text = markdown_of(pages()[name])
+    for name, answers in load_questions().items():
+        text = build_markdown(load_pages()[name])
         assert [key for key in answers if key not in text] == [], name
 
 
-@pytest.mark.parametrize("name", asked_questions())
+@pytest.mark.parametrize("name", load_questions())
 def test_each_question_finds_its_answer_among_the_first_two(name: str) -> None:
     missed = [
         (key, ask, [one.name for one in search(ask)[:2]])
-        for key, asks in asked_questions()[name].items()
+        for key, asks in load_questions()[name].items()
         for ask in asks
         if not any(one.name == name and key in one.passage for one in search(ask)[:2])
     ]
@@ -28,6 +28,6 @@ def test_each_question_finds_its_answer_among_the_first_two(name: str) -> None:
 
 def test_no_question_has_two_answers() -> None:
     asks = [
-        ask for answers in asked_questions().values() for asks in answers.values() for ask in asks
+        ask for answers in load_questions().values() for asks in answers.values() for ask in asks
     ]
     assert len(asks) == len({*asks})

@@ -13,7 +13,7 @@ from tuisim.engine.core.driver.motor import Command, DriverMotor, State
 from tuisim.engine.core.driver.plant import NS_PER_S, STEP_NS
 from tuisim.engine.core.driver.regulator import MODELS, StopAction
 from tuisim.engine.core.driver.simulated import load_wheel
-from tuisim.guide.catalogue import pages
+from tuisim.guide.catalogue import load_pages
 from tuisim.settings.robots import ROBOTS
 
 ROBOT = ROBOTS["Default_Robot"]
@@ -25,7 +25,9 @@ Cells = tuple[str, ...]
 
 def rows_of(title: str) -> list[Cells]:
     """Return the rows of the table in a section of the page."""
-    section = pages()["the-real-robot"].source.partition(f"## {title}\n")[2].partition("\n## ")[0]
+    section = (
+        load_pages()["the-real-robot"].source.partition(f"## {title}\n")[2].partition("\n## ")[0]
+    )
     table = [line for line in section.splitlines() if line.startswith("| ")]
     return [tuple(cell.strip() for cell in line.strip("|").split("|")) for line in table[2:]]
 

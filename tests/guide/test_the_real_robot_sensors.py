@@ -19,7 +19,7 @@ from tuisim.engine.core.simulation import Simulation
 from tuisim.engine.core.spec import FIELD_WIDTH_MM, RobotSpec, RunSpec, UltrasonicSpec, WorldSpec
 from tuisim.engine.core.state import Instant
 from tuisim.engine.core.values import values_of
-from tuisim.guide.catalogue import pages
+from tuisim.guide.catalogue import load_pages
 
 TYPICAL: DriftSpec = values_of(WorldSpec)["drift"].from_text("typical")
 
@@ -77,7 +77,7 @@ def tell(here: Command, tmp_path: Path) -> Callable[..., str]:
 
 def is_in_table(name: str, here: str) -> bool:
     """Return whether the table has a row of a name that ends in what comes out here."""
-    lines = pages()["the-real-robot"].source.splitlines()
+    lines = load_pages()["the-real-robot"].source.splitlines()
     (row,) = (line for line in lines if line.startswith(f"| {name} |"))
     return row.endswith(f"| {here} |")
 

@@ -4,30 +4,30 @@ from __future__ import annotations
 
 import pytest
 
-from tuisim.guide.words import stems_of, words_of
+from tuisim.guide.words import find_stems, split_words
 
 
 def test_what_is_denied_is_another_question() -> None:
-    assert [*words_of("why doesn't it move")] == ["not", "move"]
-    assert [*words_of("it doesnt move and I dont know")] == ["not", "move", "know"]
-    assert [*words_of("different current")] == ["different", "current"]
-    assert [*words_of("It cannot find the colours, can't it?")] == ["not", "find", "colours"]
+    assert [*split_words("why doesn't it move")] == ["not", "move"]
+    assert [*split_words("it doesnt move and I dont know")] == ["not", "move", "know"]
+    assert [*split_words("different current")] == ["different", "current"]
+    assert [*split_words("It cannot find the colours, can't it?")] == ["not", "find", "colours"]
 
 
 @pytest.mark.parametrize("question", ["", "how do I", "What's that?"])
 def test_words_that_say_nothing_are_left_out(question: str) -> None:
-    assert stems_of([question]) == [frozenset()]
+    assert find_stems([question]) == [frozenset()]
 
 
 def test_forms_of_a_word_are_one() -> None:
-    assert len({*stems_of(["turning", "Turns", "turned", "turn"])}) == 1
+    assert len({*find_stems(["turning", "Turns", "turned", "turn"])}) == 1
 
 
 def test_words_that_mean_the_same_share_a_meaning() -> None:
-    graph, chart, wall = stems_of(["graph", "chart", "wall"])
+    graph, chart, wall = find_stems(["graph", "chart", "wall"])
     assert graph & chart == {"=chart"}
     assert not graph & wall
 
 
 def test_words_joined_by_an_arrow_are_kept_together() -> None:
-    assert [*words_of("what is in→out")] == ["in→out"]
+    assert [*split_words("what is in→out")] == ["in→out"]

@@ -22,9 +22,9 @@ _MOST_RESULTS = 5
 
 
 def _names() -> Sequence[str]:
-    from tuisim.guide.catalogue import pages
+    from tuisim.guide.catalogue import load_pages
 
-    return list(pages())
+    return list(load_pages())
 
 
 @command(
@@ -44,14 +44,14 @@ def guide(topic: str | None, words: str | None) -> int:
     In the app, the key ? opens the same pages.
     """
     from tuisim.guide.catalogue import find_page
-    from tuisim.guide.text import contents_lines, page_lines
+    from tuisim.guide.text import draw_contents, draw_page
 
     if topic is not None and words is not None:
         raise ConfigError("TOPIC and --search exclude each other", "give one of them", key="guide")
     if words is not None:
         return _search(words)
     width = _width()
-    _show(page_lines(find_page(topic), width) if topic is not None else contents_lines(width))
+    _show(draw_page(find_page(topic), width) if topic is not None else draw_contents(width))
     return 0
 
 
@@ -64,10 +64,10 @@ def _width() -> int:
 
 
 def _show(lines: list[Line]) -> None:
-    from tuisim.guide.text import written
+    from tuisim.guide.text import render_lines
 
     styled = sys.stdout.isatty() and "NO_COLOR" not in os.environ
-    text = written(lines, styled=styled)
+    text = render_lines(lines, styled=styled)
     if len(lines) < shutil.get_terminal_size().lines:
         click.echo(text, nl=False)
     else:
@@ -76,11 +76,11 @@ def _show(lines: list[Line]) -> None:
 
 def _search(words: str) -> int:
     from tuisim.guide.search import search
-    from tuisim.guide.text import NO_WORDS, result_lines
+    from tuisim.guide.text import NO_WORDS, draw_results
 
     found = search(words)[:_MOST_RESULTS]
     if not found:
         echo(f"{NO_WORDS}: {words}. `tuisim guide` lists all pages.")
         return 1
-    _show(result_lines(found, _width()))
+    _show(draw_results(found, _width()))
     return 0

@@ -97,16 +97,16 @@ class Page:
 
 
 @cache
-def pages() -> Mapping[str, Page]:
+def load_pages() -> Mapping[str, Page]:
     """Return all pages by name, in their order."""
-    return {name: _read(name, part) for part, names in CONTENTS.items() for name in names}
+    return {name: _read_page(name, part) for part, names in CONTENTS.items() for name in names}
 
 
-def _read(name: str, part: GuidePart) -> Page:
-    found = _PARTS.match((_PAGES / f"{name}.md").read_text(encoding="utf-8"))
-    assert found is not None, name
-    head = tomllib.loads(found["head"])
-    return Page(name, part, found["title"], head["about"], head["words"], found["text"].strip("\n"))
+def _read_page(name: str, part: GuidePart) -> Page:
+    match = _PARTS.match((_PAGES / f"{name}.md").read_text(encoding="utf-8"))
+    assert match is not None, name
+    head = tomllib.loads(match["head"])
+    return Page(name, part, match["title"], head["about"], head["words"], match["text"].strip("\n"))
 
 
 def find_page(name: str) -> Page:
@@ -115,7 +115,7 @@ def find_page(name: str) -> Page:
     Raises:
         ConfigError: there is no such page.
     """
-    known = pages()
+    known = load_pages()
     if name not in known:
         raise ConfigError(
             f"no such page {name!r}", f"{nearest(name, known)} See `tuisim guide`", key="guide"

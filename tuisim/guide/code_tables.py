@@ -44,80 +44,80 @@ _COLOR = {
 }
 
 
-def _meaning(name: str) -> str:
+def _describe_column(name: str) -> str:
     if name in _MEANINGS:
         return _MEANINGS[name]
     sensor, _, part = name.partition("_")
     return _COLOR.get(part, name.replace("_", " ")).format(sensor=sensor, part=part)
 
 
-def _columns(names: tuple[str, ...]) -> Table:
+def _build_column_table(names: tuple[str, ...]) -> Table:
     rows = [
-        (code(name), _meaning(name), "s" if name == "time" else unit_of(name).words)
+        (code(name), _describe_column(name), "s" if name == "time" else unit_of(name).words)
         for name in names
     ]
     return Table(("column", "contents", "unit"), rows)
 
 
-def samples() -> Table:
+def list_sample_columns() -> Table:
     """Return the columns of samples."""
-    return _columns(SAMPLE_COLUMNS)
+    return _build_column_table(SAMPLE_COLUMNS)
 
 
-def telemetry() -> Table:
+def list_telemetry_columns() -> Table:
     """Return the columns of the telemetry of the default robot."""
     sensors = [name for mount in mounted(RobotSpec()) for name in mount.names]
-    return _columns(("time", *MOTION_COLUMNS, *sensors, "line"))
+    return _build_column_table(("time", *MOTION_COLUMNS, *sensors, "line"))
 
 
-def formats() -> Table:
+def list_formats() -> Table:
     """Return the formats of exported data."""
     rows = [
         (
             code(suffix),
-            one.contents,
-            "in the file" if not one.companion else f"in `NAME{suffix}.json` beside the file",
+            exporter.contents,
+            "in the file" if not exporter.companion else f"in `NAME{suffix}.json` beside the file",
         )
-        for suffix, one in EXPORTERS.items()
+        for suffix, exporter in EXPORTERS.items()
     ]
     return Table(("suffix", "keeps", "units, seed, program and world"), rows)
 
 
-def options() -> Table:
+def list_options() -> Table:
     """Return the shared options."""
     rows = [
         (
-            " ".join(code(flag) for flag in one.flags),
-            code(one.metavar),
-            one.help.rstrip("."),
-            one.group,
+            " ".join(code(flag) for flag in option.flags),
+            code(option.metavar),
+            option.help.rstrip("."),
+            option.group,
         )
-        for one in OPTIONS
+        for option in OPTIONS
     ]
     return Table(("option", "value", "sets", "group"), rows)
 
 
-def settings() -> Table:
+def list_settings() -> Table:
     """Return the settings of `config.toml`."""
     rows = [
         (
-            f"[{one.section}]",
-            code(one.name),
-            code(toml_value(one.default)),
-            one.help.rstrip("."),
-            one.value.allowed,
+            f"[{setting.section}]",
+            code(setting.name),
+            code(toml_value(setting.default)),
+            setting.help.rstrip("."),
+            setting.value.allowed,
         )
-        for one in SETTINGS.values()
+        for setting in SETTINGS.values()
     ]
     return Table(("table", "setting", "without the file", "sets", "value"), rows)
 
 
-def profile_rules() -> Table:
+def list_profile_rules() -> Table:
     """Return every rule of a profile, its value in each profile, and its source."""
     rows = [
         (
             code(key.removesuffix("_ns")),
-            *(_value(key, profile) for profile in PROFILES.values()),
+            *(_format_rule(key, profile) for profile in PROFILES.values()),
             rule.source,
         )
         for key, rule in values_of(ProfileSpec).items()
@@ -126,30 +126,32 @@ def profile_rules() -> Table:
     return Table(("rule", *map(code, PROFILES), "source"), rows)
 
 
-def drift() -> Table:
+def list_drift_sizes() -> Table:
     """Return the sizes of drift, each with its typical size and its source."""
     numbers = [
-        (key, one) for key, one in values_of(DriftSpec).items() if isinstance(one, NamedNumber)
+        (key, number)
+        for key, number in values_of(DriftSpec).items()
+        if isinstance(number, NamedNumber)
     ]
     rows = [
-        (code(key), f"{one.names['typical']:g} {one.unit}", one.help, one.source)
-        for key, one in numbers
+        (code(key), f"{number.names['typical']:g} {number.unit}", number.help, number.source)
+        for key, number in numbers
     ]
     return Table(("size", "typical", "is", "source of the typical size"), rows)
 
 
-def _value(key: str, profile: ProfileSpec) -> str:
+def _format_rule(key: str, profile: ProfileSpec) -> str:
     value = getattr(profile, key)
     if isinstance(value, bool):
         return "yes" if value else "no"
     return f"{value / MS:g} ms" if key.endswith("_ns") else str(value)
 
 
-def breakpoints() -> Table:
+def list_breakpoints() -> Table:
     """Return the forms of a breakpoint."""
     return Table(("text", "pauses when"), [(code(form), meaning) for form, meaning in FORMS])
 
 
-def columns() -> Table:
+def list_columns() -> Table:
     """Return the columns of a run of the default robot, those of its motors under profile `ev3` alone."""
-    return _columns(column_names(RunSpec(RobotSpec(), WorldSpec(), PROFILES["ev3"])))
+    return _build_column_table(column_names(RunSpec(RobotSpec(), WorldSpec(), PROFILES["ev3"])))

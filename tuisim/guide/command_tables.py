@@ -11,44 +11,49 @@ from tuisim.guide.tables import Table, code
 from tuisim.settings.command_line import Group, GroupedOption
 
 
-def _commands() -> Iterator[tuple[str, click.Command, str]]:
+def _iterate_commands() -> Iterator[tuple[str, click.Command, str]]:
     """Yield every command and subcommand: its words, itself, and what it does."""
     # The command line is above the guide, which it imports.
     entries = import_module("tuisim.cli").COMMANDS
     for name, entry in entries.items():
-        found = entry.load()
-        yield f"tuisim {name}", found, entry.does
-        if isinstance(found, Group):
-            for word, does in found.listing.items():
-                yield f"tuisim {name} {word}", found.load(word), does
+        command = entry.load()
+        yield f"tuisim {name}", command, entry.does
+        if isinstance(command, Group):
+            for word, does in command.listing.items():
+                yield f"tuisim {name} {word}", command.load(word), does
 
 
-def _usage(words: str, found: click.Command) -> str:
-    with click.Context(found, info_name=words) as context:
-        pieces = found.collect_usage_pieces(context)
+def _format_usage(words: str, command: click.Command) -> str:
+    with click.Context(command, info_name=words) as context:
+        pieces = command.collect_usage_pieces(context)
     return " ".join([words, *(piece for piece in pieces if piece)])
 
 
-def commands() -> Table:
+def list_commands() -> Table:
     """Return every command and what it does."""
     return Table(
         ("command", "does"),
-        [(code(_usage(words, found)), does) for words, found, does in _commands()],
+        [
+            (code(_format_usage(words, command)), does)
+            for words, command, does in _iterate_commands()
+        ],
     )
 
 
-def command_options() -> Table:
+def list_command_options() -> Table:
     """Return the options of each command, without those that set up the world."""
     rows = []
-    for words, found, _ in _commands():
-        for param in found.params:
+    for words, command, _ in _iterate_commands():
+        for param in command.params:
             if isinstance(param, click.Option) and not (
                 isinstance(param, GroupedOption) and param.sets
             ):
-                rows.append((code(words), code(_names(param)), (param.help or "").rstrip(".")))
+                rows.append(
+                    (code(words), code(_format_flags(param)), (param.help or "").rstrip("."))
+                )
     return Table(("command", "option", "does"), rows)
 
 
-def _names(param: click.Option) -> str:
+def _format_flags(param: click.Option) -> str:
     names = " ".join(param.opts)
     return f"{names} {param.metavar}" if param.metavar else names

@@ -22,133 +22,152 @@ _BULLET = "• "
 _NOTE = re.compile(r" {2,}#")
 """Before a comment beside code, in a column with others."""
 _SENTENCE_END = re.compile(r"(?<=[.:!?]) (?=[\w`*])")
-_TOLD_BY = 4
+_PREFIX_LETTERS = 4
 """Letters that tell one word of a question from another."""
-_FOR_SCRIPTS = ("group", "id")
+_SCRIPT_COLUMNS = ("group", "id")
 """Columns of the keys that say nothing to a reader of one of them."""
-_KEPT = 256
+_CACHED_TEXTS = 256
 """Texts that are kept as lines: those of several questions."""
-_LEAST = 3
+_MIN_LINES = 3
 """Lines that make sense by themselves, of a text as of code."""
 
 
-def excerpt_of(
-    one: SearchResult, width: int, most: int, asked: re.Pattern[str] | None = None
+def draw_excerpt(
+    passage: SearchResult, width: int, max_lines: int, pattern: re.Pattern[str] | None = None
 ) -> list[Line]:
     """Return what is shown of a passage that was found: its beginning, or what the question is about.
 
     Args:
-        one: What was found.
+        passage: What was found.
         width: Columns.
-        most: So many lines at most; what is left out is an ellipsis.
-        asked: Finds the words of the question. A longer passage begins where most of them follow: at a sentence,
+        max_lines: So many lines at most; what is left out is an ellipsis.
+        pattern: Finds the words of the question. A longer passage begins where most of them follow: at a sentence,
             and its code at a line.
     """
     words, *set_in = (
-        ("", one.passage) if one.passage.startswith(SET_IN) else _CODE_BELOW.split(one.passage)
+        ("", passage.passage)
+        if passage.passage.startswith(SET_IN)
+        else _CODE_BELOW.split(passage.passage)
     )
     code = [
-        part for line in dedent("\n".join(set_in)).split("\n") for part in _wrapped(line, width)
+        part for line in dedent("\n".join(set_in)).split("\n") for part in _wrap_code(line, width)
     ]
-    markdown = _as_sentences(_with_head(words, one.head))
-    most_of_text = min(most, max(most - len(code) - len(one.below), most - _LEAST, _LEAST))
-    if asked and len(_drawn(markdown, width)) > most_of_text:
-        markdown = _from_sentence(markdown, width * most_of_text, asked)
-    lines = [*_shortened(markdown, width, most_of_text)]
-    items = [line for item in one.below for line in _item_lines(item, width)]
-    lines += items if len(items) <= (room := most - len(lines)) else _first_of(items, room)
-    return lines + [[(line, CODE)] for line in _lines_of_code(code, most - len(lines), asked)]
+    markdown = _strip_marks(_add_heads(words, passage.head))
+    max_text_lines = min(
+        max_lines,
+        max(max_lines - len(code) - len(passage.below), max_lines - _MIN_LINES, _MIN_LINES),
+    )
+    if pattern and len(_draw_markdown(markdown, width)) > max_text_lines:
+        markdown = _cut_beginning(markdown, width * max_text_lines, pattern)
+    lines = [*_draw_shortened(markdown, width, max_text_lines)]
+    items = [line for item in passage.below for line in _draw_item(item, width)]
+    lines += items if len(items) <= (room := max_lines - len(lines)) else _cut_lines(items, room)
+    return lines + [[(line, CODE)] for line in _cut_code(code, max_lines - len(lines), pattern)]
 
 
-def _first_of(lines: list[Line], most: int) -> list[Line]:
+def _cut_lines(lines: list[Line], max_lines: int) -> list[Line]:
     """Return the first of more lines, with an ellipsis below them where it is not all that has room."""
-    return [*lines[: most - 1], [(_ELLIPSIS.strip(), PLAIN)]] if most > 1 else lines[:most]
+    return (
+        [*lines[: max_lines - 1], [(_ELLIPSIS.strip(), PLAIN)]]
+        if max_lines > 1
+        else lines[:max_lines]
+    )
 
 
-def _lines_of_code(code: list[str], most: int, asked: re.Pattern[str] | None) -> list[str]:
+def _cut_code(code: list[str], max_lines: int, pattern: re.Pattern[str] | None) -> list[str]:
     """Return the lines that have most words of a question, with an ellipsis below them if there are more."""
-    if len(code) <= most or most < _LEAST:
-        return code[:most]
-    first = _line_with_most(code, most - 1, asked) if asked else 0
-    shown = code[first : first + most - 1]
-    return [*shown, _ELLIPSIS.strip()] if first + len(shown) < len(code) else code[-most:]
+    if len(code) <= max_lines or max_lines < _MIN_LINES:
+        return code[:max_lines]
+    first = _find_best_line(code, max_lines - 1, pattern) if pattern else 0
+    visible = code[first : first + max_lines - 1]
+    return [*visible, _ELLIPSIS.strip()] if first + len(visible) < len(code) else code[-max_lines:]
 
 
-def _wrapped(line: str, width: int) -> list[str]:
+def _wrap_code(line: str, width: int) -> list[str]:
     """Return a line of code as lines of at most a number of columns; none if it is empty."""
     further = " " * (len(line) - len(line.lstrip()) + 4)
     return wrap(_NOTE.sub("  #", line), width, subsequent_indent=further, replace_whitespace=False)
 
 
-def _shortened(markdown: str, width: int, most: int) -> list[Line]:
+def _draw_shortened(markdown: str, width: int, max_lines: int) -> list[Line]:
     """Return the first lines, with an ellipsis at their end if there are more."""
-    lines = _drawn(markdown, width)
-    if len(lines) <= most:
+    lines = _draw_markdown(markdown, width)
+    if len(lines) <= max_lines:
         return lines
-    *above, last = _drawn(markdown, width - len(_ELLIPSIS))[:most]
+    *above, last = _draw_markdown(markdown, width - len(_ELLIPSIS))[:max_lines]
     return [*above, [*last, (_ELLIPSIS, PLAIN)]]
 
 
-@lru_cache(_KEPT)
-def _drawn(markdown: str, width: int) -> list[Line]:
+@lru_cache(_CACHED_TEXTS)
+def _draw_markdown(markdown: str, width: int) -> list[Line]:
     """Return Markdown as lines, which nobody changes: answers are drawn again until they fit."""
     return markdown_lines(markdown, width)
 
 
-def _item_lines(item: str, width: int) -> list[Line]:
+def _draw_item(item: str, width: int) -> list[Line]:
     """Return an item of a list, or a row of a table, as lines."""
-    lines = _drawn(_as_sentences(item), width - len(_BULLET))
+    lines = _draw_markdown(_strip_marks(item), width - len(_BULLET))
     return [
         [(" " * len(_BULLET) if row else _BULLET, PLAIN), *line] for row, line in enumerate(lines)
     ]
 
 
-def _from_sentence(text: str, letters: int, asked: re.Pattern[str]) -> str:
+def _cut_beginning(text: str, letters: int, pattern: re.Pattern[str]) -> str:
     """Return a text from the sentence on from which a number of letters has most words of a question."""
-    starts = [0, *(found.end() for found in _SENTENCE_END.finditer(text))]
-    start = max(starts, key=lambda at: (_words_in(text[at : at + letters], asked), -at))
+    starts = [0, *(match.end() for match in _SENTENCE_END.finditer(text))]
+    start = max(
+        starts,
+        key=lambda start_index: (
+            _count_words(text[start_index : start_index + letters], pattern),
+            -start_index,
+        ),
+    )
     return f"… {text[start:]}" if start else text
 
 
-def _line_with_most(lines: Sequence[str], count: int, asked: re.Pattern[str]) -> int:
+def _find_best_line(lines: Sequence[str], count: int, pattern: re.Pattern[str]) -> int:
     """Return the line from which on a number of lines has most words of a question."""
     starts = range(max(1, len(lines) - count + 1))
-    return max(starts, key=lambda at: (_words_in("\n".join(lines[at : at + count]), asked), -at))
+    return max(
+        starts, key=lambda row: (_count_words("\n".join(lines[row : row + count]), pattern), -row)
+    )
 
 
-def _words_in(text: str, asked: re.Pattern[str]) -> int:
-    return len({word[:_TOLD_BY].lower() for word in asked.findall(text)})
+def _count_words(text: str, pattern: re.Pattern[str]) -> int:
+    return len({word[:_PREFIX_LETTERS].lower() for word in pattern.findall(text)})
 
 
-def _with_head(passage: str, head: str) -> str:
+def _add_heads(passage: str, head: str) -> str:
     """Return a row of a table of more than two columns with the heads of its columns, but for the first."""
-    cells, heads = cells_of(passage), cells_of(head)
+    cells, heads = split_cells(passage), split_cells(head)
     if not head or len(cells) <= _CLEAR_COLUMNS or len(heads) != len(cells):
         return passage
-    said = [
+    named_cells = [
         (name, cell)
         for name, cell in zip(heads[1:], cells[1:], strict=True)
-        if cell and name not in _FOR_SCRIPTS
+        if cell and name not in _SCRIPT_COLUMNS
     ]
-    named = (
-        [f"{name}: {cell}" for name, cell in said] if len(said) > 1 else [cell for _, cell in said]
+    texts = (
+        [f"{name}: {cell}" for name, cell in named_cells]
+        if len(named_cells) > 1
+        else [cell for _, cell in named_cells]
     )
-    return "| " + " | ".join([cells[0], *named]) + " |"
+    return "| " + " | ".join([cells[0], *texts]) + " |"
 
 
-def passage_text(markdown: str) -> str:
+def flatten_passage(markdown: str) -> str:
     """Return a passage of a page as one line of plain text."""
-    return " ".join(plain_text(_as_sentences(markdown)).split())
+    return " ".join(plain_text(_strip_marks(markdown)).split())
 
 
-def _as_sentences(markdown: str) -> str:
+def _strip_marks(markdown: str) -> str:
     """Return a passage of a page without the mark of an item, the cells of a row and the targets of links."""
-    text = " · ".join(filter(None, cells_of(_MARK.sub("", markdown))))
+    text = " · ".join(filter(None, split_cells(_MARK.sub("", markdown))))
     # In one line: a number at the beginning of a line would begin a list.
     return " ".join(LINK.sub(lambda link: link[1], text).split())
 
 
-def cells_of(markdown: str) -> list[str]:
+def split_cells(markdown: str) -> list[str]:
     """Return the cells of a passage that is a row of a table, else the passage."""
     return (
         [cell.strip() for cell in markdown.strip("|").split(" | ")]

@@ -25,7 +25,7 @@ _MOTOR_ROWS: tuple[tuple[str, Callable[[ControlSettings], str]], ...] = (
 )
 
 
-def motors() -> Table:
+def list_motors() -> Table:
     """Return the settings of a new motor of each kind, under each profile of Pybricks."""
     kinds = [(profile, kind) for profile in _PROFILES for kind in MODELS]
     settings = [motor_settings(profile.motor_law, kind) for profile, kind in kinds]
@@ -33,7 +33,7 @@ def motors() -> Table:
     return Table(columns, [(name, *map(cell, settings)) for name, cell in _MOTOR_ROWS])
 
 
-def drive_bases() -> Table:
+def list_drive_bases() -> Table:
     """Return how a new drive base of usual sizes moves, under each profile of Pybricks."""
     columns = (
         "`wheel_diameter`, `axle_track`",

@@ -21,18 +21,18 @@ from textwrap import indent
 from typing import TypeAlias
 
 from tuisim.base.data_class import dataclass
-from tuisim.guide.catalogue import pages
-from tuisim.guide.tables import markdown_of
-from tuisim.guide.words import stems_of, words_of
+from tuisim.guide.catalogue import load_pages
+from tuisim.guide.tables import build_markdown
+from tuisim.guide.words import find_stems, split_words
 
-_LEAST_LETTERS, _ENDING = 4, 2
+_MIN_LETTERS, _ENDING_LETTERS = 4, 2
 """Letters that tell a word, and those at its end that may be others in another form of it."""
 _PLAIN = ("not", "one")
 """Words of a question that say too little to stand out."""
 
 
 @cache
-def asked_questions() -> Mapping[str, Mapping[str, tuple[str, ...]]]:
+def load_questions() -> Mapping[str, Mapping[str, tuple[str, ...]]]:
     """Return by page the questions that it answers, by a text that is in the passage which answers them."""
     text = (Path(__file__).parent / "questions.toml").read_text(encoding="utf-8")
     return {
@@ -53,22 +53,22 @@ _RULE = re.compile(r"[-| ]+")
 """The line below the head of a table."""
 _NO_ANSWER = re.compile(r"# .*|")
 """The title of a page."""
-_SHORTEST = 3
+_MIN_PREFIX_LETTERS = 3
 """Letters from which a word may be the beginning of another."""
-_ITS_WORDS, _HEADINGS, _PAGE_WORDS, _WHOLE_PAGE = 1.0, 0.6, 1.0, 0.6
+_PASSAGE_WEIGHT, _HEADINGS_WEIGHT, _PAGE_WORDS_WEIGHT, _WHOLE_PAGE_WEIGHT = 1.0, 0.6, 1.0, 0.6
 """How much the words of a passage count, those of its headings, the further words of its page, and the share of the
 question that is anywhere on its page."""
-_ALL_ASKED, _MOST_ALIKE, _SAME = 1.0, 0.5, 1.5
+_ALL_QUESTIONS_WEIGHT, _NEAREST_QUESTION_WEIGHT, _SAME_QUESTION_WEIGHT = 1.0, 0.5, 1.5
 """How much the questions count that people ask: all together, the one most alike, and its cube: the same question."""
-_COMMON = 0.05
+_MIN_STEM_WEIGHT = 0.05
 """The least weight of a word, however common it is."""
-_MOST = 12
+_MAX_RESULTS = 12
 """So many passages are found; further ones share common words only."""
-_FIRST, _LEAST_SHARE = 2, 0.5
+_SURE_RESULTS, _MIN_SHARE = 2, 0.5
 """So many are found however well they answer; each further one answers at least this much as well as the best one."""
-_JOINT = re.compile(r"[?!.;,]+\s+|\b(?:and|or|but|then)\b")
+_PART_BREAK = re.compile(r"[?!.;,]+\s+|\b(?:and|or|but|then)\b")
 """Between two questions in one."""
-_WORDS_OF_A_PART = 2
+_MIN_PART_WORDS = 2
 """So many words say what a part of a question asks for."""
 
 _Stems: TypeAlias = frozenset[str]
@@ -106,70 +106,72 @@ class _Postings:
             for stem, weight in weights.items():
                 self._rows[stem].append((row, weight / (length**power * usual)))
 
-    def like(self, question: Mapping[str, float]) -> Mapping[int, float]:
+    def compute_cosines(self, question: Mapping[str, float]) -> Mapping[int, float]:
         """Return the texts that have a stem of a question of length 1, by row, with how much they are alike."""
-        found: defaultdict[int, float] = defaultdict(float)
+        cosines: defaultdict[int, float] = defaultdict(float)
         for stem, weight in question.items():
-            for row, its in self._rows.get(stem, ()):
-                found[row] += weight * its
-        return found
+            for row, text_weight in self._rows.get(stem, ()):
+                cosines[row] += weight * text_weight
+        return cosines
 
 
 class _Index:
     """All passages, with the stems of their words and of the questions that they answer."""
 
     def __init__(self) -> None:
-        self.passages = list(_passages())
-        row_of = {
-            (name, key): self._row(name, key)
-            for name, of in asked_questions().items()
+        self.passages = list(_iterate_passages())
+        row_by_key = {
+            (name, key): self._find_row(name, key)
+            for name, of in load_questions().items()
             for key in of
         }
-        asks = [
-            (row, ask)
-            for (name, key), row in row_of.items()
+        questions = [
+            (row, question)
+            for (name, key), row in row_by_key.items()
             if row >= 0
-            for ask in asked_questions()[name][key]
+            for question in load_questions()[name][key]
         ]
-        self.row_of_ask = [row for row, _ in asks]
-        texts = stems_of(one.passage for one in self.passages)
-        asked = stems_of(ask for _, ask in asks)
-        heads = stems_of(f"{pages()[one.name].title} {one.heading}" for one in self.passages)
-        of_pages = stems_of(f"{page.words} {page.about}" for page in pages().values())
-        words = dict(zip(pages(), of_pages, strict=True))
-        self._having = _counts(texts, zip(self.row_of_ask, asked, strict=True))
+        self.row_of_ask = [row for row, _ in questions]
+        texts = find_stems(passage.passage for passage in self.passages)
+        question_stems = find_stems(question for _, question in questions)
+        heads = find_stems(
+            f"{load_pages()[passage.name].title} {passage.heading}" for passage in self.passages
+        )
+        of_pages = find_stems(f"{page.words} {page.about}" for page in load_pages().values())
+        words = dict(zip(load_pages(), of_pages, strict=True))
+        self._having = _count_passages(texts, zip(self.row_of_ask, question_stems, strict=True))
         self.stems_of_page = {
             name: frozenset().union(*(texts[row] | heads[row] | words[name] for row in rows))
-            for name, rows in self._rows_of_pages().items()
+            for name, rows in self._group_rows().items()
         }
-        self.stems = frozenset().union(*self.stems_of_page.values(), *asked)
+        self.stems = frozenset().union(*self.stems_of_page.values(), *question_stems)
         self.texts = _Postings([self.weights(stems) for stems in texts], power=0.5)
         self.heads = _Postings([self.weights(stems) for stems in heads])
-        self.words = _Postings([self.weights(words[one.name]) for one in self.passages])
-        self.asks = _Postings([self.weights(stems) for stems in asked])
-        self.all_asks = _Postings(self._sums(asked))
+        self.words = _Postings([self.weights(words[passage.name]) for passage in self.passages])
+        self.asks = _Postings([self.weights(stems) for stems in question_stems])
+        self.all_asks = _Postings(self._sum_questions(question_stems))
 
-    def _row(self, name: str, key: str) -> int:
+    def _find_row(self, name: str, key: str) -> int:
         """Return the passage of a page that has a text; -1 if none has: keys that a user has changed may be in none."""
         return next(
             (
                 row
-                for row, one in enumerate(self.passages)
-                if one.name == name and key in one.passage
+                for row, passage in enumerate(self.passages)
+                if passage.name == name and key in passage.passage
             ),
             -1,
         )
 
-    def _rows_of_pages(self) -> Mapping[str, Sequence[int]]:
+    def _group_rows(self) -> Mapping[str, Sequence[int]]:
         rows: defaultdict[str, list[int]] = defaultdict(list)
-        for row, one in enumerate(self.passages):
-            rows[one.name].append(row)
+        for row, passage in enumerate(self.passages):
+            rows[passage.name].append(row)
         return rows
 
-    def _sums(self, asked: Iterable[_Stems]) -> list[dict[str, float]]:
+    def _sum_questions(self, question_stems: Iterable[_Stems]) -> list[dict[str, float]]:
         """Return by passage the sum of its questions, each of length 1."""
         sums: list[dict[str, float]] = [{} for _ in self.passages]
-        for row, stems in zip(self.row_of_ask, asked, strict=True):
+        for row, stems in zip(self.row_of_ask, question_stems, strict=True):
             weights = self.weights(stems)
             length = math.hypot(*weights.values())
             for stem, weight in weights.items():
@@ -179,42 +181,47 @@ class _Index:
     def weights(self, stems: Iterable[str]) -> dict[str, float]:
         """Return how much each stem counts."""
         count = len(self.passages) + 1
-        return {stem: max(math.log(count / (self._having[stem] + 0.5)), _COMMON) for stem in stems}
+        return {
+            stem: max(math.log(count / (self._having[stem] + 0.5)), _MIN_STEM_WEIGHT)
+            for stem in stems
+        }
 
-    def known(self, typed: _Stems) -> _Stems:
+    def expand_stems(self, typed: _Stems) -> _Stems:
         """Return the stems of a question; one that is nowhere stands for all that begin like it."""
-        begun = tuple(stem for stem in typed - self.stems if len(stem) >= _SHORTEST)
+        begun = tuple(stem for stem in typed - self.stems if len(stem) >= _MIN_PREFIX_LETTERS)
         return (typed & self.stems).union(
             stem for stem in self.stems if begun and stem.startswith(begun)
         )
 
 
-def _counts(texts: Sequence[_Stems], asked: Iterable[tuple[int, _Stems]]) -> Counter[str]:
+def _count_passages(
+    texts: Sequence[_Stems], question_stems: Iterable[tuple[int, _Stems]]
+) -> Counter[str]:
     """Return how many passages have each stem, in themselves or in a question."""
     of_each = [{*stems} for stems in texts]
-    for row, stems in asked:
+    for row, stems in question_stems:
         of_each[row] |= stems
     return Counter(stem for stems in of_each for stem in stems)
 
 
-def _passages() -> Iterator[SearchResult]:
-    for name, page in pages().items():
-        parts = ["", *_HEADING.split(_FENCED.sub(_set_in, markdown_of(page)))]
+def _iterate_passages() -> Iterator[SearchResult]:
+    for name, page in load_pages().items():
+        parts = ["", *_HEADING.split(_FENCED.sub(_indent_fenced, build_markdown(page)))]
         for heading, text in zip(parts[::2], parts[1::2], strict=True):
-            found = list(
-                _with_heads([*(part.strip("\n") for part in _PASSAGE_END.split(text)), ""])
+            pairs = list(
+                _pair_heads([*(part.strip("\n") for part in _PASSAGE_END.split(text)), ""])
             )
-            for at, (passage, head) in enumerate(found):
+            for number, (passage, head) in enumerate(pairs):
                 if not _NO_ANSWER.fullmatch(passage):
                     below = (
-                        takewhile(_ITEM.match, (one for one, _ in found[at + 1 :]))
+                        takewhile(_ITEM.match, (later for later, _ in pairs[number + 1 :]))
                         if passage.endswith(":")
                         else ()
                     )
                     yield SearchResult(name, heading, passage, head, tuple(below))
 
 
-def _set_in(fenced: re.Match[str]) -> str:
+def _indent_fenced(fenced: re.Match[str]) -> str:
     """Return a text between fences as one that is set in, so that it stays with the passage above it.
 
     What belongs into a shell has its prompt.
@@ -223,7 +230,7 @@ def _set_in(fenced: re.Match[str]) -> str:
     return indent(fenced[2], SET_IN + prompt, lambda _: True)
 
 
-def _with_heads(passages: Sequence[str]) -> Iterator[tuple[str, str]]:
+def _pair_heads(passages: Sequence[str]) -> Iterator[tuple[str, str]]:
     """Yield passages, rows of a table with its head, which answers nothing itself."""
     head = ""
     for passage, below in pairwise(passages):
@@ -235,67 +242,69 @@ def _with_heads(passages: Sequence[str]) -> Iterator[tuple[str, str]]:
 
 
 @cache
-def _index() -> _Index:
+def _load_index() -> _Index:
     return _Index()
 
 
-def _scores(index: _Index, typed: _Stems) -> Mapping[int, float]:
+def _score_passages(index: _Index, typed: _Stems) -> Mapping[int, float]:
     """Return how well passages answer a question, by row."""
     weights = index.weights(typed)
     length = math.hypot(*weights.values())
     question = {stem: weight / length for stem, weight in weights.items()}
     scores: defaultdict[int, float] = defaultdict(float)
-    for field, much in (
-        (index.texts, _ITS_WORDS),
-        (index.heads, _HEADINGS),
-        (index.words, _PAGE_WORDS),
-        (index.all_asks, _ALL_ASKED),
+    for field, field_weight in (
+        (index.texts, _PASSAGE_WEIGHT),
+        (index.heads, _HEADINGS_WEIGHT),
+        (index.words, _PAGE_WORDS_WEIGHT),
+        (index.all_asks, _ALL_QUESTIONS_WEIGHT),
     ):
-        for row, cosine in field.like(question).items():
-            scores[row] += much * cosine
-    alike: dict[int, float] = {}
-    for at, cosine in index.asks.like(question).items():
-        row = index.row_of_ask[at]
-        alike[row] = max(cosine, alike.get(row, 0.0))
-    for row, cosine in alike.items():
-        scores[row] += _MOST_ALIKE * cosine + _SAME * cosine**3
+        for row, cosine in field.compute_cosines(question).items():
+            scores[row] += field_weight * cosine
+    nearest: dict[int, float] = {}
+    for number, cosine in index.asks.compute_cosines(question).items():
+        row = index.row_of_ask[number]
+        nearest[row] = max(cosine, nearest.get(row, 0.0))
+    for row, cosine in nearest.items():
+        scores[row] += _NEAREST_QUESTION_WEIGHT * cosine + _SAME_QUESTION_WEIGHT * cosine**3
     whole = sum(weights.values())
     on_page = {
-        name: sum(weights[stem] for stem in typed & of) / whole
-        for name, of in index.stems_of_page.items()
+        name: sum(weights[stem] for stem in typed & page_stems) / whole
+        for name, page_stems in index.stems_of_page.items()
     }
     return {
-        row: score + _WHOLE_PAGE * on_page[index.passages[row].name]
+        row: score + _WHOLE_PAGE_WEIGHT * on_page[index.passages[row].name]
         for row, score in scores.items()
     }
 
 
-def _best(index: _Index, question: str) -> list[int]:
+def _rank_passages(index: _Index, question: str) -> list[int]:
     """Return the rows of the passages that answer a question, the best one first, without those far behind."""
-    typed = index.known(stems_of([question])[0])
+    typed = index.expand_stems(find_stems([question])[0])
     if not typed:
         return []
-    scores = _scores(index, typed)
-    rows = sorted(scores, key=lambda row: -scores[row])[:_MOST]
+    scores = _score_passages(index, typed)
+    rows = sorted(scores, key=lambda row: -scores[row])[:_MAX_RESULTS]
     return [
         row
         for place, row in enumerate(rows)
-        if place < _FIRST or scores[row] >= _LEAST_SHARE * scores[rows[0]]
+        if place < _SURE_RESULTS or scores[row] >= _MIN_SHARE * scores[rows[0]]
     ]
 
 
-def _parts(question: str) -> list[str]:
+def _split_question(question: str) -> list[str]:
     """Return the parts of a question that asks for several things; none if it asks for one."""
     parts = [
-        part for part in _JOINT.split(question) if len(list(words_of(part))) >= _WORDS_OF_A_PART
+        part
+        for part in _PART_BREAK.split(question)
+        if len(list(split_words(part))) >= _MIN_PART_WORDS
     ]
     return parts if len(parts) > 1 else []
 
 
-def pattern_of(question: str) -> re.Pattern[str] | None:
+def compile_pattern(question: str) -> re.Pattern[str] | None:
     """Return what finds the words of a question in an answer, in other forms, too."""
-    words = [word for word in words_of(question) if word not in _PLAIN]
-    begins = [re.escape(word[: max(_LEAST_LETTERS, len(word) - _ENDING)]) for word in words]
+    words = [word for word in split_words(question) if word not in _PLAIN]
+    begins = [re.escape(word[: max(_MIN_LETTERS, len(word) - _ENDING_LETTERS)]) for word in words]
     return re.compile(rf"(?i)\b(?:{'|'.join(begins)})\w*") if begins else None
 
 
@@ -306,7 +315,11 @@ def search(question: str) -> list[SearchResult]:
         question: Words; one that no page has may be the beginning of another. What answers best a part of a question
             that asks for several things comes after the first two.
     """
-    index = _index()
-    rows = _best(index, question)
-    of_parts = [row for part in _parts(question) for row in _best(index, part)[:1]]
-    return [index.passages[row] for row in dict.fromkeys([*rows[:_FIRST], *of_parts, *rows])]
+    index = _load_index()
+    rows = _rank_passages(index, question)
+    part_rows = [
+        row for part in _split_question(question) for row in _rank_passages(index, part)[:1]
+    ]
+    return [
+        index.passages[row] for row in dict.fromkeys([*rows[:_SURE_RESULTS], *part_rows, *rows])
+    ]

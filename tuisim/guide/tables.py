@@ -19,19 +19,19 @@ TABLES: Mapping[str, str] = {
     "editor-keys": "app.guide.key_tables:editor_keys",
     "analyser-keys": "app.guide.key_tables:analyser_keys",
     "panels": "app.guide.key_tables:panels",
-    "commands": "guide.command_tables:commands",
-    "command-options": "guide.command_tables:command_options",
-    "options": "guide.code_tables:options",
-    "settings": "guide.code_tables:settings",
-    "profile-rules": "guide.code_tables:profile_rules",
-    "drift": "guide.code_tables:drift",
-    "breakpoints": "guide.code_tables:breakpoints",
-    "columns": "guide.code_tables:columns",
-    "samples": "guide.code_tables:samples",
-    "telemetry": "guide.code_tables:telemetry",
-    "formats": "guide.code_tables:formats",
-    "pybricks-motors": "guide.pybricks_tables:motors",
-    "pybricks-drive-bases": "guide.pybricks_tables:drive_bases",
+    "commands": "guide.command_tables:list_commands",
+    "command-options": "guide.command_tables:list_command_options",
+    "options": "guide.code_tables:list_options",
+    "settings": "guide.code_tables:list_settings",
+    "profile-rules": "guide.code_tables:list_profile_rules",
+    "drift": "guide.code_tables:list_drift_sizes",
+    "breakpoints": "guide.code_tables:list_breakpoints",
+    "columns": "guide.code_tables:list_columns",
+    "samples": "guide.code_tables:list_sample_columns",
+    "telemetry": "guide.code_tables:list_telemetry_columns",
+    "formats": "guide.code_tables:list_formats",
+    "pybricks-motors": "guide.pybricks_tables:list_motors",
+    "pybricks-drive-bases": "guide.pybricks_tables:list_drive_bases",
 }
 """MODULE:FUNCTION by name, imported on use: some load the app."""
 
@@ -45,7 +45,7 @@ class Table:
     columns: tuple[str, ...]
     rows: Sequence[tuple[str, ...]]
 
-    def markdown(self) -> str:
+    def to_markdown(self) -> str:
         """Return the table as Markdown."""
         lines = [self.columns, ("---",) * len(self.columns), *self.rows]
         return "\n".join(
@@ -59,7 +59,7 @@ def code(text: str) -> str:
 
 
 @cache
-def table(name: str) -> Table:
+def load_table(name: str) -> Table:
     """Make a table.
 
     Args:
@@ -69,7 +69,7 @@ def table(name: str) -> Table:
     return cast("Callable[[], Table]", getattr(import_module(f"tuisim.{module}"), function))()
 
 
-def markdown_of(page: Page) -> str:
+def build_markdown(page: Page) -> str:
     """Return the whole page with its title and its tables."""
-    made = _MARK.sub(lambda found: table(found[1]).markdown(), page.source)
-    return f"# {page.title}\n\n{made}"
+    body = _MARK.sub(lambda mark: load_table(mark[1]).to_markdown(), page.source)
+    return f"# {page.title}\n\n{body}"

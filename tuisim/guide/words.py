@@ -30,38 +30,41 @@ _IGNORED = frozenset(_SAYS_NOTHING.split())
 """Words that say nothing about the subject of a question. "Not" does: "does not move" is not about moving."""
 
 
-def words_of(text: str) -> Iterable[str]:
+def split_words(text: str) -> Iterable[str]:
     """Return the words of a text that say something, each once."""
     plain = _COLOR.sub("colour", _CONTRACTED.sub("", _DENIES.sub(" not ", text.lower())))
     return dict.fromkeys(word for word in _WORD.findall(plain) if word not in _IGNORED)
 
 
-def stems_of(texts: Iterable[str]) -> list[frozenset[str]]:
+def find_stems(texts: Iterable[str]) -> list[frozenset[str]]:
     """Return the stems of the words of each text, and the meanings of those that have one."""
-    return [stems.union(*(_meanings().get(stem, ()) for stem in stems)) for stems in _stems(texts)]
+    return [
+        stems.union(*(_load_meanings().get(stem, ()) for stem in stems))
+        for stems in _stem_words(texts)
+    ]
 
 
-def _stems(texts: Iterable[str]) -> list[frozenset[str]]:
+def _stem_words(texts: Iterable[str]) -> list[frozenset[str]]:
     """Return the stems of the words of each text, as SQLite finds them."""
-    rows = [(row, " ".join(words_of(text))) for row, text in enumerate(texts)]
-    found: defaultdict[int, set[str]] = defaultdict(set)
+    rows = [(row, " ".join(split_words(text))) for row, text in enumerate(texts)]
+    stems: defaultdict[int, set[str]] = defaultdict(set)
     with sqlite3.connect(":memory:") as index:
         index.execute("CREATE VIRTUAL TABLE texts USING fts5(words, tokenize = 'porter unicode61')")
         index.execute("CREATE VIRTUAL TABLE terms USING fts5vocab(texts, instance)")
         index.executemany("INSERT INTO texts (rowid, words) VALUES (?, ?)", rows)
         for term, row in index.execute("SELECT term, doc FROM terms"):
-            found[row].add(term)
-    return [frozenset(found[row]) for row, _ in rows]
+            stems[row].add(term)
+    return [frozenset(stems[row]) for row, _ in rows]
 
 
 @cache
-def _meanings() -> Mapping[str, frozenset[str]]:
+def _load_meanings() -> Mapping[str, frozenset[str]]:
     """Return what stems mean, as `=chart`: the groups of `synonyms.toml` that they are in, each by its first word."""
     groups = tomllib.loads((Path(__file__).parent / "synonyms.toml").read_text(encoding="utf-8"))[
         "groups"
     ]
-    found: defaultdict[str, set[str]] = defaultdict(set)
-    for group, stems in zip(groups, _stems(groups), strict=True):
+    meanings_of_stem: defaultdict[str, set[str]] = defaultdict(set)
+    for group, stems in zip(groups, _stem_words(groups), strict=True):
         for stem in stems:
-            found[stem].add(f"={group.split()[0]}")
-    return {stem: frozenset(meanings) for stem, meanings in found.items()}
+            meanings_of_stem[stem].add(f"={group.split()[0]}")
+    return {stem: frozenset(meanings) for stem, meanings in meanings_of_stem.items()}

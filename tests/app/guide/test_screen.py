@@ -18,10 +18,10 @@ from tests.running import PATIENCE_S
 from tuisim.app.guide.answers import STANDS_OUT, AnswerList
 from tuisim.app.guide.screen import KEYS, TOPICS, GuideScreen
 from tuisim.app.panels import PANELS
-from tuisim.guide.catalogue import pages
-from tuisim.guide.excerpt import excerpt_of, passage_text
+from tuisim.guide.catalogue import load_pages
+from tuisim.guide.excerpt import draw_excerpt, flatten_passage
 from tuisim.guide.search import SearchResult, search
-from tuisim.guide.text import headings_in
+from tuisim.guide.text import list_headings
 
 SMALL, MEDIUM = (80, 24), (120, 40)
 DOWN_TO_PAGE = ["down"] * 2
@@ -52,7 +52,7 @@ async def asked(pilot: Pilot[Any], question: str) -> list[SearchResult]:
 
 def first_words(one: SearchResult) -> str:
     """How an answer begins in the list."""
-    return "".join(text for text, _ in excerpt_of(one, 33, 1)[0]).removesuffix(" …")
+    return "".join(text for text, _ in draw_excerpt(one, 33, 1)[0]).removesuffix(" …")
 
 
 @asynccontextmanager
@@ -68,7 +68,7 @@ async def open_guide(
 
 def test_every_panel_has_a_topic() -> None:
     assert set(TOPICS) == set(PANELS)
-    assert {topic.page for topic in TOPICS.values()} - {""} <= set(pages())
+    assert {topic.page for topic in TOPICS.values()} - {""} <= set(load_pages())
 
 
 @pytest.mark.quick_cases("small")
@@ -158,7 +158,7 @@ async def test_escape_goes_from_a_page_to_the_answers_and_from_these_to_the_cont
         await pilot.press("down", "down", "enter")
         await until(pilot, lambda: screen._page.has_focus)
         assert screen.place == (answers[2].name, answers[2].heading)
-        await until_shown(pilot, f"Guide · {pages()[answers[2].name].title}")
+        await until_shown(pilot, f"Guide · {load_pages()[answers[2].name].title}")
         await pilot.press("escape")
         await until_shown(pilot, first_words(answers[0]))
         await pilot.press("escape")
@@ -170,7 +170,7 @@ async def test_escape_goes_from_a_page_to_the_answers_and_from_these_to_the_cont
 async def test_a_section_is_gone_to() -> None:
     async with open_guide() as (pilot, screen):
         await pilot.press("tab", *DOWN_TO_PAGE, "space", "down", "down", "enter")
-        second = headings_in(pages()["first-steps"])[1]
+        second = list_headings(load_pages()["first-steps"])[1]
         await until(pilot, lambda: screen.place == ("first-steps", second))
         await until(
             pilot,
@@ -191,7 +191,7 @@ async def test_no_title_is_cut_off(size: tuple[int, int]) -> None:
         await pilot.press("tab")
         tree = screen.query_one(Tree)
         await until(pilot, lambda: tree.has_focus and tree.size.width > 0)
-        titles = [*(page.title for page in pages().values()), "All keys"]
+        titles = [*(page.title for page in load_pages().values()), "All keys"]
         assert [
             title for title in titles if len(title) + 4 > tree.scrollable_content_region.width
         ] == []
@@ -254,7 +254,9 @@ async def test_the_passage_of_an_answer_is_in_sight_on_its_page(
 ) -> None:
     async with open_guide() as (pilot, _):
         answers = await asked(pilot, question)
-        downs = next(at for at, one in enumerate(answers) if passage in passage_text(one.passage))
+        downs = next(
+            at for at, one in enumerate(answers) if passage in flatten_passage(one.passage)
+        )
         await pilot.press(*["down"] * downs, "enter")
         await until(pilot, lambda: guide(pilot)._page.has_focus)
         await until(pilot, lambda: passage in page_text(pilot))
@@ -274,7 +276,7 @@ async def test_the_page_keys_go_on_to_further_answers_also_from_the_question() -
 async def test_answers_fit_a_window_that_has_changed() -> None:
     async with open_guide() as (pilot, _):
         (first, *_) = await asked(pilot, "How do I make the robot slower?")
-        words = passage_text(first.passage)
+        words = flatten_passage(first.passage)
         await until_shown(pilot, words[:60])
         assert words[:90] not in screen_text(lab(pilot))
         await pilot.resize_terminal(150, 40)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from tuisim.guide.catalogue import pages
-from tuisim.guide.text import page_lines
+from tuisim.guide.catalogue import load_pages
+from tuisim.guide.text import draw_page
 from tuisim.tasks.lessons.markdown import markdown_lines
 
 TABLE = """
@@ -40,7 +40,7 @@ def test_rows_are_lists_where_the_longest_words_have_no_room_beside_each_other()
 
 @pytest.mark.parametrize("width", [36, 76, 118])
 def test_nothing_of_a_page_is_cut(width: int) -> None:
-    page = pages()["ev3dev2-and-pybricks"]
-    texts = ["".join(part for part, _ in line) for line in page_lines(page, width)]
+    page = load_pages()["ev3dev2-and-pybricks"]
+    texts = ["".join(part for part, _ in line) for line in draw_page(page, width)]
     assert not [text for text in texts if "…" in text and "…" not in page.source]
     assert 'Leds().set_color("LEFT",' in "\n".join(texts)

@@ -12,9 +12,9 @@ from textual.widgets import OptionList
 from textual.widgets.option_list import Option
 
 from tuisim.base import palette
-from tuisim.guide.catalogue import pages
-from tuisim.guide.excerpt import excerpt_of
-from tuisim.guide.search import SearchResult, pattern_of
+from tuisim.guide.catalogue import load_pages
+from tuisim.guide.excerpt import draw_excerpt
+from tuisim.guide.search import SearchResult, compile_pattern
 
 _FIRST_LINES, _LINES = 11, ((9, 1), (6, 1), (3, 1), (3, 0))
 """Lines of the best answer; of each other, with those between two: as many as leave all in sight, else the fewest."""
@@ -47,7 +47,7 @@ class AnswerList(OptionList):
             found: The best one first.
             size: Columns and rows of the list.
         """
-        self._found, self._asked = found, pattern_of(question)
+        self._found, self._asked = found, compile_pattern(question)
         self.fit(size)
         self.highlighted = 0 if found else None
         self.scroll_home(animate=False)
@@ -84,7 +84,7 @@ class AnswerList(OptionList):
 
 def name_of(one: SearchResult) -> tuple[str, str]:
     """Return the names of the section and the page of an answer; the second is empty at the beginning of a page."""
-    title = pages()[one.name].title
+    title = load_pages()[one.name].title
     return (one.heading, title) if one.heading else (title, "")
 
 
@@ -97,5 +97,5 @@ def _named(one: SearchResult, columns: int) -> Text:
 
 def _passage_of(one: SearchResult, columns: int, most: int, asked: re.Pattern[str] | None) -> Text:
     """Return what is shown of an answer, as an item of a list."""
-    lines = [Text.assemble(*line) for line in excerpt_of(one, columns - len(_ITEM), most, asked)]
+    lines = [Text.assemble(*line) for line in draw_excerpt(one, columns - len(_ITEM), most, asked)]
     return Text(_ITEM, _TEXT, no_wrap=True).append_text(Text(f"\n{' ' * len(_ITEM)}").join(lines))

@@ -22,15 +22,15 @@ from tuisim.app.dialogs.dialog import Dialog
 from tuisim.app.guide.answers import AnswerList, name_of
 from tuisim.base import palette
 from tuisim.base.data_class import dataclass
-from tuisim.guide.catalogue import CONTENTS, pages
+from tuisim.guide.catalogue import CONTENTS, load_pages
 from tuisim.guide.search import SearchResult, search
 from tuisim.guide.text import (
     NO_WORDS,
-    end_of_passage,
-    headings_in,
-    linked_names,
-    page_lines,
-    rows_of,
+    draw_page,
+    find_passage_end,
+    find_rows,
+    list_headings,
+    list_links,
 )
 from tuisim.terminal.text_runs import Line
 
@@ -125,12 +125,12 @@ class _Contents(Tree[Place | None]):
                 self._add_page(branch, name)
 
     def _add_page(self, branch: TreeNode[Place | None], name: str) -> None:
-        page = pages()[name]
+        page = load_pages()[name]
         node = branch.add(page.title, (name, ""))
-        for heading in headings_in(page):
+        for heading in list_headings(page):
             node.add_leaf(heading, (name, heading))
-        for other in linked_names(page):
-            node.add_leaf(f"→ {pages()[other].title}", (other, ""))
+        for other in list_links(page):
+            node.add_leaf(f"→ {load_pages()[other].title}", (other, ""))
 
     def say(self, words: str) -> None:
         """Say in place of the contents how a search goes."""
@@ -198,9 +198,9 @@ class _Page(VerticalScroll):
             self._text.update(Text(f"{self._keys.start}\n\n").append_text(key_table(groups, width)))
             self.scroll_home(animate=False)
             return
-        lines = page_lines(pages()[name], width)
-        top, row = rows_of(lines, heading, self._passage)
-        drawn = _text_of(lines, range(row, end_of_passage(lines, row, self._passage)))
+        lines = draw_page(load_pages()[name], width)
+        top, row = find_rows(lines, heading, self._passage)
+        drawn = _text_of(lines, range(row, find_passage_end(lines, row, self._passage)))
         groups = {
             group: self._keys.groups[group] for group in self._topic.groups if self._with_keys
         }
