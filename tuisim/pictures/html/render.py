@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
-from markupsafe import Markup
 
 from tuisim.base.data_class import dataclass
 from tuisim.pictures.charts.files import replace_invalid
@@ -34,7 +33,7 @@ def render_page(template: str, **values: Any) -> str:
         values: What the template shows, by name. Every text is escaped, and characters that are invalid in HTML
             become U+FFFD.
     """
-    return _load_templates().get_template(template).render(values)
+    return replace_invalid(_load_templates().get_template(template).render(values))
 
 
 @cache
@@ -43,11 +42,6 @@ def _load_templates() -> Environment:
         loader=FileSystemLoader(_TEMPLATES),
         autoescape=True,
         undefined=StrictUndefined,
-        finalize=_finalize,
         trim_blocks=True,
         lstrip_blocks=True,
     )
-
-
-def _finalize(value: object) -> object:
-    return value if isinstance(value, Markup) else replace_invalid(str(value))
