@@ -53,7 +53,7 @@ def test_it_imports_the_package_of_this_process() -> None:
     [
         (plateaus_module, "_FEW_STARTS", 0),
         (plateaus_module, "_FEW_STARTS", 10**6),
-        (pieces_module, "_AT_ONCE", 1),
+        (pieces_module, "_MAX_SAMPLES_TOGETHER", 1),
     ],
 )
 def test_how_much_is_looked_at_together_changes_nothing(

@@ -70,7 +70,7 @@ def write_report(
 
     Args:
         names: Variables of chart and bands, none for those that the analyser shows first.
-        search: Finds the bands, such as `plateaus`, or `plateaus_in_subprocess` for long logs.
+        search: Finds the bands, such as `plateaus`, or `find_plateaus_in_subprocess` for long logs.
 
     Raises:
         ExportError: the file cannot be written; an existing one is unchanged.

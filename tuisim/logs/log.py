@@ -150,7 +150,7 @@ class Log:
     form: ReadChoices = NO_CHOICES
     """How a text was read: what was chosen, else what was found."""
     derived: Mapping[str, Series] = field(default_factory=dict)
-    _kept: Kept = field(default_factory=Kept, repr=False, compare=False)
+    _cache: Kept = field(default_factory=Kept, repr=False, compare=False)
 
     @property
     def rows(self) -> int:
@@ -170,7 +170,7 @@ class Log:
         return (*(name for name, member in members.items() if _has_rows(member)), *derived)
 
     def _members(self) -> Mapping[str, Member]:
-        kept = self._kept
+        kept = self._cache
         if kept.members is None:
             found: dict[str, Member] = {}
             for member in members(self.table, self.layout):
@@ -188,19 +188,19 @@ class Log:
         """
         if name in self.derived:
             return self.derived[name]
-        if name not in self._kept.series:
+        if name not in self._cache.series:
             member = self._members().get(name)
             if member is None:
                 raise LogError(f"no variable {name!r}", among(name, self.names), file=self.title)
-            self._kept.series[name] = self._series(member)
-        return self._kept.series[name]
+            self._cache.series[name] = self._series(member)
+        return self._cache.series[name]
 
     def _series(self, member: Member) -> Series:
         layout, rows = self.layout, member.rows
         values = self.numbers(layout.values[0] if layout.variable else member.variable)
         if rows is not None:
             return Series(member.name, self._times(rows), values[rows], rows, member.run)
-        kept = self._kept
+        kept = self._cache
         if kept.whole is None:
             kept.whole = np.arange(self.rows), self._times(None)
         return Series(member.name, kept.whole[1], values, kept.whole[0], member.run)
@@ -213,11 +213,11 @@ class Log:
     def _times(self, rows: IntArray | None) -> FloatArray:
         if self.layout.time == ROW:
             return np.arange(self.rows if rows is None else len(rows), dtype=np.float64)
-        if self._kept.times_s is None:
-            self._kept.times_s = seconds_of(
+        if self._cache.times_s is None:
+            self._cache.times_s = seconds_of(
                 self.table.column(self.layout.time), self.layout.unit_s, self.layout.since_first
             )
-        times = self._kept.times_s if rows is None else self._kept.times_s[rows]
+        times = self._cache.times_s if rows is None else self._cache.times_s[rows]
         # Missing times are forward-filled.
         missing = ~np.isfinite(times)
         if missing.any():
@@ -229,9 +229,9 @@ class Log:
 
     def numbers(self, column: str) -> FloatArray:
         """Return a numeric column as floats, shape (n,), NaN for empty cells. Must not be modified."""
-        if column not in self._kept.numbers:
-            self._kept.numbers[column] = numbers_of(self.table.column(column))
-        return self._kept.numbers[column]
+        if column not in self._cache.numbers:
+            self._cache.numbers[column] = numbers_of(self.table.column(column))
+        return self._cache.numbers[column]
 
     def numbers_at(self, column: str, rows: IntArray) -> FloatArray:
         """Return the numbers of a column in some rows, as `numbers`, but without keeping those of the others."""
@@ -241,7 +241,7 @@ class Log:
 
     def with_layout(self, layout: Layout) -> Log:
         """Return the same log with another layout."""
-        return replace(self.bare(), layout=layout, _kept=Kept())
+        return replace(self.bare(), layout=layout, _cache=Kept())
 
     def bare(self) -> Log:
         """Return the same log without derived series."""
@@ -278,7 +278,7 @@ class Log:
             self.table.drop_columns([column]) if column in self.table.column_names else self.table
         )
         kept = replace(
-            self._kept,
-            numbers={name: at for name, at in self._kept.numbers.items() if name != column},
+            self._cache,
+            numbers={name: at for name, at in self._cache.numbers.items() if name != column},
         )
-        return replace(self, table=table, derived=derived, _kept=kept)
+        return replace(self, table=table, derived=derived, _cache=kept)

@@ -172,7 +172,7 @@ def _log(title: str, parts: Sequence[pa.Table], notes: Notes, choices: ReadChoic
     _tell_odd_columns(table, layout, unread, later)
     texts = (*notes.texts(), *later.texts())
     kept = Kept(times_s=seconds)
-    return Log(title, table, layout, texts, notes.left_out, metadata, notes.form, _kept=kept)
+    return Log(title, table, layout, texts, notes.left_out, metadata, notes.form, _cache=kept)
 
 
 def _tell_odd_columns(table: pa.Table, layout: Layout, unread: str, notes: Notes) -> None:

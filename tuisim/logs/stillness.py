@@ -53,7 +53,7 @@ FIELDS = np.dtype(
 
 
 def measure_noise_of_slopes(values: FloatArray) -> float:
-    """Return the noise as `noise_of`, but from second differences, in which a slope leaves nothing."""
+    """Return the noise as `measure_noise`, but from second differences, in which a slope leaves nothing."""
     bends = np.abs(np.diff(values, 2))
     return estimate_noise(bends, 6.0) if len(bends) else 0.0
 
