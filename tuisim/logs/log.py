@@ -199,18 +199,18 @@ class Log:
         layout, rows = self.layout, member.rows
         values = self.numbers(layout.values[0] if layout.variable else member.variable)
         if rows is not None:
-            return Series(member.name, self._times(rows), values[rows], rows, member.run)
+            return Series(member.name, self._read_times(rows), values[rows], rows, member.run)
         kept = self._cache
         if kept.whole is None:
-            kept.whole = np.arange(self.rows), self._times(None)
+            kept.whole = np.arange(self.rows), self._read_times(None)
         return Series(member.name, kept.whole[1], values, kept.whole[0], member.run)
 
     @property
     def times_s(self) -> FloatArray:
         """The time of each row, shape (n,): row numbers from 0 without a time column. Must not be modified."""
-        return self._times(None)
+        return self._read_times(None)
 
-    def _times(self, rows: IntArray | None) -> FloatArray:
+    def _read_times(self, rows: IntArray | None) -> FloatArray:
         if self.layout.time == ROW:
             return np.arange(self.rows if rows is None else len(rows), dtype=np.float64)
         if self._cache.times_s is None:
