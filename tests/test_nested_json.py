@@ -22,8 +22,8 @@ from tuisim.engine.runs.side_files import (
     read_reads,
     read_stop_tick,
 )
-from tuisim.logs.arrow import METADATA_KEY, metadata_in
-from tuisim.logs.export import companion_of
+from tuisim.logs.arrow import METADATA_KEY, read_metadata
+from tuisim.logs.export import find_companion
 from tuisim.logs.reader import read_companion
 from tuisim.settings.preferences import preference, preferences_file
 from tuisim.tasks.marks.journal import Journal
@@ -60,12 +60,12 @@ def of_breakpoints(_folder: Path) -> object:
 
 
 def of_companion(folder: Path) -> object:
-    deep(companion_of(folder / "a.csv"))
+    deep(find_companion(folder / "a.csv"))
     return read_companion(folder / "a.csv")
 
 
 def of_schema(_folder: Path) -> object:
-    return metadata_in(pa.schema([], {METADATA_KEY: DEEP}))
+    return read_metadata(pa.schema([], {METADATA_KEY: DEEP}))
 
 
 def of_journal(folder: Path) -> object:

@@ -140,7 +140,7 @@ def test_derived_variables_go_where_the_log_goes() -> None:
     assert (model.rows.columns[-1], all(trace.on for trace in model.traces)) == ("Twice", True)
     model.row, model.mark_s, model.limits = 19, 2.0, (1.0, 7.0)
     model.traces.named("Left").on = False
-    model.rows.view = model.rows.sorted("Twice", True)
+    model.rows.view = model.rows.build_sorted_view("Twice", True)
     other.restore(model)
     assert (other.row, other.mark_s, other.limits) == (19, 2.0, (1.0, 7.0))
     assert (other.definitions, other.selected) == (model.definitions, "Twice")

@@ -17,7 +17,7 @@ from tests.conftest import Command
 from tuisim.cli import run_command
 from tuisim.engine.runs.frames import samples_frame, telemetry_frame
 from tuisim.engine.runs.store import RunStore
-from tuisim.logs.export import EXPORTERS, companion_of
+from tuisim.logs.export import EXPORTERS, find_companion
 from tuisim.logs.frames import read_log
 from tuisim.logs.reader import open_log
 
@@ -116,7 +116,7 @@ def test_a_file_that_lost_its_companion_keeps_its_types(
 ) -> None:
     alone = tmp_path / "alone.csv"
     alone.write_bytes((kept["samples"].files / "log.csv").read_bytes())
-    assert not companion_of(alone).exists()
+    assert not find_companion(alone).exists()
     here("log", "export", alone, "--out", "x.parquet")
     pd.testing.assert_frame_equal(
         read_log(tmp_path / "x.parquet"), kept["samples"].frame, check_exact=True

@@ -12,16 +12,16 @@ import pytest
 from tuisim.base.errors import LogError
 from tuisim.engine.core.conditions import Operator, ValueCondition
 from tuisim.logs.arrow import (
-    cell_text,
-    contains,
-    mask_of,
-    numbers_of,
-    sorted_places,
-    table_of,
-    texts_array,
-    unique_names,
-    whole_numbers,
-    whole_numbers_of,
+    build_table,
+    build_text_array,
+    convert_to_floats,
+    format_cell,
+    make_names_unique,
+    match_condition,
+    match_text,
+    read_int32,
+    sort_places,
+    wrap_int64,
 )
 
 NAN = float("nan")
@@ -44,7 +44,7 @@ def column(*parts: list[Any], kind: pa.DataType | None = None) -> pa.ChunkedArra
     ids=["parts", "whole", "nulls", "short", "slice", "empty"],
 )
 def test_a_column_as_numbers(cells: pa.ChunkedArray, expected: list[float]) -> None:
-    np.testing.assert_array_equal(numbers_of(cells), expected)
+    np.testing.assert_array_equal(convert_to_floats(cells), expected)
 
 
 @pytest.mark.parametrize("rows", [0, 1, 9])
@@ -60,21 +60,21 @@ def test_a_table_of_columns_is_that_of_their_frame(rows: int) -> None:
     }
     frame = pd.DataFrame({**columns, "variable": pd.Series(columns["variable"], dtype="str")})
     expected = pa.Table.from_pandas(frame, preserve_index=False).replace_schema_metadata()
-    table = table_of(columns)
+    table = build_table(columns)
     table.validate(full=True)
     assert table.cast(expected.schema).equals(expected)
 
 
 def test_whole_numbers_are_not_copied() -> None:
     numbers = np.arange(5, dtype=np.int64)
-    assert whole_numbers(numbers).to_pylist() == [0, 1, 2, 3, 4]
+    assert wrap_int64(numbers).to_pylist() == [0, 1, 2, 3, 4]
     chunk = pa.array([1, 2, 3], pa.int32()).slice(1)
-    assert whole_numbers_of(chunk).tolist() == [2, 3]
-    assert whole_numbers_of(chunk.slice(2)).tolist() == []
+    assert read_int32(chunk).tolist() == [2, 3]
+    assert read_int32(chunk.slice(2)).tolist() == []
 
 
 def test_texts_that_are_no_utf_8_are_replaced() -> None:
-    assert texts_array(["é", "", "\udcff"]).to_pylist() == ["é", "", "?"]
+    assert build_text_array(["é", "", "\udcff"]).to_pylist() == ["é", "", "?"]
 
 
 @pytest.mark.parametrize(
@@ -91,19 +91,19 @@ def test_texts_that_are_no_utf_8_are_replaced() -> None:
 def test_cells_that_meet_a_condition(
     cells: pa.ChunkedArray, operator: Operator, value: str, expected: list[bool]
 ) -> None:
-    assert mask_of(cells, ValueCondition("a", operator, value)).tolist() == expected
+    assert match_condition(cells, ValueCondition("a", operator, value)).tolist() == expected
 
 
 def test_a_number_is_not_compared_with_a_text() -> None:
     with pytest.raises(LogError, match="'x' is not a number"):
-        mask_of(column([1]), ValueCondition("a", Operator.LESS, "x"))
+        match_condition(column([1]), ValueCondition("a", Operator.LESS, "x"))
 
 
 def test_coded_texts_are_sorted_as_texts() -> None:
     coded = column(["b", "a", "c"]).dictionary_encode()
-    assert sorted_places(coded, descending=False).tolist() == [1, 0, 2]
-    assert sorted_places(column([3, 1, 2]), descending=True).tolist() == [0, 2, 1]
-    assert contains(coded, "C").tolist() == [False, False, True]
+    assert sort_places(coded, descending=False).tolist() == [1, 0, 2]
+    assert sort_places(column([3, 1, 2]), descending=True).tolist() == [0, 2, 1]
+    assert match_text(coded, "C").tolist() == [False, False, True]
 
 
 @pytest.mark.parametrize(
@@ -118,11 +118,11 @@ def test_coded_texts_are_sorted_as_texts() -> None:
     ids=["span", "no span", "nothing", "fraction", "whole"],
 )
 def test_a_cell_as_text(cell: pa.Scalar, text: str) -> None:
-    assert cell_text(cell) == text
+    assert format_cell(cell) == text
 
 
 def test_columns_of_one_name_get_numbers() -> None:
-    assert unique_names(["a", "a", "", "a", "a (2)"]) == [
+    assert make_names_unique(["a", "a", "", "a", "a (2)"]) == [
         "a",
         "a (2)",
         "column 3",

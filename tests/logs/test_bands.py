@@ -11,10 +11,10 @@ import pytest
 from numpy.typing import NDArray
 
 from tests.cases import cases
-from tuisim.logs.bands import band_report
+from tuisim.logs.bands import build_band_report
 from tuisim.logs.columns import guess_columns
 from tuisim.logs.log import Log
-from tuisim.logs.plateaus import Plateau, plateaus
+from tuisim.logs.plateaus import Plateau, find_plateaus
 
 HELD_SEEDS = range(20_000, 20_200)
 """For the score only: nothing was tuned on these logs."""
@@ -78,7 +78,7 @@ def test_score_on_held_logs(capsys: pytest.CaptureFixture[str]) -> None:
     true = right = extra = 0
     for seed in HELD_SEEDS:
         made = made_log(seed)
-        found = plateaus(made.values)
+        found = find_plateaus(made.values)
         true += len(made.spans)
         right += hits(made, found)
         extra += max(0, len(found) - len(made.spans))
@@ -116,7 +116,7 @@ CLEAN = {
 
 @cases("values, expected", CLEAN)
 def test_plateaus(values: list[float], expected: list[tuple[int, int, float]]) -> None:
-    found = plateaus(np.array(values, np.float64))
+    found = find_plateaus(np.array(values, np.float64))
     assert [(plateau.start, plateau.stop, plateau.level) for plateau in found] == expected
 
 
@@ -124,7 +124,7 @@ def test_plateaus(values: list[float], expected: list[tuple[int, int, float]]) -
 def test_a_stray_giant_hides_no_step(giant: float) -> None:
     values = np.repeat([100.0, 86.27, 100.0, 50.2, 0.0], 10)
     values[[14, 33, 34]] = giant
-    found = plateaus(values)
+    found = find_plateaus(values)
     assert [(plateau.start, plateau.stop, plateau.level, plateau.strays) for plateau in found] == [
         (0, 10, 100.0, 0),
         (10, 20, 86.27, 1),
@@ -136,13 +136,13 @@ def test_a_stray_giant_hides_no_step(giant: float) -> None:
 
 @pytest.mark.filterwarnings("error")
 def test_values_near_the_largest_number_do_no_harm() -> None:
-    plateaus(np.tile([1e308, -1e308], 20))
+    find_plateaus(np.tile([1e308, -1e308], 20))
 
 
 def test_level_of_equal_samples_is_exact() -> None:
     grey = 86.27450980392157
     assert [
-        plateau.level for plateau in plateaus(np.array([100.0] * 4 + [grey] * 7 + [100.0] * 4))
+        plateau.level for plateau in find_plateaus(np.array([100.0] * 4 + [grey] * 7 + [100.0] * 4))
     ] == [
         100.0,
         grey,
@@ -152,7 +152,7 @@ def test_level_of_equal_samples_is_exact() -> None:
 
 def test_what_rounding_leaves_is_no_step() -> None:
     level = 38.98
-    (found,) = plateaus(np.repeat([level, np.nextafter(level, 99.0), level], 9))
+    (found,) = find_plateaus(np.repeat([level, np.nextafter(level, 99.0), level], 9))
     assert (found.start, found.stop) == (0, 27)
 
 
@@ -160,7 +160,7 @@ def test_long_log_is_cut_as_a_short_one() -> None:
     rng = np.random.default_rng(4)
     levels = np.cumsum(rng.uniform(5.0, 20.0, 300)) % 100.0
     values = np.repeat(levels, 40) + rng.normal(0.0, 0.3, 300 * 40)
-    assert abs(len(plateaus(values)) - 300) <= 6
+    assert abs(len(find_plateaus(values)) - 300) <= 6
 
 
 def short_log(seed: int) -> NDArray[np.float64]:
@@ -181,7 +181,7 @@ def short_log(seed: int) -> NDArray[np.float64]:
 def test_plateaus_are_where_they_were(
     make: Callable[[int], NDArray[np.float64]], sums: list[float]
 ) -> None:
-    found = [plateau for seed in range(100) for plateau in plateaus(make(seed))]
+    found = [plateau for seed in range(100) for plateau in find_plateaus(make(seed))]
     figures = [sum(map(abs, values)) for values in zip(*found, strict=True)]
     assert [len(found), *figures] == pytest.approx(sums, abs=0.01)
 
@@ -202,5 +202,5 @@ def test_plateaus_are_where_they_were(
 def test_only_what_may_be_light_has_names_of_greys(name: str, grey: str) -> None:
     values = np.repeat([0.0, 100.0], 50)
     table = pa.table({"time": np.arange(100) / 10, name: values})
-    report = band_report(Log("test", table, guess_columns(table)), name)
+    report = build_band_report(Log("test", table, guess_columns(table)), name)
     assert report.bands[-1].grey == grey

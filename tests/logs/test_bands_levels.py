@@ -12,16 +12,23 @@ from tests.cases import for_each
 from tuisim.engine.core.noise import clamping
 from tuisim.engine.core.profile import EV3
 from tuisim.engine.core.spec import RobotSpec, RunSpec, WorldSpec
-from tuisim.logs.bands import CUT_OFF, BandReport, band_report, in_words, read_light, width_in_words
+from tuisim.logs.bands import (
+    CUT_OFF,
+    BandReport,
+    build_band_report,
+    describe_levels,
+    describe_width,
+    read_light,
+)
 from tuisim.logs.columns import guess_columns
 from tuisim.logs.levels import (
     Light,
     find_light,
-    greys,
-    levels_of,
-    light_scale,
-    nearest_greys,
-    without_clamping,
+    find_light_scale,
+    find_nearest_greys,
+    list_greys,
+    measure_levels,
+    undo_clamping,
 )
 from tuisim.logs.log import Log
 
@@ -29,20 +36,22 @@ from tuisim.logs.log import Log
 @for_each(value=[0, 3, 10, 128, 240, 250, 255], noise=[5, 20, 128])
 def test_clamping_is_undone(value: int, noise: int) -> None:
     mean_percent = np.array([(value + clamping(noise).shift[value]) / 2.55])
-    assert without_clamping(mean_percent, noise) == pytest.approx(
+    assert undo_clamping(mean_percent, noise) == pytest.approx(
         value / 2.55, abs=0.8 if noise < 128 else 4.0
     )
 
 
 def test_greys_have_names() -> None:
-    assert {grey.name for value, grey in greys().items() if value in (0, 128, 211, 220, 255)} == {
+    assert {
+        grey.name for value, grey in list_greys().items() if value in (0, 128, 211, 220, 255)
+    } == {
         "black",
         "grey",
         "light grey",
         "pale grey",
         "white",
     }
-    pale, none = nearest_greys(np.array([86.0, 9.0]))
+    pale, none = find_nearest_greys(np.array([86.0, 9.0]))
     assert pale is not None and pale.name == "pale grey"
     assert none is None
 
@@ -59,7 +68,7 @@ def test_greys_have_names() -> None:
     ids=["percent", "bytes", "distance", "angle", "nothing"],
 )
 def test_scale_of_light(values: list[float], expected: float) -> None:
-    assert light_scale(np.array(values)) == expected
+    assert find_light_scale(np.array(values)) == expected
 
 
 def test_places_and_widths() -> None:
@@ -73,7 +82,7 @@ def test_places_and_widths() -> None:
             "y_mm": np.zeros(21),
         }
     )
-    report = band_report(Log("log", table, guess_columns(table)), "Light")
+    report = build_band_report(Log("log", table, guess_columns(table)), "Light")
     middle = report.bands[1]
     assert [(band.level, band.grey) for band in report.bands] == [
         (100, "white"),
@@ -83,7 +92,7 @@ def test_places_and_widths() -> None:
     assert (middle.start_s, middle.stop_s, middle.samples) == (0.6, 1.5, 10)
     assert (middle.start_mm, middle.stop_mm, middle.width_mm) == (60.0, 150.0, 108.75)
     assert [band.cut_off for band in report.bands] == [True, False, True]
-    assert [width_in_words(band) for band in report.bands] == [CUT_OFF, "109", CUT_OFF]
+    assert [describe_width(band) for band in report.bands] == [CUT_OFF, "109", CUT_OFF]
     assert (middle.first_row, middle.last_row) == (6, 15)
     assert (report.transitions, report.total) == (1, 21)
 
@@ -105,10 +114,10 @@ def test_log_that_does_not_know_its_noise(metadata: dict[str, object]) -> None:
 def test_greys_as_a_brick_reads_them() -> None:
     light = find_light(RunSpec(RobotSpec(), WorldSpec(), EV3))
     values = np.repeat([85.0, 74.0, 70.0, 45.0, 5.0], 5)
-    found = levels_of(values, light)
+    found = measure_levels(values, light)
     names = [grey.name if grey else "" for grey in found.greys]
     assert names == ["white", "pale grey", "light grey", "grey", "black"]
-    noisy = levels_of(values, light._replace(noise=20))
+    noisy = measure_levels(values, light._replace(noise=20))
     # Noise makes white darker, and black lighter.
     assert noisy.true_level[0] >= 85.0 and noisy.true_level[-1] <= 5.1
     assert noisy.true_level[3] == pytest.approx(45.0)
@@ -116,7 +125,7 @@ def test_greys_as_a_brick_reads_them() -> None:
 
 def test_empty_cells_belong_to_no_band() -> None:
     table = pa.table({"time": np.arange(12.0), "light": [50.0, None] * 3 + [100.0, None] * 3})
-    report = band_report(Log("log", table, guess_columns(table)), "light")
+    report = build_band_report(Log("log", table, guess_columns(table)), "light")
     assert [(band.level, band.samples) for band in report.bands] == [(50, 3), (100, 3)]
     assert (report.transitions, report.total) == (0, 6)
 
@@ -137,9 +146,9 @@ def test_one_sample_at_an_end_is_a_level(
     light: list[float], levels: list[tuple[float, int]]
 ) -> None:
     table = pa.table({"time": np.arange(len(light)) / 10, "Light": light})
-    report = band_report(Log("log", table, guess_columns(table)), "Light")
+    report = build_band_report(Log("log", table, guess_columns(table)), "Light")
     assert [(band.level, band.samples) for band in report.bands] == levels
-    words = in_words(report)
+    words = describe_levels(report)
     assert ("0.00 black (one sample)" in words) is any(samples == 1 for _, samples in levels)
     assert (words == "Light: no level: its values stand still nowhere") is (not levels)
 
@@ -151,6 +160,6 @@ def test_bands_of_one_level_are_told_together() -> None:
         "true_level": np.array([50.0, 7.0, 56.0, 100.0]),
         "samples": np.array([10, 4, 20, 1]),
     }
-    assert in_words(BandReport("Grey", columns, 1, 36)) == (
+    assert describe_levels(BandReport("Grey", columns, 1, 36)) == (
         "Grey: 3 levels: 54.00 grey (2x), 7.00, 100.00 white (one sample); 1 of 36 samples lies on edges or slopes"
     )

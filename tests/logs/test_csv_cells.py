@@ -9,7 +9,7 @@ import pandas as pd
 import pytest
 
 from tests.conftest import Command
-from tuisim.logs.csv_cells import harmless
+from tuisim.logs.csv_cells import escape_formula
 from tuisim.logs.export import export_frame
 from tuisim.logs.frames import read_log
 
@@ -32,12 +32,12 @@ PLAIN = ("ada", "", "'quoted'", "a = 1", "-5", "+3.25", "-1e-9", "x-1", "print('
 
 @pytest.mark.parametrize("text", FORMULAS)
 def test_a_text_that_would_be_computed_gets_an_apostrophe(text: str) -> None:
-    assert harmless(text) == f"'{text}"
+    assert escape_formula(text) == f"'{text}"
 
 
 @pytest.mark.parametrize("text", PLAIN)
 def test_other_texts_and_numbers_stay_as_they_are(text: str) -> None:
-    assert harmless(text) == text
+    assert escape_formula(text) == text
 
 
 def test_no_cell_of_a_file_is_a_formula_and_reading_gives_back_the_texts(tmp_path: Path) -> None:

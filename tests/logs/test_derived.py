@@ -22,12 +22,12 @@ from tuisim.logs.bands import distance_mm
 from tuisim.logs.columns import guess_columns
 from tuisim.logs.derived import (
     NEEDED,
-    dead_reckoning,
-    definition_of,
-    derived,
-    error_mm,
-    reckoned_series,
-    spec_in,
+    build_reckoned_series,
+    compute_dead_reckoning,
+    compute_derived,
+    compute_error_mm,
+    parse_definition,
+    read_spec,
 )
 from tuisim.logs.log import Log
 
@@ -73,7 +73,7 @@ def test_wheels_without_numbers_cannot_be_reckoned() -> None:
         {"time": [0.0, 1.0], "value": [1.0, 2.0], **{name: ["a", "b"] for name in NEEDED}}
     )
     with pytest.raises(LogError, match="no column 'left_position_deg' with numbers"):
-        reckoned_series(Log("test", table, guess_columns(table)))
+        build_reckoned_series(Log("test", table, guess_columns(table)))
 
 
 @cases("text, said", REFUSED)
@@ -87,10 +87,10 @@ def test_what_cannot_be_reckoned_changes_nothing(text: str, said: str) -> None:
 
 def test_each_run_has_its_own() -> None:
     log = long_log(runs=2)
-    first, second = derived(log, definition_of("slope(Colour)"), "Left #1")
+    first, second = compute_derived(log, parse_definition("slope(Colour)"), "Left #1")
     assert (first.name, second.name) == ("slope(Colour) #1", "slope(Colour) #2")
     assert (first.values[0], second.values[0]) == (-10.0, -5.0)
-    (apart,) = derived(log, definition_of("`Colour #1` - `Colour #2`"), "Left #1")
+    (apart,) = compute_derived(log, parse_definition("`Colour #1` - `Colour #2`"), "Left #1")
     assert apart.values.tolist() == [
         0.0,
         -10.0,
@@ -127,7 +127,7 @@ def test_it_is_replaced_taken_away_and_kept_when_the_log_grows() -> None:
     other = model_of(long_log())
     other.restore(model)
     assert [trace.name for trace in other.traces] == ["Colour", "Left"]
-    model.rows.view = model.rows.sorted("v", True)
+    model.rows.view = model.rows.build_sorted_view("v", True)
     derive(model, "v =")
     assert [trace.name for trace in model.traces] == ["wave"] and model.rows.columns == [
         "time",
@@ -139,7 +139,7 @@ def test_it_is_replaced_taken_away_and_kept_when_the_log_grows() -> None:
 def test_columns_that_mean_something_else_have_nothing_derived() -> None:
     model = model_of(wide_log(100))
     derive(model, "v = wave + 1")
-    other = model.log.with_layout(model.log.layout)
+    other = model.log.replace_layout(model.log.layout)
     assert other.names == ("wave",) and other.table.column_names == ["time", "wave"]
 
 
@@ -150,7 +150,7 @@ class TestReckoning:
         quarter = math.pi / 2 * robot.wheel_spacing_mm / 2 / per_degree
         left = column(0, 100 / per_degree, 100 / per_degree - quarter)
         right = column(0, 100 / per_degree, 100 / per_degree + quarter)
-        got = dead_reckoning(left, right, Pose(10, 20, 0), robot)
+        got = compute_dead_reckoning(left, right, Pose(10, 20, 0), robot)
         assert_allclose(got.x_mm, [10, 110, 110], atol=1e-9)
         assert_allclose(got.y_mm, [20, 20, 20], atol=1e-9)
         assert_allclose(got.heading_deg, [0, 0, 90])
@@ -158,8 +158,8 @@ class TestReckoning:
     def test_the_positions_are_those_of_the_motors(self) -> None:
         usual, geared = RobotSpec(), RobotSpec(left_reversed=True, gear_ratio=0.5)
         left, right = column(0, 100, 130), column(0, 120, 160)
-        expected = dead_reckoning(left, right, Pose(0, 0, 0), usual)
-        got = dead_reckoning(left * -0.5, right * 0.5, Pose(0, 0, 0), geared)
+        expected = compute_dead_reckoning(left, right, Pose(0, 0, 0), usual)
+        got = compute_dead_reckoning(left * -0.5, right * 0.5, Pose(0, 0, 0), geared)
         assert_allclose(
             [got.x_mm, got.y_mm, got.heading_deg],
             [expected.x_mm, expected.y_mm, expected.heading_deg],
@@ -171,12 +171,12 @@ class TestReckoning:
         radius = 200.0
         inner = math.pi / 2 * (radius - robot.wheel_spacing_mm / 2) / per_degree
         outer = math.pi / 2 * (radius + robot.wheel_spacing_mm / 2) / per_degree
-        got = dead_reckoning(column(0, inner), column(0, outer), Pose(0, 0, 0), robot)
+        got = compute_dead_reckoning(column(0, inner), column(0, outer), Pose(0, 0, 0), robot)
         assert_allclose([got.x_mm[1], got.y_mm[1], got.heading_deg[1]], [radius, radius, 90])
 
     def test_error_and_distance(self) -> None:
-        got = dead_reckoning(column(0, 0), column(0, 0), Pose(0, 0, 0), RobotSpec())
-        assert_allclose(error_mm(got, column(0, 3), column(0, 4)), [0, 5])
+        got = compute_dead_reckoning(column(0, 0), column(0, 0), Pose(0, 0, 0), RobotSpec())
+        assert_allclose(compute_error_mm(got, column(0, 3), column(0, 4)), [0, 5])
         assert_allclose(distance_mm(column(0, 3, 3), column(0, 4, 6)), [0, 5, 7])
 
 
@@ -194,4 +194,4 @@ class TestReckoning:
     ids=str,
 )
 def test_damaged_metadata_describe_no_run(metadata: dict[str, Any]) -> None:
-    assert spec_in(metadata) is None
+    assert read_spec(metadata) is None

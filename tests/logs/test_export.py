@@ -24,12 +24,12 @@ from tuisim.engine.runs.frames import samples_frame, telemetry_frame
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.logs.export import (
     EXPORTERS,
+    build_typed_frame,
     check_target,
-    companion_of,
     export_frame,
     export_samples,
     export_telemetry,
-    typed_frame,
+    find_companion,
 )
 from tuisim.logs.frames import read_log
 from tuisim.logs.reader import open_log
@@ -240,7 +240,7 @@ def test_damaged_file_is_named(tmp_path: Path, suffix: str) -> None:
     target = tmp_path / f"x{suffix}"
     magic = {".parquet": b"PAR1", ".arrow": b"ARROW1"}.get(suffix, b"")
     target.write_bytes(magic + b'\xff\x00"rubbish\n{"')
-    companion_of(target).write_text("{}")
+    find_companion(target).write_text("{}")
     with pytest.raises(LogError, match=target.name):
         read_log(target)
 
@@ -281,7 +281,7 @@ def test_read_log_is_where_users_look_for_it(logged: StoredRun, tmp_path: Path) 
 
 def test_csv_without_companion_is_read_all_the_same(logged: StoredRun, tmp_path: Path) -> None:
     export_samples([logged], tmp_path / "x.csv")
-    companion_of(tmp_path / "x.csv").unlink()
+    find_companion(tmp_path / "x.csv").unlink()
     with pytest.warns(UserWarning, match="text, not numbers: 'index'"):
         frame = read_log(tmp_path / "x.csv")
     pd.testing.assert_frame_equal(frame.reset_index(drop=True), samples_frame([logged]))
@@ -343,7 +343,7 @@ def test_log_that_cannot_be_read(tmp_path: Path, name: str, message: str) -> Non
 
 @pytest.mark.parametrize("lines, kind", [([1.0, 2.0], "int64"), ([1.5, 2.5], "float64")])
 def test_lines_are_whole_numbers_where_all_are(lines: list[float], kind: str) -> None:
-    column = typed_frame(pa.table({"line": lines}))["line"]
+    column = build_typed_frame(pa.table({"line": lines}))["line"]
     assert (column.tolist(), str(column.dtype)) == (lines, kind)
 
 

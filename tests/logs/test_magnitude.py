@@ -17,9 +17,9 @@ from tuisim.engine.runs.records import OutputRow, Stream
 from tuisim.engine.runs.samples import Sample
 from tuisim.logs.export import EXPORTERS, export_frame
 from tuisim.logs.frames import read_log
-from tuisim.logs.levels import levels_of
+from tuisim.logs.levels import measure_levels
 from tuisim.logs.magnitude import MAX_DRAWN, find_scale, limit_drawn
-from tuisim.logs.signals import summary_of
+from tuisim.logs.signals import compute_summary
 from tuisim.pictures.charts.canvas import xy_lines
 from tuisim.pictures.charts.files import CHART_FORMATS
 from tuisim.pictures.charts.sample_chart import sample_chart
@@ -47,7 +47,7 @@ def _are_equal(found: float, expected: float) -> bool:
 @pytest.mark.parametrize("low, high", ODD[:4], ids=str)
 def test_mean_and_spread_of_two_are_exact(low: float, high: float) -> None:
     mean, half = low / 2 + high / 2, abs(high / 2 - low / 2)
-    one = summary_of(np.array([low, high]))
+    one = compute_summary(np.array([low, high]))
     assert _are_equal(one.mean, mean)
     # Of the sample: it may be more than the largest number.
     assert one.std == pytest.approx(half * math.sqrt(2), rel=1e-9, abs=5e-324)
@@ -57,7 +57,7 @@ def test_mean_and_spread_of_two_are_exact(low: float, high: float) -> None:
 
 @pytest.mark.parametrize("values", ODD, ids=lambda values: f"{values[0]:g} {values[-1]:g}")
 def test_huge_levels_are_found(values: Sequence[float]) -> None:
-    found = levels_of(np.tile(values, 10 if len(values) == 2 else 1))
+    found = measure_levels(np.tile(values, 10 if len(values) == 2 else 1))
     assert all(value in found.level for value in values) or len(values) == 2
     assert np.isfinite(found.level).all() and np.isfinite(found.spread).all()
 
@@ -115,13 +115,13 @@ def test_every_number_is_exported(tmp_path: Path, suffix: str) -> None:
 def test_every_number_is_summed(values: Sequence[float]) -> None:
     samples = np.array(values, np.float64)
     for found in (
-        summary_of(samples),
+        compute_summary(samples),
         Pyramid(np.arange(len(values), dtype=np.float64), samples).figures(0, 99),
     ):
         if found.count:
             assert found.min <= found.mean <= found.max and found.std >= 0.0
             assert list(found.quantiles) == sorted(found.quantiles)
-    levels = levels_of(samples)
+    levels = measure_levels(samples)
     assert np.isfinite(levels.level).all()
     for of in statistics_of(_printed(values)).values():
         assert of.min <= of.mean <= of.max and 0.0 <= of.std < math.inf

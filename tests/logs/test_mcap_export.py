@@ -19,7 +19,7 @@ from tuisim.base.errors import ConfigError, ExportError
 from tuisim.engine.core.spec import RunSpec
 from tuisim.logs.log import Log
 from tuisim.logs.mcap_export import POSE, export_mcap
-from tuisim.logs.reader import log_of_runs, open_log, telemetry_log
+from tuisim.logs.reader import build_log, build_telemetry_log, open_log
 
 pytest.importorskip("mcap.reader", reason="needs the extra mcap")
 
@@ -67,7 +67,7 @@ def test_telemetry_comes_back(
 ) -> None:
     recorder = record(noisy_spec)
     recorder.drive(300, 280, 40, line=3)
-    log = telemetry_log(recorder.end())
+    log = build_telemetry_log(recorder.end())
     assert not export(log, tmp_path / "a.mcap")
     check_values(log, tmp_path / "a.mcap", {*log.sampled_names} - {*POSE})
     messages, schemas = read_back(tmp_path / "a.mcap")
@@ -95,7 +95,7 @@ def test_each_run_has_channels(
             recorder.drive(300, 280, 2, line=3)
             recorder.print(f"Größe: {value!r}", line=4)
         runs.append(recorder.end())
-    log = log_of_runs(runs)
+    log = build_log(runs)
     assert log.names == ("Größe #1", "Größe #2")
     export(log, tmp_path / "a.mcap")
     check_values(log, tmp_path / "a.mcap", {*log.names})

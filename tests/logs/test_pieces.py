@@ -7,7 +7,7 @@ import pytest
 
 from tests.cases import for_each
 from tuisim.logs import pieces
-from tuisim.logs.pieces import strays
+from tuisim.logs.pieces import find_strays
 
 
 @for_each(seed=range(40))
@@ -18,11 +18,12 @@ def test_steps_between_pieces_are_those_of_least_squares(seed: int) -> None:
     values = rng.normal(0.0, 1.0, stop) + 50.0
     values[rng.random(stop) < 0.2] += 1000.0
     before, after = np.array([[0, edge]]), np.array([[edge + gap, stop]])
-    lines = [pieces._lines(values, span, 1.0) for span in (before, after)]
-    step, spread = pieces._steps_between(lines[0], lines[1], before[:, 1])
+    lines = [pieces._fit_lines(values, span, 1.0) for span in (before, after)]
+    step, spread = pieces._estimate_steps(lines[0], lines[1], before[:, 1])
 
     kept = [
-        ~strays(values[None, start:end], 1.0)[0] for start, end in ((0, edge), (edge + gap, stop))
+        ~find_strays(values[None, start:end], 1.0)[0]
+        for start, end in ((0, edge), (edge + gap, stop))
     ]
     at = np.concatenate((np.flatnonzero(kept[0]), edge + gap + np.flatnonzero(kept[1])))
     model = np.stack((np.ones(len(at)), at - edge, at >= edge), axis=1).astype(np.float64)
@@ -33,5 +34,5 @@ def test_steps_between_pieces_are_those_of_least_squares(seed: int) -> None:
 
 def test_a_stray_is_told_from_a_drift() -> None:
     part = np.stack((np.arange(20.0), np.where(np.arange(20) == 7, 30.0, 5.0)))
-    off = strays(part, 1.0)
+    off = find_strays(part, 1.0)
     assert np.argwhere(off).tolist() == [[1, 7]]

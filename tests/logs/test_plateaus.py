@@ -13,7 +13,7 @@ import pytest
 from tuisim.base.errors import LogError
 from tuisim.logs import pieces as pieces_module
 from tuisim.logs import plateaus as plateaus_module
-from tuisim.logs.plateaus import plateaus, plateaus_in_subprocess
+from tuisim.logs.plateaus import find_plateaus, find_plateaus_in_subprocess
 
 
 @pytest.mark.slow
@@ -21,25 +21,25 @@ def test_finds_the_same_as_here() -> None:
     rng = np.random.default_rng(4)
     values = np.repeat(rng.uniform(0.0, 100.0, 30), 40) + rng.normal(0.0, 0.3, 1200)
     values[[3, 700]] = np.nan, 500.0
-    assert plateaus_in_subprocess(values, lambda: False) == plateaus(values) != []
+    assert find_plateaus_in_subprocess(values, lambda: False) == find_plateaus(values) != []
 
 
 def test_says_that_there_is_no_room(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "missing"))
     with pytest.raises(LogError, match="No such file"):
-        plateaus_in_subprocess(np.zeros(9), lambda: False)
+        find_plateaus_in_subprocess(np.zeros(9), lambda: False)
 
 
 def test_says_that_the_process_has_died(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "executable", "/bin/false")
     with pytest.raises(LogError, match="exit code 1"):
-        plateaus_in_subprocess(np.zeros(9), lambda: False)
+        find_plateaus_in_subprocess(np.zeros(9), lambda: False)
 
 
 def test_ends_when_nobody_waits_for_it() -> None:
     values = np.random.default_rng(4).integers(0, 5, 2_000_000).astype(np.float64)
     with pytest.raises(LogError, match="stopped"):
-        plateaus_in_subprocess(values, lambda: True)
+        find_plateaus_in_subprocess(values, lambda: True)
 
 
 def test_it_imports_the_package_of_this_process() -> None:
@@ -62,13 +62,15 @@ def test_how_much_is_looked_at_together_changes_nothing(
     rng = np.random.default_rng(5)
     values = np.repeat(rng.uniform(0.0, 100.0, 40), rng.integers(2, 60, 40))
     values += rng.normal(0.0, 0.5, len(values)) + 40.0 * (rng.random(len(values)) < 0.02)
-    found = plateaus(values)
+    found = find_plateaus(values)
     monkeypatch.setattr(module, name, number)
-    assert plateaus(values) == found
+    assert find_plateaus(values) == found
 
 
 @pytest.mark.parametrize("values", [slice(2), slice(-2, None)], ids=["begin", "end"])
 def test_a_long_log_may_begin_and_end_with_a_level_of_two_values(values: slice) -> None:
-    noisy = np.random.default_rng(1).normal(20.0, 0.3, plateaus_module.EVERY_PLACE + 1000)
+    noisy = np.random.default_rng(1).normal(
+        20.0, 0.3, plateaus_module.MAX_SAMPLES_CUT_ANYWHERE + 1000
+    )
     noisy[values] += 30.0
-    assert sorted(round(one.level, -1) for one in plateaus(noisy)) == [20.0, 50.0]
+    assert sorted(round(one.level, -1) for one in find_plateaus(noisy)) == [20.0, 50.0]

@@ -24,7 +24,7 @@ from tuisim.engine.core.tick_record import TICK_FIELDS
 from tuisim.engine.runs.records import HEADER_BYTES, TELEMETRY_FILE
 from tuisim.engine.runs.run_folder import read_run
 from tuisim.logs.choices import ReadChoices
-from tuisim.logs.reader import log_of_runs, open_log, telemetry_log
+from tuisim.logs.reader import build_log, build_telemetry_log, open_log
 
 ROWS = "".join(f"{at / 10},{at * 2}\n" for at in range(40))
 CSV = "time,red\n" + ROWS
@@ -450,4 +450,4 @@ def test_damaged_records_are_told_of_telemetry_only(
     path.write_bytes(content)
     run = read_run(folder)
     note = f"{TELEMETRY_FILE}: 1 of 21 records is damaged and left out"
-    assert (telemetry_log(run).notes, log_of_runs([run]).notes) == ((note,), ())
+    assert (build_telemetry_log(run).notes, build_log([run]).notes) == ((note,), ())

@@ -12,13 +12,13 @@ from tuisim.analysis.events import crossings
 from tuisim.base.errors import LogError
 from tuisim.logs.signals import (
     Between,
-    derivative,
-    integral,
-    known_at,
-    moving_average,
+    compute_derivative,
+    compute_integral,
+    compute_moving_average,
+    compute_summary,
     resample,
-    summary_of,
-    value_at,
+    sample_signal,
+    sample_unsorted_signal,
 )
 
 NAN = float("nan")
@@ -30,17 +30,17 @@ def column(*values: float) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
 
 class TestSummary:
     def test_figures(self) -> None:
-        got = summary_of(column(1, 2, 3, 4, NAN))
+        got = compute_summary(column(1, 2, 3, 4, NAN))
         assert (got.count, got.left_out, got.min, got.mean, got.max) == (4, 1, 1.0, 2.5, 4.0)
         assert got.std == pytest.approx(math.sqrt(5 / 3))
         assert got.quantiles == pytest.approx((1.15, 1.75, 2.5, 3.25, 3.85))
 
     def test_equal_values_are_exact(self) -> None:
-        got = summary_of(np.full(1001, 86.27450980392157))
+        got = compute_summary(np.full(1001, 86.27450980392157))
         assert (got.mean, got.std) == (86.27450980392157, 0.0)
 
     def test_nothing(self) -> None:
-        got = summary_of(column(NAN, math.inf))
+        got = compute_summary(column(NAN, math.inf))
         assert (got.count, got.left_out) == (0, 2)
         assert math.isnan(got.mean)
 
@@ -48,16 +48,16 @@ class TestSummary:
 class TestSignals:
     def test_derivative_of_a_parabola(self) -> None:
         time = column(0, 0.5, 2, 3, 3.25)
-        assert_allclose(derivative(time, time**2)[1:-1], 2 * time[1:-1])
+        assert_allclose(compute_derivative(time, time**2)[1:-1], 2 * time[1:-1])
 
     def test_derivative_passes_over_moments_that_repeat(self) -> None:
-        assert_allclose(derivative(column(0, 1, 1, 2), column(0, 2, 9, 4)), [2, 2, 2, 2])
+        assert_allclose(compute_derivative(column(0, 1, 1, 2), column(0, 2, 9, 4)), [2, 2, 2, 2])
 
     @pytest.mark.parametrize("values", [column(), column(3.0)], ids=["none", "one"])
     def test_derivative_of_too_little(
         self, values: np.ndarray[tuple[int], np.dtype[np.float64]]
     ) -> None:
-        assert np.isnan(derivative(values, values)).all()
+        assert np.isnan(compute_derivative(values, values)).all()
 
     @pytest.mark.parametrize(
         "between, expected",
@@ -65,33 +65,35 @@ class TestSignals:
         ids=["linear", "hold"],
     )
     def test_integral(self, between: Between, expected: list[float]) -> None:
-        assert_allclose(integral(column(0, 1, 3), column(1, 2, 3), between), expected)
+        assert_allclose(compute_integral(column(0, 1, 3), column(1, 2, 3), between), expected)
 
     def test_moving_average_shrinks_at_the_ends(self) -> None:
-        assert_allclose(moving_average(column(1, 2, 6, NAN, 2), 3), [1.5, 3, 4, 4, 2])
+        assert_allclose(compute_moving_average(column(1, 2, 6, NAN, 2), 3), [1.5, 3, 4, 4, 2])
 
     def test_moving_average_keeps_digits(self) -> None:
         values = 1e9 + np.tile(column(0, 1), 500)
         assert_allclose(
-            moving_average(values, 3)[1:-1] - 1e9, np.tile(column(1 / 3, 2 / 3), 499), atol=1e-6
+            compute_moving_average(values, 3)[1:-1] - 1e9,
+            np.tile(column(1 / 3, 2 / 3), 499),
+            atol=1e-6,
         )
 
     def test_moving_average_is_of_its_window_only(self) -> None:
         values = np.full(40, 50.0)
         values[3] = 1e20
-        assert_allclose(moving_average(values, 5)[6:], 50.0)
+        assert_allclose(compute_moving_average(values, 5)[6:], 50.0)
 
     @pytest.mark.parametrize("width", [1, 3, 7, 8001])
     def test_moving_average_of_any_width(self, width: int) -> None:
         values = np.arange(20.0) ** 2
         half = width // 2
         expected = [values[max(at - half, 0) : at + half + 1].mean() for at in range(20)]
-        assert_allclose(moving_average(values, width), expected)
+        assert_allclose(compute_moving_average(values, width), expected)
 
     @pytest.mark.parametrize("width", [0, -3, 4])
     def test_moving_average_needs_an_odd_width(self, width: int) -> None:
         with pytest.raises(LogError, match="odd"):
-            moving_average(column(1, 2), width)
+            compute_moving_average(column(1, 2), width)
 
     def test_resample_holds(self) -> None:
         time, values = resample(column(0, 0.25, 1), column(5, 6, 7), 0.5)
@@ -103,7 +105,7 @@ class TestSignals:
         assert len(times) == 31
 
     def test_value_before_the_first_sample(self) -> None:
-        got = value_at(column(1, 2), column(5, 7), column(0.5, 1.5, 9), Between.LINEAR)
+        got = sample_signal(column(1, 2), column(5, 7), column(0.5, 1.5, 9), Between.LINEAR)
         assert_allclose(got, [NAN, 6, 7])
 
     @pytest.mark.parametrize("period", [0.0, -1.0, NAN, math.inf, 1e-9])
@@ -120,24 +122,26 @@ BACK = column(0, 2, 1, 3), column(0, 4, 1, 9)
 
 class TestOrder:
     def test_empty_cells_are_passed_over(self) -> None:
-        assert_allclose(derivative(*SPARSE), [1, NAN, 1.5, NAN, 2, NAN])
-        assert_allclose(integral(*SPARSE), [0, NAN, 4, NAN, 14, NAN])
-        assert_allclose(integral(*SPARSE, Between.HOLD), [0, NAN, 2, NAN, 8, NAN])
+        assert_allclose(compute_derivative(*SPARSE), [1, NAN, 1.5, NAN, 2, NAN])
+        assert_allclose(compute_integral(*SPARSE), [0, NAN, 4, NAN, 14, NAN])
+        assert_allclose(compute_integral(*SPARSE, Between.HOLD), [0, NAN, 2, NAN, 8, NAN])
         assert_allclose(resample(*SPARSE, 1)[1], [1, 1, 3, 3, 7, 7])
         moments_s, _ = resample(*SPARSE, 1)
-        assert_allclose(known_at(*SPARSE, moments_s, Between.LINEAR), [1, 2, 3, 5, 7, 7])
+        assert_allclose(
+            sample_unsorted_signal(*SPARSE, moments_s, Between.LINEAR), [1, 2, 3, 5, 7, 7]
+        )
 
     def test_times_may_go_back(self) -> None:
-        assert_allclose(derivative(*BACK), [1, 4, 2, 5])
-        assert_allclose(integral(*BACK), [0, 3, 0.5, 9.5])
+        assert_allclose(compute_derivative(*BACK), [1, 4, 2, 5])
+        assert_allclose(compute_integral(*BACK), [0, 3, 0.5, 9.5])
         assert_allclose(resample(*BACK, 1)[1], [0, 1, 4, 9])
         assert [(one.at, one.time_s) for one in crossings(*BACK, 2.5)] == [(1, 1.5)]
 
     def test_very_large_values(self) -> None:
         found = crossings(column(0, 1), column(-1e308, 1e308), 0)
         assert [one.time_s for one in found] == [0.5]
-        assert_allclose(integral(column(0, 1), column(1e308, 1e308)), [0, 1e308])
-        assert summary_of(np.array([3e38, 3e38, 0], np.float32)).mean == pytest.approx(2e38)
+        assert_allclose(compute_integral(column(0, 1), column(1e308, 1e308)), [0, 1e308])
+        assert compute_summary(np.array([3e38, 3e38, 0], np.float32)).mean == pytest.approx(2e38)
 
 
 class TestCrossings:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from tests.cases import cases
 from tests.logs.test_bands import made_log, short_log
-from tuisim.logs.plateaus import plateaus
+from tuisim.logs.plateaus import find_plateaus
 
 
 def ramp(samples: int, low: float = 40.0, high: float = 88.0) -> list[float]:
@@ -32,8 +32,8 @@ UNLEVEL = {
 @cases("values", UNLEVEL)
 def test_what_moves_has_no_level(values: list[float]) -> None:
     rng = np.random.default_rng(1)
-    assert plateaus(np.array(values)) == []
-    assert plateaus(np.array(values) + rng.normal(0.0, 0.3, len(values))) == []
+    assert find_plateaus(np.array(values)) == []
+    assert find_plateaus(np.array(values) + rng.normal(0.0, 0.3, len(values))) == []
 
 
 @pytest.mark.parametrize("samples", [8, 10, 14, 20, 30])
@@ -41,7 +41,7 @@ def test_what_moves_has_no_level(values: list[float]) -> None:
 def test_a_slope_between_levels_is_none_of_them(samples: int, noise: float) -> None:
     values = np.array([60.0] * 20 + ramp(samples, 62.0, 88.0) + [90.0] * 20)
     values += np.random.default_rng(2).normal(0.0, noise, len(values))
-    found = plateaus(values)
+    found = find_plateaus(values)
     assert [plateau.level for plateau in found] == pytest.approx([60.0, 90.0], abs=0.5)
 
 
@@ -49,7 +49,7 @@ def test_a_slope_between_levels_is_none_of_them(samples: int, noise: float) -> N
 def test_the_spread_is_that_of_the_samples(make: Callable[[int], NDArray[np.float64]]) -> None:
     for seed in range(60):
         values = make(seed)
-        for plateau in plateaus(values):
+        for plateau in find_plateaus(values):
             part = values[plateau.start : plateau.stop]
             # Without strays, which are those farthest from the level.
             nearest = np.argsort(np.abs(part - plateau.level))[: len(part) - plateau.strays]
@@ -60,7 +60,7 @@ def test_the_spread_is_that_of_the_samples(make: Callable[[int], NDArray[np.floa
 @pytest.mark.parametrize("samples", [30, 50, 100, 400])
 def test_levels_at_both_ends_of_a_slow_slope_are_told(samples: int) -> None:
     values = np.array([10.0] * 20 + ramp(samples, 10.0, 90.0) + [90.0] * 20)
-    found = plateaus(values)
+    found = find_plateaus(values)
     # The first steps of the slowest slope are no farther from the level than the smallest step.
     assert [plateau.level for plateau in found] == pytest.approx([10.0, 90.0], abs=0.02)
     assert max(plateau.spread for plateau in found) < 0.1
@@ -70,6 +70,6 @@ def test_levels_at_both_ends_of_a_slow_slope_are_told(samples: int) -> None:
 def test_the_top_between_two_slopes_is_a_level(noise: float) -> None:
     values = np.array(ramp(60, 0.0, 177.0) + [180.0] * 20 + ramp(40, 176.0, 20.0))
     values += np.random.default_rng(3).normal(0.0, noise, len(values))
-    (top,) = plateaus(values)
+    (top,) = find_plateaus(values)
     assert top.level == pytest.approx(180.0, abs=noise)
     assert top.samples == pytest.approx(20, abs=1 + 4 * noise)

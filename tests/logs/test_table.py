@@ -10,15 +10,17 @@ from tests.app.analyser.logs import long_log, model_of
 from tuisim.analysis.model import Model
 from tuisim.base.errors import LogError
 from tuisim.logs import table as rows_module
-from tuisim.logs.table import TableTask, conditions_of
+from tuisim.logs.table import TableTask, parse_conditions
 
 
 def test_a_search_goes_round_in_stretches(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(rows_module, "_STRETCH", 3)
     model = model_of(long_log())
     rows = model.rows
-    rows.view = rows.filtered(tuple(conditions_of("variable == Colour", rows.columns)))
-    rows.view = rows.sorted("value", False)
+    rows.view = rows.build_filtered_view(
+        tuple(parse_conditions("variable == Colour", rows.columns))
+    )
+    rows.view = rows.build_sorted_view("value", False)
     values = [rows.text(rows.row(place), "value") for place in range(len(rows))]
     assert values == [str(value) for value in range(0, 100, 10)]
     for here in random.Random(1).sample(range(10), 10):
@@ -63,7 +65,9 @@ def values(model: Model) -> list[float]:
 )
 def test_rows_that_fulfil_all_conditions(text: str, found: list[float]) -> None:
     model = model_of(long_log())
-    model.rows.view = model.rows.filtered(tuple(conditions_of(text, model.rows.columns)))
+    model.rows.view = model.rows.build_filtered_view(
+        tuple(parse_conditions(text, model.rows.columns))
+    )
     assert values(model) == found
 
 
@@ -71,22 +75,24 @@ def test_rows_that_fulfil_all_conditions(text: str, found: list[float]) -> None:
 def test_a_condition_that_is_none_is_said(text: str) -> None:
     model = model_of(long_log())
     with pytest.raises(LogError):
-        model.rows.view = model.rows.filtered(tuple(conditions_of(text, model.rows.columns)))
+        model.rows.view = model.rows.build_filtered_view(
+            tuple(parse_conditions(text, model.rows.columns))
+        )
     assert len(model.rows) == 20
 
 
 def test_sorting_goes_with_a_filter() -> None:
     model = model_of(long_log())
-    model.rows.view = model.rows.filtered(
-        tuple(conditions_of("variable == Colour", model.rows.columns))
+    model.rows.view = model.rows.build_filtered_view(
+        tuple(parse_conditions("variable == Colour", model.rows.columns))
     )
-    model.rows.view = model.rows.sorted("value", False)
+    model.rows.view = model.rows.build_sorted_view("value", False)
     assert values(model) == [float(10 * at) for at in range(10)]
-    model.rows.view = model.rows.sorted("value", True)
+    model.rows.view = model.rows.build_sorted_view("value", True)
     assert values(model)[0] == 90.0
     assert model.rows.place(18) == 9
-    model.rows.view = model.rows.sorted("variable", False)
-    model.rows.view = model.rows.filtered(())
+    model.rows.view = model.rows.build_sorted_view("variable", False)
+    model.rows.view = model.rows.build_filtered_view(())
     assert values(model)[:2] == [90.0, 80.0]
 
 

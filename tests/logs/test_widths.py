@@ -7,7 +7,7 @@ import pytest
 
 from tests.cases import cases, for_each
 from tuisim.engine.runs.arrays import FloatArray
-from tuisim.logs.levels import Levels, levels_of
+from tuisim.logs.levels import Levels, measure_levels
 from tuisim.logs.widths import measure_widths
 
 GREYS = (100.0, 86.0, 100.0, 50.0, 0.0, 83.0)
@@ -53,7 +53,7 @@ def test_width_of_levels_that_are_searched(
     edges_mm = 60.3 + width_mm * np.arange(len(GREYS) - 1.0)
     places_mm = np.arange(0.0, edges_mm[-1] + 60.0, period_mm)
     values: FloatArray = np.round(2.55 * read_mat(places_mm, edges_mm, spot_mm))
-    widths_mm = measure_widths(values, places_mm, levels_of(values))
+    widths_mm = measure_widths(values, places_mm, measure_levels(values))
     bound_mm = max(period_mm - spot_mm / 2.0, 0.05 * spot_mm)
     assert widths_mm[1:-1] == pytest.approx([width_mm] * (len(GREYS) - 2), abs=bound_mm)
 
@@ -75,5 +75,5 @@ WIDTHS = {
 @cases("values, widths", WIDTHS)
 def test_widths_of_drawn_steps(values: list[float], widths: list[float]) -> None:
     samples = np.array(values, np.float64)
-    measured = measure_widths(samples, np.arange(len(values), dtype=float), levels_of(samples))
+    measured = measure_widths(samples, np.arange(len(values), dtype=float), measure_levels(samples))
     assert measured == pytest.approx(widths, nan_ok=True)

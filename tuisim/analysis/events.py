@@ -20,7 +20,7 @@ from tuisim.engine.core.conditions import (
 )
 from tuisim.engine.runs.arrays import FloatArray
 from tuisim.engine.runs.command_events import CommandEvent, CommandIndex, parse_command_search
-from tuisim.logs.signals import known_in_order
+from tuisim.logs.signals import sort_known
 
 if TYPE_CHECKING:
     from tuisim.engine.runs.run_folder import StoredRun
@@ -58,7 +58,7 @@ def crossings(
     """
     if not hysteresis >= 0.0:
         raise LogError(f"the hysteresis must not be negative, got {hysteresis:g}")
-    known = np.arange(len(values))[known_in_order(time_s, values)]
+    known = np.arange(len(values))[sort_known(time_s, values)]
     signal = values[known]
     above = signal >= threshold
     # The side of the threshold; 0 within the hysteresis.
@@ -85,7 +85,7 @@ def crossings(
 
 def _changes(time_s: FloatArray, values: FloatArray) -> list[Crossing]:
     """Return where a signal has another value than before, in order of time."""
-    known = np.arange(len(values))[known_in_order(time_s, values)]
+    known = np.arange(len(values))[sort_known(time_s, values)]
     turns = np.flatnonzero(np.diff(values[known]))
     pairs = zip(known[turns].tolist(), known[turns + 1].tolist(), strict=True)
     return [

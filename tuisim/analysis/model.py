@@ -16,17 +16,17 @@ from tuisim.analysis.source import Note, OpenedLog, read_notes, write_notes
 from tuisim.analysis.traces import TIME, LogTrace, LogTraces, aligned
 from tuisim.base.errors import LogError, among
 from tuisim.engine.runs.arrays import FloatArray
-from tuisim.logs.bands import Band, BandReport, band_report, in_words
-from tuisim.logs.columns import numeric_columns
+from tuisim.logs.bands import Band, BandReport, build_band_report, describe_levels
+from tuisim.logs.columns import list_numeric_columns
 from tuisim.logs.derived import (
     RECKONED_COLUMNS,
-    definition_of,
-    derived,
-    named_columns,
-    reckoned_series,
+    build_reckoned_series,
+    compute_derived,
+    find_named_columns,
+    parse_definition,
 )
-from tuisim.logs.plateaus import Search, plateaus
-from tuisim.logs.signals import Summary, known_at, summary_of
+from tuisim.logs.plateaus import Search, find_plateaus
+from tuisim.logs.signals import Summary, compute_summary, sample_unsorted_signal
 from tuisim.logs.table import Rows
 from tuisim.pictures.charts.axes import Limits
 
@@ -141,8 +141,8 @@ class Model:
             other = self.traces.named(name).series
             if other is series:
                 return other.values
-            return known_at(other.time_s, other.values, series.time_s)
-        if name not in (numbers := numeric_columns(self.log.table.schema)):
+            return sample_unsorted_signal(other.time_s, other.values, series.time_s)
+        if name not in (numbers := list_numeric_columns(self.log.table.schema)):
             known = dict.fromkeys((*self.log.names, *numbers))
             raise LogError(f"no variable {name!r}", among(name, known), file=self.log.title)
         return self.log.numbers(name)[series.rows]
@@ -237,7 +237,7 @@ class Model:
 
     def add_named_columns(self, text: str) -> None:
         """Derive those columns of the recording that a text names, and that telemetry has only if it is asked."""
-        for name in named_columns(self.log, text):
+        for name in find_named_columns(self.log, text):
             derive(self, name)
 
     def align(self, way: str) -> None:
@@ -291,12 +291,12 @@ class Model:
         """Return the visible variables whose bands have not been searched yet."""
         return [trace.name for trace in self.traces.ticked() if trace.name not in self._reports]
 
-    def find_bands(self, names: Sequence[str], search: Search = plateaus) -> None:
+    def find_bands(self, names: Sequence[str], search: Search = find_plateaus) -> None:
         """Search variables for bands. Slow for a long log: call it in a thread, with a search in another process."""
         for name in names:
-            report = band_report(self.log, name, search)
+            report = build_band_report(self.log, name, search)
             self._words[name], self._bands[name], self._reports[name] = (
-                in_words(report),
+                describe_levels(report),
                 report.bands,
                 report,
             )
@@ -338,7 +338,7 @@ class Model:
     def sum_up(self, names: Sequence[str]) -> None:
         """Compute the statistics of variables. Slow for a long log: call it in a thread."""
         for name in names:
-            self._summaries[name] = summary_of(self.traces.named(name).series.values)
+            self._summaries[name] = compute_summary(self.traces.named(name).series.values)
 
     def summary(self, name: str) -> Summary:
         """Return the statistics of a variable, between the two cursors or of all samples; cached."""
@@ -347,7 +347,11 @@ class Model:
             pyramid = self.traces.named(name).pyramid
             values = pyramid.between(*span)[1]
             # Quantiles of many values would slow down the cursor.
-            return summary_of(values) if len(values) <= _SORTED_AT_ONCE else pyramid.figures(*span)
+            return (
+                compute_summary(values)
+                if len(values) <= _SORTED_AT_ONCE
+                else pyramid.figures(*span)
+            )
         if name not in self._summaries:
             self.sum_up([name])
         return self._summaries[name]
@@ -405,9 +409,9 @@ def derive(model: Model, text: str) -> None:
 
 def apply_definition(model: Model, text: str, log: Log) -> None:
     """Apply a derived log to a model."""
-    name = RECKONING if text == RECKONING else definition_of(text).name
+    name = RECKONING if text == RECKONING else parse_definition(text).name
     model.definitions.pop(name, None)
-    if text == RECKONING or definition_of(text).expression:
+    if text == RECKONING or parse_definition(text).expression:
         model.definitions[name] = text
     model.set_log(log)
     shown = RECKONED_COLUMNS[-1] if name == RECKONING else name
@@ -426,14 +430,16 @@ def with_definition(model: Model, text: str) -> tuple[str, Log]:
     log = model.log
     if text == RECKONING:
         for column in RECKONED_COLUMNS:
-            log = log.without_derived(column)
-        for series in reckoned_series(log):
-            log = log.with_derived(series.name, [series])
+            log = log.drop_derived(column)
+        for series in build_reckoned_series(log):
+            log = log.add_derived(series.name, [series])
         return text, log
-    definition = definition_of(text)
-    bare = log.without_derived(definition.name)
+    definition = parse_definition(text)
+    bare = log.drop_derived(definition.name)
     if definition.expression:
-        return text, bare.with_derived(definition.name, derived(bare, definition, model.selected))
+        return text, bare.add_derived(
+            definition.name, compute_derived(bare, definition, model.selected)
+        )
     if bare is log:
         made = dict.fromkeys(name.partition(" #")[0] for name in log.derived)
         raise LogError(

@@ -22,10 +22,10 @@ from tuisim.engine.core.tick_record import FLAG_PEN_DOWN
 from tuisim.engine.files import name_of
 from tuisim.engine.protocol import SetNoise
 from tuisim.engine.runs.run_folder import StoredRun
-from tuisim.logs.bands import count_samples, width_in_words
+from tuisim.logs.bands import count_samples, describe_width
 from tuisim.logs.export import check_place
 from tuisim.logs.log import Log
-from tuisim.logs.plateaus import Search, plateaus
+from tuisim.logs.plateaus import Search, find_plateaus
 from tuisim.logs.signals import QUANTILES
 from tuisim.pictures.charts.files import FACET_PX, svg_of, write_whole
 from tuisim.pictures.charts.layout import laid_out
@@ -64,13 +64,13 @@ def check_report(path: Path) -> None:
 
 
 def write_report(
-    opened: OpenedLog, path: Path, names: Sequence[str] = (), search: Search = plateaus
+    opened: OpenedLog, path: Path, names: Sequence[str] = (), search: Search = find_plateaus
 ) -> None:
     """Write the report of a log, replacing an existing file.
 
     Args:
         names: Variables of chart and bands, none for those that the analyser shows first.
-        search: Finds the bands, such as `plateaus`, or `find_plateaus_in_subprocess` for long logs.
+        search: Finds the bands, such as `find_plateaus`, or `find_plateaus_in_subprocess` for long logs.
 
     Raises:
         ExportError: the file cannot be written; an existing one is unchanged.
@@ -84,7 +84,7 @@ def write_report(
 def report_of(
     opened: OpenedLog,
     names: Sequence[str] = (),
-    search: Search = plateaus,
+    search: Search = find_plateaus,
     title: str = "",
     *,
     movie: bool = False,
@@ -240,7 +240,7 @@ def _bands(model: Model) -> Mapping[str, Any]:
                 count_samples(band),
                 f"{band.level:.2f}",
                 f"{band.spread:.2f}",
-                width_in_words(band),
+                describe_width(band),
             ),
         ]
         for band in bands[:MOST_BANDS]

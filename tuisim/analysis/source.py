@@ -43,7 +43,7 @@ class LogRequest:
         """Return a log of this request with a note on choices that were remembered."""
         if not self.is_remembered or self.choices == NO_CHOICES:
             return log
-        options = " ".join(self.choices.in_options())
+        options = " ".join(self.choices.format_options())
         note = f"read as chosen in the analyser: {options} (any of these options replaces all)"
         return replace(log, notes=(note, *log.notes))
 
@@ -93,12 +93,12 @@ def opening(request: LogRequest) -> Iterator[OpenedLog]:
         LogError: there is no such run or file, or it cannot be read.
     """
     from tuisim.engine.runs.store import RunStore
-    from tuisim.logs.reader import log_of_runs, read_pieces, telemetry_log
+    from tuisim.logs.reader import build_log, build_telemetry_log, read_pieces
 
     if not request.file:
         store = RunStore()
         runs = tuple(store.load_run(word) for word in request.runs)
-        log = telemetry_log(runs[0]) if request.telemetry else log_of_runs(runs)
+        log = build_telemetry_log(runs[0]) if request.telemetry else build_log(runs)
         yield OpenedLog(request, log, runs[:1] if request.telemetry else runs)
         return
     for loaded in read_pieces(request.file, request.choices):

@@ -11,8 +11,8 @@ import numpy as np
 from tuisim.analysis.events import THRESHOLD_FORM, threshold_of
 from tuisim.base.errors import LogError
 from tuisim.engine.runs.arrays import FloatArray
-from tuisim.logs.bands import driven_mm
-from tuisim.logs.signals import value_at
+from tuisim.logs.bands import compute_driven_mm
+from tuisim.logs.signals import sample_signal
 from tuisim.pictures.charts.axes import Limits, widen_times
 from tuisim.pictures.charts.traces import Pyramid, Trace, Traces
 
@@ -99,7 +99,7 @@ class LogTrace(Trace):
         found = self.pyramid
         if not len(found.times_s) or time_s < found.times_s[0]:
             return None
-        return float(value_at(found.times_s, found.values, np.array([time_s]))[0])
+        return float(sample_signal(found.times_s, found.values, np.array([time_s]))[0])
 
 
 def sample_and_hold(times_s: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -190,7 +190,7 @@ def aligned(log: Log, series: Sequence[Series], way: str) -> list[FloatArray | N
     if way == TIME:
         return [None] * len(series)
     if way == DISTANCE:
-        driven = [driven_mm(log, one) for one in series]
+        driven = [compute_driven_mm(log, one) for one in series]
         if any(places is None for places in driven):
             raise LogError("no distances: the log has no x_mm and y_mm in each row", FORM)
         return driven

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ConfigError, LogError, nearest
 from tuisim.batch.parameters import SEED
-from tuisim.logs.export import table_metadata
-from tuisim.logs.expressions import evaluate, names_in
-from tuisim.logs.signals import Summary, summary_of
-from tuisim.logs.units import unit_of
+from tuisim.logs.export import build_table_metadata
+from tuisim.logs.expressions import evaluate, find_names
+from tuisim.logs.signals import Summary, compute_summary
+from tuisim.logs.units import parse_unit
 from tuisim.tasks.goals.judgement import GoalState, points
 from tuisim.tasks.task import Result, Value, VariableStatistics
 
@@ -128,7 +128,7 @@ def evaluated(text: str, columns: Mapping[str, Any], length: int) -> Any:
         if _is_numeric(column)
     }
     written = quoted(text, numbers)
-    for name in names_in(written):
+    for name in find_names(written):
         if name not in numbers and (is_statistic(name) or name.startswith(GOAL) or name == POINTS):
             numbers[name] = np.full(length, np.nan)
     return evaluate(written, numbers)
@@ -184,7 +184,7 @@ def check_expressions(
             hint = "a name of letters, digits and _ that no column has and that ends in none of their suffixes"
             raise ConfigError("is no name for a new column", hint, key=key)
         try:
-            used = names_in(quoted(text, known))
+            used = find_names(quoted(text, known))
             # With no rows, this finds whatever is not allowed.
             evaluated(text, {one: _column([]) for one in {*known, *used}}, 0)
         except LogError as error:
@@ -226,7 +226,7 @@ def summaries(
             for values, part in frame.groupby(by, sort=False)
         ]
     return [
-        ColumnSummary(group, column, summary_of(part[column].to_numpy("float64")))
+        ColumnSummary(group, column, compute_summary(part[column].to_numpy("float64")))
         for column in columns
         for group, part in groups
     ]
@@ -244,9 +244,9 @@ def metadata_of(frame: pd.DataFrame, batch: Mapping[str, Any]) -> dict[str, Any]
     units = {
         name: unit.words
         for name in frame.columns
-        if (unit := unit_of(_without_statistic(name))).words
+        if (unit := parse_unit(_without_statistic(name))).words
     }
-    return {**table_metadata("batch", frame), "units": units, "batch": dict(batch)}
+    return {**build_table_metadata("batch", frame), "units": units, "batch": dict(batch)}
 
 
 def _without_statistic(name: str) -> str:

@@ -98,10 +98,10 @@ def echo_error(line: str) -> None:
 
 def echo_written(file: str | Path) -> None:
     """Tell who watches which files an export has written."""
-    from tuisim.logs.export import files_in_words
+    from tuisim.logs.export import describe_files
 
     if is_watched():
-        echo_error(f"written: {files_in_words(Path(file))}")
+        echo_error(f"written: {describe_files(Path(file))}")
 
 
 def echo_error_lines(text: str) -> None:

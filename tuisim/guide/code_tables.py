@@ -12,7 +12,7 @@ from tuisim.engine.files import toml_value
 from tuisim.engine.runs.frames import MOTION_COLUMNS, SAMPLE_COLUMNS
 from tuisim.guide.tables import Table, code
 from tuisim.logs.export import EXPORTERS
-from tuisim.logs.units import unit_of
+from tuisim.logs.units import parse_unit
 from tuisim.settings.options import OPTIONS
 from tuisim.settings.user_config import SETTINGS
 
@@ -53,7 +53,7 @@ def _describe_column(name: str) -> str:
 
 def _build_column_table(names: tuple[str, ...]) -> Table:
     rows = [
-        (code(name), _describe_column(name), "s" if name == "time" else unit_of(name).words)
+        (code(name), _describe_column(name), "s" if name == "time" else parse_unit(name).words)
         for name in names
     ]
     return Table(("column", "contents", "unit"), rows)

@@ -27,7 +27,7 @@ METADATA_KEY = b"tuisim"
 """Key of the metadata in the schema of Parquet and Arrow files."""
 
 
-def texts_array(texts: Sequence[str]) -> pa.Array:
+def build_text_array(texts: Sequence[str]) -> pa.Array:
     """Return texts as an Arrow string array."""
     encoded = [text.encode("utf-8", "replace") for text in texts]
     ends = np.cumsum([0, *map(len, encoded)], dtype=np.int32)
@@ -36,14 +36,14 @@ def texts_array(texts: Sequence[str]) -> pa.Array:
     )
 
 
-def table_of(columns: Mapping[str, Any]) -> pa.Table:
+def build_table(columns: Mapping[str, Any]) -> pa.Table:
     """Return columns as a table as if they came from a frame: lists of texts, or arrays of numbers, NaN as nulls."""
-    return pa.table({name: _column(cells) for name, cells in columns.items()})
+    return pa.table({name: _build_column(cells) for name, cells in columns.items()})
 
 
-def _column(cells: Any) -> pa.Array:
+def _build_column(cells: Any) -> pa.Array:
     if isinstance(cells, list):
-        return texts_array(cells).cast(pa.large_string())
+        return build_text_array(cells).cast(pa.large_string())
     numbers = np.ascontiguousarray(cells)
     # Not `pa.array`, which imports pandas.
     known = None
@@ -54,38 +54,38 @@ def _column(cells: Any) -> pa.Array:
     )
 
 
-def numbers_of(column: pa.ChunkedArray) -> FloatArray:
+def convert_to_floats(column: pa.ChunkedArray) -> FloatArray:
     """Return a numeric column as floats, shape (n,), NaN for nulls. Copied only if necessary."""
     if not pa.types.is_floating(column.type) or pa.types.is_float16(column.type):
         column = column.cast(pa.float64(), safe=False)
     kind = np.float32 if pa.types.is_float32(column.type) else np.float64
-    parts = [_floats(chunk, kind) for chunk in column.chunks]
+    parts = [_convert_chunk(chunk, kind) for chunk in column.chunks]
     if len(parts) == 1:
         return parts[0]
-    found: FloatArray = np.concatenate(parts) if parts else np.empty(0, kind)
-    return found
+    numbers: FloatArray = np.concatenate(parts) if parts else np.empty(0, kind)
+    return numbers
 
 
-def _floats(chunk: pa.Array, kind: Any) -> FloatArray:
+def _convert_chunk(chunk: pa.Array, kind: Any) -> FloatArray:
     known, numbers = chunk.buffers()
     first, count = chunk.offset, len(chunk)
     if not count or numbers is None:
         return np.full(count, np.nan, kind)
-    found = np.frombuffer(numbers, kind, count, first * np.dtype(kind).itemsize)
+    floats = np.frombuffer(numbers, kind, count, first * np.dtype(kind).itemsize)
     if not chunk.null_count or known is None:
-        return found
+        return floats
     bits = np.unpackbits(np.frombuffer(known, np.uint8), count=first + count, bitorder="little")
-    return np.where(bits[first:], found, kind(np.nan))
+    return np.where(bits[first:], floats, kind(np.nan))
 
 
-def whole_numbers_of(chunk: pa.Array) -> np.ndarray[Any, np.dtype[np.int32]]:
+def read_int32(chunk: pa.Array) -> np.ndarray[Any, np.dtype[np.int32]]:
     """Return a 32-bit integer array without nulls, shape (n,), not copied."""
     if not len(chunk):
         return np.empty(0, np.int32)
     return np.frombuffer(chunk.buffers()[1], np.int32, len(chunk), chunk.offset * 4)
 
 
-def whole_numbers(numbers: np.ndarray[Any, np.dtype[np.int64]]) -> pa.ChunkedArray:
+def wrap_int64(numbers: np.ndarray[Any, np.dtype[np.int64]]) -> pa.ChunkedArray:
     """Return 64-bit integers, shape (n,), as a column, not copied."""
     return pa.chunked_array(
         [pa.Array.from_buffers(pa.int64(), len(numbers), [None, pa.py_buffer(numbers)])]
@@ -95,19 +95,19 @@ def whole_numbers(numbers: np.ndarray[Any, np.dtype[np.int64]]) -> pa.ChunkedArr
 BoolArray = np.ndarray[Any, np.dtype[np.bool_]]
 
 
-def texts_of(column: pa.ChunkedArray) -> pa.ChunkedArray:
+def convert_to_texts(column: pa.ChunkedArray) -> pa.ChunkedArray:
     """Return a column as texts; spans of time as their numbers."""
     if pa.types.is_duration(column.type):
         column = column.cast(pa.int64()).cast(pa.float64(), safe=False)
     return column.cast(pa.string())
 
 
-def contains(column: pa.ChunkedArray, text: str) -> BoolArray:
+def match_text(column: pa.ChunkedArray, text: str) -> BoolArray:
     """Return which cells contain a text, in any case of letters, shape (n,)."""
-    return _mask(pc.match_substring(texts_of(column), text, ignore_case=True))
+    return _convert_mask(pc.match_substring(convert_to_texts(column), text, ignore_case=True))
 
 
-def mask_of(column: pa.ChunkedArray, condition: ValueCondition) -> BoolArray:
+def match_condition(column: pa.ChunkedArray, condition: ValueCondition) -> BoolArray:
     """Return which cells meet a condition, shape (n,); empty ones do not.
 
     Numbers, and spans of time in seconds, are compared as numbers, all else as texts.
@@ -116,16 +116,18 @@ def mask_of(column: pa.ChunkedArray, condition: ValueCondition) -> BoolArray:
         LogError: the value of the condition is not a number, but the column has numbers.
     """
     if condition.operator is Operator.CONTAINS:
-        return contains(column, condition.value)
+        return match_text(column, condition.value)
     if condition.operator is Operator.CHANGES:
         turns = (
-            _mask(pc.not_equal(column[1:], column[:-1])) if len(column) > 1 else np.zeros(0, bool)
+            _convert_mask(pc.not_equal(column[1:], column[:-1]))
+            if len(column) > 1
+            else np.zeros(0, bool)
         )
         return np.concatenate((np.zeros(min(1, len(column)), bool), turns))
     compare: Callable[[Any, Any], Any] = getattr(pc, condition.operator.name.lower())
     kind = column.type
     if not (pa.types.is_integer(kind) or pa.types.is_floating(kind) or pa.types.is_duration(kind)):
-        return _mask(compare(texts_of(column), condition.value))
+        return _convert_mask(compare(convert_to_texts(column), condition.value))
     try:
         value = float(condition.value)
     except ValueError as error:
@@ -133,22 +135,22 @@ def mask_of(column: pa.ChunkedArray, condition: ValueCondition) -> BoolArray:
         raise LogError(message, f"{condition.name} has numbers") from error
     if pa.types.is_duration(kind):
         column = pc.divide(column.cast(pa.int64()).cast(pa.float64(), safe=False), PER_S[kind.unit])
-    return _mask(compare(column.cast(pa.float64(), safe=False), value))
+    return _convert_mask(compare(column.cast(pa.float64(), safe=False), value))
 
 
-def _mask(truths: Any) -> BoolArray:
+def _convert_mask(truths: Any) -> BoolArray:
     return np.asarray(pc.fill_null(truths, False).to_numpy(zero_copy_only=False), bool)
 
 
-def sorted_places(column: pa.ChunkedArray, descending: bool) -> IntArray:
+def sort_places(column: pa.ChunkedArray, descending: bool) -> IntArray:
     """Return the positions of the cells in sorted order, shape (n,)."""
-    column = texts_of(column) if pa.types.is_dictionary(column.type) else column
+    column = convert_to_texts(column) if pa.types.is_dictionary(column.type) else column
     way = "descending" if descending else "ascending"
     places: IntArray = pc.sort_indices(column, sort_keys=[("", way)]).to_numpy().astype(np.int64)
     return places
 
 
-def cell_text(cell: pa.Scalar) -> str:
+def format_cell(cell: pa.Scalar) -> str:
     """Return a cell as text, spans of time in seconds."""
     if pa.types.is_duration(cell.type):
         # The Python object would be one of pandas, whose import takes longer than drawing a whole screen.
@@ -159,16 +161,16 @@ def cell_text(cell: pa.Scalar) -> str:
     return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
-def unique_names(names: Sequence[str], notes: Notes | None = None) -> list[str]:
+def make_names_unique(names: Sequence[str], notes: Notes | None = None) -> list[str]:
     """Return unique column names; renamed columns are noted."""
     unique: list[str] = []
-    for at, name in enumerate(names, 1):
-        wanted, again = name or f"column {at}", 2
-        while wanted in unique:
-            wanted, again = f"{name or f'column {at}'} ({again})", again + 1
-        if name and wanted != name and notes:
-            notes.say(f"two columns are named {name!r}: the second is renamed to {wanted!r}")
-        unique.append(wanted)
+    for number, name in enumerate(names, 1):
+        unique_name, again = name or f"column {number}", 2
+        while unique_name in unique:
+            unique_name, again = f"{name or f'column {number}'} ({again})", again + 1
+        if name and unique_name != name and notes:
+            notes.say(f"two columns are named {name!r}: the second is renamed to {unique_name!r}")
+        unique.append(unique_name)
     return unique
 
 
@@ -194,16 +196,16 @@ def is_old_stream(data: bytes) -> bool:
         return False
 
 
-def metadata_in(schema: pa.Schema) -> Mapping[str, Any]:
+def read_metadata(schema: pa.Schema) -> Mapping[str, Any]:
     """Return the metadata of our own exports; empty for other files."""
     try:
-        found = json.loads((schema.metadata or {}).get(METADATA_KEY, b"{}"))
+        metadata = json.loads((schema.metadata or {}).get(METADATA_KEY, b"{}"))
     except (ValueError, RecursionError):
         return {}
-    return found if isinstance(found, dict) else {}
+    return metadata if isinstance(metadata, dict) else {}
 
 
-def parquet_parts(path: Path, notes: Notes) -> Iterator[tuple[float, pa.Table]]:
+def read_parquet(path: Path, notes: Notes) -> Iterator[tuple[float, pa.Table]]:
     """Yield the row groups of a file, each with the fraction of the file that has been read.
 
     Raises:
@@ -216,16 +218,16 @@ def parquet_parts(path: Path, notes: Notes) -> Iterator[tuple[float, pa.Table]]:
         _check_columns(file.schema_arrow)
     except (pa.ArrowException, OSError, ValueError) as error:
         hint = "a truncated Parquet file cannot be read: its index is at its end"
-        raise LogError(f"not a readable Parquet file: {_short(error)}", hint) from error
+        raise LogError(f"not a readable Parquet file: {_shorten_error(error)}", hint) from error
     with file:
         count = file.metadata.num_row_groups
         if not count:
-            yield 1.0, _named(file.schema_arrow.empty_table(), notes)
+            yield 1.0, _name_columns(file.schema_arrow.empty_table(), notes)
         first = 1
-        for at in range(count):
-            rows = file.metadata.row_group(at).num_rows
+        for group in range(count):
+            rows = file.metadata.row_group(group).num_rows
             try:
-                part = file.read_row_group(at)
+                part = file.read_row_group(group)
             except (pa.ArrowException, OSError, ValueError):
                 notes.add(
                     "row is damaged and was skipped",
@@ -234,11 +236,11 @@ def parquet_parts(path: Path, notes: Notes) -> Iterator[tuple[float, pa.Table]]:
                     rows,
                 )
             else:
-                yield (at + 1) / count, _named(part, notes)
+                yield (group + 1) / count, _name_columns(part, notes)
             first += rows
 
 
-def arrow_parts(path: Path, notes: Notes) -> Iterator[tuple[float, pa.Table]]:
+def read_arrow(path: Path, notes: Notes) -> Iterator[tuple[float, pa.Table]]:
     """Yield the record batches of a file or stream; if it was cut off, those that are complete.
 
     Raises:
@@ -252,23 +254,23 @@ def arrow_parts(path: Path, notes: Notes) -> Iterator[tuple[float, pa.Table]]:
             stream = pa.ipc.open_stream(source)
             _check_columns(stream.schema)
         except (pa.ArrowException, OSError, ValueError) as error:
-            raise LogError(f"not a readable Arrow file: {_short(error)}") from error
-        yield 0.0, _named(stream.schema.empty_table(), notes)
+            raise LogError(f"not a readable Arrow file: {_shorten_error(error)}") from error
+        yield 0.0, _name_columns(stream.schema.empty_table(), notes)
         while True:
             try:
-                part = _whole(stream.read_next_batch())
+                part = _validate_batch(stream.read_next_batch())
             except StopIteration:
                 return
             except (pa.ArrowException, OSError, ValueError):
                 notes.say(_CUT_OFF)
                 return
-            yield source.tell() / size, _named(part, notes)
+            yield source.tell() / size, _name_columns(part, notes)
 
 
 FORMATS: Mapping[bytes, Callable[[Path, Notes], Iterator[tuple[float, pa.Table]]]] = {
-    b"PAR1": parquet_parts,
-    _FILE_MAGIC: arrow_parts,
-    b"\xff\xff\xff\xff": arrow_parts,
+    b"PAR1": read_parquet,
+    _FILE_MAGIC: read_arrow,
+    b"\xff\xff\xff\xff": read_arrow,
 }
 """The readers by the first bytes of a file."""
 
@@ -286,26 +288,28 @@ def _check_columns(schema: pa.Schema) -> None:
             raise LogError(message, "write dates as date32 and times as timestamp")
 
 
-def _whole(batch: pa.RecordBatch) -> pa.Table:
+def _validate_batch(batch: pa.RecordBatch) -> pa.Table:
     """Return a validated batch as a table."""
     part = pa.Table.from_batches([batch])
     part.validate(full=True)
     return part
 
 
-def _named(part: pa.Table, notes: Notes) -> pa.Table:
+def _name_columns(part: pa.Table, notes: Notes) -> pa.Table:
     # Renaming drops the metadata.
-    renamed = part.rename_columns(unique_names(part.column_names, notes))
-    for at, field in enumerate(part.schema):
-        usual = _usual(field.type)
+    renamed = part.rename_columns(make_names_unique(part.column_names, notes))
+    for index, field in enumerate(part.schema):
+        usual = _choose_type(field.type)
         if usual != field.type:
             renamed = renamed.set_column(
-                at, renamed.field(at).with_type(usual), part.column(at).cast(usual, safe=False)
+                index,
+                renamed.field(index).with_type(usual),
+                part.column(index).cast(usual, safe=False),
             )
     return renamed.replace_schema_metadata(part.schema.metadata)
 
 
-def _usual(kind: pa.DataType) -> pa.DataType:
+def _choose_type(kind: pa.DataType) -> pa.DataType:
     """Return the type in which columns of a type are processed; mostly the same."""
     if pa.types.is_decimal(kind):
         return pa.float64()
@@ -315,7 +319,7 @@ def _usual(kind: pa.DataType) -> pa.DataType:
     return pa.string() if pa.types.is_string_view(kind) else kind
 
 
-def frame_of(table: pa.Table) -> pd.DataFrame:
+def convert_to_frame(table: pa.Table) -> pd.DataFrame:
     """Return a table as a frame, without the types that pandas has stored with it if they are damaged."""
     try:
         frame = table.to_pandas()
@@ -329,7 +333,7 @@ def frame_of(table: pa.Table) -> pd.DataFrame:
         return table.replace_schema_metadata(metadata).to_pandas()
 
 
-def _short(error: Exception) -> str:
+def _shorten_error(error: Exception) -> str:
     return str(error).partition("\n")[0][:120] if str(error) else type(error).__name__
 
 
@@ -337,17 +341,17 @@ def write_parquet(frame: pd.DataFrame, metadata: Mapping[str, Any], handle: Bina
     """Write a frame as a Parquet file, with metadata in its schema."""
     import pyarrow.parquet as pq
 
-    pq.write_table(_table(frame, metadata), handle)
+    pq.write_table(_convert_frame(frame, metadata), handle)
 
 
 def write_arrow(frame: pd.DataFrame, metadata: Mapping[str, Any], handle: BinaryIO) -> None:
     """Write a frame as an Arrow file, with metadata in its schema."""
-    table = _table(frame, metadata)
+    table = _convert_frame(frame, metadata)
     with pa.ipc.new_file(handle, table.schema) as writer:
         writer.write_table(table)
 
 
-def _table(frame: pd.DataFrame, metadata: Mapping[str, Any]) -> pa.Table:
+def _convert_frame(frame: pd.DataFrame, metadata: Mapping[str, Any]) -> pa.Table:
     table = pa.Table.from_pandas(frame, preserve_index=False)
     text = json.dumps(metadata, sort_keys=True).encode()
     return table.replace_schema_metadata({**(table.schema.metadata or {}), METADATA_KEY: text})

@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import counted
 from tuisim.engine.runs.arrays import FloatArray
-from tuisim.logs.columns import numeric_columns
-from tuisim.logs.derived import spec_in
-from tuisim.logs.levels import Levels, Light, find_light, levels_of
-from tuisim.logs.plateaus import Search, plateaus
-from tuisim.logs.units import may_be_light
+from tuisim.logs.columns import list_numeric_columns
+from tuisim.logs.derived import read_spec
+from tuisim.logs.levels import Levels, Light, find_light, measure_levels
+from tuisim.logs.plateaus import Search, find_plateaus
+from tuisim.logs.units import can_be_light
 from tuisim.logs.widths import measure_widths
 
 if TYPE_CHECKING:
@@ -89,7 +89,7 @@ class BandReport:
     @cached_property
     def bands(self) -> tuple[Band, ...]:
         """The bands one by one; a long log has a hundred thousand, which take long to make."""
-        return tuple(map(Band, *map(items_of, self.columns.values())))
+        return tuple(map(Band, *map(unpack_column, self.columns.values())))
 
 
 def count_samples(band: Band) -> str:
@@ -98,12 +98,12 @@ def count_samples(band: Band) -> str:
     return f"{band.samples}{strays}"
 
 
-def items_of(column: Column) -> Sequence[Any]:
+def unpack_column(column: Column) -> Sequence[Any]:
     """Return the items of a column as Python's own objects."""
     return column.tolist() if isinstance(column, np.ndarray) else column
 
 
-def band_report(log: Log, name: str, search: Search = plateaus) -> BandReport:
+def build_band_report(log: Log, name: str, search: Search = find_plateaus) -> BandReport:
     """Return the bands of a variable, whose plateaus `search` returns.
 
     Raises:
@@ -111,9 +111,9 @@ def band_report(log: Log, name: str, search: Search = plateaus) -> BandReport:
     """
     series = log.series(name)
     light = read_light(log.metadata, series.run)
-    found = levels_of(series.values, light if may_be_light(name) else None, search)
+    levels = measure_levels(series.values, light if can_be_light(name) else None, search)
     finite = np.append(0, np.cumsum(np.isfinite(series.values)))
-    first, last = found.start, found.stop - 1
+    first, last = levels.start, levels.stop - 1
     samples = finite[last + 1] - finite[first]
     columns = {
         "variable": [series.name] * len(first),
@@ -121,15 +121,15 @@ def band_report(log: Log, name: str, search: Search = plateaus) -> BandReport:
         "start_s": series.time_s[first],
         "stop_s": series.time_s[last],
         "samples": samples,
-        "level": found.level,
-        "spread": found.spread,
-        "strays": found.strays,
-        "grey": [grey.name if grey else "" for grey in found.greys],
+        "level": levels.level,
+        "spread": levels.spread,
+        "strays": levels.strays,
+        "grey": [grey.name if grey else "" for grey in levels.greys],
         "grey_percent": light.seen(
-            np.array([grey.percent if grey else NAN for grey in found.greys])
+            np.array([grey.percent if grey else NAN for grey in levels.greys])
         ),
-        "true_level": found.true_level,
-        **_places(driven_mm(log, series), series.values, found),
+        "true_level": levels.true_level,
+        **_measure_places(compute_driven_mm(log, series), series.values, levels),
         "cut_off": (finite[first] == 0) | (finite[last + 1] == finite[-1]),
         "first_row": series.rows[first],
         "last_row": series.rows[last],
@@ -138,7 +138,9 @@ def band_report(log: Log, name: str, search: Search = plateaus) -> BandReport:
     return BandReport(name, columns, total - int(samples.sum()), total)
 
 
-def _places(driven: FloatArray | None, values: FloatArray, levels: Levels) -> dict[str, FloatArray]:
+def _measure_places(
+    driven: FloatArray | None, values: FloatArray, levels: Levels
+) -> dict[str, FloatArray]:
     """Return where bands begin and end, and their widths."""
     if driven is None:
         unknown = np.full(len(levels.start), NAN)
@@ -150,7 +152,7 @@ def _places(driven: FloatArray | None, values: FloatArray, levels: Levels) -> di
     }
 
 
-def width_in_words(band: Band) -> str:
+def describe_width(band: Band) -> str:
     """Return the width of a band in mm, or why there is none; empty for a log without positions."""
     if not isfinite(band.start_mm):
         return ""
@@ -164,15 +166,15 @@ def read_light(metadata: Mapping[str, Any], run: int) -> Light:
         metadata: Those of the log.
         run: Its number in the log; 0 for the first.
     """
-    spec = spec_in(metadata, max(run - 1, 0))
+    spec = read_spec(metadata, max(run - 1, 0))
     return find_light(spec) if spec else Light()
 
 
-def driven_mm(log: Log, series: Series) -> FloatArray | None:
+def compute_driven_mm(log: Log, series: Series) -> FloatArray | None:
     """Return the distance driven at each sample, shape (n,); None if the log has no positions."""
-    if not {"x_mm", "y_mm"} <= set(numeric_columns(log.table.schema)) or not len(series.rows):
+    if not {"x_mm", "y_mm"} <= set(list_numeric_columns(log.table.schema)) or not len(series.rows):
         return None
-    x_mm, y_mm = (log.numbers_at(name, series.rows) for name in ("x_mm", "y_mm"))
+    x_mm, y_mm = (log.pick_numbers(name, series.rows) for name in ("x_mm", "y_mm"))
     if not (np.isfinite(x_mm).all() and np.isfinite(y_mm).all()):
         return None
     return distance_mm(x_mm, y_mm)
@@ -185,16 +187,17 @@ def distance_mm(x_mm: FloatArray, y_mm: FloatArray) -> FloatArray:
     return np.concatenate(([0.0], np.cumsum(np.hypot(np.diff(x_mm), np.diff(y_mm)))))
 
 
-def in_words(report: BandReport) -> str:
+def describe_levels(report: BandReport) -> str:
     """Return the levels of a report in words, for people."""
     if not report.count:
         return f"{report.variable}: no level: its values stand still nowhere"
     levels: dict[str, list[tuple[str, float, int]]] = {}
     for band in zip(
-        *(items_of(report.columns[name]) for name in ("grey", "true_level", "samples")), strict=True
+        *(unpack_column(report.columns[name]) for name in ("grey", "true_level", "samples")),
+        strict=True,
     ):
         levels.setdefault(band[0] or f"{band[1]:.4g}", []).append(band)
-    said = []
+    parts = []
     for bands in levels.values():
         samples = sum(count for *_, count in bands)
         level = sum(true_level * count for _, true_level, count in bands) / samples
@@ -202,8 +205,8 @@ def in_words(report: BandReport) -> str:
             f" ({len(bands)}x)" if len(bands) > 1 else f" ({ONE_SAMPLE})" if samples == 1 else ""
         )
         grey = bands[0][0]
-        said.append(f"{level:.2f}{' ' * bool(grey)}{grey}{times}")
-    known = f"{counted(len(levels), 'level')}: {', '.join(said)}"
+        parts.append(f"{level:.2f}{' ' * bool(grey)}{grey}{times}")
+    known = f"{counted(len(levels), 'level')}: {', '.join(parts)}"
     lie = "lies" if report.transitions == 1 else "lie"
     edges = f"{report.transitions} of {report.total} samples {lie} on edges or slopes"
     return f"{report.variable}: {known}; {edges}"

@@ -51,7 +51,7 @@ class Block:
             if line and not line.isspace():
                 yield row, line.rstrip("\r")
 
-    def followed_by(self, block: Block | None) -> Block:
+    def join_next(self, block: Block | None) -> Block:
         """Return this block with the lines of the next one."""
         return self if block is None else replace(self, text=self.text + block.text)
 
@@ -221,7 +221,7 @@ MAGICS = (*_FORMATS, *_REFUSED)
 MAGIC_BYTES = max(map(len, MAGICS))
 
 
-def unpacked(head: bytes, handle: Any, notes: Notes) -> Readable | None:
+def unpack(head: bytes, handle: Any, notes: Notes) -> Readable | None:
     """Return the text in a compressed file, None if it is not compressed.
 
     Args:
@@ -237,7 +237,7 @@ def unpacked(head: bytes, handle: Any, notes: Notes) -> Readable | None:
             f"is {refused}, which cannot be read",
             "a log is CSV, Parquet, JSONL, Arrow or text",
         )
-    open_file = next((one for magic, one in _FORMATS.items() if head.startswith(magic)), None)
+    open_file = next((opener for magic, opener in _FORMATS.items() if head.startswith(magic)), None)
     return None if open_file is None else _Unpacked(open_file(handle), notes)
 
 
@@ -256,12 +256,12 @@ class _Unpacked:
     def read(self, count: int, /) -> bytes:
         """Return up to `count` bytes, none at the end."""
         parts: list[bytes] = []
-        while count > 0 and (part := self._part(min(count, _UNPACKED_BYTES))):
+        while count > 0 and (part := self._read_part(min(count, _UNPACKED_BYTES))):
             parts.append(part)
             count -= len(part)
         return b"".join(parts)
 
-    def _part(self, count: int) -> bytes:
+    def _read_part(self, count: int) -> bytes:
         try:
             return bytes(self._unpack(count))
         except _ERRORS:

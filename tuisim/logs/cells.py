@@ -11,7 +11,7 @@ import pyarrow.compute as pc
 
 from tuisim.base.data_class import dataclass
 from tuisim.engine.core.conditions import NUMBER
-from tuisim.logs.arrow import texts_array
+from tuisim.logs.arrow import build_text_array
 
 EMPTY_CELLS = ("", "NA", "N/A", "null", "None", "-")
 """Cells that mean a missing value."""
@@ -98,7 +98,7 @@ def _drop_infinite(numbers: pa.Array, texts: Any, wrong: Any) -> tuple[pa.Array,
 def _trim(cells: pa.Array) -> tuple[Any, Any]:
     """Return texts without blanks around them, null where they are empty, and a mask of those."""
     texts: Any = pc.utf8_trim_whitespace(cells)
-    empty = pc.or_(pc.is_null(texts), pc.is_in(texts, value_set=texts_array(EMPTY_CELLS)))
+    empty = pc.or_(pc.is_null(texts), pc.is_in(texts, value_set=build_text_array(EMPTY_CELLS)))
     return pc.if_else(empty, pa.nulls(len(texts), pa.string()), texts), empty
 
 
@@ -153,20 +153,20 @@ def _choose_form(texts: pa.Array, forms: Sequence[NumberForm]) -> NumberForm | N
         if count == len(texts):
             return form if count else None
         counts.append(count)
-    most = max(counts)
-    return forms[counts.index(most)] if 2 * most > len(texts) else None
+    largest = max(counts)
+    return forms[counts.index(largest)] if 2 * largest > len(texts) else None
 
 
 def parse_truths(cells: pa.Array) -> tuple[pa.Array, pa.Array]:
     """Parse cells such as `true` or `False`, with nulls for others; also return a mask of the invalid cells."""
     texts, empty = _trim(cells)
     texts = pc.utf8_lower(texts)
-    known = pc.is_in(texts, value_set=texts_array(("true", "false")))
+    known = pc.is_in(texts, value_set=build_text_array(("true", "false")))
     values = pc.if_else(known, pc.equal(texts, "true"), pa.nulls(len(texts), pa.bool_()))
     return values, pc.invert(pc.or_(known, empty))
 
 
-def are_truths(cells: pa.Array) -> bool:
+def has_only_truths(cells: pa.Array) -> bool:
     """Return whether all cells that are not empty are true or false, and there is at least one."""
     values, wrong = parse_truths(cells)
     return values.null_count < len(values) and not pc.any(wrong).as_py()

@@ -48,14 +48,16 @@ class ReadChoices:
             if word and word not in allowed:
                 raise LogError(f"no {name} {word!r}", among(word, allowed))
 
-    def in_options(self) -> list[str]:
+    def format_options(self) -> list[str]:
         """Return what is chosen, as options of a command."""
         options = []
         for field in fields(self):
             word = getattr(self, field.name)
             if word != field.default:
                 words = word if isinstance(word, tuple) else (word,)
-                options += [f"--{field.name} {shlex.quote(str(one))}" for one in words]
+                options += [
+                    f"--{field.name} {shlex.quote(str(option_word))}" for option_word in words
+                ]
         return options
 
     @property

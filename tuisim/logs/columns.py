@@ -14,9 +14,9 @@ import pyarrow.compute as pc
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import LogError, among
 from tuisim.engine.runs.arrays import FloatArray, IntArray
-from tuisim.logs.arrow import PER_S, numbers_of
+from tuisim.logs.arrow import PER_S, convert_to_floats
 from tuisim.logs.choices import ReadChoices
-from tuisim.logs.dates import in_usual_form, is_moment, order_is_guessed
+from tuisim.logs.dates import is_moment, normalize_dates, order_is_guessed
 from tuisim.logs.units import SECONDS
 
 NAMES = (
@@ -85,44 +85,44 @@ class TimeName(NamedTuple):
     """Its unit in seconds, None if it has none."""
 
 
-def time_name(name: str) -> TimeName:
+def parse_time_name(name: str) -> TimeName:
     """Return the name without its unit, and the unit; a name such as `ms` is its own unit."""
     text = name.strip().lower()
-    found = _UNIT.search(text, max(0, len(text) - _LONGEST_UNIT))
+    match = _UNIT.search(text, max(0, len(text) - _LONGEST_UNIT))
     unit_s = None
-    if found is not None and found.start() > 0:
-        word = next(part for part in found.groups() if part is not None).strip()
+    if match is not None and match.start() > 0:
+        word = next(part for part in match.groups() if part is not None).strip()
         unit_s = _UNITS_S.get(word)
-        if unit_s is not None or found["bracket"] is not None:
-            text = text[: found.start()]
+        if unit_s is not None or match["bracket"] is not None:
+            text = text[: match.start()]
     base = text.strip(" #%@._/\"'")
     return TimeName(base, _UNITS_S.get(base) if unit_s is None else unit_s)
 
 
 def has_time_word(name: str) -> bool:
     """Return whether one of the words of a name means a time, or its unit in brackets: `since start (s)`."""
-    if name.endswith((")", "]")) and time_name(name).unit_s is not None:
+    if name.endswith((")", "]")) and parse_time_name(name).unit_s is not None:
         return True
     spaced = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name)
     return not _WORDS.isdisjoint(re.split(r"[\W_]+", spaced.lower()))
 
 
-def unit_since_1970_s(column: pa.ChunkedArray, unit_s: float | None) -> float | None:
+def find_epoch_unit_s(column: pa.ChunkedArray, unit_s: float | None) -> float | None:
     """Return the unit in seconds of a column of numbers; None if they are not times since the beginning of 1970.
 
     The unit may be given in seconds; None guesses it from the size of the numbers.
     """
-    first = _first(column)
+    first = _find_first(column)
     units: tuple[float, ...] = (1.0, 1e-3, 1e-6, 1e-9) if unit_s is None else (unit_s,)
     return next(
         (unit for unit in units if _SINCE_1970_S[0] <= first * unit <= _SINCE_1970_S[1]), None
     )
 
 
-def _first(column: pa.ChunkedArray) -> float:
+def _find_first(column: pa.ChunkedArray) -> float:
     chunk: Any
     for chunk in column.chunks:
-        numbers = numbers_of(pa.chunked_array([chunk.slice(0, 1000)]))
+        numbers = convert_to_floats(pa.chunked_array([chunk.slice(0, 1000)]))
         known = numbers[np.isfinite(numbers)]
         if len(known):
             return float(known[0])
@@ -150,7 +150,7 @@ class Times(NamedTuple):
     """The period in words, if there are wraps."""
 
 
-def seconds_of(column: pa.ChunkedArray, unit_s: float, since_first: bool = False) -> FloatArray:
+def read_seconds(column: pa.ChunkedArray, unit_s: float, since_first: bool = False) -> FloatArray:
     """Return a time column in seconds, as `read_times`."""
     return read_times(column, unit_s, since_first).seconds
 
@@ -176,15 +176,15 @@ def read_times(column: pa.ChunkedArray, unit_s: float, since_first: bool) -> Tim
         if pa.types.is_timestamp(kind):
             # Subtracted as integers: floats have no digits left for nanoseconds since 1970.
             wide = pc.subtract(wide, pc.first(wide))
-        return Times(_floats(wide) / PER_S[kind.unit])
+        return Times(_read_floats(wide) / PER_S[kind.unit])
     if pa.types.is_string(kind) or pa.types.is_large_string(kind) or pa.types.is_dictionary(kind):
         return parse_times(column)
     if since_first and pa.types.is_integer(kind):
         # Subtracted as integers, as above.
         column = pc.subtract(column.cast(pa.int64()), pc.first(column.cast(pa.int64())))
     if since_first:
-        return Times(_since_first(_floats(column)) * unit_s)
-    times = _unwrap(_floats(column), _COUNTER, "2³²")
+        return Times(_subtract_first(_read_floats(column)) * unit_s)
+    times = _unwrap(_read_floats(column), _COUNTER, "2³²")
     return times if unit_s == 1.0 else times._replace(seconds=times.seconds * unit_s)
 
 
@@ -201,30 +201,30 @@ def _unwrap(seconds: FloatArray, period: float, words: str) -> Times:
     return Times(seconds + np.cumsum(rounds), wraps, words)
 
 
-def _since_first(seconds: FloatArray) -> FloatArray:
+def _subtract_first(seconds: FloatArray) -> FloatArray:
     known = seconds[np.isfinite(seconds)]
     return seconds - known[0] if len(known) else seconds
 
 
-def _floats(column: pa.ChunkedArray) -> FloatArray:
-    return np.asarray(numbers_of(column), np.float64)
+def _read_floats(column: pa.ChunkedArray) -> FloatArray:
+    return np.asarray(convert_to_floats(column), np.float64)
 
 
 def parse_times(column: pa.ChunkedArray) -> Times:
     """Return texts as times: spans and times of day as they are, dates since the first; NaN for other texts."""
-    texts = in_usual_form(column.cast(pa.string()))
+    texts = normalize_dates(column.cast(pa.string()))
     spans: Any = pc.extract_regex(texts, _SPAN)
     if spans.null_count == len(spans):
-        return Times(_seconds_of_dates(texts))
+        return Times(_parse_dates(texts))
     days, hours, minutes, seconds = (
-        _filled(pc.struct_field(spans, name)) for name in ("days", "h", "m", "s")
+        _parse_numbers(pc.struct_field(spans, name)) for name in ("days", "h", "m", "s")
     )
-    total = _signed(_DAY_S * days + 3600.0 * hours + 60.0 * minutes + seconds, spans)
+    total = _apply_signs(_DAY_S * days + 3600.0 * hours + 60.0 * minutes + seconds, spans)
     total = np.where(spans.is_valid().to_numpy(), total, np.nan)
     return Times(total) if days.any() else _unwrap(total, _DAY_S, "a day")
 
 
-def _seconds_of_dates(texts: Any) -> FloatArray:
+def _parse_dates(texts: Any) -> FloatArray:
     texts = pc.replace_substring_regex(texts, r"^(\d{4}-\d{2}-\d{2})$", r"\1 00:00")
     texts = pc.replace_substring_regex(
         texts, r"^(\d{4}-\d{2}-\d{2}[T ]\d{2}:\d{2})($|[^:\d])", r"\1:00\2"
@@ -239,20 +239,22 @@ def _seconds_of_dates(texts: Any) -> FloatArray:
         return np.full(len(texts), np.nan)
     # The text after the seconds, such as .250+02:00.
     rest: Any = pc.extract_regex(texts, _REST)
-    part, hours, minutes = (_filled(pc.struct_field(rest, name)) for name in ("part", "h", "m"))
-    ahead_s = _signed(3600.0 * hours + 60.0 * minutes, rest)
+    part, hours, minutes = (
+        _parse_numbers(pc.struct_field(rest, name)) for name in ("part", "h", "m")
+    )
+    ahead_s = _apply_signs(3600.0 * hours + 60.0 * minutes, rest)
     whole: Any = dates.cast(pa.int64())
-    whole_s = _floats(pc.subtract(whole, pc.first(whole)))
-    return _since_first(whole_s + (part - ahead_s))
+    whole_s = _read_floats(pc.subtract(whole, pc.first(whole)))
+    return _subtract_first(whole_s + (part - ahead_s))
 
 
-def _signed(seconds: FloatArray, parts: Any) -> FloatArray:
+def _apply_signs(seconds: FloatArray, parts: Any) -> FloatArray:
     """Return seconds, negative ones where the sign of the parts is a minus."""
     minus = pc.fill_null(pc.equal(pc.struct_field(parts, "sign"), "-"), False)
     return np.where(minus.to_numpy(), -seconds, seconds)
 
 
-def _filled(texts: Any) -> FloatArray:
+def _parse_numbers(texts: Any) -> FloatArray:
     """Return texts as numbers, 0 for empty ones."""
     return np.array(
         pc.cast(pc.if_else(pc.equal(texts, ""), "0", texts).fill_null("0"), pa.float64()).to_numpy()
@@ -313,7 +315,7 @@ def is_numeric(kind: pa.DataType) -> bool:
     )
 
 
-def numeric_columns(schema: pa.Schema) -> list[str]:
+def list_numeric_columns(schema: pa.Schema) -> list[str]:
     """Return the names of the numeric columns."""
     return [field.name for field in schema if is_numeric(field.type)]
 
@@ -337,23 +339,25 @@ def guess_columns(table: pa.Table) -> Layout:
     column `value` has the variables; otherwise every other numeric column is a variable.
     """
     names = table.column_names
-    named = _named_time(table)
-    time = named or _rising(table)
+    named = _find_named_time(table)
+    time = named or _find_rising(table)
     run = "run" if "run" in names and is_numeric(table.schema.field("run").type) else ""
     variable = _find_named(table, _VARIABLE_NAMES, is_text)
     value = _find_named(table, _VALUE_NAMES, is_numeric)
     numeric = [n for n in names if is_numeric(table.schema.field(n).type) and n not in (time, run)]
     if variable and value and value != time:
         sure = bool(named) or not set(numeric) - {value, *_NO_VALUES}
-        return _timed(Layout(time, 1.0, False, variable, (value,), run, sure), table)
+        return _set_time_unit(Layout(time, 1.0, False, variable, (value,), run, sure), table)
     if value and value in numeric:
-        kept = [n for n in numeric if n not in _NO_VALUES]
+        value_columns = [n for n in numeric if n not in _NO_VALUES]
     else:
         # In telemetry, the pose is a value like any other.
-        kept = [n for n in numeric if n not in ("line", "row")]
+        value_columns = [n for n in numeric if n not in ("line", "row")]
     # With a single numeric column, there is no choice.
     sure = bool(named) or (len(numeric) < 2 and not time)
-    return _timed(Layout(time, 1.0, False, "", tuple(kept or numeric), run, sure), table)
+    return _set_time_unit(
+        Layout(time, 1.0, False, "", tuple(value_columns or numeric), run, sure), table
+    )
 
 
 def _find_named(table: pa.Table, names: Sequence[str], fits: Callable[[pa.DataType], bool]) -> str:
@@ -362,28 +366,28 @@ def _find_named(table: pa.Table, names: Sequence[str], fits: Callable[[pa.DataTy
     return next((columns[name] for name in names if name in columns), "")
 
 
-def _timed(layout: Layout, table: pa.Table, unit_s: float | None = None) -> Layout:
+def _set_time_unit(layout: Layout, table: pa.Table, unit_s: float | None = None) -> Layout:
     """Return a layout with the unit of its time column: as given, or guessed from name and size of the numbers."""
     if not layout.time or not is_numeric(table.schema.field(layout.time).type):
         return replace(layout, unit_s=1.0, since_first=False)
     if unit_s is None:
-        unit_s = time_name(layout.time).unit_s
-    date_unit_s = unit_since_1970_s(table.column(layout.time), unit_s)
+        unit_s = parse_time_name(layout.time).unit_s
+    date_unit_s = find_epoch_unit_s(table.column(layout.time), unit_s)
     if date_unit_s is not None:
         return replace(layout, unit_s=date_unit_s, since_first=True)
     return replace(layout, unit_s=1.0 if unit_s is None else unit_s, since_first=False)
 
 
-def _named_time(table: pa.Table) -> str:
+def _find_named_time(table: pa.Table) -> str:
     """Return the column that is the time by its name or type, empty if there is none."""
     bases: dict[str, list[str]] = {}
     for name in table.column_names:
-        bases.setdefault(time_name(name).base, []).append(name)
-    found = next(
-        (n for wanted in NAMES for n in bases.get(wanted, ()) if _is_usable(table, n)), ROW
+        bases.setdefault(parse_time_name(name).base, []).append(name)
+    column = next(
+        (n for time_word in NAMES for n in bases.get(time_word, ()) if _is_usable(table, n)), ROW
     )
-    if found:
-        return found
+    if column:
+        return column
     compound = (
         n
         for n in table.column_names
@@ -405,18 +409,18 @@ def find_texts(table: pa.Table, fits: Callable[[str], bool]) -> Iterator[str]:
 
 
 def _is_rising_time(table: pa.Table, name: str) -> bool:
-    return not is_numeric(table.schema.field(name).type) or _rises(table, name)
+    return not is_numeric(table.schema.field(name).type) or _is_rising(table, name)
 
 
-def unread_time(table: pa.Table, layout: Layout) -> str:
+def find_unread_time(table: pa.Table, layout: Layout) -> str:
     """Return the column that is the time by its name but has no readable times; empty if there is none."""
     if layout.time:
         return ""
-    named = (name for name in table.column_names if time_name(name).base in _TEXT_TIMES)
+    named = (name for name in table.column_names if parse_time_name(name).base in _TEXT_TIMES)
     return next((name for name in named if is_text(table.schema.field(name).type)), "")
 
 
-def guessed_order(table: pa.Table, layout: Layout) -> bool:
+def has_guessed_order(table: pa.Table, layout: Layout) -> bool:
     """Return whether the times are dates that could begin with the day or with the month, read as the day."""
     if not layout.time or not is_text(table.schema.field(layout.time).type):
         return False
@@ -431,14 +435,14 @@ def time_in_words(layout: Layout) -> str:
     return f"time is the column {layout.time!r}, in {unit}{' since 1970' if layout.since_first else ''}"
 
 
-def _rising(table: pa.Table) -> str:
+def _find_rising(table: pa.Table) -> str:
     """Return the first column if no column has a name and it rises; else `ROW`."""
     names = table.column_names
-    nameless = all(name == f"column {at}" for at, name in enumerate(names, 1))
+    nameless = all(name == f"column {number}" for number, name in enumerate(names, 1))
     first = names[0] if nameless and len(names) > 1 else ROW
     return (
         first
-        if first and is_numeric(table.schema.field(first).type) and _rises(table, first)
+        if first and is_numeric(table.schema.field(first).type) and _is_rising(table, first)
         else ROW
     )
 
@@ -468,12 +472,12 @@ def _is_moment(table: pa.Table, name: str) -> bool:
     return bool(np.isfinite(parse_times(table.column(name).slice(0, _JUDGED_CELLS)).seconds).any())
 
 
-def _rises(table: pa.Table, name: str) -> bool:
+def _is_rising(table: pa.Table, name: str) -> bool:
     column = table.column(name)
     if column.null_count or table.num_rows < 2:
         return False
     # Compared, not subtracted: infinite values have no difference.
-    numbers = numbers_of(column)
+    numbers = convert_to_floats(column)
     return bool((numbers[1:] > numbers[:-1]).all())
 
 
@@ -497,7 +501,7 @@ def choose_columns(table: pa.Table, choices: ReadChoices) -> Layout:
                 raise LogError(f"column {name!r} is not numeric")
         keep = layout.variable if len(values) == 1 and layout.variable else ""
         layout = replace(layout, variable=keep, values=values, sure=True)
-    return _timed(layout, table, SECONDS[choices.unit] if choices.unit else None)
+    return _set_time_unit(layout, table, SECONDS[choices.unit] if choices.unit else None)
 
 
 def _require(table: pa.Table, name: str) -> None:

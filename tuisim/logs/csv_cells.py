@@ -20,13 +20,13 @@ _is_risky = re.compile(_RISKY).match
 _is_number = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?").fullmatch
 
 
-def harmless(text: str) -> str:
+def escape_formula(text: str) -> str:
     """Return a text as a spreadsheet shows it and does not compute it; numbers stay numbers."""
     return f"'{text}" if _is_risky(text) and not _is_number(text) else text
 
 
-def restored(text: str) -> str:
-    """Return the text that `harmless` was given."""
+def restore_formula(text: str) -> str:
+    """Return the text that `escape_formula` was given."""
     return re.sub(WRITTEN, r"\1", text)
 
 
@@ -36,10 +36,10 @@ def write_csv(frame: pd.DataFrame, handle: Any) -> None:
     Args:
         handle: An open file, of text or of bytes.
     """
-    found = frame.copy(deep=False)
+    escaped = frame.copy(deep=False)
     quoting = csv.QUOTE_MINIMAL
-    for at in range(len(frame.columns)):
-        column = frame.iloc[:, at]
+    for index in range(len(frame.columns)):
+        column = frame.iloc[:, index]
         if column.dtype.kind in "biufmM":
             continue
         cells = column.tolist()
@@ -47,12 +47,13 @@ def write_csv(frame: pd.DataFrame, handle: Any) -> None:
         if any("\r" in text for text in texts):
             # Not quoted by itself, although a carriage return ends a row.
             quoting = csv.QUOTE_NONNUMERIC
-        if changed := {text: safe for text in texts if (safe := harmless(text)) != text}:
-            found.isetitem(
-                at, [changed.get(cell, cell) if isinstance(cell, str) else cell for cell in cells]
+        if changed := {text: safe for text in texts if (safe := escape_formula(text)) != text}:
+            escaped.isetitem(
+                index,
+                [changed.get(cell, cell) if isinstance(cell, str) else cell for cell in cells],
             )
-    heading = [harmless(str(name)) for name in frame.columns]
+    heading = [escape_formula(str(name)) for name in frame.columns]
     # Floats are written as their shortest exact text, time spans as pandas prints them.
-    found.to_csv(
+    escaped.to_csv(
         handle, header=heading, index=False, quoting=quoting, lineterminator="\n", encoding="utf-8"
     )

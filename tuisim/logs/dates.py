@@ -33,7 +33,7 @@ _CLOCK_CELL = re.compile(rf"\s*\d{{1,2}}:\d{{2}}:\d{{2}}{_PART}?\s*")
 
 _USUAL = r"^-?(?:\d+ days? )?\d+:\d{2}:\d{2}(?:\.\d+)?$|^\d{4}-\d{2}-\d{2}(?:$|[T ]\d{2}:\d{2}(?:$|[^,]*$))"
 """Texts that need no change."""
-_FROM_C_TIME = (
+_C_TIME_CHANGES = (
     (r"^[A-Z][a-z]{2} ([A-Z][a-z]{2}) +(\d{1,2}) (\d{2}:\d{2}:\d{2}) (\d{4})$", r"\4-\1-\2 \3"),
     *((rf"^(\d{{4}})-{name}-", rf"\1-{month:02}-") for month, name in enumerate(_MONTHS, 1)),
 )
@@ -68,7 +68,7 @@ def is_clock(cell: str) -> bool:
     return _CLOCK_CELL.fullmatch(cell) is not None
 
 
-def in_usual_form(texts: Any) -> Any:
+def normalize_dates(texts: Any) -> Any:
     """Return texts with their dates as year-month-day, without blanks and brackets; what is no date may change, too.
 
     Dates with the year at the end begin with the day, unless one of them can only begin with the month.
@@ -76,32 +76,37 @@ def in_usual_form(texts: Any) -> Any:
     texts = pc.utf8_trim_whitespace(texts)
     if not pc.any(pc.invert(pc.match_substring_regex(texts, _USUAL))).as_py():
         return texts
-    texts = _replaced(texts, _REWRITTEN)
+    texts = _replace_patterns(texts, _REWRITTEN)
     if pc.any(pc.match_substring_regex(texts, _C_TIME)).as_py():
-        texts = _replaced(texts, _FROM_C_TIME)
-    first, second = _largest_parts(texts)
+        texts = _replace_patterns(texts, _C_TIME_CHANGES)
+    first, second = _find_largest_parts(texts)
     order = r"\3-\1-\2" if first <= _LAST_MONTH < second else r"\3-\2-\1"
-    return _replaced(texts, ((_YEAR_AT_END, order), *_PADDED))
+    return _replace_patterns(texts, ((_YEAR_AT_END, order), *_PADDED))
 
 
 def order_is_guessed(texts: Any) -> bool:
     """Return whether there are several dates, each of which could begin with the day or with the month."""
-    texts = _replaced(texts, _REWRITTEN[:1])
-    first, second = _largest_parts(texts)
+    texts = _replace_patterns(texts, _REWRITTEN[:1])
+    first, second = _find_largest_parts(texts)
     if not 0 < max(first, second) <= _LAST_MONTH:
         return False
     return (
-        int(pc.count_distinct(_replaced(texts, ((_YEAR_AT_END + ".*", r"\1-\2-\3"),))).as_py()) > 1
+        int(
+            pc.count_distinct(
+                _replace_patterns(texts, ((_YEAR_AT_END + ".*", r"\1-\2-\3"),))
+            ).as_py()
+        )
+        > 1
     )
 
 
-def _replaced(texts: Any, changes: Sequence[tuple[str, str]]) -> Any:
+def _replace_patterns(texts: Any, changes: Sequence[tuple[str, str]]) -> Any:
     for pattern, new in changes:
         texts = pc.replace_substring_regex(texts, pattern, new)
     return texts
 
 
-def _largest_parts(texts: Any) -> tuple[int, int]:
+def _find_largest_parts(texts: Any) -> tuple[int, int]:
     """Return the largest first and second number of the dates with the year at the end, 0 without any."""
     parts: Any = pc.extract_regex(texts, _YEAR_AT_END)
     numbers = (pc.cast(pc.struct_field(parts, name), pa.int64()) for name in ("first", "second"))

@@ -21,18 +21,18 @@ from tuisim.engine.core.spec import RobotSpec, RunSpec
 from tuisim.engine.core.tree import from_plain
 from tuisim.engine.runs.arrays import FloatArray
 from tuisim.engine.runs.frames import computed
-from tuisim.logs.columns import is_numeric, numeric_columns
-from tuisim.logs.expressions import FUNCTIONS, Functions, evaluate, names_in
+from tuisim.logs.columns import is_numeric, list_numeric_columns
+from tuisim.logs.expressions import FUNCTIONS, Functions, evaluate, find_names
 from tuisim.logs.log import Log, Series
 from tuisim.logs.signals import (
-    derivative,
-    integral,
-    known_at,
-    known_in_order,
-    moving_average,
+    compute_derivative,
+    compute_integral,
+    compute_moving_average,
     resample,
+    sample_unsorted_signal,
+    sort_known,
 )
-from tuisim.logs.units import unit_of
+from tuisim.logs.units import parse_unit
 
 TIME = "time"
 """Name of the sample times in an expression."""
@@ -61,7 +61,7 @@ class Definition:
     """Sampling period; None keeps the times of its source."""
 
 
-def definition_of(text: str) -> Definition:
+def parse_definition(text: str) -> Definition:
     """Parse a line such as `speed = slope(distance)`; without a name the expression is the name.
 
     Raises:
@@ -79,7 +79,7 @@ def definition_of(text: str) -> Definition:
     return Definition(name, expression)
 
 
-def derived(log: Log, definition: Definition, otherwise: str) -> list[Series]:
+def compute_derived(log: Log, definition: Definition, otherwise: str) -> list[Series]:
     """Return the series of a definition, one for each run that has its first variable, `otherwise` if it has none.
 
     Variables sampled at other times are forward-filled; columns are read in the row of each sample.
@@ -92,67 +92,67 @@ def derived(log: Log, definition: Definition, otherwise: str) -> list[Series]:
             f"there is a column {definition.name!r} already",
             f"such as other = {definition.expression}",
         )
-    names = names_in(definition.expression)
+    names = find_names(definition.expression)
     known = {name.partition(" #")[0] for name in log.names} | set(log.names)
     first = next((name for name in names if name in known), otherwise.partition(" #")[0])
     # One series for each run, unless the definition names a single run.
     bases = [log.series(name) for name in log.names if first in (name, name.partition(" #")[0])]
     alone = len(bases) == 1
     return [
-        replace(made, name=definition.name if alone else f"{definition.name} #{base.run}")
+        replace(series, name=definition.name if alone else f"{definition.name} #{base.run}")
         for base in bases
-        for made in [_computed(log, definition, names, base)]
+        for series in [_compute_series(log, definition, names, base)]
     ]
 
 
-def _computed(log: Log, definition: Definition, names: Sequence[str], base: Series) -> Series:
+def _compute_series(log: Log, definition: Definition, names: Sequence[str], base: Series) -> Series:
     columns = {
         TIME: base.time_s,
-        **{name: _column(log, name, base) for name in names if name != TIME},
+        **{name: _sample_column(log, name, base) for name in names if name != TIME},
     }
     functions: Functions = {
         **FUNCTIONS,
-        "slope": (1, partial(_of_signal, base, derivative), SIGNALS["slope"]),
-        "integral": (1, partial(_of_signal, base, integral), SIGNALS["integral"]),
+        "slope": (1, partial(_apply_to_signal, base, compute_derivative), SIGNALS["slope"]),
+        "integral": (1, partial(_apply_to_signal, base, compute_integral), SIGNALS["integral"]),
         "average": (2, _average, SIGNALS["average"]),
-        "resample": (2, _resampled_within, SIGNALS["resample"]),
+        "resample": (2, _refuse_resample, SIGNALS["resample"]),
     }
     values = evaluate(definition.expression, columns, functions)
     if definition.period_s is None:
         return replace(base, values=values)
     moments_s, values = resample(base.time_s, values, definition.period_s)
-    order = known_in_order(base.time_s, base.time_s)
+    order = sort_known(base.time_s, base.time_s)
     before = np.searchsorted(base.time_s[order], moments_s + 1e-9, side="right") - 1
     return Series(base.name, moments_s, values, base.rows[order][before], base.run)
 
 
-def _column(log: Log, name: str, base: Series) -> FloatArray:
+def _sample_column(log: Log, name: str, base: Series) -> FloatArray:
     """Return the values of a variable or column at each sample of the base."""
-    for wanted in (name, f"{name} #{base.run}"):
-        if wanted in log.names:
-            series = log.series(wanted)
+    for candidate in (name, f"{name} #{base.run}"):
+        if candidate in log.names:
+            series = log.series(candidate)
             if not len(series.rows):
                 return np.full(len(base.rows), np.nan)
             if series.rows is base.rows or series.time_s is base.time_s:
                 return series.values
-            return known_at(series.time_s, series.values, base.time_s)
+            return sample_unsorted_signal(series.time_s, series.values, base.time_s)
     schema = log.table.schema
     if name in schema.names and is_numeric(schema.field(name).type):
         return log.numbers(name)[base.rows]
-    if (known := computed_columns(log).get(name)) is not None:
+    if (known := find_computed_columns(log).get(name)) is not None:
         return known()[base.rows]
-    numbers = numeric_columns(schema)
+    numbers = list_numeric_columns(schema)
     there = dict.fromkeys((*(known.partition(" #")[0] for known in log.names), *numbers, TIME))
     raise LogError(f"no variable {name!r}", among(name, there), file=log.title)
 
 
-def computed_columns(log: Log) -> dict[str, Callable[[], FloatArray]]:
+def find_computed_columns(log: Log) -> dict[str, Callable[[], FloatArray]]:
     """Return what computes those columns of a recording that a log of telemetry has not, but can compute, by name."""
-    if (spec := spec_in(log.metadata)) is None:
+    if (spec := read_spec(log.metadata)) is None:
         return {}
-    there = set(numeric_columns(log.table.schema))
+    there = set(list_numeric_columns(log.table.schema))
     return {
-        column.name: partial(_computed_column, column.of, columns, log, spec)
+        column.name: partial(_compute_column, column.of, columns, log, spec)
         for columns, _ in owners(spec)
         for column in columns
         if column.of is not None
@@ -161,31 +161,31 @@ def computed_columns(log: Log) -> dict[str, Callable[[], FloatArray]]:
     }
 
 
-def _computed_column(of: Any, columns: Sequence[Column], log: Log, spec: RunSpec) -> FloatArray:
+def _compute_column(of: Any, columns: Sequence[Column], log: Log, spec: RunSpec) -> FloatArray:
     measured = {name: log.numbers(name) for name in measured_names(columns)}
     return computed(of, columns, measured, spec)
 
 
-def named_columns(log: Log, text: str) -> list[str]:
-    """Return those of `computed_columns` that a text names."""
+def find_named_columns(log: Log, text: str) -> list[str]:
+    """Return those of `find_computed_columns` that a text names."""
     if not text.strip():
         return []
-    return [name for name in computed_columns(log) if re.search(rf"\b{name}\b", text)]
+    return [name for name in find_computed_columns(log) if re.search(rf"\b{name}\b", text)]
 
 
-def with_named_columns(log: Log, text: str) -> Log:
+def add_named_columns(log: Log, text: str) -> Log:
     """Return a log with those columns that are computed for it because a text names them."""
-    for name in named_columns(log, text):
-        log = log.with_derived(name, derived(log, Definition(name, name), log.names[0]))
+    for name in find_named_columns(log, text):
+        log = log.add_derived(name, compute_derived(log, Definition(name, name), log.names[0]))
         # A damaged file may have something else as its units.
         if isinstance(units := log.metadata.get("units"), dict):
             log = replace(
-                log, metadata={**log.metadata, "units": {**units, name: unit_of(name).words}}
+                log, metadata={**log.metadata, "units": {**units, name: parse_unit(name).words}}
             )
     return log
 
 
-def spec_in(metadata: Mapping[str, Any], run: int = 0) -> RunSpec | None:
+def read_spec(metadata: Mapping[str, Any], run: int = 0) -> RunSpec | None:
     """Return the specification of a run in the metadata of a log; None if they have none, or are damaged.
 
     Args:
@@ -200,18 +200,18 @@ def spec_in(metadata: Mapping[str, Any], run: int = 0) -> RunSpec | None:
         return None
 
 
-def _of_signal(base: Series, change: Any, values: Any) -> FloatArray:
-    made: FloatArray = change(base.time_s, np.broadcast_to(values, base.time_s.shape))
-    return made
+def _apply_to_signal(base: Series, change: Any, values: Any) -> FloatArray:
+    changed: FloatArray = change(base.time_s, np.broadcast_to(values, base.time_s.shape))
+    return changed
 
 
 def _average(values: Any, width: Any) -> FloatArray:
     if np.ndim(width) or not float(width).is_integer():
         raise LogError("average needs a whole number of samples", "such as average(Colour, 5)")
-    return moving_average(np.atleast_1d(values), int(width))
+    return compute_moving_average(np.atleast_1d(values), int(width))
 
 
-def _resampled_within(values: Any, period_s: Any) -> FloatArray:
+def _refuse_resample(values: Any, period_s: Any) -> FloatArray:
     raise LogError(
         "resample must be the outermost function", "such as resample(slope(Colour), 0.1)"
     )
@@ -226,7 +226,7 @@ class DeadReckoning:
     heading_deg: FloatArray
 
 
-def dead_reckoning(
+def compute_dead_reckoning(
     left_position_deg: FloatArray, right_position_deg: FloatArray, start: Pose, robot: RobotSpec
 ) -> DeadReckoning:
     """Return the poses of the robot if its wheels do not slip.
@@ -254,7 +254,7 @@ def dead_reckoning(
     )
 
 
-def error_mm(reckoned: DeadReckoning, x_mm: FloatArray, y_mm: FloatArray) -> FloatArray:
+def compute_error_mm(reckoned: DeadReckoning, x_mm: FloatArray, y_mm: FloatArray) -> FloatArray:
     """Return the distances between the dead-reckoning positions and the true ones in mm, shape (n,)."""
     return np.hypot(reckoned.x_mm - x_mm, reckoned.y_mm - y_mm)
 
@@ -263,13 +263,13 @@ NEEDED = ("left_position_deg", "right_position_deg", "x_mm", "y_mm", "heading_de
 RECKONED_COLUMNS = ("reckoned_x_mm", "reckoned_y_mm", "reckoned_heading_deg", "error_mm")
 
 
-def reckoned_series(log: Log) -> list[Series]:
+def build_reckoned_series(log: Log) -> list[Series]:
     """Return a series for each name of `RECKONED_COLUMNS`.
 
     Raises:
         LogError: the log is not telemetry, or has no metadata of the robot.
     """
-    numbers = numeric_columns(log.table.schema)
+    numbers = list_numeric_columns(log.table.schema)
     missing = [name for name in NEEDED if name not in numbers]
     if missing:
         raise LogError(
@@ -277,13 +277,18 @@ def reckoned_series(log: Log) -> list[Series]:
             "a stored run, or its telemetry exported",
             file=log.title,
         )
-    spec = spec_in(log.metadata)
+    spec = read_spec(log.metadata)
     if spec is None:
         hint = "a stored run, or its telemetry exported to a file"
         raise LogError("has no metadata of the robot", hint, file=log.title)
     left, right, x_mm, y_mm, _ = (log.numbers(name) for name in NEEDED)
-    found = dead_reckoning(left, right, spec.world.start, spec.robot)
-    columns = (found.x_mm, found.y_mm, found.heading_deg, error_mm(found, x_mm, y_mm))
+    reckoned = compute_dead_reckoning(left, right, spec.world.start, spec.robot)
+    columns = (
+        reckoned.x_mm,
+        reckoned.y_mm,
+        reckoned.heading_deg,
+        compute_error_mm(reckoned, x_mm, y_mm),
+    )
     base = next(
         (log.series(name) for name in log.names if len(log.series(name).rows) == log.rows), None
     )

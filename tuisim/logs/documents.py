@@ -9,9 +9,9 @@ from typing import Any
 import pyarrow as pa
 
 from tuisim.base.errors import LogError, counted, listed, shortened
-from tuisim.logs.arrow import unique_names
+from tuisim.logs.arrow import make_names_unique
 from tuisim.logs.blocks import MAX_DOCUMENT_BYTES, Block
-from tuisim.logs.columns import NAMES, time_name
+from tuisim.logs.columns import NAMES, parse_time_name
 from tuisim.logs.json_rows import JsonReader, parse_value
 from tuisim.logs.warnings import Notes
 
@@ -19,15 +19,15 @@ _ALLOWED = "a JSON log is rows as objects, or an object of columns that have equ
 _TIME_NAMES = frozenset(NAMES)
 
 
-def begins_as_json(lines: Sequence[str]) -> bool:
+def is_json_start(lines: Sequence[str]) -> bool:
     """Return whether the first lines are those of JSON."""
     first = lines[0].strip() if lines else ""
     if first == "[" or first.startswith(("{", "[{")):
         return True
-    return first.startswith("[") and _value_in(first) is not None
+    return first.startswith("[") and _parse_value(first) is not None
 
 
-def are_objects(lines: Sequence[str]) -> bool:
+def has_objects(lines: Sequence[str]) -> bool:
     """Return whether most of the lines are an object each."""
     return 2 * sum(line.lstrip().startswith("{") and _is_row(line) for line in lines) > len(lines)
 
@@ -40,7 +40,7 @@ def is_document(lines: Sequence[str]) -> bool:
     return False
 
 
-def _value_in(line: str) -> Any:
+def _parse_value(line: str) -> Any:
     try:
         return parse_value(line.strip().removesuffix(","))
     except (ValueError, RecursionError):
@@ -48,7 +48,7 @@ def _value_in(line: str) -> Any:
 
 
 def _is_row(line: str) -> bool:
-    value = _value_in(line)
+    value = _parse_value(line)
     rows = value if isinstance(value, list) else [value]
     return bool(rows) and all(isinstance(row, dict) for row in rows)
 
@@ -82,52 +82,58 @@ class DocumentReader:
         if self._is_too_large:
             return None
         try:
-            values = _values_in(self._text.decode("utf-8"))
+            values = _parse_values(self._text.decode("utf-8"))
         except (ValueError, RecursionError) as error:
             table = self._lines.read(Block(self._first_row, self._text))
             if table is None:
                 where = f" (line {error.lineno})" if isinstance(error, json.JSONDecodeError) else ""
                 self._notes.say(f"not complete JSON{where}")
             return table
-        return _table_of(values[0] if len(values) == 1 else values, self._notes)
+        return _build_table(values[0] if len(values) == 1 else values, self._notes)
 
 
-def _values_in(text: str) -> list[Any]:
+def _parse_values(text: str) -> list[Any]:
     """Return the values that follow each other in a text."""
-    decoder, values, at = json.JSONDecoder(), [], 0
-    while at < len(text):
-        if text[at].isspace():
-            at += 1
+    decoder, values, position = json.JSONDecoder(), [], 0
+    while position < len(text):
+        if text[position].isspace():
+            position += 1
             continue
-        value, at = decoder.raw_decode(text, at)
+        value, position = decoder.raw_decode(text, position)
         values.append(value)
     return values
 
 
-def _table_of(value: Any, notes: Notes) -> pa.Table | None:
+def _build_table(value: Any, notes: Notes) -> pa.Table | None:
     """Return the table that a JSON value is, None if it has no row."""
     if isinstance(value, list):
-        return _table_of_rows(value, notes)
+        return _build_table_from_rows(value, notes)
     if not isinstance(value, dict):
         raise LogError(
             f"is a single JSON value, {shortened(json.dumps(value), 40)}, not a table", _ALLOWED
         )
     if isinstance(value.get("columns"), list) and isinstance(value.get("data"), list):
         # As pandas writes a frame that is split.
-        return _table_of_rows(value["data"], notes, [str(name) for name in value["columns"]])
+        return _build_table_from_rows(
+            value["data"], notes, [str(name) for name in value["columns"]]
+        )
     inner = [name for name, cells in value.items() if _is_table(cells)]
     if len(inner) > 1:
         raise LogError(f"has several tables: {listed(map(repr, inner))}", _ALLOWED)
     if inner:
         notes.say(f"only the table {inner[0]!r} is read")
-        return _table_of(value[inner[0]], notes)
+        return _build_table(value[inner[0]], notes)
     if value and all(isinstance(cells, dict) for cells in value.values()):
         # As pandas writes a frame: an object of cells for each column.
         labels = dict.fromkeys(label for cells in value.values() for label in cells)
-        return _table_of_rows(
+        return _build_table_from_rows(
             [{name: cells.get(label) for name, cells in value.items()} for label in labels], notes
         )
-    return _table_of_rows([value], notes) if _is_record(value) else _table_of_columns(value, notes)
+    return (
+        _build_table_from_rows([value], notes)
+        if _is_record(value)
+        else _build_table_from_columns(value, notes)
+    )
 
 
 def _is_table(value: Any) -> bool:
@@ -147,11 +153,11 @@ def _is_record(cells: Mapping[str, Any]) -> bool:
     numbers = [name for name, cell in cells.items() if _is_number(cell)]
     if not lists or not numbers:
         return not lists
-    alike = len(lists) > 1 and len({len(one) for one in lists}) == 1
-    return not alike or any(time_name(name).base in _TIME_NAMES for name in numbers)
+    alike = len(lists) > 1 and len({len(values) for values in lists}) == 1
+    return not alike or any(parse_time_name(name).base in _TIME_NAMES for name in numbers)
 
 
-def _table_of_columns(value: Mapping[str, Any], notes: Notes) -> pa.Table | None:
+def _build_table_from_columns(value: Mapping[str, Any], notes: Notes) -> pa.Table | None:
     columns = {name: cells for name, cells in value.items() if isinstance(cells, list)}
     if len({len(cells) for cells in columns.values()}) > 1:
         lengths = listed(
@@ -162,10 +168,12 @@ def _table_of_columns(value: Mapping[str, Any], notes: Notes) -> pa.Table | None
     if others:
         notes.say(f"only the lists are read as columns, without {listed(others)}")
     rows = zip(*columns.values(), strict=True)
-    return _table_of_rows([dict(zip(columns, cells, strict=True)) for cells in rows], notes)
+    return _build_table_from_rows([dict(zip(columns, cells, strict=True)) for cells in rows], notes)
 
 
-def _table_of_rows(rows: Sequence[Any], notes: Notes, names: Sequence[str] = ()) -> pa.Table | None:
+def _build_table_from_rows(
+    rows: Sequence[Any], notes: Notes, names: Sequence[str] = ()
+) -> pa.Table | None:
     """Return the table of rows that are objects, lists or single values; the names are those of the cells in lists."""
     if rows and not any(isinstance(row, list | dict) for row in rows):
         notes.say("a list of single values is read as one column")
@@ -173,22 +181,22 @@ def _table_of_rows(rows: Sequence[Any], notes: Notes, names: Sequence[str] = ())
     if any(isinstance(row, list) for row in rows) and not any(
         isinstance(row, dict) for row in rows
     ):
-        rows = _objects_of(rows, names)
-    found = [(at, row) for at, row in enumerate(rows, 1) if isinstance(row, dict)]
+        rows = _convert_lists(rows, names)
+    objects = [(number, row) for number, row in enumerate(rows, 1) if isinstance(row, dict)]
     notes.add(
         "value is not a row and was skipped",
         "values are not rows and were skipped",
-        [at for at, row in enumerate(rows, 1) if not isinstance(row, dict)],
+        [number for number, row in enumerate(rows, 1) if not isinstance(row, dict)],
     )
-    return JsonReader(notes).table_of(found) if any(row for _, row in found) else None
+    return JsonReader(notes).build_table(objects) if any(row for _, row in objects) else None
 
 
-def _objects_of(rows: Sequence[Any], names: Sequence[str]) -> list[Any]:
+def _convert_lists(rows: Sequence[Any], names: Sequence[str]) -> list[Any]:
     """Return rows that are lists as objects; without names, the first row may have them."""
     lists = [row for row in rows if isinstance(row, list)]
     first = lists[0]
     if not names and len(lists) > 1 and first and all(isinstance(cell, str) for cell in first):
         names, rows = first, rows[1:]
     width = max(len(row) for row in lists)
-    names = unique_names([*names, *[""] * (width - len(names))])
+    names = make_names_unique([*names, *[""] * (width - len(names))])
     return [dict(zip(names, row, strict=False)) if isinstance(row, list) else row for row in rows]

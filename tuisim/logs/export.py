@@ -13,7 +13,7 @@ from tuisim.base.atomic import replacing
 from tuisim.base.errors import ConfigError, ExportError
 from tuisim.engine.core.tree import to_plain
 from tuisim.engine.runs.run_folder import StoredRun
-from tuisim.logs.units import TIMEDELTA, WHOLE, unit_of
+from tuisim.logs.units import TIMEDELTA, WHOLE, parse_unit
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from tuisim.logs.log import Log, LogTable
 
 LOG_FORMAT = 1
-_MOST_WHOLE = 2.0**53
+_MAX_WHOLE = 2.0**53
 """Beyond it, floating-point numbers skip whole numbers."""
 
 _UNITS: Mapping[str, str] = {
@@ -49,7 +49,7 @@ def check_target(path: str | Path, others: Sequence[str] = ()) -> Path:
             f"cannot write {target}: unknown format {target.suffix!r}",
             f"a file ends in {', '.join((*EXPORTERS, *others))}",
         )
-    for place in (target, companion_of(target)) if exporter.companion else (target,):
+    for place in (target, find_companion(target)) if exporter.companion else (target,):
         check_place(place)
     return target
 
@@ -112,7 +112,7 @@ def export_frame(frame: pd.DataFrame, path: str | Path, metadata: Metadata) -> N
         with ExitStack() as files:
             exporter.write(frame, metadata, files.enter_context(replacing(target)))
             if exporter.companion:
-                beside = files.enter_context(replacing(companion_of(target)))
+                beside = files.enter_context(replacing(find_companion(target)))
                 beside.write(json.dumps(metadata, indent=1, sort_keys=True).encode() + b"\n")
     except OSError as error:
         raise ExportError(f"cannot write {target}: {error.strerror or error}") from error
@@ -156,8 +156,8 @@ def export_log(log: Log, table: LogTable, path: str | Path) -> None:
     Raises:
         ExportError: it cannot be written; an existing file is unchanged.
     """
-    frame = typed_frame(table)
-    of_frame = table_metadata("log", frame)
+    frame = build_typed_frame(table)
+    of_frame = build_table_metadata("log", frame)
     metadata: dict[str, Any] = {**of_frame, **log.metadata, "columns": of_frame["columns"]}
     units = metadata.get("units")
     if isinstance(units, dict):
@@ -167,7 +167,7 @@ def export_log(log: Log, table: LogTable, path: str | Path) -> None:
     export_frame(frame, path, metadata)
 
 
-def typed_frame(table: LogTable) -> pd.DataFrame:
+def build_typed_frame(table: LogTable) -> pd.DataFrame:
     """Return a table as a frame whose columns have the types of `frames.samples_frame`, also if it was read as text.
 
     A column keeps its type if another would change a value.
@@ -175,9 +175,9 @@ def typed_frame(table: LogTable) -> pd.DataFrame:
     import numpy as np
     import pandas as pd
 
-    from tuisim.logs.arrow import frame_of
+    from tuisim.logs.arrow import convert_to_frame
 
-    frame = frame_of(table)
+    frame = convert_to_frame(table)
     for name in frame.columns:
         column = frame[name]
         if isinstance(column.dtype, pd.CategoricalDtype):
@@ -189,7 +189,7 @@ def typed_frame(table: LogTable) -> pd.DataFrame:
             numbers = column.to_numpy()
             if (
                 np.isfinite(numbers)
-                & (np.abs(numbers) < _MOST_WHOLE)
+                & (np.abs(numbers) < _MAX_WHOLE)
                 & (numbers == np.rint(numbers))
             ).all():
                 frame[name] = column.astype("int64")
@@ -207,8 +207,8 @@ def log_metadata(table: str, columns: Iterable[str], runs: Sequence[StoredRun]) 
         runs: Its runs, in the order of the `run` column.
     """
     return {
-        **table_metadata(table, columns),
-        "units": {name: unit for name in columns if (unit := _unit(name))},
+        **build_table_metadata(table, columns),
+        "units": {name: unit for name in columns if (unit := _find_unit(name))},
         "runs": [
             {
                 "run": ordinal,
@@ -225,24 +225,24 @@ def log_metadata(table: str, columns: Iterable[str], runs: Sequence[StoredRun]) 
     }
 
 
-def table_metadata(table: str, columns: Iterable[str]) -> dict[str, Any]:
+def build_table_metadata(table: str, columns: Iterable[str]) -> dict[str, Any]:
     """Return what the metadata of every table have: their format, what the table is, and its columns' names."""
     return {"format": LOG_FORMAT, "table": table, "columns": list(columns)}
 
 
-def _unit(column: str) -> str:
-    return _UNITS.get(column) or unit_of(column).words
+def _find_unit(column: str) -> str:
+    return _UNITS.get(column) or parse_unit(column).words
 
 
 Metadata = Mapping[str, Any]
 """The metadata of a log, ready for JSON."""
 
 
-def files_in_words(target: Path) -> str:
+def describe_files(target: Path) -> str:
     """Return what an export has written: the file, and the one beside it if there is one."""
     exporter = EXPORTERS.get(target.suffix.lower())
     beside = (
-        f"; what it is and its units: {companion_of(target).name}"
+        f"; what it is and its units: {find_companion(target).name}"
         if exporter and exporter.companion
         else ""
     )
@@ -254,7 +254,7 @@ def is_companion(path: Path) -> bool:
     return path.suffix.lower() == ".json" and Path(path.stem).suffix.lower() in EXPORTERS
 
 
-def companion_of(path: Path) -> Path:
+def find_companion(path: Path) -> Path:
     """Return the file for the metadata of a file in a format without metadata."""
     return path.with_name(path.name + ".json")
 
@@ -281,7 +281,7 @@ def _write_jsonl(frame: pd.DataFrame, metadata: Metadata, handle: BinaryIO) -> N
         frame[name].astype("str") if name in TIMEDELTA else frame[name] for name in frame.columns
     ]
     for values in zip(*(column.tolist() for column in columns), strict=True):
-        row = {name: _plain(value) for name, value in zip(names, values, strict=True)}
+        row = {name: _convert_cell(value) for name, value in zip(names, values, strict=True)}
         # Dates and the like are written as text.
         handle.write(
             json.dumps(row, ensure_ascii=False, default=str).encode(errors="backslashreplace")
@@ -289,7 +289,7 @@ def _write_jsonl(frame: pd.DataFrame, metadata: Metadata, handle: BinaryIO) -> N
         )
 
 
-def _plain(value: Any) -> Any:
+def _convert_cell(value: Any) -> Any:
     """Return a cell for JSON: arrays as lists, None for NaN, which is not equal to itself."""
     plain = value.tolist() if hasattr(value, "tolist") else value
     return plain if plain == plain else None

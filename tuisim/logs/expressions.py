@@ -52,7 +52,7 @@ _SINGLE_EQUAL = re.compile("(?<![<>=!:])=(?!=)")
 """Another spelling of `==`."""
 
 
-def _shifted(values: FloatArray) -> FloatArray:
+def _shift(values: FloatArray) -> FloatArray:
     return np.concatenate(([np.nan], values[:-1])) if np.ndim(values) else values
 
 
@@ -75,8 +75,8 @@ FUNCTIONS: Functions = {
     "max": (2, np.maximum, "the larger of two"),
     "clip": (3, np.clip, "limited to a range"),
     "where": (3, np.where, "the second if the first is true, else the third"),
-    "shift": (1, _shifted, "value of the previous row"),
-    "diff": (1, lambda x: x - _shifted(x), "change since the previous row"),
+    "shift": (1, _shift, "value of the previous row"),
+    "diff": (1, lambda x: x - _shift(x), "change since the previous row"),
 }
 """Functions of every expression."""
 
@@ -106,7 +106,7 @@ def evaluate(
     return np.broadcast_to(np.asarray(value, np.float64), (length,)).copy()
 
 
-def names_in(text: str) -> list[str]:
+def find_names(text: str) -> list[str]:
     """Return the columns in an expression, in order of first appearance.
 
     Raises:
@@ -114,11 +114,11 @@ def names_in(text: str) -> list[str]:
     """
     parsed, names = _read(text)
     called = {id(node.func) for node in ast.walk(parsed) if isinstance(node, ast.Call)}
-    found = [
+    nodes = [
         node for node in ast.walk(parsed) if isinstance(node, ast.Name) and id(node) not in called
     ]
-    found.sort(key=lambda node: (node.lineno, node.col_offset))
-    named = dict.fromkeys(names.get(node.id, node.id) for node in found)
+    nodes.sort(key=lambda node: (node.lineno, node.col_offset))
+    named = dict.fromkeys(names.get(node.id, node.id) for node in nodes)
     return [name for name in named if name not in CONSTANTS]
 
 
@@ -127,17 +127,17 @@ def _read(text: str) -> tuple[ast.Expression, dict[str, str]]:
     if len(text) > MAX_CHARS:
         raise LogError(f"the expression has {len(text)} characters", f"at most {MAX_CHARS}")
     names: dict[str, str] = {}
-    return _parse(_without_backticks(text, names), text), names
+    return _parse(_replace_backticks(text, names), text), names
 
 
-def _without_backticks(text: str, names: dict[str, str]) -> str:
+def _replace_backticks(text: str, names: dict[str, str]) -> str:
     parts = text.split("`")
     if len(parts) % 2 == 0:
         raise LogError(f"a backtick is not closed in {text!r}")
-    for at in range(1, len(parts), 2):
-        stand_in = f"column_{at}_"
-        names[stand_in] = parts[at]
-        parts[at] = stand_in
+    for index in range(1, len(parts), 2):
+        stand_in = f"column_{index}_"
+        names[stand_in] = parts[index]
+        parts[index] = stand_in
     return "".join(parts)
 
 
@@ -145,9 +145,11 @@ def _parse(source: str, text: str) -> ast.Expression:
     try:
         return parse_expression(_SINGLE_EQUAL.sub("==", source.strip()))
     except SyntaxError as error:
-        at = error.offset or 0
+        offset = error.offset or 0
         where = (
-            f" at character {at - len(_SINGLE_EQUAL.findall(source.strip()[:at]))}" if at else ""
+            f" at character {offset - len(_SINGLE_EQUAL.findall(source.strip()[:offset]))}"
+            if offset
+            else ""
         )
         message = f"cannot read the expression {text!r}{where}: {error.msg}"
         raise LogError(message, f"allowed are {ALLOWED}") from error
@@ -179,7 +181,7 @@ class _Evaluation:
                 # An integer may be larger than the largest float.
                 return float(number) if number <= sys.float_info.max else math.inf
             case ast.Name(id=name):
-                return self._named(self._names.get(name, name))
+                return self._read_name(self._names.get(name, name))
             case ast.BinOp(left=left, op=op, right=right) if type(op) in _BINARY:
                 return _BINARY[type(op)](self.value(left), self.value(right))
             case ast.UnaryOp(op=op, operand=operand) if type(op) in _UNARY:
@@ -190,16 +192,16 @@ class _Evaluation:
             case ast.Compare(left=left, ops=ops, comparators=others) if all(
                 type(op) in _OPERATORS for op in ops
             ):
-                return self._compared([left, *others], ops)
+                return self._compare([left, *others], ops)
             case ast.IfExp(test=test, body=body, orelse=other):
                 return np.where(self.value(test), self.value(body), self.value(other))
             case ast.Call(func=ast.Name(id=name), args=arguments, keywords=[]):
-                return self._called(name, arguments)
+                return self._call(name, arguments)
         raise LogError(
             f"{ast.unparse(node)!r} is not allowed in {self._text!r}", f"allowed are {ALLOWED}"
         )
 
-    def _compared(self, parts: list[ast.expr], ops: list[ast.cmpop]) -> Any:
+    def _compare(self, parts: list[ast.expr], ops: list[ast.cmpop]) -> Any:
         values = [self.value(part) for part in parts]
         truths = (
             COMPARE[_OPERATORS[type(op)]](*pair)
@@ -207,14 +209,14 @@ class _Evaluation:
         )
         return reduce(np.logical_and, truths, True)
 
-    def _named(self, name: str) -> Any:
+    def _read_name(self, name: str) -> Any:
         if name in self._columns:
             return np.asarray(self._columns[name], np.float64)
         if name in CONSTANTS:
             return CONSTANTS[name]
         raise LogError(f"no column {name!r}", among(name, self._columns))
 
-    def _called(self, name: str, arguments: list[ast.expr]) -> Any:
+    def _call(self, name: str, arguments: list[ast.expr]) -> Any:
         if name not in self._functions:
             raise LogError(f"no function {name!r}", among(name, self._functions))
         count, function, _ = self._functions[name]

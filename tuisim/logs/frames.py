@@ -16,14 +16,14 @@ from tuisim.engine.runs.arrays import FloatArray
 from tuisim.logs import arrow
 from tuisim.logs.blocks import Block
 from tuisim.logs.choices import NO_CHOICES, ReadChoices
-from tuisim.logs.columns import ROW, numeric_columns
-from tuisim.logs.export import EXPORTERS, companion_of, typed_frame
+from tuisim.logs.columns import ROW, list_numeric_columns
+from tuisim.logs.export import EXPORTERS, build_typed_frame, find_companion
 from tuisim.logs.expressions import evaluate
 from tuisim.logs.json_rows import JsonReader
 from tuisim.logs.log import Log, Series
-from tuisim.logs.reader import joined, open_log, read_companion, read_parts
-from tuisim.logs.signals import Between, known_at
-from tuisim.logs.text_tables import exported_csv
+from tuisim.logs.reader import join_tables, open_log, read_companion, read_parts
+from tuisim.logs.signals import Between, sample_unsorted_signal
+from tuisim.logs.text_tables import read_exported_csv
 from tuisim.logs.units import TEXT, TIMEDELTA
 from tuisim.logs.warnings import Notes
 
@@ -66,7 +66,7 @@ def read_log(
     if choices.value:
         chosen = {layout.time, layout.variable, layout.run, *choices.value}
         rows = rows.select([name for name in rows.column_names if name in chosen])
-    frame = typed_frame(rows)
+    frame = build_typed_frame(rows)
     return frame if layout.time == ROW else frame.set_index(log.times_s).rename_axis("time_s")
 
 
@@ -75,14 +75,14 @@ def _read_export(source: Path) -> pd.DataFrame | None:
     exporter = EXPORTERS.get(source.suffix.lower())
     if exporter is None or not os.path.isfile(source):
         return None
-    if exporter.companion and not os.path.isfile(companion_of(source)):
+    if exporter.companion and not os.path.isfile(find_companion(source)):
         return None
     notes = Notes()
     try:
-        table = _exported(source, notes)
+        table = _read_exported(source, notes)
         if not exporter.companion and arrow.METADATA_KEY not in (table.schema.metadata or {}):
             return None
-        frame = typed_frame(table) if exporter.companion else table.to_pandas()
+        frame = build_typed_frame(table) if exporter.companion else table.to_pandas()
     # Text that is not UTF-8 or not JSON, and all errors of Arrow.
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
         raise LogError(f"cannot be read: {error}", file=str(source)) from error
@@ -91,11 +91,11 @@ def _read_export(source: Path) -> pd.DataFrame | None:
     return frame
 
 
-def _exported(source: Path, notes: Notes) -> pa.Table:
+def _read_exported(source: Path, notes: Notes) -> pa.Table:
     """Return the table in an exported file; `notes` receives what is wrong with it."""
     suffix = source.suffix.lower()
     if suffix == ".csv":
-        return exported_csv(source.read_bytes())
+        return read_exported_csv(source.read_bytes())
     if suffix == ".jsonl":
         table = JsonReader(notes, exact=True).read(Block(1, source.read_bytes()))
         # Without a row, only the companion file names the columns.
@@ -104,38 +104,43 @@ def _exported(source: Path, notes: Notes) -> pa.Table:
             name: pa.string() if name in (*TIMEDELTA, *TEXT) else pa.float64() for name in names
         }
         return pa.schema(kinds).empty_table() if table is None else table
-    return joined([table for _, table in read_parts(source, notes) if table is not None])
+    return join_tables([table for _, table in read_parts(source, notes) if table is not None])
 
 
-def sampled_frame(
+def build_sampled_frame(
     moments_s: FloatArray, all_series: Sequence[Series], between: Between = Between.HOLD
 ) -> pd.DataFrame:
     """Return the values of each series at given times: one column each, with unique names."""
     import pandas as pd
 
-    names = arrow.unique_names(["time", *(one.name for one in all_series)])
-    known = [known_at(one.time_s, one.values, moments_s, between) for one in all_series]
+    names = arrow.make_names_unique(["time", *(series.name for series in all_series)])
+    known = [
+        sample_unsorted_signal(series.time_s, series.values, moments_s, between)
+        for series in all_series
+    ]
     return pd.DataFrame(dict(zip(names, [moments_s, *known], strict=True)))
 
 
-def computed_frame(log: Log, expression: str) -> pd.DataFrame:
+def build_computed_frame(log: Log, expression: str) -> pd.DataFrame:
     """Return a log with one column per variable, and the value of an expression over them.
 
     Raises:
         LogError: the expression is invalid, or names a column that there is not.
     """
-    frame = _wide_frame(log)
+    frame = _build_wide_frame(log)
     columns = {str(name): frame[name].to_numpy(np.float64) for name in frame.columns}
-    result = arrow.unique_names([*columns, "result"])[-1]
+    result = arrow.make_names_unique([*columns, "result"])[-1]
     return frame.assign(**{result: evaluate(expression, columns)})
 
 
-def _wide_frame(log: Log) -> pd.DataFrame:
+def _build_wide_frame(log: Log) -> pd.DataFrame:
     """Return a log in wide format; rows of a long log are forward-filled."""
     import pandas as pd
 
     if not log.layout.variable:
-        return pd.DataFrame({name: log.numbers(name) for name in numeric_columns(log.table.schema)})
-    series = [one for one in map(log.series, log.names) if len(one.rows)]
-    moments = np.unique(np.concatenate([one.time_s for one in series]))
-    return sampled_frame(moments, series)
+        return pd.DataFrame(
+            {name: log.numbers(name) for name in list_numeric_columns(log.table.schema)}
+        )
+    series = [member for member in map(log.series, log.names) if len(member.rows)]
+    moments = np.unique(np.concatenate([member.time_s for member in series]))
+    return build_sampled_frame(moments, series)

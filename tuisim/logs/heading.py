@@ -11,9 +11,9 @@ from typing import NamedTuple
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import LogError, counted
 from tuisim.engine.core.conditions import NUMBER
-from tuisim.logs.arrow import unique_names
+from tuisim.logs.arrow import make_names_unique
 from tuisim.logs.cells import EMPTY_CELLS, is_unit
-from tuisim.logs.columns import NAMES, time_name
+from tuisim.logs.columns import NAMES, parse_time_name
 from tuisim.logs.dates import is_date, is_moment
 from tuisim.logs.warnings import Notes
 
@@ -40,9 +40,9 @@ _NUMBER = re.compile(
     r"|0[xX][0-9a-fA-F]+|[+-]?(?:inf|infinity|nan)|true|false",
     re.IGNORECASE,
 )
-_LEAST_PART = 10
+_MIN_PART = 10
 """The table has at least one row for this many of the longest run of rows alike."""
-_MOST_LINES = 10
+_MAX_LINES = 10
 """Lines of a heading whose names have line breaks."""
 
 
@@ -105,10 +105,10 @@ class _Run(NamedTuple):
 
 def parse_kinds(cells: Sequence[str]) -> str:
     """Return a letter for each cell: `n` for a number, `t` for a time, `-` for nothing, `w` for words."""
-    return "".join(map(_kind, cells))
+    return "".join(map(_classify_cell, cells))
 
 
-def _kind(cell: str) -> str:
+def _classify_cell(cell: str) -> str:
     text = cell.strip()
     if text in EMPTY_CELLS:
         return "-"
@@ -196,7 +196,7 @@ def _read_heading(
 
 def _clean_names(names: Sequence[str], notes: Notes) -> tuple[str, ...]:
     """Return names of columns in one line each, all different."""
-    return tuple(unique_names([" ".join(name.split()) for name in names], notes))
+    return tuple(make_names_unique([" ".join(name.split()) for name in names], notes))
 
 
 def _find_comment_sign(texts: Sequence[str]) -> str:
@@ -228,14 +228,14 @@ def close_quotes(text: bytes, separator: str) -> bytes:
 def _split_lines(lines: Sequence[tuple[int, str]], separator: str) -> Iterator[_Line]:
     """Yield the lines in cells; quoted names with line breaks make a single one of several lines."""
     after, is_first = 0, True
-    for at, (row, text) in enumerate(lines):
-        if at < after:
+    for index, (row, text) in enumerate(lines):
+        if index < after:
             continue
-        end = at + 1
+        end = index + 1
         cells = split_cells(text, separator)
-        if is_first and text.count('"') % 2 and (joined := _join_heading(lines[at:], separator)):
+        if is_first and text.count('"') % 2 and (joined := _join_heading(lines[index:], separator)):
             cells, count = joined
-            end = after = at + count
+            end = after = index + count
         is_first = is_first and not any(kind in "nt" for kind in parse_kinds(cells))
         next_row = lines[end][0] if end < len(lines) else lines[end - 1][0] + 1
         yield _Line(row, cells, parse_kinds(cells), next_row)
@@ -243,7 +243,7 @@ def _split_lines(lines: Sequence[tuple[int, str]], separator: str) -> Iterator[_
 
 def _join_heading(lines: Sequence[tuple[int, str]], separator: str) -> tuple[list[str], int] | None:
     """Return the cells of a heading on several lines, and their number; None if it is none."""
-    texts = [text + "\n" for _, text in lines[:_MOST_LINES]]
+    texts = [text + "\n" for _, text in lines[:_MAX_LINES]]
     if separator == BLANKS:
         return None
     reader = csv.reader(texts, delimiter=separator, strict=True)
@@ -268,7 +268,7 @@ def sniff_separator(lines: Sequence[str]) -> str:
         signs.words,
         signs.numbers,
     )
-    beats = best == "," and is_better and _have_commas_inside(lines)
+    beats = best == "," and is_better and _has_inner_commas(lines)
     if blanks.is_table and (beats or not signs.is_table) and 2 * blanks.length >= len(lines) - 1:
         return BLANKS
     if signs.is_table:
@@ -286,7 +286,7 @@ def _rank_separator(lines: Sequence[str], separator: str) -> _Rank:
     return rank._replace(as_wide=sum(len(line.cells) == rank.width for line in table))
 
 
-def _have_commas_inside(lines: Sequence[str]) -> bool:
+def _has_inner_commas(lines: Sequence[str]) -> bool:
     """Return whether the commas between blanks are parts of numbers and times in most of the lines."""
     outside = 0
     for line in lines:
@@ -319,16 +319,16 @@ def _find_table(table: Sequence[_Line]) -> _Run:
     best = max(runs, key=lambda run: run.rank._replace(is_table=run.rank.numbers > 0))
     strong = [run for run in runs if run.kinds[0] in "nt" and run.rank.is_table]
     longest = max((run.length for run in strong), default=0)
-    return next((run for run in strong if _LEAST_PART * run.length >= longest), best)
+    return next((run for run in strong if _MIN_PART * run.length >= longest), best)
 
 
 def _find_runs(table: Sequence[_Line]) -> Iterator[_Run]:
     start, kinds = 0, table[0].kinds
-    for at, line in enumerate(table[1:], 1):
+    for index, line in enumerate(table[1:], 1):
         both = _merge_kinds(kinds, line.kinds)
         if both is None:
-            yield _Run(start, at - start, kinds)
-            start, both = at, line.kinds
+            yield _Run(start, index - start, kinds)
+            start, both = index, line.kinds
         kinds = both
     yield _Run(start, len(table) - start, kinds)
 
@@ -366,7 +366,7 @@ def _find_comment_names(text: str, table: Sequence[_Line], separator: str) -> li
     names = [name.strip() for name in split_cells(text.strip(), separator)]
     if len(names) != width:
         names = text.split()
-        if time_name(names[0] if names else "").base not in NAMES:
+        if parse_time_name(names[0] if names else "").base not in NAMES:
             # It may be a sentence.
             return None
     alike = len(table) < 2 or table[0].kinds == table[1].kinds
@@ -381,9 +381,9 @@ def _find_names(
     width = len(run.kinds)
     if above:
         *before, last = above
-        are_names = is_words(last.kinds) or _are_numbers_as_names([last, *table[start:]])
+        are_names = is_words(last.kinds) or _has_numbers_as_names([last, *table[start:]])
         if len(last.kinds) == width and are_names:
-            if before and len(before[-1].kinds) == width and _are_units(last.cells, before[-1]):
+            if before and len(before[-1].kinds) == width and _has_units(last.cells, before[-1]):
                 pairs = zip(before[-1].cells, last.cells, strict=True)
                 return list(starmap(_join_unit, pairs)), before[:-1], start
             return last.cells, before, start
@@ -396,7 +396,7 @@ def _find_names(
         if not is_words(table[start].kinds):
             return None, above, start
     rows = table[start:]
-    if _are_names(rows):
+    if _has_names(rows):
         return rows[0].cells, above, start + 1
     return None, above, start
 
@@ -408,17 +408,17 @@ def _join_unit(name: str, unit: str) -> str:
     return name if has_unit else f"{name} [{unit}]"
 
 
-def _are_units(cells: Sequence[str], names: _Line) -> bool:
+def _has_units(cells: Sequence[str], names: _Line) -> bool:
     units = [cell.strip(" ()[]").lower() for cell in cells]
     return is_words(names.kinds) and any(units) and all(is_unit(u) or u in "-1" for u in units)
 
 
-def _are_names(rows: Sequence[_Line]) -> bool:
+def _has_names(rows: Sequence[_Line]) -> bool:
     """Return whether the first row is a heading although it is of the same kind as the others."""
     first = rows[0]
     if first.kinds[0] == "t" and (len(rows) < 2 or rows[1].kinds[0] == "t"):
         return False
-    if _are_numbers_as_names(rows):
+    if _has_numbers_as_names(rows):
         return True
     # One line with a number is a row: below a heading, nothing would be left.
     return (
@@ -426,7 +426,7 @@ def _are_names(rows: Sequence[_Line]) -> bool:
     )
 
 
-def _are_numbers_as_names(rows: Sequence[_Line]) -> bool:
+def _has_numbers_as_names(rows: Sequence[_Line]) -> bool:
     """Return whether the first row has names that are increasing numbers or years."""
     first = rows[0]
     numbers = [int(cell) for cell in first.cells[1:] if re.fullmatch(r"\s*\d+\s*", cell)]
@@ -442,7 +442,7 @@ def _number_columns(cells: Sequence[str], notes: Notes) -> list[str]:
     """Return the names of columns from the cells of their first row: `date` and `time` once, else numbers."""
     notes.say("no header: the columns are numbered")
     names: list[str] = []
-    for at, cell in enumerate(cells, 1):
+    for number, cell in enumerate(cells, 1):
         name = "" if not is_moment(cell) else "date" if is_date(cell) else "time"
-        names.append(name if name and name not in names else f"column {at}")
+        names.append(name if name and name not in names else f"column {number}")
     return names

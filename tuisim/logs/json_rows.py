@@ -27,7 +27,7 @@ class JsonReader:
 
     def read(self, block: Block) -> pa.Table | None:
         """Return the rows of a block; None if it has none."""
-        found: list[tuple[int, dict[str, Any]]] = []
+        numbered_rows: list[tuple[int, dict[str, Any]]] = []
         broken: list[int] = []
         for row, line in block.lines():
             text = line.strip()
@@ -39,8 +39,8 @@ class JsonReader:
                 broken.append(row)
                 continue
             objects = value if isinstance(value, list) else [value]
-            if objects and all(isinstance(one, dict) for one in objects):
-                found += [(row, one) for one in objects]
+            if objects and all(isinstance(cells, dict) for cells in objects):
+                numbered_rows += [(row, cells) for cells in objects]
             else:
                 broken.append(row)
         skipped = (
@@ -48,15 +48,20 @@ class JsonReader:
             "lines are not JSON objects and were skipped",
         )
         self._notes.add(*skipped, broken)
-        return self.table_of(found) if found else None
+        return self.build_table(numbered_rows) if numbered_rows else None
 
-    def table_of(self, found: list[tuple[int, dict[str, Any]]]) -> pa.Table:
+    def build_table(self, numbered_rows: list[tuple[int, dict[str, Any]]]) -> pa.Table:
         """Return the table of objects, each with its row in the file."""
-        names = dict.fromkeys(name for _, cells in found for name in cells)
-        return pa.table({_valid(name) or _NAMELESS: self._column(name, found) for name in names})
+        names = dict.fromkeys(name for _, cells in numbered_rows for name in cells)
+        return pa.table(
+            {
+                _escape_surrogates(name) or _NAMELESS: self._build_column(name, numbered_rows)
+                for name in names
+            }
+        )
 
-    def _column(self, name: str, found: list[tuple[int, dict[str, Any]]]) -> pa.Array:
-        cells = [cells.get(name) for _, cells in found]
+    def _build_column(self, name: str, numbered_rows: list[tuple[int, dict[str, Any]]]) -> pa.Array:
+        cells = [cells.get(name) for _, cells in numbered_rows]
         if self._exact:
             column = pa.array(cells)
             # Of numbers and truth values, a missing one is not a number.
@@ -70,10 +75,12 @@ class JsonReader:
                 return pa.nulls(len(cells))
             self._kinds[name] = 2 * sum(kinds) >= len(kinds)
         if not self._kinds[name]:
-            return pa.array([None if cell is None else _text(cell) for cell in cells], pa.string())
+            return pa.array(
+                [None if cell is None else _format_cell(cell) for cell in cells], pa.string()
+            )
         wrong = [
             row
-            for (row, _), cell in zip(found, cells, strict=True)
+            for (row, _), cell in zip(numbered_rows, cells, strict=True)
             if cell is not None and not _is_number(cell)
         ]
         self._notes.add(
@@ -96,11 +103,11 @@ def _float(cell: float) -> float:
         return float("inf") if cell > 0 else float("-inf")
 
 
-def _text(cell: object) -> str:
-    return _valid(cell) if isinstance(cell, str) else json.dumps(cell)
+def _format_cell(cell: object) -> str:
+    return _escape_surrogates(cell) if isinstance(cell, str) else json.dumps(cell)
 
 
-def _valid(text: str) -> str:
+def _escape_surrogates(text: str) -> str:
     """Return a text with surrogates, which are halves of characters, as escape sequences."""
     return text if text.isascii() else text.encode("utf-8", "backslashreplace").decode("utf-8")
 

@@ -15,7 +15,7 @@ from tuisim.engine.core.sensors.color import find_response
 from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.runs.arrays import FloatArray, IntArray
 from tuisim.logs.magnitude import find_scale
-from tuisim.logs.plateaus import Search, plateaus
+from tuisim.logs.plateaus import Search, find_plateaus
 from tuisim.logs.stillness import FIELDS
 
 NEAR_PERCENT = 2.0
@@ -38,27 +38,27 @@ class Grey:
 
 
 @cache
-def greys() -> Mapping[int, Grey]:
+def list_greys() -> Mapping[int, Grey]:
     """Return the named greys by channel value, 0 to 255."""
-    found = {red: name for name, (red, green, blue) in css_names().items() if red == green == blue}
-    found |= _PLAIN_NAMES
-    return {value: Grey(name, 100.0 * value / FULL) for value, name in sorted(found.items())}
+    names = {red: name for name, (red, green, blue) in css_names().items() if red == green == blue}
+    names |= _PLAIN_NAMES
+    return {value: Grey(name, 100.0 * value / FULL) for value, name in sorted(names.items())}
 
 
-def nearest_greys(percents: FloatArray) -> list[Grey | None]:
+def find_nearest_greys(percents: FloatArray) -> list[Grey | None]:
     """Return the grey nearest to each level of 0 to 100 %, None if none is within NEAR_PERCENT."""
-    named = list(greys().values())
+    named = list(list_greys().values())
     nearest = np.zeros(len(percents), np.int64)
-    least = np.full(len(percents), np.inf)
-    for at, grey in enumerate(named):
+    smallest = np.full(len(percents), np.inf)
+    for index, grey in enumerate(named):
         apart = np.abs(grey.percent - percents)
-        nearest[apart < least] = at
-        least = np.minimum(least, apart)
-    nearest[least > NEAR_PERCENT] = -1
-    return [None if at < 0 else named[at] for at in nearest.tolist()]
+        nearest[apart < smallest] = index
+        smallest = np.minimum(smallest, apart)
+    nearest[smallest > NEAR_PERCENT] = -1
+    return [None if index < 0 else named[index] for index in nearest.tolist()]
 
 
-def without_clamping(percents: FloatArray, noise: int) -> FloatArray:
+def undo_clamping(percents: FloatArray, noise: int) -> FloatArray:
     """Return the true levels from the means of noisy pixels.
 
     Noise is uniform within ±`noise`, and values outside 0 to 255 are clamped, so that
@@ -72,16 +72,16 @@ def without_clamping(percents: FloatArray, noise: int) -> FloatArray:
     if not noise:
         return percents
     values = percents * FULL / 100.0
-    return 100.0 * _unclamped(FULL - _unclamped(FULL - values, noise), noise) / FULL
+    return 100.0 * _undo_end_clamping(FULL - _undo_end_clamping(FULL - values, noise), noise) / FULL
 
 
-def _unclamped(below: FloatArray, noise: int) -> FloatArray:
+def _undo_end_clamping(below: FloatArray, noise: int) -> FloatArray:
     """Undo the clamping at one end; `below` are the distances from it."""
     undone = np.maximum(0.0, 2.0 * np.sqrt(noise * np.maximum(below, 0.0)) - noise)
     return np.where(below >= noise, below, undone)
 
 
-def light_scale(values: FloatArray) -> float:
+def find_light_scale(values: FloatArray) -> float:
     """Return the factor from light readings to percent: 1 for 0 to 100, 100/255 for 0 to 255; 0 for other values."""
     finite = values[np.isfinite(values)]
     if not len(finite) or finite.min() < 0.0 or finite.max() > 255.0:
@@ -143,8 +143,8 @@ class Levels:
     """The nearest grey of each; None if there is none, or if the samples are not light levels."""
 
 
-def levels_of(
-    values: FloatArray, light: Light | None = PLAIN_LIGHT, search: Search = plateaus
+def measure_levels(
+    values: FloatArray, light: Light | None = PLAIN_LIGHT, search: Search = find_plateaus
 ) -> Levels:
     """Return the plateaus of samples, which `search` finds.
 
@@ -155,22 +155,22 @@ def levels_of(
     """
     finite = values[np.isfinite(values)]
     magnitude = find_scale(float(finite.min()), float(finite.max())) if len(finite) else 1.0
-    found = np.array(search(values if magnitude == 1.0 else values / magnitude), FIELDS)
-    found["level"] *= magnitude
-    found["spread"] *= magnitude
-    level, scale = found["level"], light_scale(values) if light else 0.0
+    plateaus = np.array(search(values if magnitude == 1.0 else values / magnitude), FIELDS)
+    plateaus["level"] *= magnitude
+    plateaus["spread"] *= magnitude
+    level, scale = plateaus["level"], find_light_scale(values) if light else 0.0
     true_level = level
-    greys_near: list[Grey | None] = [None] * len(found)
+    greys_near: list[Grey | None] = [None] * len(plateaus)
     if light and scale:
-        percents = without_clamping(light.undo_response(level * scale), light.noise)
+        percents = undo_clamping(light.undo_response(level * scale), light.noise)
         true_level = light.seen(percents) / scale if light.noise else level
-        greys_near = nearest_greys(percents)
+        greys_near = find_nearest_greys(percents)
     return Levels(
-        found["start"],
-        found["stop"],
+        plateaus["start"],
+        plateaus["stop"],
         level,
         true_level,
-        found["spread"],
-        found["strays"],
+        plateaus["spread"],
+        plateaus["strays"],
         tuple(greys_near),
     )

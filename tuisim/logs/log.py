@@ -14,9 +14,9 @@ import pyarrow.compute as pc
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import LogError, among
 from tuisim.engine.runs.arrays import FloatArray, IntArray
-from tuisim.logs.arrow import numbers_of, whole_numbers, whole_numbers_of
+from tuisim.logs.arrow import convert_to_floats, read_int32, wrap_int64
 from tuisim.logs.choices import NO_CHOICES, ReadChoices
-from tuisim.logs.columns import ROW, Layout, seconds_of
+from tuisim.logs.columns import ROW, Layout, read_seconds
 
 LogTable = pa.Table
 
@@ -37,31 +37,32 @@ class Member:
     """Its rows of the table, increasing; None for all."""
 
 
-def members(table: pa.Table, layout: Layout) -> list[Member]:
+def list_members(table: pa.Table, layout: Layout) -> list[Member]:
     """Return the series of a table, in order of first appearance."""
-    runs, run_codes = _encoded(table.column(layout.run)) if layout.run else ([0], None)
+    runs, run_codes = _encode_column(table.column(layout.run)) if layout.run else ([0], None)
     several = len(runs) > 1
     if not layout.variable:
-        rows_of = (
-            _rows_by_code(run_codes, len(runs)) if several and run_codes is not None else [None]
-        )
-        found = [(name, at) for at in range(len(runs)) for name in layout.values]
-        return [_member(name, runs[at], rows_of[at], several) for name, at in found]
-    names, codes = _encoded(table.column(layout.variable))
+        rows_of = _group_rows(run_codes, len(runs)) if several and run_codes is not None else [None]
+        keys = [(name, index) for index in range(len(runs)) for name in layout.values]
+        return [_build_member(name, runs[index], rows_of[index], several) for name, index in keys]
+    names, codes = _encode_column(table.column(layout.variable))
     if not several or run_codes is None:
-        rows_of = [None] if len(names) == 1 else _rows_by_code(codes, len(names))
+        rows_of = [None] if len(names) == 1 else _group_rows(codes, len(names))
         run = runs[0] if runs else 0
-        return [_member(name, run, rows, False) for name, rows in zip(names, rows_of, strict=True)]
+        return [
+            _build_member(name, run, rows, False) for name, rows in zip(names, rows_of, strict=True)
+        ]
     # Only few of all pairs of variable and run may exist.
-    pairs, pair_codes = _encoded(whole_numbers(codes.astype(np.int64) * len(runs) + run_codes))
-    rows_of = _rows_by_code(pair_codes, len(pairs))
-    found = [(names[pair // len(runs)], runs[pair % len(runs)]) for pair in pairs]
+    pairs, pair_codes = _encode_column(wrap_int64(codes.astype(np.int64) * len(runs) + run_codes))
+    rows_of = _group_rows(pair_codes, len(pairs))
+    keys = [(names[pair // len(runs)], runs[pair % len(runs)]) for pair in pairs]
     return [
-        _member(name, run, rows, True) for (name, run), rows in zip(found, rows_of, strict=True)
+        _build_member(name, run, rows, True)
+        for (name, run), rows in zip(keys, rows_of, strict=True)
     ]
 
 
-def _member(name: object, run: Any, rows: IntArray | None, several: bool) -> Member:
+def _build_member(name: object, run: Any, rows: IntArray | None, several: bool) -> Member:
     # Rows without a variable or a run belong to no series.
     number = int(run) if run is not None and isfinite(run) else 0
     if name is None or (several and number != run):
@@ -69,7 +70,7 @@ def _member(name: object, run: Any, rows: IntArray | None, several: bool) -> Mem
     return Member(f"{name} #{number}" if several else str(name), str(name), number, rows)
 
 
-def _encoded(column: pa.ChunkedArray) -> tuple[list[Any], IntArray]:
+def _encode_column(column: pa.ChunkedArray) -> tuple[list[Any], IntArray]:
     """Return the distinct values of a column in order of first appearance, and the index of each row's value."""
     if pa.types.is_dictionary(column.type):
         column = column.unify_dictionaries()
@@ -85,13 +86,13 @@ def _encoded(column: pa.ChunkedArray) -> tuple[list[Any], IntArray]:
     appeared = pc.unique(pa.chunked_array(indices, pa.int32())).to_pylist()
     place_of = np.zeros(len(values) + 1, np.int32)
     place_of[appeared] = np.arange(len(appeared))
-    codes = [place_of[whole_numbers_of(chunk)] for chunk in indices]
-    return [[*values, None][at] for at in appeared], np.concatenate(codes) if codes else np.empty(
-        0, np.int32
-    )
+    codes = [place_of[read_int32(chunk)] for chunk in indices]
+    return [[*values, None][code] for code in appeared], np.concatenate(
+        codes
+    ) if codes else np.empty(0, np.int32)
 
 
-def _rows_by_code(codes: IntArray, count: int) -> list[IntArray]:
+def _group_rows(codes: IntArray, count: int) -> list[IntArray]:
     """Return the rows of each code from 0 to `count` - 1."""
     if not count:
         return []
@@ -119,7 +120,7 @@ class Series:
 
 
 @dataclass(slots=True)
-class Kept:
+class LogCache:
     """Cache of a log's converted columns and series, filled on demand."""
 
     members: Mapping[str, Member] | None = None
@@ -150,7 +151,7 @@ class Log:
     form: ReadChoices = NO_CHOICES
     """How a text was read: what was chosen, else what was found."""
     derived: Mapping[str, Series] = field(default_factory=dict)
-    _cache: Kept = field(default_factory=Kept, repr=False, compare=False)
+    _cache: LogCache = field(default_factory=LogCache, repr=False, compare=False)
 
     @property
     def rows(self) -> int:
@@ -160,25 +161,25 @@ class Log:
     @property
     def names(self) -> tuple[str, ...]:
         """Names of the series, in order of first appearance; with several runs followed by ` #` and its number."""
-        return (*self._members(), *self.derived)
+        return (*self._find_members(), *self.derived)
 
     @property
     def sampled_names(self) -> tuple[str, ...]:
         """Names of the series that have samples."""
-        members = self._members() if self.rows else {}
+        members = self._find_members() if self.rows else {}
         derived = [name for name, series in self.derived.items() if len(series.rows)]
         return (*(name for name, member in members.items() if _has_rows(member)), *derived)
 
-    def _members(self) -> Mapping[str, Member]:
-        kept = self._cache
-        if kept.members is None:
-            found: dict[str, Member] = {}
-            for member in members(self.table, self.layout):
+    def _find_members(self) -> Mapping[str, Member]:
+        cache = self._cache
+        if cache.members is None:
+            members: dict[str, Member] = {}
+            for member in list_members(self.table, self.layout):
                 # A member without name or run has no rows, and may share the name of one that has rows.
-                if member.name not in found or not _has_rows(found[member.name]):
-                    found[member.name] = member
-            kept.members = found
-        return kept.members
+                if member.name not in members or not _has_rows(members[member.name]):
+                    members[member.name] = member
+            cache.members = members
+        return cache.members
 
     def series(self, name: str) -> Series:
         """Return a series. Its arrays must not be modified: they may be shared.
@@ -189,21 +190,21 @@ class Log:
         if name in self.derived:
             return self.derived[name]
         if name not in self._cache.series:
-            member = self._members().get(name)
+            member = self._find_members().get(name)
             if member is None:
                 raise LogError(f"no variable {name!r}", among(name, self.names), file=self.title)
-            self._cache.series[name] = self._series(member)
+            self._cache.series[name] = self._read_series(member)
         return self._cache.series[name]
 
-    def _series(self, member: Member) -> Series:
+    def _read_series(self, member: Member) -> Series:
         layout, rows = self.layout, member.rows
         values = self.numbers(layout.values[0] if layout.variable else member.variable)
         if rows is not None:
             return Series(member.name, self._read_times(rows), values[rows], rows, member.run)
-        kept = self._cache
-        if kept.whole is None:
-            kept.whole = np.arange(self.rows), self._read_times(None)
-        return Series(member.name, kept.whole[1], values, kept.whole[0], member.run)
+        cache = self._cache
+        if cache.whole is None:
+            cache.whole = np.arange(self.rows), self._read_times(None)
+        return Series(member.name, cache.whole[1], values, cache.whole[0], member.run)
 
     @property
     def times_s(self) -> FloatArray:
@@ -214,7 +215,7 @@ class Log:
         if self.layout.time == ROW:
             return np.arange(self.rows if rows is None else len(rows), dtype=np.float64)
         if self._cache.times_s is None:
-            self._cache.times_s = seconds_of(
+            self._cache.times_s = read_seconds(
                 self.table.column(self.layout.time), self.layout.unit_s, self.layout.since_first
             )
         times = self._cache.times_s if rows is None else self._cache.times_s[rows]
@@ -230,55 +231,59 @@ class Log:
     def numbers(self, column: str) -> FloatArray:
         """Return a numeric column as floats, shape (n,), NaN for empty cells. Must not be modified."""
         if column not in self._cache.numbers:
-            self._cache.numbers[column] = numbers_of(self.table.column(column))
+            self._cache.numbers[column] = convert_to_floats(self.table.column(column))
         return self._cache.numbers[column]
 
-    def numbers_at(self, column: str, rows: IntArray) -> FloatArray:
+    def pick_numbers(self, column: str, rows: IntArray) -> FloatArray:
         """Return the numbers of a column in some rows, as `numbers`, but without keeping those of the others."""
-        return numbers_of(
-            self.table.column(column).take(whole_numbers(np.ascontiguousarray(rows, np.int64)))
+        return convert_to_floats(
+            self.table.column(column).take(wrap_int64(np.ascontiguousarray(rows, np.int64)))
         )
 
-    def with_layout(self, layout: Layout) -> Log:
+    def replace_layout(self, layout: Layout) -> Log:
         """Return the same log with another layout."""
-        return replace(self.bare(), layout=layout, _cache=Kept())
+        return replace(self.drop_all_derived(), layout=layout, _cache=LogCache())
 
-    def bare(self) -> Log:
+    def drop_all_derived(self) -> Log:
         """Return the same log without derived series."""
         log = self
         for name in self.derived:
-            log = log.without_derived(name.partition(" #")[0])
+            log = log.drop_derived(name.partition(" #")[0])
         return log
 
-    def with_derived(self, column: str, series: Sequence[Series]) -> Log:
+    def add_derived(self, column: str, series: Sequence[Series]) -> Log:
         """Return the same log with additional derived series.
 
         Args:
             column: Name of the new column of the table, which is added unless a series has several samples in one row.
             series: One series, or one per run.
         """
-        bare = self.without_derived(column)
-        derived = {**bare.derived, **{one.name: one for one in series}}
+        bare = self.drop_derived(column)
+        derived = {**bare.derived, **{member.name: member for member in series}}
         table = bare.table
-        if all((np.diff(one.rows) > 0).all() for one in series):
+        if all((np.diff(member.rows) > 0).all() for member in series):
             cells = np.full(self.rows, np.nan)
-            for one in series:
-                cells[one.rows] = one.values
+            for member in series:
+                cells[member.rows] = member.values
             table = table.append_column(column, pa.array(cells, from_pandas=True))
         return replace(bare, table=table, derived=derived)
 
-    def without_derived(self, column: str) -> Log:
+    def drop_derived(self, column: str) -> Log:
         """Return the same log without the derived series of this name."""
         derived = {
-            name: one for name, one in self.derived.items() if name.partition(" #")[0] != column
+            name: series
+            for name, series in self.derived.items()
+            if name.partition(" #")[0] != column
         }
         if len(derived) == len(self.derived):
             return self
         table = (
             self.table.drop_columns([column]) if column in self.table.column_names else self.table
         )
-        kept = replace(
+        cache = replace(
             self._cache,
-            numbers={name: at for name, at in self._cache.numbers.items() if name != column},
+            numbers={
+                name: numbers for name, numbers in self._cache.numbers.items() if name != column
+            },
         )
-        return replace(self, table=table, derived=derived, _cache=kept)
+        return replace(self, table=table, derived=derived, _cache=cache)

@@ -15,7 +15,7 @@ from tuisim.base.errors import ConfigError, ExportError
 from tuisim.engine.runs.arrays import FloatArray, IntArray
 from tuisim.logs.export import check_place
 from tuisim.logs.log import Log
-from tuisim.logs.units import unit_of
+from tuisim.logs.units import parse_unit
 
 SUFFIX = ".mcap"
 POSE = ("x_mm", "y_mm", "heading_deg")
@@ -89,7 +89,7 @@ def export_mcap(
     values = [name for name in names if not (is_posed and name.partition(" #")[0] in POSE)]
     channels = [*map(_build_value_channel, [log] * len(values), values)]
     channels += _build_pose_channels(log) if is_posed else ()
-    if any(len(one.times_ns) and one.times_ns.min() < 0 for one in channels):
+    if any(len(channel.times_ns) and channel.times_ns.min() < 0 for channel in channels):
         raise ExportError(f"cannot write {path}: MCAP has no times before 0", "export to Parquet")
     try:
         with replacing(path) as handle:
@@ -113,16 +113,16 @@ def _write_messages(
         schema_id = writer.register_schema(channel.schema_name, "jsonschema", schema)
         ids.append(writer.register_channel(channel.topic, "json", schema_id))
     counts = [len(channel.times_ns) for channel in channels]
-    times_ns = np.concatenate([np.empty(0, np.int64), *(one.times_ns for one in channels)])
+    times_ns = np.concatenate([np.empty(0, np.int64), *(stream.times_ns for stream in channels)])
     of_channel = np.repeat(np.arange(len(channels)), counts)
     index = np.arange(len(times_ns)) - np.repeat(np.cumsum([0, *counts])[:-1], counts)
     order = np.argsort(times_ns, kind="stable")
     rows = zip(*(part[order].tolist() for part in (times_ns, of_channel, index)), strict=True)
-    for count, (time_ns, at, message) in enumerate(rows):
+    for count, (time_ns, channel_index, message) in enumerate(rows):
         if not count % _TOLD_EVERY:
             tell(count / len(times_ns))
-        text = channels[at].write(message).encode()
-        writer.add_message(ids[at], time_ns, text, time_ns, count)
+        text = channels[channel_index].write(message).encode()
+        writer.add_message(ids[channel_index], time_ns, text, time_ns, count)
 
 
 def _build_value_channel(log: Log, name: str) -> _Channel:
@@ -130,7 +130,7 @@ def _build_value_channel(log: Log, name: str) -> _Channel:
     known = np.isfinite(series.values)
     times_s, values = series.time_s[known].tolist(), series.values[known].tolist()
     base = name.partition(" #")[0]
-    unit = log.metadata.get("units", {}).get(base) or unit_of(base).words
+    unit = log.metadata.get("units", {}).get(base) or parse_unit(base).words
     number = {"type": "number", "description": unit} if unit else _NUMBER
     schema = _build_object(name, time={"type": "number", "description": "s"}, value=number)
     return _Channel(

@@ -26,7 +26,7 @@ NEAR_SAMPLES = 12
 CERTAINTY = 4.0
 """Smallest step in standard deviations."""
 
-_AT_ONCE = 100_000
+_MAX_SAMPLES_TOGETHER = 100_000
 """Most samples of pieces that are looked at together, but for a longer piece: they fit in the caches of a processor."""
 
 Pieces = IntArray
@@ -35,49 +35,49 @@ Pieces = IntArray
 BoolArray = NDArray[np.bool_]
 
 
-def lengths_of(pieces: Pieces) -> IntArray:
+def count_samples(pieces: Pieces) -> IntArray:
     """Return the number of samples of each piece."""
     return pieces[:, 1] - pieces[:, 0]
 
 
-def of_one_length(values: FloatArray, pieces: Pieces) -> Iterator[tuple[IntArray, FloatArray]]:
+def group_by_length(values: FloatArray, pieces: Pieces) -> Iterator[tuple[IntArray, FloatArray]]:
     """Yield the pieces of each length, not too many at once: their indices, and their samples, shape (m, length)."""
-    lengths = lengths_of(pieces)
+    lengths = count_samples(pieces)
     order = np.argsort(lengths, kind="stable")
     for alike in np.split(order, np.flatnonzero(np.diff(lengths[order])) + 1) if len(order) else ():
         length = int(lengths[alike[0]])
         windows = sliding_window_view(values, length)
-        count = max(1, _AT_ONCE // length)
+        count = max(1, _MAX_SAMPLES_TOGETHER // length)
         for first in range(0, len(alike), count):
             some = alike[first : first + count]
             yield some, windows[pieces[some, 0]]
 
 
-def without_strays(values: FloatArray, pieces: Pieces, least_step: float, sigma: float) -> Pieces:
+def join_across_strays(values: FloatArray, pieces: Pieces, min_step: float, sigma: float) -> Pieces:
     """Join pieces that only a few strays separate."""
     after = np.searchsorted(pieces[:, 1], pieces[:, 0] + STRAY_SAMPLES, side="right")
-    at = np.arange(1, len(pieces))
-    at = at[(at < after[at]) & (after[at] < len(pieces))]
+    indices = np.arange(1, len(pieces))
+    indices = indices[(indices < after[indices]) & (after[indices] < len(pieces))]
     # At least two on either side: an edge is no stray.
-    return _joined_at(
-        values, pieces, np.stack((at, after[at]), axis=1), MIN_SAMPLES, least_step, sigma
+    return _join_seams(
+        values, pieces, np.stack((indices, after[indices]), axis=1), MIN_SAMPLES, min_step, sigma
     )
 
 
-def joined(values: FloatArray, pieces: Pieces, least_step: float, sigma: float) -> Pieces:
+def join_drifting(values: FloatArray, pieces: Pieces, min_step: float, sigma: float) -> Pieces:
     """Join neighbours that drift into each other, with at most a stray between them."""
-    at = 1 + np.flatnonzero(pieces[1:, 0] - pieces[:-1, 1] <= STRAY_SAMPLES)
-    return _joined_at(
-        values, pieces, np.stack((at, at), axis=1), STRAY_SAMPLES + 1, least_step, sigma
+    indices = 1 + np.flatnonzero(pieces[1:, 0] - pieces[:-1, 1] <= STRAY_SAMPLES)
+    return _join_seams(
+        values, pieces, np.stack((indices, indices), axis=1), STRAY_SAMPLES + 1, min_step, sigma
     )
 
 
-def _joined_at(
+def _join_seams(
     values: FloatArray,
     pieces: Pieces,
     seams: IntArray,
-    least_samples: int,
-    least_step: float,
+    min_samples: int,
+    min_step: float,
     sigma: float,
 ) -> Pieces:
     """Join pieces at the seams across which the log goes on, the first ones first.
@@ -95,10 +95,10 @@ def _joined_at(
     goes_on, unsure = np.zeros(len(seams), bool), np.ones(len(seams), bool)
     # If what is before a seam was itself joined to what is before it, more samples tell how it goes on.
     while unsure.any():
-        goes_on[unsure] = _go_on(
-            values, left[unsure], right[unsure], least_samples, least_step, sigma
+        goes_on[unsure] = _find_continued(
+            values, left[unsure], right[unsure], min_samples, min_step, sigma
         )
-        firsts = _firsts(len(pieces), seams[goes_on])
+        firsts = _find_firsts(len(pieces), seams[goes_on])
         nearest = left[:, 1] - NEAR_SAMPLES
         starts = pieces[firsts[seams[:, 0] - 1], 0]
         unsure = np.maximum(starts, nearest) != np.maximum(left[:, 0], nearest)
@@ -108,39 +108,39 @@ def _joined_at(
     return np.stack((pieces[heads, 0], pieces[tails, 1]), axis=1)
 
 
-def _firsts(count: int, seams: IntArray) -> IntArray:
+def _find_firsts(count: int, seams: IntArray) -> IntArray:
     """Return for each piece the first one of those that it is joined to; a seam inside an earlier one is none."""
     taken = []
     reached = -1
-    for at, after in seams.tolist():
-        if at > reached:
-            taken.append((at, after + 1))
+    for piece, after in seams.tolist():
+        if piece > reached:
+            taken.append((piece, after + 1))
             reached = after
     starts, stops = np.array(taken, np.int64).reshape(-1, 2).T
-    joined = np.cumsum(
+    depth = np.cumsum(
         np.bincount(starts, minlength=count + 1) - np.bincount(stops, minlength=count + 1)
     )[:count]
-    firsts: IntArray = np.maximum.accumulate(np.where(joined, 0, np.arange(count)))
+    firsts: IntArray = np.maximum.accumulate(np.where(depth, 0, np.arange(count)))
     return firsts
 
 
-def _go_on(
+def _find_continued(
     values: FloatArray,
     left: Pieces,
     right: Pieces,
-    least_samples: int,
-    least_step: float,
+    min_samples: int,
+    min_step: float,
     sigma: float,
 ) -> BoolArray:
     """Return which pieces continue those on their left: a common drift explains the step between them."""
-    goes_on = np.minimum(lengths_of(left), lengths_of(right)) >= least_samples
+    goes_on = np.minimum(count_samples(left), count_samples(right)) >= min_samples
     before, after = left[goes_on], right[goes_on]
     before[:, 0] = np.maximum(before[:, 0], before[:, 1] - NEAR_SAMPLES)
     after[:, 1] = np.minimum(after[:, 1], after[:, 0] + NEAR_SAMPLES)
-    step, spread = _steps_between(
-        _lines(values, before, sigma), _lines(values, after, sigma), before[:, 1]
+    step, spread = _estimate_steps(
+        _fit_lines(values, before, sigma), _fit_lines(values, after, sigma), before[:, 1]
     )
-    goes_on[goes_on] = np.abs(step) <= np.maximum(least_step, CERTAINTY * sigma * spread)
+    goes_on[goes_on] = np.abs(step) <= np.maximum(min_step, CERTAINTY * sigma * spread)
     return goes_on
 
 
@@ -158,32 +158,34 @@ class _Lines(NamedTuple):
     """Sum of the products of the distances from both means."""
 
 
-def _lines(values: FloatArray, pieces: Pieces, sigma: float) -> _Lines:
+def _fit_lines(values: FloatArray, pieces: Pieces, sigma: float) -> _Lines:
     lines = _Lines(*np.empty((5, len(pieces))))
-    for some, part in of_one_length(values, pieces):
-        kept = (~strays(part, sigma)).astype(np.float64)
-        at = np.arange(part.shape[1], dtype=np.float64)
-        samples = kept.sum(axis=1)
-        place = kept @ at / samples
-        level = _row_sums(kept, part) / samples
-        apart = kept * (at - place[:, None])
+    for some, part in group_by_length(values, pieces):
+        weights = (~find_strays(part, sigma)).astype(np.float64)
+        positions = np.arange(part.shape[1], dtype=np.float64)
+        samples = weights.sum(axis=1)
+        place = weights @ positions / samples
+        level = _sum_products(weights, part) / samples
+        apart = weights * (positions - place[:, None])
         lines.samples[some], lines.place[some], lines.level[some] = (
             samples,
             pieces[some, 0] + place,
             level,
         )
-        lines.width[some] = _row_sums(apart, apart)
-        lines.rise[some] = _row_sums(apart, part - level[:, None])
+        lines.width[some] = _sum_products(apart, apart)
+        lines.rise[some] = _sum_products(apart, part - level[:, None])
     return lines
 
 
-def _row_sums(left: FloatArray, right: FloatArray) -> FloatArray:
+def _sum_products(left: FloatArray, right: FloatArray) -> FloatArray:
     """Return the sum of the products in each row; faster than a product that is summed up."""
     sums: FloatArray = np.einsum("ij,ij->i", left, right)
     return sums
 
 
-def _steps_between(before: _Lines, after: _Lines, edges: IntArray) -> tuple[FloatArray, FloatArray]:
+def _estimate_steps(
+    before: _Lines, after: _Lines, edges: IntArray
+) -> tuple[FloatArray, FloatArray]:
     """Return the steps of least squares between pieces of the same drift, and their deviations in units of the noise.
 
     Args:
@@ -199,32 +201,34 @@ def _steps_between(before: _Lines, after: _Lines, edges: IntArray) -> tuple[Floa
     spread = np.sqrt(1.0 / before.samples + 1.0 / after.samples + apart * apart / safe_width)
     if lone.any():
         # Of the many solutions for one sample on each side, the one with the smallest numbers.
-        step[lone], spread[lone] = _lone_steps(
+        step[lone], spread[lone] = _estimate_lone_steps(
             np.stack((before.place[lone], after.place[lone]), axis=1) - edges[lone, None],
             np.stack((before.level[lone], after.level[lone]), axis=1),
         )
     return step, spread
 
 
-def _lone_steps(places: FloatArray, levels: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _estimate_lone_steps(places: FloatArray, levels: FloatArray) -> tuple[FloatArray, FloatArray]:
     ones, after = np.ones_like(places), np.broadcast_to([0.0, 1.0], places.shape)
     rows = np.linalg.pinv(np.stack((ones, places, after), axis=2))[:, 2]
     return (rows * levels).sum(axis=1), np.sqrt((rows * rows).sum(axis=1))
 
 
-def strays(part: FloatArray, sigma: float) -> BoolArray:
+def find_strays(part: FloatArray, sigma: float) -> BoolArray:
     """Return which samples of levels are strays, shape (m, length) as the samples."""
     length = part.shape[1]
     half = length // 2
     rest = part
     if half >= 4:
-        slope = (medians(part[:, -half:]) - medians(part[:, :half])) / (length - half)
+        slope = (compute_medians(part[:, -half:]) - compute_medians(part[:, :half])) / (
+            length - half
+        )
         rest = part - slope[:, None] * np.arange(length)
-    off: BoolArray = np.abs(rest - medians(rest)[:, None]) > FAR * sigma
+    off: BoolArray = np.abs(rest - compute_medians(rest)[:, None]) > FAR * sigma
     return off & ~off.all(axis=1, keepdims=True)
 
 
-def medians(part: FloatArray) -> FloatArray:
+def compute_medians(part: FloatArray) -> FloatArray:
     """Return the median of each row; numpy's own takes ten times longer for short rows."""
     ordered = np.sort(part, axis=1)
     middle = part.shape[1] // 2

@@ -29,16 +29,16 @@ from tuisim.logs.pieces import (
     STRAY_SAMPLES,
     BoolArray,
     Pieces,
-    joined,
-    lengths_of,
-    medians,
-    of_one_length,
-    without_strays,
+    compute_medians,
+    count_samples,
+    group_by_length,
+    join_across_strays,
+    join_drifting,
 )
 from tuisim.logs.stillness import (
     FIELDS,
-    Found,
     Ground,
+    PlateauArray,
     add_apart,
     drop_moving,
     estimate_noise,
@@ -49,7 +49,7 @@ from tuisim.logs.stillness import (
     split_still,
 )
 
-EVERY_PLACE = 4000
+MAX_SAMPLES_CUT_ANYWHERE = 4000
 """Most samples for which every position may be a cut; in longer logs, only those where neighbouring means differ."""
 
 _EDGE_SAMPLES = 3
@@ -95,10 +95,10 @@ class Plateau(NamedTuple):
 
 
 Search = Callable[[FloatArray], list[Plateau]]
-"""What finds the plateaus of a log: `plateaus`, or `plateaus_in_subprocess`."""
+"""What finds the plateaus of a log: `find_plateaus`, or `find_plateaus_in_subprocess`."""
 
 
-def noise_of(values: FloatArray) -> float:
+def measure_noise(values: FloatArray) -> float:
     """Return the standard deviation of the noise of finite values, shape (n,), from the differences of neighbours.
 
     It is 0 for clean steps.
@@ -106,11 +106,11 @@ def noise_of(values: FloatArray) -> float:
     if len(values) < 3:
         return 0.0
     differences = np.abs(np.diff(values))
-    differences = differences[~_steps(differences)]
+    differences = differences[~_find_steps(differences)]
     return estimate_noise(differences, 2.0)
 
 
-def _steps(differences: FloatArray) -> BoolArray:
+def _find_steps(differences: FloatArray) -> BoolArray:
     """Return which differences between neighbours are steps, if the log has only short levels; otherwise none.
 
     If more than a fifth of the differences are far larger than the ones before and after them, most levels have two or
@@ -124,7 +124,7 @@ def _steps(differences: FloatArray) -> BoolArray:
 
 
 @np.errstate(over="ignore", invalid="ignore")
-def plateaus(values: FloatArray) -> list[Plateau]:
+def find_plateaus(values: FloatArray) -> list[Plateau]:
     """Return the plateaus of a log of samples at a fixed period, shape (n,), in order; the samples between are edges.
 
     Samples that are not finite belong to no plateau.
@@ -133,62 +133,69 @@ def plateaus(values: FloatArray) -> list[Plateau]:
     clean = np.asarray(values, np.float64)[is_finite]
     if not len(clean):
         return []
-    noise = noise_of(clean)
-    low, high = _levels(clean)
+    noise = measure_noise(clean)
+    low, high = _find_extremes(clean)
     # Without noise, the smallest step sets the price of a cut.
-    least_step = max((high - low) * _STEP_OF_RANGE, _DUST * max(abs(low), abs(high)), 1e-12)
-    sigma = max(noise, least_step / CERTAINTY)
+    min_step = max((high - low) * _STEP_OF_RANGE, _DUST * max(abs(low), abs(high)), 1e-12)
+    sigma = max(noise, min_step / CERTAINTY)
     ground = Ground(
-        high - low, min(sigma, max(measure_noise_of_slopes(clean), least_step / CERTAINTY)), sigma
+        high - low, min(sigma, max(measure_noise_of_slopes(clean), min_step / CERTAINTY)), sigma
     )
     # Squares of huge values would leave no digits for the others.
     far = _GIANT * max(ground.range, sigma)
     cut = _cut(np.clip(clean, low - far, high + far), sigma)
-    short_levels = _steps(np.abs(np.diff(clean))).any()
-    pieces = _join_pieces(clean, cut, least_step, sigma, has_strays=not short_levels)
-    found = measure(clean, pieces[lengths_of(pieces) >= MIN_SAMPLES], sigma)
-    found, parts = split_still(clean, found, cut, ground)
+    short_levels = _find_steps(np.abs(np.diff(clean))).any()
+    pieces = _join_pieces(clean, cut, min_step, sigma, has_strays=not short_levels)
+    plateaus = measure(clean, pieces[count_samples(pieces) >= MIN_SAMPLES], sigma)
+    plateaus, parts = split_still(clean, plateaus, cut, ground)
     if not short_levels:
-        found = found[~_are_ramps(clean, found, sigma)]
-        found = found[~_are_edges(found)]
+        plateaus = plateaus[~_find_ramps(clean, plateaus, sigma)]
+        plateaus = plateaus[~_find_edges(plateaus)]
         # With noise, two samples of about the same value are no level, except at the ends of a log.
-        at_an_end = (found["start"] == 0) | (found["stop"] == len(clean))
-        found = found[at_an_end | (lengths_of(read_spans(found)) >= MIN_SAMPLES + (noise > 0.0))]
-    found = _settle(clean, found, parts, ground, least_step)
-    found = _with_ends(clean, found, max(least_step, FAR * sigma))
+        at_an_end = (plateaus["start"] == 0) | (plateaus["stop"] == len(clean))
+        plateaus = plateaus[
+            at_an_end | (count_samples(read_spans(plateaus)) >= MIN_SAMPLES + (noise > 0.0))
+        ]
+    plateaus = _settle(clean, plateaus, parts, ground, min_step)
+    plateaus = _add_ends(clean, plateaus, max(min_step, FAR * sigma))
     places = np.flatnonzero(is_finite)
-    found["start"], found["stop"] = places[found["start"]], places[found["stop"] - 1] + 1
-    return list(map(Plateau._make, found.tolist()))
+    plateaus["start"], plateaus["stop"] = (
+        places[plateaus["start"]],
+        places[plateaus["stop"] - 1] + 1,
+    )
+    return list(map(Plateau._make, plateaus.tolist()))
 
 
 def _join_pieces(
-    values: FloatArray, pieces: Pieces, least_step: float, sigma: float, *, has_strays: bool
+    values: FloatArray, pieces: Pieces, min_step: float, sigma: float, *, has_strays: bool
 ) -> Pieces:
     """Return pieces joined where the log goes on, also across strays if it has some."""
     # Twice: a stray may be hidden between short pieces of a drift.
     for _ in range(2):
         count = len(pieces)
         if has_strays:
-            pieces = without_strays(values, pieces, least_step, sigma)
-        pieces = joined(values, pieces, least_step, sigma)
+            pieces = join_across_strays(values, pieces, min_step, sigma)
+        pieces = join_drifting(values, pieces, min_step, sigma)
         if len(pieces) == count:
             break
     return pieces
 
 
 def _settle(
-    values: FloatArray, found: Found, parts: Found, ground: Ground, least_step: float
-) -> Found:
+    values: FloatArray, plateaus: PlateauArray, parts: PlateauArray, ground: Ground, min_step: float
+) -> PlateauArray:
     """Return plateaus that have grown to their ends, and the still parts of slopes."""
-    if len(found):
+    if len(plateaus):
         # After growing, two may be separated by no more than a stray.
-        grown = _grown(values, read_spans(found), ground.sigma)
-        spans = joined(values, grown, least_step, ground.sigma)
-        found = drop_moving(values, _measure_again(values, spans, found, ground.sigma), ground)
-    return add_apart(found, parts)
+        grown = _extend_pieces(values, read_spans(plateaus), ground.sigma)
+        spans = join_drifting(values, grown, min_step, ground.sigma)
+        plateaus = drop_moving(
+            values, _measure_again(values, spans, plateaus, ground.sigma), ground
+        )
+    return add_apart(plateaus, parts)
 
 
-def _levels(values: FloatArray) -> tuple[float, float]:
+def _find_extremes(values: FloatArray) -> tuple[float, float]:
     """Return the lowest and the highest level, whatever the values of strays."""
     if len(values) > STRAY_SAMPLES:
         windows = sliding_window_view(values, STRAY_SAMPLES + 1).T
@@ -205,21 +212,24 @@ def _cut(values: FloatArray, sigma: float) -> Pieces:
         block = values[first : first + _BLOCK]
         # Centred, since sums of squares of large values have no digits left for small steps.
         block = (block - block.mean()) / sigma
-        pieces.append(first + _partition(block, _places(block)))
+        pieces.append(first + _partition(block, _choose_places(block)))
     return np.concatenate(pieces)
 
 
-def _places(scaled: FloatArray) -> IntArray:
+def _choose_places(scaled: FloatArray) -> IntArray:
     """Return the positions of possible cuts, from 0 to the length, both included."""
     count = len(scaled)
-    if count <= EVERY_PLACE:
+    if count <= MAX_SAMPLES_CUT_ANYWHERE:
         return np.arange(count + 1)
     sums = np.concatenate(([0.0], np.cumsum(scaled)))
     chosen = np.zeros(count + 1, bool)
     chosen[[0, count]] = True
     for width in (1, 3, 8, 24):
-        at = np.arange(width, count - width + 1)
-        step = np.abs(sums[at + width] - 2.0 * sums[at] + sums[at - width]) / width
+        positions = np.arange(width, count - width + 1)
+        step = (
+            np.abs(sums[positions + width] - 2.0 * sums[positions] + sums[positions - width])
+            / width
+        )
         step *= np.sqrt(width / 2.0)
         # Only the highest within its own width, so that one edge does not give many positions.
         peak = np.ones(len(step), bool)
@@ -228,7 +238,7 @@ def _places(scaled: FloatArray) -> IntArray:
             peak[:-shift] &= step[:-shift] >= step[shift:]
         strong = np.flatnonzero(peak & (step > CERTAINTY))
         for shift in (-1, 0, 1):
-            chosen[np.clip(at[strong] + shift, 0, count)] = True
+            chosen[np.clip(positions[strong] + shift, 0, count)] = True
     return np.flatnonzero(chosen)
 
 
@@ -241,8 +251,8 @@ def _partition(scaled: FloatArray, places: IntArray) -> Pieces:
     ends, sums, squares, best = places.tolist(), all_sums.tolist(), all_squares.tolist(), [-price]
     before = [0]
     alive: Sequence[int] | IntArray = [0]
-    for at in range(1, len(ends)):
-        end, total, square = ends[at], sums[at], squares[at]
+    for index in range(1, len(ends)):
+        end, total, square = ends[index], sums[index], squares[index]
         # A start with higher costs can never become the best one again.
         if len(alive) <= _FEW_STARTS:
             costs = [
@@ -252,11 +262,11 @@ def _partition(scaled: FloatArray, places: IntArray) -> Pieces:
                 - (rise := total - sums[start]) * rise / (end - ends[start])
                 for start in alive
             ]
-            least = min(costs)
-            before.append(alive[costs.index(least)])
-            highest = least + price
+            lowest = min(costs)
+            before.append(alive[costs.index(lowest)])
+            highest = lowest + price
             alive = [start for start, cost in zip(alive, costs, strict=True) if cost <= highest]
-            alive.append(at)
+            alive.append(index)
         else:
             starts = np.asarray(alive)
             rises = total - all_sums[starts]
@@ -269,9 +279,9 @@ def _partition(scaled: FloatArray, places: IntArray) -> Pieces:
             cheapest = int(np.argmin(all_costs))
             before.append(int(starts[cheapest]))
             highest = float(all_costs[cheapest]) + price
-            alive = np.append(starts[all_costs <= highest], at)
+            alive = np.append(starts[all_costs <= highest], index)
         best.append(highest)
-        all_best[at] = highest
+        all_best[index] = highest
     cuts = [len(ends) - 1]
     while cuts[-1] > 0:
         cuts.append(before[cuts[-1]])
@@ -279,19 +289,21 @@ def _partition(scaled: FloatArray, places: IntArray) -> Pieces:
     return np.stack((chosen[:-1], chosen[1:]), axis=1)
 
 
-def _measure_again(values: FloatArray, pieces: Pieces, found: Found, sigma: float) -> Found:
+def _measure_again(
+    values: FloatArray, pieces: Pieces, plateaus: PlateauArray, sigma: float
+) -> PlateauArray:
     """Return the pieces as plateaus; those that are found already are taken over."""
-    known = np.minimum(np.searchsorted(found["start"], pieces[:, 0]), len(found) - 1)
-    measured = found[known]
+    known = np.minimum(np.searchsorted(plateaus["start"], pieces[:, 0]), len(plateaus) - 1)
+    measured = plateaus[known]
     changed = (read_spans(measured) != pieces).any(axis=1)
     measured[changed] = measure(values, pieces[changed], sigma)
     return measured
 
 
-def _are_edges(found: Found) -> BoolArray:
+def _find_edges(plateaus: PlateauArray) -> BoolArray:
     """Return which are short pieces that are only the edge between two plateaus."""
-    edges = np.zeros(len(found), bool)
-    lengths, level = lengths_of(read_spans(found)), found["level"]
+    edges = np.zeros(len(plateaus), bool)
+    lengths, level = count_samples(read_spans(plateaus)), plateaus["level"]
     low, high = np.minimum(level[:-2], level[2:]), np.maximum(level[:-2], level[2:])
     is_between = (low < level[1:-1]) & (level[1:-1] < high)
     is_shorter = np.minimum(lengths[:-2], lengths[2:]) > lengths[1:-1]
@@ -299,11 +311,11 @@ def _are_edges(found: Found) -> BoolArray:
     return edges
 
 
-def _are_ramps(values: FloatArray, found: Found, sigma: float) -> BoolArray:
+def _find_ramps(values: FloatArray, plateaus: PlateauArray, sigma: float) -> BoolArray:
     """Return which are short pieces that rise or fall from each sample to the next."""
-    ramps = lengths_of(read_spans(found)) <= _EDGE_SAMPLES + 1
+    ramps = count_samples(read_spans(plateaus)) <= _EDGE_SAMPLES + 1
     short = np.flatnonzero(ramps)
-    for some, part in of_one_length(values, read_spans(found[short])):
+    for some, part in group_by_length(values, read_spans(plateaus[short])):
         steps = np.abs(np.diff(part, axis=1))
         ramps[short[some]] = np.logical_and(
             go_one_way(part), (steps > CERTAINTY * sigma).all(axis=1)
@@ -311,42 +323,42 @@ def _are_ramps(values: FloatArray, found: Found, sigma: float) -> BoolArray:
     return ramps
 
 
-def _with_ends(values: FloatArray, found: Found, least_step: float) -> Found:
+def _add_ends(values: FloatArray, plateaus: PlateauArray, min_step: float) -> PlateauArray:
     """Add the first and the last sample as levels of their own if they are a step away from the nearest plateau.
 
     A program that logs until it meets a value ends its log at the first sample of that level.
     """
-    if not len(found):
-        return found
+    if not len(plateaus):
+        return plateaus
     first, last = 0, len(values) - 1
-    before, after = found[0], found[-1]
+    before, after = plateaus[0], plateaus[-1]
     ends = (
         (first, before["start"] - first, before["level"]),
         (last, last + 1 - after["stop"], after["level"]),
     )
     single = [
-        (at, at + 1, values[at], 0.0, 0.0, 0)
-        for at, apart, level in ends
-        if 1 <= apart <= _EDGE_SAMPLES + 1 and abs(values[at] - level) > least_step
+        (position, position + 1, values[position], 0.0, 0.0, 0)
+        for position, apart, level in ends
+        if 1 <= apart <= _EDGE_SAMPLES + 1 and abs(values[position] - level) > min_step
     ]
     added = np.array(single, FIELDS)
     is_first = added["start"] < before["start"]
-    return np.concatenate((added[is_first], found, added[~is_first]))
+    return np.concatenate((added[is_first], plateaus, added[~is_first]))
 
 
-def _grown(values: FloatArray, pieces: Pieces, sigma: float) -> Pieces:
+def _extend_pieces(values: FloatArray, pieces: Pieces, sigma: float) -> Pieces:
     """Extend pieces by samples of the same level beyond a stray at their ends."""
     grown = pieces.copy()
     near = FAR * sigma / 2.0
-    for at in _growing(values, pieces, near).tolist():
-        start, stop = pieces[at].tolist()
-        first = grown[at - 1, 1] if at else 0
-        last = pieces[at + 1, 0] if at + 1 < len(pieces) else len(values)
+    for index in _find_extendable(values, pieces, near).tolist():
+        start, stop = pieces[index].tolist()
+        first = grown[index - 1, 1] if index else 0
+        last = pieces[index + 1, 0] if index + 1 < len(pieces) else len(values)
         for ahead in range(start - 1, max(first, start - 1 - STRAY_SAMPLES) - 1, -1):
             if (
                 abs(
                     values[ahead]
-                    - medians(values[None, start : min(stop, start + NEAR_SAMPLES)])[0]
+                    - compute_medians(values[None, start : min(stop, start + NEAR_SAMPLES)])[0]
                 )
                 <= near
             ):
@@ -354,36 +366,37 @@ def _grown(values: FloatArray, pieces: Pieces, sigma: float) -> Pieces:
         for ahead in range(stop, min(last, stop + 1 + STRAY_SAMPLES)):
             if (
                 abs(
-                    values[ahead] - medians(values[None, max(start, stop - NEAR_SAMPLES) : stop])[0]
+                    values[ahead]
+                    - compute_medians(values[None, max(start, stop - NEAR_SAMPLES) : stop])[0]
                 )
                 <= near
             ):
                 stop = ahead + 1
-        grown[at] = start, stop
+        grown[index] = start, stop
     return grown
 
 
-def _growing(values: FloatArray, pieces: Pieces, near: float) -> IntArray:
+def _find_extendable(values: FloatArray, pieces: Pieces, near: float) -> IntArray:
     """Return which pieces have a sample of their level ahead of one of their ends, so that they may grow."""
     starts, stops = pieces.T
     firsts, lasts = np.append(0, stops[:-1]), np.append(starts[1:], len(values))
     apart = np.flatnonzero((firsts < starts) | (stops < lasts))
     starts, stops, firsts, lasts = starts[apart], stops[apart], firsts[apart], lasts[apart]
-    heads = _levels_of(values, starts, np.minimum(starts + NEAR_SAMPLES, len(values)))
-    tails = _levels_of(values, np.maximum(starts, stops - NEAR_SAMPLES), stops)
+    heads = _measure_levels(values, starts, np.minimum(starts + NEAR_SAMPLES, len(values)))
+    tails = _measure_levels(values, np.maximum(starts, stops - NEAR_SAMPLES), stops)
     growing = np.zeros(len(apart), bool)
     for ahead in range(1 + STRAY_SAMPLES):
-        for at, level in ((starts - 1 - ahead, heads), (stops + ahead, tails)):
-            free = (firsts <= at) & (at < lasts)
-            growing |= free & (np.abs(values[np.where(free, at, 0)] - level) <= near)
+        for positions, level in ((starts - 1 - ahead, heads), (stops + ahead, tails)):
+            free = (firsts <= positions) & (positions < lasts)
+            growing |= free & (np.abs(values[np.where(free, positions, 0)] - level) <= near)
     return apart[growing]
 
 
-def _levels_of(values: FloatArray, starts: IntArray, stops: IntArray) -> FloatArray:
+def _measure_levels(values: FloatArray, starts: IntArray, stops: IntArray) -> FloatArray:
     """Return the medians of spans."""
     levels = np.empty(len(starts))
-    for some, part in of_one_length(values, np.stack((starts, stops), axis=1)):
-        levels[some] = medians(part)
+    for some, part in group_by_length(values, np.stack((starts, stops), axis=1)):
+        levels[some] = compute_medians(part)
     return levels
 
 
@@ -391,13 +404,13 @@ _PACKAGE_FOLDER = Path(__file__).resolve().parents[2]
 _LOOK_S = 0.1
 
 
-def plateaus_in_subprocess(values: FloatArray, stopped: Callable[[], bool]) -> list[Plateau]:
-    """Return the plateaus of a log, as `plateaus` does, from a process of its own.
+def find_plateaus_in_subprocess(values: FloatArray, stopped: Callable[[], bool]) -> list[Plateau]:
+    """Return the plateaus of a log, as `find_plateaus` does, from a process of its own.
 
     A search in a thread would hold up every key for a second.
 
     Args:
-        values: As for `plateaus`.
+        values: As for `find_plateaus`.
         stopped: Returns whether to give up; called repeatedly.
 
     Raises:
@@ -405,27 +418,27 @@ def plateaus_in_subprocess(values: FloatArray, stopped: Callable[[], bool]) -> l
             is no room for temporary files.
     """
     try:
-        with tempfile.TemporaryFile() as given, tempfile.TemporaryFile() as answer:
-            np.asarray(values, np.float64).tofile(given)
-            given.seek(0)
-            code = _ended(given, answer, stopped)
+        with tempfile.TemporaryFile() as samples, tempfile.TemporaryFile() as answer:
+            np.asarray(values, np.float64).tofile(samples)
+            samples.seek(0)
+            code = _run_search(samples, answer, stopped)
             if code:
                 raise LogError(f"the search for bands failed (exit code {code})")
             answer.seek(0)
-            found = np.fromfile(answer, FIELDS).tolist()
+            rows = np.fromfile(answer, FIELDS).tolist()
     except OSError as error:
         raise LogError(
             f"cannot search for bands: {error.strerror or error}",
             "it needs space for temporary files",
         ) from error
-    return list(map(Plateau._make, found))
+    return list(map(Plateau._make, rows))
 
 
-def _ended(given: IO[bytes], answer: IO[bytes], stopped: Callable[[], bool]) -> int:
+def _run_search(samples: IO[bytes], answer: IO[bytes], stopped: Callable[[], bool]) -> int:
     """Run the process and return its exit code."""
     with subprocess.Popen(
         [sys.executable, "-s", "-P", "-m", __name__],
-        stdin=given,
+        stdin=samples,
         stdout=answer,
         stderr=subprocess.DEVNULL,
         env={**os.environ, "PYTHONPATH": str(_PACKAGE_FOLDER)},
@@ -441,8 +454,8 @@ def _ended(given: IO[bytes], answer: IO[bytes], stopped: Callable[[], bool]) -> 
 
 def _answer() -> None:
     """Read values from the standard input and write their plateaus to the standard output, both files."""
-    found = plateaus(np.fromfile(sys.stdin.buffer))
-    np.array(found, FIELDS).tofile(sys.stdout.buffer)
+    plateaus = find_plateaus(np.fromfile(sys.stdin.buffer))
+    np.array(plateaus, FIELDS).tofile(sys.stdout.buffer)
 
 
 if __name__ == "__main__":

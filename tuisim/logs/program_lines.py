@@ -15,7 +15,7 @@ from tuisim.engine.runs.samples import parse_sample
 from tuisim.logs.blocks import Block
 from tuisim.logs.cells import UNIT
 from tuisim.logs.choices import ReadChoices
-from tuisim.logs.columns import NAMES, time_name
+from tuisim.logs.columns import NAMES, parse_time_name
 from tuisim.logs.dates import MOMENT
 from tuisim.logs.heading import BLANKS, SEPARATORS, count_rows, parse_kinds, split_cells
 from tuisim.logs.text_tables import CsvReader
@@ -46,7 +46,7 @@ _SEPARATORS = frozenset(SEPARATORS)
 _SEPARATOR = re.compile(r"\s*[,;]\s*|\s+")
 _WORDS = re.compile(r"[\s,;:]+")
 _TUPLE = re.compile(r"\s*(?:[A-Za-z_]*\((?P<tuple>.*)\)|\[(?P<list>[^\[\]{}]*)\])\s*,?")
-_MOST_CHARACTERS = 4000
+_MAX_CHARACTERS = 4000
 """Longer lines are not searched for samples."""
 
 Values = tuple[tuple[str, float], ...]
@@ -65,7 +65,7 @@ class ProgramLine(NamedTuple):
 
 def parse_line(line: str) -> ProgramLine | None:
     """Return what a line tells; None if it has neither samples nor a time with numbers."""
-    if len(line) > _MOST_CHARACTERS:
+    if len(line) > _MAX_CHARACTERS:
         return None
     if (sample := parse_sample(line)) is not None:
         return ProgramLine(sample[2], (sample[:2],))
@@ -106,14 +106,14 @@ def _parse_samples(text: str) -> Values:
     while True:
         if (sample := parse_sample(text)) is not None and sample[2] is None:
             return (sample[:2],)
-        samples, at = [], 0
-        while at < len(text) and (item := _ITEM.match(text, at)) is not None:
+        samples, position = [], 0
+        while position < len(text) and (item := _ITEM.match(text, position)) is not None:
             samples.append((item[1], _parse_value(item[2])))
             gap = _GAP.match(text, item.end())
-            at = item.end() if gap is None else gap.end()
+            position = item.end() if gap is None else gap.end()
             if gap is None:
                 break
-        if samples and at == len(text):
+        if samples and position == len(text):
             return tuple(samples)
         prefix = _PREFIX.match(text)
         if prefix is None or prefix.end() == len(text):
@@ -141,7 +141,7 @@ def _is_row(line: str) -> bool:
     return not _SEPARATORS.isdisjoint(line) or numbers > 1 or (numbers == 1 and len(kinds) == 1)
 
 
-def reader_of_lines(
+def choose_reader(
     lines: Sequence[str], is_table: bool, notes: Notes, choices: ReadChoices
 ) -> RowReader | SampleReader | None:
     """Return what reads a file with these first lines; None if they are no lines of a program.
@@ -164,7 +164,7 @@ def reader_of_lines(
         tabs = replace(choices, separator="tab")
         return RowReader(split_stamped, notes, tabs) if is_stamped else None
     rows = sum(_is_row(text) for text, line in zip(lines, by_line, strict=True) if line is None)
-    last = max(at for at, line in enumerate(by_line) if line is not None)
+    last = max(index for index, line in enumerate(by_line) if line is not None)
     rows = max(rows, count_rows(lines[last + 1 :]))
     if len(parsed) <= rows or (is_table and 2 * stamped <= len(lines)):
         return None
@@ -215,7 +215,7 @@ class SampleReader:
         return float(line.time) if _is_number(line.time) else None
 
 
-def are_tuples(lines: Sequence[str]) -> bool:
+def has_tuples(lines: Sequence[str]) -> bool:
     """Return whether most of the lines are tuples or lists as Python prints them."""
     is_document = lines[0].lstrip().startswith(("[[", "[{")) or lines[0].strip() == "["
     rows = sum(_TUPLE.fullmatch(line) is not None for line in lines)
@@ -252,4 +252,4 @@ def split_stamped(line: str) -> str:
     if parsed is not None and parsed.rest:
         return "\t".join((str(parsed.time), *_SEPARATOR.split(parsed.rest)))
     words = _WORDS.split(line.strip())
-    return "\t".join(words) if time_name(words[0]).base in NAMES else line
+    return "\t".join(words) if parse_time_name(words[0]).base in NAMES else line

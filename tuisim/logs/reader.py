@@ -32,27 +32,27 @@ from tuisim.logs.blocks import (
     Block,
     LineCutter,
     Readable,
-    unpacked,
+    unpack,
 )
 from tuisim.logs.choices import NO_CHOICES, ReadChoices
 from tuisim.logs.columns import (
     UNIT_NAMES,
     Layout,
     choose_columns,
+    find_unread_time,
     guess_columns,
-    guessed_order,
+    has_guessed_order,
     is_text,
-    unread_time,
 )
-from tuisim.logs.documents import DocumentReader, are_objects, begins_as_json, is_document
-from tuisim.logs.export import companion_of, log_metadata
+from tuisim.logs.documents import DocumentReader, has_objects, is_document, is_json_start
+from tuisim.logs.export import find_companion, log_metadata
 from tuisim.logs.json_rows import JsonReader
-from tuisim.logs.log import Kept, Log
+from tuisim.logs.log import Log, LogCache
 from tuisim.logs.program_lines import (
     RowReader,
     SampleReader,
-    are_tuples,
-    reader_of_lines,
+    choose_reader,
+    has_tuples,
     strip_brackets,
 )
 from tuisim.logs.text_tables import CsvReader
@@ -69,7 +69,7 @@ FIRST_BYTES = 1 << 18
 _SHOW_EVERY_S = 1.0
 _SHOW_SELDOM = 5.0
 """Minimum time between two updates, as a multiple of the duration of an update."""
-_MOST_COMPANION_BYTES = 64 << 20
+_MAX_COMPANION_BYTES = 64 << 20
 _SHOWN_LINES = 100
 """Lines from which the user chooses the heading."""
 _TABLES = (".csv", ".tsv")
@@ -126,23 +126,23 @@ def read_pieces(source: str | Path, choices: ReadChoices = NO_CHOICES) -> Iterat
         if not parts or now < show_at:
             yield Loaded(part, None)
             continue
-        yield Loaded(part, _log(title, parts, notes, choices))
+        yield Loaded(part, _build_log(title, parts, notes, choices))
         # Showing the log so far takes only a fraction of the whole time.
         took = monotonic() - now
         show_at = now + took + max(_SHOW_EVERY_S, _SHOW_SELDOM * took)
     if not sum(part.num_rows for part in parts):
-        said = "; ".join(notes.texts())
+        warnings = "; ".join(notes.texts())
         raise LogError(
-            "no rows" + (f": {said}" if said else ""),
+            "no rows" + (f": {warnings}" if warnings else ""),
             "a log has a header and one row per sample",
             file=title,
         )
-    log = _log(title, parts, notes, choices)
+    log = _build_log(title, parts, notes, choices)
     yield Loaded(1.0, log, done=True)
 
 
-def _log(title: str, parts: Sequence[pa.Table], notes: Notes, choices: ReadChoices) -> Log:
-    table = join_times(_fill_types(joined(parts)))
+def _build_log(title: str, parts: Sequence[pa.Table], notes: Notes, choices: ReadChoices) -> Log:
+    table = join_times(_fill_types(join_tables(parts)))
     try:
         layout = choose_columns(table, choices)
     except LogError as error:
@@ -152,12 +152,12 @@ def _log(title: str, parts: Sequence[pa.Table], notes: Notes, choices: ReadChoic
         notes.say(
             f"the times in {layout.time!r} are {unit} since 1970: shown from the first one on"
         )
-    unread = unread_time(table, layout) if choices.time is None else ""
+    unread = find_unread_time(table, layout) if choices.time is None else ""
     if unread:
         notes.say(f"the times in {unread!r} cannot be read: row numbers are used")
-    if guessed_order(table, layout):
+    if has_guessed_order(table, layout):
         notes.say(f"the dates in {layout.time!r} are read as day, month, year")
-    metadata = arrow.metadata_in(parts[0].schema) or read_companion(Path(title))
+    metadata = arrow.read_metadata(parts[0].schema) or read_companion(Path(title))
     if metadata:
         return Log(title, table, layout, notes.texts(), notes.left_out, metadata, notes.form)
     # Of the rows so far, so that they are collected anew each time.
@@ -171,8 +171,8 @@ def _log(title: str, parts: Sequence[pa.Table], notes: Notes, choices: ReadChoic
     table, layout, seconds = order_times(table, layout, later)
     _tell_odd_columns(table, layout, unread, later)
     texts = (*notes.texts(), *later.texts())
-    kept = Kept(times_s=seconds)
-    return Log(title, table, layout, texts, notes.left_out, metadata, notes.form, _cache=kept)
+    cache = LogCache(times_s=seconds)
+    return Log(title, table, layout, texts, notes.left_out, metadata, notes.form, _cache=cache)
 
 
 def _tell_odd_columns(table: pa.Table, layout: Layout, unread: str, notes: Notes) -> None:
@@ -196,12 +196,12 @@ def _tell_odd_columns(table: pa.Table, layout: Layout, unread: str, notes: Notes
 def read_companion(path: Path) -> Mapping[str, Any]:
     """Return the metadata in the companion file of an export; empty if there is none."""
     try:
-        found = json.loads(
-            read_regular(companion_of(path), _MOST_COMPANION_BYTES, follow_links=True)
+        metadata = json.loads(
+            read_regular(find_companion(path), _MAX_COMPANION_BYTES, follow_links=True)
         )
     except (OSError, ValueError, RecursionError):
         return {}
-    return found if isinstance(found, dict) else {}
+    return metadata if isinstance(metadata, dict) else {}
 
 
 def read_first_lines(path: str, encoding: str) -> list[tuple[int, str]]:
@@ -216,13 +216,13 @@ def read_first_lines(path: str, encoding: str) -> list[tuple[int, str]]:
         handle.seek(0)
         if head.startswith(tuple(arrow.FORMATS)):
             return []
-        text = unpacked(head, handle, notes) or handle
+        text = unpack(head, handle, notes) or handle
         cutter = LineCutter(notes, encoding=encoding)
         block = cutter.feed(text.read(FIRST_BYTES) or b"") or cutter.finish()
     return [] if block is None else list(islice(block.lines(), _SHOWN_LINES))
 
 
-def joined(parts: Sequence[pa.Table]) -> pa.Table:
+def join_tables(parts: Sequence[pa.Table]) -> pa.Table:
     """Return the rows of several tables; columns that a table lacks are empty there."""
     return pa.concat_tables(parts, promote_options="permissive").unify_dictionaries()
 
@@ -251,7 +251,7 @@ def read_parts(
         # None if the shell closed it.
         if cast("Any", sys.stdin) is None:
             raise LogError("is closed", "name a file instead of -")
-        yield from text_parts(sys.stdin.buffer, 0, "", notes, choices)
+        yield from read_text_parts(sys.stdin.buffer, 0, "", notes, choices)
 
 
 @contextmanager
@@ -289,14 +289,16 @@ def _read_file(
                 return
         if regular:
             handle.seek(0)
-        if (inner := unpacked(head, handle, notes)) is not None:
-            yield from text_parts(inner, 0, path.with_suffix("").suffix.lower(), notes, choices)
+        if (inner := unpack(head, handle, notes)) is not None:
+            yield from read_text_parts(
+                inner, 0, path.with_suffix("").suffix.lower(), notes, choices
+            )
         else:
             size = path.stat().st_size if regular else 0
-            yield from text_parts(handle, size, path.suffix.lower(), notes, choices)
+            yield from read_text_parts(handle, size, path.suffix.lower(), notes, choices)
 
 
-def text_parts(
+def read_text_parts(
     handle: Readable, size: int, suffix: str, notes: Notes, choices: ReadChoices = NO_CHOICES
 ) -> Iterator[tuple[float, pa.Table | None]]:
     """Yield the rows of a text, with the fraction of it that has been read.
@@ -316,9 +318,9 @@ def text_parts(
                 cutter = LineCutter(notes, MAX_DOCUMENT_BYTES, choices.encoding)
         read += len(data)
         if size and len(data) == BLOCK_BYTES and not data.strip(b"\0"):
-            read = _after_hole(cast("BinaryIO", handle), read)
+            read = _skip_hole(cast("BinaryIO", handle), read)
         block = cutter.feed(data) if data else cutter.finish()
-        block, held = (block if held is None else held.followed_by(block)), None
+        block, held = (block if held is None else held.join_next(block)), None
         if (
             reader is None
             and block is not None
@@ -329,7 +331,7 @@ def text_parts(
             block, held = None, block
         part = min(1.0, read / size) if size else float("nan")
         if block is not None:
-            reader = reader or _reader_for(block, suffix, choices, notes)
+            reader = reader or _choose_reader(block, suffix, choices, notes)
             yield part, reader.read(block)
         elif data:
             yield part, None
@@ -341,18 +343,18 @@ def text_parts(
             return
 
 
-def _after_hole(handle: BinaryIO, at: int) -> int:
+def _skip_hole(handle: BinaryIO, position: int) -> int:
     """Skip what was never written to a file, which may seem to be of any length; return the position after it."""
     # Not every file system can tell.
     with suppress(OSError, AttributeError):
         try:
-            at = os.lseek(handle.fileno(), at, os.SEEK_DATA)
+            position = os.lseek(handle.fileno(), position, os.SEEK_DATA)
         except OSError as error:
             if error.errno != errno.ENXIO:
                 raise
-            at = handle.seek(0, os.SEEK_END)
-        handle.seek(at)
-    return at
+            position = handle.seek(0, os.SEEK_END)
+        handle.seek(position)
+    return position
 
 
 def _refuse_binary(data: bytes) -> None:
@@ -365,44 +367,46 @@ def _refuse_binary(data: bytes) -> None:
         )
 
 
-def _reader_for(
+def _choose_reader(
     block: Block, suffix: str, choices: ReadChoices, notes: Notes
 ) -> CsvReader | JsonReader | DocumentReader | SampleReader | RowReader:
     lines = [line for _, line in islice(block.lines(), _JUDGED_LINES)]
     is_table = suffix in _TABLES or choices.header > 0 or choices.separator != ""
-    if lines and are_tuples(lines):
+    if lines and has_tuples(lines):
         return RowReader(strip_brackets, notes, choices)
-    if suffix in (".jsonl", ".ndjson", ".json") or (not is_table and begins_as_json(lines)):
+    if suffix in (".jsonl", ".ndjson", ".json") or (not is_table and is_json_start(lines)):
         return DocumentReader(notes) if lines and is_document(lines) else JsonReader(notes)
-    if not is_table and are_objects(lines):
+    if not is_table and has_objects(lines):
         return JsonReader(notes)
-    return reader_of_lines(lines, is_table, notes, choices) or CsvReader(notes, choices)
+    return choose_reader(lines, is_table, notes, choices) or CsvReader(notes, choices)
 
 
-def log_of_runs(runs: Sequence[StoredRun]) -> Log:
+def build_log(runs: Sequence[StoredRun]) -> Log:
     """Return the samples of one or more runs; a run without any gives an empty log.
 
     Raises:
         LogError: a recording is damaged.
     """
-    return _log_of_columns("samples", runs, sample_columns(runs))
+    return _build_log_from_columns("samples", runs, sample_columns(runs))
 
 
-def telemetry_log(run: StoredRun) -> Log:
+def build_telemetry_log(run: StoredRun) -> Log:
     """Return the telemetry of a run.
 
     Raises:
         LogError: the recording is damaged, or the mat no longer exists.
     """
-    return _log_of_columns("telemetry", [run], telemetry_columns(run))
+    return _build_log_from_columns("telemetry", [run], telemetry_columns(run))
 
 
-def _log_of_columns(kind: str, runs: Sequence[StoredRun], columns: Mapping[str, Any]) -> Log:
-    table = arrow.table_of(columns)
+def _build_log_from_columns(
+    kind: str, runs: Sequence[StoredRun], columns: Mapping[str, Any]
+) -> Log:
+    table = arrow.build_table(columns)
     title = ", ".join(f"run {run.number or run.id}: {run.program.name}" for run in runs)
-    found = [note for run in runs for note in run.notes]
+    notes = [note for run in runs for note in run.notes]
     if kind == "telemetry":
-        found += filter(None, map(damage_note, runs))
+        notes += filter(None, map(damage_note, runs))
     return Log(
-        title, table, guess_columns(table), tuple(found), 0, log_metadata(kind, columns, runs)
+        title, table, guess_columns(table), tuple(notes), 0, log_metadata(kind, columns, runs)
     )

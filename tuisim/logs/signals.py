@@ -25,7 +25,7 @@ class Between(StrEnum):
 MAX_RESAMPLED = 50_000_000
 
 
-def known_in_order(time_s: FloatArray, values: FloatArray) -> IntArray | slice:
+def sort_known(time_s: FloatArray, values: FloatArray) -> IntArray | slice:
     """Return the indices of the finite values, sorted by time (stable).
 
     Args:
@@ -41,7 +41,7 @@ def known_in_order(time_s: FloatArray, values: FloatArray) -> IntArray | slice:
     return known[np.argsort(time_s[known], kind="stable")]
 
 
-def derivative(time_s: FloatArray, values: FloatArray) -> FloatArray:
+def compute_derivative(time_s: FloatArray, values: FloatArray) -> FloatArray:
     """Return the derivative at each sample, in units per second, shape (n,); NaN if all times are equal.
 
     Second-order differences for uneven spacing (`numpy.gradient`), one-sided at both ends.
@@ -51,7 +51,7 @@ def derivative(time_s: FloatArray, values: FloatArray) -> FloatArray:
         values: Shape (n,); values that are not finite are skipped, with NaN in the result.
     """
     slopes = np.full(len(values), np.nan)
-    known = known_in_order(time_s, values)
+    known = sort_known(time_s, values)
     # Of several samples at the same time, the first represents all.
     moments, first, which = np.unique(time_s[known], return_index=True, return_inverse=True)
     if len(moments) > 1:
@@ -60,7 +60,7 @@ def derivative(time_s: FloatArray, values: FloatArray) -> FloatArray:
     return slopes
 
 
-def integral(
+def compute_integral(
     time_s: FloatArray, values: FloatArray, between: Between = Between.LINEAR
 ) -> FloatArray:
     """Return the integral from the first sample to each, in units times seconds, shape (n,).
@@ -70,7 +70,7 @@ def integral(
         values: Shape (n,); values that are not finite are skipped, with NaN in the result.
     """
     sums = np.full(len(values), np.nan)
-    known = known_in_order(time_s, values)
+    known = sort_known(time_s, values)
     moments, heights = time_s[known], np.asarray(values[known], np.float64)
     if not len(moments):
         return sums
@@ -80,7 +80,7 @@ def integral(
     return sums
 
 
-def moving_average(values: FloatArray, width: int) -> FloatArray:
+def compute_moving_average(values: FloatArray, width: int) -> FloatArray:
     """Return the centred rolling mean of `width` samples, of fewer at both ends, shape (n,).
 
     Values that are not finite are ignored.
@@ -100,12 +100,12 @@ def moving_average(values: FloatArray, width: int) -> FloatArray:
     # Wider windows give the same result.
     width = min(width, 2 * len(values) + 1)
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-        sums = _window_sums(np.where(known, values, 0.0), width)
-        means: FloatArray = sums / _window_sums(known.astype(np.float64), width)
+        sums = _sum_windows(np.where(known, values, 0.0), width)
+        means: FloatArray = sums / _sum_windows(known.astype(np.float64), width)
     return means
 
 
-def _window_sums(values: FloatArray, width: int) -> FloatArray:
+def _sum_windows(values: FloatArray, width: int) -> FloatArray:
     """Return the centred rolling sum of `width` values.
 
     A window is the end of one block of that width and the beginning of the next. The difference of two
@@ -140,11 +140,11 @@ def resample(
     """
     if not len(values):
         return np.empty(0), np.empty(0)
-    moments = even_moments(float(time_s.min()), float(time_s.max()), period_s)
-    return moments, known_at(time_s, values, moments)
+    moments = build_even_moments(float(time_s.min()), float(time_s.max()), period_s)
+    return moments, sample_unsorted_signal(time_s, values, moments)
 
 
-def even_moments(start_s: float, stop_s: float, period_s: float) -> FloatArray:
+def build_even_moments(start_s: float, stop_s: float, period_s: float) -> FloatArray:
     """Return times at a fixed period, from `start_s` to at most `stop_s`.
 
     Raises:
@@ -162,27 +162,27 @@ def even_moments(start_s: float, stop_s: float, period_s: float) -> FloatArray:
     return moments
 
 
-def known_at(
+def sample_unsorted_signal(
     time_s: FloatArray, values: FloatArray, moments_s: FloatArray, between: Between = Between.HOLD
 ) -> FloatArray:
-    """Return the values of an unsorted signal at given times, shape (m,); see `value_at`.
+    """Return the values of an unsorted signal at given times, shape (m,); see `sample_signal`.
 
     Args:
         time_s: Shape (n,), in any order.
         values: Shape (n,); values that are not finite are skipped.
         moments_s: Shape (m,).
     """
-    known = known_in_order(time_s, values)
-    return value_at(time_s[known], values[known], moments_s, between)
+    known = sort_known(time_s, values)
+    return sample_signal(time_s[known], values[known], moments_s, between)
 
 
-def value_at(
+def sample_signal(
     time_s: FloatArray, values: FloatArray, moments_s: FloatArray, between: Between = Between.HOLD
 ) -> FloatArray:
     """Return the values of a sorted signal at given times, shape (m,); NaN before its first sample.
 
     Args:
-        time_s: Shape (n,), not decreasing, see `known_in_order`.
+        time_s: Shape (n,), not decreasing, see `sort_known`.
         values: Shape (n,).
         moments_s: Shape (m,).
         between: The interpolation between samples. The last value is held after the end.
@@ -192,10 +192,10 @@ def value_at(
     if between == Between.LINEAR:
         return np.interp(moments_s, time_s, values, left=np.nan)
     # Of several samples at the same time the last one counts. A small margin for rounding of the times.
-    at = np.searchsorted(time_s, moments_s + 1e-9, side="right") - 1
-    found = values[np.maximum(at, 0)].astype(np.float64)
-    found[at < 0] = np.nan
-    return found
+    indices = np.searchsorted(time_s, moments_s + 1e-9, side="right") - 1
+    sampled = values[np.maximum(indices, 0)].astype(np.float64)
+    sampled[indices < 0] = np.nan
+    return sampled
 
 
 QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)
@@ -218,7 +218,7 @@ class Summary:
     """Linearly interpolated, at `QUANTILES` by default."""
 
 
-def summary_of(values: FloatArray, quantiles: Sequence[float] = QUANTILES) -> Summary:
+def compute_summary(values: FloatArray, quantiles: Sequence[float] = QUANTILES) -> Summary:
     """Return the summary statistics of a column.
 
     Args:
@@ -236,5 +236,5 @@ def summary_of(values: FloatArray, quantiles: Sequence[float] = QUANTILES) -> Su
     # The mean of equal values may be off by rounding.
     mean = low if low == high else float(scaled.mean(dtype=np.float64)) * scale
     std = 0.0 if low == high else float(scaled.std(ddof=1, dtype=np.float64)) * scale
-    found = tuple((np.quantile(scaled, quantiles) * scale).tolist()) if quantiles else ()
-    return Summary(len(finite), left_out, low, mean, high, std, found)
+    quantile_values = tuple((np.quantile(scaled, quantiles) * scale).tolist()) if quantiles else ()
+    return Summary(len(finite), left_out, low, mean, high, std, quantile_values)

@@ -12,9 +12,9 @@ from tuisim.logs.pieces import (
     NEAR_SAMPLES,
     BoolArray,
     Pieces,
-    lengths_of,
-    of_one_length,
-    strays,
+    count_samples,
+    find_strays,
+    group_by_length,
 )
 
 _SLOPE_OF_RANGE, _SLOPE_OF_VALUE = 0.25, 0.1
@@ -35,10 +35,10 @@ _UNSURE_OF_RANGE, _UNSURE_OF_VALUE = 0.1, 0.05
 _PART_OF_SLOPE = 0.5
 """A part of a slope stands still if its spread is below this fraction of what the slope would give it."""
 
-_MOST_STRAYS = 0.3
+_MAX_STRAYS = 0.3
 """Largest fraction of strays in a plateau."""
 
-Found = NDArray[np.void]
+PlateauArray = NDArray[np.void]
 """Plateaus as an array of `FIELDS`, shape (n,)."""
 FIELDS = np.dtype(
     [
@@ -71,26 +71,26 @@ def estimate_noise(differences: FloatArray, variance: float) -> float:
     return max(float(by_median), float(np.sqrt(np.mean(calm**2) / variance)))
 
 
-def read_spans(found: Found) -> Pieces:
+def read_spans(plateaus: PlateauArray) -> Pieces:
     """Return the spans of plateaus."""
-    return np.stack((found["start"], found["stop"]), axis=1)
+    return np.stack((plateaus["start"], plateaus["stop"]), axis=1)
 
 
-def measure(values: FloatArray, pieces: Pieces, sigma: float) -> Found:
+def measure(values: FloatArray, pieces: Pieces, sigma: float) -> PlateauArray:
     """Return the pieces as plateaus."""
-    found = np.zeros(len(pieces), FIELDS)
-    found["start"], found["stop"] = pieces.T
-    for some, part in of_one_length(values, pieces):
-        off = strays(part, sigma)
+    plateaus = np.zeros(len(pieces), FIELDS)
+    plateaus["start"], plateaus["stop"] = pieces.T
+    for some, part in group_by_length(values, pieces):
+        off = find_strays(part, sigma)
         counts = off.sum(axis=1)
-        found["strays"][some] = counts
+        plateaus["strays"][some] = counts
         for count in np.unique(counts):
             alike = counts == count
-            found[some[alike]] = _levelled(found[some[alike]], part[alike], ~off[alike])
-    return found
+            plateaus[some[alike]] = _measure_levels(plateaus[some[alike]], part[alike], ~off[alike])
+    return plateaus
 
 
-def _levelled(found: Found, part: FloatArray, keep: BoolArray) -> Found:
+def _measure_levels(plateaus: PlateauArray, part: FloatArray, keep: BoolArray) -> PlateauArray:
     """Return plateaus of one length with their level, spread and drift.
 
     Args:
@@ -99,16 +99,18 @@ def _levelled(found: Found, part: FloatArray, keep: BoolArray) -> Found:
         keep: Which of them are no strays: the same number of each plateau.
     """
     count, length = part.shape
-    kept = part[keep].reshape(count, -1)
-    uneven = (kept != kept[:, :1]).any(axis=1)
-    found["level"] = np.where(uneven, kept.mean(axis=1), kept[:, 0])
-    found["spread"] = np.where(uneven, kept.std(axis=1), 0.0)
-    if kept.shape[1] >= 8:
-        at = np.nonzero(keep)[1].reshape(kept.shape).astype(np.float64)
-        at -= at.mean(axis=1, keepdims=True)
-        drift = (at * kept).sum(axis=1) / (at * at).sum(axis=1) * (length - 1)
-        found["drift"] = np.where(uneven, drift, 0.0)
-    return found
+    samples = part[keep].reshape(count, -1)
+    uneven = (samples != samples[:, :1]).any(axis=1)
+    plateaus["level"] = np.where(uneven, samples.mean(axis=1), samples[:, 0])
+    plateaus["spread"] = np.where(uneven, samples.std(axis=1), 0.0)
+    if samples.shape[1] >= 8:
+        positions = np.nonzero(keep)[1].reshape(samples.shape).astype(np.float64)
+        positions -= positions.mean(axis=1, keepdims=True)
+        drift = (
+            (positions * samples).sum(axis=1) / (positions * positions).sum(axis=1) * (length - 1)
+        )
+        plateaus["drift"] = np.where(uneven, drift, 0.0)
+    return plateaus
 
 
 def go_one_way(part: FloatArray) -> BoolArray:
@@ -129,44 +131,44 @@ class Ground(NamedTuple):
     """The same of all noise, by which strays are told."""
 
 
-def drop_moving(values: FloatArray, found: Found, ground: Ground) -> Found:
+def drop_moving(values: FloatArray, plateaus: PlateauArray, ground: Ground) -> PlateauArray:
     """Return the pieces that have a level: none that rises, falls or bends, nor a few samples far apart."""
-    return found[~_are_moving(values, found, ground)]
+    return plateaus[~_find_moving(values, plateaus, ground)]
 
 
-def _are_moving(values: FloatArray, found: Found, ground: Ground) -> BoolArray:
-    lengths = lengths_of(read_spans(found))
-    moving: BoolArray = found["strays"] > _MOST_STRAYS * lengths
-    spread, drift = found["spread"], np.abs(found["drift"])
+def _find_moving(values: FloatArray, plateaus: PlateauArray, ground: Ground) -> BoolArray:
+    lengths = count_samples(read_spans(plateaus))
+    moving: BoolArray = plateaus["strays"] > _MAX_STRAYS * lengths
+    spread, drift = plateaus["spread"], np.abs(plateaus["drift"])
     wide = spread > max(_STILL_NOISES * ground.noise, _STILL_OF_RANGE * ground.range)
     steep = drift > _SLOPE_OF_RANGE * ground.range
-    root = np.sqrt(lengths - found["strays"])
+    root = np.sqrt(lengths - plateaus["strays"])
     unsure = spread > _UNSURE_OF_RANGE * ground.range * root
     judged = np.flatnonzero(wide | steep | unsure)
-    for some, part in of_one_length(values, read_spans(found[judged])):
+    for some, part in group_by_length(values, read_spans(plateaus[judged])):
         some = judged[some]
         highest = np.abs(part).max(axis=1)
         moving[some] |= (
             wide[some]
             & (spread[some] > _STILL_OF_VALUE * highest)
-            & _wander(part, spread[some], ground.sigma)
+            & _find_wandering(part, spread[some], ground.sigma)
         )
         moving[some] |= steep[some] & (drift[some] > _SLOPE_OF_VALUE * highest)
         moving[some] |= unsure[some] & (spread[some] > _UNSURE_OF_VALUE * highest * root[some])
     return moving
 
 
-def _wander(part: FloatArray, spread: FloatArray, sigma: float) -> BoolArray:
+def _find_wandering(part: FloatArray, spread: FloatArray, sigma: float) -> BoolArray:
     """Return which rows go somewhere, shape (m, length): neighbours are nearer to each other than the spread tells."""
     is_short = part.shape[1] < _SHORT_SAMPLES
-    most = _SHORT_WANDERS if is_short else _WANDERS
-    wanders: BoolArray = _compare_neighbours(part, sigma) < most * spread**2
+    max_fraction = _SHORT_WANDERS if is_short else _WANDERS
+    wanders: BoolArray = _compare_neighbours(part, sigma) < max_fraction * spread**2
     return wanders | go_one_way(part) if is_short else wanders
 
 
 def _compare_neighbours(part: FloatArray, sigma: float) -> FloatArray:
     """Return the variance of each row, shape (m, length), as far as neighbours differ, without strays."""
-    keep = ~strays(part, sigma)
+    keep = ~find_strays(part, sigma)
     pairs = keep[:, 1:] & keep[:, :-1]
     squares = (np.diff(part, axis=1) ** 2 * pairs).sum(axis=1)
     variance: FloatArray = squares / np.maximum(2 * pairs.sum(axis=1), 1)
@@ -174,8 +176,8 @@ def _compare_neighbours(part: FloatArray, sigma: float) -> FloatArray:
 
 
 def split_still(
-    values: FloatArray, found: Found, cut: Pieces, ground: Ground
-) -> tuple[Found, Found]:
+    values: FloatArray, plateaus: PlateauArray, cut: Pieces, ground: Ground
+) -> tuple[PlateauArray, PlateauArray]:
     """Return the pieces that have a level, and the parts that stand still of the others.
 
     Args:
@@ -184,46 +186,51 @@ def split_still(
         cut: The parts of which they were joined, without gaps between them.
         ground: What they are judged by.
     """
-    moving = _are_moving(values, found, ground)
-    return found[~moving], _find_still_parts(values, found[moving], cut, ground)
+    moving = _find_moving(values, plateaus, ground)
+    return plateaus[~moving], _find_still_parts(values, plateaus[moving], cut, ground)
 
 
-def _find_still_parts(values: FloatArray, moving: Found, cut: Pieces, ground: Ground) -> Found:
+def _find_still_parts(
+    values: FloatArray, moving: PlateauArray, cut: Pieces, ground: Ground
+) -> PlateauArray:
     """Return the parts that stand still of pieces that have no level, such as the top between two slopes."""
     if not len(moving):
         return moving
     owners = np.maximum(np.searchsorted(moving["start"], cut[:, 0], side="right") - 1, 0)
     chosen = (moving["start"][owners] <= cut[:, 0]) & (cut[:, 1] <= moving["stop"][owners])
-    chosen &= lengths_of(cut) >= NEAR_SAMPLES
-    levels = np.add.reduceat(values, cut[:, 0]) / lengths_of(cut)
+    chosen &= count_samples(cut) >= NEAR_SAMPLES
+    levels = np.add.reduceat(values, cut[:, 0]) / count_samples(cut)
     rates = np.abs(np.diff(levels) / np.diff(cut.mean(axis=1)))
     slopes = np.maximum(np.append(0.0, rates), np.append(rates, 0.0))[chosen]
     parts = _trim(values, cut[chosen], _STILL_NOISES * ground.noise)
     measured = measure(values, parts, ground.sigma)
-    spread = slopes * lengths_of(parts) / np.sqrt(12.0)
+    spread = slopes * count_samples(parts) / np.sqrt(12.0)
     still = measured["spread"] <= _PART_OF_SLOPE * spread
-    for some, part in of_one_length(values, parts):
-        least = _WANDERS * measured["spread"][some] ** 2
-        still[some] &= _compare_neighbours(part, ground.sigma) >= least
-    still &= lengths_of(parts) >= _SHORT_SAMPLES
+    for some, part in group_by_length(values, parts):
+        min_variance = _WANDERS * measured["spread"][some] ** 2
+        still[some] &= _compare_neighbours(part, ground.sigma) >= min_variance
+    still &= count_samples(parts) >= _SHORT_SAMPLES
     return drop_moving(values, measured[still], ground)
 
 
 def _trim(values: FloatArray, parts: Pieces, far: float) -> Pieces:
     """Return parts without the samples at their ends that are far from their medians."""
     trimmed = parts.copy()
-    for at, (start, stop) in enumerate(parts.tolist()):
+    for index, (start, stop) in enumerate(parts.tolist()):
         part = values[start:stop]
         near = np.flatnonzero(np.abs(part - np.median(part)) <= far)
         if len(near):
-            trimmed[at] = start + near[0], start + near[-1] + 1
+            trimmed[index] = start + near[0], start + near[-1] + 1
     return trimmed
 
 
-def add_apart(found: Found, parts: Found) -> Found:
+def add_apart(plateaus: PlateauArray, parts: PlateauArray) -> PlateauArray:
     """Return plateaus and the parts that overlap none of them, in order."""
-    after = np.searchsorted(found["start"], parts["start"], side="right")
-    stops, starts = np.append(0, found["stop"]), np.append(found["start"], np.iinfo(np.int64).max)
+    after = np.searchsorted(plateaus["start"], parts["start"], side="right")
+    stops, starts = (
+        np.append(0, plateaus["stop"]),
+        np.append(plateaus["start"], np.iinfo(np.int64).max),
+    )
     free = (stops[after] <= parts["start"]) & (parts["stop"] <= starts[after])
-    both = np.concatenate((found, parts[free]))
+    both = np.concatenate((plateaus, parts[free]))
     return both[np.argsort(both["start"], kind="stable")]

@@ -19,12 +19,12 @@ from tuisim.engine.core.conditions import (
     condition_in,
 )
 from tuisim.engine.runs.arrays import IntArray
-from tuisim.logs.arrow import cell_text, contains, mask_of, sorted_places
+from tuisim.logs.arrow import format_cell, match_condition, match_text, sort_places
 
 if TYPE_CHECKING:
     from tuisim.logs.log import Log, LogTable
 
-AT_ONCE = 200_000
+FAST_ROWS = 200_000
 """Number of rows that are processed within some hundredths of a second."""
 
 
@@ -47,21 +47,21 @@ _STRETCH = 100_000
 """Rows that are searched at a time."""
 
 
-def conditions_of(text: str, columns: list[str]) -> list[ValueCondition]:
+def parse_conditions(text: str, columns: list[str]) -> list[ValueCondition]:
     """Return the conditions in a text such as `variable == Colour and value > 50`.
 
     Raises:
         LogError: one is not a condition, or there is no such column.
     """
-    found = []
+    conditions = []
     for part in re.split(r"\s+and\s+|\s*,\s*", text.strip()):
         condition = condition_in(part, name=r"[^<>=!~]+?", value=".*?")
         if condition is None:
             raise LogError(f"no condition: {part!r}", FORM)
         if condition.name not in columns:
             raise LogError(f"no column {condition.name!r}", among(condition.name, columns))
-        found.append(replace(condition, value=condition.value.strip("'\"")))
-    return found
+        conditions.append(replace(condition, value=condition.value.strip("'\"")))
+    return conditions
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,13 +107,13 @@ class Rows:
         if self.view.order is None or not len(self.view.order):
             return row
         if self.view.sorted_by:
-            found = np.flatnonzero(self.view.order == row)
-            return int(found[0]) if len(found) else 0
+            places = np.flatnonzero(self.view.order == row)
+            return int(places[0]) if len(places) else 0
         return min(int(np.searchsorted(self.view.order, row)), len(self.view.order) - 1)
 
     def text(self, row: int, column: str) -> str:
         """Return a cell as text."""
-        return cell_text(self._log.table.column(column)[row])
+        return format_cell(self._log.table.column(column)[row])
 
     def shown(self) -> LogTable:
         """Return the rows and columns shown as a table."""
@@ -122,23 +122,24 @@ class Rows:
 
     # Which rows, in which order
 
-    def filtered(self, conditions: tuple[ValueCondition, ...]) -> TableView:
+    def build_filtered_view(self, conditions: tuple[ValueCondition, ...]) -> TableView:
         """Return the rows that meet all conditions, in the current order. Slow for a long log.
 
         Raises:
             LogError: a value does not fit its column.
         """
         masks = [
-            mask_of(self._log.table.column(condition.name), condition) for condition in conditions
+            match_condition(self._log.table.column(condition.name), condition)
+            for condition in conditions
         ]
         fulfilled = np.flatnonzero(np.logical_and.reduce(masks)) if masks else None
-        return self._arrangement(conditions, fulfilled, self.view.sorted_by, self.view.descending)
+        return self._arrange(conditions, fulfilled, self.view.sorted_by, self.view.descending)
 
-    def sorted(self, column: str, descending: bool) -> TableView:
+    def build_sorted_view(self, column: str, descending: bool) -> TableView:
         """Return the same rows sorted by a column; empty for the order of the log. Slow for a long log."""
-        return self._arrangement(self.view.conditions, self.view.fulfilled, column, descending)
+        return self._arrange(self.view.conditions, self.view.fulfilled, column, descending)
 
-    def _arrangement(
+    def _arrange(
         self,
         conditions: tuple[ValueCondition, ...],
         fulfilled: IntArray | None,
@@ -148,7 +149,7 @@ class Rows:
         order = fulfilled
         if sorted_by:
             column = self._log.table.column(sorted_by)
-            places = sorted_places(column if order is None else column.take(order), descending)
+            places = sort_places(column if order is None else column.take(order), descending)
             order = places if order is None else order[places]
         return TableView(conditions, fulfilled, sorted_by, descending, order)
 
@@ -192,10 +193,14 @@ class Rows:
         self.columns += [name for name in names if name not in before and name not in self.columns]
         self.column = self.columns.index(chosen) if chosen in self.columns else 0
         view = self.view
-        gone = {view.sorted_by, *(one.name for one in view.conditions)}.difference(names, [""])
+        gone = {view.sorted_by, *(condition.name for condition in view.conditions)}.difference(
+            names, [""]
+        )
         if gone:
             self.view = replace(view, sorted_by="" if view.sorted_by in gone else view.sorted_by)
-            self.view = self.filtered(tuple(one for one in view.conditions if one.name not in gone))
+            self.view = self.build_filtered_view(
+                tuple(condition for condition in view.conditions if condition.name not in gone)
+            )
 
     def restore(self, other: Rows) -> None:
         """Show the same columns and conditions as another table of the same log."""
@@ -203,7 +208,7 @@ class Rows:
         self.view = replace(
             self.view, sorted_by=other.view.sorted_by, descending=other.view.descending
         )
-        self.view = self.filtered(other.view.conditions)
+        self.view = self.build_filtered_view(other.view.conditions)
 
     # Search
 
@@ -220,8 +225,8 @@ class Rows:
             task: Receives the progress; can stop the search.
         """
         seen = 0
-        for first, last in _stretches(from_place, len(self), step):
-            places = self._places_with(text, first, last)
+        for first, last in _split_places(from_place, len(self), step):
+            places = self._find_places(text, first, last)
             if len(places):
                 return int(places[0] if step > 0 else places[-1])
             seen += last - first
@@ -231,7 +236,7 @@ class Rows:
                     return None
         return None
 
-    def _places_with(self, text: str, first: int, last: int) -> IntArray:
+    def _find_places(self, text: str, first: int, last: int) -> IntArray:
         """Return the positions from `first` to before `last` whose rows contain a text."""
         table = self._log.table.select(self.columns)
         part = (
@@ -239,13 +244,13 @@ class Rows:
             if self.view.order is None
             else table.take(self.view.order[first:last])
         )
-        found = np.zeros(last - first, bool)
+        matches = np.zeros(last - first, bool)
         for column in part.columns:
-            found |= contains(column, text)
-        return first + np.flatnonzero(found)
+            matches |= match_text(column, text)
+        return first + np.flatnonzero(matches)
 
 
-def _stretches(from_place: int, count: int, step: int) -> Iterator[tuple[int, int]]:
+def _split_places(from_place: int, count: int, step: int) -> Iterator[tuple[int, int]]:
     """Yield all positions in ranges, first and one after the last, beginning next to a position and wrapping around."""
     middle = from_place + 1 if step > 0 else from_place
     onwards = [(first, min(first + _STRETCH, count)) for first in range(middle, count, _STRETCH)]

@@ -16,20 +16,20 @@ import pyarrow.csv as pa_csv
 
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import LogError, counted, listed
-from tuisim.logs.arrow import texts_array
+from tuisim.logs.arrow import build_text_array
 from tuisim.logs.blocks import Block
 from tuisim.logs.cells import (
     DECIMAL_COMMA,
     EMPTY_CELLS,
     PLAIN,
     NumberForm,
-    are_truths,
     find_form,
+    has_only_truths,
     parse_numbers,
     parse_truths,
 )
 from tuisim.logs.choices import NAMES_OF_SIGNS, ReadChoices
-from tuisim.logs.csv_cells import WRITTEN, restored
+from tuisim.logs.csv_cells import WRITTEN, restore_formula
 from tuisim.logs.heading import (
     BLANKS,
     SEPARATORS,
@@ -49,18 +49,18 @@ from tuisim.logs.warnings import Notes
 CODED = pa.dictionary(pa.int32(), pa.string())
 """Dictionary-encoded text."""
 
-_LEAST_REPEATED = 4
+_MIN_REPEATED = 4
 """Texts are dictionary-encoded if each occurs at least this often, on average."""
-_FEWEST_CELLS = 100
+_MIN_CELLS = 100
 """With fewer cells, texts are not dictionary-encoded."""
-_LEAST_VALUES = 3
+_MIN_VALUES = 3
 """Numbers on the only line of a file that are the values of one column; fewer are a row."""
 _BLANKS = re.compile(rb'(?<!\S)("[^"\n]*")(?!\S)|[ \t]+')
 _MARGINS = re.compile(rb"(?m)^[ \t]+|[ \t]+$")
-_MOST_LINES, _MOST_JOINS = 100, 100
+_MAX_LINES, _MAX_JOINS = 100, 100
 """Maximum lines of a quoted row, and maximum failed attempts to join lines."""
 _MAY_BE_NAMES = re.compile(rb"(?m)^[ \t]*[\"']?[A-Za-z_\x80-\xff]")
-_LEAST_ROWS = 2
+_MIN_ROWS = 2
 """Rows below a heading that make another table."""
 
 
@@ -70,11 +70,11 @@ class _Column:
     form: NumberForm = PLAIN
 
 
-def text_kind(cells: pa.Array) -> pa.DataType:
+def choose_text_kind(cells: pa.Array) -> pa.DataType:
     """Return the type for a text column, from its first cells."""
-    often = len(cells) > _FEWEST_CELLS and _LEAST_REPEATED * pc.count_distinct(
+    often = len(cells) > _MIN_CELLS and _MIN_REPEATED * pc.count_distinct(cells).as_py() <= len(
         cells
-    ).as_py() <= len(cells)
+    )
     return CODED if often else pa.string()
 
 
@@ -90,7 +90,7 @@ class CsvReader:
         """Whether the table has ended, so that the rest of the file is another one's."""
         self._has_gaps = False
         """Whether there are blanks between quotes and separators."""
-        self._joins_left = _MOST_JOINS
+        self._joins_left = _MAX_JOINS
         self._columns: dict[str, _Column] = {}
         """By name; missing while all cells of a column were empty."""
 
@@ -105,9 +105,9 @@ class CsvReader:
                 block = self._begin(block)
                 if not self._heading.names:
                     return None
-            plain = self._plain(block)
+            plain = self._clean_block(block)
             # The usual case is fast: every cell is of the known type of its column.
-            columns = self._parsed(plain, self._choose_kinds()) if self._columns else None
+            columns = self._parse_block(plain, self._choose_kinds()) if self._columns else None
             if columns is None or any(map(_has_infinite, columns)):
                 plain, rest = self._cut_table(plain)
                 if rest is not None and self._tables_left:
@@ -115,7 +115,7 @@ class CsvReader:
                     block, self._heading, self._columns = rest, Heading(), {}
                     continue
                 self._is_over = rest is not None
-                columns = self._parsed(plain, {})
+                columns = self._parse_block(plain, {})
             return None if self._tables_left else self._build_rows(plain, columns)
         return None
 
@@ -134,13 +134,13 @@ class CsvReader:
     def _build_rows(self, block: Block, columns: list[pa.Array] | None) -> pa.Table | None:
         rows = None
         if columns is None:
-            columns, rows = self._careful(block)
+            columns, rows = self._parse_lines(block)
         if not len(columns[0]):
             return None
         names = list(self._heading.names)
         self._find_columns(columns)
         typed = [
-            self._typed(name, cells, block, rows)
+            self._convert_column(name, cells, block, rows)
             for name, cells in zip(names, columns, strict=True)
         ]
         table = pa.Table.from_arrays(typed, names)
@@ -156,7 +156,7 @@ class CsvReader:
         )
         if not lines:
             return block
-        if one_column := _one_column(lines, self._notes):
+        if one_column := _split_only_line(lines, self._notes):
             block, lines = Block(lines[0][0], one_column, block.newline), [(lines[0][0], "0")]
         refuse_zeek(lines[0][1])
         self._heading = find_heading(lines, self._notes, self._choices.sign, self._choices.header)
@@ -173,7 +173,7 @@ class CsvReader:
         skipped = block.text.split(b"\n", self._heading.rows_follow - block.first_row)
         return Block(self._heading.rows_follow, skipped[-1], block.newline)
 
-    def _plain(self, block: Block) -> Block:
+    def _clean_block(self, block: Block) -> Block:
         """Return the block without comments, and with tabs instead of separating blanks."""
         text, sign = block.text, self._heading.comment.encode()
         if sign and (text.startswith(sign) or b"\n" + sign in text):
@@ -196,27 +196,27 @@ class CsvReader:
             return block, None
         lines = block.text.decode("utf-8").split("\n")
         repeated = []
-        for at, line in enumerate(lines):
+        for index, line in enumerate(lines):
             if not (cells := self._find_names(line)) or not self._has_rows(
-                cells, lines[at + 1 :][:9]
+                cells, lines[index + 1 :][:9]
             ):
                 continue
             if cells == list(self._heading.names):
-                repeated.append(block.first_row + at)
-                lines[at] = ""
+                repeated.append(block.first_row + index)
+                lines[index] = ""
                 continue
             if not self._tables_left:
                 self._notes.say(
-                    f"another table begins in row {block.first_row + at}, with"
+                    f"another table begins in row {block.first_row + index}, with"
                     f" {listed(map(repr, cells))}: --table {self._choices.table + 1} reads it"
                 )
-            return self._join_block(block, lines[:at], 0), self._join_block(block, lines, at)
+            return self._join_block(block, lines[:index], 0), self._join_block(block, lines, index)
         self._notes.say_rows("the heading is repeated", repeated)
         return (self._join_block(block, lines, 0) if repeated else block), None
 
-    def _join_block(self, block: Block, lines: Sequence[str], at: int) -> Block:
-        text = "\n".join(lines[at:]).encode()
-        return Block(block.first_row + at, text, block.newline)
+    def _join_block(self, block: Block, lines: Sequence[str], start: int) -> Block:
+        text = "\n".join(lines[start:]).encode()
+        return Block(block.first_row + start, text, block.newline)
 
     def _find_names(self, line: str) -> list[str]:
         """Return the cells of a line that may be the heading of a table, none if it is not."""
@@ -232,9 +232,9 @@ class CsvReader:
 
     def _has_rows(self, names: Sequence[str], below: Sequence[str]) -> bool:
         """Return whether the lines below a heading are rows with as many cells, some of them numbers."""
-        rows = [text for text in below if text and not text.isspace()][:_LEAST_ROWS]
+        rows = [text for text in below if text and not text.isspace()][:_MIN_ROWS]
         kinds = [parse_kinds(split_cells(text, self._separator)) for text in rows]
-        return len(kinds) == _LEAST_ROWS and all(
+        return len(kinds) == _MIN_ROWS and all(
             len(row) == len(names) and bool(set(row) & set("nt")) for row in kinds
         )
 
@@ -254,7 +254,7 @@ class CsvReader:
     def _has_decimal_commas(self) -> bool:
         return any(column.form is DECIMAL_COMMA for column in self._columns.values())
 
-    def _parsed(self, block: Block, kinds: Mapping[str, pa.DataType]) -> list[pa.Array] | None:
+    def _parse_block(self, block: Block, kinds: Mapping[str, pa.DataType]) -> list[pa.Array] | None:
         """Parse the block with pyarrow; None if a row has another number of cells, or a cell another type."""
         if block.text.isspace() or not block.text:
             return [pa.nulls(0, pa.string()) for _ in self._heading.names]
@@ -264,7 +264,7 @@ class CsvReader:
             "decimal_point": "," if self._has_decimal_commas else ".",
         }
         try:
-            table = _parsed_csv(
+            table = _parse_csv(
                 block.text, types, pa_csv.ParseOptions(delimiter=self._separator), **options
             )
         except pa.ArrowInvalid:
@@ -275,11 +275,11 @@ class CsvReader:
             return None
         return [c.chunk(0) if c.num_chunks == 1 else c.combine_chunks() for c in table.columns]
 
-    def _careful(self, block: Block) -> tuple[list[pa.Array], list[int]]:
+    def _parse_lines(self, block: Block) -> tuple[list[pa.Array], list[int]]:
         """Parse line by line; short rows are filled, long ones cut, and both are noted."""
         width, usual = len(self._heading.names), set(self._heading.kinds)
         rows, numbers, short, long, others = [], [], [], [], []
-        for row, cells in self._records(block):
+        for row, cells in self._split_rows(block):
             if len(cells) < width:
                 if usual & set("nt") and not set(parse_kinds(cells)) & set("nt"):
                     others.append(row)
@@ -295,25 +295,25 @@ class CsvReader:
         self._notes.add(f"row has {few}", f"rows have {few}", short)
         self._notes.add(f"row has {many}", f"rows have {many}", long)
         return [
-            pa.array([cells[at] for cells in rows], pa.string()) for at in range(width)
+            pa.array([cells[index] for cells in rows], pa.string()) for index in range(width)
         ], numbers
 
-    def _records(self, block: Block) -> Iterator[tuple[int, list[str]]]:
+    def _split_rows(self, block: Block) -> Iterator[tuple[int, list[str]]]:
         """Yield each non-blank row with its cells; a quoted cell may span lines."""
         lines = block.text.decode("utf-8").split("\n")
         after = 0
-        for at, line in enumerate(lines):
-            if at < after or not line or line.isspace():
+        for row, line in enumerate(lines):
+            if row < after or not line or line.isspace():
                 continue
-            cells, after = self._joined(lines, at, block.newline) if '"' in line else (None, at + 1)
+            cells, after = self._join(lines, row, block.newline) if '"' in line else (None, row + 1)
             yield (
-                block.first_row + at,
+                block.first_row + row,
                 split_cells(line.rstrip("\r"), self._separator) if cells is None else cells,
             )
 
-    def _joined(self, lines: Sequence[str], at: int, newline: str) -> tuple[list[str] | None, int]:
+    def _join(self, lines: Sequence[str], row: int, newline: str) -> tuple[list[str] | None, int]:
         """Return the cells of a row of several lines, or None for a single line, and the index of the next row."""
-        ahead = [line + newline for line in lines[at : at + _MOST_LINES]]
+        ahead = [line + newline for line in lines[row : row + _MAX_LINES]]
         reader = csv.reader(
             ahead if self._joins_left else ahead[:1], delimiter=self._separator, strict=True
         )
@@ -321,17 +321,17 @@ class CsvReader:
             cells = next(reader)
         except csv.Error:
             cells = []
-        further = lines[at + 1 : at + reader.line_num]
+        further = lines[row + 1 : row + reader.line_num]
         if (
             further
             and len(cells) == len(self._heading.names)
             and not any(map(self._is_row, further))
         ):
-            return cells, at + reader.line_num
+            return cells, row + reader.line_num
         if further:
             # An unclosed quote is an ordinary character; searching for its end from every line would be too slow.
             self._joins_left -= 1
-        return None, at + 1
+        return None, row + 1
 
     def _is_row(self, line: str) -> bool:
         """Return whether a line seems to be a row of its own, not text between quotes."""
@@ -361,7 +361,7 @@ class CsvReader:
         for name, form in forms.items():
             if form is None:
                 cells = texts[name]
-                kind = pa.bool_() if are_truths(cells) else text_kind(cells)
+                kind = pa.bool_() if has_only_truths(cells) else choose_text_kind(cells)
                 self._columns[name] = _Column(kind)
                 continue
             self._columns[name] = _Column(pa.float64(), form)
@@ -370,7 +370,9 @@ class CsvReader:
         for words, names in names_by_words.items():
             self._notes.say(f"the numbers of {listed(names)} {words}")
 
-    def _typed(self, name: str, cells: pa.Array, block: Block, rows: list[int] | None) -> pa.Array:
+    def _convert_column(
+        self, name: str, cells: pa.Array, block: Block, rows: list[int] | None
+    ) -> pa.Array:
         column = self._columns.get(name)
         if column is None:
             return pa.nulls(len(cells))
@@ -381,22 +383,22 @@ class CsvReader:
         truths = column.kind == pa.bool_()
         numbers, wrong = parse_truths(cells) if truths else parse_numbers(cells, column.form)
         if (count := wrong.true_count) > 0:
-            at = [index for index, bad in enumerate(wrong.to_pylist()) if bad][:5]
-            where = [rows[index] for index in at] if rows else _rows_at(block, at)
-            one, many = ("true or false",) * 2 if truths else ("a number", "numbers")
+            positions = [index for index, bad in enumerate(wrong.to_pylist()) if bad][:5]
+            odd = [rows[index] for index in positions] if rows else _find_rows(block, positions)
+            noun, nouns = ("true or false",) * 2 if truths else ("a number", "numbers")
             self._notes.add(
-                f"cell of {name!r} is not {one}", f"cells of {name!r} are not {many}", where, count
+                f"cell of {name!r} is not {noun}", f"cells of {name!r} are not {nouns}", odd, count
             )
         return numbers
 
 
 def _count_words(texts: Sequence[pa.Array], typed: Sequence[pa.Array]) -> int:
     """Return how many rows at the end have words instead of all their numbers: a sentence below the table."""
-    numbers = [at for at, column in enumerate(typed) if pa.types.is_floating(column.type)]
-    numbers = [at for at in numbers if pa.types.is_string(texts[at].type)]
+    numbers = [index for index, column in enumerate(typed) if pa.types.is_floating(column.type)]
+    numbers = [index for index in numbers if pa.types.is_string(texts[index].type)]
     count = 0
     for row in range(len(typed[0]) - 1, -1, -1):
-        kinds = parse_kinds([texts[at][row].as_py() or "" for at in numbers])
+        kinds = parse_kinds([texts[index][row].as_py() or "" for index in numbers])
         if "w" not in kinds or set(kinds) & set("nt"):
             break
         count += 1
@@ -409,11 +411,11 @@ def _has_infinite(cells: pa.Array) -> bool:
 
 def _is_empty(cells: pa.Array) -> bool:
     texts: Any = pc.utf8_trim_whitespace(cells) if pa.types.is_string(cells.type) else cells
-    empty = pc.is_in(texts, value_set=texts_array(EMPTY_CELLS))
+    empty = pc.is_in(texts, value_set=build_text_array(EMPTY_CELLS))
     return bool(pc.all(pc.or_(pc.is_null(texts), empty)).as_py())
 
 
-def _one_column(lines: Sequence[tuple[int, str]], notes: Notes) -> bytes:
+def _split_only_line(lines: Sequence[tuple[int, str]], notes: Notes) -> bytes:
     """Return the numbers on the only line of a file, each on a line of its own; nothing if there is more in it."""
     body = [text for _, text in lines if not text.startswith("#")]
     if len(body) != 1:
@@ -422,20 +424,20 @@ def _one_column(lines: Sequence[tuple[int, str]], notes: Notes) -> bytes:
     separator = sniff_separator([text])
     cells = [cell.strip() for cell in split_cells(text, separator)]
     form = DECIMAL_COMMA if separator == ";" else PLAIN
-    numbers, _ = parse_numbers(texts_array(cells), form)
-    if len(cells) < _LEAST_VALUES or numbers.null_count:
+    numbers, _ = parse_numbers(build_text_array(cells), form)
+    if len(cells) < _MIN_VALUES or numbers.null_count:
         return b""
     notes.say(f"the only line has {len(cells)} numbers: they are read as one column")
     return "".join(f"{number}\n" for number in numbers.to_pylist()).encode()
 
 
-def _rows_at(block: Block, positions: Sequence[int]) -> list[int]:
+def _find_rows(block: Block, positions: Sequence[int]) -> list[int]:
     # pyarrow counts a line of blanks as a row.
     rows = [row for row, line in enumerate(block.text.split(b"\n"), block.first_row) if line]
-    return [rows[at] for at in positions]
+    return [rows[position] for position in positions]
 
 
-def _parsed_csv(
+def _parse_csv(
     text: bytes, kinds: Mapping[str, pa.DataType], parse: pa_csv.ParseOptions, **convert: Any
 ) -> pa.Table:
     """Parse rows without a header; the columns are the keys of `kinds`. Raises ArrowInvalid if a cell does not fit."""
@@ -447,28 +449,28 @@ def _parsed_csv(
     )
 
 
-def exported_csv(text: bytes) -> pa.Table:
+def read_exported_csv(text: bytes) -> pa.Table:
     """Return the table in a CSV export, each column with the type that all its cells have.
 
     Raises:
         ValueError: the text is not UTF-8, or its rows do not fit its header.
     """
     names = next(csv.reader(io.StringIO(text.decode("utf-8"), newline="")), [])
-    texts = _parsed_csv(
+    texts = _parse_csv(
         text, dict.fromkeys(names, pa.string()), pa_csv.ParseOptions(newlines_in_values=True)
     ).slice(1)
     columns = [
-        texts.column(name) if name in (*TIMEDELTA, *TEXT) else _exact(texts.column(name))
+        texts.column(name) if name in (*TIMEDELTA, *TEXT) else _convert_texts(texts.column(name))
         for name in names
     ]
     columns = [
-        pc.replace_substring_regex(one, WRITTEN, r"\1") if one.type == pa.string() else one
-        for one in columns
+        pc.replace_substring_regex(column, WRITTEN, r"\1") if column.type == pa.string() else column
+        for column in columns
     ]
-    return pa.Table.from_arrays(columns, list(map(restored, names)))
+    return pa.Table.from_arrays(columns, list(map(restore_formula, names)))
 
 
-def _exact(texts: pa.ChunkedArray) -> pa.ChunkedArray:
+def _convert_texts(texts: pa.ChunkedArray) -> pa.ChunkedArray:
     """Return texts as whole numbers, numbers or truth values if all of them are; empty ones are missing numbers."""
     cells = pc.if_else(pc.equal(texts, ""), pa.scalar(None, pa.string()), texts)
     for kind in (pa.int64(), pa.float64()) if len(texts) else (pa.float64(),):
@@ -476,5 +478,5 @@ def _exact(texts: pa.ChunkedArray) -> pa.ChunkedArray:
             return cells.cast(kind)
         except pa.ArrowInvalid:
             continue
-    truths = pc.is_in(texts, value_set=texts_array(("True", "False")))
+    truths = pc.is_in(texts, value_set=build_text_array(("True", "False")))
     return pc.equal(texts, "True") if pc.all(truths).as_py() else texts

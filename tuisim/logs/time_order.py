@@ -13,17 +13,17 @@ import pyarrow.compute as pc
 
 from tuisim.base.errors import counted
 from tuisim.engine.runs.arrays import FloatArray, IntArray
-from tuisim.logs.arrow import numbers_of, unique_names, whole_numbers
+from tuisim.logs.arrow import convert_to_floats, make_names_unique, wrap_int64
 from tuisim.logs.columns import (
     COUNTS,
     ROW,
     Layout,
     Times,
+    find_epoch_unit_s,
     find_texts,
     is_numeric,
+    parse_time_name,
     read_times,
-    time_name,
-    unit_since_1970_s,
 )
 from tuisim.logs.dates import is_clock, is_date
 from tuisim.logs.warnings import Notes, list_rows
@@ -36,9 +36,9 @@ _PARTS = {
 """Names of columns with a part of a second, by its number of parts."""
 _RESTART_PART = 0.1
 """A time begins again if it goes back to this part of what had passed."""
-_MOST_RUNS = 1000
+_MAX_RUNS = 1000
 _JUDGED_TIMES = 1000
-_LEAST_STEPS = {1e-9: 1e7, 1e-6: 1e4, 1e-3: 5.0}
+_MIN_STEPS = {1e-9: 1e7, 1e-6: 1e4, 1e-3: 5.0}
 """Smallest usual step of whole numbers by the unit in seconds: a robot samples every 5 ms to 10 s."""
 
 
@@ -75,10 +75,10 @@ def _list_matches(table: pa.Table, pattern: re.Pattern[str]) -> list[tuple[str, 
 def _replace_columns(
     table: pa.Table, first: str, second: str, name: str, joined: pa.ChunkedArray
 ) -> pa.Table:
-    at = table.column_names.index(first)
+    position = table.column_names.index(first)
     rest = table.drop_columns([first, second])
     return rest.add_column(
-        min(at, rest.num_columns), unique_names([*rest.column_names, name])[-1], joined
+        min(position, rest.num_columns), make_names_unique([*rest.column_names, name])[-1], joined
     )
 
 
@@ -86,30 +86,30 @@ def _join_parts(table: pa.Table, seconds: str, parts: str, per_s: int) -> pa.Chu
     if not all(is_numeric(table.schema.field(name).type) for name in (seconds, parts)):
         return None
     whole, fraction = (
-        np.asarray(numbers_of(table.column(name)), float) for name in (seconds, parts)
+        np.asarray(convert_to_floats(table.column(name)), float) for name in (seconds, parts)
     )
     if not (np.isfinite(whole).all() and ((fraction >= 0) & (fraction < per_s)).all()):
         return None
     nanoseconds = whole.astype(np.int64) * 10**9 + (fraction * (10**9 // per_s)).astype(np.int64)
-    is_date = unit_since_1970_s(table.column(seconds), 1.0) is not None
+    is_date = find_epoch_unit_s(table.column(seconds), 1.0) is not None
     kind = pa.timestamp("ns") if is_date else pa.duration("ns")
-    return pa.chunked_array([whole_numbers(nanoseconds)]).cast(kind)
+    return pa.chunked_array([wrap_int64(nanoseconds)]).cast(kind)
 
 
 def guess_unit_s(table: pa.Table, layout: Layout) -> float | None:
     """Return the unit of a time column that names none, if its steps are whole and too large for seconds."""
     if layout.time in (ROW, *COUNTS) or layout.since_first or "line" in table.column_names:
         return None
-    if time_name(layout.time).unit_s is not None or not is_numeric(
+    if parse_time_name(layout.time).unit_s is not None or not is_numeric(
         table.schema.field(layout.time).type
     ):
         return None
-    times = numbers_of(table.column(layout.time))
+    times = convert_to_floats(table.column(layout.time))
     times = times[np.isfinite(times)][:_JUDGED_TIMES]
     if len(times) < 3 or (times != np.floor(times)).any():
         return None
     step = float(np.median(np.abs(np.diff(times))))
-    return next((unit_s for unit_s, least in _LEAST_STEPS.items() if step >= least), None)
+    return next((unit_s for unit_s, min_step in _MIN_STEPS.items() if step >= min_step), None)
 
 
 def order_times(table: pa.Table, layout: Layout, notes: Notes) -> Ordered:
@@ -125,7 +125,7 @@ def order_times(table: pa.Table, layout: Layout, notes: Notes) -> Ordered:
     others = np.setdiff1d(back, restarts)
     if len(others):
         notes.say(f"time goes back in {list_rows((others + 1).tolist())} of the table")
-    if not len(restarts) or len(restarts) > _MOST_RUNS:
+    if not len(restarts) or len(restarts) > _MAX_RUNS:
         return Ordered(table, layout, times.seconds)
     notes.say(
         f"time begins again in {list_rows((restarts + 1).tolist())} of the table:"
@@ -133,8 +133,8 @@ def order_times(table: pa.Table, layout: Layout, notes: Notes) -> Ordered:
     )
     begins = np.zeros(table.num_rows, np.int64)
     begins[[0, *restarts]] = 1
-    name = unique_names([*table.column_names, "run"])[-1]
-    table = table.append_column(name, whole_numbers(np.cumsum(begins)))
+    name = make_names_unique([*table.column_names, "run"])[-1]
+    table = table.append_column(name, wrap_int64(np.cumsum(begins)))
     return Ordered(table, replace(layout, run=name), times.seconds)
 
 
@@ -161,7 +161,7 @@ def _is_one_clock(table: pa.Table, layout: Layout, back: IntArray) -> bool:
         return True
     names = table.column(layout.variable)
     edges = [0, *back.tolist(), table.num_rows]
-    if len(edges) > _MOST_RUNS:
+    if len(edges) > _MAX_RUNS:
         return False
     parts = [
         set(names.slice(start, stop - start).unique().to_pylist())

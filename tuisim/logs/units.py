@@ -61,11 +61,11 @@ _OTHER = re.compile(
 """Names of variables that are no light, or have a unit that light has not."""
 
 
-def may_be_light(name: str) -> bool:
+def can_be_light(name: str) -> bool:
     """Return whether a variable may be the reading of a colour sensor, by its name."""
     name = name.partition(" #")[0]
     return bool(_LIGHT.search(name)) or not (
-        _OTHER.search(name) or unit_of(name).sign not in ("", "%")
+        _OTHER.search(name) or parse_unit(name).sign not in ("", "%")
     )
 
 
@@ -80,6 +80,6 @@ def begins_at_zero(name: str, low: float, high: float) -> bool:
     return 0 <= low and high <= MAX_LEVEL and bool(_LIGHT.search(name) or _PERCENT.search(name))
 
 
-def unit_of(name: str) -> Unit:
+def parse_unit(name: str) -> Unit:
     """Return the unit from a name's suffix; both texts are empty if there is none."""
     return next((unit for end, unit in UNITS.items() if name.endswith(end)), _NONE)

@@ -9,9 +9,9 @@ from tuisim.logs.choices import NO_CHOICES
 
 ROWS_NAMED = 3
 """Rows that a warning names; more are only counted."""
-MOST_SAID = 8
+MAX_WARNINGS = 8
 """Warnings about a whole file that are told; more are only counted."""
-MOST_CHARACTERS = 200
+MAX_CHARACTERS = 200
 """Length of a warning; a longer one, which quotes something of the file, is cut."""
 
 
@@ -35,7 +35,9 @@ class Notes:
         """Add a warning about the whole file, once."""
         self._general[text] = None
 
-    def add(self, one: str, many: str, rows: Iterable[int], count: int | None = None) -> None:
+    def add(
+        self, singular: str, plural: str, rows: Iterable[int], count: int | None = None
+    ) -> None:
         """Add a warning about some rows.
 
         Args:
@@ -44,14 +46,14 @@ class Notes:
             rows: Rows of the file, from 1; the first few are enough if `count` is given.
             count: Number of occurrences; without any, nothing is added.
         """
-        found = list(rows)
-        count = len(found) if count is None else count
+        numbers = list(rows)
+        count = len(numbers) if count is None else count
         if not count:
             return
-        text = (one, many)
+        text = (singular, plural)
         self._counts[text] = self._counts.get(text, 0) + count
         named = self._rows.setdefault(text, [])
-        named += found[: ROWS_NAMED - len(named)]
+        named += numbers[: ROWS_NAMED - len(named)]
 
     def say_rows(self, text: str, rows: Sequence[int]) -> None:
         """Add a warning about some rows of which nothing is left out; none without rows."""
@@ -75,6 +77,10 @@ class Notes:
             )
             where += f"{', …' if count > len(rows) else ''})" if rows else ""
             texts.append(f"{counted(count, *text)}{where}")
-        said = [shortened(text, MOST_CHARACTERS) for text in self._general]
-        more = len(said) - MOST_SAID
-        return (*said[:MOST_SAID], *([counted(more, "more warning")] if more > 0 else []), *texts)
+        sentences = [shortened(text, MAX_CHARACTERS) for text in self._general]
+        more = len(sentences) - MAX_WARNINGS
+        return (
+            *sentences[:MAX_WARNINGS],
+            *([counted(more, "more warning")] if more > 0 else []),
+            *texts,
+        )

@@ -45,7 +45,7 @@ def _find_edges(
     middles = (levels.true_level[:-1] + levels.true_level[1:]) / 2.0
     apart = values[row] - middles[level]
     have_third = np.zeros(len(middles), bool)
-    have_third[level[np.abs(apart) > _farthest_of(levels)[level]]] = True
+    have_third[level[np.abs(apart) > _measure_reach(levels)[level]]] = True
     apart_next = values[row + 1] - middles[level]
     passing = np.flatnonzero((apart < 0.0) != (apart_next < 0.0))
     level, row = level[passing], row[passing]
@@ -69,7 +69,7 @@ def _find_pairs(last: IntArray, first: IntArray) -> tuple[IntArray, IntArray]:
     return level, np.arange(sizes.sum()) - (np.cumsum(sizes) - sizes - last)[level]
 
 
-def _farthest_of(levels: Levels) -> FloatArray:
+def _measure_reach(levels: Levels) -> FloatArray:
     """Return how far samples between each level and the next one may be from their middle, shape (n - 1,)."""
     spread = np.maximum(levels.spread[:-1], levels.spread[1:])
     return _FAR_OF_STEP * np.abs(np.diff(levels.true_level)) + _FAR_OF_SPREAD * spread

@@ -15,7 +15,7 @@ from tuisim.app.analyser.table_pane import build_heading
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.logs.columns import guess_columns
 from tuisim.logs.log import Log
-from tuisim.logs.reader import log_of_runs
+from tuisim.logs.reader import build_log
 
 LEVELS = (100.0, 86.27, 50.2, 0.0)
 
@@ -140,7 +140,7 @@ def test_an_empty_log_says_what_else_there_is() -> None:
 
 
 def test_the_column_run_does_not_look_like_the_number_of_a_stored_run(run: StoredRun) -> None:
-    opened = OpenedLog(LogRequest(), log_of_runs((run,)), (run,))
+    opened = OpenedLog(LogRequest(), build_log((run,)), (run,))
     assert build_heading(Model(opened), "run") == "run (in log)"
     assert build_heading(model_of(opened.log), "run") == "run"
 

@@ -17,7 +17,7 @@ from tuisim.engine.core.sensors import columns_of
 from tuisim.engine.runs.frames import column_values
 from tuisim.engine.runs.run_folder import StoredRun, open_mat
 from tuisim.engine.runs.store import RunStore
-from tuisim.logs.table import conditions_of
+from tuisim.logs.table import parse_conditions
 from tuisim.settings.build import build_run_spec
 from tuisim.settings.options import Settings
 from tuisim.tasks.goals.judge import judge
@@ -85,8 +85,10 @@ def test_the_name_of_a_trace_is_an_event_a_filter_and_a_variable_of_the_analyser
     model = Model(opened)
     model.add_named_columns(f"{name} changes")
     assert len(events_of(model.log, thresholds_of(f"{name} changes", model.log))) > 5
-    conditions = conditions_of(f"{name} == {value_of(run, name)!r}", model.log.table.column_names)
-    model.rows.view = model.rows.filtered(tuple(conditions))
+    conditions = parse_conditions(
+        f"{name} == {value_of(run, name)!r}", model.log.table.column_names
+    )
+    model.rows.view = model.rows.build_filtered_view(tuple(conditions))
     assert 0 < len(model.rows) < model.log.rows
     derive(model, f"half = {name} / 2")
     assert model.log.series("half").values[-1] == value_of(run, name) / 2

@@ -5,7 +5,7 @@ from dataclasses import astuple
 import numpy as np
 import pytest
 
-from tuisim.logs.signals import summary_of
+from tuisim.logs.signals import compute_summary
 from tuisim.pictures.charts.canvas import seen_points, xy_lines
 from tuisim.pictures.charts.traces import MOST_POINTS, TRACE_COLORS, Pyramid, Trace, Traces
 
@@ -45,7 +45,7 @@ def test_what_is_not_finite_or_not_in_order_is_put_right() -> None:
 def test_figures_of_a_span_are_those_of_its_points(span: tuple[float, float]) -> None:
     values = 1e6 + np.sin(TIMES) * np.random.default_rng(1).random(len(TIMES))
     inside = values[(span[0] <= TIMES) & (span[1] >= TIMES)]
-    found, expected = Pyramid(TIMES, values).figures(*span), summary_of(inside, quantiles=())
+    found, expected = Pyramid(TIMES, values).figures(*span), compute_summary(inside, quantiles=())
     assert astuple(found)[:6] == pytest.approx(astuple(expected)[:6], rel=1e-9, nan_ok=True)
 
 

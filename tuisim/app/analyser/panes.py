@@ -31,10 +31,10 @@ from tuisim.app.snapshot import end_label
 from tuisim.base import palette
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import TuisimError
-from tuisim.logs.bands import Band, count_samples, width_in_words
-from tuisim.logs.plateaus import Search, plateaus, plateaus_in_subprocess
+from tuisim.logs.bands import Band, count_samples, describe_width
+from tuisim.logs.plateaus import Search, find_plateaus, find_plateaus_in_subprocess
 from tuisim.logs.signals import QUANTILES
-from tuisim.logs.table import AT_ONCE
+from tuisim.logs.table import FAST_ROWS
 from tuisim.terminal.cell_view import LinesPanel
 from tuisim.terminal.text_runs import Line, cut, first_shown
 
@@ -110,7 +110,7 @@ def _band(band: Band) -> Cells:
         f"{band.start_s:.2f}",
         f"{band.stop_s:.2f}",
         count_samples(band),
-        width_in_words(band),
+        describe_width(band),
         f"{band.spread:.2f}",
     )
 
@@ -135,7 +135,7 @@ def _event(event: Event | CommandRow) -> Cells:
 def _statistics(model: Model) -> list[Cells]:
     rows = []
     # A short log is processed faster than it is drawn.
-    missing = model.unsummed() if model.log.rows > AT_ONCE else []
+    missing = model.unsummed() if model.log.rows > FAST_ROWS else []
     for trace in model.traces.ticked():
         if trace.name in missing:
             rows.append((trace.name, "…", *[""] * (4 + len(QUANTILES))))
@@ -480,7 +480,9 @@ class PaneView(LinesPanel):
         names = {"bands": model.unsearched, "statistics": model.unsummed}.get(pane, list)()
         if not names or self._busy.get(pane) is model:
             return
-        at_once, do = (SEARCHED_AT_ONCE, find_bands) if pane == "bands" else (AT_ONCE, Model.sum_up)
+        at_once, do = (
+            (SEARCHED_AT_ONCE, find_bands) if pane == "bands" else (FAST_ROWS, Model.sum_up)
+        )
         work = partial(do, model, names)
         if model.log.rows <= at_once:
             work()
@@ -512,6 +514,6 @@ def find_bands(model: Model, names: Sequence[str]) -> None:
 def band_search(rows: int) -> Search:
     """Return the search for bands in so many rows: of many, in another process, until this worker is cancelled."""
     if rows <= SEARCHED_AT_ONCE:
-        return plateaus
+        return find_plateaus
     worker = get_current_worker()
-    return partial(plateaus_in_subprocess, stopped=lambda: worker.is_cancelled)
+    return partial(find_plateaus_in_subprocess, stopped=lambda: worker.is_cancelled)

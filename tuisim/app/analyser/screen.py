@@ -31,12 +31,12 @@ from tuisim.app.layout.forms import is_tall
 from tuisim.base import palette
 from tuisim.base.errors import LogError, TuisimError
 from tuisim.logs.choices import ReadChoices
-from tuisim.logs.columns import numeric_columns
-from tuisim.logs.derived import SIGNALS, TIME, computed_columns
+from tuisim.logs.columns import list_numeric_columns
+from tuisim.logs.derived import SIGNALS, TIME, find_computed_columns
 from tuisim.logs.expressions import CONSTANTS, FUNCTIONS
 from tuisim.logs.log import Log
 from tuisim.logs.reader import read_beginning
-from tuisim.logs.table import AT_ONCE, TableTask
+from tuisim.logs.table import FAST_ROWS, TableTask
 from tuisim.terminal.cell_view import LinesView
 
 _POLL_S = 1.0
@@ -53,10 +53,14 @@ Made = TypeVar("Made")
 def expression_words(log: Log) -> Iterator[str]:
     """Yield the words allowed in an expression: variables, columns, functions."""
     known = dict.fromkeys(
-        (*(name.partition(" #")[0] for name in log.names), *numeric_columns(log.table.schema), TIME)
+        (
+            *(name.partition(" #")[0] for name in log.names),
+            *list_numeric_columns(log.table.schema),
+            TIME,
+        )
     )
     yield from (name if name.isidentifier() else f"`{name}`" for name in known)
-    yield from computed_columns(log)
+    yield from find_computed_columns(log)
     yield from (f"{name}(" for name in (*SIGNALS, *FUNCTIONS))
     yield from CONSTANTS
     yield RECKONING
@@ -424,7 +428,7 @@ class LogScreen(ActionHost, ClosesOnce[None]):
             TuisimError: raised by `do` if it runs synchronously; otherwise the error is shown.
         """
         task = TableTask(word)
-        if rows <= AT_ONCE:
+        if rows <= FAST_ROWS:
             then(do(task))
             return
         self.begin(task)

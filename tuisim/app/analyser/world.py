@@ -28,7 +28,7 @@ from tuisim.engine.core.state import Instant
 from tuisim.engine.core.tick_record import FLAG_PEN_DOWN
 from tuisim.engine.runs.recorded_run import Recording
 from tuisim.engine.runs.views import instant_of
-from tuisim.logs.derived import spec_in
+from tuisim.logs.derived import read_spec
 from tuisim.terminal.cell_view import LinesView
 from tuisim.terminal.text_runs import Run, first_shown
 
@@ -116,7 +116,7 @@ def has_poses(opened: OpenedLog) -> bool:
     if opened.runs:
         return True
     named = set(_POSE) <= set(opened.log.table.column_names)
-    return named and spec_in(opened.log.metadata) is not None
+    return named and read_spec(opened.log.metadata) is not None
 
 
 def world_at(opened: OpenedLog, run: int) -> WorldAt | None:
@@ -133,7 +133,7 @@ def world_at(opened: OpenedLog, run: int) -> WorldAt | None:
         except TuisimError:
             mat = blank_mat(stored.spec)
         return WorldAt(stored.spec, mat, stored, opened.log)
-    spec = spec_in(opened.log.metadata, run)
+    spec = read_spec(opened.log.metadata, run)
     if spec is None or not set(_POSE) <= set(opened.log.table.column_names):
         return None
     try:

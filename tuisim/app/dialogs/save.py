@@ -21,9 +21,9 @@ from tuisim.engine.runs.store import RunStore
 from tuisim.logs.export import (
     LISTED,
     check_target,
+    describe_files,
     export_samples,
     export_telemetry,
-    files_in_words,
 )
 from tuisim.terminal.app import offer
 
@@ -231,7 +231,7 @@ class ExportDialog(FileDialog):
         self.wait_for(work, self._written, lambda error: self.failed(str(error)))
 
     def _written(self, target: Path) -> None:
-        self.app.notify(f"Log saved to {files_in_words(target)}", markup=False)
+        self.app.notify(f"Log saved to {describe_files(target)}", markup=False)
         offer(self.app, target)
         self.dismiss(target)
 

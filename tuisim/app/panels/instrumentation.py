@@ -29,7 +29,7 @@ from tuisim.app.panels.reading_runs import (
 from tuisim.app.panels.titles import build_title, name_setup
 from tuisim.app.snapshot import RunPhase, Snapshot, end_label
 from tuisim.engine.core.geometry import shown_heading_deg
-from tuisim.logs.units import unit_of
+from tuisim.logs.units import parse_unit
 from tuisim.terminal.cell_view import LinesPanel
 from tuisim.terminal.text_runs import Line, Run, cut
 
@@ -130,7 +130,7 @@ def _further(column: str, value: float, width: int) -> Line:
     if what == "pressed":
         shown, unit = "pressed" if value else "released", ""
     else:
-        sign = unit_of(column).sign
+        sign = parse_unit(column).sign
         shown, unit = f"{value:.0f}", sign if sign == "°" else f" {sign}".rstrip()
     label = name.capitalize()
     return fit_line(

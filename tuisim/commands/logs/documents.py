@@ -14,7 +14,7 @@ from tuisim.analysis.source import LogRequest, OpenedLog, opening
 from tuisim.base.errors import ConfigError, LogError, listed
 from tuisim.commands.echo import echo, echo_drawn, echo_error, echo_written
 from tuisim.commands.logs.sources import asked, names_of, the_source
-from tuisim.logs.derived import with_named_columns
+from tuisim.logs.derived import add_named_columns
 from tuisim.logs.log import Log
 from tuisim.pictures.charts.files import (
     CHART_FORMATS,
@@ -155,7 +155,7 @@ def report(arguments: Arguments) -> int:
             "are for files only", "the columns of a run are fixed", key="--time and --value"
         )
     *_, source = opening(request)
-    source = replace(source, log=with_named_columns(source.log, " ".join(arguments.variable)))
+    source = replace(source, log=add_named_columns(source.log, " ".join(arguments.variable)))
     names = names_of(source.log, arguments) if arguments.variable else ()
     target = Path(arguments.out or default_name(source))
     write_report(source, target, names)

@@ -18,10 +18,10 @@ from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.engine.runs.store import RunStore
 from tuisim.logs.choices import ReadChoices
 from tuisim.logs.columns import choose_columns, time_in_words
-from tuisim.logs.derived import spec_in, with_named_columns
-from tuisim.logs.expressions import names_in
+from tuisim.logs.derived import add_named_columns, read_spec
+from tuisim.logs.expressions import find_names
 from tuisim.logs.log import Log
-from tuisim.logs.reader import STDIN, log_of_runs, read_pieces, telemetry_log
+from tuisim.logs.reader import STDIN, build_log, build_telemetry_log, read_pieces
 from tuisim.settings.command_line import Arguments
 
 
@@ -109,21 +109,21 @@ def _open_runs(words: Sequence[str], arguments: Arguments) -> Iterator[Log]:
             hint = "a program logs by printing lines such as `Colour: 50`; --telemetry uses every tick instead"
             raise LogError("no samples", damage or hint, file=log.title)
         layout = choose_columns(log.table, build_choices(arguments))
-        yield _ready(log.with_layout(layout), arguments)
+        yield _ready(log.replace_layout(layout), arguments)
 
 
 def _logs_of(runs: Sequence[StoredRun], arguments: Arguments) -> list[Log]:
     """Return the samples of some runs, or the telemetry of each, where that is asked for or has what is asked for."""
     if arguments.telemetry:
         _name_columns(arguments, (), runs)
-        return list(map(telemetry_log, runs))
-    samples = log_of_runs(runs)
+        return list(map(build_telemetry_log, runs))
+    samples = build_log(runs)
     known = {name.partition(" #")[0] for name in samples.names}
     asked_for = _name_columns(arguments, known, runs)
     is_telemetry = bool(asked_for) and all(
         asked_for.isdisjoint(known) and asked_for.issubset(column_names(run.spec)) for run in runs
     )
-    return list(map(telemetry_log, runs)) if is_telemetry else [samples]
+    return list(map(build_telemetry_log, runs)) if is_telemetry else [samples]
 
 
 def _name_columns(
@@ -140,7 +140,7 @@ def _name_columns(
         word if word in known else column_name(word, columns_of(run)) or word for word in words
     )
     expression = getattr(arguments, "expression", "")
-    return {*arguments.variable, *(names_in(expression) if expression else ())}
+    return {*arguments.variable, *(find_names(expression) if expression else ())}
 
 
 def _open_file(word: str, arguments: Arguments) -> Log:
@@ -167,9 +167,7 @@ def _ready(log: Log, arguments: Arguments) -> Log:
         for note in log.notes:
             echo_error(f"note: {log.title}: {note}")
     words = [getattr(arguments, name, "") for name in ("expression", "against")]
-    return with_named_columns(
-        log, " ".join((*words, *(getattr(arguments, "variable", None) or ())))
-    )
+    return add_named_columns(log, " ".join((*words, *(getattr(arguments, "variable", None) or ()))))
 
 
 def names_of(log: Log, arguments: Arguments) -> tuple[str, ...]:
@@ -189,7 +187,7 @@ def names_of(log: Log, arguments: Arguments) -> tuple[str, ...]:
     for word in wanted:
         matching = [name for name in with_rows if name == word or name.partition(" #")[0] == word]
         if not matching:
-            run = spec_in(log.metadata)
+            run = read_spec(log.metadata)
             columns = () if run is None else column_names(run)
             raise LogError(f"no variable {word!r}", among(word, with_rows, columns), file=log.title)
         found += matching

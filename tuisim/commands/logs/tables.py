@@ -36,11 +36,18 @@ from tuisim.engine.core.conditions import Operator
 from tuisim.engine.runs.arrays import FloatArray
 from tuisim.engine.runs.command_events import CommandIndex, parse_command_search
 from tuisim.logs import signals
-from tuisim.logs.bands import BandReport, Column, band_report, in_words, items_of, width_in_words
+from tuisim.logs.bands import (
+    BandReport,
+    Column,
+    build_band_report,
+    describe_levels,
+    describe_width,
+    unpack_column,
+)
 from tuisim.logs.csv_cells import write_csv
-from tuisim.logs.derived import reckoned_series
-from tuisim.logs.export import check_target, export_frame, export_log, table_metadata
-from tuisim.logs.frames import computed_frame, sampled_frame
+from tuisim.logs.derived import build_reckoned_series
+from tuisim.logs.export import build_table_metadata, check_target, export_frame, export_log
+from tuisim.logs.frames import build_computed_frame, build_sampled_frame
 from tuisim.logs.log import Log, LogTable, Series
 from tuisim.logs.mcap_export import POSE, SUFFIX, export_mcap, load_writer
 from tuisim.settings.command_line import Arguments
@@ -59,7 +66,7 @@ def summary(arguments: Arguments) -> int:
         notes += [f"note: {log.title}: {note}" for note in log.notes]
         for name in names_of(log, arguments):
             series = log.series(name)
-            figures = asdict(signals.summary_of(series.values))
+            figures = asdict(signals.compute_summary(series.values))
             quantiles = dict(zip(_QUANTILE_NAMES, figures.pop("quantiles"), strict=True))
             times_s = series.time_s
             span = {"first_s": float(times_s.min()), "last_s": float(times_s.max())}
@@ -102,12 +109,12 @@ def bands(arguments: Arguments) -> int:
     is_table = not arguments.json and not arguments.out
     if is_table:
         columns["width_mm"] = [
-            f"{width_in_words(band):>8}" for report in reports for band in report.bands
+            f"{describe_width(band):>8}" for report in reports for band in report.bands
         ]
     show_columns({"log": titles, **columns}, arguments, formats)
     if is_table:
         for report in reports:
-            echo_wrapped(in_words(report))
+            echo_wrapped(describe_levels(report))
     return 0
 
 
@@ -115,7 +122,7 @@ def _reports(arguments: Arguments) -> Iterator[tuple[str, BandReport]]:
     """Yield the bands of every variable, with the title of its log."""
     for log in open_sources(arguments):
         for name in names_of(log, arguments):
-            yield log.title, band_report(log, name)
+            yield log.title, build_band_report(log, name)
 
 
 def _joined(columns: Sequence[Column]) -> Column:
@@ -224,21 +231,27 @@ def _each(arguments: Arguments, column: str, change: Callable[[Series], FloatArr
 def derive(arguments: Arguments) -> int:
     """Output the derivative of each variable, in units per second."""
     return _each(
-        arguments, "derivative", lambda series: signals.derivative(series.time_s, series.values)
+        arguments,
+        "derivative",
+        lambda series: signals.compute_derivative(series.time_s, series.values),
     )
 
 
 def integrate(arguments: Arguments) -> int:
     """Output the integral of each variable, in units times seconds."""
     return _each(
-        arguments, "integral", lambda s: signals.integral(s.time_s, s.values, arguments.between)
+        arguments,
+        "integral",
+        lambda s: signals.compute_integral(s.time_s, s.values, arguments.between),
     )
 
 
 def average(arguments: Arguments) -> int:
     """Output the centred rolling mean of each variable."""
     return _each(
-        arguments, "average", lambda series: signals.moving_average(series.values, arguments.width)
+        arguments,
+        "average",
+        lambda series: signals.compute_moving_average(series.values, arguments.width),
     )
 
 
@@ -250,8 +263,8 @@ def even(arguments: Arguments) -> int:
     all_series = [log.series(name) for name in names_of(log, arguments)]
     start = min(float(series.time_s.min()) for series in all_series)
     stop = max(float(series.time_s.max()) for series in all_series)
-    moments = signals.even_moments(start, stop, arguments.period)
-    show_frame(sampled_frame(moments, all_series, arguments.between), arguments)
+    moments = signals.build_even_moments(start, stop, arguments.period)
+    show_frame(build_sampled_frame(moments, all_series, arguments.between), arguments)
     return 0
 
 
@@ -262,7 +275,7 @@ def calculate(arguments: Arguments) -> int:
             "no expression given", "such as --expression '(left + right) / 2'", key="calc"
         )
     log = the_source(arguments)
-    show_frame(computed_frame(log, arguments.expression), arguments)
+    show_frame(build_computed_frame(log, arguments.expression), arguments)
     return 0
 
 
@@ -274,7 +287,7 @@ def reckon(arguments: Arguments) -> int:
     """
     arguments.telemetry = True
     log = the_source(arguments)
-    computed = {series.name: series.values for series in reckoned_series(log)}
+    computed = {series.name: series.values for series in build_reckoned_series(log)}
     frame = log.table.select(["time", *POSE]).to_pandas().assign(**computed)
     if arguments.out or arguments.json:
         show_frame(frame, arguments)
@@ -395,7 +408,7 @@ def show_columns(
 
         write_frame(pd.DataFrame(columns), arguments)
     elif arguments.json:
-        rows = zip(*map(items_of, columns.values()), strict=True)
+        rows = zip(*map(unpack_column, columns.values()), strict=True)
         echo_json_list(finite(dict(zip(columns, row, strict=True))) for row in rows)
     else:
         heads = [name.upper().replace("_", " ") for name in formats]
@@ -426,7 +439,7 @@ def _print_json(frame: pd.DataFrame) -> None:
 def write_frame(frame: pd.DataFrame, arguments: Arguments) -> None:
     """Write a frame to the file `out`; the suffix selects the format."""
     check_target(arguments.out)
-    export_frame(frame, arguments.out, table_metadata(arguments.action, frame))
+    export_frame(frame, arguments.out, build_table_metadata(arguments.action, frame))
     echo_written(arguments.out)
 
 
@@ -439,8 +452,8 @@ def _are_numbers(column: Column) -> bool:
 def _texts(column: Column, how: str) -> list[str]:
     """Return the cells of a column; a number that is missing is empty."""
     if not how:
-        return list(map(str, items_of(column)))
+        return list(map(str, unpack_column(column)))
     return [
         str(item) if not isinstance(item, float) else "" if isnan(item) else format(item, how)
-        for item in items_of(column)
+        for item in unpack_column(column)
     ]

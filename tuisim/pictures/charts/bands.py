@@ -7,8 +7,8 @@ from collections.abc import Callable, Sequence
 from rich.style import Style
 
 from tuisim.base import palette
-from tuisim.logs.levels import Light, levels_of
-from tuisim.logs.units import may_be_light
+from tuisim.logs.levels import Light, measure_levels
+from tuisim.logs.units import can_be_light
 from tuisim.pictures.charts import axes
 from tuisim.pictures.charts.axes import Limits
 from tuisim.pictures.charts.layout import Span, names_of
@@ -45,7 +45,7 @@ def spans_of(trace: Trace, light: Light) -> tuple[Span, ...]:
     """
     if len(trace.times_s) > MOST_SAMPLES:
         return ()
-    found = levels_of(trace.values, light if may_be_light(trace.name) else None)
+    found = measure_levels(trace.values, light if can_be_light(trace.name) else None)
     ends = trace.times_s[found.start].tolist(), trace.times_s[found.stop - 1].tolist()
     names = [grey.name if grey and not trace.scale else "" for grey in found.greys]
     rows = zip(*ends, found.true_level.tolist(), names, strict=True)

@@ -97,7 +97,7 @@ def with_unit(name: str) -> str:
 
 def unit_of(name: str) -> str:
     """Return the unit of a variable from its name, empty if there is none."""
-    return units.unit_of(name.partition(" #")[0]).sign
+    return units.parse_unit(name.partition(" #")[0]).sign
 
 
 @dataclass(frozen=True, slots=True)

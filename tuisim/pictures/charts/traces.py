@@ -10,8 +10,8 @@ import numpy.typing as npt
 from tuisim.engine.core.css_colors import Rgb
 from tuisim.engine.runs.arrays import FloatArray
 from tuisim.logs.magnitude import MAX_DRAWN, find_scale, limit_drawn
-from tuisim.logs.signals import Summary, summary_of
-from tuisim.logs.units import unit_of
+from tuisim.logs.signals import Summary, compute_summary
+from tuisim.logs.units import parse_unit
 
 TRACE_COLORS: tuple[Rgb, ...] = (
     (240, 228, 66),
@@ -40,7 +40,7 @@ _THINNED = 4
 def scale_of(name: str) -> str:
     """Return the scale of a variable: its unit or reading; empty for light, in percent or not, and what is unknown."""
     name = name.partition(" #")[0]
-    sign = unit_of(name).sign
+    sign = parse_unit(name).sign
     if sign:
         return "" if sign == "%" else sign
     return next((reading for reading in _OTHER_READINGS if name.lower().startswith(reading)), "")
@@ -325,7 +325,7 @@ class Pyramid:
         """Return the statistics of a time range, both ends included, without quantiles."""
         first, last = self._span(start_s, stop_s)
         if last - first <= _SUMMED_AT_ONCE or find_scale(*self._find_ends()) != 1.0:
-            return summary_of(self.values[first:last], quantiles=())
+            return compute_summary(self.values[first:last], quantiles=())
         # Whole blocks are cached; only the partial blocks at both ends are computed.
         begin, end = -(-first // _BLOCK), last // _BLOCK
         ends = np.concatenate(

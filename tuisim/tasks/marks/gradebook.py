@@ -16,7 +16,7 @@ from pathlib import Path
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ConfigError, listed
 from tuisim.engine.files import read_bytes
-from tuisim.logs.csv_cells import harmless, restored
+from tuisim.logs.csv_cells import escape_formula, restore_formula
 from tuisim.pictures.charts.files import write_whole
 from tuisim.tasks.goals.judgement import in_words
 from tuisim.tasks.marks.feedback import feedback_of
@@ -79,7 +79,9 @@ def read_roster(path: Path) -> Roster:
         heading = text.partition("\n")[0]
         separator = max(",;\t", key=heading.count)
         reader = csv.reader(io.StringIO(text, newline=""), delimiter=separator, strict=True)
-        rows = [cells for row in reader if any(cells := [restored(cell.strip()) for cell in row])]
+        rows = [
+            cells for row in reader if any(cells := [restore_formula(cell.strip()) for cell in row])
+        ]
     except (UnicodeDecodeError, csv.Error) as error:
         raise ConfigError(
             f"is no CSV in UTF-8: {error}", "a heading, and one row for each student", file=shown
@@ -151,7 +153,7 @@ def write_gradebook(
         )
     text = io.StringIO()
     csv.writer(text, lineterminator="\n").writerows(
-        [*map(harmless, row)] for row in [heads, *table]
+        [*map(escape_formula, row)] for row in [heads, *table]
     )
     write_whole(path, text.getvalue().encode("utf-8", "backslashreplace"))
 

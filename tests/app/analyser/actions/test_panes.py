@@ -27,7 +27,7 @@ STEPS: list[tuple[list[str], Callable[[Model], bool]]] = [
 async def test_long_logs_are_worked_on_beside_the_screen(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(screen_module, "AT_ONCE", 0)
+    monkeypatch.setattr(screen_module, "FAST_ROWS", 0)
     lines = (f"{at / 10},{'ab'[at % 2]},{at // 2}" for at in range(200))
     file = tmp_path / "log.csv"
     file.write_text("\n".join(("time,name,value", *lines)) + "\n")

@@ -63,7 +63,7 @@ def copy_pane(screen: LogScreen) -> None:
 
 def export(screen: LogScreen) -> None:
     """Ask for the file to export the rows of the pane to; of the table, only the columns shown."""
-    from tuisim.logs.export import EXPORTERS, LISTED, check_target, files_in_words
+    from tuisim.logs.export import EXPORTERS, LISTED, check_target, describe_files
 
     pane = screen.pane.name_shown
     if pane != "table" and not PANES[pane].rows(screen.model):
@@ -75,7 +75,7 @@ def export(screen: LogScreen) -> None:
         model = screen.model
         frame = None if pane == "table" else pane_frame(pane, model)
         work = partial(_write_rows, model, frame, target)
-        saved = partial(_saved, screen, f"Rows saved to {files_in_words(target)}", target)
+        saved = partial(_saved, screen, f"Rows saved to {describe_files(target)}", target)
         background.run(screen, work, saved, screen.complain, group="export")
 
     forms = tuple((suffix, exporter.contents) for suffix, exporter in EXPORTERS.items())
@@ -90,12 +90,12 @@ def _saved(screen: LogScreen, notice: str, target: Path, _: object) -> None:
 
 
 def _write_rows(model: Model, frame: pd.DataFrame | None, target: Path) -> None:
-    from tuisim.logs.export import export_frame, export_log, table_metadata
+    from tuisim.logs.export import build_table_metadata, export_frame, export_log
 
     if frame is None:
         export_log(model.log, model.rows.shown(), target)
     else:
-        export_frame(frame, target, table_metadata("pane", frame))
+        export_frame(frame, target, build_table_metadata("pane", frame))
 
 
 def chart(screen: LogScreen) -> None:

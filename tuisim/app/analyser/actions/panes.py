@@ -11,7 +11,7 @@ from tuisim.app.analyser.world import NO_POSES, has_poses
 from tuisim.base.errors import LogError
 from tuisim.engine.core.conditions import spelled
 from tuisim.logs.log import Log
-from tuisim.logs.table import TableTask, TableView, conditions_of
+from tuisim.logs.table import TableTask, TableView, parse_conditions
 
 if TYPE_CHECKING:
     from tuisim.analysis.model import Model
@@ -93,7 +93,10 @@ def sort(screen: LogScreen) -> None:
     else:
         order = ("", False) if rows.view.descending else (rows.chosen, True)
     screen.work(
-        "sorting …", len(rows), lambda _: rows.sorted(*order), partial(_arrange, screen, model)
+        "sorting …",
+        len(rows),
+        lambda _: rows.build_sorted_view(*order),
+        partial(_arrange, screen, model),
     )
 
 
@@ -113,9 +116,14 @@ def select(screen: LogScreen) -> None:
     def keep(text: str) -> None:
         model = screen.model
         model.add_named_columns(text)
-        conditions = tuple(conditions_of(text, model.log.table.column_names)) if text else ()
+        conditions = tuple(parse_conditions(text, model.log.table.column_names)) if text else ()
         then = partial(_arrange, screen, model)
-        screen.work("filtering …", model.log.rows, lambda _: model.rows.filtered(conditions), then)
+        screen.work(
+            "filtering …",
+            model.log.rows,
+            lambda _: model.rows.build_filtered_view(conditions),
+            then,
+        )
 
     screen.ask(
         "Filter",
