@@ -11,18 +11,34 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from IPython.core.interactiveshell import InteractiveShell
 
-    from tuisim.api import experiment, simulate
-    from tuisim.engine.runs.store import load_run
+    from tuisim.api.face import Robot, World, experiment, simulate
+    from tuisim.api.marks import mark
+    from tuisim.api.run import load_run, runs
     from tuisim.logs.frames import read_log
 
 __version__ = "1.0.0"
-__all__ = ["__version__", "experiment", "load_run", "read_log", "simulate"]
+__all__ = [
+    "Robot",
+    "World",
+    "__version__",
+    "experiment",
+    "load_ipython_extension",
+    "load_run",
+    "mark",
+    "read_log",
+    "runs",
+    "simulate",
+]
 
 _HOMES = {
-    "experiment": "tuisim.api",
-    "load_run": "tuisim.engine.runs.store",
+    "Robot": "tuisim.api.face",
+    "World": "tuisim.api.face",
+    "experiment": "tuisim.api.face",
+    "load_run": "tuisim.api.run",
+    "mark": "tuisim.api.marks",
     "read_log": "tuisim.logs.frames",
-    "simulate": "tuisim.api",
+    "runs": "tuisim.api.run",
+    "simulate": "tuisim.api.face",
 }
 
 
@@ -42,4 +58,4 @@ def load_ipython_extension(shell: InteractiveShell) -> None:
 
 
 def __dir__() -> list[str]:
-    return sorted([*globals(), *_HOMES])
+    return __all__

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import pytest
 
 from tests.settings.golden import outside
-from tuisim.api import choices_of
+from tuisim.api.descriptions import read_options
 from tuisim.app.setup import next_run as plans
 from tuisim.app.setup.next_run import NextRun
 from tuisim.engine.core.spec import NoiseSpec, RunSpec
@@ -171,7 +171,7 @@ def runs_of(folder: Path, program: str, option: Option) -> dict[str, RunSpec]:
     (folder / "w.toml").write_text(f"{option.world}\n")
     (folder / "t.toml").write_text(f"{option.world}\n{GOAL}")
     (folder / "g.toml").write_text(GOAL)
-    words, given = option.words.split(), choices_of(option.choices)
+    words, given = option.words.split(), read_options(option.choices)
     commands = {
         "run": ("run", "p.py", *words),
         "app": ("p.py", *words),
@@ -196,7 +196,7 @@ def runs_of(folder: Path, program: str, option: Option) -> dict[str, RunSpec]:
 
 def runs_in_app(source: ProgramSource, option: Option) -> dict[str, RunSpec]:
     """Return the run of a program in the app, if the option comes after it, and before."""
-    plain, before = program_settings(source), settings_of(choices_of(option.choices))
+    plain, before = program_settings(source), settings_of(read_options(option.choices))
     opened = plans.first_plan(
         build_run_spec(plain.settings), plain.settings, plain.decided, source.program
     )
@@ -211,7 +211,7 @@ WITH_WORLD = ("a world", "a world in the app", "a task", "a batch of a task", "m
 @pytest.mark.parametrize("program, option", TABLE)
 def test_every_door_gives_the_same_run(program: str, option: str, folder: Path) -> None:
     runs = runs_of(folder, program, OPTIONS[option])
-    given_in_world = {"floor": False, **choices_of(OPTIONS[option].choices)}
+    given_in_world = {"floor": False, **read_options(OPTIONS[option].choices)}
     source = read_program(folder / "p.py")
     on_field = build_run_spec(program_settings(source, given_in_world).settings)
     given = {door: on_field if door in WITH_WORLD else runs["run"] for door in runs}

@@ -165,15 +165,10 @@ class Option:
         Raises:
             ConfigError: it is wrong; `key` is to blame.
         """
-        if isinstance(value, str):
-            return parse(self.value, value, key)
-        if self.constant is not None and not isinstance(value, bool):
-            raise ConfigError(f"must be True or False, got {value!r}", key=key)
         try:
-            found = self.value.from_data(value)
+            return self.value.from_data(value)
         except WrongValue as error:
             raise _blame(error, key) from None
-        return not found if self.constant is False else found
 
 
 WORLD, RUN, APP, PANEL = "World", "Run", "App", "Panels of the app"

@@ -16,7 +16,8 @@ from pathlib import Path
 from typing import Any, NoReturn
 from unittest.mock import patch
 
-from tuisim import api
+import tuisim
+from tuisim.api import calls
 from tuisim.base.errors import TuisimError
 from tuisim.base.folders import programs_folder
 from tuisim.batch.sweep import Sweep
@@ -96,7 +97,7 @@ def nothing_starts() -> Iterator[None]:
     with contextlib.ExitStack() as stack:
         for place, name, held in (
             (run_command_module, "start_run", _hold_run),
-            (api, "start_run", _hold_run),
+            (calls, "start_run", _hold_run),
             (Sweep, "run", _hold_sweep),
             (app_command, "has_terminal", lambda: True),
             ("tuisim.app.app", "run_app", _hold_app),
@@ -145,7 +146,7 @@ def of_choices(program: str, choices: Mapping[str, Any]) -> Outcome:
 
     It is asked for an experiment if there are `parameters`, else for a run.
     """
-    start = api.experiment if "parameters" in choices else api.simulate
+    start = tuisim.experiment if "parameters" in choices else tuisim.simulate
     try:
         start(program, **choices)
     except _Held as held:

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import tuisim
+from tests.api.write_face import FACE, write_face
 from tests.cases import cases
 from tests.conftest import ROOT
 from tuisim.base.errors import ConfigError, LogError
@@ -61,7 +62,8 @@ def test_an_error_of_the_program_is_in_the_run() -> None:
         "unknown argument": ({"backgrond": "Loop"}, "did you mean background"),
         "unknown mat": ({"background": "Nope"}, "no such mat"),
         "no number": ({"x": "far"}, "x: must be a number"),
-        "no truth value": ({"pendown": 1}, "must be True or False"),
+        "no truth value": ({"pendown": 1}, "pendown: must be true or false"),
+        "text for a number": ({"x": "100"}, "x: must be a number"),
         "no time": ({"timeout_s": 0}, "must be above 0"),
     },
 )
@@ -82,7 +84,7 @@ def test_import_loads_next_to_nothing() -> None:
         "pandas",
         "PIL",
         "IPython",
-        "tuisim.api",
+        "tuisim.api.face",
         "tuisim.engine.runs.handle",
     } & set(done.stdout.split())
 
@@ -110,7 +112,7 @@ Button().wait_for_pressed('enter')
     "choices, time_s",
     {
         "as its first line says": ({}, 1),
-        "one": ({"press": "enter@2"}, 2),
+        "one": ({"press": ["enter@2"]}, 2),
         "several": ({"press": ["up@1", "enter@3"]}, 3),
         "in a world": ({"world": "hands.toml"}, 4),
     },
@@ -214,10 +216,10 @@ def test_a_wrong_world_is_refused(tmp_path: Path) -> None:
 
 def test_a_stored_run_is_loaded_by_its_number() -> None:
     made = tuisim.simulate("print('A: 1')\n").stored
-    number = tuisim.load_run("last").number
+    number = tuisim.load_run("last").stored.number
     names: list[Any] = [number, str(number), np.int64(number), made.folder]
     for name in names:
-        assert tuisim.load_run(name).id == made.id
+        assert tuisim.load_run(name).stored.id == made.id
 
 
 NO_RUNS = {
@@ -247,3 +249,141 @@ def test_what_names_no_run_is_refused(run: Any, words: str) -> None:
 def test_a_wrong_experiment_is_refused(given: dict[str, Any], words: str) -> None:
     with pytest.raises(ConfigError, match=words):
         tuisim.experiment("log_greys", **given)
+
+
+def test_the_face_is_as_the_list_of_options_writes_it() -> None:
+    assert FACE.read_text(encoding="utf-8") == write_face()
+
+
+def test_nothing_else_is_public() -> None:
+    assert set(dir(tuisim)) == {
+        *("Robot", "World", "experiment", "load_run", "mark", "read_log", "runs", "simulate"),
+        *("__version__", "load_ipython_extension"),
+    }
+
+
+@cases(
+    "call, expected",
+    {
+        "an option": ("tuisim.simulate('log_greys', backg", ["background=", "background_fit="]),
+        "of an experiment": ("tuisim.experiment('log_greys', sens", ["sensornoise="]),
+        "of a world": ("tuisim.World(pendo", ["pendown="]),
+        "a name": ("tuisim.sim", ["simulate"]),
+    },
+)
+def test_an_editor_completes(call: str, expected: list[str]) -> None:
+    import jedi
+
+    completions = jedi.Script(f"import tuisim\n{call}").complete(2, len(call))
+    assert [one.name for one in completions] == expected
+
+
+MISSPELT = """\
+import tuisim
+
+tuisim.simulate("log_greys", backgrond="Loop")
+tuisim.experiment("log_greys", sensornose=[0, 20])
+tuisim.World(anlge=3)
+tuisim.experiment("log_greys", sensornoise=[0, 20], robot=tuisim.Robot(gear_ratio=2))
+"""
+
+
+@pytest.mark.slow
+def test_type_checks_refuse_what_is_misspelt(tmp_path: Path) -> None:
+    (tmp_path / "misspelt.py").write_text(MISSPELT)
+    words = [sys.executable, "-m", "mypy", "--strict", "--config-file=", "--cache-dir"]
+    words += [str(tmp_path), str(tmp_path / "misspelt.py")]
+    done = subprocess.run(words, cwd=ROOT, capture_output=True, text=True, check=False)
+    assert re.findall(r":(\d+): error: .* did you mean \"(\w+)\"", done.stdout) == [
+        ("3", "background"),
+        ("4", "sensornoise"),
+        ("5", "angle"),
+    ]
+    assert "Found 3 errors" in done.stdout
+
+
+def test_a_run_is_one_line_and_a_notebook_shows_it() -> None:
+    run = tuisim.simulate("print('A: 1')\nraise ValueError('<b>')\n")
+    assert re.fullmatch(r"<run \d+ of program: raised after 0\.\d\d s>", repr(run))
+    page = run._repr_html_()
+    assert page.startswith('<img src="data:image/png;base64,')
+    assert "ValueError: &lt;b&gt;" in page
+    assert "<td>A</td>" in page
+
+
+def test_descriptions_are_one_line_and_compared_by_their_values() -> None:
+    number: Any = np.int64(3)
+    world = tuisim.World(background="Loop", x=number)
+    assert repr(world) == "World(background='Loop', x=3)"
+    assert world == tuisim.World(background="Loop", x=3) != tuisim.World(background="Loop")
+    assert len({world, tuisim.World(background="Loop", x=3), tuisim.Robot()}) == 2
+
+
+@cases(
+    "describe, words",
+    {
+        "no such robot": (lambda: tuisim.Robot("Nope"), "no such robot"),
+        "wrong size": (lambda: tuisim.Robot(wheel_diameter_mm=-1), "wheel_diameter_mm"),
+        "unknown part": (lambda: tuisim.Robot(parts={"arm": {}}), "arm"),
+        "no file": (lambda: tuisim.World("nowhere.toml"), "no such file"),
+        "wrong value": (lambda: tuisim.World(drift="wide"), "no such value"),
+    },
+)
+def test_a_wrong_description_is_refused_where_it_is_written(describe: Any, words: str) -> None:
+    with pytest.raises(ConfigError, match=words):
+        describe()
+
+
+def test_a_robot_and_a_world_are_those_of_a_run() -> None:
+    robot = tuisim.Robot(wheel_diameter_mm=40, parts={"pen": {"width_mm": 5}})
+    world = tuisim.World(background="Loop", x=300, sensornoise=20)
+    spec = tuisim.simulate("print(1)\n", robot=robot, world=world, x=310).stored.spec
+    assert (spec.robot.wheel_diameter_mm, spec.robot.pen.width_mm) == (40, 5)
+    assert (spec.world.background, spec.world.start.x_mm) == ("Loop", 310)
+    assert spec.world.noise.light == 20
+
+
+def test_options_vary() -> None:
+    frame = tuisim.experiment(
+        "import sys\nprint('A:', len(sys.argv))\n",
+        seeds=[5, 3],
+        sensornoise=[0, 20],
+        robot=[tuisim.Robot(), "Small_Robot"],
+        parameters={"noise.motor": [0, 1]},
+        arguments=["x"],
+        x=100,
+        jobs=1,
+    )
+    assert len(frame) == 16
+    assert [*frame.columns[:5]] == ["run", "robot", "sensornoise", "noise.motor", "seed"]
+    assert frame["robot"].tolist() == ["Robot(base='Default_Robot')"] * 8 + ["Small_Robot"] * 8
+    assert frame["sensornoise"].tolist() == [0] * 4 + [20] * 4 + [0] * 4 + [20] * 4
+    assert frame["seed"].tolist() == [5, 3] * 8
+    assert set(frame["A_last"]) == {2}
+
+
+def test_the_stored_runs_are_a_table() -> None:
+    first, second = (tuisim.simulate("print(1)\n", seed=seed).stored for seed in (4, 5))
+    table = tuisim.runs().tail(2)
+    assert table["number"].tolist() == [first.number, second.number]
+    assert table["seed"].tolist() == [4, 5]
+
+
+GOALS = """
+background = "Empty_Map"
+[[goal]]
+name = "done"
+finish = true
+points = 2
+"""
+
+
+def test_a_class_is_marked(tmp_path: Path) -> None:
+    (tmp_path / "goals.toml").write_text(GOALS)
+    for name, text in (("Ada", "print(1)\n"), ("Bob", "1 / 0\n")):
+        (tmp_path / "class" / name).mkdir(parents=True)
+        (tmp_path / "class" / name / "main.py").write_text(text)
+    marks = tuisim.mark(
+        tmp_path / "goals.toml", tmp_path / "class", seeds=[1], jobs=1, isolate=False
+    )
+    assert marks[["student", "points"]].to_numpy().tolist() == [["Ada", 2], ["Bob", 0]]

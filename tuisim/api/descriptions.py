@@ -1,0 +1,124 @@
+"""Descriptions of worlds and robots: what a script has chosen, checked at once, with one line for a representation."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from tuisim.base.errors import ConfigError
+from tuisim.programs.program_file import find_program
+from tuisim.settings.options import APP, OF_THE_APP, OPTIONS, Option, Settings
+from tuisim.settings.overrides import settings_of_keys
+from tuisim.settings.robots import DEFAULT_ROBOT
+from tuisim.settings.worlds import load_world
+
+OPTIONS_BY_NAME: Mapping[str, Option] = {
+    option.name: option
+    for option in OPTIONS
+    if not option.panel
+    and option.group != APP
+    and option.path not in OF_THE_APP
+    and option.constant is not False
+}
+"""Every option that affects a run, by the name that it has in Python."""
+
+
+class Description:
+    """What a script has chosen: values by name. The same values make equal descriptions."""
+
+    __slots__ = ("_values",)
+
+    def __repr__(self) -> str:
+        values = ", ".join(f"{name}={value!r}" for name, value in self._values.items())
+        return f"{type(self).__name__}({values})"
+
+    def __eq__(self, other: object) -> bool:
+        return type(self) is type(other) and repr(self) == repr(other)
+
+    def __hash__(self) -> int:
+        return hash(repr(self))
+
+    def _take(self, arguments: Mapping[str, Any]) -> None:
+        """Take the arguments of `__init__` but for those that are None, and check them."""
+        self._values = {
+            name: plain(value)
+            for name, value in arguments.items()
+            if value is not None and value is not self
+        }
+        self.settings  # noqa: B018  # what is wrong is said where it is written
+
+    @property
+    def settings(self) -> Mapping[str, Any]:
+        """What is chosen as settings of a run, by path."""
+        raise AssertionError
+
+
+class WorldDescription(Description):
+    """A world: that of a file, and the options that take precedence over it."""
+
+    __slots__ = ()
+
+    @property
+    def settings(self) -> Mapping[str, Any]:
+        """What is chosen as settings of a run, by path; paths in the file are relative to its folder."""
+        options = {**self._values}
+        file = options.pop("file", None)
+        chosen = read_options(options)
+        return {**read_world(file, chosen.get("mats")), **chosen}
+
+
+class RobotDescription(Description):
+    """A robot: a named one, or that of a file, and the values that differ."""
+
+    __slots__ = ()
+
+    @property
+    def settings(self) -> Mapping[str, Any]:
+        """The setting `robot`."""
+        values = {**self._values}
+        base, parts = values.pop("base", DEFAULT_ROBOT), values.pop("parts", {})
+        keys = {f"robot.{key}": value for key, value in {**values, **parts}.items()}
+        return settings_of_keys({"robot": base, **keys}, Settings(), Path("robot"))
+
+
+def plain(value: Any) -> Any:
+    """Return a value of Python as a file would have it: paths as texts, numbers of NumPy as plain ones."""
+    if isinstance(value, os.PathLike):
+        return os.fspath(value)
+    return value.item() if hasattr(value, "item") else value
+
+
+def read_options(options: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the settings that options make, by path.
+
+    Args:
+        options: Values by the name of the option, such as `background` or `x`; None is ignored.
+
+    Raises:
+        ConfigError: a value is wrong.
+    """
+    settings: dict[str, Any] = {}
+    for name, value in options.items():
+        if isinstance(value, RobotDescription):
+            settings |= value.settings
+        elif value is not None:
+            option = OPTIONS_BY_NAME[name]
+            settings[option.path] = option.from_python(plain(value), name)
+    return settings
+
+
+def read_world(world: str | Path | Description | None, mats: str | None) -> Mapping[str, Any]:
+    """Return the settings of a world, by path; none without one.
+
+    Raises:
+        ConfigError: there is no such file, or it is wrong.
+    """
+    if world is None:
+        return {}
+    if isinstance(world, Description):
+        return world.settings
+    if not isinstance(world, str | Path):
+        raise ConfigError(f"must be a file or a World, got {world!r}", key="world")
+    return load_world(find_program(str(world)), mats).settings

@@ -1,0 +1,282 @@
+"""The calls of Python's front door, with each option as a typed keyword.
+
+`python -m tests.api.write_face` writes this module from the list of options.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias, TypeVar
+
+from tuisim.api.calls import run_program
+from tuisim.api.descriptions import RobotDescription, WorldDescription
+from tuisim.api.keywords import check_keywords
+from tuisim.api.run import Run
+from tuisim.api.study import run_experiment
+from tuisim.engine.runs.handle import DEFAULT_TIME_LIMIT_S
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+_Value = TypeVar("_Value")
+Vary: TypeAlias = _Value | Iterable[_Value] | None
+"""One value for all runs, or those that the runs take."""
+File: TypeAlias = str | Path
+"""The name of something built in, or a file."""
+
+
+class Robot(RobotDescription):
+    """A robot: a named one or that of a file, and the values that differ.
+
+    Args:
+        base: The name of a robot, or a file.
+        wheel_diameter_mm: Wheel diameter, in mm.
+        wheel_spacing_mm: Between the centres of the wheels, in mm.
+        wheel_width_mm: Wheel width, in mm.
+        back_mm: How far the body reaches behind the axle, as a negative y, in mm.
+        weight: Weightless, light, medium, heavy, or a number.
+        left_port: OutA … outD.
+        right_port: OutA … outD.
+        left_reversed: Mounted the other way round: positive speeds turn the wheel backwards.
+        right_reversed: Mounted the other way round: positive speeds turn the wheel backwards.
+        gear_ratio: Motor turns per wheel turn.
+        mass_kg: With brick and battery; only where motors are as on the brick, in kg.
+        battery_v: Without a load: it sets the highest speed, in V.
+        parts: Further keys of a robot file, such as `{"left_sensor.diameter_mm": 20}`; tables are written with dots.
+
+    Raises:
+        ConfigError: there is no such robot, or a value is wrong.
+    """
+
+    __slots__ = ()
+
+    @check_keywords
+    def __init__(
+        self,
+        base: File = "Default_Robot",
+        *,
+        wheel_diameter_mm: float | None = None,
+        wheel_spacing_mm: float | None = None,
+        wheel_width_mm: float | None = None,
+        back_mm: float | None = None,
+        weight: float | str | None = None,
+        left_port: Literal["outA", "outB", "outC", "outD", "none"] | None = None,
+        right_port: Literal["outA", "outB", "outC", "outD", "none"] | None = None,
+        left_reversed: bool | None = None,
+        right_reversed: bool | None = None,
+        gear_ratio: float | None = None,
+        mass_kg: float | None = None,
+        battery_v: float | None = None,
+        parts: Mapping[str, Any] | None = None,
+    ) -> None:
+        self._take(locals())
+
+
+class World(WorldDescription):
+    """A world: where a program runs. `simulate`, `experiment` and `Lab` take it.
+
+    Args:
+        file: A world file; the options take precedence over it.
+        background: A mat from `tuisim backgrounds`, or an image file.
+        mats: Folder of images that `-b` finds by name.
+        obstacles: A set from `tuisim obstacles`, or a file.
+        walls: Walls on the edges of the field.
+        solid: Obstacles and walls stop the robot.
+        background_fit: How an image is placed on the field.
+        pen_marks: The sensors see what the pen draws.
+        x: Start x in mm.
+        y: Start y in mm.
+        angle: Start heading, counter-clockwise from +x, in °.
+        sensornoise: Light noise, 0 to 128.
+        motornoise: Motor noise, 0 to 500, in °/s.
+        drift: Errors of wheels and sensors: none, typical, or values.
+        pencolor: Colour of the pen: a CSS name, or #rrggbb.
+        pen_width: Width of the trace, in mm.
+        pendown: Start with the pen down.
+
+    Raises:
+        ConfigError: the file or an option is wrong.
+    """
+
+    __slots__ = ()
+
+    @check_keywords
+    def __init__(
+        self,
+        file: File | None = None,
+        *,
+        background: File | None = None,
+        mats: File | None = None,
+        obstacles: File | None = None,
+        walls: bool | None = None,
+        solid: bool | None = None,
+        background_fit: Literal["stretch", "fit", "centre", "corner"] | None = None,
+        pen_marks: bool | None = None,
+        x: float | None = None,
+        y: float | None = None,
+        angle: float | None = None,
+        sensornoise: int | None = None,
+        motornoise: int | None = None,
+        drift: str | Mapping[str, Any] | None = None,
+        pencolor: str | None = None,
+        pen_width: float | None = None,
+        pendown: bool | None = None,
+    ) -> None:
+        self._take(locals())
+
+
+@check_keywords
+def simulate(
+    program: File,
+    *,
+    arguments: Sequence[str] = (),
+    answers: Sequence[str] = (),
+    timeout_s: float = DEFAULT_TIME_LIMIT_S,
+    world: File | World | None = None,
+    background: File | None = None,
+    mats: File | None = None,
+    robot: File | Robot | None = None,
+    obstacles: File | None = None,
+    walls: bool | None = None,
+    solid: bool | None = None,
+    background_fit: Literal["stretch", "fit", "centre", "corner"] | None = None,
+    pen_marks: bool | None = None,
+    x: float | None = None,
+    y: float | None = None,
+    angle: float | None = None,
+    sensornoise: int | None = None,
+    motornoise: int | None = None,
+    drift: str | Mapping[str, Any] | None = None,
+    pencolor: str | None = None,
+    pen_width: float | None = None,
+    pendown: bool | None = None,
+    profile: File | None = None,
+    seed: int | None = None,
+    press: Sequence[str] | None = None,
+    preload: Literal["none", "imports", "preloaded"] | None = None,
+) -> Run:
+    """Run a program as fast as possible, block until it ends, and return the run, which is stored.
+
+    An exception in the program is not raised here: see `Run.state` and `Run.error`.
+
+    Args:
+        program: A file, the name of an example, or source text of several lines.
+        arguments: The program's `sys.argv[1:]`.
+        answers: The return values of successive `input()` calls.
+        timeout_s: Limit in simulated seconds.
+        world: A world, or its file; it takes precedence over the program's first line, and options over it.
+        background: A mat from `tuisim backgrounds`, or an image file.
+        mats: Folder of images that `-b` finds by name.
+        robot: A robot from `tuisim robots`, or a file.
+        obstacles: A set from `tuisim obstacles`, or a file.
+        walls: Walls on the edges of the field.
+        solid: Obstacles and walls stop the robot.
+        background_fit: How an image is placed on the field.
+        pen_marks: The sensors see what the pen draws.
+        x: Start x in mm.
+        y: Start y in mm.
+        angle: Start heading, counter-clockwise from +x, in °.
+        sensornoise: Light noise, 0 to 128.
+        motornoise: Motor noise, 0 to 500, in °/s.
+        drift: Errors of wheels and sensors: none, typical, or values.
+        pencolor: Colour of the pen: a CSS name, or #rrggbb.
+        pen_width: Width of the trace, in mm.
+        pendown: Start with the pen down.
+        profile: A profile from `tuisim profiles`, or a file.
+        seed: Seed for noise and `random`.
+        press: Press by hand a button, a touch sensor or the remote: enter@1.0-1.5, in1@2, remote.left_up@1-3; may be
+            repeated.
+        preload: Names predefined for the program.
+
+    Raises:
+        ConfigError: the program, its first line, the world or an option is wrong; nothing was run.
+        KeyboardInterrupt: ctrl-C; the run has been stopped, and its log is stored.
+    """
+    return run_program(**locals())
+
+
+@check_keywords
+def experiment(
+    program: File | Sequence[File],
+    *,
+    seeds: Iterable[int] = (),
+    parameters: Mapping[str, Any] | None = None,
+    expressions: Mapping[str, str] | None = None,
+    goals: File | None = None,
+    keep: Literal["all", "failed", "none"] = "none",
+    jobs: int = 0,
+    scheduler: str = "",
+    arguments: Sequence[str] = (),
+    answers: Sequence[str] = (),
+    timeout_s: float = DEFAULT_TIME_LIMIT_S,
+    world: File | World | None = None,
+    background: Vary[File] = None,
+    mats: Vary[File] = None,
+    robot: Vary[File | Robot] = None,
+    obstacles: Vary[File] = None,
+    walls: Vary[bool] = None,
+    solid: Vary[bool] = None,
+    background_fit: Vary[Literal["stretch", "fit", "centre", "corner"]] = None,
+    pen_marks: Vary[bool] = None,
+    x: Vary[float] = None,
+    y: Vary[float] = None,
+    angle: Vary[float] = None,
+    sensornoise: Vary[int] = None,
+    motornoise: Vary[int] = None,
+    drift: Vary[str | Mapping[str, Any]] = None,
+    pencolor: Vary[str] = None,
+    pen_width: Vary[float] = None,
+    pendown: Vary[bool] = None,
+    profile: Vary[File] = None,
+    press: Sequence[str] | None = None,
+    preload: Vary[Literal["none", "imports", "preloaded"]] = None,
+) -> pd.DataFrame:
+    """Run a program with all combinations of what varies, block until they end, and return a table of the runs.
+
+    An option takes one value for all runs, or several, such as `sensornoise=[0, 20]`. An exception in a program is not
+    raised here: see the columns `end` and `summary`.
+
+    Args:
+        program: As for `simulate`; or several.
+        seeds: The seeds, such as `range(200)`; without any, 0.
+        parameters: Values by key of a world or robot file: `{"robot.wheel_diameter_mm": [54, 56]}`; a text is read as
+            after `--set`, such as `"latin(54, 58, 20)"`.
+        expressions: Further columns by name, such as `{"error_mm": "hypot(x_mm - 750, y_mm - 850)"}`.
+        goals: A goals file; its world is used without a `world`, where no option says otherwise.
+        keep: Which runs to store.
+        jobs: Number of worker processes; 0 is one for each processor. The results do not depend on it.
+        scheduler: Address of a Dask scheduler whose workers run the programs, such as `tcp://host:8786`.
+        arguments, answers, timeout_s, world: As for `simulate`.
+        background: A mat from `tuisim backgrounds`, or an image file.
+        mats: Folder of images that `-b` finds by name.
+        robot: A robot from `tuisim robots`, or a file.
+        obstacles: A set from `tuisim obstacles`, or a file.
+        walls: Walls on the edges of the field.
+        solid: Obstacles and walls stop the robot.
+        background_fit: How an image is placed on the field.
+        pen_marks: The sensors see what the pen draws.
+        x: Start x in mm.
+        y: Start y in mm.
+        angle: Start heading, counter-clockwise from +x, in °.
+        sensornoise: Light noise, 0 to 128.
+        motornoise: Motor noise, 0 to 500, in °/s.
+        drift: Errors of wheels and sensors: none, typical, or values.
+        pencolor: Colour of the pen: a CSS name, or #rrggbb.
+        pen_width: Width of the trace, in mm.
+        pendown: Start with the pen down.
+        profile: A profile from `tuisim profiles`, or a file.
+        press: Press by hand a button, a touch sensor or the remote: enter@1.0-1.5, in1@2, remote.left_up@1-3; may be
+            repeated.
+        preload: Names predefined for the program.
+
+    Returns:
+        One row for each run: the seed varies fastest, before it `parameters`, options and programs. Columns as in
+        `tuisim batch`, and one for each option that varies.
+
+    Raises:
+        ConfigError: a program, an option, a parameter, an expression or a goal is wrong; nothing was run.
+        HostError: the scheduler is lost.
+        KeyboardInterrupt: ctrl-C; the runs have been stopped.
+    """
+    return run_experiment(**locals())

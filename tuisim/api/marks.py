@@ -1,0 +1,79 @@
+"""What `mark` does: the programs of a class against the goals of a task."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from importlib.metadata import version
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tuisim.api.keywords import check_keywords
+from tuisim.base.errors import HostError
+from tuisim.batch.parameters import checked_seeds
+from tuisim.engine.runs.child.isolation import check_isolation
+from tuisim.tasks.goals.files import load_goals
+from tuisim.tasks.marks.marking import MarkRequest, open_marking
+from tuisim.tasks.marks.sheet import frame_of
+from tuisim.tasks.task import TIME_LIMIT_S
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+@check_keywords
+def mark(
+    goals: str | Path,
+    folders: str | Path | Sequence[str | Path],
+    *,
+    seeds: Iterable[int] = range(20),
+    timeout_s: float = TIME_LIMIT_S,
+    jobs: int = 0,
+    isolate: bool = True,
+    resume: bool = False,
+) -> pd.DataFrame:
+    """Mark the programs of a class, block until all runs are over, and return the marks.
+
+    What a program does wrong is not raised here: it is in its row. The command `tuisim mark` also writes pages,
+    gradebooks and feedback.
+
+    Args:
+        goals: The file with the goals of the task and its world.
+        folders: Folders with a file `NAME.py` or a folder for each student.
+        seeds: Each program runs with each seed.
+        timeout_s: Limit of a run in simulated seconds.
+        jobs: Number of worker processes; 0 is one for each processor.
+        isolate: Whether each program runs without network and without your files, through bubblewrap.
+        resume: Whether an interrupted marking goes on.
+
+    Returns:
+        One row for each student, with the points of each goal; columns as in `tuisim mark --export marks.csv`.
+
+    Raises:
+        ConfigError: goals, folders or seeds are wrong, or bubblewrap does not start; nothing was run.
+        HostError: this machine could not make a run.
+        LogError: a recording cannot be written.
+        KeyboardInterrupt: ctrl-C; the runs have been stopped.
+    """
+    task = load_goals(goals)
+    if isolate:
+        check_isolation()
+    named = [folders] if isinstance(folders, str | Path) else folders
+    request = MarkRequest(
+        task=task,
+        folders=[*map(str, named)],
+        seeds=checked_seeds([*seeds], "seeds"),
+        version=version("tuisim"),
+        time_limit_s=timeout_s,
+        jobs=jobs,
+        resumes=resume,
+    )
+    with open_marking(request) as marking:
+        marking.read_programs()
+        marking.run(lambda *_: None, isolate=isolate)
+        if marking.missing:
+            name, outcome = marking.missing[0]
+            message = (
+                f"this machine could not run {name} with seed {outcome.seed}: {outcome.failure}"
+            )
+            raise HostError(message, "resume=True runs what is missing")
+        return frame_of(marking.build_sheet())

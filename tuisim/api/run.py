@@ -1,0 +1,136 @@
+"""A run as scripts and notebooks see it."""
+
+from __future__ import annotations
+
+from base64 import b64encode
+from html import escape
+from io import BytesIO
+from typing import TYPE_CHECKING
+
+from tuisim.base.data_class import dataclass
+from tuisim.engine.core.geometry import Pose
+from tuisim.engine.runs.records import Stream
+from tuisim.engine.runs.run_folder import StoredRun
+from tuisim.engine.runs.store import load_run as load_stored_run
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    import pandas as pd
+    from PIL.Image import Image
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """A run that is over: how it ended, what it recorded, and its picture.
+
+    A notebook shows it as its picture, how it ended, and its samples.
+    """
+
+    stored: StoredRun
+    """The run in the run store, with its specification and its recordings."""
+    note: str = ""
+    """What the source of the program has decided about robot and profile, in words; empty for nothing."""
+
+    def __repr__(self) -> str:
+        number = f" {self.stored.number}" if self.stored.number else ""
+        return (
+            f"<run{number} of {self.stored.program.name}: {self.state} after {self.time_s:.2f} s>"
+        )
+
+    def _repr_html_(self) -> str:
+        """Return what a notebook shows."""
+        png = BytesIO()
+        self.picture().save(png, "PNG")
+        picture = f'<img src="data:image/png;base64,{b64encode(png.getvalue()).decode()}">'
+        error = f"<pre>{escape(self.error)}</pre>" if self.error else ""
+        samples = self.samples
+        table = samples.to_html(max_rows=10, index=False) if len(samples) else ""
+        return f"{picture}<p>{escape(repr(self))}</p>{error}{table}"
+
+    @property
+    def state(self) -> str:
+        """How it ended: `finished`, `raised`, `stopped`, `time_limit` …"""
+        return self.stored.state.value
+
+    @property
+    def error(self) -> str:
+        """The program's own traceback; empty if there is none."""
+        return self.stored.end.error if self.stored.end else ""
+
+    @property
+    def time_s(self) -> float:
+        """Its duration in simulated seconds."""
+        return self.stored.time_s
+
+    @property
+    def pose(self) -> Pose:
+        """Where the robot is at the end: `x_mm`, `y_mm`, and `heading_deg`, counter-clockwise from +x."""
+        last = self.stored.telemetry.last()
+        return last.pose if last else self.stored.spec.world.start
+
+    @property
+    def output(self) -> str:
+        """What the program has printed on stdout."""
+        return "".join(
+            row.text + "\n" for row in self.stored.output.rows() if row.stream == Stream.STDOUT
+        )
+
+    @property
+    def samples(self) -> pd.DataFrame:
+        """One row for each printed `NAME: number`.
+
+        Columns: `index` (timedelta since the first sample), `variable`, `value`, `time` (s, simulated), `run`, `x_mm`,
+        `y_mm`, `heading_deg`, `line`.
+        """
+        from tuisim.engine.runs.frames import samples_frame
+
+        return samples_frame([self.stored])
+
+    @property
+    def telemetry(self) -> pd.DataFrame:
+        """One row for each tick: `time` in s, lengths in mm, angles in degrees, what each sensor and motor had.
+
+        Raises:
+            LogError: the recording is damaged, or the mat no longer exists.
+        """
+        from tuisim.engine.runs.frames import telemetry_frame
+
+        return telemetry_frame(self.stored)
+
+    def picture(self) -> Image:
+        """Return the world at the end of the run, with the pen's trace, as a Pillow image."""
+        from tuisim.pictures.scene.pictures import world_at_end
+
+        return world_at_end(self.stored)
+
+
+def load_run(name: int | str | Path) -> Run:
+    """Return a stored run.
+
+    Args:
+        name: Its number, its id, its folder, or `last`.
+
+    Raises:
+        LogError: there is no such run, or it is damaged.
+    """
+    return Run(load_stored_run(name))
+
+
+def runs() -> pd.DataFrame:
+    """Return the stored runs, one row for each, from the oldest on.
+
+    Columns: `number`, `id`, `created` (UTC), `program`, `background`, `profile`, `seed`, `end`, `ticks`, `time_s`,
+    `samples`, `summary`, `tags`. Blocks until the store has been looked through.
+
+    Raises:
+        LogError: the store cannot be read.
+    """
+    from dataclasses import asdict
+
+    import pandas as pd
+
+    from tuisim.engine.runs.catalogue import RunInfo
+    from tuisim.engine.runs.store import RunStore
+
+    return pd.DataFrame(map(asdict, RunStore().runs()), columns=[*RunInfo.__dataclass_fields__])
