@@ -24,7 +24,7 @@ HEAD = '''
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias, TypeVar
 
@@ -43,6 +43,7 @@ Vary: TypeAlias = _Value | Iterable[_Value] | None
 """One value for all runs, or those that the runs take."""
 File: TypeAlias = str | Path
 """The name of something built in, or a file."""
+Program: TypeAlias = str | Path | Callable[[], object]
 '''
 
 WORLD_CLASS = '''
@@ -87,7 +88,7 @@ class Robot(RobotDescription):
 SIMULATE = '''
 @check_keywords
 def simulate(
-    program: File,
+    program: Program,
     *,
     arguments: Sequence[str] = (),
     answers: Sequence[str] = (),
@@ -100,7 +101,8 @@ def simulate(
     An exception in the program is not raised here: see `Run.state` and `Run.error`.
 
     Args:
-        program: A file, the name of an example, or source text of several lines.
+        program: A file, the name of an example, source text of several lines, or a function: its source is the
+            program, and what it uses of its file goes along.
         arguments: The program's `sys.argv[1:]`.
         answers: The return values of successive `input()` calls.
         timeout_s: Limit in simulated seconds.
@@ -117,7 +119,7 @@ def simulate(
 EXPERIMENT = '''
 @check_keywords
 def experiment(
-    program: File | Sequence[File],
+    program: Program | Sequence[Program],
     *,
     seeds: Iterable[int] = (),
     parameters: Mapping[str, Any] | None = None,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -14,20 +14,23 @@ from tuisim.base.source import Program
 from tuisim.engine.runs.handle import RunOptions, start_run
 from tuisim.engine.runs.presses import press_actions
 from tuisim.engine.runs.store import RunStore
+from tuisim.programs.function import read_function
 from tuisim.programs.plugged_words import describe_plugged
 from tuisim.programs.program_file import ProgramSource, find_program, program_of_text, read_program
 from tuisim.programs.program_settings import ProgramSettings, program_settings
 from tuisim.settings.build import build_run_spec
 
 
-def read_source(program: str | Path) -> ProgramSource:
-    """Return a program by its file, the name of an example, or its text of several lines.
+def read_source(program: str | Path | Callable[[], object]) -> ProgramSource:
+    """Return a program by its file, the name of an example, its text of several lines, or a function.
 
     Raises:
         ConfigError: there is no such program, or its first line is wrong.
     """
     if isinstance(program, str) and "\n" in program:
         return program_of_text(program, None, "program")
+    if not isinstance(program, str | Path):
+        return read_function(program)
     return read_program(find_program(str(program)))
 
 
@@ -51,7 +54,7 @@ def check_timeout(timeout_s: float) -> None:
 
 
 def run_program(
-    program: str | Path,
+    program: str | Path | Callable[[], object],
     *,
     arguments: Sequence[str],
     answers: Sequence[str],

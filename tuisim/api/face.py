@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias, TypeVar
 
@@ -24,6 +24,7 @@ Vary: TypeAlias = _Value | Iterable[_Value] | None
 """One value for all runs, or those that the runs take."""
 File: TypeAlias = str | Path
 """The name of something built in, or a file."""
+Program: TypeAlias = str | Path | Callable[[], object]
 
 
 class Robot(RobotDescription):
@@ -128,7 +129,7 @@ class World(WorldDescription):
 
 @check_keywords
 def simulate(
-    program: File,
+    program: Program,
     *,
     arguments: Sequence[str] = (),
     answers: Sequence[str] = (),
@@ -161,7 +162,8 @@ def simulate(
     An exception in the program is not raised here: see `Run.state` and `Run.error`.
 
     Args:
-        program: A file, the name of an example, or source text of several lines.
+        program: A file, the name of an example, source text of several lines, or a function: its source is the
+            program, and what it uses of its file goes along.
         arguments: The program's `sys.argv[1:]`.
         answers: The return values of successive `input()` calls.
         timeout_s: Limit in simulated seconds.
@@ -198,7 +200,7 @@ def simulate(
 
 @check_keywords
 def experiment(
-    program: File | Sequence[File],
+    program: Program | Sequence[Program],
     *,
     seeds: Iterable[int] = (),
     parameters: Mapping[str, Any] | None = None,

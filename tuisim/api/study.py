@@ -48,7 +48,7 @@ def run_experiment(
     """Run an experiment; arguments as of `tuisim.experiment`."""
     check_timeout(timeout_s)
     _check_choices(keep, jobs)
-    named = [program] if isinstance(program, str | Path) else program
+    named = program if isinstance(program, list | tuple) else [program]
     programs = [read_source(each) for each in named]
     if not programs:
         raise ConfigError("no program is named", key="program")

@@ -4,6 +4,7 @@ __all__ = [
     "attributes",
     "code_rows",
     "facts",
+    "function",
     "line_values",
     "magic_mat",
     "mistakes",
