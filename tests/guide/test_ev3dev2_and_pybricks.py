@@ -37,7 +37,7 @@ from pybricks.tools import StopWatch, wait
 
 def rows() -> list[tuple[str, str]]:
     """The calls in each row of the table: of ev3dev2, of Pybricks."""
-    table = load_pages()["ev3dev2-and-pybricks"].source.partition("## What to mind")[0]
+    table = load_pages()["ev3dev2-and-pybricks"].source.partition("## What differs")[0]
     found = [re.findall(r"`([^`]+)`", line) for line in table.splitlines() if line.startswith("| ")]
     return [(cells[0], cells[1]) for cells in found if len(cells) == 2]
 
