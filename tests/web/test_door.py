@@ -63,8 +63,8 @@ async def test_that_there_is_no_room_is_told_once_a_minute() -> None:
 def test_the_guide_names_what_visitors_may_use() -> None:
     page = (ROOT / "tuisim" / "guide" / "pages" / "security.md").read_text(encoding="utf-8")
     for text in (
-        f"closed after {door.STRANGER_S:g} s",
-        f"more than {door.MAX_STRANGERS};",
-        f"may have {uploads.MAX_FILE_BYTES >> 20} MB, and {uploads.MAX_BYTES >> 30} GB together",
+        f"the address after {door.STRANGER_S:g} s",
+        f"more than {door.MAX_STRANGERS}.",
+        f"may have {uploads.MAX_FILE_BYTES >> 20} MB, all together {uploads.MAX_BYTES >> 30} GB",
     ):
         assert text in " ".join(page.split())
