@@ -15,6 +15,7 @@ ROOMS = (
     "__main__",
     "cli",
     "commands",
+    "env",
     "notebook | app | api",
     "web",
     "guide",
@@ -64,7 +65,7 @@ STARTS_APP = (
     "commands.system.doctor -> tuisim.terminal.*",
 )
 """The commands that start the app, and the one that asks the terminal what the app would ask."""
-OPEN = ("__main__", "api", "base", "cli", "commands", "engine", "notebook")
+OPEN = ("__main__", "api", "base", "cli", "commands", "engine", "env", "notebook")
 """Rooms without a door: others may import any of their modules."""
 
 

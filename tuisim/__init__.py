@@ -12,12 +12,14 @@ if TYPE_CHECKING:
     from IPython.core.interactiveshell import InteractiveShell
 
     from tuisim.api.face import Robot, World, experiment, simulate
+    from tuisim.api.lab import Lab
     from tuisim.api.marks import mark
     from tuisim.api.run import load_run, runs
     from tuisim.logs.frames import read_log
 
 __version__ = "1.0.0"
 __all__ = [
+    "Lab",
     "Robot",
     "World",
     "__version__",
@@ -31,6 +33,7 @@ __all__ = [
 ]
 
 _HOMES = {
+    "Lab": "tuisim.api.lab",
     "Robot": "tuisim.api.face",
     "World": "tuisim.api.face",
     "experiment": "tuisim.api.face",

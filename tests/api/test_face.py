@@ -257,7 +257,17 @@ def test_the_face_is_as_the_list_of_options_writes_it() -> None:
 
 def test_nothing_else_is_public() -> None:
     assert set(dir(tuisim)) == {
-        *("Robot", "World", "experiment", "load_run", "mark", "read_log", "runs", "simulate"),
+        *(
+            "Lab",
+            "Robot",
+            "World",
+            "experiment",
+            "load_run",
+            "mark",
+            "read_log",
+            "runs",
+            "simulate",
+        ),
         *("__version__", "load_ipython_extension"),
     }
 

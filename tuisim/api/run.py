@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     import pandas as pd
     from PIL.Image import Image
 
+    from tuisim.engine.core.commands.calls import SimulationCommand
+
 
 @dataclass(frozen=True, slots=True)
 class Run:
@@ -97,6 +99,17 @@ class Run:
         from tuisim.engine.runs.frames import telemetry_frame
 
         return telemetry_frame(self.stored)
+
+    @property
+    def commands(self) -> tuple[SimulationCommand, ...]:
+        """What the program asked of motors, gyro and pen: `(time_ns, part, call, values)`, for `Lab.step`.
+
+        Raises:
+            LogError: they are not recorded, or damaged.
+        """
+        from tuisim.engine.runs.command_records import read_commands
+
+        return tuple(read_commands(self.stored.folder).unpack())
 
     def picture(self) -> Image:
         """Return the world at the end of the run, with the pen's trace, as a Pillow image."""

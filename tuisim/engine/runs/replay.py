@@ -120,10 +120,7 @@ def replay(
         if fault:
             time_s = command.time_ns / NS_PER_S
             raise LogError(f"at {time_s:.2f} s there is a command that {fault}")
-        count = len(CALLS[command.call].ranges)
-        # Whatever was raised in the program, here it ends the command, too.
-        with suppress(Exception):
-            obey(sim, command.time_ns, command.part, command.call, *command.values[:count])
+        give_command(sim, command)
     advance(last_tick)
     return ReplayedTicks(
         ticks.buffer[HEADER_BYTES : HEADER_BYTES + TICK_RECORD.size * ticks.count],
@@ -133,6 +130,14 @@ def replay(
         motors.tick_bytes,
         sim.spec.robot,
     )
+
+
+def give_command(sim: Simulation, command: SimulationCommand) -> None:
+    """Let a simulation obey a recorded command."""
+    count = len(CALLS[command.call].ranges)
+    # Whatever was raised in the program, here it ends the command, too.
+    with suppress(Exception):
+        obey(sim, command.time_ns, command.part, command.call, *command.values[:count])
 
 
 def _build_advance(sim: Simulation, actions: Iterable[UserAction]) -> Callable[[int], None]:

@@ -1,0 +1,151 @@
+"""A simulation that is moved on step by step."""
+
+from __future__ import annotations
+
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+import pytest
+
+import tuisim
+from tests.cases import cases
+from tuisim.api.run import Run
+from tuisim.base.errors import ConfigError
+from tuisim.engine.core.commands.calls import Call
+from tuisim.engine.core.commands.table import obey
+from tuisim.engine.core.simulation import simulation_of
+from tuisim.engine.core.spec import RunSpec
+from tuisim.engine.core.tick_record import NoRecording
+
+PROGRAM = """\
+for turn in range(3):
+    tank_drive.on_for_rotations(SpeedPercent(40), SpeedPercent(25), 1.3)
+    tank_drive.on(20, -20)
+    while gyro.angle < 30 * (turn + 1) and get_clock() < 20:
+        print("Colour:", colorLeft.reflected_light_intensity_pc)
+tank_drive.off()
+"""
+COLUMNS = ("x_mm", "y_mm", "heading_deg", "left_red", "ultrasonic_mm", "gyro_rate_dps")
+ROUGH = tuisim.World(background="Loop", sensornoise=20, motornoise=40, drift="typical")
+SMOOTH = tuisim.World(background="Loop")
+
+
+def go_through(run: Run, period_s: float) -> tuple[list[int], list[list[float]]]:
+    """Feed a lab the commands of a run, each in the step where it lies; return ticks, and columns after each step."""
+    lab = tuisim.Lab.of_run(run, COLUMNS)
+    hz, last = lab.spec.profile.tick_hz, len(run.telemetry) - 1
+    ticks = round(period_s * hz) or 1
+    commands = [(command.time_ns * hz // 1_000_000_000, command) for command in run.commands]
+    ends, rows = [0], [[*lab.read().values()]]
+    for end in range(ticks, last + 1, ticks):
+        now = [command for tick, command in commands if end - ticks <= tick < end]
+        rows.append([*lab.step(period_s=period_s, commands=now).values()])
+        ends.append(end)
+    return ends, rows
+
+
+@pytest.mark.parametrize("period_s", [0.0, 0.13])
+@pytest.mark.parametrize("world", [ROUGH, SMOOTH], ids=["rough", "smooth"])
+@pytest.mark.parametrize("profile", ["robolab", "ev3", "nbev3devsim"])
+def test_recorded_commands_give_the_same_poses_to_the_bit(
+    profile: str, world: tuisim.World, period_s: float
+) -> None:
+    run = tuisim.simulate(PROGRAM, profile=profile, world=world, seed=5, timeout_s=30)
+    assert run.state == "finished"
+    ends, rows = go_through(run, period_s)
+    expected = run.telemetry[[*COLUMNS]].to_numpy()[ends]
+    assert np.array_equal(rows, expected)
+    assert len(np.unique(expected, axis=0)) > 20
+
+
+@pytest.mark.parametrize(
+    "profile", ["robolab", "ev3", "nbev3devsim", "lego-micropython", "pybricks4"]
+)
+def test_wheels_turn_as_asked(profile: str) -> None:
+    columns = ("left_speed_dps", "right_speed_dps", "x_mm")
+    world, robot = tuisim.World(x=300, angle=0), tuisim.Robot(left_reversed=True)
+    lab = tuisim.Lab(world, robot, profile=profile, columns=columns)
+    start_mm = lab.read()["x_mm"]
+    values = lab.step(300, 300, period_s=2)
+    # A motor that is mounted the other way round turns the other way.
+    assert values["left_speed_dps"] == pytest.approx(-300, abs=15)
+    assert values["right_speed_dps"] == pytest.approx(300, abs=15)
+    assert values["x_mm"] > start_mm + 100
+    assert lab.step(0, 0, period_s=2)["right_speed_dps"] == pytest.approx(0, abs=1)
+    assert lab.time_s == pytest.approx(4)
+
+
+def test_no_motor_is_faster_than_it_can() -> None:
+    lab = tuisim.Lab(columns=["left_speed_dps"])
+    assert lab.step(1e6, 0, period_s=3)["left_speed_dps"] == pytest.approx(lab.max_speed_dps)
+
+
+def test_a_seed_decides() -> None:
+    def drive(lab: tuisim.Lab) -> list[float]:
+        return [*lab.step(300, 200, period_s=1).values()]
+
+    lab = tuisim.Lab(ROUGH, seed=3)
+    first = drive(lab)
+    lab.reset(4)
+    other = drive(lab)
+    lab.reset(3)
+    assert first == drive(lab) != other
+    assert first == drive(tuisim.Lab(ROUGH, seed=3))
+    lab.reset()
+    assert (lab.spec.seed, lab.time_s) == (3, 0)
+
+
+def test_a_lab_is_one_line() -> None:
+    lab = tuisim.Lab(SMOOTH)
+    lab.step(period_s=0.5)
+    assert repr(lab) == "<lab with Default_Robot on Loop after 0.50 s>"
+    assert (lab.pose.x_mm, lab.pose.y_mm) == (lab.read()["x_mm"], lab.read()["y_mm"])
+
+
+@cases(
+    "given, words",
+    {
+        "column": ({"columns": ["left_redd"]}, "this robot has no 'left_redd'"),
+        "keyword": ({"sed": 3}, "no such argument 'sed'"),
+        "robot": ({"robot": "Nope"}, "no such robot"),
+        "trace": ({"world": tuisim.World(pen_marks=True)}, "pen_marks"),
+    },
+)
+def test_what_is_wrong_is_refused(given: dict[str, Any], words: str) -> None:
+    with pytest.raises(ConfigError, match=words):
+        tuisim.Lab(**given)
+
+
+STEPS = 3000
+
+
+def _time_bare_loop(spec: RunSpec) -> float:
+    sim = simulation_of(spec, NoRecording())
+    rest = (0.0,) * (6 if spec.profile.name == "ev3" else 0)
+    call = Call.RUN_FOREVER if rest else Call.RUN
+    start_s = perf_counter()
+    for number in range(STEPS):
+        now_ns = sim.due_ns(sim.tick)
+        obey(sim, now_ns, 0, call, 300.0 + number % 2, *rest)
+        obey(sim, now_ns, 1, call, 200.0 + number % 2, *rest)
+        sim.advance(1)
+    return perf_counter() - start_s
+
+
+def _time_steps(lab: tuisim.Lab) -> float:
+    lab.reset()
+    start_s = perf_counter()
+    for number in range(STEPS):
+        lab.step(300.0 + number % 2, 200.0 + number % 2)
+    return perf_counter() - start_s
+
+
+@pytest.mark.bench
+@pytest.mark.parametrize("motornoise", [0, 40])
+@pytest.mark.parametrize("profile", ["robolab", "ev3"])
+def test_a_step_costs_at_most_twice_the_bare_loop(profile: str, motornoise: int) -> None:
+    lab = tuisim.Lab(tuisim.World(background="Loop", motornoise=motornoise), profile=profile)
+    pairs = [(_time_steps(lab), _time_bare_loop(lab.spec)) for _ in range(9)]
+    steps, bare = map(min, zip(*pairs, strict=True))
+    assert steps / bare < 2

@@ -1,0 +1,73 @@
+"""Environments of Gymnasium."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import gymnasium
+import numpy as np
+import pytest
+from gymnasium.utils.env_checker import check_env
+
+import tuisim
+from tuisim.env import LabEnv
+
+TASKS = ("LineFollower", "Bands", "Obstacles")
+
+
+@pytest.mark.parametrize("task", TASKS)
+def test_gymnasium_finds_nothing_wrong(task: str) -> None:
+    check_env(gymnasium.make(f"tuisim.env:tuisim/{task}-v0").unwrapped)
+
+
+@pytest.mark.parametrize("background", ["Lollipop", "Square"])
+@pytest.mark.parametrize("task", TASKS)
+def test_a_task_runs_on_any_mat(task: str, background: str) -> None:
+    env = gymnasium.make(f"tuisim/{task}-v0", background=background, profile="ev3")
+    env.reset(seed=1)
+    observation, reward, *_ = env.step(np.ones(2, np.float32))
+    lab = env.get_wrapper_attr("lab")
+    assert observation in env.observation_space
+    assert isinstance(reward, float)
+    assert lab.spec.world.background == background
+
+
+def _play(env: Any, seed: int) -> bytes:
+    observations = [env.reset(seed=seed)[0]]
+    for action in ((1, 1), (0.5, -0.5), (-1, 1)):
+        observations.append(env.step(np.array(action, np.float32))[0])
+    return b"".join(one.tobytes() for one in observations)
+
+
+def _is_repeated(seeds: int) -> bool:
+    world = tuisim.World(background="Loop", sensornoise=20, motornoise=20)
+    env = gymnasium.make("tuisim/LineFollower-v0", world=world)
+    first, second = ([_play(env, seed) for seed in range(seeds)] for _ in range(2))
+    return first == second and len(set(first)) > 1
+
+
+def test_the_same_seed_gives_the_same_episode() -> None:
+    assert _is_repeated(30)
+
+
+@pytest.mark.slow
+def test_a_thousand_seeds_give_the_same_episodes() -> None:
+    assert _is_repeated(1000)
+
+
+def test_a_function_rewards_and_ends() -> None:
+    env = LabEnv(
+        ("left_red_pc",),
+        lambda before, after: after["x_mm"] - before["x_mm"],
+        lambda values: values["x_mm"] > 200,
+        world=tuisim.World(background="Grey_bands", x=100, angle=0),
+    )
+    _, before = env.reset(seed=0)
+    total, is_over = 0.0, False
+    while not is_over:
+        observation, reward, is_over, is_cut, values = env.step(np.array([0.2, 0.2], np.float32))
+        total += reward
+        assert not is_cut
+    assert total == pytest.approx(values["x_mm"] - before["x_mm"])
+    assert values["x_mm"] > 200
+    assert observation.tolist() == pytest.approx([values["left_red_pc"]])

@@ -1,0 +1,188 @@
+"""The simulation of a run, moved on step by step."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
+from math import nan
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tuisim.api.descriptions import Description, read_options, read_world
+from tuisim.api.keywords import check_keywords
+from tuisim.base.errors import ConfigError
+from tuisim.engine.core.commands.calls import Call, SimulationCommand
+from tuisim.engine.core.commands.table import DRIVEN_LAWS, obey
+from tuisim.engine.core.motors import top_speed_dps
+from tuisim.engine.core.profile import NS_PER_S, MotorLaw
+from tuisim.engine.core.sensors import named_column, reader_of
+from tuisim.engine.core.servo.control import Ending
+from tuisim.engine.core.servo.motor import ServoMotor
+from tuisim.engine.core.simulation import Simulation, simulation_of
+from tuisim.engine.core.tick_record import NoRecording
+from tuisim.engine.mat_cache import open_field
+from tuisim.engine.runs.replay import give_command
+from tuisim.engine.runs.run_folder import field_files
+from tuisim.settings.build import build_run_spec
+from tuisim.settings.options import settings_of
+
+if TYPE_CHECKING:
+    from tuisim.api.run import Run
+    from tuisim.engine.core.geometry import Pose
+    from tuisim.engine.core.spec import RunSpec
+
+MOTION = ("x_mm", "y_mm", "heading_deg")
+
+
+class Lab:
+    """A robot in its world, without a program: a script moves it on, tick by tick.
+
+    Physics, noise and drift are those of a run with the same seed, to the last bit: `Lab.of_run` with the commands of
+    the run goes through the same poses.
+
+    Args:
+        world: A world, or its file; by default an empty mat.
+        robot: A robot, its name, or its file.
+        seed: Seed of noise and drift.
+        profile: A profile from `tuisim profiles`, or a file.
+        columns: What `step` returns: names of columns as in `Run.telemetry`, such as `left_red_pc`.
+
+    Raises:
+        ConfigError: a description or a column is wrong.
+    """
+
+    @check_keywords
+    def __init__(
+        self,
+        world: str | Path | Description | None = None,
+        robot: str | Path | Description | None = None,
+        seed: int = 0,
+        *,
+        profile: str | Path = "robolab",
+        columns: Sequence[str] = MOTION,
+    ) -> None:
+        chosen = read_options({"robot": robot, "seed": seed, "profile": profile})
+        self._open(build_run_spec(settings_of(read_world(world, None), chosen)), columns)
+
+    @classmethod
+    def of_run(cls, run: Run, columns: Sequence[str] = MOTION) -> Lab:
+        """Return a lab as a run began; arguments as of `Lab`."""
+        lab = cls.__new__(cls)
+        lab._open(run.stored.first_spec, columns)
+        return lab
+
+    def _open(self, spec: RunSpec, columns: Sequence[str]) -> None:
+        if spec.world.pen_marks:
+            raise ConfigError("a Lab's sensors do not see the pen's trace", key="pen_marks")
+        self.columns = tuple(named_column(name, spec) for name in columns)
+        """What `step` returns."""
+        self._readers = {
+            name: read for name in self.columns if (read := reader_of(name, spec)) is not None
+        }
+        self._field = open_field(field_files(spec), has_floor=spec.world.is_open)
+        self._spec, self._hz = spec, spec.profile.tick_hz
+        self.reset()
+
+    def __repr__(self) -> str:
+        robot, mat = self._spec.robot.name, self._spec.world.background
+        return f"<lab with {robot} on {mat} after {self.time_s:.2f} s>"
+
+    @property
+    def spec(self) -> RunSpec:
+        """World, robot, profile and seed."""
+        return self._spec
+
+    @property
+    def time_s(self) -> float:
+        """The simulated time in seconds."""
+        return self._sim.due_ns(self._sim.tick) / NS_PER_S
+
+    @property
+    def pose(self) -> Pose:
+        """Where the robot is: `x_mm`, `y_mm`, and `heading_deg`, counter-clockwise from +x."""
+        return self._sim.pose
+
+    @property
+    def max_speed_dps(self) -> float:
+        """The highest speed of a wheel's motor, in degrees per second."""
+        return top_speed_dps(self._spec.robot.left_motor, self._spec.profile)
+
+    def reset(self, seed: int | None = None) -> dict[str, float]:
+        """Begin again, with another seed if one is given; return the columns at the start."""
+        if seed is not None:
+            self._spec = replace(self._spec, seed=seed)
+        self._sim = simulation_of(self._spec, NoRecording())
+        self._run = _find_run(self._sim)
+        self._asked: tuple[float, float] | None = None
+        return self.read()
+
+    def step(
+        self,
+        left: float | None = None,
+        right: float | None = None,
+        *,
+        period_s: float = 0.0,
+        commands: Iterable[SimulationCommand] = (),
+    ) -> dict[str, float]:
+        """Move the robot on by one tick or longer, and return the columns then. Does not block.
+
+        Args:
+            left, right: Speed of each wheel's motor in degrees per second, positive forwards, as far as it is able to;
+                None lets both go on.
+            period_s: Simulated seconds, rounded to ticks; at least one tick.
+            commands: What a program does meanwhile, such as the part of `Run.commands` that lies in the step: each is
+                obeyed at its own time.
+        """
+        sim = self._sim
+        end = sim.tick + (round(period_s * self._hz) or 1 if period_s else 1)
+        if left is not None and right is not None and self._asked != (left, right):
+            self._asked = left, right
+            time_ns = sim.due_ns(sim.tick)
+            self._run(time_ns, 0, left)
+            self._run(time_ns, 1, right)
+        for command in commands:
+            sim.advance(sim.ticks_at(command.time_ns) - sim.tick)
+            give_command(sim, command)
+        sim.advance(end - sim.tick)
+        return self.read()
+
+    def read(self) -> dict[str, float]:
+        """Return the columns now, by name, as the telemetry of a run would have them."""
+        if self.columns == MOTION:
+            drive = self._sim.drive
+            return {"x_mm": drive.x_mm, "y_mm": drive.y_mm, "heading_deg": drive.heading_deg}
+        if not self.columns:
+            return {}
+        instant = self._sim.instant()
+        return {
+            name: read(instant, self._spec, self._field) for name, read in self._readers.items()
+        }
+
+
+def _find_run(sim: Simulation) -> Callable[[int, int, float], None]:
+    """Return what lets a wheel's motor run: it takes the time in ns, the motor's number and its speed."""
+    robot, law = sim.spec.robot, sim.spec.profile.motor_law
+    signs = -1.0 if robot.left_reversed else 1.0, -1.0 if robot.right_reversed else 1.0
+    most = [top_speed_dps(motor.kind, sim.spec.profile) for motor in robot.motors]
+
+    def clip(number: int, speed_dps: float) -> float:
+        return signs[number] * max(-most[number], min(most[number], speed_dps))
+
+    def run(time_ns: int, number: int, speed_dps: float) -> None:
+        obey(sim, time_ns, number, Call.RUN, clip(number, speed_dps))
+
+    def run_driver(time_ns: int, number: int, speed_dps: float) -> None:
+        values = float(round(clip(number, speed_dps))), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+        obey(sim, time_ns, number, Call.RUN_FOREVER, *values)
+
+    def run_servo(time_ns: int, number: int, speed_dps: float) -> None:
+        motor = sim.motors[number]
+        assert isinstance(motor, ServoMotor)
+        settings = motor.control.settings
+        rate = float(settings.counts(round(clip(number, speed_dps))))
+        values = rate, float(settings.acceleration), nan, float(Ending.HOLD)
+        obey(sim, time_ns, number, Call.RUN_AT, *values)
+
+    if law is MotorLaw.EV3DEV:
+        return run_driver
+    return run if law in DRIVEN_LAWS else run_servo

@@ -1,0 +1,150 @@
+"""`Lab` as environments of Gymnasium: `gymnasium.make("tuisim.env:tuisim/LineFollower-v0", background="Loop")`.
+
+It needs the extra `gym`. Each task is registered when this module is imported, and runs on any mat.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+import gymnasium
+import numpy as np
+from gymnasium.spaces import Box
+
+from tuisim.api.face import Robot, World
+from tuisim.api.lab import MOTION, Lab
+from tuisim.engine.core.values import MAX_SEED
+
+Values = Mapping[str, float]
+"""Values by the name of their column."""
+Vector = np.ndarray[Any, np.dtype[np.float32]]
+
+_BOUNDS = {"pc": (0.0, 100.0), "red": (0.0, 255.0), "green": (0.0, 255.0), "blue": (0.0, 255.0)}
+"""By the last word of a column's name."""
+_FARTHEST = 1e6
+
+
+class LabEnv(gymnasium.Env[Vector, Vector]):
+    """A robot that is rewarded for what it does.
+
+    The action is the speed of each wheel, shape (2,), from -1 to 1, the highest speed of its motor. The observation has
+    the values of `columns`, shape (n,), in their order; `info` has all columns by name.
+
+    Args:
+        columns: What the robot observes, such as `left_red_pc`.
+        reward: Takes the values before and after a step, and returns its reward.
+        is_over: Takes the values after a step, and returns whether the task has ended.
+        world, robot, profile: As for `Lab`.
+        period_s: Simulated seconds of a step.
+    """
+
+    def __init__(
+        self,
+        columns: tuple[str, ...],
+        reward: Callable[[Values, Values], float],
+        is_over: Callable[[Values], bool] = lambda _: False,
+        *,
+        world: World | str | Path | None = None,
+        robot: Robot | str | Path | None = None,
+        profile: str | Path = "robolab",
+        period_s: float = 0.1,
+    ) -> None:
+        every = tuple(dict.fromkeys((*columns, *MOTION)))
+        self.lab = Lab(world, robot, profile=profile, columns=every)
+        self.columns = columns
+        self._reward, self._is_over, self._period_s = reward, is_over, period_s
+        self._before: Values = self.lab.read()
+        bounds = [_BOUNDS.get(name.rpartition("_")[2], (-_FARTHEST, _FARTHEST)) for name in columns]
+        low, high = zip(*bounds, strict=True)
+        self.observation_space = Box(np.array(low, np.float32), np.array(high, np.float32))
+        self.action_space = Box(-1.0, 1.0, (2,), np.float32)
+
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[Vector, dict[str, Any]]:
+        """Begin again, without a seed with one that follows from the last; return the observation, and all columns."""
+        super().reset(seed=seed)
+        drawn = int(self.np_random.integers(MAX_SEED)) if seed is None else seed
+        self._before = self.lab.reset(drawn)
+        return self._observe(self._before), dict(self._before)
+
+    def step(self, action: Vector) -> tuple[Vector, float, bool, bool, dict[str, Any]]:
+        """Drive for a period; return observation, reward, whether it is over, False, and all columns."""
+        left, right = (float(share) * self.lab.max_speed_dps for share in action)
+        values = self.lab.step(left, right, period_s=self._period_s)
+        reward = float(self._reward(self._before, values))
+        self._before = values
+        return self._observe(values), reward, bool(self._is_over(values)), False, dict(values)
+
+    def _observe(self, values: Values) -> Vector:
+        return np.array([values[name] for name in self.columns], np.float32)
+
+
+def measure_progress(before: Values, after: Values) -> float:
+    """Return how far the robot has driven forwards in a step, in mm."""
+    heading = np.radians(before["heading_deg"])
+    along = (after["x_mm"] - before["x_mm"]) * np.cos(heading)
+    return float(along + (after["y_mm"] - before["y_mm"]) * np.sin(heading))
+
+
+def follow_line(**how: Any) -> LabEnv:
+    """Return the task to drive along the edge of a line, which the left sensor sees half: mm of progress on it."""
+
+    def reward(before: Values, after: Values) -> float:
+        share = 1.0 - abs(after["left_red_pc"] - 50.0) / 50.0
+        return share * measure_progress(before, after)
+
+    return _build_task(("left_red_pc", "right_red_pc"), reward, "Loop", **how)
+
+
+def stop_on_band(**how: Any) -> LabEnv:
+    """Return the task to stand on a dark band: percent of light that it sees less of."""
+
+    def reward(before: Values, after: Values) -> float:
+        return before["left_red_pc"] - after["left_red_pc"]
+
+    def is_over(values: Values) -> bool:
+        return values["left_red_pc"] < 10.0 and not (
+            values["left_speed_dps"] or values["right_speed_dps"]
+        )
+
+    columns = ("left_red_pc", "left_speed_dps", "right_speed_dps")
+    return _build_task(columns, reward, "Grey_bands", is_over, **how)
+
+
+def avoid_obstacles(**how: Any) -> LabEnv:
+    """Return the task to drive without coming too close to anything: mm of progress."""
+
+    def is_over(values: Values) -> bool:
+        return values["ultrasonic_mm"] < 30.0
+
+    columns = ("ultrasonic_mm", "gyro_deg")
+    return _build_task(columns, measure_progress, "Obstacles_Test", is_over, **how)
+
+
+def _build_task(
+    columns: tuple[str, ...],
+    reward: Callable[[Values, Values], float],
+    mat: str,
+    is_over: Callable[[Values], bool] = lambda _: False,
+    *,
+    background: str | Path | None = None,
+    world: World | None = None,
+    **how: Any,
+) -> LabEnv:
+    """Return a task on its usual mat, on the mat of a name, or in a world."""
+    return LabEnv(
+        columns, reward, is_over, world=world or World(background=background or mat), **how
+    )
+
+
+for _name, _task in (
+    ("LineFollower", follow_line),
+    ("Bands", stop_on_band),
+    ("Obstacles", avoid_obstacles),
+):
+    gymnasium.register(
+        f"tuisim/{_name}-v0", entry_point=f"tuisim.env:{_task.__name__}", max_episode_steps=300
+    )
