@@ -16,6 +16,7 @@ from tuisim.batch.parameters import (
     parse_set,
     parse_values,
 )
+from tuisim.engine.core.values import MAX_SEED
 
 
 @cases(
@@ -77,7 +78,13 @@ def test_a_setting_has_a_name_and_values(text: str) -> None:
 
 @pytest.mark.parametrize(
     "text, expected",
-    [("0..3", (0, 1, 2, 3)), ("1,5,9", (1, 5, 9)), ("0..1,7", (0, 1, 7)), ("12", (12,))],
+    [
+        ("0..3", (0, 1, 2, 3)),
+        ("1,5,9", (1, 5, 9)),
+        ("0..1,7", (0, 1, 7)),
+        ("12", (12,)),
+        (str(MAX_SEED), (MAX_SEED,)),
+    ],
 )
 def test_seeds_are_read(text: str, expected: tuple[int, ...]) -> None:
     assert parse_seeds(text) == expected

@@ -240,6 +240,13 @@ def test_missing_program_names_its_neighbour(tmp_path: Path) -> None:
         read_program(tmp_path / "folow.py")
 
 
+def test_only_a_word_without_a_folder_may_be_meant_as_an_example(tmp_path: Path) -> None:
+    with pytest.raises(ConfigError, match="did you mean log_greys"):
+        read_program(Path("log_grays"))
+    with pytest.raises(ConfigError, match="see `tuisim programs`"):
+        read_program(tmp_path / "log_grays")
+
+
 def test_other_encodings_and_line_ends_are_read(tmp_path: Path) -> None:
     file = tmp_path / "a.py"
     file.write_bytes("# coding: latin-1\r\nx = 'ä'\r\n".encode("latin-1"))

@@ -11,7 +11,7 @@ import pytest
 from tests.cases import cases
 from tests.conftest import ROOT
 from tuisim.base.errors import ConfigError
-from tuisim.settings.user_config import SETTINGS, config_file, config_of_text, load_config
+from tuisim.settings.user_config import SETTINGS, Section, config_file, config_of_text, load_config
 from tuisim.settings.user_config_file import save_setting, template, write_template
 
 PATH = Path("config.toml")
@@ -154,3 +154,8 @@ def test_the_example_of_the_guide_is_right() -> None:
 
     found = config_of_text(example, PATH).checked()
     assert found.keys == {"run": ("x", "f5")}
+
+
+def test_settings_come_section_by_section() -> None:
+    sections = [setting.section for setting in SETTINGS.values()]
+    assert sections == sorted(sections, key=list(Section).index)

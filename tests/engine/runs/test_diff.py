@@ -57,3 +57,16 @@ def test_output_is_compared_up_to_a_tick(until: int | None, prefix: bool, row: i
     found = diff_runs(one, two, until=until, prefix=prefix)
     assert (found.output and found.output.row) == row
     assert (found.tick, found.same) == (None, row is None)
+
+
+def test_runs_part_only_while_both_last() -> None:
+    one = np.zeros(11, np.dtype(list(TICK_FIELDS)))
+    one["x_mm"][6:] = 100.0
+    assert parted_at_s(one, one[:6], (10, 10)) is None
+    assert parted_at_s(one[:6], one, (10, 10)) is None
+
+
+def test_output_that_ends_earlier_is_told() -> None:
+    one, two = stored("print('a')\n"), stored("print('a')\nprint('b')\n")
+    recording = dict(recording_in_words(diff_runs(one, two)))
+    assert recording["first differing output row"].startswith("2: no more | 'b' at ")

@@ -130,3 +130,15 @@ def test_beyond_the_end_it_is_held_at_the_end_and_may_go_on_over_it(
         assert time.monotonic() < give_up
         looker.debugger.poll()
     assert (looker.passed, looker.failures) == (1, [])
+
+
+def test_a_step_is_taken_in_the_run_that_is_asked_for(recording: Recording, looker: Looker) -> None:
+    run = start_run(
+        Program("q.py", TEXT.replace("n * n", "-n")), build_run_spec(Settings()), RunOptions()
+    )
+    assert run.wait(PATIENCE_S)
+    looker.debugger.go(recording, Position(105), Inspect())
+    looker.answer()
+    other = Recording(RunStore().load_run(run.run_id))
+    looker.debugger.go_on(other, Position(105), StepLine(LineStep.OVER), Inspect())
+    assert looker.answer()[1]["m"] == "-10"

@@ -215,3 +215,9 @@ def test_a_run_that_cannot_be_prepared_is_not_listed(home: Path, tmp_path: Path)
     with pytest.raises(LogError, match="cannot be copied"):
         start_run(program, build_run_spec(Settings()), RunOptions())
     assert RunStore().runs() == []
+
+
+def test_a_run_without_a_tick_cannot_be_done_again(tmp_path: Path) -> None:
+    new = RunStore().new_run(Program("p.py", "print(1)"), build_run_spec(Settings()))
+    with pytest.raises(LogError, match="has no recording: it ended before its first tick"):
+        rerun(RunStore().load_run(new.id), RunStore(tmp_path))

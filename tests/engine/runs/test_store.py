@@ -412,6 +412,7 @@ def test_folder_deleted_or_copied_by_hand_is_noticed(
     logged: StoredRun, store: RunStore, spec: RunSpec
 ) -> None:
     shutil.copytree(logged.folder, store.folder("copy"))
+    shutil.copytree(logged.folder, store.folder("copy").with_name(".copy"))
     gone = store.new_run(PROGRAM, spec)
     shutil.rmtree(gone.folder)
     assert [(info.number, info.id, info.samples) for info in store.runs()] == [

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from dataclasses import replace
 from xml.etree import ElementTree
 
 import numpy as np
@@ -28,6 +29,8 @@ from tuisim.pictures.charts.layout import (
     Line,
     Rule,
     Scales,
+    Shade,
+    Span,
     Stroke,
     Words,
     drawn_until,
@@ -258,3 +261,11 @@ def test_a_picture_is_drawn_at_another_place() -> None:
                 assert (after.x2 - before.x2, after.y2 - before.y2) == pytest.approx((10.0, -5.0))
             case Words(), Words():
                 assert (after.x - before.x, after.y - before.y) == pytest.approx((10.0, -5.0))
+
+
+def test_a_span_is_shaded_as_far_as_it_goes() -> None:
+    chart = chart_of(log_of({"time": [0.0, 10.0], "a": [1.0, 2.0]}), View(), 800, 400)
+    whole, part = Span(0.0, 10.0, ("all",), "a"), Span(2.0, 4.0, ("part",), "a")
+    drawing = laid_out(replace(chart, spans=(whole, part)), 800, 400)
+    wide, narrow = (shape.width for shape in drawing.shapes if isinstance(shape, Shade))
+    assert narrow == pytest.approx(wide / 5, rel=0.05)

@@ -216,6 +216,14 @@ PLACES = {
         "entered the area",
         3,
     ),
+    "outside circle with the body, passed at a slant": Case(
+        "outside = { x_mm = 780, y_mm = 685, radius_mm = 100, part = 'body' }",
+        (turn(60), ahead(400, line=3)),
+        "missed",
+        1.63,
+        "entered the area",
+        3,
+    ),
     "touch nothing": Case("touch_nothing = true", ALONG, "met", 2.77, line=4),
     "touch an obstacle": Case(
         "touch_nothing = true",

@@ -126,7 +126,8 @@ def test_a_module_beside_the_program_comes_first(
 
 def test_other_sockets_work(run: Run) -> None:
     text = "import socket\na, b = socket.socketpair()\na.send(b'x')\nprint(b.recv(1), socket.AF_BLUETOOTH)"
-    assert run(text, prelude="none").lines == [f"b'x' {BLUETOOTH['AF_BLUETOOTH']}"]
+    text += "\nprint(socket.socket().family == socket.AF_INET)"
+    assert run(text, prelude="none").lines == [f"b'x' {BLUETOOTH['AF_BLUETOOTH']}", "True"]
 
 
 @pytest.mark.parametrize("name", [name for name in BLUETOOTH if hasattr(socket, name)])
