@@ -50,12 +50,12 @@ def of_preferences(_folder: Path) -> object:
 
 
 def of_draft(_folder: Path) -> object:
-    deep(text_file.file_of_program(text_file.FOLDER, PROGRAM))
+    deep(text_file.find_program_data(text_file.FOLDER, PROGRAM))
     return text_file.find_draft(PROGRAM)
 
 
 def of_breakpoints(_folder: Path) -> object:
-    deep(text_file.file_of_program(kept_breaks.FOLDER, PROGRAM))
+    deep(text_file.find_program_data(kept_breaks.FOLDER, PROGRAM))
     return kept_breaks.load_kept(PROGRAM)
 
 

@@ -44,7 +44,7 @@ HELP_MAY_NOT_LOAD = (
 CHILD_MAY_NOT_LOAD = (*HELP_MAY_NOT_LOAD, "argparse", "click")
 PRINTS = {"echo.py": "the one place", "relay.py": "passes on what a program prints"}
 """Files of the commands that may write to the terminal by themselves."""
-TEXTUAL_CALLS = re.compile(r"compose|content|render|(on|action)_\w+")
+TEXTUAL_CALLS = re.compile(r"compose|compose_content|render|(on|action)_\w+")
 VALUE_METHODS = re.compile(r"allowed|metavar|choices|check|from_data|from_text|to_text|key_of")
 """What `Value` and `Spec` explain for all of their subclasses."""
 UNFINISHED = "|".join(("TO" + "DO", "FIX" + "ME", "XX" + "X", "NotImplemented" + "Error"))

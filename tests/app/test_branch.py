@@ -18,9 +18,9 @@ from tests.app.app_help import (
     until_shown,
     until_state,
 )
-from tuisim.app.actions.time_travel import to_tick
+from tuisim.app.actions.time_travel import go_to_tick
 from tuisim.app.app import LabApp
-from tuisim.app.dialogs.runs import branch_root
+from tuisim.app.dialogs.runs import parse_branch_root
 from tuisim.app.snapshot import RunPhase
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.spec import NoiseSpec
@@ -94,7 +94,7 @@ async def test_a_branch_is_the_same_run_up_to_its_instant(deed: Deed, kind: str)
     async with open_with_a_past() as (pilot, app):
         await stop(pilot, app)
         first = app.run_controller.run_id
-        to_tick(app.context, 260)
+        go_to_tick(app.context, 260)
         await deed(pilot, app)
         await until_shown(pilot, "Branch from 2.60 s?")
         await pilot.press("y")
@@ -169,7 +169,7 @@ async def test_an_edited_program_says_where_it_went_another_way() -> None:
         app.run_controller.program = program(
             DRIVES.replace("    tank_drive.on(", "    time.sleep(1)\n    tank_drive.on(")
         )
-        to_tick(app.context, 260)
+        go_to_tick(app.context, 260)
         await pilot.press("R")
         await until_shown(pilot, "The edited program")
         await pilot.press("y")
@@ -205,7 +205,7 @@ async def test_a_program_that_ends_before_the_instant_is_told() -> None:
         await stop(pilot, app)
         first = app.run_controller.run_id
         app.run_controller.program = program("tank_drive.on_for_seconds(20, 20, 0.2)\n")
-        to_tick(app.context, 80)
+        go_to_tick(app.context, 80)
         await pilot.press("y")
         await until_shown(pilot, "Branch from")
         await pilot.press("y")
@@ -225,7 +225,7 @@ async def test_a_branch_is_compared_with_the_run_that_it_left() -> None:
     async with open_with_a_past() as (pilot, app):
         await stop(pilot, app)
         first = app.run_controller.run_id
-        to_tick(app.context, 200)
+        go_to_tick(app.context, 200)
         # Neither as at first nor as it was set later, which on a busy machine may be after this instant.
         app.run_controller.set_noise(NoiseSpec(5, 0))
         await until_shown(pilot, "Branch from 2.00 s?")
@@ -253,4 +253,4 @@ async def test_a_branch_is_compared_with_the_run_that_it_left() -> None:
 )
 def test_a_branch_knows_its_root(tags: str, number: int | None) -> None:
     run = RunInfo(3, "id", "2026-01-02T03:04:05+00:00", "line.py", "Loop", "robolab", 0, tags=tags)
-    assert branch_root(run) == number
+    assert parse_branch_root(run) == number

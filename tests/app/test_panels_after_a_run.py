@@ -66,7 +66,7 @@ async def _open_again(pilot: Pilot[None], app: LabApp) -> None:
 
 async def _go_to_past(pilot: Pilot[None], app: LabApp) -> dict[str, list[str]]:
     """Go to an instant, and return all texts there once the values of variables have come."""
-    time_travel.to_tick(app.context, PAST_TICK)
+    time_travel.go_to_tick(app.context, PAST_TICK)
     await _open_again(pilot, app)
     await until(pilot, lambda: "past" in "".join(_texts(app)["debug"]))
     await until(pilot, lambda: "▶" in "".join(_texts(app)["code"]))
@@ -82,7 +82,7 @@ async def test_no_panel_of_a_run_follows_the_settings_of_the_next(profile: str) 
         await until_state(pilot, RunPhase.ENDED)
         in_past = await _go_to_past(pilot, app)
         assert {"instrumentation", "arrays", "debug", "controls"} <= in_past.keys()
-        time_travel.to_now(app.context)
+        time_travel.go_to_now(app.context)
         await until(pilot, lambda: "finished at" in "".join(_texts(app)["output"]))
         await _open_again(pilot, app)
         at_end = _of_run(app)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tuisim.app.editor.completion import members
+from tuisim.app.editor.completion import find_members
 from tuisim.programs.attributes import AttributeCheck
 
 
@@ -45,7 +45,7 @@ from tuisim.programs.attributes import AttributeCheck
     ],
 )
 def test_unknown_attributes(home: Path, text: str, messages: list[str]) -> None:
-    found = AttributeCheck(members).unknown_attributes(text, "prog.py")
+    found = AttributeCheck(find_members).unknown_attributes(text, "prog.py")
     assert [one.message for one in found] == messages
     lines = text.split("\n")
     assert all(lines[one.row][one.start : one.end] == one.name for one in found)

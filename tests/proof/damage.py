@@ -202,11 +202,11 @@ def _world(path: str) -> object:
 
 
 def _breaks() -> Path:
-    return text_file.file_of_program(kept_breaks.FOLDER, "program.py")
+    return text_file.find_program_data(kept_breaks.FOLDER, "program.py")
 
 
 def _draft() -> Path:
-    return text_file.file_of_program(text_file.FOLDER, "program.py")
+    return text_file.find_program_data(text_file.FOLDER, "program.py")
 
 
 def _journal(path: str) -> object:

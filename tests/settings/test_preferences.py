@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tuisim.app.editor.text_file import drafts, keep_draft
+from tuisim.app.editor.text_file import keep_draft, list_drafts
 from tuisim.settings.preferences import keep, preference, preferences_file
 
 
@@ -29,11 +29,11 @@ def test_an_app_that_begins_afresh_finds_nothing_of_other_ones_and_leaves_them_n
     keep("theme", "light")
     keep_draft("", "of another app")
     monkeypatch.setenv("TUISIM_SESSION", str(tmp_path / "session"))
-    assert (preference("theme"), drafts()) == (None, [])
+    assert (preference("theme"), list_drafts()) == (None, [])
     keep("theme", "dark")
     keep_draft("", "of this one")
     monkeypatch.delenv("TUISIM_SESSION")
-    assert (preference("theme"), drafts()[0].text) == ("light", "of another app")
+    assert (preference("theme"), list_drafts()[0].text) == ("light", "of another app")
 
 
 @pytest.mark.parametrize(

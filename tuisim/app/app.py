@@ -26,9 +26,16 @@ from tuisim.app.action import (
     panel_keys,
 )
 from tuisim.app.actions import ActionContext, time_travel
-from tuisim.app.actions.files import welcome_at_start
-from tuisim.app.actions.keys import ACTIONS, PAGES, RUN_KEYS, TEXT_KEYS, footer_actions, working
-from tuisim.app.actions.lesson import reads_on, takes_pages
+from tuisim.app.actions.files import greet
+from tuisim.app.actions.keys import (
+    ACTIONS,
+    PAGES,
+    RUN_KEYS,
+    TEXT_KEYS,
+    list_footer_actions,
+    list_working,
+)
+from tuisim.app.actions.lesson import accept_page_keys, has_more_text
 from tuisim.app.background import enter, leave
 from tuisim.app.branch import branch_message
 from tuisim.app.debugger import DebugController
@@ -251,7 +258,7 @@ class LabApp(PanelMessages):
         self.lesson.begin()
         self._tell_config()
         if self.settings.welcomes:
-            welcome_at_start(self.context)
+            greet(self.context)
         self._set_frame_gap(1 / self.settings.fps)
         self.set_interval(_REST_GAP_S, self._seldom)
         self.set_interval(PERIOD_S, self.check_files)
@@ -265,11 +272,11 @@ class LabApp(PanelMessages):
 
     def check_files(self) -> None:
         """Reload the files that have changed on disk, or ask about those with unsaved edits."""
-        self.loader.check_files(self.document.conflicts_with)
+        self.loader.check_files(self.document.check_conflict)
 
     def to_now(self) -> None:
         """Return from the past to the newest instant."""
-        time_travel.to_now(self.context)
+        time_travel.go_to_now(self.context)
 
     def _waits(self, event: events.Event) -> bool:
         """Let the keys of a run wait also for the mat, without which none can start."""
@@ -346,7 +353,7 @@ class LabApp(PanelMessages):
         self.feed.run_changed()
         self.panel_area.release_buttons()
         self.document.run_changed()
-        self.document.run_ended_at(error_line)
+        self.document.mark_failure(error_line)
         self.debugger.run_changed()
         self.situation_changed()
 
@@ -464,7 +471,7 @@ class LabApp(PanelMessages):
             self.panel_area.bring("output")
         notice, last = end_words(ended, stood)
         self._last_words = last if good else f"{last}: {self.with_keys(remedy(ended.summary))}"
-        self.document.run_ended_at(ended.error_line, "" if good else notice)
+        self.document.mark_failure(ended.error_line, "" if good else notice)
         # The output ends with the same words.
         if not self.panel_area.shown("output"):
             self.notify(notice, severity="information" if good else "error", markup=False)
@@ -555,10 +562,10 @@ class LabApp(PanelMessages):
 
     def _show_footer(self, state: AppState) -> None:
         self._footed = _footed(state)
-        names = working(state.situation)
+        names = list_working(state.situation)
         if self.panel_area.is_single:
             names = ("panel-next", *names)
-        actions = footer_actions(self.ACTIONS, names, state.situation, state.playing)
+        actions = list_footer_actions(self.ACTIONS, names, state.situation, state.playing)
         if (keys := self._field_keys()) in (FIELD_KEYS, TYPING_KEYS, CLICKED_KEYS):
             actions = []
         self.key_footer.show(actions, state.status, keys, state.failed)
@@ -604,7 +611,7 @@ class LabApp(PanelMessages):
         self.call_after_refresh(self.draw, force=True)
 
     def _introduce_program(self) -> None:
-        self.document.introduce()
+        self.document.show_program()
         self.debugger.program_changed(self.run_controller.program)
 
     # What the user does
@@ -612,9 +619,9 @@ class LabApp(PanelMessages):
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         """Leave the page keys to the widget with the focus, without a lesson."""
         if action == "act" and parameters[0] in PAGES:
-            return takes_pages(self.panel_area)
+            return accept_page_keys(self.panel_area)
         if action == "act" and parameters[0] in TEXT_KEYS:
-            return reads_on(self.panel_area)
+            return has_more_text(self.panel_area)
         return super().check_action(action, parameters)
 
     def action_leave_field(self) -> None:

@@ -123,7 +123,7 @@ class DebugController:
         lines, texts = self._lines(), []
         for one in self.breaks:
             shown = break_line_of(one)
-            runs = lines.to_run(shown)
+            runs = lines.find_run_line(shown)
             if runs or not shown:
                 texts.append(moved(one, runs).written())
         self._run_controller.send(protocol.SetBreaks(tuple(texts)))
@@ -186,7 +186,7 @@ class DebugController:
         """The line shown as current, in the edited text; 0 if there is none."""
         snapshot = self._run_controller.snapshot()
         return (
-            self._lines().to_shown(snapshot.line)
+            self._lines().find_shown_line(snapshot.line)
             if self._run_controller.in_run or snapshot.past
             else 0
         )
@@ -456,7 +456,7 @@ class DebugController:
     def run_to(self, line: int) -> None:
         """Continue until a line is about to run."""
         run_controller = self._run_controller
-        runs = self._lines().to_run(line) if run_controller.in_run or self.is_away else line
+        runs = self._lines().find_run_line(line) if run_controller.in_run or self.is_away else line
         if runs:
             self.go_on(protocol.RunToLine(runs))
         else:

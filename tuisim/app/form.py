@@ -21,7 +21,7 @@ from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ConfigError, TuisimError
 
 
-def reason(error: TuisimError) -> str:
+def format_error(error: TuisimError) -> str:
     """Return the message of an error without its location, which the field shows."""
     message = error.message
     if isinstance(error, ConfigError) and error.key and not error.file:
@@ -29,7 +29,7 @@ def reason(error: TuisimError) -> str:
     return f"{message} ({error.hint})" if error.hint else message
 
 
-def typed_number(text: str, error: type[ConfigError]) -> float:
+def parse_number(text: str, error: type[ConfigError]) -> float:
     """Parse a typed number, with a point or a comma.
 
     Raises:
@@ -111,7 +111,7 @@ class EntryPanel(FormPanel):
     """A panel with text fields, each applied by Enter and when it loses the focus."""
 
     @on(Input.Submitted)
-    def _submitted(self, event: Input.Submitted) -> None:
+    def _apply_submitted(self, event: Input.Submitted) -> None:
         event.stop()
         self._apply(event.input)
 
@@ -170,13 +170,13 @@ class Row(Vertical):
         """Show a value, unless another one is being typed."""
         if text != self._shown or not self._typing:
             self._shown = self.entry.value = text
-            self.complain("")
+            self.show_error("")
 
     @property
     def _typing(self) -> bool:
         return self.entry.has_focus and self.entry.value != self._shown
 
-    def complain(self, text: str) -> None:
+    def show_error(self, text: str) -> None:
         """Show an error below the field; empty removes it."""
         self.set_class(bool(text), "-wrong")
         self.entry.set_class(bool(text), "wrong")
@@ -185,10 +185,10 @@ class Row(Vertical):
 
     def refuse(self, error: TuisimError) -> None:
         """Show below the field why its value was rejected."""
-        self.complain(reason(error))
+        self.show_error(format_error(error))
 
     @on(Input.Submitted)
-    def _submitted(self, event: Input.Submitted) -> None:
+    def _enter_submitted(self, event: Input.Submitted) -> None:
         event.stop()
         self._enter()
 
@@ -196,7 +196,7 @@ class Row(Vertical):
     def _take_back(self, event: Input.Changed) -> None:
         event.stop()
         if self.has_class("-wrong"):
-            self.complain("")
+            self.show_error("")
 
     def on_descendant_focus(self) -> None:
         # The cursor at the end of the selection would scroll the beginning of a long value out of sight.
@@ -212,7 +212,7 @@ class Row(Vertical):
         self.post_message(self.Entered(self, self.entry.value))
 
     @on(Choice.Stepped)
-    def _stepped(self, event: Choice.Stepped) -> None:
+    def _enter_step(self, event: Choice.Stepped) -> None:
         event.stop()
         self.post_message(self.Entered(self, self.entry.value, event.by))
 
@@ -314,10 +314,10 @@ class Slider(_Control):
     def action_put_last(self) -> None:
         self._choose(self.maximum)
 
-    def _knob(self) -> int:
+    def _find_knob_column(self) -> int:
         return round(self.value / self.maximum * (self.size.width - 1))
 
-    def _under(self, event: events.MouseEvent) -> int:
+    def _find_value(self, event: events.MouseEvent) -> int:
         last = max(self.size.width - 1, 1)
         return round(min(max(event.x, 0), last) / last * self.maximum)
 
@@ -327,13 +327,13 @@ class Slider(_Control):
             self.focus()
             self.dragging = True
             self.capture_mouse()
-            if event.x != self._knob():
-                self._choose(self._under(event))
+            if event.x != self._find_knob_column():
+                self._choose(self._find_value(event))
 
     def on_mouse_move(self, event: events.MouseMove) -> None:
         if self.dragging:
             event.stop()
-            self._choose(self._under(event))
+            self._choose(self._find_value(event))
 
     def on_mouse_up(self, event: events.MouseUp) -> None:
         if self.dragging:
@@ -359,7 +359,7 @@ class Slider(_Control):
         self._choose(self.value - STEP)
 
     def render(self) -> Text:
-        knob, width = self._knob(), self.size.width
+        knob, width = self._find_knob_column(), self.size.width
         filled, empty, knob_style = (
             self.get_component_rich_style(f"slider--{part}", partial=True)
             for part in ("filled", "empty", "knob")

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import json
 
-from tuisim.app.editor.text_file import file_of_program, write_json
-from tuisim.app.editor.text_lines import same_lines
+from tuisim.app.editor.text_file import find_program_data, write_json
+from tuisim.app.editor.text_lines import count_same_lines
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ConfigError
 from tuisim.base.regular_file import read_regular
@@ -33,7 +33,7 @@ def load_kept(program: str) -> Kept:
         program: Its path, or its name if it is in no file.
     """
     try:
-        data = json.loads(read_regular(file_of_program(FOLDER, program), MAX_FILE_BYTES))
+        data = json.loads(read_regular(find_program_data(FOLDER, program), MAX_FILE_BYTES))
         breaks = tuple(parse_break(text) for text in data["breaks"][:MAX_KEPT])
         return Kept(breaks, tuple(str(text) for text in data["watches"][:MAX_KEPT]))
     except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError, ConfigError):
@@ -46,7 +46,7 @@ def keep(program: str, kept: Kept) -> None:
     Raises:
         ConfigError: they cannot be written.
     """
-    file = file_of_program(FOLDER, program)
+    file = find_program_data(FOLDER, program)
     data = {
         "program": program,
         "breaks": [one.written() for one in kept.breaks],
@@ -66,7 +66,7 @@ def following(breaks: tuple[Breakpoint, ...], before: str, now: str) -> tuple[Br
     shift = len(new) - len(old)
     if not shift:
         return breaks
-    same = same_lines(old, new)
+    same = count_same_lines(old, new)
     kept = []
     for one in breaks:
         line = break_line_of(one)

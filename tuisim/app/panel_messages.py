@@ -110,7 +110,7 @@ class PanelMessages(LabHost):
             self.context.app.run_changed()
 
     def on_code_edited(self, message: Code.Edited) -> None:
-        self.context.document.edited(message.text)
+        self.context.document.handle_edit(message.text)
         self.context.debugger.edited(message.text)
 
     def on_code_wanted(self, message: Code.Wanted) -> None:
@@ -154,10 +154,10 @@ class PanelMessages(LabHost):
             self.context.runs.place(message.pose)
 
     def on_chart_cursor_moved(self, message: Chart.CursorMoved) -> None:
-        time_travel.to_time(self.context, message.time_s, message.sample)
+        time_travel.go_to_time(self.context, message.time_s, message.sample)
 
     def on_time_bar_scrubbed(self, message: TimeBar.Scrubbed) -> None:
-        time_travel.to_tick(self.context, message.tick)
+        time_travel.go_to_tick(self.context, message.tick)
 
     def on_positioning_applied(self, message: Positioning.Applied) -> None:
         self.context.runs.place(message.pose)

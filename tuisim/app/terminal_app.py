@@ -187,7 +187,7 @@ class TerminalApp(BufferedApp):
         top = self.screen_stack[-1] if self.screen_stack else None
         if top is not None and getattr(top.focused, "is_completing", False):
             return True
-        return isinstance(top, ClosesOnce) and not top.is_ready_for(event)
+        return isinstance(top, ClosesOnce) and not top.can_take(event)
 
     def _ignores(self, event: events.Event) -> bool:
         """Return whether to ignore an event of the user: nothing can handle it, or its target is invisible or was just
@@ -311,11 +311,11 @@ class TerminalApp(BufferedApp):
         host = self.screen if isinstance(self.screen, ActionHost) else self
         if isinstance(self.screen, Dialog) or not isinstance(host, ActionHost) or is_leaving(self):
             return
-        from tuisim.app.dialogs.palette import ASKS, Palette
+        from tuisim.app.dialogs.palette import GUIDE_PREFIX, Palette
 
         def chosen(action: str | None) -> None:
-            if action is not None and action.startswith(ASKS):
-                self._ask_guide(host, action.removeprefix(ASKS))
+            if action is not None and action.startswith(GUIDE_PREFIX):
+                self._ask_guide(host, action.removeprefix(GUIDE_PREFIX))
             elif action is not None:
                 host.action_act(action)
 

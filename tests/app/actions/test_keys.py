@@ -10,7 +10,7 @@ import pytest
 
 from tests.app.app_help import LOGS, notices, open_lab, screen_text, until
 from tuisim.app.action import Action, fitting
-from tuisim.app.actions.keys import ACTIONS, working
+from tuisim.app.actions.keys import ACTIONS, list_working
 from tuisim.app.analyser.actions.keys import ACTIONS as ANALYSER_ACTIONS
 from tuisim.app.guide.screen import GuideScreen
 from tuisim.app.snapshot import RunPhase, Situation
@@ -118,7 +118,7 @@ def test_in_the_past_the_footer_begins_with_the_ways_out() -> None:
     shown = fitting(
         [
             ACTIONS[one]
-            for one in working(
+            for one in list_working(
                 Situation(RunPhase.PAUSED, True, True, in_past=True, looks_back=True)
             )
         ],

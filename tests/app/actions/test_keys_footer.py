@@ -13,7 +13,7 @@ from tests.app.app_help import LOGS, notices, open_lab, program, until
 from tests.cases import cases
 from tuisim.analysis.source import LogRequest
 from tuisim.app.action import fitting
-from tuisim.app.actions.keys import ACTIONS, footer_actions, working
+from tuisim.app.actions.keys import ACTIONS, list_footer_actions, list_working
 from tuisim.app.analyser.app import AnalyserApp
 from tuisim.app.dialogs.question import Question
 from tuisim.app.form import NumberInput
@@ -31,7 +31,7 @@ def test_after_a_run_the_next_steps_of_a_student_come_first(
     width: int, reads_code: bool, keys: set[str]
 ) -> None:
     status = " time limit max "
-    names = working(
+    names = list_working(
         Situation(RunPhase.ENDED, has_program=True, has_run=True, reads_code=reads_code)
     )
     shown = fitting([ACTIONS[name] for name in names], width - len(status), 9)
@@ -98,7 +98,9 @@ PAUSE_WORDS = {
 @cases("now, playing, word", PAUSE_WORDS)
 def test_the_pause_key_says_what_it_does_now(now: Situation, playing: bool, word: str) -> None:
     (pause,) = [
-        one for one in footer_actions(ACTIONS, working(now), now, playing) if one.id == "pause"
+        one
+        for one in list_footer_actions(ACTIONS, list_working(now), now, playing)
+        if one.id == "pause"
     ]
     assert pause.footer == word
 
@@ -142,7 +144,7 @@ async def test_in_a_lesson_the_footer_offers_its_keys() -> None:
 
 def test_a_question_of_a_lesson_offers_to_answer_it() -> None:
     now = Situation(RunPhase.IDLE, True, False, lesson_actions=("answer", "hint", "lesson-menu"))
-    shown = fitting(footer_actions(ACTIONS, working(now), now, playing=False), 70, 9)
+    shown = fitting(list_footer_actions(ACTIONS, list_working(now), now, playing=False), 70, 9)
     assert [action.id for action in shown if action.group == "Lesson"] == [*now.lesson_actions]
 
 

@@ -24,7 +24,7 @@ async def test_a_paused_program_starts_again() -> None:
 async def test_a_new_program_that_has_run_is_worth_a_question() -> None:
     plain = AppSettings(spec=build_run_spec(Settings()), settings=Settings())
     async with open_lab(plain, size=(80, 24)) as (pilot, app):
-        app.document.new("print(1)\n")
+        app.document.start_new("print(1)\n")
         await until(pilot, lambda: app.run_controller.program is not None)
         assert not app.document.dirty
         await pilot.press("escape", "R")

@@ -21,7 +21,7 @@ from tests.app.app_help import (
     until_state,
 )
 from tests.running import PATIENCE_S
-from tuisim.app.actions.time_travel import to_now, to_tick
+from tuisim.app.actions.time_travel import go_to_now, go_to_tick
 from tuisim.app.app import LabApp
 from tuisim.app.dialogs.question import BranchQuestion
 from tuisim.app.form import Slider
@@ -112,7 +112,7 @@ async def noisy_past(pilot: Pilot[Any]) -> LabApp:
             and app.run_controller.timeline.newest > 60
         ),
     )
-    to_tick(app.context, 10)
+    go_to_tick(app.context, 10)
     await until(pilot, lambda: light(app) == 0)
     return app
 
@@ -144,11 +144,11 @@ async def test_noise_of_the_past_is_asked_about_once_and_set_once() -> None:
         assert len(app.screen_stack) == 2
         await pilot.press("n")
         await until(pilot, lambda: light(app) == 0)
-        to_now(app.context)
+        go_to_now(app.context)
         await until(pilot, lambda: light(app) == 10)
         assert noises(app) == [10]
         # A branch with other noise sets it once.
-        to_tick(app.context, 10)
+        go_to_tick(app.context, 10)
         await until(pilot, lambda: light(app) == 0)
         app.query_one("#light").focus()
         # As it was: nothing to ask.
@@ -225,7 +225,7 @@ async def test_what_is_changed_for_the_next_run_is_seen_also_from_the_past() -> 
         app = await ready(pilot)
         await pilot.press("R")
         await until_state(pilot, RunPhase.ENDED)
-        to_tick(app.context, 10)
+        go_to_tick(app.context, 10)
         assert app.run_controller.in_past
         assert app.loader.attempt(lambda plan: with_obstacles(plan, (Obstacle(100, 100, 50, 50),)))
         assert app.run_controller.snapshot().spec.world.obstacles == (Obstacle(100, 100, 50, 50),)

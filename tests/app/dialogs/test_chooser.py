@@ -8,7 +8,7 @@ import pytest
 from textual.app import App
 from textual.widgets import Input, OptionList, Static
 
-from tuisim.app.dialogs.chooser import ChoiceGroup, Chooser, files_here
+from tuisim.app.dialogs.chooser import ChoiceGroup, Chooser, list_files
 from tuisim.app.notices import NoticeRow
 from tuisim.app.terminal_app import TerminalApp
 from tuisim.base.errors import ConfigError
@@ -153,7 +153,7 @@ def test_the_second_file_of_an_export_is_not_listed(
     monkeypatch.chdir(tmp_path)
     for name in ("robot.json", "log.csv", "log.csv.json", "my.robot.json"):
         Path(name).touch()
-    assert [name for _, name, _ in files_here([".json"]).entries] == ["my.robot.json", "robot.json"]
+    assert [name for _, name, _ in list_files([".json"]).entries] == ["my.robot.json", "robot.json"]
 
 
 async def test_what_was_said_before_covers_no_row_of_it() -> None:

@@ -166,5 +166,5 @@ async def test_a_picture_that_comes_while_the_dialog_closes_is_dropped() -> None
         await until(pilot, lambda: bool(picker._pictures))
         key, picture = next(iter(picker._pictures.items()))
         await picker.query(PixelView).remove()
-        picker._decoded((picker._shown, key[1]), picture)
-        picker._failed(picker._shown, TuisimError("no picture"))
+        picker._show_decoded((picker._shown, key[1]), picture)
+        picker._report(picker._shown, TuisimError("no picture"))

@@ -10,7 +10,7 @@ from tests.app.app_help import open_lab, ready, until, until_shown, until_typing
 from tests.cases import cases
 from tuisim.app.app import AppSettings, LabApp
 from tuisim.app.dialogs.chooser import MatPicker
-from tuisim.app.dialogs.new_program import NewProgramDialog, Skeleton, program_text
+from tuisim.app.dialogs.new_program import NewProgramDialog, Skeleton, build_program_text
 from tuisim.app.dialogs.question import Question
 from tuisim.app.editor.area import CodeArea
 from tuisim.programs.program_file import read_program
@@ -39,7 +39,7 @@ async def test_a_new_program_is_chosen_by_keys(
         await until(pilot, lambda: isinstance(app.screen, NewProgramDialog))
         await pilot.press(*keys, "enter")
         await until_typing(pilot)
-        assert app.query_one(CodeArea).program_text == program_text(*wanted)
+        assert app.query_one(CodeArea).program_text == build_program_text(*wanted)
         assert app.run_controller.next_run.spec.world.background == wanted[0]
 
 
@@ -48,7 +48,7 @@ async def test_another_mat_is_written_into_the_file_if_one_agrees(
     answer: str, tmp_path: Path
 ) -> None:
     path = tmp_path / "mine.py"
-    path.write_text(before := program_text("Grey_bands", "colorLeft", Skeleton.LOG))
+    path.write_text(before := build_program_text("Grey_bands", "colorLeft", Skeleton.LOG))
     source = read_program(path)
     settings = Settings({"background": "Grey_bands"})
     async with LabApp(
@@ -70,7 +70,7 @@ async def test_another_mat_is_written_into_the_file_if_one_agrees(
 
 @pytest.mark.parametrize("skeleton", Skeleton)
 def test_the_first_line_is_explained_below_it(skeleton: Skeleton) -> None:
-    lines = program_text("Loop", "colorLeft", skeleton).splitlines()
+    lines = build_program_text("Loop", "colorLeft", skeleton).splitlines()
     (at,) = (number for number, line in enumerate(lines) if "%%sim_magic" in line)
     assert lines[at + 1].startswith("# Lays out the mat")
     assert len(lines[at + 1]) < 70

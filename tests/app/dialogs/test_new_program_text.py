@@ -5,21 +5,21 @@ from __future__ import annotations
 import pytest
 
 from tests.running import Run
-from tuisim.app.dialogs.new_program import READINGS, Skeleton, program_text
+from tuisim.app.dialogs.new_program import READINGS, Skeleton, build_program_text
 from tuisim.programs.program_file import parse_program
 
 
 @pytest.mark.parametrize("skeleton", Skeleton)
 @pytest.mark.parametrize("sensor", READINGS)
 def test_each_text_names_its_mat_and_compiles(sensor: str, skeleton: Skeleton) -> None:
-    source = parse_program(program_text("my mats/a b.png", sensor, skeleton), "new.py")
+    source = parse_program(build_program_text("my mats/a b.png", sensor, skeleton), "new.py")
     compile(source.program.text, "new.py", "exec")
     assert source.options["background"] == "my mats/a b.png"
     assert source.program.prelude == ("none" if skeleton is Skeleton.LIBRARY else "preloaded")
 
 
 def test_the_first_offer_logs_every_grey_band(run: Run) -> None:
-    source = parse_program(program_text("Grey_bands", "colorLeft", Skeleton.LOG), "new.py")
+    source = parse_program(build_program_text("Grey_bands", "colorLeft", Skeleton.LOG), "new.py")
     done = run(source.program.text, prelude=source.program.prelude, background="Grey_bands")
     assert len(done.lines) == 60
     assert all(line.startswith("Light: ") for line in done.lines)

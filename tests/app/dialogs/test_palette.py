@@ -8,7 +8,7 @@ from textual.widgets import Input
 from tests.app.app_help import open_lab, until, until_shown
 from tuisim.app.actions.keys import ACTIONS
 from tuisim.app.analyser.actions.keys import ACTIONS as ANALYSER_ACTIONS
-from tuisim.app.dialogs.palette import Entry, ThemeChooser, matching
+from tuisim.app.dialogs.palette import Entry, ThemeChooser, find_entries
 from tuisim.app.guide.screen import GuideScreen
 
 ENTRIES = [
@@ -35,7 +35,7 @@ ENTRIES = [
     ],
 )
 def test_words_that_people_use_find_an_action(typed: str, first: str) -> None:
-    assert matching(ENTRIES, typed)[0].id == first
+    assert find_entries(ENTRIES, typed)[0].id == first
 
 
 def test_the_analyser_offers_all_that_saves_a_picture() -> None:
@@ -43,7 +43,7 @@ def test_the_analyser_offers_all_that_saves_a_picture() -> None:
         Entry(one.id, one.title, one.group, one.key_label, one.words)
         for one in ANALYSER_ACTIONS.values()
     ]
-    assert [one.id for one in matching(entries, "picture")] == [
+    assert [one.id for one in find_entries(entries, "picture")] == [
         "save-chart",
         "report",
         "screenshot",

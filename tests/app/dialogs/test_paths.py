@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tuisim.app.dialogs.paths import completed, is_path, paths_after
+from tuisim.app.dialogs.paths import complete_path, is_path, list_completions
 
 
 @pytest.fixture
@@ -19,7 +19,7 @@ def folder(tmp_path: Path) -> Path:
 
 
 def values(typed: str) -> list[str]:
-    return [value for value, *_ in paths_after(typed, [".py"])]
+    return [value for value, *_ in list_completions(typed, [".py"])]
 
 
 def test_files_of_the_kind_and_folders_are_listed(folder: Path) -> None:
@@ -51,9 +51,13 @@ def test_nothing_is_in_what_is_no_folder(typed: str) -> None:
 
 
 def test_a_path_is_completed_as_far_as_all_agree(folder: Path) -> None:
-    assert completed(f"{folder}/L", paths_after(f"{folder}/L", [".py"])) == f"{folder}/Line"
-    assert completed(f"{folder}/su", paths_after(f"{folder}/su", [".py"])) == f"{folder}/sub/"
-    assert completed(f"{folder}/x", []) == f"{folder}/x"
+    assert (
+        complete_path(f"{folder}/L", list_completions(f"{folder}/L", [".py"])) == f"{folder}/Line"
+    )
+    assert (
+        complete_path(f"{folder}/su", list_completions(f"{folder}/su", [".py"])) == f"{folder}/sub/"
+    )
+    assert complete_path(f"{folder}/x", []) == f"{folder}/x"
 
 
 @pytest.mark.parametrize(

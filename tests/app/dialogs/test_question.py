@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from textual.app import App
 
-from tuisim.app.dialogs.question import LinePrompt, completed
+from tuisim.app.dialogs.question import LinePrompt, complete_line
 
 
 def test_the_word_that_is_typed_is_ended() -> None:
@@ -17,7 +17,7 @@ def test_the_word_that_is_typed_is_ended() -> None:
         "2 + 3": None,
         "Colour": None,
     }
-    assert {line: completed(line, words) for line in lines} == lines
+    assert {line: complete_line(line, words) for line in lines} == lines
 
 
 @pytest.mark.parametrize("rows, is_brief", [(24, True), (40, False)], ids=["low", "high"])

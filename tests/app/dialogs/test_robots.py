@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tests.app.app_help import open_lab, screen_text, until
-from tuisim.app.dialogs.robots import RobotPicker, part_lines, robot_picture, view_of
+from tuisim.app.dialogs.robots import RobotPicker, describe_parts, draw_robot_picture, fit_view
 from tuisim.engine.core.spec import RobotSpec
 from tuisim.pictures.scene.robot import COLORED
 from tuisim.settings.robots import ROBOTS
@@ -14,7 +14,7 @@ from tuisim.terminal.pixels import SQUARE
 
 
 def words_of(robot: RobotSpec) -> list[str]:
-    return ["".join(text for text, _ in line).strip() for line in part_lines(robot)]
+    return ["".join(text for text, _ in line).strip() for line in describe_parts(robot)]
 
 
 def test_each_part_is_listed_with_its_port_and_place() -> None:
@@ -32,7 +32,7 @@ def test_each_part_is_listed_with_its_port_and_place() -> None:
 @pytest.mark.parametrize("size", [(40, 12), (40, 40), (300, 150)], ids=str)
 def test_a_robot_is_whole_in_its_picture(robot: str, size: tuple[int, int]) -> None:
     spec = ROBOTS[robot]
-    picture = robot_picture(spec, view_of(spec, *size, SQUARE), COLORED).astype(int)
+    picture = draw_robot_picture(spec, fit_view(spec, *size, SQUARE), COLORED).astype(int)
 
     drawn = (picture != picture[0, 0]).any(axis=2)
     assert drawn.any()

@@ -27,7 +27,7 @@ from tests.cases import cases
 from tests.conftest import Command
 from tests.running import PATIENCE_S
 from tuisim.app.app import AppSettings
-from tuisim.app.dialogs.runs import RunChooser, find_likeliest, heads, matching, run_line
+from tuisim.app.dialogs.runs import RunChooser, build_header, find_likeliest, find_runs, run_line
 from tuisim.app.snapshot import RunPhase
 from tuisim.engine.protocol import End, SetNoise, UserAction
 from tuisim.engine.runs.catalogue import RunInfo
@@ -214,8 +214,8 @@ def info(number: int, **facts: Any) -> RunInfo:
 )
 def test_a_narrow_list_of_runs_leaves_out_columns(columns: int, names: str) -> None:
     line = run_line(info(1, program="a_long_name_of_a_program.py"), columns).plain
-    assert heads(columns).split() == names.split()
-    assert len(line) == len(heads(columns).removesuffix("  note")) <= columns - 10
+    assert build_header(columns).split() == names.split()
+    assert len(line) == len(build_header(columns).removesuffix("  note")) <= columns - 10
     assert "finished" in line
 
 
@@ -249,7 +249,7 @@ def test_the_note_of_a_run_does_not_repeat_its_end(
 )
 def test_a_search_is_for_words_anywhere(search: str, numbers: list[int]) -> None:
     runs = [info(1), info(2, program="maze.py", end=End.RAISED), info(3, tags="best branch")]
-    assert [run.number for run in matching(runs, search)] == numbers
+    assert [run.number for run in find_runs(runs, search)] == numbers
 
 
 def test_the_namespace_of_the_command_has_the_run() -> None:

@@ -44,7 +44,7 @@ async def listed(pilot: Pilot[Any], text: str) -> tuple[Code, CodeArea]:
 
 async def test_the_library_is_read_when_typing_begins(monkeypatch: pytest.MonkeyPatch) -> None:
     is_warm = Event()
-    monkeypatch.setattr(completion, "warm_up", is_warm.set)
+    monkeypatch.setattr(completion, "preload", is_warm.set)
     monkeypatch.setattr(completion, "is_ready", lambda: False)
     async with CodeApp().run_test(size=SIZE) as pilot:
         await alone(pilot, "x = 1")
@@ -119,7 +119,7 @@ async def test_what_is_typed_during_a_lookup_goes_on_with_the_name(
         answers.wait(PATIENCE_S)
         return found
 
-    monkeypatch.setattr(area_module, "candidates", slow)
+    monkeypatch.setattr(area_module, "find_candidates", slow)
     async with open_lab("tan") as (pilot, app):
         code = app.query_one(Code)
         code.start_typing(at_end=True)
@@ -183,7 +183,7 @@ async def test_the_frame_shows_the_signature_of_the_call(home: Path) -> None:
 async def test_names_that_nobody_defined_are_marked_and_explained(
     home: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(assistant, "CHECK_AFTER_S", 3600.0)
+    monkeypatch.setattr(assistant, "CHECK_DELAY_S", 3600.0)
     async with CodeApp().run_test(size=SIZE) as pilot:
         code, area = await typed(pilot, "tank_drve.on(1)\n")
         assert not area.unknown

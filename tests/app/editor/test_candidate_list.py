@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from textual.geometry import Offset, Size
 
-from tuisim.app.editor.candidate_list import list_lines, list_place, list_width, signature_text
+from tuisim.app.editor.candidate_list import format_signature, list_lines, list_place, measure_width
 from tuisim.app.editor.completion import Candidate, Signature
 
 MANY = tuple(Candidate(f"name_{n:02}", "(speed, seconds)", help=f"Help for {n}") for n in range(20))
@@ -41,7 +41,7 @@ def test_the_last_name_of_a_long_list_is_reached() -> None:
     [("on", 78, 24), ("n" * 40, 78, 59), ("n" * 200, 118, 76), ("n" * 200, 58, 58)],
 )
 def test_width_of_a_list(longest: str, room: int, width: int) -> None:
-    assert list_width([Candidate("a"), Candidate(longest, "(speed, seconds)")], room) == width
+    assert measure_width([Candidate("a"), Candidate(longest, "(speed, seconds)")], room) == width
 
 
 @pytest.mark.parametrize(
@@ -69,7 +69,7 @@ def test_a_list_stands_at_its_word_and_in_view(word: Offset, place: Offset) -> N
     ],
 )
 def test_a_signature_is_shortened_around_its_present_parameter(width: int, text: str) -> None:
-    shown = signature_text(SIGNATURE, width)
+    shown = format_signature(SIGNATURE, width)
     assert shown.plain == text
     assert [shown.plain[span.start : span.end] for span in shown.spans if span.style == "bold"] == (
         ["seconds"] if width > 20 else ["s…"]
@@ -77,4 +77,4 @@ def test_a_signature_is_shortened_around_its_present_parameter(width: int, text:
 
 
 def test_a_signature_without_parameters() -> None:
-    assert signature_text(Signature("beep", (), None), 40).plain == "beep()"
+    assert format_signature(Signature("beep", (), None), 40).plain == "beep()"

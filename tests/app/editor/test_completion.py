@@ -10,11 +10,11 @@ import pytest
 from tuisim.app.editor.completion import (
     Candidate,
     Signature,
-    candidates,
-    first_sentence,
-    in_call,
-    signature,
-    word_before,
+    extract_sentence,
+    find_candidates,
+    find_signature,
+    find_word,
+    is_in_call,
 )
 
 EV3DEV2 = "from ev3dev2.motor import LargeMotor\nfrom ev3dev2.sensor.lego import TouchSensor\nm = LargeMotor()\n"
@@ -28,7 +28,7 @@ motor = Motor(Port.A)
 
 
 def at_end(text: str, path: str = "prog.py") -> tuple[Candidate, ...]:
-    return candidates(text, path, *place(text))
+    return find_candidates(text, path, *place(text))
 
 
 def place(text: str) -> tuple[int, int]:
@@ -157,7 +157,7 @@ def test_a_module_beside_the_program_is_read_and_not_run(home: Path, tmp_path: P
     ids=["method", "second", "inner", "own function", "unknown"],
 )
 def test_signature_of_a_call(home: Path, text: str, found: Signature | None) -> None:
-    assert signature(text, "prog.py", *place(text)) == found
+    assert find_signature(text, "prog.py", *place(text)) == found
 
 
 @pytest.mark.parametrize(
@@ -180,7 +180,7 @@ def test_signature_of_a_call(home: Path, text: str, found: Signature | None) -> 
     ],
 )
 def test_the_word_that_is_typed(line: str, column: int, word: str | None) -> None:
-    assert word_before(line, column) == word
+    assert find_word(line, column) == word
 
 
 @pytest.mark.parametrize(
@@ -199,7 +199,7 @@ def test_the_word_that_is_typed(line: str, column: int, word: str | None) -> Non
     ],
 )
 def test_whether_a_place_is_in_a_call(lines: Sequence[str], is_in: bool) -> None:
-    assert in_call(lines, len(lines) - 1, len(lines[-1])) == is_in
+    assert is_in_call(lines, len(lines) - 1, len(lines[-1])) == is_in
 
 
 @pytest.mark.parametrize(
@@ -212,4 +212,4 @@ def test_whether_a_place_is_in_a_call(lines: Sequence[str], is_in: bool) -> None
     ],
 )
 def test_the_first_sentence(documentation: str, first: str) -> None:
-    assert first_sentence(documentation) == first
+    assert extract_sentence(documentation) == first

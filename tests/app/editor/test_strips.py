@@ -6,7 +6,7 @@ from rich.segment import Segment
 from rich.style import Style
 from textual.strip import Strip
 
-from tuisim.app.editor.strips import cut_strip, light_strip
+from tuisim.app.editor.strips import cut_strip, highlight_strip
 
 
 def test_a_cut_row_ends_with_a_mark() -> None:
@@ -17,7 +17,7 @@ def test_a_cut_row_ends_with_a_mark() -> None:
 def test_a_lit_row_keeps_the_background_of_a_selection() -> None:
     base, lit = Style(bgcolor="black"), Style(bgcolor="yellow")
     selected = Style(bgcolor="blue")
-    row = light_strip(Strip([Segment("a", base), Segment("b", selected)]), base, lit)
+    row = highlight_strip(Strip([Segment("a", base), Segment("b", selected)]), base, lit)
     assert [piece.style.bgcolor.name for piece in row if piece.style and piece.style.bgcolor] == [
         "yellow",
         "blue",

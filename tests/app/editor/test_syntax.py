@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tuisim.app.editor.syntax import Colouring, spans
+from tuisim.app.editor.syntax import Colouring, find_spans
 from tuisim.programs.program_file import programs
 
 
@@ -45,7 +45,7 @@ from tuisim.programs.program_file import programs
 def test_parts_of_a_line_and_the_state_after_it(
     line: str, before: str, parts: list[tuple[str, str]], after: str
 ) -> None:
-    found, state = spans(line, before)
+    found, state = find_spans(line, before)
     assert [(line[start:end], kind) for start, end, kind in found] == parts
     assert state == after
 
@@ -53,10 +53,10 @@ def test_parts_of_a_line_and_the_state_after_it(
 def test_an_edit_changes_the_colours_of_the_lines_below() -> None:
     lines = ["a = 1", "b = 2", "c = 3"]
     colouring = Colouring()
-    assert colouring.of(lines, 2) == [(4, 5, "number")]
+    assert colouring.color_line(lines, 2) == [(4, 5, "number")]
     lines[0] = "'''"
-    colouring.forget(0)
-    assert colouring.of(lines, 2) == [(0, 5, "string")]
+    colouring.forget_line(0)
+    assert colouring.color_line(lines, 2) == [(0, 5, "string")]
 
 
 @pytest.mark.parametrize("path", [pytest.param(each.path, id=each.name) for each in programs()])
@@ -66,7 +66,7 @@ def test_every_example_is_coloured_in_order_and_without_overlap(path: Path) -> N
     for at, line in enumerate(lines):
         ends = [
             0,
-            *(edge for start, end, _ in colouring.of(lines, at) for edge in (start, end)),
+            *(edge for start, end, _ in colouring.color_line(lines, at) for edge in (start, end)),
             len(line),
         ]
         assert ends == sorted(ends)

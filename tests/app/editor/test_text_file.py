@@ -11,7 +11,7 @@ import pytest
 
 from tuisim.app.editor.text_file import (
     FOLDER,
-    Form,
+    TextFormat,
     drop_draft,
     find_draft,
     is_protected,
@@ -26,17 +26,20 @@ from tuisim.programs.program_file import programs
 @pytest.mark.parametrize(
     "data, form",
     [
-        (b"x = 1\ny = 2\n", Form()),
-        (b"x = 1\r\ny = 2\r\n", Form(newline="\r\n")),
-        (b"x = 1\ry = 2", Form(newline="\r")),
-        (codecs.BOM_UTF8 + "x = 'é'\n".encode(), Form(has_mark=True)),
-        ("# -*- coding: iso-8859-1 -*-\nx = 'é'\n".encode("latin-1"), Form(encoding="iso-8859-1")),
-        ("x = '\x0c\u2028'\n".encode(), Form()),
-        (b"", Form()),
+        (b"x = 1\ny = 2\n", TextFormat()),
+        (b"x = 1\r\ny = 2\r\n", TextFormat(newline="\r\n")),
+        (b"x = 1\ry = 2", TextFormat(newline="\r")),
+        (codecs.BOM_UTF8 + "x = 'é'\n".encode(), TextFormat(has_mark=True)),
+        (
+            "# -*- coding: iso-8859-1 -*-\nx = 'é'\n".encode("latin-1"),
+            TextFormat(encoding="iso-8859-1"),
+        ),
+        ("x = '\x0c\u2028'\n".encode(), TextFormat()),
+        (b"", TextFormat()),
     ],
     ids=["plain", "windows", "mac", "mark", "latin", "odd breaks", "empty"],
 )
-def test_a_file_is_written_back_as_it_was(data: bytes, form: Form, tmp_path: Path) -> None:
+def test_a_file_is_written_back_as_it_was(data: bytes, form: TextFormat, tmp_path: Path) -> None:
     path = tmp_path / "p.py"
     path.write_bytes(data)
     path.chmod(0o640)
@@ -61,7 +64,7 @@ def test_a_link_stays_a_link(tmp_path: Path) -> None:
     path, link = tmp_path / "p.py", tmp_path / "link.py"
     path.write_text("1\n")
     link.symlink_to(path)
-    write_text(link, "2\n", Form())
+    write_text(link, "2\n", TextFormat())
     assert link.is_symlink()
     assert path.read_text() == "2\n"
 

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import pytest
 
 from tuisim.app.editor import text_lines
-from tuisim.app.editor.text_lines import MOST_COMPARED, LineMap
+from tuisim.app.editor.text_lines import MAX_COMPARED, LineMap
 
 
 @pytest.mark.parametrize(
@@ -35,16 +35,23 @@ from tuisim.app.editor.text_lines import MOST_COMPARED, LineMap
 )
 def test_lines_in_common(run: str, shown: str, to_shown: list[int]) -> None:
     lines = LineMap(run, shown)
-    assert [lines.to_shown(line) for line in range(1, len(run) + 1)] == to_shown
-    assert all(lines.to_run(there) == line for line, there in enumerate(to_shown, 1) if there)
-    assert lines.to_shown(0) == lines.to_run(0) == lines.to_shown(len(run) + 1) == 0
+    assert [lines.find_shown_line(line) for line in range(1, len(run) + 1)] == to_shown
+    assert all(
+        lines.find_run_line(there) == line for line, there in enumerate(to_shown, 1) if there
+    )
+    assert (
+        lines.find_shown_line(0)
+        == lines.find_run_line(0)
+        == lines.find_shown_line(len(run) + 1)
+        == 0
+    )
 
 
 def test_of_a_text_that_is_all_new_only_its_ends_are_compared() -> None:
-    many = [str(number) for number in range(MOST_COMPARED + 1)]
+    many = [str(number) for number in range(MAX_COMPARED + 1)]
     lines = LineMap(["first", *many, "last"], ["first", "new", *many[::-1], "last"])
-    assert (lines.to_shown(1), lines.to_shown(len(many) + 2)) == (1, len(many) + 3)
-    assert lines.to_shown(5) == 0
+    assert (lines.find_shown_line(1), lines.find_shown_line(len(many) + 2)) == (1, len(many) + 3)
+    assert lines.find_shown_line(5) == 0
 
 
 @pytest.mark.parametrize(
@@ -61,22 +68,22 @@ def test_of_a_text_that_is_all_new_only_its_ends_are_compared() -> None:
     ],
 )
 def test_the_indentation_after_a_line(line: str, indent: str) -> None:
-    assert text_lines.indent_after(line) == indent
+    assert text_lines.compute_indent(line) == indent
 
 
 @pytest.mark.parametrize(
     "change, before, after",
     [
-        (text_lines.indented, ["a", "", "  b"], ["    a", "", "      b"]),
+        (text_lines.indent_lines, ["a", "", "  b"], ["    a", "", "      b"]),
         (
-            text_lines.outdented,
+            text_lines.outdent_lines,
             ["    a", "  b", "      c", "\td", "e"],
             ["a", "b", "    c", "d", "e"],
         ),
-        (text_lines.comment_toggled, ["  a", "", "    b"], ["  # a", "", "  #   b"]),
-        (text_lines.comment_toggled, ["  # a", "", "  #   b", "#c"], ["  a", "", "    b", "c"]),
-        (text_lines.comment_toggled, ["# a", "b"], ["# # a", "# b"]),
-        (text_lines.comment_toggled, ["", " "], ["", " "]),
+        (text_lines.toggle_comments, ["  a", "", "    b"], ["  # a", "", "  #   b"]),
+        (text_lines.toggle_comments, ["  # a", "", "  #   b", "#c"], ["  a", "", "    b", "c"]),
+        (text_lines.toggle_comments, ["# a", "b"], ["# # a", "# b"]),
+        (text_lines.toggle_comments, ["", " "], ["", " "]),
     ],
     ids=["in", "out", "comment", "code", "mixed", "empty"],
 )
@@ -91,7 +98,7 @@ def test_lines_are_changed(
     [("speed", [(0, 0), (1, 4)]), ("Speed", [(1, 4)]), ("(", [(1, 9)]), ("", []), ("nothing", [])],
 )
 def test_places_of_a_text(wanted: str, found: list[tuple[int, int]]) -> None:
-    assert text_lines.places(["speed = 3", "x = Speed(1)"], wanted) == found
+    assert text_lines.find_matches(["speed = 3", "x = Speed(1)"], wanted) == found
 
 
 @pytest.mark.parametrize(
@@ -100,4 +107,4 @@ def test_places_of_a_text(wanted: str, found: list[tuple[int, int]]) -> None:
     ids=["same", "changed", "added", "from nothing"],
 )
 def test_how_many_lines_differ(one: str, other: str, count: int) -> None:
-    assert text_lines.differing_lines(one, other) == count
+    assert text_lines.count_differing_lines(one, other) == count

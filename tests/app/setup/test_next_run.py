@@ -175,11 +175,11 @@ WRONG = [
 
 @pytest.mark.parametrize("field, typed, said", WRONG, ids=[f"{f} {t!r}" for f, t, _ in WRONG])
 def test_a_wrong_value_is_refused(field: str, typed: str, said: str) -> None:
-    from tuisim.app.form import reason
+    from tuisim.app.form import format_error
 
     with pytest.raises(ConfigError) as caught:
         edited(plan_of(Settings()), field, typed)
-    assert reason(caught.value).startswith(said)
+    assert format_error(caught.value).startswith(said)
 
 
 def test_a_robot_without_wheels_gets_none_in_the_form() -> None:

@@ -58,12 +58,12 @@ def copy(context: ActionContext) -> None:
 
 def choose_preset(context: ActionContext, preset: Preset) -> None:
     """Show the panels of a preset; if it is shown already, the standard ones."""
-    shown = context.panels.choose_preset(preset)
+    preset_in_view = context.panels.choose_preset(preset)
     key = context.app.ACTIONS[f"layout-{preset}"].key_label
-    _say_layout(context, "" if shown == Preset.STANDARD else f" ({key} again: standard)")
+    _say_layout(context, "" if preset_in_view == Preset.STANDARD else f" ({key} again: standard)")
 
 
-def next_preset(context: ActionContext) -> None:
+def show_next_preset(context: ActionContext) -> None:
     """Show the next preset."""
     context.panels.next_preset()
     _say_layout(context, context.app.with_keys(" ({layout-next}: next, {layout-keep}: keep)"))
@@ -85,7 +85,7 @@ def keep_layout(context: ActionContext) -> None:
     )
 
 
-def next_panel(context: ActionContext, by: int) -> None:
+def focus_next_panel(context: ActionContext, by: int) -> None:
     """Focus the next panel; where there is room for one only, show it."""
     if panel := context.panels.next_panel(by):
         context.app.situation_changed()
@@ -134,34 +134,34 @@ def choose_cells(context: ActionContext) -> None:
 
     app = context.app
 
-    def chosen(name: str | None) -> None:
+    def handle_choice(name: str | None) -> None:
         if name is not None:
             app.choose_cells(name)
             app.keep_setting(CELL_SET, None if name == AUTO else name)
 
-    app.push_screen(CellsCard(app.picture_mode.chosen, app.picture_mode.best), chosen)
+    app.push_screen(CellsCard(app.picture_mode.chosen, app.picture_mode.best), handle_choice)
 
 
-def _theme(context: ActionContext, value: str) -> None:
+def _apply_theme(context: ActionContext, value: str) -> None:
     context.app.theme = value
 
 
-def _rays(context: ActionContext, value: bool) -> None:
+def _apply_rays(context: ActionContext, value: bool) -> None:
     if world := context.panels.world:
         world.show_rays = value
 
 
 _APPLY: Mapping[str, Callable[[ActionContext, Any], None]] = {
     "app.speed": lambda context, value: context.runs.set_speed(value),
-    "app.ultrasound": _rays,
+    "app.ultrasound": _apply_rays,
     CELL_SET: lambda context, value: context.app.choose_cells(value),
     "app.pixels": lambda context, value: context.app.choose_pixels(value),
-    THEME: _theme,
+    THEME: _apply_theme,
 }
 """What applies a setting to the app that is open, by its path."""
 
 
-def change_setting(context: ActionContext, one: Setting, value: Scalar | None) -> None:
+def change_setting(context: ActionContext, setting: Setting, value: Scalar | None) -> None:
     """Write a setting to `config.toml`, and apply it at once where the app can.
 
     Raises:
@@ -169,9 +169,9 @@ def change_setting(context: ActionContext, one: Setting, value: Scalar | None) -
     """
     from tuisim.settings.user_config_file import save_setting
 
-    save_setting(one, value)
-    if apply := _APPLY.get(one.path):
-        apply(context, load_config().values.get(one.path, one.default))
+    save_setting(setting, value)
+    if apply := _APPLY.get(setting.path):
+        apply(context, load_config().values.get(setting.path, setting.default))
         context.app.situation_changed()
         context.app.draw(force=True)
 
@@ -197,7 +197,7 @@ def open_palette(context: ActionContext) -> None:
 
 def leave(context: ActionContext) -> None:
     """Quit; with unsaved changes or a running program, ask first."""
-    context.document.when_safe(lambda: _leave(context))
+    context.document.run_when_saved(lambda: _leave(context))
 
 
 def _leave(context: ActionContext) -> None:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from tuisim.app import background
 from tuisim.app.actions import lesson
-from tuisim.app.actions.time_travel import to_tick
+from tuisim.app.actions.time_travel import go_to_tick
 from tuisim.app.editor.document import NEW_NAME
 from tuisim.app.editor.text_file import find_draft
 from tuisim.app.setup import next_run as plans
@@ -24,7 +24,7 @@ from tuisim.engine.runs.store import RunStore
 from tuisim.settings.options import Settings
 from tuisim.settings.preferences import keep, preference
 
-_LOGGED = "Grey_bands"
+_LOGGING_MAT = "Grey_bands"
 """What a new program is offered in place of the empty mat, on which there is nothing to log."""
 
 if TYPE_CHECKING:
@@ -46,97 +46,97 @@ def clear_log(context: ActionContext) -> None:
 
 def open_program(context: ActionContext) -> None:
     """Ask for a program, a world, goals or a log and open it."""
-    from tuisim.app.dialogs.chooser import is_log, program_chooser
+    from tuisim.app.dialogs.chooser import build_program_chooser, is_log
 
-    def opened(path: str | None) -> None:
+    def handle_choice(path: str | None) -> None:
         if path and is_log(path):
-            analyse_file(context, str(user_path(path)))
+            open_log(context, str(user_path(path)))
         elif path:
             open_path(context, path)
 
-    context.app.push_screen(program_chooser(), opened)
+    context.app.push_screen(build_program_chooser(), handle_choice)
 
 
 def open_path(context: ActionContext, path: str) -> None:
     """Open a program, a world or goals; if the open program has unsaved changes, a dialog asks first."""
 
-    def opened() -> None:
+    def load() -> None:
         context.loader.open_file(path)
         context.document.open_at_mistake()
 
-    context.document.when_safe(opened)
+    context.document.run_when_saved(load)
 
 
-_OPENED = frozenset({".py", ".toml"})
+_OPENABLE_SUFFIXES = frozenset({".py", ".toml"})
 """Suffixes of files that are no logs."""
 
 
 def open_brought(context: ActionContext, path: Path) -> None:
     """Open a file that the user has brought to the page: a program, a world, goals, or a log to be analysed."""
-    if path.suffix in _OPENED and context.runs.in_run:
+    if path.suffix in _OPENABLE_SUFFIXES and context.runs.in_run:
         context.app.say(
             f"{path.name} is here, and can be opened once the run has ended: {{open}} opens it"
         )
-    elif path.suffix in _OPENED:
+    elif path.suffix in _OPENABLE_SUFFIXES:
         open_path(context, str(path))
     else:
-        analyse_file(context, str(path))
+        open_log(context, str(path))
 
 
-_WELCOMED = "welcomed"
+_WELCOMED_PREFERENCE = "welcomed"
 """Name of the preference."""
 EXAMPLE = "log_greys.py"
 """The program that the welcome offers."""
 
 
-def welcome_at_start(context: ActionContext) -> None:
+def greet(context: ActionContext) -> None:
     """Show the welcome at the first start, and at later ones if there is something to go on with."""
     from tuisim.app.setup.recent import recent
 
-    if not preference(_WELCOMED):
-        welcome(context)
+    if not preference(_WELCOMED_PREFERENCE):
+        show_welcome(context)
         return
 
-    def found(entries: list[Recent]) -> None:
+    def show_entries(entries: list[Recent]) -> None:
         if entries:
-            _welcome(context, lambda: entries)
+            _push_welcome(context, lambda: entries)
 
-    background.run(context.panels, partial(recent, NEW_NAME), found, group="welcome")
+    background.run(context.panels, partial(recent, NEW_NAME), show_entries, group="welcome")
 
 
-def welcome(context: ActionContext) -> None:
+def show_welcome(context: ActionContext) -> None:
     """Show the ways to begin, and what there is to go on with."""
     from tuisim.app.setup.recent import recent
 
-    _welcome(context, partial(recent, NEW_NAME))
+    _push_welcome(context, partial(recent, NEW_NAME))
 
 
-def _welcome(context: ActionContext, find: Callable[[], list[Recent]]) -> None:
+def _push_welcome(context: ActionContext, find: Callable[[], list[Recent]]) -> None:
     """Show the welcome; `find` returns what there is to go on with, and is called in a thread."""
     from tuisim.app.dialogs.welcome import Begin, Welcome
     from tuisim.app.setup.recent import Recent
 
-    def chosen(what: Begin | Recent | None) -> None:
+    def handle_choice(what: Begin | Recent | None) -> None:
         # Without a home folder it appears again, which is no reason to fail.
         with suppress(OSError):
-            keep(_WELCOMED, True)
+            keep(_WELCOMED_PREFERENCE, True)
         match what:
             case Begin.NEW:
-                new_program(context)
+                start_program(context)
             case Begin.EXAMPLE:
                 open_path(context, str(programs_folder() / EXAMPLE))
                 context.app.start_run()
             case Begin.LEARN:
-                lesson.menu(context)
+                lesson.show_menu(context)
             case Begin.OPEN:
                 open_program(context)
             case Recent():
-                context.document.when_safe(partial(_go_on, context, what))
+                context.document.run_when_saved(partial(_resume_recent, context, what))
 
-    context.app.push_screen(Welcome(not preference(_WELCOMED), find), chosen)
+    context.app.push_screen(Welcome(not preference(_WELCOMED_PREFERENCE), find), handle_choice)
 
 
-def _go_on(context: ActionContext, what: Recent) -> None:
+def _resume_recent(context: ActionContext, what: Recent) -> None:
     from tuisim.app.setup.recent import Kind
 
     match what.kind:
@@ -205,14 +205,14 @@ def export(context: ActionContext) -> None:
     """Ask for a file and write the log to it."""
     from tuisim.app.dialogs.save import ExportDialog
 
-    def exported(target: Path | None) -> None:
+    def handle_export(target: Path | None) -> None:
         if target:
             context.lesson.exported(target)
 
     run_id = context.runs.run_id
     program = context.runs.program
     if run_id and program:
-        context.app.push_screen(ExportDialog(run_id, program.name), exported)
+        context.app.push_screen(ExportDialog(run_id, program.name), handle_export)
 
 
 def edit(context: ActionContext) -> None:
@@ -225,7 +225,7 @@ def edit(context: ActionContext) -> None:
 def _type(context: ActionContext) -> None:
     if context.panels.shown("code") and (code := context.panels.code):
         # A newly mounted panel has not received the program yet.
-        context.document.introduce()
+        context.document.show_program()
         code.show(context.runs.snapshot())
         code.start_typing(at_error=True)
 
@@ -237,7 +237,7 @@ def save_program(context: ActionContext) -> None:
 
 def edit_in_own_editor(context: ActionContext) -> None:
     """Open the program's file in the editor that the environment names; unsaved changes are saved before."""
-    context.document.when_in_file(partial(_open_in_own_editor, context))
+    context.document.run_with_file(partial(_open_in_own_editor, context))
 
 
 def _open_in_own_editor(context: ActionContext, path: Path) -> None:
@@ -247,12 +247,12 @@ def _open_in_own_editor(context: ActionContext, path: Path) -> None:
         context.app.complain(error)
 
 
-def new_program(context: ActionContext) -> None:
+def start_program(context: ActionContext) -> None:
     """Ask for mat, sensor and skeleton of a new program, and start it in the code panel."""
-    context.document.when_safe(partial(_ask_for_new, context))
+    context.document.run_when_saved(partial(_ask_new_program, context))
 
 
-def _ask_for_new(context: ActionContext) -> None:
+def _ask_new_program(context: ActionContext) -> None:
     from tuisim.app.dialogs.new_program import NewProgramDialog
     from tuisim.engine.mats import mats, spec_name
 
@@ -264,16 +264,18 @@ def _ask_for_new(context: ActionContext) -> None:
     # A mat that is laid out from a file of its own can be kept, too.
     own = {} if current else {plan.spec.world.background: Path(plan.spec.world.background).name}
     laid = current or plan.spec.world.background
-    if laid == Settings()["background"] and _LOGGED in known:
-        laid = _LOGGED
+    if laid == Settings()["background"] and _LOGGING_MAT in known:
+        laid = _LOGGING_MAT
 
-    def chosen(text: str | None) -> None:
+    def handle_choice(text: str | None) -> None:
         if text is not None:
             if not context.panels.shown("code"):
                 context.panels.toggle("code")
-            context.app.call_after_refresh(context.document.new, text)
+            context.app.call_after_refresh(context.document.start_new, text)
 
-    context.app.push_screen(NewProgramDialog(own | {name: name for name in known}, laid), chosen)
+    context.app.push_screen(
+        NewProgramDialog(own | {name: name for name in known}, laid), handle_choice
+    )
 
 
 def compare(context: ActionContext) -> None:
@@ -284,20 +286,20 @@ def compare(context: ActionContext) -> None:
     if recording is None:
         return
 
-    def chosen(run_id: str | None) -> None:
+    def handle_choice(run_id: str | None) -> None:
         if run_id:
             work, show = (
-                partial(_diff, recording.run_id, run_id),
+                partial(_load_diff, recording.run_id, run_id),
                 partial(_show, context, recording),
             )
             background.run(
                 context.panels, work, show, context.app.complain, group="diff", exclusive=True
             )
 
-    context.app.push_screen(RunChooser(recording), chosen)
+    context.app.push_screen(RunChooser(recording), handle_choice)
 
 
-def _diff(run_id: str, other_id: str) -> tuple[Recording, RunDiff]:
+def _load_diff(run_id: str, other_id: str) -> tuple[Recording, RunDiff]:
     """Return the other run and the differences. Reads both runs."""
     from tuisim.engine.runs.diff import diff_runs
 
@@ -315,28 +317,28 @@ def _show(
 
     def go(there: bool | None) -> None:
         if there and diff.tick and context.runs.timeline.recording is recording:
-            to_tick(context, diff.tick.tick)
+            go_to_tick(context, diff.tick.tick)
 
     if context.runs.timeline.recording is recording:
         context.runs.show_earlier(other)
     context.app.push_screen(Differences(recording.name.capitalize(), other.name, diff), go)
 
 
-def analyse(context: ActionContext) -> None:
+def open_analyser(context: ActionContext) -> None:
     """Open the log of the current run in the analyser."""
     from tuisim.analysis.source import LogRequest
 
-    _analyse(context, LogRequest(runs=(context.runs.run_id,)))
+    _push_analyser(context, LogRequest(runs=(context.runs.run_id,)))
 
 
-def analyse_file(context: ActionContext, file: str) -> None:
+def open_log(context: ActionContext, file: str) -> None:
     """Open a log in a file in the analyser."""
     from tuisim.analysis.remembered import request_file
 
-    _analyse(context, request_file(file))
+    _push_analyser(context, request_file(file))
 
 
-def _analyse(context: ActionContext, request: LogRequest) -> None:
+def _push_analyser(context: ActionContext, request: LogRequest) -> None:
     # The analyser is slow to import, and many sessions never use it.
     from tuisim.app.analyser.app import Analyser
 
@@ -350,14 +352,14 @@ def choose_run(context: ActionContext) -> None:
     """Ask for a stored run and open it."""
     from tuisim.app.dialogs.runs import RunChooser
 
-    def chosen(run_id: str | None) -> None:
+    def handle_choice(run_id: str | None) -> None:
         if run_id:
-            context.document.when_safe(lambda: context.loader.open_run(run_id))
+            context.document.run_when_saved(lambda: context.loader.open_run(run_id))
 
     def ask() -> None:
-        context.app.push_screen(RunChooser(), chosen)
+        context.app.push_screen(RunChooser(), handle_choice)
 
-    context.document.when_safe(ask)
+    context.document.run_when_saved(ask)
 
 
 VARIABLES = ("VISUAL", "EDITOR")

@@ -13,7 +13,7 @@ from typing import TypeAlias
 
 from tuisim.app.action import Action
 from tuisim.app.actions import ActionContext, app, files, lesson, program, robot, time_travel
-from tuisim.app.actions.files import analyse
+from tuisim.app.actions.files import open_analyser
 from tuisim.app.layout.arrangement import Preset
 from tuisim.app.panels import PANELS
 from tuisim.app.snapshot import IN_RUN, RunPhase, Situation
@@ -55,12 +55,12 @@ def _can_look_back(now: Situation) -> str:
     return "" if now.has_run else "No run yet: {run} runs the program"
 
 
-def _can_look_on(now: Situation) -> str:
+def _can_go_forward(now: Situation) -> str:
     return "" if now.in_past else _can_look_back(now) or "This is the latest instant"
 
 
 def _can_come_back(now: Situation) -> str:
-    return "" if now.looks_back else _can_look_on(now)
+    return "" if now.looks_back else _can_go_forward(now)
 
 
 def _can_change_world(now: Situation) -> str:
@@ -86,16 +86,16 @@ def _can_nudge(now: Situation) -> str:
     return "{pause} pauses the program, then keys move the robot; the mouse does at any time"
 
 
-def _nudge(key: str, words: str, forward: tuple[float, float]) -> LabAction:
-    do = partial(robot.nudge, right_mm=forward[0], up_mm=forward[1], turn_deg=0.0)
+def _build_nudge(key: str, words: str, forward: tuple[float, float]) -> LabAction:
+    do = partial(robot.move_slightly, right_mm=forward[0], up_mm=forward[1], turn_deg=0.0)
     return Action(
         f"nudge-{key.replace('+', '-')}", key, f"Move the robot {words}", ROBOT, do, _can_nudge
     )
 
 
-def _turn(letter: str, arrow: str, words: str, turn_deg: float) -> LabAction:
+def _build_turn(letter: str, arrow: str, words: str, turn_deg: float) -> LabAction:
     # Some terminals send ctrl and an arrow as the arrow alone.
-    do = partial(robot.nudge, right_mm=0.0, up_mm=0.0, turn_deg=turn_deg)
+    do = partial(robot.move_slightly, right_mm=0.0, up_mm=0.0, turn_deg=turn_deg)
     return Action(
         f"nudge-ctrl-{arrow}",
         f"{letter},ctrl+{arrow}",
@@ -106,18 +106,18 @@ def _turn(letter: str, arrow: str, words: str, turn_deg: float) -> LabAction:
     )
 
 
-def _nudges() -> list[LabAction]:
+def _build_nudges() -> list[LabAction]:
     ways = {"left": (-1.0, 0.0), "right": (1.0, 0.0), "up": (0.0, 1.0), "down": (0.0, -1.0)}
-    coarse = [_nudge(key, f"10 mm {key}", (10 * x, 10 * y)) for key, (x, y) in ways.items()]
-    fine = [_nudge(f"shift+{key}", f"1 mm {key}", (x, y)) for key, (x, y) in ways.items()]
+    coarse = [_build_nudge(key, f"10 mm {key}", (10 * x, 10 * y)) for key, (x, y) in ways.items()]
+    fine = [_build_nudge(f"shift+{key}", f"1 mm {key}", (x, y)) for key, (x, y) in ways.items()]
     turns = [
-        _turn("a", "left", "5° counter-clockwise", 5.0),
-        _turn("f", "right", "5° clockwise", -5.0),
+        _build_turn("a", "left", "5° counter-clockwise", 5.0),
+        _build_turn("f", "right", "5° clockwise", -5.0),
     ]
     return coarse + fine + turns
 
 
-def _toggles() -> list[LabAction]:
+def _build_toggles() -> list[LabAction]:
     return [
         Action(
             f"panel-{p.id}",
@@ -141,20 +141,31 @@ _PRESETS = {
 _NEXT_LAYOUT = "Next layout: drive, debug, analyse, standard"
 
 
-def _layouts() -> list[LabAction]:
+def _build_layouts() -> list[LabAction]:
     return [
         *(
             Action(f"layout-{preset}", key, title, PANEL, partial(app.choose_preset, preset=preset))
             for preset, (key, title) in _PRESETS.items()
         ),
-        Action("layout-next", "f9", _NEXT_LAYOUT, PANEL, app.next_preset, footer="layout"),
+        Action("layout-next", "f9", _NEXT_LAYOUT, PANEL, app.show_next_preset, footer="layout"),
         Action(
             "layout-keep", "shift+f9", "Keep the layout for the next start", PANEL, app.keep_layout
         ),
         Action(
-            "panel-next", "f2", "Next panel", PANEL, partial(app.next_panel, by=1), footer="panel"
+            "panel-next",
+            "f2",
+            "Next panel",
+            PANEL,
+            partial(app.focus_next_panel, by=1),
+            footer="panel",
         ),
-        Action("panel-before", "shift+f2", "Previous panel", PANEL, partial(app.next_panel, by=-1)),
+        Action(
+            "panel-before",
+            "shift+f2",
+            "Previous panel",
+            PANEL,
+            partial(app.focus_next_panel, by=-1),
+        ),
     ]
 
 
@@ -169,7 +180,7 @@ def _can_debug(now: Situation) -> str:
 _BREAK = "Breakpoint on this line, or the cursor's"
 
 
-def _debugs() -> list[LabAction]:
+def _build_debug_actions() -> list[LabAction]:
     can = _can_debug
     over, into, out = LineStep.OVER, LineStep.INTO, LineStep.OUT
     line_back = "N", "Step back one line", DEBUG
@@ -221,29 +232,40 @@ def _debugs() -> list[LabAction]:
             "watches", "w", "Watches: expressions to evaluate", DEBUG, program.list_watches, can
         ),
         Action(
-            "to-cursor", "L", "Run to the cursor's line", DEBUG, program.to_cursor, can, "to cursor"
+            "to-cursor",
+            "L",
+            "Run to the cursor's line",
+            DEBUG,
+            program.run_to_cursor,
+            can,
+            "to cursor",
         ),
     ]
 
 
-def _travels() -> list[LabAction]:
-    back, on = _can_look_back, _can_look_on
+def _build_travel_actions() -> list[LabAction]:
+    back, on = _can_look_back, _can_go_forward
     keys = "< >"
     go = time_travel
-    second_back, second_on = (partial(go.by_seconds, by=by) for by in (-1, 1))
+    second_back, second_on = (partial(go.skip_seconds, by=by) for by in (-1, 1))
     sample_before, next_sample = (
-        partial(go.to_sample, words=words) for words in ("sample back", "sample")
+        partial(go.go_to_sample, words=words) for words in ("sample back", "sample")
     )
     return [
         Action(
-            "ten-ticks", "colon", "Ten ticks forward, while paused", TIME, go.ten_ticks, _can_step
+            "ten-ticks",
+            "colon",
+            "Ten ticks forward, while paused",
+            TIME,
+            go.step_ten_ticks,
+            _can_step,
         ),
         Action(
             "now",
             "end",
             "Return to the present (also escape)",
             TIME,
-            go.to_now,
+            go.go_to_now,
             _can_come_back,
             "now",
         ),
@@ -266,7 +288,7 @@ def _travels() -> list[LabAction]:
             "g",
             "Go to a time, tick, line, sample or print",
             TIME,
-            go.ask_where,
+            go.ask_instant,
             back,
             "go to",
         ),
@@ -288,7 +310,9 @@ def _travels() -> list[LabAction]:
             back,
             "wrong?",
         ),
-        Action("start-of-run", "home", "Start of the run", TIME, partial(go.to_tick, tick=0), back),
+        Action(
+            "start-of-run", "home", "Start of the run", TIME, partial(go.go_to_tick, tick=0), back
+        ),
     ]
 
 
@@ -305,7 +329,7 @@ def _scroll(name: str, key: str, where: str, by: int) -> LabAction:
 
 _UNDO = "Undo a move, a cleared trace or log"
 _SCREENSHOT = "Save a screenshot: SVG and PNG (also F12)"
-_TICK_BACK = partial(time_travel.by_ticks, ticks=-1)
+_TICK_BACK = partial(time_travel.skip_ticks, ticks=-1)
 _SLOWER, _FASTER = (partial(program.change_speed, by=by) for by in (-1, 1))
 
 _WORDS: Mapping[str, str] = {
@@ -403,13 +427,13 @@ ACTIONS: Mapping[str, LabAction] = {
             "full_stop",
             "One tick forward, while paused",
             TIME,
-            time_travel.tick_on,
+            time_travel.step_tick,
             _can_step,
             "tick",
         ),
         Action("back", "comma", "One tick back", TIME, _TICK_BACK, _can_look_back, "back"),
-        *_debugs(),
-        *_travels(),
+        *_build_debug_actions(),
+        *_build_travel_actions(),
         Action(
             "open",
             "o",
@@ -424,7 +448,7 @@ ACTIONS: Mapping[str, LabAction] = {
             "f4",
             "Begin: a new program, or go on with one",
             FILES,
-            files.welcome,
+            files.show_welcome,
             _can_change_world,
         ),
         Action("edit", "d", "Edit the program", FILES, files.edit, footer="edit"),
@@ -443,14 +467,21 @@ ACTIONS: Mapping[str, LabAction] = {
             "ctrl+t",
             "New program: mat, sensor, text",
             FILES,
-            files.new_program,
+            files.start_program,
             _can_change_world,
             "new",
         ),
         Action("mats", "b", "Choose a mat", ROBOT, robot.choose_mat, _can_change_world, "mats"),
-        Action("home", "m", "Move the robot to its start pose", ROBOT, robot.home, footer="start"),
-        Action("random", "j", "Move the robot to a random pose", ROBOT, robot.random_place),
-        Action("poses", "P", "Saved poses: go to, save, delete", ROBOT, robot.saved_poses),
+        Action(
+            "home",
+            "m",
+            "Move the robot to its start pose",
+            ROBOT,
+            robot.home,
+            footer="start",
+        ),
+        Action("random", "j", "Move the robot to a random pose", ROBOT, robot.place_randomly),
+        Action("poses", "P", "Saved poses: go to, save, delete", ROBOT, robot.list_poses),
         Action(
             "robot",
             "r",
@@ -484,7 +515,7 @@ ACTIONS: Mapping[str, LabAction] = {
             partial(robot.choose, what="profile"),
             _can_change_world,
         ),
-        Action("pen", "p", "Pen up or down", ROBOT, robot.pen, footer="pen"),
+        Action("pen", "p", "Pen up or down", ROBOT, robot.switch_pen, footer="pen"),
         Action(
             "slower",
             "left_square_bracket",
@@ -511,7 +542,7 @@ ACTIONS: Mapping[str, LabAction] = {
             "l",
             "Analyse the log: table, chart, bands, notes",
             FILES,
-            analyse,
+            open_analyser,
             _can_export,
             "analyse",
         ),
@@ -531,8 +562,12 @@ ACTIONS: Mapping[str, LabAction] = {
             "save-obstacles", "ctrl+o", "Save the obstacles to a file", FILES, files.save_obstacles
         ),
         Action("zoom", "v", "Zoom the world", ROBOT, robot.zoom, footer="zoom"),
-        Action("earlier", "minus", "Show or hide the earlier run's robot", ROBOT, robot.earlier),
-        Action("rays", "U", "Show or hide the ultrasonic rays", ROBOT, robot.rays, footer="rays"),
+        Action(
+            "earlier", "minus", "Show or hide the earlier run's robot", ROBOT, robot.switch_earlier
+        ),
+        Action(
+            "rays", "U", "Show or hide the ultrasonic rays", ROBOT, robot.switch_rays, footer="rays"
+        ),
         Action(
             "pixels",
             "number_sign",
@@ -550,14 +585,14 @@ ACTIONS: Mapping[str, LabAction] = {
             FILES,
             files.clear_log,
         ),
-        *_toggles(),
-        *_layouts(),
+        *_build_toggles(),
+        *_build_layouts(),
         Action(
             "lesson-menu",
             "M",
             "Lessons: open, go back, skip, start over",
             LESSON,
-            lesson.menu,
+            lesson.show_menu,
             _can_change_world,
             "lessons",
         ),
@@ -582,7 +617,7 @@ ACTIONS: Mapping[str, LabAction] = {
         _scroll("lesson-back", "ctrl+up", "also while you type: up", -4),
         _scroll("lesson-on", "ctrl+down", "also while you type: down", 4),
         Action("enlarge", "plus", "Enlarge the focused panel, or restore it", PANEL, app.enlarge),
-        *_nudges(),
+        *_build_nudges(),
         Action(
             "help",
             "question_mark,f1",
@@ -622,13 +657,13 @@ RUN_KEYS = frozenset(
 """Keys that start a run, or need one."""
 
 
-def _next_steps(now: Situation) -> tuple[str, ...]:
+def _find_next_steps(now: Situation) -> tuple[str, ...]:
     """Return the ids of the likely next steps: out of the past, on with a run, to its results, or to a first run."""
     code = ("to-cursor", "break") if now.reads_code else ()
     wrong = ("went-wrong",) if now.has_reasons else ()
     mended = ("edit",) if now.has_reasons else ()
     if now.can_undo:
-        return ("undo", *_next_steps(replace(now, can_undo=False)))
+        return ("undo", *_find_next_steps(replace(now, can_undo=False)))
     if now.looks_back:
         return ("now", *wrong, "branch", "line-back", "next-line", *code)
     if now.state == RunPhase.PAUSED:
@@ -650,7 +685,7 @@ TEXT_KEYS = frozenset({"lesson-back", "lesson-on"})
 """Ids of the actions that scroll the lesson whatever has the focus."""
 
 
-def footer_actions(
+def list_footer_actions(
     table: Mapping[str, LabAction], names: Iterable[str], now: Situation, playing: bool
 ) -> list[LabAction]:
     """Return actions of a table with the words of the footer: the pause key says what it does now.
@@ -672,8 +707,8 @@ def footer_actions(
 
 
 @lru_cache(maxsize=16)
-def working(now: Situation) -> tuple[str, ...]:
+def list_working(now: Situation) -> tuple[str, ...]:
     """Return the ids of the available actions: the likely next steps first, the others in the order of the table."""
-    found = dict.fromkeys(name for name, action in ACTIONS.items() if not action.why_not(now))
-    first = [step for step in _next_steps(now) if step in found]
-    return tuple(dict.fromkeys((*first, *found)))
+    names = dict.fromkeys(name for name, action in ACTIONS.items() if not action.why_not(now))
+    first = [step for step in _find_next_steps(now) if step in names]
+    return tuple(dict.fromkeys((*first, *names)))

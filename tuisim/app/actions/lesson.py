@@ -43,22 +43,22 @@ def answer(context: ActionContext) -> None:
 def scroll(context: ActionContext, by: int) -> None:
     """Scroll the text of the lesson by rows; if all of it is in view, the code if it has the focus."""
     area = context.panels
-    if area.lesson and reads_on(area):
+    if area.lesson and has_more_text(area):
         area.lesson.action_scroll_text(by)
     elif area.code and area.code.has_focus_within:
         area.code.page(by)
 
 
-def takes_pages(area: PanelArea) -> bool:
+def accept_page_keys(area: PanelArea) -> bool:
     """Return whether the page keys are for the lesson, or the code, whatever has the focus."""
     if not area.screen.is_current:
         return False
     if area.code is not None and area.code.has_focus_within:
         return not area.code.typing
-    return reads_on(area)
+    return has_more_text(area)
 
 
-def reads_on(area: PanelArea) -> bool:
+def has_more_text(area: PanelArea) -> bool:
     """Return whether the lesson is in sight, with more of its text above or below."""
     return (
         area.screen.is_current
@@ -68,7 +68,7 @@ def reads_on(area: PanelArea) -> bool:
     )
 
 
-def menu(context: ActionContext) -> None:
+def show_menu(context: ActionContext) -> None:
     """Offer to read earlier steps again, to skip the step, to start over, and all lessons."""
     from tuisim.app.dialogs.chooser import ChoiceGroup, Chooser
 
@@ -86,18 +86,18 @@ def menu(context: ActionContext) -> None:
     progress = load_progress()
     lessons = [
         (
-            f"{_OPEN}{one.name}",
-            f"{number:2} {one.title}",
-            progress.get(one.name, LessonProgress()).words(one),
+            f"{_OPEN}{lesson.name}",
+            f"{number:2} {lesson.title}",
+            progress.get(lesson.name, LessonProgress()).words(lesson),
         )
-        for number, one in enumerate(context.lesson.lessons(), start=1)
+        for number, lesson in enumerate(context.lesson.lessons(), start=1)
     ]
-    current = f"{_OPEN}{_wanted(context)}"
+    current = f"{_OPEN}{_find_current_lesson(context)}"
     groups = [ChoiceGroup("This lesson", here), ChoiceGroup("All lessons", lessons)]
-    context.app.push_screen(Chooser("Lessons", groups, current), partial(_chosen, context))
+    context.app.push_screen(Chooser("Lessons", groups, current), partial(_handle_choice, context))
 
 
-def _wanted(context: ActionContext) -> str:
+def _find_current_lesson(context: ActionContext) -> str:
     """Return the name of the lesson that is selected first: the next one after the end of this one."""
     lesson = context.lesson
     if lesson.lesson is None:
@@ -105,7 +105,7 @@ def _wanted(context: ActionContext) -> str:
     return lesson.lesson.name if lesson.step else lesson.next_name or lesson.lesson.name
 
 
-def _chosen(context: ActionContext, choice: str | None) -> None:
+def _handle_choice(context: ActionContext, choice: str | None) -> None:
     if choice is None:
         return
     if choice == _BEFORE:
@@ -115,23 +115,25 @@ def _chosen(context: ActionContext, choice: str | None) -> None:
     elif choice == _MODEL:
         _switch_model(context)
     elif choice == _OVER:
-        _ask_to_start_over(context)
+        _ask_restart(context)
     else:
         name = choice.removeprefix(_OPEN)
-        context.document.when_safe(partial(context.lesson.open, name))
+        context.document.run_when_saved(partial(context.lesson.open, name))
 
 
-def _ask_to_start_over(context: ActionContext) -> None:
+def _ask_restart(context: ActionContext) -> None:
     from tuisim.app.dialogs.question import Question
 
     text = "All steps of this lesson are open again, and its program is as at first. A copy of yours is kept."
     answers = (("s", "Start over"),)
 
-    def answered(key: str | None) -> None:
+    def handle_answer(key: str | None) -> None:
         if key:
-            context.document.when_safe(context.lesson.start_over)
+            context.document.run_when_saved(context.lesson.start_over)
 
-    context.app.push_screen(Question("Start over?", text, answers, "goes on as it is"), answered)
+    context.app.push_screen(
+        Question("Start over?", text, answers, "goes on as it is"), handle_answer
+    )
 
 
 def _switch_model(context: ActionContext) -> None:
@@ -144,7 +146,7 @@ def _switch_model(context: ActionContext) -> None:
         context.app.draw(force=True)
         return
 
-    def made(recording: Recording) -> None:
+    def handle_recording(recording: Recording) -> None:
         if context.lesson.lesson is lesson:
             runs.accompany(recording)
             context.app.say(
@@ -154,4 +156,6 @@ def _switch_model(context: ActionContext) -> None:
             context.app.draw(force=True)
 
     work = partial(model_run, lesson, context.lesson.step)
-    background.run(context.panels, work, made, context.app.complain, group="model", exclusive=True)
+    background.run(
+        context.panels, work, handle_recording, context.app.complain, group="model", exclusive=True
+    )

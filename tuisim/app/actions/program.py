@@ -47,25 +47,25 @@ def pause(context: ActionContext) -> None:
 def change_speed(context: ActionContext, by: int) -> None:
     """Go to a higher or lower speed, by a number of steps."""
     speed = context.runs.speed
-    at = (
+    index = (
         SPEEDS.index(speed)
         if speed in SPEEDS
         else min(range(6), key=lambda i: abs(SPEEDS[i] - speed))
     )
-    to = at + by
-    if not 0 <= to < len(SPEEDS):
+    new_index = index + by
+    if not 0 <= new_index < len(SPEEDS):
         context.app.say(
             f"The speed is already {speed_label(speed)}, the {'slowest' if by < 0 else 'fastest'}"
         )
         return
     context.runs.has_chosen_speed = True
-    context.runs.set_speed(SPEEDS[to])
+    context.runs.set_speed(SPEEDS[new_index])
     context.app.situation_changed()
 
 
-def to_cursor(context: ActionContext) -> None:
+def run_to_cursor(context: ActionContext) -> None:
     """Continue until the cursor's line in the code is about to run."""
-    if line := _cursor_line(context):
+    if line := _find_cursor_line(context):
         context.debugger.run_to(line)
 
 
@@ -81,7 +81,7 @@ def toggle_break(context: ActionContext) -> None:
         _go_to_code(context)
 
 
-def _cursor_line(context: ActionContext) -> int:
+def _find_cursor_line(context: ActionContext) -> int:
     """Return the line of the cursor; show the code first if it is hidden."""
     area = context.panels
     if area.shown("code"):

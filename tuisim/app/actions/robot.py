@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from tuisim.app.panels.world import World
 
 
-def pen(context: ActionContext) -> None:
+def switch_pen(context: ActionContext) -> None:
     """Put the pen up or down."""
     runs = context.runs
     runs.set_pen(not runs.pen_down)
@@ -40,7 +40,7 @@ def _move(context: ActionContext, pose: Pose) -> None:
         context.app.offer_undo(lambda: context.runs.place(before))
 
 
-def nudge(context: ActionContext, right_mm: float, up_mm: float, turn_deg: float) -> None:
+def move_slightly(context: ActionContext, right_mm: float, up_mm: float, turn_deg: float) -> None:
     """Move the robot a little."""
     pose = context.runs.pose
     context.runs.place(Pose(pose.x_mm + right_mm, pose.y_mm + up_mm, pose.heading_deg + turn_deg))
@@ -48,13 +48,13 @@ def nudge(context: ActionContext, right_mm: float, up_mm: float, turn_deg: float
 
 def clear_trace(context: ActionContext) -> None:
     """Clear the pen trace."""
-    if world := world_panel(context):
+    if world := find_world_panel(context):
         pieces = world.clear_trace()
         context.app.draw(force=True)
         context.app.offer_undo(lambda: world.restore_trace(pieces))
 
 
-def random_place(context: ActionContext) -> None:
+def place_randomly(context: ActionContext) -> None:
     """Put the robot at a random place on the field."""
 
     from tuisim.app.setup.poses import random_pose
@@ -67,7 +67,7 @@ def random_place(context: ActionContext) -> None:
         )
 
 
-def saved_poses(context: ActionContext) -> None:
+def list_poses(context: ActionContext) -> None:
     """Show the dialog of the saved poses."""
     from tuisim.app.dialogs.entries import SavedPoses
 
@@ -92,12 +92,12 @@ def choose_mat(context: ActionContext) -> None:
     def lay(name: str | None) -> None:
         if name:
             context.loader.change_mat(name)
-            _propose_to_write(context, name if name in known else str(user_path(name).absolute()))
+            _propose_write(context, name if name in known else str(user_path(name).absolute()))
 
     context.app.push_screen(MatPicker(context.runs.spec.world.background, known, folder), lay)
 
 
-def _propose_to_write(context: ActionContext, mat: str) -> None:
+def _propose_write(context: ActionContext, mat: str) -> None:
     """Ask whether a mat is to be written into the magic line of the program that is open, if that names another."""
     from tuisim.app.dialogs.question import Question
 
@@ -105,35 +105,35 @@ def _propose_to_write(context: ActionContext, mat: str) -> None:
     if context.lesson.lesson or (named := document.named_mat) is None or named == mat:
         return
 
-    def answered(answer: str | None) -> None:
+    def handle_answer(answer: str | None) -> None:
         if answer == "w":
             document.write_mat(mat)
 
     text = f"{document.name} begins with {f'the mat {named}' if named else 'a first line without a mat'}."
     answers = (("k", "Keep it"), ("w", f"Write {mat} there"))
     context.app.push_screen(
-        Question("The program's mat", text, answers, "keeps the program as it is"), answered
+        Question("The program's mat", text, answers, "keeps the program as it is"), handle_answer
     )
 
 
 def choose(context: ActionContext, what: str) -> None:
     """Ask for a robot, a profile or a set of obstacles, and apply the choice to the plan."""
-    from tuisim.app.dialogs.chooser import obstacle_chooser, profile_chooser
-    from tuisim.app.dialogs.robots import OF_PROGRAM, robot_chooser
+    from tuisim.app.dialogs.chooser import build_obstacle_chooser, build_profile_chooser
+    from tuisim.app.dialogs.robots import PROGRAM_ROBOT, build_robot_picker
 
     chooser, change = {
-        "robot": (robot_chooser, plans.with_robot),
-        "profile": (profile_chooser, plans.with_profile),
-        "obstacles": (obstacle_chooser, plans.with_obstacle_set),
+        "robot": (build_robot_picker, plans.with_robot),
+        "profile": (build_profile_chooser, plans.with_profile),
+        "obstacles": (build_obstacle_chooser, plans.with_obstacle_set),
     }[what]
 
-    def chosen(word: str | None) -> None:
-        if word == OF_PROGRAM:
+    def handle_choice(word: str | None) -> None:
+        if word == PROGRAM_ROBOT:
             context.loader.attempt(plans.with_program_robot)
         elif word:
             context.loader.attempt(lambda plan: change(plan, word))
 
-    context.app.push_screen(chooser(context.runs.next_run), chosen)
+    context.app.push_screen(chooser(context.runs.next_run), handle_choice)
 
 
 def reset_robot(context: ActionContext) -> None:
@@ -146,12 +146,12 @@ def reset_robot(context: ActionContext) -> None:
 
 def zoom(context: ActionContext) -> None:
     """Switch the world to the next zoom."""
-    if world := world_panel(context):
+    if world := find_world_panel(context):
         world.cycle_zoom()
         context.app.draw(force=True)
 
 
-def world_panel(context: ActionContext) -> World | None:
+def find_world_panel(context: ActionContext) -> World | None:
     """Return the world panel; None, with a notice, if it is hidden."""
     if context.panels.shown("world"):
         return context.panels.world
@@ -159,7 +159,7 @@ def world_panel(context: ActionContext) -> World | None:
     return None
 
 
-def earlier(context: ActionContext) -> None:
+def switch_earlier(context: ActionContext) -> None:
     """Show or hide the robot of the earlier run."""
     runs = context.runs
     runs.shows_earlier = not runs.shows_earlier
@@ -173,8 +173,8 @@ def earlier(context: ActionContext) -> None:
     context.app.draw(force=True)
 
 
-def rays(context: ActionContext) -> None:
+def switch_rays(context: ActionContext) -> None:
     """Switch the ultrasonic rays on or off."""
-    if world := world_panel(context):
+    if world := find_world_panel(context):
         world.show_rays = not world.show_rays
         context.app.draw(force=True)

@@ -24,7 +24,7 @@ MANY_TICKS = 10
 """Ticks that `:` runs."""
 
 
-def to_tick(context: ActionContext, tick: int | None) -> None:
+def go_to_tick(context: ActionContext, tick: int | None) -> None:
     """Go to a tick of the run; None and ticks beyond the newest mean now. A running program is paused first."""
     recording = context.runs.timeline.recording
     if recording is None or (tick is not None and not _is_laid_out(context, recording)):
@@ -55,7 +55,7 @@ def refresh(context: ActionContext) -> None:
     context.app.draw(force=True)
 
 
-def to_time(context: ActionContext, time_s: float | None, sample: str = "") -> None:
+def go_to_time(context: ActionContext, time_s: float | None, sample: str = "") -> None:
     """Go to a time of the run, None for now; and to the line that printed the sample of that name then."""
     tick = None if time_s is None else round(time_s * context.runs.timeline.tick_hz)
     recording = context.runs.timeline.recording
@@ -68,49 +68,49 @@ def to_time(context: ActionContext, time_s: float | None, sample: str = "") -> N
         context.debugger.choose_line(tick, line)
         if not context.panels.shown("code"):
             context.app.say(f"Line {line} has printed this: {{panel-code}} shows it")
-    to_tick(context, tick)
+    go_to_tick(context, tick)
 
 
-def by_ticks(context: ActionContext, ticks: int) -> None:
+def skip_ticks(context: ActionContext, ticks: int) -> None:
     """Go forward by a number of ticks of the recording; negative goes back."""
     timeline = context.runs.timeline
-    at = timeline.tick
-    if ticks < 0 and at <= 0:
+    tick = timeline.tick
+    if ticks < 0 and tick <= 0:
         context.app.say("This is the start of the run")
         return
-    to_tick(context, at + ticks if at + ticks < timeline.newest else None)
+    go_to_tick(context, tick + ticks if tick + ticks < timeline.newest else None)
 
 
-def tick_on(context: ActionContext) -> None:
+def step_tick(context: ActionContext) -> None:
     """Go forward one tick: as recorded in the past, else live; from an earlier line of the newest tick, go to now."""
     if context.runs.in_past:
-        by_ticks(context, 1)
+        skip_ticks(context, 1)
     elif context.debugger.is_away:
-        to_now(context)
+        go_to_now(context)
     else:
         context.runs.send(protocol.StepTicks(1))
 
 
-def ten_ticks(context: ActionContext) -> None:
+def step_ten_ticks(context: ActionContext) -> None:
     """Run ten ticks."""
     timeline = context.runs.timeline
     if context.runs.in_past:
-        at = timeline.at or 0
-        to_tick(context, at + MANY_TICKS if at + MANY_TICKS < timeline.newest else None)
+        tick = timeline.at or 0
+        go_to_tick(context, tick + MANY_TICKS if tick + MANY_TICKS < timeline.newest else None)
     elif context.debugger.is_away:
-        to_now(context)
+        go_to_now(context)
     else:
         context.runs.send(protocol.StepTicks(MANY_TICKS))
 
 
-def by_seconds(context: ActionContext, by: int) -> None:
+def skip_seconds(context: ActionContext, by: int) -> None:
     """Go forward by a number of seconds of the recording; negative goes back."""
-    by_ticks(context, by * context.runs.timeline.tick_hz)
+    skip_ticks(context, by * context.runs.timeline.tick_hz)
 
 
-def to_now(context: ActionContext) -> None:
+def go_to_now(context: ActionContext) -> None:
     """Go to the newest instant."""
-    to_tick(context, None)
+    go_to_tick(context, None)
 
 
 def stop_time(context: ActionContext) -> None:
@@ -129,7 +129,7 @@ def advance_playback(context: ActionContext) -> None:
         refresh(context)
 
 
-def ask_where(context: ActionContext) -> None:
+def ask_instant(context: ActionContext) -> None:
     """Ask for an instant and go there."""
     from tuisim.app.dialogs.question import LinePrompt
 
@@ -141,7 +141,7 @@ def ask_where(context: ActionContext) -> None:
 
     def go(text: str) -> None:
         text = text or timeline.searched
-        to_tick(context, find(text, timeline, field, first_at_end=True))
+        go_to_tick(context, find(text, timeline, field, first_at_end=True))
         timeline.searched = text
         if words := describe_commands(text, timeline):
             context.app.say(words)
@@ -159,10 +159,10 @@ def ask_where(context: ActionContext) -> None:
     )
 
 
-def to_sample(context: ActionContext, words: str) -> None:
+def go_to_sample(context: ActionContext, words: str) -> None:
     """Go to a sample: words that `find` understands."""
     try:
-        to_tick(context, find(words, context.runs.timeline))
+        go_to_tick(context, find(words, context.runs.timeline))
     except TuisimError as error:
         context.app.say(error.message)
 
@@ -181,10 +181,10 @@ def go_wrong(context: ActionContext) -> None:
         tour.begin(recording)
     before = tour.earlier or context.runs.earlier
 
-    def show(found: reasons.FoundReasons) -> None:
-        reasons.note(context, recording, found)
+    def show(reasons_so_far: reasons.FoundReasons) -> None:
+        reasons.note(context, recording, reasons_so_far)
         if context.runs.timeline.recording is recording:
-            _show_reason(context, found[1])
+            _show_reason(context, reasons_so_far[1])
 
     reasons.find(context, recording, before, show, searches=True)
 
@@ -193,14 +193,14 @@ def _show_reason(context: ActionContext, earlier: Recording | None) -> None:
     """Go to the next reason, and say it."""
     tour = context.reasons
     if (reason := tour.advance()) is None:
-        to_now(context)
+        go_to_now(context)
         context.app.answer(tour.words if tour.reasons else _say_nothing_wrong(context))
         return
     if reason.kind is ReasonKind.DIFFERS and context.runs.earlier is not earlier:
         context.runs.show_earlier(earlier)
     tick = round(reason.time_s * context.runs.timeline.tick_hz)
     context.debugger.choose_line(tick, reason.line)
-    to_tick(context, tick)
+    go_to_tick(context, tick)
     so_far = "So far: " if context.runs.in_run else ""
     context.app.answer(f"{so_far}{tour.words}")
 
@@ -236,9 +236,9 @@ def propose_branch(
     timeline.stop_playback()
     branch = Branch(recording, tick, program, then, run_controller.state is not RunPhase.PAUSED)
 
-    def answered(answer: str | None) -> None:
+    def handle_answer(answer: str | None) -> None:
         if answer == BRANCH:
-            _branch(context, branch)
+            _start_branch(context, branch)
         elif answer == RESTART:
             run_controller.stop_now()
             context.app.start_run()
@@ -247,10 +247,10 @@ def propose_branch(
             context.app.draw(force=True)
 
     question = BranchQuestion(branch, action_words(then), run_controller.in_run, restart)
-    context.app.push_screen(question, answered)
+    context.app.push_screen(question, handle_answer)
 
 
-def _branch(context: ActionContext, branch: Branch) -> None:
+def _start_branch(context: ActionContext, branch: Branch) -> None:
     try:
         context.runs.branch(branch)
     except TuisimError as error:

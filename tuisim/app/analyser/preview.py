@@ -68,7 +68,7 @@ class PreviewDialog(Dialog[ReadChoices]):
         self._file, self._choices, self._log = file, choices, log
         self._lines = read_first_lines(file, choices.encoding)
 
-    def content(self) -> ComposeResult:
+    def compose_content(self) -> ComposeResult:
         for names in (("header",), ("separator", "decimal"), ("time", "unit")):
             with Horizontal(classes="choices"):
                 for name in names:

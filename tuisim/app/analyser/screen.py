@@ -121,10 +121,10 @@ class LogScreen(ActionHost, ClosesOnce[None]):
                 yield self._beside.add_class("beside")
         yield self.key_footer
 
-    def is_ready_for(self, event: Event) -> bool:
+    def can_take(self, event: Event) -> bool:
         """Return whether what a key is meant for is there: the log, unless the key works without one."""
         is_there = self.is_open or not (isinstance(event, Key) and event.key in self._keys_of_log)
-        return super().is_ready_for(event) and is_there
+        return super().can_take(event) and is_there
 
     @property
     def _keys_of_log(self) -> set[str]:

@@ -35,7 +35,7 @@ _SAMPLES = 4
 """Samples along each side of a point."""
 
 
-def test_card(cols: int, rows: int, cell_px: tuple[int, int]) -> Pixels:
+def draw_test_card(cols: int, rows: int, cell_px: tuple[int, int]) -> Pixels:
     """Return a picture with a disc, a line and three greys.
 
     Args:
@@ -44,25 +44,28 @@ def test_card(cols: int, rows: int, cell_px: tuple[int, int]) -> Pixels:
         cell_px: Points across and down a cell.
     """
 
-    def middles(cells: int, points: int, size: float) -> npt.NDArray[np.float64]:
+    def compute_middles(cells: int, points: int, size: float) -> npt.NDArray[np.float64]:
         count = cells * points * _SAMPLES
         return (np.arange(count) + 0.5) * size / count
 
     # The unit is the height of the picture; cells are twice as high as wide.
     wide = cols / rows / 2
-    x, y = middles(cols, cell_px[0], wide)[None], middles(rows, cell_px[1], 1.0)[:, None]
+    x, y = (
+        compute_middles(cols, cell_px[0], wide)[None],
+        compute_middles(rows, cell_px[1], 1.0)[:, None],
+    )
     fine = np.full((y.size, x.size, 3), 255.0)
     fine[np.hypot(x - 0.42, y - 0.5) < 0.36] = 200, 30, 30
     fine[np.abs((x - 0.85) - (1 - y) * 0.3) < 0.04] = 0
-    for at, grey in enumerate((220, 211, 128)):
-        left = 1.25 + at * (wide - 1.3) / 3
+    for index, grey in enumerate((220, 211, 128)):
+        left = 1.25 + index * (wide - 1.3) / 3
         fine[(x >= left) & (x < left + (wide - 1.3) / 4) & (np.abs(y - 0.5) < 0.36)] = grey
     blocks = fine.reshape(rows * cell_px[1], _SAMPLES, cols * cell_px[0], _SAMPLES, 3)
     picture: Pixels = np.rint(blocks.mean(axis=(1, 3))).astype(np.uint8)
     return picture
 
 
-class _Card(PixelView):
+class _TestCard(PixelView):
     """The picture in the set that is highlighted."""
 
     def __init__(self, best: CellSet) -> None:
@@ -88,7 +91,7 @@ class _Card(PixelView):
         cell = self.cell_for(None)
         if self.size.width and self.size.height:
             self.set_fine_picture(
-                test_card(self.size.width, self.size.height, (cell.cols, cell.rows))
+                draw_test_card(self.size.width, self.size.height, (cell.cols, cell.rows))
             )
 
 
@@ -107,7 +110,7 @@ class CellsCard(ListDialog):
         super().__init__()
         self._current, self._best = current, best
 
-    def content(self) -> ComposeResult:
+    def compose_content(self) -> ComposeResult:
         listed = OptionList(
             *(
                 Option(name_and_title(name, title, _NAME_CELLS), id=name)
@@ -118,9 +121,9 @@ class CellsCard(ListDialog):
         with Horizontal(classes="cells"):
             yield listed
             with Vertical():
-                yield _Card(self._best)
+                yield _TestCard(self._best)
         yield Static(Text(_ADVICE), id="message")
 
     @on(OptionList.OptionHighlighted)
-    def _highlighted(self, event: OptionList.OptionHighlighted) -> None:
-        self.query_one(_Card).show(event.option.id or AUTO)
+    def _show_set(self, event: OptionList.OptionHighlighted) -> None:
+        self.query_one(_TestCard).show(event.option.id or AUTO)

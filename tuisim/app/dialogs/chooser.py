@@ -20,8 +20,8 @@ from textual.widgets.option_list import Option
 
 from tuisim.app import background
 from tuisim.app.dialogs.dialog import MOVE_KEYS, Dialog, name_and_title
-from tuisim.app.dialogs.paths import completed, is_path, paths_after
-from tuisim.app.dialogs.save import typed_path
+from tuisim.app.dialogs.paths import complete_path, is_path, list_completions
+from tuisim.app.dialogs.save import parse_path
 from tuisim.app.error_words import in_a_list
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import LogError, TuisimError
@@ -61,7 +61,7 @@ class ChoiceGroup:
     """For each entry: value, name, and title, which may be empty."""
 
 
-def files_here(
+def list_files(
     suffixes: Iterable[str], fits: Callable[[Path], object] | None = None
 ) -> ChoiceGroup:
     """Return the files in the current folder but hidden ones.
@@ -70,22 +70,22 @@ def files_here(
         suffixes: With their dots.
         fits: Raises TuisimError for a file that must not be listed.
     """
-    wanted = tuple(suffixes)
-    found = sorted(
+    endings = tuple(suffixes)
+    paths = sorted(
         path
         for path in Path.cwd().iterdir()
-        if path.suffix.lower() in wanted
+        if path.suffix.lower() in endings
         and not (path.name.startswith(".") or is_companion(path))
         and path.is_file()
     )
     if fits:
-        found = [path for path in found[:MAX_TRIED] if _passes(fits, path)]
+        paths = [path for path in paths[:MAX_TRIED] if _is_readable(fits, path)]
     return ChoiceGroup(
-        f"In {Path.cwd().name or '/'}", [(str(path), path.name, "") for path in found]
+        f"In {Path.cwd().name or '/'}", [(str(path), path.name, "") for path in paths]
     )
 
 
-def _passes(fits: Callable[[Path], object], path: Path) -> bool:
+def _is_readable(fits: Callable[[Path], object], path: Path) -> bool:
     try:
         fits(path)
     except TuisimError:
@@ -117,7 +117,7 @@ class ListDialog(Dialog[str]):
                 field.insert_text_at_cursor(event.character)
 
     @on(OptionList.OptionSelected)
-    def _chosen(self, event: OptionList.OptionSelected) -> None:
+    def _handle_selection(self, event: OptionList.OptionSelected) -> None:
         self.choose(event.option.id or "")
 
     def choose(self, value: str) -> None:
@@ -125,13 +125,13 @@ class ListDialog(Dialog[str]):
         self.dismiss(value)
 
     @on(Input.Submitted)
-    def _typed(self, event: Input.Submitted) -> None:
+    def _handle_submission(self, event: Input.Submitted) -> None:
         if typed := event.value.strip():
             try:
-                typed_path(typed)
+                parse_path(typed)
                 self.read(typed)
             except TuisimError as error:
-                self.unread(error)
+                self.report_unread(error)
             else:
                 self.dismiss(typed)
 
@@ -143,7 +143,7 @@ class ListDialog(Dialog[str]):
         """
         return typed
 
-    def unread(self, error: TuisimError) -> None:
+    def report_unread(self, error: TuisimError) -> None:
         """Say why nothing can be chosen by what was typed, which stays to be corrected."""
         self.app.notify(in_a_list(error), severity="error", markup=False)
 
@@ -181,12 +181,12 @@ class Chooser(ListDialog):
         self._path_hint = path_hint
         self._read = read
 
-    def content(self) -> ComposeResult:
+    def compose_content(self) -> ComposeResult:
         if self._path_hint:
-            yield from self.asked()
-        yield self.listed()
+            yield from self.compose_field()
+        yield self.build_list()
 
-    def asked(self) -> Iterable[Widget]:
+    def compose_field(self) -> Iterable[Widget]:
         """Yield the field, and below it the line that says what is wrong with its text."""
         yield self.field()
         yield Static(id="message", markup=False)
@@ -197,15 +197,15 @@ class Chooser(ListDialog):
             placeholder=f"Search, or the {self._path_hint}", compact=True, select_on_focus=False
         )
 
-    def listed(self) -> OptionList:
+    def build_list(self) -> OptionList:
         """Return the list."""
-        listed = OptionList(*self._options(self._groups))
+        listed = OptionList(*self._build_options(self._groups))
         names = [option.id for option in listed.options]
         if self._current in names:
             listed.highlighted = names.index(self._current)
         return listed
 
-    def _options(self, groups: Iterable[ChoiceGroup]) -> list[Option | None]:
+    def _build_options(self, groups: Iterable[ChoiceGroup]) -> list[Option | None]:
         options: list[Option | None] = []
         for group in groups:
             if options:
@@ -231,27 +231,27 @@ class Chooser(ListDialog):
         listed, typed = self.query_one(OptionList), event.value.strip()
         # The dialog keeps its place while the list becomes shorter.
         listed.styles.height = listed.outer_size.height if typed else None
-        found = self._found(typed)
+        groups = self._search_groups(typed)
         listed.clear_options()
-        listed.add_options(self._options(found))
+        listed.add_options(self._build_options(groups))
         self.say(
-            "" if found else "no such file here" if is_path(typed) else "no name has these words"
+            "" if groups else "no such file here" if is_path(typed) else "no name has these words"
         )
-        if not found:
-            self.nothing_found()
+        if not groups:
+            self.clear_preview()
         else:
-            best = best_match(found, os.path.basename(typed)) if typed else self._current
+            best = find_best_match(groups, os.path.basename(typed)) if typed else self._current
             listed.highlighted = next(
-                (at for at, one in enumerate(listed.options) if one.id == best), None
+                (index for index, option in enumerate(listed.options) if option.id == best), None
             )
 
-    def nothing_found(self) -> None:
+    def clear_preview(self) -> None:
         """Show nothing of what was chosen before."""
 
-    def _found(self, typed: str) -> Sequence[ChoiceGroup]:
+    def _search_groups(self, typed: str) -> Sequence[ChoiceGroup]:
         if not (self._suffixes and is_path(typed)):
-            return searched(self._groups, typed)
-        entries = paths_after(typed, self._suffixes)
+            return search_groups(self._groups, typed)
+        entries = list_completions(typed, self._suffixes)
         return [ChoiceGroup(f"In {os.path.dirname(typed) or '.'}", entries)] if entries else []
 
     def on_key(self, event: events.Key) -> None:
@@ -267,8 +267,8 @@ class Chooser(ListDialog):
         ):
             event.stop()
             event.prevent_default()
-            entries = paths_after(typed, self._suffixes)
-            longer = completed(typed, entries)
+            entries = list_completions(typed, self._suffixes)
+            longer = complete_path(typed, entries)
             self._type(longer)
             if longer == typed and len(entries) > 1:
                 self.say(f"{len(entries)} names begin like this: type more, or choose one")
@@ -290,7 +290,7 @@ class Chooser(ListDialog):
         """Read what a typed name or path stands for."""
         return self._read(typed)
 
-    def unread(self, error: TuisimError) -> None:
+    def report_unread(self, error: TuisimError) -> None:
         """Choose what the search has found; without that, say what is wrong."""
         listed = self.query_one(OptionList)
         if listed.highlighted is None:
@@ -299,28 +299,28 @@ class Chooser(ListDialog):
             listed.action_select()
 
 
-def searched(groups: Iterable[ChoiceGroup], typed: str) -> list[ChoiceGroup]:
+def search_groups(groups: Iterable[ChoiceGroup], typed: str) -> list[ChoiceGroup]:
     """Return the entries whose names or titles have every word of a text, in their groups."""
     words = typed.lower().split()
 
-    def fits(entry: tuple[str, str, str]) -> bool:
+    def has_words(entry: tuple[str, str, str]) -> bool:
         return all(word in f"{entry[1]} {entry[2]}".lower() for word in words)
 
-    found = (replace(group, entries=[*filter(fits, group.entries)]) for group in groups)
-    return [group for group in found if group.entries]
+    matches = (replace(group, entries=[*filter(has_words, group.entries)]) for group in groups)
+    return [group for group in matches if group.entries]
 
 
-def best_match(groups: Iterable[ChoiceGroup], typed: str) -> str:
+def find_best_match(groups: Iterable[ChoiceGroup], typed: str) -> str:
     """Return the value of the entry that a text means: whose name begins with it, else has it, else the first one."""
     entries = [entry for group in groups for entry in group.entries]
-    wanted = typed.lower()
+    prefix = typed.lower()
     return min(
         entries,
-        key=lambda entry: (not entry[1].lower().startswith(wanted), wanted not in entry[1].lower()),
+        key=lambda entry: (not entry[1].lower().startswith(prefix), prefix not in entry[1].lower()),
     )[0]
 
 
-def program_chooser() -> Chooser:
+def build_program_chooser() -> Chooser:
     """Return the dialog for programs, worlds, goals and logs: those in the current folder, and the examples."""
     from tuisim.programs.program_file import programs
     from tuisim.settings.worlds import load_world
@@ -329,15 +329,15 @@ def program_chooser() -> Chooser:
 
     examples, goals = programs(), goals_examples()
     known = {str(path.resolve()) for path in (*(path for _, path, _ in examples), *goals)}
-    here = files_here([".py"])
+    here = list_files([".py"])
     own = ChoiceGroup(here.title, [entry for entry in here.entries if entry[0] not in known])
-    worlds = [entry for entry in files_here([".toml"], load_world).entries if entry[0] not in known]
+    worlds = [entry for entry in list_files([".toml"], load_world).entries if entry[0] not in known]
     groups = [
         own,
         ChoiceGroup(
             "Worlds and goals" if own.entries else f"{here.title}: worlds and goals", worlds
         ),
-        ChoiceGroup("Logs", files_here(LOGS).entries),
+        ChoiceGroup("Logs", list_files(LOGS).entries),
         ChoiceGroup("Examples", [(str(path), name, title) for name, path, title in examples]),
         ChoiceGroup(
             "Examples of goals", [(str(path), path.name, title_of(path)) for path in goals]
@@ -371,7 +371,7 @@ def _read_openable(word: str) -> object:
     return load_task(path) if means_world(word) else read_program(path)
 
 
-def obstacle_chooser(plan: NextRun) -> Chooser:
+def build_obstacle_chooser(plan: NextRun) -> Chooser:
     """Return the dialog for sets of obstacles."""
     presets = [
         (
@@ -384,7 +384,7 @@ def obstacle_chooser(plan: NextRun) -> Chooser:
     ]
     groups = [
         ChoiceGroup("", presets),
-        files_here([".toml", ".json"], lambda path: load_obstacles(str(path))),
+        list_files([".toml", ".json"], lambda path: load_obstacles(str(path))),
     ]
     return Chooser(
         "Obstacles",
@@ -396,13 +396,13 @@ def obstacle_chooser(plan: NextRun) -> Chooser:
     )
 
 
-def profile_chooser(plan: NextRun) -> Chooser:
+def build_profile_chooser(plan: NextRun) -> Chooser:
     """Return the dialog for profiles."""
     presets = [
         (name, name, f"{p.tick_hz} ticks a second, {'solid' if p.solid else 'nothing is solid'}")
         for name, p in PROFILES.items()
     ]
-    groups = [ChoiceGroup("", presets), files_here([".toml"], lambda path: load_profile(str(path)))]
+    groups = [ChoiceGroup("", presets), list_files([".toml"], lambda path: load_profile(str(path)))]
     return Chooser(
         "Profiles",
         groups,
@@ -413,7 +413,7 @@ def profile_chooser(plan: NextRun) -> Chooser:
     )
 
 
-WIDEST_NAME = 32
+MAX_NAME_COLUMNS = 32
 """Most columns of the list: a custom file may have any name."""
 
 
@@ -442,15 +442,15 @@ class MatPicker(Chooser):
         self._shown = ""
         self._pictures: dict[tuple[str, Viewport], Pixels] = {}
 
-    def content(self) -> ComposeResult:
-        listed = self.listed()
-        listed.styles.width = min(max(map(len, self._mats), default=0) + 5, WIDEST_NAME)
+    def compose_content(self) -> ComposeResult:
+        listed = self.build_list()
+        listed.styles.width = min(max(map(len, self._mats), default=0) + 5, MAX_NAME_COLUMNS)
         with Horizontal(classes="mats"):
             yield listed
             with Vertical():
                 yield _MatPicture()
                 yield Static(id="title", markup=False)
-        yield from self.asked()
+        yield from self.compose_field()
 
     def on_mount(self) -> None:
         self.call_after_refresh(self._begin)
@@ -463,7 +463,7 @@ class MatPicker(Chooser):
         view.styles.height = max(1, round(view.size.width * FIELD_HEIGHT_MM / FIELD_WIDTH_MM / 2))
         self.call_after_refresh(self.show_again)
 
-    def nothing_found(self) -> None:
+    def clear_preview(self) -> None:
         """Show no mat."""
         self._show("")
 
@@ -472,7 +472,7 @@ class MatPicker(Chooser):
         self._show(self._shown)
 
     @on(OptionList.OptionHighlighted)
-    def _highlighted(self, event: OptionList.OptionHighlighted) -> None:
+    def _show_highlighted(self, event: OptionList.OptionHighlighted) -> None:
         self._show(event.option.id or "")
 
     def _show(self, name: str) -> None:
@@ -483,14 +483,14 @@ class MatPicker(Chooser):
             view.clear_picture()
             self.query_one("#title", Static).update("")
             return
-        port = field_view(view)
+        port = find_field_view(view)
         self._say_title(name, (name, port) in self._pictures)
         if (picture := self._pictures.get((name, port))) is not None:
             view.set_fine_picture(picture, view.graphics)
         else:
             self.set_timer(_STALE_S, partial(self._clear_stale, (name, port)))
             work = partial(self._decode, name, port, view.ground_rgb)
-            then, failed = partial(self._decoded, (name, port)), partial(self._failed, name)
+            then, failed = partial(self._show_decoded, (name, port)), partial(self._report, name)
             background.run(self, work, then, failed, group="picture", exclusive=True)
 
     def _say_title(self, name: str, is_drawn: bool) -> None:
@@ -503,24 +503,24 @@ class MatPicker(Chooser):
             self.query(PixelView).first().clear_picture()
 
     def _decode(self, name: str, port: Viewport, outside_rgb: tuple[int, int, int]) -> Pixels:
-        found = find_mat(name, self._folder)
-        mat = decode(read_file(found.image), found.image, found.fit or "stretch")
+        mat_file = find_mat(name, self._folder)
+        mat = decode(read_file(mat_file.image), mat_file.image, mat_file.fit or "stretch")
         return shrink(mat, port, outside_rgb)
 
-    def _decoded(self, key: tuple[str, Viewport], picture: Pixels) -> None:
+    def _show_decoded(self, key: tuple[str, Viewport], picture: Pixels) -> None:
         self._pictures[key] = picture
         # A dialog that is being closed loses its view first.
         if not self.is_attached or not self.query(PixelView) or key[0] != self._shown:
             return
         view = self.query_one(PixelView)
-        if key[1] == field_view(view):
+        if key[1] == find_field_view(view):
             self._say_title(key[0], is_drawn=True)
             view.set_fine_picture(picture, view.graphics)
         else:
             # The view got its height while the image was decoded.
             self.show_again()
 
-    def _failed(self, name: str, error: TuisimError) -> None:
+    def _report(self, name: str, error: TuisimError) -> None:
         if self.is_attached and self.query(PixelView) and name == self._shown:
             self.query_one(PixelView).clear_picture()
             self.query_one("#title", Static).update(str(error))
@@ -532,7 +532,7 @@ class _MatPicture(PixelView):
             picker.show_again()
 
 
-def field_view(view: PixelView) -> Viewport:
+def find_field_view(view: PixelView) -> Viewport:
     """Return the view of the whole field in the finest points of a widget."""
     cell = view.cell_for(view.graphics)
     return whole_field(cell.cols * view.size.width, cell.rows * view.size.height, cell)

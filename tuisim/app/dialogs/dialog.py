@@ -62,23 +62,23 @@ MOVE_KEYS = [
 _TRANSPARENT = Color(0, 0, 0, 0)
 
 
-def _without_links(strip: Strip) -> Strip:
+def _strip_links(strip: Strip) -> Strip:
     """Return a part of the screen below a dialog, where nothing can be clicked."""
     if isinstance(strip, LazyStrip):
         return strip
     return Strip(BackgroundScreen.process_segments(strip, _TRANSPARENT), strip.cell_length)
 
 
-def _short_label(key: str) -> str:
+def _shorten_label(key: str) -> str:
     return label_of_key(key).replace("ctrl+", "^").replace("escape", "esc")
 
 
-def _enter_does(hint: str) -> str:
+def _find_enter_verb(hint: str) -> str:
     """Return what Enter does in a dialog, from the words in its frame; empty if they do not name it."""
-    found = _ENTER.search(hint)
-    if found is None:
+    match = _ENTER.search(hint)
+    if match is None:
         return ""
-    verb = found[1] or "chooses"
+    verb = match[1] or "chooses"
     return _IMPERATIVES.get(verb, verb.removesuffix("s"))
 
 
@@ -105,19 +105,19 @@ class ClosesOnce(HookedScreen[Result], Generic[Result]):
     """Whether keys have to wait for a result."""
 
     def on_mount(self) -> None:
-        self.call_after_refresh(self.app.call_later, self._become_ready)
+        self.call_after_refresh(self.app.call_later, self._mark_ready)
 
-    def _become_ready(self) -> None:
+    def _mark_ready(self) -> None:
         self.is_ready = True
         self.app.post_message(self.Changed())
 
-    def is_ready_for(self, event: Event) -> bool:
+    def can_take(self, event: Event) -> bool:
         """Return whether what a key is meant for is there; those that follow wait with it."""
         return self.is_ready and not (
             self._is_at_work and isinstance(event, Key) and event.key != "escape"
         )
 
-    def wait_for(
+    def wait_while(
         self,
         work: Callable[[], Made],
         then: Callable[[Made], None],
@@ -131,9 +131,11 @@ class ClosesOnce(HookedScreen[Result], Generic[Result]):
             failed: Called with a TuisimError that `work` has raised.
         """
         self._is_at_work = True
-        background.run(self, work, partial(self._done, then), partial(self._done, failed))
+        background.run(
+            self, work, partial(self._finish_work, then), partial(self._finish_work, failed)
+        )
 
-    def _done(self, then: Callable[[Made], None], result: Made) -> None:
+    def _finish_work(self, then: Callable[[Made], None], result: Made) -> None:
         self._is_at_work = False
         then(result)
         self.app.post_message(self.Changed())
@@ -152,14 +154,14 @@ class ClosesOnce(HookedScreen[Result], Generic[Result]):
         for screen in opened:
             if not screen.is_mounted:
                 # Textual cannot remove a screen that it is still mounting.
-                screen.call_later(self._dismiss_now, result)
+                screen.call_later(self._dismiss_later, result)
                 return AwaitComplete()
         for above in reversed(opened[1:]):
             above.dismiss(None)
         self.app.post_message(self.Changed())
         return super().dismiss(result)
 
-    def _dismiss_now(self, result: Result | None) -> None:
+    def _dismiss_later(self, result: Result | None) -> None:
         # Nobody may await it from the screen's own messages.
         self.dismiss(result)
 
@@ -168,7 +170,7 @@ class ClosesOnce(HookedScreen[Result], Generic[Result]):
         below = None if self.styles.background.a else self.parts_below(crop)
         if below is None:
             return super().render_lines(crop)
-        rows = (JoinedStrip([_without_links(part) for part in parts]) for parts in below)
+        rows = (JoinedStrip([_strip_links(part) for part in parts]) for parts in below)
         return [row.crop_extend(*crop.column_span, self.rich_style) for row in rows]
 
     def drops(self, message: Message) -> bool:
@@ -186,42 +188,45 @@ class Dialog(ClosesOnce[Result], Generic[Result]):
 
     def compose(self) -> ComposeResult:
         # Textual does so after it has drawn the dialog once.
-        self.add_class(max(one for one in _HEIGHTS if one[0] <= self.app.size.height)[1])
+        self.add_class(max(height for height in _HEIGHTS if height[0] <= self.app.size.height)[1])
         frame = Vertical(classes="dialog")
         frame.border_title = self.TITLE_TEXT
         frame.border_subtitle = self.HINT
         with frame:
-            yield from self.content()
+            yield from self.compose_content()
 
     @property
     def keys(self) -> tuple[KeyWord, ...]:
         """Enter, then its own keys that work where the focus is, then Escape; none if the keys of the app work."""
         words = (
-            (one.key.split(","), one.description.lower())
-            for one in self._bound()
-            if one.description
+            (binding.key.split(","), binding.description.lower())
+            for binding in self._collect_bindings()
+            if binding.description
         )
         working = (
-            (next((key for key in keys if self._gets(key)), ""), word) for keys, word in words
+            (next((key for key in keys if self._receives_key(key)), ""), word)
+            for keys, word in words
         )
-        own = tuple((_short_label(key), word) for key, word in working if key)
-        enter = _enter_does(self.HINT)
+        own = tuple((_shorten_label(key), word) for key, word in working if key)
+        enter = _find_enter_verb(self.HINT)
         return own if not enter or "enter" in dict(own) else (("enter", enter), *own)
 
-    def _bound(self) -> list[Binding]:
+    def _collect_bindings(self) -> list[Binding]:
         kinds = [kind for kind in type(self).__mro__ if issubclass(kind, Dialog)]
         return [
-            one
+            binding
             for kind in kinds
-            for one in kind.__dict__.get("BINDINGS", ())
-            if isinstance(one, Binding)
+            for binding in kind.__dict__.get("BINDINGS", ())
+            if isinstance(binding, Binding)
         ]
 
     async def on_click(self, event: Click) -> None:
         """Do what the word in the row below that was clicked stands for: a phone may lack its key."""
-        keys = {_short_label(key): key for one in self._bound() for key in one.key.split(",")} | {
-            "enter": "enter"
-        }
+        keys = {
+            _shorten_label(key): key
+            for binding in self._collect_bindings()
+            for key in binding.key.split(",")
+        } | {"enter": "enter"}
         footers = (
             footer for screen in self.app.screen_stack[:-1] for footer in screen.query(KeyFooter)
         )
@@ -230,7 +235,7 @@ class Dialog(ClosesOnce[Result], Generic[Result]):
                 label = footer.key_of_dialog_at(event.screen_x - footer.region.x)
                 await press(self, keys.get(label, ""))
 
-    def _gets(self, key: str) -> bool:
+    def _receives_key(self, key: str) -> bool:
         """Return whether a field with the focus leaves a key to the dialog."""
         field = self.focused
         if not isinstance(field, Input):
@@ -240,7 +245,7 @@ class Dialog(ClosesOnce[Result], Generic[Result]):
             and key not in bindings_of(field).key_to_bindings
         )
 
-    def content(self) -> ComposeResult:
+    def compose_content(self) -> ComposeResult:
         """Return the widgets in the frame."""
         yield from ()
 

@@ -14,7 +14,7 @@ from textual.widgets import Input, OptionList, Static
 from textual.widgets.option_list import Option
 
 from tuisim.app.dialogs.dialog import Dialog, Result, name_and_title
-from tuisim.app.dialogs.question import LineInput, form_list
+from tuisim.app.dialogs.question import LineInput, build_form_table
 from tuisim.app.setup.poses import MAX_NAME, delete_pose, load_poses, save_pose
 from tuisim.base.errors import TuisimError
 from tuisim.engine.breakpoints import FORMS, Breakpoint, check_line, parse_break, parse_watch
@@ -34,15 +34,15 @@ class _List(Dialog[Result]):
         self.list_entries()
         self.query_one(OptionList if self._entries else Input).focus()
 
-    def list_entries(self, at: int | None = None) -> None:
-        """Fill the list; `at` is selected."""
+    def list_entries(self, index: int | None = None) -> None:
+        """Fill the list; `index` is selected."""
 
-    def _list(self, options: list[Option], at: int | None) -> None:
+    def _list(self, options: list[Option], index: int | None) -> None:
         listed = self.query_one(OptionList)
         listed.clear_options()
         listed.add_options(options or [Option("None yet", disabled=True)])
-        if options and at is not None:
-            listed.highlighted = min(at, len(options) - 1)
+        if options and index is not None:
+            listed.highlighted = min(index, len(options) - 1)
 
 
 class _TextList(_List[None], Generic[Entry]):
@@ -74,13 +74,13 @@ class _TextList(_List[None], Generic[Entry]):
         self._editing: int | None = None
         """Index of the entry that the field edits; None for a new one."""
 
-    def content(self) -> ComposeResult:
+    def compose_content(self) -> ComposeResult:
         yield OptionList(markup=False)
         yield LineInput("", column_names(self.run_spec), self.PLACEHOLDER)
         yield Static(id="message", classes="wrong", markup=False)
-        yield from self.explanation()
+        yield from self.compose_explanation()
 
-    def explanation(self) -> ComposeResult:
+    def compose_explanation(self) -> ComposeResult:
         """Return the explanation of what may be entered."""
         yield from ()
 
@@ -93,44 +93,44 @@ class _TextList(_List[None], Generic[Entry]):
         """
 
     @abstractmethod
-    def written(self, entry: Entry) -> str:
+    def format_entry(self, entry: Entry) -> str:
         """Return the text of an entry, for editing."""
 
     def label(self, entry: Entry) -> str:
         """Return the line of an entry in the list."""
-        return self.written(entry)
+        return self.format_entry(entry)
 
-    def list_entries(self, at: int | None = None) -> None:
-        """Fill the list; `at` is selected."""
-        self._list([Option(self.label(entry)) for entry in self._entries], at)
+    def list_entries(self, index: int | None = None) -> None:
+        """Fill the list; `index` is selected."""
+        self._list([Option(self.label(entry)) for entry in self._entries], index)
 
     @property
-    def _at(self) -> int | None:
-        at = self.query_one(OptionList).highlighted
-        return at if self._entries else None
+    def _selected_index(self) -> int | None:
+        index = self.query_one(OptionList).highlighted
+        return index if self._entries else None
 
-    def _report(self, at: int | None = None) -> None:
-        self.list_entries(at)
+    def _report(self, index: int | None = None) -> None:
+        self.list_entries(index)
         self._changed(tuple(self._entries))
 
     def action_remove(self) -> None:
-        if isinstance(self.focused, OptionList) and (at := self._at) is not None:
-            del self._entries[at]
-            self._report(at)
+        if isinstance(self.focused, OptionList) and (index := self._selected_index) is not None:
+            del self._entries[index]
+            self._report(index)
 
     @on(OptionList.OptionSelected)
     def action_edit(self) -> None:
-        if (at := self._at) is not None:
-            self._editing = at
+        if (index := self._selected_index) is not None:
+            self._editing = index
             field = self.query_one(Input)
-            field.value = self.written(self._entries[at])
+            field.value = self.format_entry(self._entries[index])
             field.focus()
 
     def action_switch(self) -> None:
         """Enable or disable the selected entry."""
 
     @on(Input.Submitted)
-    def _entered(self, event: Input.Submitted) -> None:
+    def _add_entry(self, event: Input.Submitted) -> None:
         try:
             entry = self.parse(event.value)
         except TuisimError as error:
@@ -141,9 +141,9 @@ class _TextList(_List[None], Generic[Entry]):
             self._entries.append(entry)
         else:
             self._entries[self._editing] = entry
-        at, self._editing = self._editing, None
+        index, self._editing = self._editing, None
         event.input.clear()
-        self._report(len(self._entries) - 1 if at is None else at)
+        self._report(len(self._entries) - 1 if index is None else index)
 
 
 class BreaksDialog(_TextList[Breakpoint]):
@@ -164,9 +164,9 @@ class BreaksDialog(_TextList[Breakpoint]):
         super().__init__(entries, run, changed)
         self._lines = lines
 
-    def explanation(self) -> ComposeResult:
+    def compose_explanation(self) -> ComposeResult:
         """Return the syntax of breakpoints."""
-        yield form_list(FORMS)
+        yield build_form_table(FORMS)
 
     def parse(self, text: str) -> Breakpoint:
         """Parse a breakpoint."""
@@ -175,7 +175,7 @@ class BreaksDialog(_TextList[Breakpoint]):
             check_line(entry, self._lines)
         return entry
 
-    def written(self, entry: Breakpoint) -> str:
+    def format_entry(self, entry: Breakpoint) -> str:
         """Return the text of a breakpoint."""
         return entry.written()
 
@@ -184,9 +184,11 @@ class BreaksDialog(_TextList[Breakpoint]):
         return f"{'○' if entry.disabled else '●'} {'line ' if entry.text[:1].isdigit() else ''}{entry.text}"
 
     def action_switch(self) -> None:
-        if isinstance(self.focused, OptionList) and (at := self._at) is not None:
-            self._entries[at] = replace(self._entries[at], disabled=not self._entries[at].disabled)
-            self._report(at)
+        if isinstance(self.focused, OptionList) and (index := self._selected_index) is not None:
+            self._entries[index] = replace(
+                self._entries[index], disabled=not self._entries[index].disabled
+            )
+            self._report(index)
 
 
 class WatchesDialog(_TextList[str]):
@@ -200,12 +202,12 @@ class WatchesDialog(_TextList[str]):
         """Parse a Python expression."""
         return parse_watch(text)
 
-    def written(self, entry: str) -> str:
+    def format_entry(self, entry: str) -> str:
         """Return the expression."""
         return entry
 
 
-def pose_label(pose: Pose) -> str:
+def label_pose(pose: Pose) -> str:
     """Return a pose in words."""
     return f"x {pose.x_mm:g}, y {pose.y_mm:g}, {shown_heading_deg(pose.heading_deg):g}°"
 
@@ -228,46 +230,46 @@ class SavedPoses(_List[Pose]):
         self._here = here
         self._entries: dict[str, Pose] = {}
 
-    def content(self) -> ComposeResult:
+    def compose_content(self) -> ComposeResult:
         yield OptionList()
         yield Static(
-            f"Save where the robot is now, {pose_label(self._here)}, as:",
+            f"Save where the robot is now, {label_pose(self._here)}, as:",
             classes="start",
             markup=False,
         )
         yield Input(placeholder="a name, then Enter", compact=True, max_length=MAX_NAME)
         yield Static(id="message", markup=False)
 
-    def list_entries(self, at: int | None = None) -> None:
-        """Read the poses and fill the list; `at` is selected."""
+    def list_entries(self, index: int | None = None) -> None:
+        """Read the poses and fill the list; `index` is selected."""
         try:
             self._entries = load_poses()
         except TuisimError as error:
             self.say(str(error), wrong=True)
         wide = max(map(len, self._entries), default=0)
         lines = {
-            name: name_and_title(name, pose_label(pose), wide)
+            name: name_and_title(name, label_pose(pose), wide)
             for name, pose in self._entries.items()
         }
-        self._list([Option(line, id=name) for name, line in lines.items()], at)
+        self._list([Option(line, id=name) for name, line in lines.items()], index)
 
     @on(OptionList.OptionSelected)
-    def _chosen(self, event: OptionList.OptionSelected) -> None:
+    def _go_to_selected(self, event: OptionList.OptionSelected) -> None:
         self.dismiss(self._entries.get(event.option.id or ""))
 
     def action_remove(self) -> None:
-        at = self.query_one(OptionList).highlighted
-        if at is None or not self._entries:
+        index = self.query_one(OptionList).highlighted
+        if index is None or not self._entries:
             return
         try:
-            delete_pose(list(self._entries)[at])
+            delete_pose(list(self._entries)[index])
         except TuisimError as error:
             self.say(str(error), wrong=True)
             return
-        self.list_entries(at)
+        self.list_entries(index)
 
     @on(Input.Submitted)
-    def _named(self, event: Input.Submitted) -> None:
+    def _save_named(self, event: Input.Submitted) -> None:
         try:
             save_pose(event.value, self._here)
         except TuisimError as error:

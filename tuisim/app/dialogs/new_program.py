@@ -97,11 +97,11 @@ _SAYS = {
 }
 _EXPLAINS = "# Lays out the mat, and makes tank_drive, colorLeft and other names.\n"
 _EXPLAINS_BRICK = "# Lays out the mat; the program runs as on a brick.\n"
-OF_THE_BRICK = "sim_magic", "--profile ev3"
+BRICK_MAGIC = "sim_magic", "--profile ev3"
 """Magic and words of a program with imports: it runs as on the brick."""
 
 
-def program_text(mat: str, sensor: str, skeleton: Skeleton) -> str:
+def build_program_text(mat: str, sensor: str, skeleton: Skeleton) -> str:
     """Return the text of a new program.
 
     Args:
@@ -126,7 +126,7 @@ def program_text(mat: str, sensor: str, skeleton: Skeleton) -> str:
         case Skeleton.LIBRARY:
             # The course's own name for it is not in the library.
             words |= {"drive": "tank", "value": reading.value.removesuffix("_pc")}
-            magic = with_mat("# %%{} {}\n".format(*OF_THE_BRICK), "", mat) + _EXPLAINS_BRICK
+            magic = with_mat("# %%{} {}\n".format(*BRICK_MAGIC), "", mat) + _EXPLAINS_BRICK
             return head + magic + "\nimport time\n\n" + (_LIBRARY + _LOG).format(**words)
         case Skeleton.LOG | Skeleton.UNTIL:
             body = _LOG if skeleton is Skeleton.LOG else _UNTIL
@@ -156,13 +156,13 @@ class NewProgramDialog(Dialog[str]):
         self._offers: Sequence[Mapping[str, str]] = (
             mats,
             {name: reading.noun.capitalize() for name, reading in READINGS.items()},
-            {str(one): title for one, title in SKELETON_TITLES.items()},
+            {str(skeleton): title for skeleton, title in SKELETON_TITLES.items()},
         )
         self._current = current
         self._typed = ""
         """Letters typed in the list with the focus, to find an entry."""
 
-    def content(self) -> ComposeResult:
+    def compose_content(self) -> ComposeResult:
         with Horizontal():
             for name, offers in zip(_LISTS, self._offers, strict=True):
                 listed = OptionList(
@@ -180,7 +180,7 @@ class NewProgramDialog(Dialog[str]):
         self.query_one("#mat").focus()
 
     @on(events.DescendantFocus)
-    def _in_another_list(self) -> None:
+    def _forget_typed(self) -> None:
         self._typed = ""
 
     def on_key(self, event: events.Key) -> None:
@@ -191,33 +191,35 @@ class NewProgramDialog(Dialog[str]):
         event.stop()
         titles = [*self._offers[_LISTS.index(listed.id or "")].values()]
         for typed in (self._typed + event.character.lower(), event.character.lower()):
-            if (found := _found(titles, typed)) is not None:
-                self._typed, listed.highlighted = typed, found
+            if (index := _find_title(titles, typed)) is not None:
+                self._typed, listed.highlighted = typed, index
                 return
 
     @on(OptionList.OptionHighlighted)
     def _show(self) -> None:
-        self.query_one("#text", Static).update(self._text())
+        self.query_one("#text", Static).update(self._build_text())
 
     @on(OptionList.OptionSelected)
-    def _chosen(self) -> None:
-        self.dismiss(self._text())
+    def _submit(self) -> None:
+        self.dismiss(self._build_text())
 
-    def _text(self) -> str:
+    def _build_text(self) -> str:
         mat, sensor, skeleton = (
             [*offers][self.query_one(f"#{name}", OptionList).highlighted or 0]
             for name, offers in zip(_LISTS, self._offers, strict=True)
         )
-        return program_text(mat, sensor, Skeleton(skeleton))
+        return build_program_text(mat, sensor, Skeleton(skeleton))
 
 
-def _found(titles: Sequence[str], typed: str) -> int | None:
+def _find_title(titles: Sequence[str], typed: str) -> int | None:
     """Return the index of the first title that begins with a text, else with its letters in their order; or None."""
     for fits in (lambda title: title.startswith(typed), lambda title: _has_letters(title, typed)):
         if (
-            at := next((at for at, title in enumerate(titles) if fits(title.lower())), None)
+            index := next(
+                (index for index, title in enumerate(titles) if fits(title.lower())), None
+            )
         ) is not None:
-            return at
+            return index
     return None
 
 

@@ -20,7 +20,7 @@ from tuisim.terminal.text_runs import cut
 _WIDTH, _BESIDE = 74, 10
 """Cells of the frame, and those of it that no line has: borders, padding, scroll bar."""
 _SHOW = "show or hide "
-_LEAST_ROWS, _OTHER_ROWS = 16, 5
+_MIN_ROWS, _OTHER_ROWS = 16, 5
 """Rows of a long list at least, and those of the frame beside it."""
 
 
@@ -37,7 +37,7 @@ class Entry(NamedTuple):
     """Whether it can be chosen with effect now."""
 
 
-def matching(entries: Iterable[Entry], typed: str) -> list[Entry]:
+def find_entries(entries: Iterable[Entry], typed: str) -> list[Entry]:
     """Return the entries that have every word of a text.
 
     Those come first whose titles begin with it, or name it as what they show or hide; then those with words of the
@@ -47,17 +47,21 @@ def matching(entries: Iterable[Entry], typed: str) -> list[Entry]:
     words = typed.lower().split()
 
     def rank(entry: Entry) -> tuple[int, bool]:
-        title, shown = entry.title.lower(), f"{entry.title} {entry.group}".lower()
+        title, title_and_group = entry.title.lower(), f"{entry.title} {entry.group}".lower()
         fits = (
             title.removeprefix(_SHOW).startswith(" ".join(words)),
             all(f" {word}" in f" {title}" for word in words),
-            all(word in shown for word in words),
+            all(word in title_and_group for word in words),
             set(words) <= {*entry.words.split()},
         )
         return fits.index(True) if True in fits else len(fits), not title.startswith(_SHOW)
 
-    found = [one for one in entries if all(word in " ".join(one[1:5]).lower() for word in words)]
-    return sorted(found, key=rank) if words else found
+    matches = [
+        candidate
+        for candidate in entries
+        if all(word in " ".join(candidate[1:5]).lower() for word in words)
+    ]
+    return sorted(matches, key=rank) if words else matches
 
 
 class SearchList(Dialog[str]):
@@ -77,7 +81,7 @@ class SearchList(Dialog[str]):
         super().__init__()
         self._entries, self._current = entries, current
 
-    def content(self) -> ComposeResult:
+    def compose_content(self) -> ComposeResult:
         yield Input(placeholder="Search", compact=True, select_on_focus=False)
         yield OptionList()
         yield Static(self.NOTHING, id="message", markup=False)
@@ -88,7 +92,7 @@ class SearchList(Dialog[str]):
 
     def on_resize(self) -> None:
         # It keeps its place while the list becomes shorter.
-        rows = min(len(self._entries), max(_LEAST_ROWS, self.size.height // 2))
+        rows = min(len(self._entries), max(_MIN_ROWS, self.size.height // 2))
         self.query_one(".dialog").styles.height = rows + _OTHER_ROWS
         self._list(self.query_one(Input).value)
 
@@ -97,34 +101,34 @@ class SearchList(Dialog[str]):
         self._list(event.value)
 
     def _list(self, typed: str) -> None:
-        found, listed = matching(self._entries, typed), self.query_one(OptionList)
+        matches, listed = find_entries(self._entries, typed), self.query_one(OptionList)
         cells = min(_WIDTH, self.size.width) - _BESIDE
         listed.clear_options()
-        listed.add_options(Option(_line(entry, cells), id=entry.id) for entry in found)
-        names = [entry.id for entry in found]
+        listed.add_options(Option(_build_line(entry, cells), id=entry.id) for entry in matches)
+        names = [entry.id for entry in matches]
         listed.highlighted = (
-            None if not found else names.index(self._current) if self._current in names else 0
+            None if not matches else names.index(self._current) if self._current in names else 0
         )
-        listed.display = bool(found)
-        self.query_one("#message").display = not found
+        listed.display = bool(matches)
+        self.query_one("#message").display = not matches
 
     @on(Input.Submitted)
-    def _entered(self, event: Input.Submitted) -> None:
+    def _choose_selected(self, event: Input.Submitted) -> None:
         listed = self.query_one(OptionList)
         if listed.option_count:
             listed.action_select()
         else:
-            self.unfound(event.value.strip())
+            self.handle_unfound(event.value.strip())
 
-    def unfound(self, typed: str) -> None:
+    def handle_unfound(self, typed: str) -> None:
         """Enter was pressed where nothing has the words that are typed."""
 
     @on(OptionList.OptionSelected)
-    def _chosen(self, event: OptionList.OptionSelected) -> None:
+    def _handle_selection(self, event: OptionList.OptionSelected) -> None:
         self.dismiss(event.option.id)
 
 
-def _line(entry: Entry, cells: int) -> Text:
+def _build_line(entry: Entry, cells: int) -> Text:
     """Return a line of so many cells, with the key at its right."""
     right = f"{entry.group}  {entry.key:>7}" if entry.key else entry.group
     title = cut(entry.title, cells - len(right) - 1)
@@ -137,7 +141,7 @@ def _line(entry: Entry, cells: int) -> Text:
     return line
 
 
-ASKS = "?"
+GUIDE_PREFIX = "?"
 """Before words for the guide, where a palette returns the id of an action."""
 
 
@@ -152,15 +156,22 @@ class Palette(SearchList):
 
     def __init__(self, actions: Iterable[Action[Any, Any]], now: object) -> None:
         entries = (
-            Entry(one.id, one.title, one.group, one.key_label, one.words, not one.why_not(now))
-            for one in actions
+            Entry(
+                action.id,
+                action.title,
+                action.group,
+                action.key_label,
+                action.words,
+                not action.why_not(now),
+            )
+            for action in actions
         )
         super().__init__(sorted(entries, key=lambda entry: not entry.works))
 
-    def unfound(self, typed: str) -> None:
+    def handle_unfound(self, typed: str) -> None:
         """Ask the guide."""
         if typed:
-            self.dismiss(ASKS + typed)
+            self.dismiss(GUIDE_PREFIX + typed)
 
 
 class ThemeChooser(SearchList):

@@ -16,7 +16,7 @@ def is_path(typed: str) -> bool:
     return typed.startswith(("/", "~", ".")) or os.sep in typed
 
 
-def paths_after(typed: str, suffixes: Collection[str]) -> list[tuple[str, str, str]]:
+def list_completions(typed: str, suffixes: Collection[str]) -> list[tuple[str, str, str]]:
     """Return the folders and files that a typed path may become, as entries of a list: value, name, and no title.
 
     Args:
@@ -25,28 +25,28 @@ def paths_after(typed: str, suffixes: Collection[str]) -> list[tuple[str, str, s
     """
     if typed in ("~", ".", ".."):
         return [(f"{typed}/", f"{typed}/", "")]
-    folder, begun = os.path.split(typed)
+    folder, prefix = os.path.split(typed)
     # Joined as it was typed, so that `~` stays.
-    stem = typed[: len(typed) - len(begun)]
-    found = []
+    stem = typed[: len(typed) - len(prefix)]
+    completions = []
     try:
-        inside = sorted(os.scandir(user_path(folder or ".")), key=lambda one: one.name)
+        files = sorted(os.scandir(user_path(folder or ".")), key=lambda file: file.name)
     except (OSError, ValueError):
         return []
-    for one in inside:
-        if not one.name.lower().startswith(begun.lower()) or (
-            one.name.startswith(".") and not begun.startswith(".")
+    for file in files:
+        if not file.name.lower().startswith(prefix.lower()) or (
+            file.name.startswith(".") and not prefix.startswith(".")
         ):
             continue
-        if _is_folder(one):
-            found.append((f"{stem}{one.name}/", f"{one.name}/", ""))
-        elif Path(one.name).suffix.lower() in suffixes and not is_companion(Path(one.path)):
-            found.append((f"{stem}{one.name}", one.name, ""))
+        if _is_folder(file):
+            completions.append((f"{stem}{file.name}/", f"{file.name}/", ""))
+        elif Path(file.name).suffix.lower() in suffixes and not is_companion(Path(file.path)):
+            completions.append((f"{stem}{file.name}", file.name, ""))
     # Files are what is looked for.
-    return sorted(found, key=lambda entry: entry[0].endswith("/"))
+    return sorted(completions, key=lambda entry: entry[0].endswith("/"))
 
 
-def completed(typed: str, entries: Collection[tuple[str, str, str]]) -> str:
+def complete_path(typed: str, entries: Collection[tuple[str, str, str]]) -> str:
     """Return a typed path with what all of its entries have in common after it."""
     values = [value for value, *_ in entries]
     columns = zip(*(value.lower() for value in values), strict=False)
@@ -54,8 +54,8 @@ def completed(typed: str, entries: Collection[tuple[str, str, str]]) -> str:
     return values[0][:common] if common > len(typed) else typed
 
 
-def _is_folder(one: os.DirEntry[str]) -> bool:
+def _is_folder(file: os.DirEntry[str]) -> bool:
     try:
-        return one.is_dir()
+        return file.is_dir()
     except OSError:
         return False

@@ -25,7 +25,7 @@ Answer = tuple[str, str]
 """A key, and what it does. The key is the result."""
 
 
-def _answers_row(answers: Iterable[tuple[str, str, str]]) -> Iterator[Static]:
+def _compose_answers(answers: Iterable[tuple[str, str, str]]) -> Iterator[Static]:
     """Yield the row of answers, below a free one: for each an action, its key, and what it does."""
     yield Static()
     words = (f"[@click=screen.{action}]  {key}  {does}  [/]" for action, key, does in answers)
@@ -51,9 +51,9 @@ class Question(Dialog[str]):
         self._text = text
         self._answers = answers
 
-    def content(self) -> ComposeResult:
+    def compose_content(self) -> ComposeResult:
         yield Static(self._text, markup=False)
-        yield from _answers_row((f"answer('{key}')", key, does) for key, does in self._answers)
+        yield from _compose_answers((f"answer('{key}')", key, does) for key, does in self._answers)
 
     @property
     def keys(self) -> tuple[KeyWord, ...]:
@@ -108,19 +108,21 @@ class BranchQuestion(Dialog[str]):
             f"{program} {again}, with all your actions until then, and {then}{change}.{ends}"
         )
 
-    def content(self) -> ComposeResult:
+    def compose_content(self) -> ComposeResult:
         yield Static(self._text, markup=False)
         answers = [
             ("branch", "y", "Branch"),
             ("restart", "r", "Run from the start"),
             ("leave", "n", "Stay"),
         ]
-        yield from _answers_row(one for one in answers if self._restart or one[0] != "restart")
+        yield from _compose_answers(
+            answer for answer in answers if self._restart or answer[0] != "restart"
+        )
 
     @property
     def keys(self) -> tuple[KeyWord, ...]:
         """Those of the answers that are offered, then Escape."""
-        return tuple(one for one in super().keys if self._restart or one[0] != "r")
+        return tuple(word for word in super().keys if self._restart or word[0] != "r")
 
     def action_branch(self) -> None:
         self.dismiss(BRANCH)
@@ -141,9 +143,9 @@ class LeaveQuestion(Dialog[bool]):
         Binding("n", "leave", "Stay", show=False),
     ]
 
-    def content(self) -> ComposeResult:
+    def compose_content(self) -> ComposeResult:
         yield Static("A program is running. Everything logged so far is kept.", markup=False)
-        yield from _answers_row([("yes", "y", "Stop it and quit"), ("leave", "n", "Stay")])
+        yield from _compose_answers([("yes", "y", "Stop it and quit"), ("leave", "n", "Stay")])
 
     def action_yes(self) -> None:
         self.dismiss(True)
@@ -176,7 +178,7 @@ class LineInput(Input):
         self._words = words
 
     def action_accept(self) -> None:
-        if completed(self.value, self._words) is None:
+        if complete_line(self.value, self._words) is None:
             self.screen.focus_next()
         else:
             self.action_cursor_right()
@@ -184,11 +186,11 @@ class LineInput(Input):
     @on(Input.Changed)
     def _complete(self, event: Input.Changed) -> None:
         # Done synchronously: Textual's own suggester leaves a task behind, with a warning, when the field closes first.
-        if (completion := completed(event.value, self._words)) is not None:
+        if (completion := complete_line(event.value, self._words)) is not None:
             self.post_message(SuggestionReady(event.value, completion))
 
 
-def completed(line: str, words: Sequence[str]) -> str | None:
+def complete_line(line: str, words: Sequence[str]) -> str | None:
     """Return the line with its last word completed, None if there is no completion.
 
     Args:
@@ -207,7 +209,7 @@ def completed(line: str, words: Sequence[str]) -> str | None:
     return None if word is None else line + word[len(typed) :]
 
 
-def form_list(forms: Sequence[Form]) -> Static:
+def build_form_table(forms: Sequence[Form]) -> Static:
     """Return the accepted forms of a line, and what they mean."""
     table = Table.grid(padding=(0, 2))
     for form, meaning in forms:
@@ -253,7 +255,7 @@ class LinePrompt(Dialog[bool]):
         self._value = value
         self._forms = forms
 
-    def content(self) -> ComposeResult:
+    def compose_content(self) -> ComposeResult:
         if self._text:
             yield Static(self._text, markup=False, classes="start")
         yield LineInput(self._value, self._words, self._placeholder)
@@ -263,14 +265,14 @@ class LinePrompt(Dialog[bool]):
         if is_brief:
             yield Static(" · ".join(form for form, _ in self._forms), id="forms", markup=False)
         else:
-            yield form_list(self._forms)
+            yield build_form_table(self._forms)
 
     def on_mount(self) -> None:
         # It would cover a dialog at the bottom.
         self.app.clear_notifications()
 
     @on(Input.Submitted)
-    def _entered(self, event: Input.Submitted) -> None:
+    def _apply_line(self, event: Input.Submitted) -> None:
         event.stop()
         try:
             self._do(event.value.strip())

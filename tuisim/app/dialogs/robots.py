@@ -15,7 +15,7 @@ from textual.app import ComposeResult
 from textual.containers import Horizontal, Vertical
 from textual.widgets import OptionList
 
-from tuisim.app.dialogs.chooser import TABLES, WIDEST_NAME, ChoiceGroup, Chooser, files_here
+from tuisim.app.dialogs.chooser import MAX_NAME_COLUMNS, TABLES, ChoiceGroup, Chooser, list_files
 from tuisim.base import palette
 from tuisim.base.errors import TuisimError
 from tuisim.engine.core.geometry import Pose
@@ -33,36 +33,38 @@ from tuisim.terminal.text_runs import Line
 if TYPE_CHECKING:
     from tuisim.app.setup.next_run import NextRun
 
-OF_PROGRAM = "*program"
+PROGRAM_ROBOT = "*program"
 """What the dialog returns for the robot that was built for the program; no name or path of a robot."""
 
 _PAPER_RGB: Rgb = (232, 234, 238)
 _LABEL, _VALUE = Style(color=palette.SOFT), Style(color=palette.WHITE)
 _OTHER_ROWS = 12
 """Rows of the dialog beside those of the picture and of the parts."""
-_LEAST_ROWS, _MOST_ROWS = 6, 16
+_MIN_ROWS, _MAX_ROWS = 6, 16
 _RIM_MM = 12.0
 """Paper around a robot."""
 
 
-def robot_chooser(plan: NextRun) -> RobotPicker:
+def build_robot_picker(plan: NextRun) -> RobotPicker:
     """Return the dialog for robots: the one built for the program, those known by name, and files."""
     built = plan.program_robot
-    files = files_here([".toml", ".json"], lambda path: load_robot(str(path)))
+    files = list_files([".toml", ".json"], lambda path: load_robot(str(path)))
     groups = [
-        ChoiceGroup("Built from the program", [(OF_PROGRAM, built.spec.name, "")] if built else []),
+        ChoiceGroup(
+            "Built from the program", [(PROGRAM_ROBOT, built.spec.name, "")] if built else []
+        ),
         ChoiceGroup("By name" if built else "", [(name, name, "") for name in ROBOTS]),
         files,
     ]
-    robots = {**ROBOTS, **({OF_PROGRAM: built.spec} if built else {})}
+    robots = {**ROBOTS, **({PROGRAM_ROBOT: built.spec} if built else {})}
     current = (
-        OF_PROGRAM if built is not None and plan.robot == built else plan.words.get("robot", "")
+        PROGRAM_ROBOT if built is not None and plan.robot == built else plan.words.get("robot", "")
     )
     return RobotPicker(groups, current, robots)
 
 
 class RobotPicker(Chooser):
-    """Returns the name or the path of the chosen robot, or `OF_PROGRAM`.
+    """Returns the name or the path of the chosen robot, or `PROGRAM_ROBOT`.
 
     Args:
         groups: The list.
@@ -78,34 +80,34 @@ class RobotPicker(Chooser):
         )
         self._robots = dict(robots)
 
-    def content(self) -> ComposeResult:
-        listed = self.listed()
+    def compose_content(self) -> ComposeResult:
+        listed = self.build_list()
         names = (len(name) for group in self._groups for _, name, _ in group.entries)
-        listed.styles.width = min(max(names, default=0) + 5, WIDEST_NAME)
+        listed.styles.width = min(max(names, default=0) + 5, MAX_NAME_COLUMNS)
         with Horizontal(classes="mats"):
             yield listed
             with Vertical():
                 yield RobotPicture()
                 yield RobotParts()
-        yield from self.asked()
+        yield from self.compose_field()
 
-    def nothing_found(self) -> None:
+    def clear_preview(self) -> None:
         """Show no robot."""
         self.query_one(RobotParts).show([])
         self.query_one(RobotPicture).show(None)
 
     @on(OptionList.OptionHighlighted)
-    def _highlighted(self, event: OptionList.OptionHighlighted) -> None:
-        robot = self._robot(event.option.id or "")
-        lines = list(part_lines(robot)) if robot else []
+    def _show_highlighted(self, event: OptionList.OptionHighlighted) -> None:
+        robot = self._find_robot(event.option.id or "")
+        lines = list(describe_parts(robot)) if robot else []
         parts = self.query_one(RobotParts)
         parts.show(lines)
         rows = self.app.size.height - _OTHER_ROWS - parts.rows
         picture = self.query_one(RobotPicture)
-        picture.styles.height = min(max(rows, _LEAST_ROWS), _MOST_ROWS)
+        picture.styles.height = min(max(rows, _MIN_ROWS), _MAX_ROWS)
         picture.show(robot)
 
-    def _robot(self, name: str) -> RobotSpec | None:
+    def _find_robot(self, name: str) -> RobotSpec | None:
         """Return a robot by name or path; None for a file that has changed since it was listed."""
         if name and name not in self._robots:
             try:
@@ -120,25 +122,27 @@ class RobotPicture(PixelView):
 
     def __init__(self) -> None:
         super().__init__()
-        self._robot: RobotSpec | None = None
+        self._find_robot: RobotSpec | None = None
 
     def show(self, robot: RobotSpec | None) -> None:
         """Show a robot, or none."""
-        self._robot = robot
+        self._find_robot = robot
         self.draw_picture()
 
     def draw_picture(self) -> None:
         """Draw it for the current size."""
-        if self._robot is None:
+        if self._find_robot is None:
             self.clear_picture()
         elif self.size:
             graphics, mode = self.graphics, self.color_mode
             cell = self.cell_for(graphics)
             width_px, height_px = cell.cols * self.size.width, cell.rows * self.size.height
-            view = view_of(self._robot, width_px, height_px, cell)
+            view = fit_view(self._find_robot, width_px, height_px, cell)
             mono = mode.depth == cells.MONO
             colors = MONO if mono else GREY if mode.grey else COLORED
-            self.set_fine_picture(robot_picture(self._robot, view, colors, mono=mono), graphics)
+            self.set_fine_picture(
+                draw_robot_picture(self._find_robot, view, colors, mono=mono), graphics
+            )
 
 
 class RobotParts(LinesPanel):
@@ -163,7 +167,7 @@ class RobotParts(LinesPanel):
         self._text.set_lines(self._lines)
 
 
-def view_of(robot: RobotSpec, width_px: int, height_px: int, cell: CellPoints) -> Viewport:
+def fit_view(robot: RobotSpec, width_px: int, height_px: int, cell: CellPoints) -> Viewport:
     """Return the view in which a robot, heading up, fills a picture with a rim around it."""
     outline = outline_of(robot)
     bumpers_mm = [y_mm + _RIM_MM for _, y_mm, _ in outline.bumpers_mm]
@@ -176,7 +180,7 @@ def view_of(robot: RobotSpec, width_px: int, height_px: int, cell: CellPoints) -
     return Viewport(width_px, height_px, mm_per_px, -width_px * mm_per_px / 2, top_mm, cell)
 
 
-def robot_picture(
+def draw_robot_picture(
     robot: RobotSpec, view: Viewport, colors: RobotColors, *, mono: bool = False
 ) -> Pixels:
     """Return a robot at the middle of the axes, heading up, with all sensors that have a place."""
@@ -192,26 +196,28 @@ def robot_picture(
     return picture
 
 
-def part_lines(robot: RobotSpec) -> Iterator[Line]:
+def describe_parts(robot: RobotSpec) -> Iterator[Line]:
     """Yield a line for the wheels, each further motor and each sensor, with its port and its place."""
     if robot.has_wheels:
-        yield _line(
+        yield _build_line(
             None,
             f"{robot.left_port[-1]} {robot.right_port[-1]}",
             f"wheels ⌀ {robot.wheel_diameter_mm:g}, {robot.wheel_spacing_mm:g} mm apart",
         )
     for motor in robot.extra_motors:
-        yield _line(None, motor.port[-1], f"{motor.kind} motor")
-    for sensor in sorted(robot.sensors, key=lambda one: one.port):
-        yield _line(_swatch(sensor), sensor.port[-1], f"{sensor.name}{_place(sensor)}")
+        yield _build_line(None, motor.port[-1], f"{motor.kind} motor")
+    for sensor in sorted(robot.sensors, key=lambda other: other.port):
+        yield _build_line(
+            _find_swatch(sensor), sensor.port[-1], f"{sensor.name}{_describe_place(sensor)}"
+        )
 
 
-def _line(rgb: Rgb | None, port: str, words: str) -> Line:
+def _build_line(rgb: Rgb | None, port: str, words: str) -> Line:
     dot = ("■ ", Style(color=Color.from_rgb(*rgb))) if rgb else ("  ", _LABEL)
     return [dot, (f"{port:<4}", _LABEL), (words, _VALUE)]
 
 
-def _swatch(sensor: SensorSpec) -> Rgb | None:
+def _find_swatch(sensor: SensorSpec) -> Rgb | None:
     """Return the colour of a sensor in the picture; None if it has no place in it."""
     if isinstance(sensor, ColorSensorSpec):
         return COLORED.sensor
@@ -220,13 +226,13 @@ def _swatch(sensor: SensorSpec) -> Rgb | None:
     return COLORED.spot if hasattr(sensor, "x_mm") else None
 
 
-def _place(sensor: SensorSpec) -> str:
+def _describe_place(sensor: SensorSpec) -> str:
     """Return where a sensor is in words, and its size, such as `, 10 left, 65 ahead, ⌀ 20`."""
     x_mm, y_mm = getattr(sensor, "x_mm", math.nan), getattr(sensor, "y_mm", math.nan)
     if math.isnan(x_mm):
         return ""
-    found = [f"{abs(x_mm):g} {'right' if x_mm > 0 else 'left'}"] if x_mm else []
-    found.append(f"{abs(y_mm):g} {'ahead' if y_mm >= 0 else 'behind'}")
+    words = [f"{abs(x_mm):g} {'right' if x_mm > 0 else 'left'}"] if x_mm else []
+    words.append(f"{abs(y_mm):g} {'ahead' if y_mm >= 0 else 'behind'}")
     if isinstance(sensor, ColorSensorSpec):
-        found.append(f"⌀ {sensor.diameter_mm}")
-    return ": " + ", ".join(found)
+        words.append(f"⌀ {sensor.diameter_mm}")
+    return ": " + ", ".join(words)

@@ -19,7 +19,7 @@ from textual.widgets.option_list import Option
 
 from tuisim.app import background
 from tuisim.app.branch import BRANCH_TAG
-from tuisim.app.dialogs.chooser import ListDialog, field_view
+from tuisim.app.dialogs.chooser import ListDialog, find_field_view
 from tuisim.app.dialogs.dialog import Dialog
 from tuisim.app.snapshot import GOOD_ENDS, end_label
 from tuisim.base import palette
@@ -35,17 +35,21 @@ if TYPE_CHECKING:
     from tuisim.engine.runs.diff import RunDiff
     from tuisim.engine.runs.recorded_run import Recording
 
-MOST_LISTED = 300
+MAX_LISTED = 300
 """Most runs listed at once; a search finds the others."""
 
 
-def matching(runs: Iterable[RunInfo], search: str) -> list[RunInfo]:
+def find_runs(runs: Iterable[RunInfo], search: str) -> list[RunInfo]:
     """Return the runs, newest first, whose lines contain every word of a search."""
     words = search.lower().split()
-    return [run for run in reversed(list(runs)) if all(word in _searched(run) for word in words)]
+    return [
+        run
+        for run in reversed(list(runs))
+        if all(word in _collect_search_text(run) for word in words)
+    ]
 
 
-def _searched(run: RunInfo) -> str:
+def _collect_search_text(run: RunInfo) -> str:
     facts = (
         run.number,
         run.program,
@@ -56,10 +60,10 @@ def _searched(run: RunInfo) -> str:
         run.summary,
         run.tags,
     )
-    return " ".join(map(str, (*facts, _when(run)))).lower()
+    return " ".join(map(str, (*facts, _format_date(run)))).lower()
 
 
-def _when(run: RunInfo) -> str:
+def _format_date(run: RunInfo) -> str:
     try:
         return datetime.fromisoformat(run.created).astimezone().strftime("%Y-%m-%d %H:%M")
     except ValueError:
@@ -77,7 +81,7 @@ _LEFT_OUT = {
     0: ("when", "mat", "s", "samples"),
 }
 """What a terminal of so many columns has no room for."""
-_NOTE_AT = 100
+_MIN_NOTE_COLUMNS = 100
 """Columns of a terminal from which the list has notes."""
 
 
@@ -91,17 +95,17 @@ def _arrange(texts: Mapping[str, str], columns: int) -> dict[str, str]:
     }
 
 
-def heads(columns: int) -> str:
+def build_header(columns: int) -> str:
     """Return the heads of the list in a terminal of so many columns."""
     names = " ".join(_arrange({name: name for name in _COLUMNS}, columns).values())
-    return f"{names}  note" if columns >= _NOTE_AT else names
+    return f"{names}  note" if columns >= _MIN_NOTE_COLUMNS else names
 
 
 def run_line(run: RunInfo, columns: int, *, marked: bool = False) -> Text:
-    """Return one line of the list, below `heads`; a wide one with tags or what went wrong."""
+    """Return one line of the list, below `build_header`; a wide one with tags or what went wrong."""
     texts = {
         "run": f"{run.number}{'●' if marked else ' '}",
-        "when": _when(run)[5:],
+        "when": _format_date(run)[5:],
         "program": run.program,
         "mat": Path(run.background).name,
         "end": end_label(run.end),
@@ -115,7 +119,7 @@ def run_line(run: RunInfo, columns: int, *, marked: bool = False) -> Text:
     for name, text in _arrange(texts, columns).items():
         line.append(f"{' ' if line else ''}{text}", styles.get(name, ""))
     # Of most runs the summary says the end, which has its own column.
-    if columns >= _NOTE_AT and (
+    if columns >= _MIN_NOTE_COLUMNS and (
         note := run.tags
         or ("" if run.end is End.TIME_LIMIT or run.summary == end_label(run.end) else run.summary)
     ):
@@ -123,7 +127,7 @@ def run_line(run: RunInfo, columns: int, *, marked: bool = False) -> Text:
     return line
 
 
-def branch_root(run: RunInfo) -> int | None:
+def parse_branch_root(run: RunInfo) -> int | None:
     """Return the number of the run that a run branched off from, None if it is no branch."""
     tag = next((word for word in run.tags.split() if word.startswith(BRANCH_TAG)), "")
     number = tag.removeprefix(BRANCH_TAG)
@@ -134,9 +138,9 @@ def find_likeliest(listed: Sequence[RunInfo], this: RunInfo) -> int:
     """Return the place in a list of the run with which another one is compared most often: the run that it branched off
     from, else the first of the same program, else the first of all.
     """
-    root = branch_root(this)
-    likely = [at for at, run in enumerate(listed) if run.number == root]
-    likely += [at for at, run in enumerate(listed) if run.program == this.program]
+    root = parse_branch_root(this)
+    likely = [index for index, run in enumerate(listed) if run.number == root]
+    likely += [index for index, run in enumerate(listed) if run.program == this.program]
     return likely[0] if likely else 0
 
 
@@ -169,13 +173,13 @@ class RunChooser(ListDialog):
         self._looked_at = ""
         """Id of the run whose way is shown."""
 
-    def content(self) -> ComposeResult:
+    def compose_content(self) -> ComposeResult:
         yield Input(
             placeholder="Search: number, program, mat, end, tag, date",
             compact=True,
             select_on_focus=False,
         )
-        yield Static(heads(self.app.size.width), markup=False, classes="heads")
+        yield Static(build_header(self.app.size.width), markup=False, classes="heads")
         yield OptionList()
         with Horizontal(classes="way"):
             yield PixelView()
@@ -184,14 +188,14 @@ class RunChooser(ListDialog):
     def on_mount(self) -> None:
         """Read the list in the background: there may be thousands of runs."""
         super().on_mount()
-        self.wait_for(_stored_runs, self._fill, lambda error: self.say(str(error)))
+        self.wait_while(_load_runs, self._fill, lambda error: self.say(str(error)))
 
     def _fill(self, runs: list[RunInfo]) -> None:
         self._runs = [run for run in runs if run.id != self._left_out]
         self._list("")
         this = next((run for run in runs if run.id == self._left_out), None)
         if this is not None and self._runs:
-            listed = matching(self._runs, "")[:MOST_LISTED]
+            listed = find_runs(self._runs, "")[:MAX_LISTED]
             self.query_one(OptionList).highlighted = find_likeliest(listed, this)
 
     def line(self, run: RunInfo) -> Text:
@@ -199,17 +203,17 @@ class RunChooser(ListDialog):
         return run_line(run, self.app.size.width)
 
     def _list(self, search: str) -> None:
-        found = matching(self._runs, search)
+        matches = find_runs(self._runs, search)
         options = self.query_one(OptionList)
         options.clear_options()
-        options.add_options(Option(self.line(run), id=run.id) for run in found[:MOST_LISTED])
-        options.highlighted = 0 if found else None
+        options.add_options(Option(self.line(run), id=run.id) for run in matches[:MAX_LISTED])
+        options.highlighted = 0 if matches else None
         if not self._runs:
             self.say("No runs yet: each run of a program is kept")
-        elif len(found) > MOST_LISTED:
-            self.say(f"The newest {MOST_LISTED} of {len(found):,} runs: search for the others")
+        elif len(matches) > MAX_LISTED:
+            self.say(f"The newest {MAX_LISTED} of {len(matches):,} runs: search for the others")
         else:
-            self.say(f"{len(found):,} of {len(self._runs):,} runs")
+            self.say(f"{len(matches):,} of {len(self._runs):,} runs")
 
     @on(OptionList.OptionHighlighted)
     def _look(self, event: OptionList.OptionHighlighted) -> None:
@@ -218,7 +222,7 @@ class RunChooser(ListDialog):
         if not view.size:
             self.call_after_refresh(self._look, event)
             return
-        work = partial(_way, self._looked_at, field_view(view), view.ground_rgb)
+        work = partial(_draw_path, self._looked_at, find_field_view(view), view.ground_rgb)
         show = partial(self._show_way, self._looked_at)
         # The list says of each run how it ended, and opening it says what is wrong.
         background.run(self, work, show, lambda _: show(None), group="way", exclusive=True)
@@ -238,7 +242,7 @@ class RunChooser(ListDialog):
         self._list(event.value)
 
     @on(Input.Submitted)
-    def _typed(self, event: Input.Submitted) -> None:
+    def _handle_submission(self, event: Input.Submitted) -> None:
         event.stop()
         # Text typed here is not a choice in itself, unlike in other lists.
         event.prevent_default()
@@ -247,13 +251,13 @@ class RunChooser(ListDialog):
             self.dismiss(options.get_option_at_index(options.highlighted).id)
 
 
-def _way(run_id: str, port: Viewport, outside_rgb: Rgb) -> Pixels:
+def _draw_path(run_id: str, port: Viewport, outside_rgb: Rgb) -> Pixels:
     from tuisim.pictures.scene.pictures import path_picture
 
     return path_picture(RunStore().load_run(run_id), port, outside_rgb)
 
 
-def _stored_runs() -> list[RunInfo]:
+def _load_runs() -> list[RunInfo]:
     return RunStore().runs()
 
 
@@ -275,35 +279,35 @@ class RunsChooser(RunChooser):
 
     def action_mark(self) -> None:
         options = self.query_one(OptionList)
-        at = options.highlighted
-        run = self._run_of(options.get_option_at_index(at).id) if at is not None else None
-        if at is None or run is None:
+        index = options.highlighted
+        run = self._find_run(options.get_option_at_index(index).id) if index is not None else None
+        if index is None or run is None:
             return
         self._marked.remove(run.id) if run.id in self._marked else self._marked.append(run.id)
-        options.replace_option_prompt_at_index(at, self.line(run))
+        options.replace_option_prompt_at_index(index, self.line(run))
         options.action_cursor_down()
 
-    def _run_of(self, run_id: str | None) -> RunInfo | None:
+    def _find_run(self, run_id: str | None) -> RunInfo | None:
         return next((run for run in self._runs if run.id == run_id), None)
 
     @on(OptionList.OptionSelected)
-    def _opened(self, event: OptionList.OptionSelected) -> None:
+    def _open_marked(self, event: OptionList.OptionSelected) -> None:
         event.stop()
         event.prevent_default()
         self.dismiss(" ".join(self._marked or [event.option.id or ""]))
 
     @on(Input.Submitted)
-    def _named(self, event: Input.Submitted) -> None:
+    def _open_named(self, event: Input.Submitted) -> None:
         """Open runs given by name, such as `12 13` or `last`; any other text is a search."""
         numbers = {str(run.number): run.id for run in self._runs}
         if self._runs:
             numbers["last"] = self._runs[-1].id
         named = [numbers.get(word) for word in event.value.split()]
-        wanted = self._marked or [run_id for run_id in named if run_id is not None]
-        if wanted and (self._marked or None not in named):
+        run_ids = self._marked or [run_id for run_id in named if run_id is not None]
+        if run_ids and (self._marked or None not in named):
             event.stop()
             event.prevent_default()
-            self.dismiss(" ".join(wanted))
+            self.dismiss(" ".join(run_ids))
 
 
 class Differences(Dialog[bool]):
@@ -329,7 +333,7 @@ class Differences(Dialog[bool]):
         )
         self._diff = diff
 
-    def content(self) -> ComposeResult:
+    def compose_content(self) -> ComposeResult:
         from tuisim.engine.runs.diff import recording_in_words, setup_in_words
 
         table = Table.grid(padding=(0, 2))

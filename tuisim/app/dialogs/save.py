@@ -14,7 +14,7 @@ from textual.binding import Binding, BindingType
 from textual.widgets import Input, Static
 
 from tuisim.app.dialogs.dialog import Dialog
-from tuisim.app.dialogs.question import Form, form_list
+from tuisim.app.dialogs.question import Form, build_form_table
 from tuisim.base.errors import ConfigError, TuisimError, shortened
 from tuisim.base.folders import user_path
 from tuisim.engine.runs.store import RunStore
@@ -28,7 +28,7 @@ from tuisim.logs.export import (
 from tuisim.terminal.app import offer
 
 
-def typed_path(text: str) -> Path:
+def parse_path(text: str) -> Path:
     """Return the path that was typed, with `~` expanded; the file need not exist.
 
     Raises:
@@ -63,17 +63,17 @@ class FileDialog(Dialog[Path]):
         """The target that the user has agreed to replace."""
         self._writing = False
 
-    def content(self) -> ComposeResult:
+    def compose_content(self) -> ComposeResult:
         yield Static(f"File ({self.SUFFIXES})", markup=False)
         yield Input(self._proposed, compact=True)
-        yield from self.more()
+        yield from self.compose_extras()
         yield Static(id="message", markup=False)
 
-    def more(self) -> ComposeResult:
+    def compose_extras(self) -> ComposeResult:
         """Return the widgets between the field and the message."""
         yield from ()
 
-    def checked(self, path: Path) -> Path:
+    def resolve_target(self, path: Path) -> Path:
         """Return the target if it can be written.
 
         Raises:
@@ -89,12 +89,12 @@ class FileDialog(Dialog[Path]):
         """
 
     @on(Input.Changed)
-    def _changed(self) -> None:
+    def _forget_agreement(self) -> None:
         self._agreed = ""
         self.say("")
 
     @on(Input.Submitted)
-    def _submitted(self, event: Input.Submitted) -> None:
+    def _submit(self, event: Input.Submitted) -> None:
         if self._writing:
             return
         typed = event.value.strip()
@@ -102,7 +102,7 @@ class FileDialog(Dialog[Path]):
             self.say(f"Type the name of a file that ends in {self.SUFFIXES}", wrong=True)
             return
         try:
-            target = self.checked(typed_path(typed))
+            target = self.resolve_target(parse_path(typed))
             if os.path.exists(target) and self._agreed != typed:
                 self._agreed = typed
                 self.say(
@@ -112,9 +112,9 @@ class FileDialog(Dialog[Path]):
             self._writing = True
             self.write(target)
         except TuisimError as error:
-            self.failed(str(error))
+            self.report_failure(str(error))
 
-    def failed(self, text: str) -> None:
+    def report_failure(self, text: str) -> None:
         """Show why nothing was written."""
         self._writing = False
         self.say(text, wrong=True)
@@ -159,15 +159,15 @@ class SaveDialog(FileDialog):
         self.SUFFIXES = suffixes or self.SUFFIXES
         self.TITLE_TEXT = f"Save the {what}"
 
-    def checked(self, path: Path) -> Path:
+    def resolve_target(self, path: Path) -> Path:
         """Return the target if it can be written."""
         self._check(path)
         return path
 
-    def more(self) -> ComposeResult:
+    def compose_extras(self) -> ComposeResult:
         """Return what the suffixes mean."""
         if self._forms:
-            yield form_list(self._forms)
+            yield build_form_table(self._forms)
 
     def write(self, target: Path) -> None:
         """Write the file at once."""
@@ -209,34 +209,34 @@ class ExportDialog(FileDialog):
         self._run_id = run_id
         self._telemetry = False
 
-    def more(self) -> ComposeResult:
+    def compose_extras(self) -> ComposeResult:
         """Return the choice of what to write."""
-        yield Static(self._kind(), id="kind")
+        yield Static(self._describe_kind(), id="kind")
 
     def action_switch(self) -> None:
         self._telemetry = not self._telemetry
-        self.query_one("#kind", Static).update(self._kind())
+        self.query_one("#kind", Static).update(self._describe_kind())
 
-    def _kind(self) -> str:
+    def _describe_kind(self) -> str:
         return f"[@click=screen.switch]{_KINDS[self._telemetry]}[/]"
 
-    def checked(self, path: Path) -> Path:
+    def resolve_target(self, path: Path) -> Path:
         """Raise a TuisimError for a file that no exporter can write."""
         return check_target(path)
 
     def write(self, target: Path) -> None:
         """Write the file in the background: it may be large."""
         self.say("Writing …")
-        work = partial(_write, self._run_id, target, self._telemetry)
-        self.wait_for(work, self._written, lambda error: self.failed(str(error)))
+        work = partial(_write_log, self._run_id, target, self._telemetry)
+        self.wait_while(work, self._report_written, lambda error: self.report_failure(str(error)))
 
-    def _written(self, target: Path) -> None:
+    def _report_written(self, target: Path) -> None:
         self.app.notify(f"Log saved to {describe_files(target)}", markup=False)
         offer(self.app, target)
         self.dismiss(target)
 
 
-def _write(run_id: str, target: Path, telemetry: bool) -> Path:
+def _write_log(run_id: str, target: Path, telemetry: bool) -> Path:
     run = RunStore().load_run(run_id)
     export_telemetry(run, target) if telemetry else export_samples([run], target)
     return target

@@ -35,20 +35,22 @@ Change = Callable[[Setting, Scalar | None], None]
 _NAME_CELLS = 13
 
 
-def in_words(value: Scalar) -> str:
+def format_value(value: Scalar) -> str:
     """Return a value as the user writes it, without quotes."""
     return str(value).lower() if isinstance(value, bool) else str(value)
 
 
-def about(one: Setting) -> str:
+def describe_setting(setting: Setting) -> str:
     """Return what a setting does, and what it accepts unless the help has listed it."""
-    listed = all(str(word) in one.help for word in one.value.choices or [one.value.allowed])
-    return one.help if listed else f"{one.help} Allowed: {one.value.allowed}."
+    listed = all(
+        str(word) in setting.help for word in setting.value.choices or [setting.value.allowed]
+    )
+    return setting.help if listed else f"{setting.help} Allowed: {setting.value.allowed}."
 
 
-def typed_value(one: Setting, text: str) -> Scalar:
+def parse_value(setting: Setting, text: str) -> Scalar:
     """Return what was typed as a value of the file: a number where the setting takes one."""
-    if not isinstance(one.default, int | float):
+    if not isinstance(setting.default, int | float):
         return text.strip()
     for kind in (int, float):
         try:
@@ -77,10 +79,10 @@ class SettingsScreen(Dialog[None]):
         self._change = change
         self._themes = themes
 
-    def content(self) -> ComposeResult:
+    def compose_content(self) -> ComposeResult:
         config = load_config()
         yield Static(str(config.path), id="where", markup=False)
-        yield OptionList(*self._options(config), markup=False)
+        yield OptionList(*self._build_options(config), markup=False)
         yield Static(id="about", markup=False)
         yield Static(id="message", markup=False)
 
@@ -90,101 +92,110 @@ class SettingsScreen(Dialog[None]):
         listed.highlighted = 1
         listed.focus()
         for error in load_config().problems[:1]:
-            self._complain(error)
+            self._report_error(error)
 
-    def _options(self, config: UserConfig) -> list[Option]:
+    def _build_options(self, config: UserConfig) -> list[Option]:
         options = []
         for section in Section:
             lines = [
-                Option(_line(one, config), id=path)
-                for path, one in SETTINGS.items()
-                if one.section is section
+                Option(_build_line(setting, config), id=path)
+                for path, setting in SETTINGS.items()
+                if setting.section is section
             ]
             if lines:
                 options += [Option(Text(f"[{section}]", "italic"), disabled=True), *lines]
         return options
 
     @property
-    def _one(self) -> Setting:
+    def _selected_setting(self) -> Setting:
         """The selected setting."""
         listed = self.query_one(OptionList)
         name = listed.get_option_at_index(listed.highlighted or 0).id
         return SETTINGS[name or THEME]
 
     @on(OptionList.OptionHighlighted)
-    def _highlighted(self) -> None:
-        one = self._one
-        parts = [about(one)]
-        if one.section is Section.SIMULATION:
+    def _explain_selected(self) -> None:
+        setting = self._selected_setting
+        parts = [describe_setting(setting)]
+        if setting.section is Section.SIMULATION:
             parts.append(
                 "For the app and `tuisim run`, but not with a world file, goals or a lesson."
             )
-        if not one.is_live:
+        if not setting.is_live:
             parts.append("Applies from the next start on.")
         self.query_one("#about", Static).update(" ".join(parts))
 
     @on(OptionList.OptionSelected)
     def _edit(self) -> None:
-        one, value = self._one, load_config().value(self._one.path)
+        setting, value = self._selected_setting, load_config().value(self._selected_setting.path)
         if isinstance(value, bool):
-            self._choose(one, not value)
+            self._choose(setting, not value)
             return
-        if one.path == THEME:
-            self.app.push_screen(self._themes(), self._chosen)
+        if setting.path == THEME:
+            self.app.push_screen(self._themes(), self._handle_choice)
             return
-        names = one.value.choices
-        if names and not isinstance(one.default, int | float):
+        names = setting.value.choices
+        if names and not isinstance(setting.default, int | float):
             group = ChoiceGroup("", [(name, name, "") for name in map(str, names)])
-            self.app.push_screen(Chooser(one.path, [group], in_words(value)), self._chosen)
+            self.app.push_screen(
+                Chooser(setting.path, [group], format_value(value)), self._handle_choice
+            )
             return
         self.app.push_screen(
-            LinePrompt(one.path, self._typed, in_words(value), text=about(one)), self._entered
+            LinePrompt(
+                setting.path, self._write_typed, format_value(value), text=describe_setting(setting)
+            ),
+            self._handle_closing,
         )
 
-    def _chosen(self, name: str | None) -> None:
+    def _handle_choice(self, name: str | None) -> None:
         if name is not None:
-            self._choose(self._one, name)
+            self._choose(self._selected_setting, name)
 
-    def _choose(self, one: Setting, value: Scalar) -> None:
+    def _choose(self, setting: Setting, value: Scalar) -> None:
         """Set one of a few values; the usual one needs no line in the file."""
-        self._set(one, None if value == one.default else value)
+        self._set(setting, None if value == setting.default else value)
 
-    def _typed(self, text: str) -> None:
-        self._change(self._one, typed_value(self._one, text) if text.strip() else None)
+    def _write_typed(self, text: str) -> None:
+        self._change(
+            self._selected_setting,
+            parse_value(self._selected_setting, text) if text.strip() else None,
+        )
 
-    def _entered(self, done: bool | None) -> None:
+    def _handle_closing(self, done: bool | None) -> None:
         if done:
-            self._changed(self._one)
+            self._show_change(self._selected_setting)
 
     def action_usual(self) -> None:
-        self._set(self._one, None)
+        self._set(self._selected_setting, None)
 
-    def _set(self, one: Setting, value: Scalar | None) -> None:
+    def _set(self, setting: Setting, value: Scalar | None) -> None:
         try:
-            self._change(one, value)
+            self._change(setting, value)
         except TuisimError as error:
-            self._complain(error)
+            self._report_error(error)
         else:
-            self._changed(one)
+            self._show_change(setting)
 
-    def _complain(self, error: TuisimError) -> None:
+    def _report_error(self, error: TuisimError) -> None:
         # The path of the file stands above the list.
         self.say(str(error).removeprefix(f"{load_config().path}: "), wrong=True)
 
-    def _changed(self, one: Setting) -> None:
+    def _show_change(self, setting: Setting) -> None:
         config = load_config()
-        self.query_one(OptionList).replace_option_prompt(one.path, _line(one, config))
+        self.query_one(OptionList).replace_option_prompt(setting.path, _build_line(setting, config))
         if config.problems:
-            self._complain(config.problems[0])
+            self._report_error(config.problems[0])
         else:
             self.say(
-                f"Written to {FILE}" + ("" if one.is_live else "; applies from the next start on")
+                f"Written to {FILE}"
+                + ("" if setting.is_live else "; applies from the next start on")
             )
 
 
-def _line(one: Setting, config: UserConfig) -> Table:
+def _build_line(setting: Setting, config: UserConfig) -> Table:
     """Return the line of a setting: its name, its value, and whether that is the user's own."""
-    value = in_words(config.value(one.path)) or "–"
+    value = format_value(config.value(setting.path)) or "–"
     return name_and_title(
-        one.name, f"{value}  (yours)" if one.path in config.written else value, _NAME_CELLS
+        setting.name, f"{value}  (yours)" if setting.path in config.written else value, _NAME_CELLS
     )

@@ -42,7 +42,7 @@ _KEY_WORDS = (
     "Always: {open} opens a file, {lesson-menu} the lessons, {help} shows all keys, {quit} quits."
 )
 _NAME_CELLS = 18
-_MOST_NUMBERED = 9
+_MAX_NUMBERED = 9
 
 
 class Welcome(Dialog[Begin | Recent]):
@@ -57,7 +57,7 @@ class Welcome(Dialog[Begin | Recent]):
     HINT: str = "A number, or ↑ ↓ and Enter · Escape closes"
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding(str(number), f"take({number})", "Begin", show=False)
-        for number in range(1, _MOST_NUMBERED + 1)
+        for number in range(1, _MAX_NUMBERED + 1)
     ]
 
     keys = ()
@@ -67,11 +67,12 @@ class Welcome(Dialog[Begin | Recent]):
         self._is_first, self._find = is_first, find
         self._entries: list[Begin | Recent] = [*Begin]
 
-    def content(self) -> ComposeResult:
+    def compose_content(self) -> ComposeResult:
         if self._is_first:
             yield Static(_TEXT, classes="start", markup=False)
         yield OptionList(
-            *(_option(at, *_CHOICES[what]) for at, what in enumerate(Begin, start=1)), markup=False
+            *(_build_option(number, *_CHOICES[what]) for number, what in enumerate(Begin, start=1)),
+            markup=False,
         )
         yield Static()
         yield Static(with_keys_of(self.app, _KEY_WORDS), markup=False)
@@ -85,24 +86,24 @@ class Welcome(Dialog[Begin | Recent]):
             ):
                 bindings_of(self).bind(key, f"leave_for('{name}')", name, show=False)
         self.query_one(OptionList).focus()
-        self.wait_for(
+        self.wait_while(
             self._find, self._add, lambda error: self.app.notify(str(error), markup=False)
         )
 
-    def _add(self, found: list[Recent]) -> None:
+    def _add(self, entries: list[Recent]) -> None:
         """List what there is to go on with; the likeliest is chosen."""
-        if not found:
+        if not entries:
             return
         listed = self.query_one(OptionList)
         listed.add_options([None, Option(Text("Go on with", "italic"), disabled=True)])
         first = listed.option_count
-        for one in found:
-            self._entries.append(one)
-            listed.add_option(_option(len(self._entries), one.name, one.title))
+        for entry in entries:
+            self._entries.append(entry)
+            listed.add_option(_build_option(len(self._entries), entry.name, entry.title))
         listed.highlighted = first
 
     @on(OptionList.OptionSelected)
-    def _chosen(self, event: OptionList.OptionSelected) -> None:
+    def _take_selected(self, event: OptionList.OptionSelected) -> None:
         self.action_take(int(event.option.id or 0))
 
     def action_leave_for(self, action: str) -> None:
@@ -115,7 +116,7 @@ class Welcome(Dialog[Begin | Recent]):
             self.dismiss(self._entries[number - 1])
 
 
-def _option(number: int, name: str, title: str) -> Option:
+def _build_option(number: int, name: str, title: str) -> Option:
     # Nine lines and the keys below them are all in sight at 80x24.
     return Option(
         name_and_title(f"{number} {name}", title, _NAME_CELLS, wraps=False), id=str(number)

@@ -23,8 +23,8 @@ from textual.widgets.text_area import Edit, EditResult, Selection
 
 from tuisim.app.editor import text_lines
 from tuisim.app.editor.candidate_list import CandidateList
-from tuisim.app.editor.completion import Candidate, candidates, word_before
-from tuisim.app.editor.strips import cut_strip, light_strip
+from tuisim.app.editor.completion import Candidate, find_candidates, find_word
+from tuisim.app.editor.strips import cut_strip, highlight_strip
 from tuisim.app.editor.syntax import KINDS, Colouring
 from tuisim.app.snapshot import short_value
 from tuisim.base.data_class import dataclass
@@ -35,11 +35,11 @@ from tuisim.terminal.textual_internals import columns_to_tab_stop, line_at_row
 
 # A `TextArea` treats these characters as line ends, Python does not: they are replaced by substitutes.
 _BREAKS = "\x0b\x0c\x1c\x1d\x1e\x85\u2028\u2029"
-_GUARD = {ord(char): 0xF700 + at for at, char in enumerate(_BREAKS)}
+_GUARD = {ord(char): 0xF700 + offset for offset, char in enumerate(_BREAKS)}
 _UNGUARD = {stand_in: char for char, stand_in in _GUARD.items()}
 _UNSHOWN = re.compile(r"[\x00-\x08\x0a-\x1f\x7f-\x9f\uf700-\uf707]")
 
-VALUE_GAP, LEAST_VALUE = 2, 10
+VALUE_GAP, MIN_VALUE_CELLS = 2, 10
 """Cells between a line and the values behind it, and those that the line leaves to values that need more than half."""
 _CURSOR_COLS = 3
 """Cells of the cursor and of what follows it that are scrolled into view."""
@@ -166,34 +166,37 @@ class CodeArea(TextArea):
 
     def edit(self, edit: Edit) -> EditResult:
         """Change the text; see `TextArea`."""
-        self._colouring.forget(edit.top[0])
+        self._colouring.forget_line(edit.top[0])
         text = edit.text.translate(_GUARD)
         guarded = Edit(text, edit.from_location, edit.to_location, edit.maintain_selection_offset)
         return super().edit(guarded)
 
     def undo(self) -> None:
         """Undo the last edits."""
-        self._colouring.forget(0)
+        self._colouring.forget_line(0)
         super().undo()
 
     def redo(self) -> None:
         """Redo what was undone."""
-        self._colouring.forget(0)
+        self._colouring.forget_line(0)
         super().redo()
 
     def get_line(self, line_index: int) -> Text:
         """Return a line with its colours."""
         line = self.document.get_line(line_index)
         text = Text(_UNSHOWN.sub("·", line), end="", no_wrap=True)
-        for start, end, kind in self._colouring.of(self.document.lines, line_index):
-            text.stylize(self._component(kind), start, end)
-        for one in self._unknown:
+        for start, end, kind in self._colouring.color_line(self.document.lines, line_index):
+            text.stylize(self._find_style(kind), start, end)
+        for unknown_name in self._unknown:
             # The text may have been edited since it was checked.
-            if one.row == line_index and line[one.start : one.end] == one.name:
-                text.stylize(self._component("unknown"), one.start, one.end)
+            if (
+                unknown_name.row == line_index
+                and line[unknown_name.start : unknown_name.end] == unknown_name.name
+            ):
+                text.stylize(self._find_style("unknown"), unknown_name.start, unknown_name.end)
         return text
 
-    def _component(self, kind: str) -> Style:
+    def _find_style(self, kind: str) -> Style:
         return self.get_component_rich_style(f"code--{kind}", partial=True)
 
     @property
@@ -260,7 +263,7 @@ class CodeArea(TextArea):
             self._values = values
             self.refresh()
 
-    def _rows_of(self, line: int) -> range:
+    def _find_rows(self, line: int) -> range:
         if not 1 <= line <= self.document.line_count:
             return range(0)
         wrapped = self.wrapped_document
@@ -269,13 +272,13 @@ class CodeArea(TextArea):
 
     def _refresh_line(self, line: int) -> None:
         top = self.scroll_offset.y
-        visible = [row - top for row in self._rows_of(line) if 0 <= row - top < self.size.height]
+        visible = [row - top for row in self._find_rows(line) if 0 <= row - top < self.size.height]
         if visible:
             self.refresh(*(Region(0, y, self.size.width, 1) for y in visible))
 
     def scroll_to_line(self, line: int) -> None:
         """Scroll a line into view."""
-        rows, height = self._rows_of(line), self.scrollable_content_region.height
+        rows, height = self._find_rows(line), self.scrollable_content_region.height
         if rows and not (
             self.scroll_offset.y <= rows.start and rows.stop <= self.scroll_offset.y + height
         ):
@@ -304,26 +307,26 @@ class CodeArea(TextArea):
         base = self.rich_style
         gutter = self.gutter_width
         text = strip.crop(gutter)
-        number_style = base + self._component("number-column")
+        number_style = base + self._find_style("number-column")
         if lit := "error" if line == self._error else "lit" if line == self._lit else "":
-            number_style = base + self._component(lit)
-            text = light_strip(text, base, number_style)
+            number_style = base + self._find_style(lit)
+            text = highlight_strip(text, base, number_style)
         room = self.scrollable_content_region.width - gutter
         is_typed = self.typing and line_index == self.cursor_location[0]
         if (values := self._values.get(line)) and section == 0 and not is_typed:
-            text = self._with_values(text, values, room, number_style)
+            text = self._append_values(text, values, room, number_style)
         elif cell_len(text.text.rstrip()) > room and not is_typed:
             text = cut_strip(text, room, number_style)
         run_mark = {"error": "✗", "lit": "▶"}.get(lit, " ") if section == 0 else " "
         number = f"{line if section == 0 else '':>{gutter - 3}}"
         mark = self._breaks.get(line, " ") if section == 0 else " "
         head = [
-            Segment(mark, number_style + self._component("break")),
+            Segment(mark, number_style + self._find_style("break")),
             Segment(f"{run_mark}{number} ", number_style),
         ]
         return Strip.join([Strip(head, gutter), text])
 
-    def _with_values(
+    def _append_values(
         self, text: Strip, values: Sequence[Variable], room: int, style: Style
     ) -> Strip:
         """Return a row with the values of variables behind its text, without their names if these do not fit.
@@ -332,23 +335,29 @@ class CodeArea(TextArea):
         """
         ground = Style(bgcolor=style.bgcolor)
         used = cell_len(text.text.rstrip()) + VALUE_GAP
-        shown_values = [short_value(" ".join(one.value.split())) for one in values]
-        looks = [self._component("changed" if one.changed else "value") + ground for one in values]
-        for befores in ([f"{one.name} = " for one in values], ["→ "] + [""] * (len(values) - 1)):
+        shown_values = [short_value(" ".join(variable.value.split())) for variable in values]
+        looks = [
+            self._find_style("changed" if variable.changed else "value") + ground
+            for variable in values
+        ]
+        for befores in (
+            [f"{variable.name} = " for variable in values],
+            ["→ "] + [""] * (len(values) - 1),
+        ):
             line: Line = [
-                (f"{', ' if at else ''}{before}{value}", look)
-                for at, (before, value, look) in enumerate(
+                (f"{', ' if offset else ''}{before}{value}", look)
+                for offset, (before, value, look) in enumerate(
                     zip(befores, shown_values, looks, strict=True)
                 )
             ]
             width = sum(cell_len(piece) for piece, _ in line)
             if used + width <= room:
                 break
-        start = min(used, room - (width if width <= room // 2 else LEAST_VALUE))
-        shown = [Segment(piece, style) for piece, style in cut_line(line, room - start)]
+        start = min(used, room - (width if width <= room // 2 else MIN_VALUE_CELLS))
+        segments = [Segment(piece, style) for piece, style in cut_line(line, room - start)]
         if start < used:
             text = Strip.join([cut_strip(text, start - 1, style), Strip([Segment(" ", style)], 1)])
-        return Strip.join([text.crop(0, start), Strip(shown)]).extend_cell_length(room, style)
+        return Strip.join([text.crop(0, start), Strip(segments)]).extend_cell_length(room, style)
 
     # Keys and mouse
 
@@ -386,117 +395,121 @@ class CodeArea(TextArea):
 
     async def on_key(self, event: events.Key) -> None:
         if not self.typing:
-            self._begin_with(event)
+            self._begin_typing(event)
             return
         # What was typed just before may not have been reported yet.
         self.follow_word()
-        self._tell_unknown(None)
-        if event.character in _AFTER_NAMES and self.candidates.may_complete(self._word() or ""):
+        self._set_unknown_word(None)
+        if event.character in _NAME_ENDINGS and self.candidates.can_complete(
+            self._find_word() or ""
+        ):
             # Who types on has not waited for the list.
-            self.put_in(self.candidates.take_key("enter"))
+            self.replace_word(self.candidates.take_key("enter"))
         elif self.candidates.is_open and event.key in self.candidates.KEYS:
-            self._done(event)
+            self._consume_event(event)
             if name := self.candidates.take_key(event.key):
-                self.put_in(name)
+                self.replace_word(name)
         elif event.key == "enter":
-            self._done(event)
+            self._consume_event(event)
             row, column = min(self.selection)
-            self.insert_text("\n" + text_lines.indent_after(self.document.get_line(row)[:column]))
+            self.insert_text("\n" + text_lines.compute_indent(self.document.get_line(row)[:column]))
         elif (
             event.key == "backspace"
             and self.selection.is_empty
-            and (blanks := self._blanks_to_delete())
+            and (blanks := self._count_deletable_blanks())
         ):
-            self._done(event)
+            self._consume_event(event)
             row, column = self.cursor_location
             self.delete((row, column - blanks), (row, column), maintain_selection_offset=False)
         elif event.key == "tab" and self.selection.is_empty:
-            self._done(event)
+            self._consume_event(event)
             await self._complete()
         elif change := _CHANGES.get(event.key):
-            self._done(event)
+            self._consume_event(event)
             self._change_lines(change)
-        elif wanted := _WHILE_TYPING.get(event.key):
-            self._done(event)
-            self.post_message(self.Wanted(wanted))
+        elif command := _WHILE_TYPING.get(event.key):
+            self._consume_event(event)
+            self.post_message(self.Wanted(command))
         elif event.key.startswith("alt+"):
             # The event has a character that nobody has typed.
-            self._done(event)
+            self._consume_event(event)
 
-    def _begin_with(self, event: events.Key) -> None:
+    def _begin_typing(self, event: events.Key) -> None:
         """Start typing with enter, or after a click with a letter, which is typed; escape makes letters keys again."""
         is_letter = self.awaits_letters and event.is_printable
         if event.key == "enter" or is_letter:
-            self._done(event)
+            self._consume_event(event)
             self.post_message(self.Wanted(EditorCommand.TYPE))
             self.insert_text(event.character or "" if is_letter else "")
         elif self.awaits_letters and event.key == "escape":
-            self._done(event)
+            self._consume_event(event)
             self.await_letters(False)
 
-    def _done(self, event: events.Key) -> None:
+    def _consume_event(self, event: events.Key) -> None:
         event.stop()
         event.prevent_default()
 
-    def _blanks_to_delete(self) -> int:
+    def _count_deletable_blanks(self) -> int:
         """Return how many blanks before the cursor backspace deletes, 0 if there is more than indentation."""
         row, column = self.cursor_location
-        return text_lines.blanks_to_delete(self.document.get_line(row)[:column])
+        return text_lines.count_deletable_blanks(self.document.get_line(row)[:column])
 
     # Completion
 
     async def _complete(self) -> None:
         """Complete the word before the cursor, list what may follow, or indent; keys that are typed meanwhile wait."""
         place = self.cursor_location
-        found: tuple[Candidate, ...] = ()
-        if self._word() is not None:
+        matches: tuple[Candidate, ...] = ()
+        if self._find_word() is not None:
             self._set_completing(True)
             try:
-                found = await asyncio.to_thread(candidates, self.program_text, self.path, *place)
+                matches = await asyncio.to_thread(
+                    find_candidates, self.program_text, self.path, *place
+                )
             finally:
                 self._set_completing(False)
-        word = self._word()
+        word = self._find_word()
         if self.cursor_location != place or not self.selection.is_empty or not self.typing:
             # Something else has moved the cursor, such as the mouse.
             return
-        if len(found) == 1:
-            self.put_in(found[0].name)
-        elif found and word is not None:
+        if len(matches) == 1:
+            self.replace_word(matches[0].name)
+        elif matches and word is not None:
             row, column = place
-            self.candidates.open(found, (row, column - len(word)), word, self._place_of(word))
+            self.candidates.open(matches, (row, column - len(word)), word, self._locate_word(word))
         elif word is not None:
-            self._tell_unknown(word)
+            self._set_unknown_word(word)
         else:
             self.insert_text(" " * columns_to_tab_stop(self))
 
-    def _tell_unknown(self, word: str | None) -> None:
+    def _set_unknown_word(self, word: str | None) -> None:
         if word != self.unknown_word:
             self.unknown_word = word
-            self._tell_looked_up()
+            self._announce_lookup()
 
     def _set_completing(self, on: bool) -> None:
         self.is_completing = on
-        self._tell_looked_up()
+        self._announce_lookup()
 
-    def _tell_looked_up(self) -> None:
+    def _announce_lookup(self) -> None:
         # This widget's own messages wait for the key that it handles.
         if isinstance(self.parent, Widget):
             self.parent.post_message(self.LookedUp())
 
-    def _word(self) -> str | None:
-        """Return the word that ends at the cursor, as `word_before`."""
+    def _find_word(self) -> str | None:
+        """Return the word that ends at the cursor, as `find_word`."""
         row, column = self.cursor_location
-        return word_before(self.document.get_line(row), column)
+        return find_word(self.document.get_line(row), column)
 
-    def _place_of(self, word: str) -> Offset:
+    def _locate_word(self, word: str) -> Offset:
         """Return where on the screen the word begins that ends at the cursor."""
         x, y = self.cursor_screen_offset
         return Offset(x - cell_len(word), y)
 
-    def put_in(self, name: str) -> None:
+    def replace_word(self, name: str) -> None:
         """Replace the word before the cursor with a name."""
         row, column = self.cursor_location
-        word = self._word() or ""
+        word = self._find_word() or ""
         self.replace(
             name, (row, column - len(word)), (row, column), maintain_selection_offset=False
         )
@@ -505,11 +518,11 @@ class CodeArea(TextArea):
         """Shorten the list of names to the word that is typed now, or close it."""
         if not self.candidates.is_open:
             return
-        word, (row, column) = self._word(), self.cursor_location
+        word, (row, column) = self._find_word(), self.cursor_location
         if word is None or (row, column - len(word)) != self.candidates.begin:
             self.candidates.close()
         else:
-            self.candidates.filter(word, self._place_of(word))
+            self.candidates.filter(word, self._locate_word(word))
 
     def on_blur(self) -> None:
         """Close the list of names."""
@@ -550,7 +563,7 @@ class CodeArea(TextArea):
                 self.post_message(self.GutterClicked(row + 1))
 
 
-_AFTER_NAMES = frozenset(".(")
+_NAME_ENDINGS = frozenset(".(")
 """What is typed after the name of an object or a function."""
 
 _TYPING_ACTIONS = frozenset(
@@ -574,9 +587,9 @@ _WHILE_TYPING = {
 """Usual editor keys; while the user does not type, the last two are keys of the robot and the obstacles."""
 
 _CHANGES: Mapping[str, text_lines.Change] = {
-    "tab": text_lines.indented,
-    "shift+tab": text_lines.outdented,
+    "tab": text_lines.indent_lines,
+    "shift+tab": text_lines.outdent_lines,
     # What terminals send for ctrl and the slash key.
-    "ctrl+underscore": text_lines.comment_toggled,
-    "ctrl+slash": text_lines.comment_toggled,
+    "ctrl+underscore": text_lines.toggle_comments,
+    "ctrl+slash": text_lines.toggle_comments,
 }

@@ -11,16 +11,16 @@ from textual.timer import Timer
 from tuisim.app import background
 from tuisim.app.editor import completion
 from tuisim.app.editor.area import CodeArea
-from tuisim.app.editor.candidate_list import signature_text
+from tuisim.app.editor.candidate_list import format_signature
 from tuisim.programs.attributes import AttributeCheck
 from tuisim.programs.names import UnknownName, unknown_names
 from tuisim.terminal.text_runs import cut
 
-CHECK_AFTER_S = 0.5
+CHECK_DELAY_S = 0.5
 """Names are checked when nothing has been typed for this long."""
-ASK_AFTER_S = 0.15
+ASK_DELAY_S = 0.15
 """Likewise for the signature."""
-MOST_LINES = 5000
+MAX_LINES = 5000
 """Longer texts are not checked: it would hold up the keys."""
 
 
@@ -34,7 +34,7 @@ class Assistant:
 
     def __init__(self, area: CodeArea, changed: Callable[[], None]) -> None:
         self._area, self._changed = area, changed
-        self._attribute_check = AttributeCheck(completion.members)
+        self._attribute_check = AttributeCheck(completion.find_members)
         self._names: tuple[UnknownName, ...] = ()
         self._attributes: tuple[UnknownName, ...] = ()
         self._signature: completion.Signature | None = None
@@ -42,23 +42,23 @@ class Assistant:
         self._ask_timer: Timer | None = None
         self._is_asking = self._asks_again = False
 
-    def said(self, width: int) -> Text:
+    def describe_cursor(self, width: int) -> Text:
         """Return what there is to say at the cursor, in at most so many cells."""
         row, column = self._area.cursor_location
         unknown = next(
             (
-                one
-                for one in self._area.unknown
-                if one.row == row and one.start <= column <= one.end
+                name
+                for name in self._area.unknown
+                if name.row == row and name.start <= column <= name.end
             ),
             None,
         )
         if unknown is not None:
             whole, hint = unknown.message, unknown.hint or unknown.message
             return Text(cut(whole if len(whole) <= width else hint, width))
-        return signature_text(self._signature, width) if self._signature else Text()
+        return format_signature(self._signature, width) if self._signature else Text()
 
-    def program_changed(self, path: str) -> None:
+    def load_program(self, path: str) -> None:
         """Forget all about another program, and check the names of this one.
 
         Args:
@@ -70,21 +70,23 @@ class Assistant:
         self._mark()
         self.check_names()
 
-    def text_changed(self) -> None:
+    def schedule_check(self) -> None:
         """Follow an edit."""
-        self._check_timer = self._restarted(self._check_timer, CHECK_AFTER_S, self.check_names)
+        self._check_timer = self._restart_timer(self._check_timer, CHECK_DELAY_S, self.check_names)
 
-    def cursor_moved(self) -> None:
+    def follow_cursor(self) -> None:
         """Follow the cursor."""
         self._area.follow_word()
         row, column = self._area.cursor_location
-        if self._area.typing and completion.in_call(self._area.document.lines, row, column):
-            self._ask_timer = self._restarted(self._ask_timer, ASK_AFTER_S, self.ask_signature)
+        if self._area.typing and completion.is_in_call(self._area.document.lines, row, column):
+            self._ask_timer = self._restart_timer(self._ask_timer, ASK_DELAY_S, self.ask_signature)
         else:
             self._signature = None
         self._changed()
 
-    def _restarted(self, timer: Timer | None, after_s: float, call: Callable[[], None]) -> Timer:
+    def _restart_timer(
+        self, timer: Timer | None, after_s: float, call: Callable[[], None]
+    ) -> Timer:
         if timer is not None:
             timer.stop()
         return self._area.set_timer(after_s, call)
@@ -92,7 +94,7 @@ class Assistant:
     def start(self) -> None:
         """Begin to help while typing: the first name that is looked up need not wait for the library."""
         if not completion.is_ready():
-            background.start(completion.warm_up)
+            background.start(completion.preload)
 
     def stop(self) -> None:
         """End what only helps while typing."""
@@ -103,20 +105,20 @@ class Assistant:
 
     def check_names(self) -> None:
         """Look for names that are not defined, and mark them."""
-        if self._area.document.line_count > MOST_LINES:
+        if self._area.document.line_count > MAX_LINES:
             return
-        found = unknown_names(self._area.program_text, self._area.path)
-        if found is not None:
-            self._names = found
+        names = unknown_names(self._area.program_text, self._area.path)
+        if names is not None:
+            self._names = names
             self._mark()
         if completion.is_ready():
             background.begin(self._area, self._check_attributes, group="attributes", exclusive=True)
 
     async def _check_attributes(self) -> None:
         text, path = self._area.program_text, self._area.path
-        found = await asyncio.to_thread(self._attribute_check.unknown_attributes, text, path)
+        attributes = await asyncio.to_thread(self._attribute_check.unknown_attributes, text, path)
         if (text, path) == (self._area.program_text, self._area.path):
-            self._attributes = found
+            self._attributes = attributes
             self._mark()
 
     def _mark(self) -> None:
@@ -131,19 +133,19 @@ class Assistant:
             self._asks_again = True
         elif self._area.typing:
             self._is_asking = True
-            background.begin(self._area, self._ask)
+            background.begin(self._area, self._fetch_signature)
 
-    async def _ask(self) -> None:
+    async def _fetch_signature(self) -> None:
         try:
-            found = await asyncio.to_thread(completion.signature, *self._place())
+            signature = await asyncio.to_thread(completion.find_signature, *self._place())
         finally:
             self._is_asking = False
         if self._asks_again:
             self._asks_again = False
             self.ask_signature()
         row, column = self._area.cursor_location
-        if self._area.typing and completion.in_call(self._area.document.lines, row, column):
-            self._signature = found
+        if self._area.typing and completion.is_in_call(self._area.document.lines, row, column):
+            self._signature = signature
             self._changed()
 
     def _place(self) -> tuple[str, str, int, int]:

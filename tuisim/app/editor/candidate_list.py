@@ -19,9 +19,9 @@ from tuisim.base import palette
 from tuisim.base.data_class import dataclass
 from tuisim.terminal.text_runs import Line, cut, cut_line, first_shown
 
-MOST_ROWS = 8
-MOST_WIDTH = 76
-LEAST_WIDTH = 24
+MAX_ROWS = 8
+MAX_WIDTH = 76
+MIN_WIDTH = 24
 _GROUND, _CHOSEN_GROUND = Style(bgcolor=palette.FIELD), Style(bgcolor=palette.CHOSEN, bold=True)
 _NAME, _SIGNATURE, _HELP = (
     Style(color=palette.WHITE),
@@ -33,17 +33,21 @@ _HELP_GROUND = Style(bgcolor=palette.RAISED)
 
 def list_lines(candidates: Sequence[Candidate], chosen: int, width: int) -> list[Line]:
     """Return the rows of a list: the candidates around the chosen one, and the help for it."""
-    room = min(MOST_ROWS, len(candidates))
+    room = min(MAX_ROWS, len(candidates))
     first = first_shown(chosen, len(candidates), room)
     lines: list[Line] = []
-    for at, one in enumerate(candidates[first : first + room], start=first):
-        ground = _CHOSEN_GROUND if at == chosen else _GROUND
-        after = one.signature or (f" {one.kind}" if one.kind else "")
+    for index, candidate in enumerate(candidates[first : first + room], start=first):
+        ground = _CHOSEN_GROUND if index == chosen else _GROUND
+        after = candidate.signature or (f" {candidate.kind}" if candidate.kind else "")
         row = cut_line(
-            [("▸" if at == chosen else " ", _NAME), (one.name, _NAME), (after, _SIGNATURE)],
+            [
+                ("▸" if index == chosen else " ", _NAME),
+                (candidate.name, _NAME),
+                (after, _SIGNATURE),
+            ],
             width - 1,
         )
-        lines.append(_padded([(text, style + ground) for text, style in row], width, ground))
+        lines.append(_pad_line([(text, style + ground) for text, style in row], width, ground))
     count = f" {chosen + 1}/{len(candidates)} " if len(candidates) > room else " "
     help_text = cut(candidates[chosen].help, width - 1 - len(count))
     row = [
@@ -53,16 +57,17 @@ def list_lines(candidates: Sequence[Candidate], chosen: int, width: int) -> list
     return [*lines, row]
 
 
-def _padded(line: Sequence[tuple[str, Style]], width: int, style: Style) -> Line:
+def _pad_line(line: Sequence[tuple[str, Style]], width: int, style: Style) -> Line:
     return [*line, (" " * (width - sum(len(text) for text, _ in line)), style)]
 
 
-def list_width(candidates: Sequence[Candidate], room: int) -> int:
+def measure_width(candidates: Sequence[Candidate], room: int) -> int:
     """Return the width of a list in cells, at most `room`."""
     longest = max(
-        max(len(one.name) + len(one.signature or one.kind), len(one.help)) for one in candidates
+        max(len(candidate.name) + len(candidate.signature or candidate.kind), len(candidate.help))
+        for candidate in candidates
     )
-    return min(room, MOST_WIDTH, max(LEAST_WIDTH, longest + 3))
+    return min(room, MAX_WIDTH, max(MIN_WIDTH, longest + 3))
 
 
 def list_place(word: Offset, size: Size, screen: Size) -> Offset:
@@ -72,24 +77,29 @@ def list_place(word: Offset, size: Size, screen: Size) -> Offset:
     return Offset(max(0, min(word.x - 1, screen.width - size.width - 1)), y)
 
 
-def signature_text(signature: Signature, width: int) -> Text:
+def format_signature(signature: Signature, width: int) -> Text:
     """Return a signature with the present parameter in bold, shortened to a width around it."""
-    kept = range(len(signature.parameters))
+    indices = range(len(signature.parameters))
     middle = signature.index or 0
-    while len(text := _signature(signature, kept)) > width and len(kept) > 1:
+    while len(text := _build_signature(signature, indices)) > width and len(indices) > 1:
         # The parameters that are farther away go first.
-        kept = kept[1:] if middle - kept.start >= kept.stop - 1 - middle else kept[:-1]
+        indices = (
+            indices[1:] if middle - indices.start >= indices.stop - 1 - middle else indices[:-1]
+        )
     text.truncate(max(width, 1), overflow="ellipsis")
     return text
 
 
-def _signature(signature: Signature, kept: range) -> Text:
+def _build_signature(signature: Signature, indices: range) -> Text:
     text = Text(f"{signature.name}(", end="", no_wrap=True)
-    words = [(signature.parameters[at], "bold" if at == signature.index else "") for at in kept]
-    before = [("…", "")] if kept.start else []
-    after = [("…", "")] if kept.stop < len(signature.parameters) else []
-    for at, (word, style) in enumerate([*before, *words, *after]):
-        text.append(", " if at else "")
+    words = [
+        (signature.parameters[index], "bold" if index == signature.index else "")
+        for index in indices
+    ]
+    before = [("…", "")] if indices.start else []
+    after = [("…", "")] if indices.stop < len(signature.parameters) else []
+    for index, (word, style) in enumerate([*before, *words, *after]):
+        text.append(", " if index else "")
         text.append(word, style)
     return text.append(")")
 
@@ -136,7 +146,7 @@ class CandidateList(Widget):
             place: Where it begins on the screen.
         """
         self._candidates, self.begin = candidates, begin
-        self._width = list_width(candidates, self.screen.size.width - 2)
+        self._width = measure_width(candidates, self.screen.size.width - 2)
         self.filter(word, place)
 
     def filter(self, word: str, place: Offset) -> None:
@@ -144,12 +154,16 @@ class CandidateList(Widget):
         if word == self._word and self.is_open:
             return
         self._word = word
-        begin = [one for one in self._candidates if one.name.lower().startswith(word.lower())]
-        if not begin or [one.name for one in begin] == [word]:
+        begin = [
+            candidate
+            for candidate in self._candidates
+            if candidate.name.lower().startswith(word.lower())
+        ]
+        if not begin or [candidate.name for candidate in begin] == [word]:
             self.close()
             return
         self._shown, self._chosen = tuple(begin), 0
-        size = Size(self._width, min(len(begin), MOST_ROWS) + 1)
+        size = Size(self._width, min(len(begin), MAX_ROWS) + 1)
         self.absolute_offset = list_place(place, size, self.screen.size)
         self.styles.width, self.styles.height = size
         self.display = True
@@ -160,9 +174,11 @@ class CandidateList(Widget):
         self._candidates = self._shown = ()
         self.display = False
 
-    def may_complete(self, word: str) -> bool:
+    def can_complete(self, word: str) -> bool:
         """Return whether what follows a word means that the chosen name is to be put in, as the word is none itself."""
-        return self.is_open and bool(word) and all(one.name != word for one in self._shown)
+        return (
+            self.is_open and bool(word) and all(candidate.name != word for candidate in self._shown)
+        )
 
     def take_key(self, key: str) -> str:
         """Do what one of `KEYS` does; return the name that is to be put in, empty if none is yet."""
@@ -174,7 +190,7 @@ class CandidateList(Widget):
                 name = self._shown[self._chosen].name
                 self.close()
             case "pageup" | "pagedown":
-                by = MOST_ROWS if key == "pagedown" else -MOST_ROWS
+                by = MAX_ROWS if key == "pagedown" else -MAX_ROWS
                 self._chosen = min(max(0, self._chosen + by), len(self._shown) - 1)
             case _:
                 self._chosen = (self._chosen + (1 if key == "down" else -1)) % len(self._shown)
@@ -191,8 +207,8 @@ class CandidateList(Widget):
         """Choose the name that was clicked, and leave the focus in the text."""
         event.stop()
         event.prevent_default()
-        first = first_shown(self._chosen, len(self._shown), min(MOST_ROWS, len(self._shown)))
-        if event.y < min(MOST_ROWS, len(self._shown)):
+        first = first_shown(self._chosen, len(self._shown), min(MAX_ROWS, len(self._shown)))
+        if event.y < min(MAX_ROWS, len(self._shown)):
             name = self._shown[first + event.y].name
             self.close()
             self.post_message(self.Chosen(name))

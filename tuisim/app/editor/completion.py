@@ -1,6 +1,6 @@
 """Completion and signatures: what may follow at a place of a program, which is read with Jedi and never run.
 
-Jedi is imported when it is first asked, or by `warm_up`. It is slow at first and knows no threads: it is asked in one
+Jedi is imported when it is first asked, or by `preload`. It is slow at first and knows no threads: it is asked in one
 thread at a time.
 """
 
@@ -15,7 +15,7 @@ from pathlib import Path
 from threading import Lock
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from tuisim.app.editor.syntax import spans
+from tuisim.app.editor.syntax import find_spans
 from tuisim.base.data_class import dataclass
 from tuisim.base.folders import cache_folder
 from tuisim.base.source import PRELUDE_TEXTS
@@ -27,9 +27,9 @@ if TYPE_CHECKING:
 
 Result = TypeVar("Result")
 
-MOST_DESCRIBED = 200
+MAX_DESCRIBED = 200
 """So many candidates get a signature and a line of help; that of a library with many functions takes long."""
-MOST_LINES_OF_CALL = 20
+MAX_CALL_LINES = 20
 """A call is looked for so many lines up."""
 
 _PACKAGE = Path(__file__).resolve().parents[2]
@@ -37,13 +37,13 @@ _WORD_END = re.compile(r"[^\W\d]\w*$")
 _SENTENCE_END = re.compile(r"\.(?= [A-Z])")
 _COURSE = "from tuisim.engine.shim.names.course import ColorSensor\n"
 _PYBRICKS = "tuisim.engine.shim.pybricks."
-_NOT_OF_THE_BRICK = frozenset(
+_SIMULATED_NAMES = frozenset(
     {"KIND", "ENDINGS", "SETTINGS_WHILE_ACTIVE", "brick", "device_port", "port", "sign"}
 )
 """Names that only the simulated classes of Pybricks have."""
 _GENERAL = frozenset({"ev3dev2", "ev3dev2.sensor"})
 """Modules of the classes that all devices of `ev3dev2` share, which few programs use."""
-_OF_THE_COURSE = frozenset({"reflected_light_intensity_pc", "full_reflected_light_intensity"})
+_COURSE_ATTRIBUTES = frozenset({"reflected_light_intensity_pc", "full_reflected_light_intensity"})
 """Attributes that colour sensors have while a program runs, however they were made."""
 _LIBRARIES = ("ev3dev2", "tuisim.engine.shim.names.course", "time")
 _USUAL = (
@@ -60,7 +60,7 @@ _USUAL = (
 """Patterns of what most programs use of the libraries, in the order of a list."""
 _UNUSUAL = frozenset({"mro"})
 _EXTENSIONS = [path for path in sys.path if path.endswith("lib-dynload")]
-_FIRST = "colorLeft.r", "", 0, len("colorLeft.r")
+_WARM_UP_PLACE = "colorLeft.r", "", 0, len("colorLeft.r")
 """What it is asked first: an object of the prelude, and what it has."""
 _asking = Lock()
 
@@ -88,12 +88,12 @@ class Signature:
     """Number of the parameter at the cursor, from 0; None if there is none."""
 
 
-def word_before(line: str, column: int) -> str | None:
+def find_word(line: str, column: int) -> str | None:
     """Return the word that is being typed, empty right after a dot; None if nothing can be completed there."""
     before = line[:column]
     if any(
         start < column <= end and kind in ("string", "comment")
-        for start, end, kind in spans(line)[0]
+        for start, end, kind in find_spans(line)[0]
     ):
         return None
     if match := _WORD_END.search(before):
@@ -103,13 +103,15 @@ def word_before(line: str, column: int) -> str | None:
     )
 
 
-def in_call(lines: Sequence[str], row: int, column: int) -> bool:
+def is_in_call(lines: Sequence[str], row: int, column: int) -> bool:
     """Return whether a place may be between the parentheses of a call."""
     depth = 0
-    for at in range(row, max(-1, row - MOST_LINES_OF_CALL), -1):
-        line = lines[at][:column] if at == row else lines[at]
+    for index in range(row, max(-1, row - MAX_CALL_LINES), -1):
+        line = lines[index][:column] if index == row else lines[index]
         hidden = [
-            (start, end) for start, end, kind in spans(line)[0] if kind in ("string", "comment")
+            (start, end)
+            for start, end, kind in find_spans(line)[0]
+            if kind in ("string", "comment")
         ]
         for position in range(len(line) - 1, -1, -1):
             char = line[position]
@@ -124,7 +126,7 @@ def in_call(lines: Sequence[str], row: int, column: int) -> bool:
     return False
 
 
-def candidates(text: str, path: str, row: int, column: int) -> tuple[Candidate, ...]:
+def find_candidates(text: str, path: str, row: int, column: int) -> tuple[Candidate, ...]:
     """Return the names that may stand at a place, the usual ones first.
 
     Args:
@@ -134,58 +136,70 @@ def candidates(text: str, path: str, row: int, column: int) -> tuple[Candidate, 
         column: From 0.
     """
     line = text.split("\n")[row]
-    word = word_before(line, column)
+    word = find_word(line, column)
     if word is None:
         return ()
     begin = column - len(word)
     with _asking:
-        script, first = _script(text, path)
-        found: list[Completion] = _answer(lambda: script.complete(first + row + 1, column), [])
+        script, first = _build_script(text, path)
+        completions: list[Completion] = _ask_jedi(
+            lambda: script.complete(first + row + 1, column), []
+        )
         after_dot = line[begin - 1 : begin] == "."
         owner = (
-            _answer(lambda: _class_at(script, first + row + 1, begin - 1), "") if after_dot else ""
+            _ask_jedi(lambda: _find_class(script, first + row + 1, begin - 1), "")
+            if after_dot
+            else ""
         )
-        shown = sorted(
-            (one for one in found if _is_meant(one, word)), key=lambda one: _rank(one, word, owner)
+        ranked = sorted(
+            (completion for completion in completions if _is_likely(completion, word)),
+            key=lambda completion: _rank(completion, word, owner),
         )
         described = (
-            _answer(partial(_described, one), Candidate(one.name)) for one in shown[:MOST_DESCRIBED]
+            _ask_jedi(partial(_describe_completion, completion), Candidate(completion.name))
+            for completion in ranked[:MAX_DESCRIBED]
         )
-        return *described, *(Candidate(one.name) for one in shown[MOST_DESCRIBED:])
+        return *described, *(Candidate(completion.name) for completion in ranked[MAX_DESCRIBED:])
 
 
-def signature(text: str, path: str, row: int, column: int) -> Signature | None:
-    """Return the function whose arguments are at a place; None if none is known. Arguments as for `candidates`."""
+def find_signature(text: str, path: str, row: int, column: int) -> Signature | None:
+    """Return the function whose arguments are at a place; None if none is known. Arguments as for `find_candidates`."""
     with _asking:
-        script, first = _script(text, path)
-        found: list[Any] = _answer(lambda: script.get_signatures(first + row + 1, column), [])
-        if not found:
+        script, first = _build_script(text, path)
+        signatures: list[Any] = _ask_jedi(
+            lambda: script.get_signatures(first + row + 1, column), []
+        )
+        if not signatures:
             return None
         return Signature(
-            found[0].name, tuple(_parameter(one) for one in found[0].params), found[0].index
+            signatures[0].name,
+            tuple(_format_parameter(parameter) for parameter in signatures[0].params),
+            signatures[0].index,
         )
 
 
-def members(text: str, path: str, row: int, column: int) -> frozenset[str] | None:
+def find_members(text: str, path: str, row: int, column: int) -> frozenset[str] | None:
     """Return all names after the dot behind an object of a library; None if they are not all known.
 
     Args:
-        text, path: As for `candidates`.
+        text, path: As for `find_candidates`.
         row: From 0.
         column: From 0, of the dot after a name.
     """
     with _asking:
-        script, first = _script(text, path)
-        kinds: list[Any] = _answer(lambda: script.infer(first + row + 1, column - 1), [])
-        if len(kinds) != 1 or not _is_of_library(kinds[0]):
+        script, first = _build_script(text, path)
+        kinds: list[Any] = _ask_jedi(lambda: script.infer(first + row + 1, column - 1), [])
+        if len(kinds) != 1 or not _is_library_object(kinds[0]):
             return None
-        names: list[Completion] = _answer(lambda: script.complete(first + row + 1, column + 1), [])
-        found = frozenset(one.name for one in names)
+        names: list[Completion] = _ask_jedi(
+            lambda: script.complete(first + row + 1, column + 1), []
+        )
+        members = frozenset(completion.name for completion in names)
         # Some classes make their attributes when they are asked for them.
-        return None if not found or "__getattr__" in found else found | _OF_THE_COURSE
+        return None if not members or "__getattr__" in members else members | _COURSE_ATTRIBUTES
 
 
-def _is_of_library(kind: Any) -> bool:
+def _is_library_object(kind: Any) -> bool:
     top = str(kind.full_name or kind.module_name).partition(".")[0]
     return (kind.type == "instance" and top in ("ev3dev2", "tuisim")) or (
         kind.type == "module" and top in sys.stdlib_module_names
@@ -197,12 +211,12 @@ def is_ready() -> bool:
     return "jedi" in sys.modules
 
 
-def warm_up() -> None:
+def preload() -> None:
     """Read what every program uses, so that nobody waits for it later. Blocks."""
-    candidates(*_FIRST)
+    find_candidates(*_WARM_UP_PLACE)
 
 
-def _answer(ask: Callable[[], Result], otherwise: Result) -> Result:
+def _ask_jedi(ask: Callable[[], Result], otherwise: Result) -> Result:
     """Return what Jedi answers."""
     try:
         return ask()
@@ -211,7 +225,7 @@ def _answer(ask: Callable[[], Result], otherwise: Result) -> Result:
         return otherwise
 
 
-def _script(text: str, path: str) -> tuple[Script, int]:
+def _build_script(text: str, path: str) -> tuple[Script, int]:
     """Return Jedi's view of a program after its prelude, and how many lines the prelude has."""
     import jedi
     from jedi.api.environment import InterpreterEnvironment
@@ -241,28 +255,30 @@ def _script(text: str, path: str) -> tuple[Script, int]:
     ), prelude.count("\n")
 
 
-def _is_meant(one: Completion, word: str) -> bool:
-    if one.name.startswith("_") and not word.startswith("_"):
+def _is_likely(completion: Completion, word: str) -> bool:
+    if completion.name.startswith("_") and not word.startswith("_"):
         return False
     # A property of a class is one of Python's.
-    if one.name in _NOT_OF_THE_BRICK and _module_of(one).startswith((_PYBRICKS, "builtins")):
+    if completion.name in _SIMULATED_NAMES and _find_module(completion).startswith(
+        (_PYBRICKS, "builtins")
+    ):
         return False
-    return one.name not in _UNUSUAL or one.name == word
+    return completion.name not in _UNUSUAL or completion.name == word
 
 
-def _module_of(one: Completion) -> str:
+def _find_module(completion: Completion) -> str:
     """Return the module in which a name is defined."""
-    places: list[Any] = _answer(one.goto, [])
+    places: list[Any] = _ask_jedi(completion.goto, [])
     return str(places[0].module_name) if places else ""
 
 
-def _class_at(script: Script, line: int, column: int) -> str:
+def _find_class(script: Script, line: int, column: int) -> str:
     """Return the class of the object that ends at a place; empty if it is unknown, or no object of a class."""
     kinds: list[Any] = script.infer(line, column)
     return str(kinds[0].full_name) if kinds and kinds[0].type == "instance" else ""
 
 
-def _rank(one: Completion, word: str, owner: str) -> tuple[int, ...]:
+def _rank(completion: Completion, word: str, owner: str) -> tuple[int, ...]:
     """Return what sorts a candidate: names in the case that is typed first; private, constant and general ones last.
 
     Args:
@@ -270,21 +286,28 @@ def _rank(one: Completion, word: str, owner: str) -> tuple[int, ...]:
         word: What has been typed of it.
         owner: The class behind the dot, whose own names come before inherited ones; empty if there is none.
     """
-    is_constant = one.name.isupper() and one.type == "statement"
-    module = _module_of(one)
-    is_private, is_general = one.name.startswith("_"), module in _GENERAL
+    is_constant = completion.name.isupper() and completion.type == "statement"
+    module = _find_module(completion)
+    is_private, is_general = completion.name.startswith("_"), module in _GENERAL
     use = len(_USUAL)
     if module.startswith(_LIBRARIES):
         use = next(
-            (at for at, pattern in enumerate(_USUAL) if re.fullmatch(pattern, one.name)), use
+            (
+                index
+                for index, pattern in enumerate(_USUAL)
+                if re.fullmatch(pattern, completion.name)
+            ),
+            use,
         )
     is_inherited = is_internal = False
     if owner and use == len(_USUAL):
-        is_inherited = not _answer(lambda: str(one.full_name), "").startswith(f"{owner}.")
+        is_inherited = not _ask_jedi(lambda: str(completion.full_name), "").startswith(f"{owner}.")
         # What methods assign, and what its author has not described, is seldom meant.
-        is_internal = one.type == "statement" or not _answer(partial(one.docstring, raw=True), "")
+        is_internal = completion.type == "statement" or not _ask_jedi(
+            partial(completion.docstring, raw=True), ""
+        )
     return (
-        not one.name.startswith(word),
+        not completion.name.startswith(word),
         is_private,
         is_constant,
         is_general,
@@ -294,25 +317,29 @@ def _rank(one: Completion, word: str, owner: str) -> tuple[int, ...]:
     )
 
 
-def _described(one: Completion) -> Candidate:
-    signatures = one.get_signatures()
+def _describe_completion(completion: Completion) -> Candidate:
+    signatures = completion.get_signatures()
     parameters = (
-        ", ".join(_parameter(parameter) for parameter in signatures[0].params) if signatures else ""
+        ", ".join(_format_parameter(parameter) for parameter in signatures[0].params)
+        if signatures
+        else ""
     )
-    called = f"({parameters})" if signatures and one.type in ("function", "class") else ""
-    kind = "" if one.type in ("statement", "function", "instance") else one.type
-    documentation = "" if one.type in ("keyword", "instance") else one.docstring(raw=True)
-    return Candidate(one.name, called, kind, first_sentence(documentation))
+    called = f"({parameters})" if signatures and completion.type in ("function", "class") else ""
+    kind = "" if completion.type in ("statement", "function", "instance") else completion.type
+    documentation = (
+        "" if completion.type in ("keyword", "instance") else completion.docstring(raw=True)
+    )
+    return Candidate(completion.name, called, kind, extract_sentence(documentation))
 
 
-def _parameter(parameter: Any) -> str:
+def _format_parameter(parameter: Any) -> str:
     """Return a parameter without its type."""
     text: str = parameter.to_string()
     name, _, default = re.sub(r":[^=]*", "", text, count=1).partition("=")
     return f"{name.strip()}={default.strip()}" if default else name.strip()
 
 
-def first_sentence(documentation: str) -> str:
+def extract_sentence(documentation: str) -> str:
     """Return the first sentence of a docstring as one line."""
     paragraph = " ".join(documentation.strip().partition("\n\n")[0].split())
     return _SENTENCE_END.split(paragraph, maxsplit=1)[0].rstrip(".").replace("``", "`")

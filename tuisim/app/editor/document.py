@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from tuisim.app.editor.text_file import (
     Draft,
-    Form,
+    TextFormat,
     drop_draft,
     find_draft,
     is_protected,
@@ -17,7 +17,7 @@ from tuisim.app.editor.text_file import (
     read_text,
     write_text,
 )
-from tuisim.app.editor.text_lines import LineMap, differing_lines
+from tuisim.app.editor.text_lines import LineMap, count_differing_lines
 from tuisim.base.errors import ConfigError, TuisimError, counted
 from tuisim.base.source import source_lines
 from tuisim.programs.magic_mat import wrong_mat
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from tuisim.engine.runs.recorded_run import Recording
     from tuisim.programs.mistakes import Mistake
 
-DRAFT_AFTER_S = 1.0
+DRAFT_DELAY_S = 1.0
 """Delay after an edit before unsaved text is stored as a draft, in case of a crash."""
 NEW_NAME = "new.py"
 
@@ -60,7 +60,7 @@ class Document:
         """The next program to run unless the text was edited."""
         self._name = self._path = self._text = self._saved = self._applied = ""
         """File name; path; text as edited; as in the file; as it was when `_program` was made from it."""
-        self._form = Form()
+        self._form = TextFormat()
         self._seeks_error = False
         """Whether the code panel is to move to the marked error as soon as it is there."""
         self._is_file = False
@@ -89,14 +89,14 @@ class Document:
 
     def begin(self, asks: bool) -> None:
         """Show what is open; if `asks`, offer to restore a draft of a new program."""
-        self.introduce()
+        self.show_program()
         self.open_at_mistake()
         if asks and self._program is None and (draft := find_draft("")):
             self._offer(draft)
 
     def open_at_mistake(self) -> None:
         """Show the line of the mistake in the program that has been opened, if there is one."""
-        if self._program is None or not (mistake := self._mistake()):
+        if self._program is None or not (mistake := self._find_mistake()):
             return
         self._error_line, self._error_words = mistake.line, mistake.message
         self._seeks_error = True
@@ -104,14 +104,14 @@ class Document:
         self.show()
         # The frame of a narrow panel has no room for all of it.
         if output := self._panel_area.output:
-            output.note(f"— {self._cannot_run(mistake)}")
+            output.note(f"— {self._explain_mistake(mistake)}")
 
-    def introduce(self) -> None:
+    def show_program(self) -> None:
         """Show the open program, which may have changed."""
         program = self._run_controller.program
         if program is not self._program:
             same = program is not None and self._program is not None and program.path == self._path
-            if not (same and program is not None and program.text == self._runnable()):
+            if not (same and program is not None and program.text == self._parse_text()):
                 self._load_program(program, offers=not same)
             self._program, self._applied = program, self._text
         self.show()
@@ -119,7 +119,7 @@ class Document:
     def _load_program(self, program: Program | None, offers: bool) -> None:
         self._name, self._path = (program.name, program.path) if program else ("", "")
         self._text = self._saved = program.text if program else ""
-        self._form, self._is_file, self._error_line = Form(), False, 0
+        self._form, self._is_file, self._error_line = TextFormat(), False, 0
         if program is None:
             return
         if program.path:
@@ -127,8 +127,8 @@ class Document:
                 text, form = read_text(Path(program.path))
             except ConfigError:
                 # The file is missing or invalid by now: show what was read of it.
-                text, form = "", Form()
-            if text and self._runnable(text) == program.text:
+                text, form = "", TextFormat()
+            if text and self._parse_text(text) == program.text:
                 self._text, self._form, self._is_file = text, form, True
                 self._saved = text
         if offers and program.path and (draft := find_draft(program.path)):
@@ -139,7 +139,7 @@ class Document:
             else:
                 self._offer(draft)
 
-    def _runnable(self, text: str | None = None) -> str | None:
+    def _parse_text(self, text: str | None = None) -> str | None:
         """Return the text as a program runs it, None if its magic line is invalid."""
         from tuisim.programs.program_file import parse_program
 
@@ -175,14 +175,14 @@ class Document:
             as_run = recording.program.text
             self._ran = (
                 recording,
-                self._applied if self._runnable(self._applied) == as_run else as_run,
+                self._applied if self._parse_text(self._applied) == as_run else as_run,
             )
         if code is not None and self._ran is not None:
             code.set_running(self._ran[1], self._ran[0].program.name == self._name)
         elif code is not None:
             code.set_running(None)
 
-    def run_ended_at(self, line: int, words: str = "") -> None:
+    def mark_failure(self, line: int, words: str = "") -> None:
         """Mark the line of the current run's text at which it ended with an error; 0 for none.
 
         Args:
@@ -205,14 +205,14 @@ class Document:
 
     # Editing
 
-    def edited(self, text: str) -> None:
+    def handle_edit(self, text: str) -> None:
         """Handle an edit in the code panel."""
         self._text, self._error_line = text, 0
         if code := self._panel_area.code:
             code.set_title(self._name, self.dirty)
         if not self._draft_pending:
             self._draft_pending = True
-            self._app.set_timer(DRAFT_AFTER_S, self.save_draft)
+            self._app.set_timer(DRAFT_DELAY_S, self.save_draft)
 
     def save_draft(self) -> None:
         """Store unsaved text as a draft, or drop the draft if all is saved."""
@@ -232,14 +232,15 @@ class Document:
 
         name = self._name or NEW_NAME
         when = time.strftime("%d %b %H:%M", time.localtime(draft.written_s))
-        lines = differing_lines(self._text, draft.text)
+        lines = count_differing_lines(self._text, draft.text)
         text = f"{name} was edited on {when} and not saved: {counted(lines, 'line differs', 'lines differ')}."
         answers = (("r", "Restore the edited text"), ("d", "Discard it"))
         self._app.push_screen(
-            Question("Unsaved work", text, answers), lambda answer: self._offered(draft, answer)
+            Question("Unsaved work", text, answers),
+            lambda answer: self._handle_offer(draft, answer),
         )
 
-    def _offered(self, draft: Draft, answer: str | None) -> None:
+    def _handle_offer(self, draft: Draft, answer: str | None) -> None:
         if answer == "d":
             drop_draft(draft.path)
         elif answer == "r" and self._program is None:
@@ -259,14 +260,14 @@ class Document:
             self._saved = ""
             self.show()
 
-    def when_safe(self, do: Callable[[], None]) -> None:
+    def run_when_saved(self, do: Callable[[], None]) -> None:
         """Call a function that discards the text; with unsaved changes, only after a question."""
         if not self.dirty:
             do()
             return
         from tuisim.app.dialogs.question import Question
 
-        def answered(answer: str | None) -> None:
+        def handle_answer(answer: str | None) -> None:
             if answer == "s":
                 self.save(do)
             elif answer == "d":
@@ -280,7 +281,7 @@ class Document:
             answers,
             "continues editing",
         )
-        self._app.push_screen(question, answered)
+        self._app.push_screen(question, handle_answer)
 
     def _discard(self) -> None:
         self._text = self._saved
@@ -293,7 +294,7 @@ class Document:
         Returns:
             Whether the program can run.
         """
-        self.introduce()
+        self.show_program()
         if self._name == NEW_NAME and not self._path:
             # What has run is worth saving.
             self._saved = ""
@@ -301,12 +302,12 @@ class Document:
         if is_applied and not self._lacks_mat:
             return True
         # A typing error in the magic line must not change the mat.
-        if mistake := self._mistake():
-            self._app.complain(TuisimError(self._cannot_run(mistake)))
+        if mistake := self._find_mistake():
+            self._app.complain(TuisimError(self._explain_mistake(mistake)))
             return False
         return is_applied or self._apply_text()
 
-    def _cannot_run(self, mistake: Mistake) -> str:
+    def _explain_mistake(self, mistake: Mistake) -> str:
         return f"{self._name} cannot run: {mistake.message}"
 
     @property
@@ -323,7 +324,7 @@ class Document:
             self._program.path,
         )
 
-    def _mistake(self) -> Mistake | None:
+    def _find_mistake(self) -> Mistake | None:
         """Return the mistake in the text, and mark its line."""
         from tuisim.programs.mistakes import find_mistake
 
@@ -342,7 +343,7 @@ class Document:
             return False
         return True
 
-    def new(self, text: str) -> None:
+    def start_new(self, text: str) -> None:
         """Start a new program with this text, and type at its end."""
         draft = find_draft("")
         self._open_new(text)
@@ -366,7 +367,7 @@ class Document:
 
         was_dirty = self.dirty
         try:
-            self.edited(with_mat(self._text, self._name, mat))
+            self.handle_edit(with_mat(self._text, self._name, mat))
             self.show()
             self._apply_text()
         except TuisimError as error:
@@ -402,20 +403,20 @@ class Document:
             return
         path = Path(self._path)
         if self._has_own_file:
-            if self._write_or_complain(path):
-                self._saved_to(path, then)
+            if self._try_write(path):
+                self._finish_save(path, then)
             return
         from tuisim.app.dialogs.save import ProgramDialog
 
-        def saved(target: Path | None) -> None:
+        def handle_saved(target: Path | None) -> None:
             if target:
-                self._saved_to(target, then)
+                self._finish_save(target, then)
 
         self._app.push_screen(
-            ProgramDialog("program", str(Path.cwd() / self._name), self._write), saved
+            ProgramDialog("program", str(Path.cwd() / self._name), self._write), handle_saved
         )
 
-    def when_in_file(self, do: Callable[[Path], None]) -> None:
+    def run_with_file(self, do: Callable[[Path], None]) -> None:
         """Call a function with the file of the program, which is saved before if necessary."""
         if self._has_own_file and not self.dirty:
             do(Path(self._path))
@@ -424,15 +425,15 @@ class Document:
 
     def save_own(self) -> None:
         """Save the text to its file without a question, if it is a file of the student's own."""
-        if self.dirty and self._has_own_file and self._write_or_complain(Path(self._path)):
-            self._noted_saved(Path(self._path))
+        if self.dirty and self._has_own_file and self._try_write(Path(self._path)):
+            self._mark_saved(Path(self._path))
 
     @property
     def _has_own_file(self) -> bool:
         """Whether the program is a file of the student's own."""
         return bool(self._path) and self._is_file and not is_protected(Path(self._path))
 
-    def _write_or_complain(self, path: Path) -> bool:
+    def _try_write(self, path: Path) -> bool:
         """Write the text to a file. Return whether it could be written."""
         try:
             self._write(path)
@@ -441,7 +442,7 @@ class Document:
             return False
         return True
 
-    def _noted_saved(self, path: Path) -> None:
+    def _mark_saved(self, path: Path) -> None:
         drop_draft(self._path)
         self._saved, self._is_file = self._text, True
         self._path, self._name = str(path), path.name
@@ -457,11 +458,11 @@ class Document:
             )
         write_text(path, self._text, self._form)
 
-    def _saved_to(self, path: Path, then: Callable[[], None]) -> None:
+    def _finish_save(self, path: Path, then: Callable[[], None]) -> None:
         """Note that the text was saved to a file, and report whether it can run."""
         moved = str(path) != self._path
-        self._noted_saved(path)
-        mistake = self._mistake()
+        self._mark_saved(path)
+        mistake = self._find_mistake()
         if not self._run_controller.in_run and not self._is_applied and (moved or not mistake):
             self._apply_text()
         if mistake:
@@ -474,7 +475,7 @@ class Document:
 
     # Changes of the file on disk
 
-    def conflicts_with(self, path: Path) -> bool:
+    def check_conflict(self, path: Path) -> bool:
         """Return whether a file that changed on disk has unsaved edits here; if so, ask which version to keep."""
         if not self.dirty or Path(self._path) != path:
             return False
@@ -484,10 +485,10 @@ class Document:
 
             text = f"{self._name} was changed on disk, and has unsaved changes here."
             answers = (("k", "Keep mine"), ("t", "Use the file's"))
-            self._app.push_screen(Question("Two versions", text, answers), self._resolved)
+            self._app.push_screen(Question("Two versions", text, answers), self._handle_resolution)
         return True
 
-    def _resolved(self, answer: str | None) -> None:
+    def _handle_resolution(self, answer: str | None) -> None:
         self._asking = False
         if answer == "t":
             self._discard()

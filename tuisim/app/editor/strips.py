@@ -7,15 +7,15 @@ from rich.style import Style
 from textual.strip import Strip
 
 
-def light_strip(strip: Strip, base: Style, lit: Style) -> Strip:
+def highlight_strip(strip: Strip, base: Style, lit: Style) -> Strip:
     """Return a row with the highlight's background where the panel's own was: a cursor or a selection stays."""
     background = Style(bgcolor=lit.bgcolor)
     pieces = ((piece.text, piece.style or base) for piece in strip)
-    shown = [
+    segments = [
         Segment(text, style + background if style.bgcolor == base.bgcolor else style)
         for text, style in pieces
     ]
-    return Strip(shown, strip.cell_length)
+    return Strip(segments, strip.cell_length)
 
 
 def cut_strip(strip: Strip, width: int, style: Style) -> Strip:

@@ -30,33 +30,35 @@ _TOKEN = re.compile(
 _CLOSING = {quote: re.compile(rf"(?:[^\\]|\\.)*?{quote}") for quote in ('"""', "'''")}
 
 
-def spans(line: str, before: str = "") -> tuple[list[Span], str]:
+def find_spans(line: str, before: str = "") -> tuple[list[Span], str]:
     """Return the coloured parts of a line, and the state after it.
 
     Args:
         line: Without its line end.
         before: The quotes of the string in which the line begins, empty if in none.
     """
-    found: list[Span] = []
-    at = 0
+    spans: list[Span] = []
+    position = 0
     state = before
     named = False
     while True:
         if state:
-            closed = _CLOSING[state].match(line, at)
+            closed = _CLOSING[state].match(line, position)
             start = (
-                found.pop()[0] if found and found[-1][1] == at and found[-1][2] == "string" else at
+                spans.pop()[0]
+                if spans and spans[-1][1] == position and spans[-1][2] == "string"
+                else position
             )
             end = closed.end() if closed else len(line)
             if end > start:
-                found.append((start, end, "string"))
+                spans.append((start, end, "string"))
             if not closed:
-                return found, state
-            at, state = end, ""
-        match = _TOKEN.search(line, at)
+                return spans, state
+            position, state = end, ""
+        match = _TOKEN.search(line, position)
         if match is None:
-            return found, ""
-        at, kind = match.end(), str(match.lastgroup)
+            return spans, ""
+        position, kind = match.end(), str(match.lastgroup)
         if kind == "triple":
             state = match.group()[-3:]
             kind = "string"
@@ -71,7 +73,7 @@ def spans(line: str, before: str = "") -> tuple[list[Span], str]:
             )
             named = word in ("def", "class")
         if kind:
-            found.append((match.start(), at, kind))
+            spans.append((match.start(), position, kind))
 
 
 class Colouring:
@@ -80,16 +82,16 @@ class Colouring:
     def __init__(self) -> None:
         self._before: list[str] = [""]
 
-    def forget(self, line: int) -> None:
+    def forget_line(self, line: int) -> None:
         """Invalidate a line, from 0, and the lines below."""
         del self._before[line + 1 :]
 
-    def of(self, lines: Sequence[str], line: int) -> list[Span]:
+    def color_line(self, lines: Sequence[str], line: int) -> list[Span]:
         """Return the coloured parts of one line, from 0."""
-        before = self._before
-        while len(before) <= line:
-            above = lines[len(before) - 1]
+        states = self._before
+        while len(states) <= line:
+            above = lines[len(states) - 1]
             # Most lines have no triple quotes and need no further scan.
             plain = '"""' not in above and "'''" not in above
-            before.append(before[-1] if plain else spans(above, before[-1])[1])
-        return spans(lines[line], before[line])[0]
+            states.append(states[-1] if plain else find_spans(above, states[-1])[1])
+        return find_spans(lines[line], states[line])[0]

@@ -25,7 +25,7 @@ from tuisim.programs.program_file import MAX_PROGRAM_BYTES
 
 
 @dataclass(frozen=True, slots=True)
-class Form:
+class TextFormat:
     """The format of a file besides its text."""
 
     encoding: str = "utf-8"
@@ -36,7 +36,7 @@ class Form:
     """The line end of most lines."""
 
 
-def read_text(path: Path) -> tuple[str, Form]:
+def read_text(path: Path) -> tuple[str, TextFormat]:
     """Return a program's text with `\n` as line ends, and its format.
 
     Raises:
@@ -48,7 +48,7 @@ def read_text(path: Path) -> tuple[str, Form]:
         raise ConfigError(f"cannot be read: {error.strerror or error}", file=str(path)) from None
     text, encoding = decode_source(data, str(path))
     ends = {end: len(re.findall(pattern, text)) for end, pattern in _ENDS.items()}
-    form = Form(
+    form = TextFormat(
         encoding.removesuffix("-sig"),
         data.startswith(codecs.BOM_UTF8),
         max(ends, key=lambda end: ends[end]),
@@ -59,13 +59,13 @@ def read_text(path: Path) -> tuple[str, Form]:
 _ENDS = {"\n": r"(?<!\r)\n", "\r\n": r"\r\n", "\r": r"\r(?!\n)"}
 
 
-def write_text(path: Path, text: str, form: Form) -> None:
+def write_text(path: Path, text: str, form: TextFormat) -> None:
     """Write a program atomically; an existing file keeps its permissions, and a link stays a link.
 
     Raises:
         ConfigError: the file cannot be written, or not in its encoding.
     """
-    data = (codecs.BOM_UTF8 if form.has_mark else b"") + _encoded(text, form, path)
+    data = (codecs.BOM_UTF8 if form.has_mark else b"") + _encode_text(text, form, path)
     try:
         mode = stat.S_IMODE(path.stat().st_mode) if os.path.exists(path) else None
         with replacing(path) as file:
@@ -76,23 +76,23 @@ def write_text(path: Path, text: str, form: Form) -> None:
         raise ConfigError(f"cannot be written: {error.strerror or error}", file=str(path)) from None
 
 
-def _encoded(text: str, form: Form, path: Path) -> bytes:
+def _encode_text(text: str, form: TextFormat, path: Path) -> bytes:
     try:
         # The first two lines may name another encoding by now.
         encoding, _ = tokenize.detect_encoding(
             io.BytesIO(text.encode("utf-8", "surrogateescape")).readline
         )
-        wanted = (
-            form.encoding if encoding == "utf-8" and _is_named(form.encoding, text) else encoding
+        target = (
+            form.encoding if encoding == "utf-8" and _is_declared(form.encoding, text) else encoding
         )
-        return text.replace("\n", form.newline).encode(wanted)
+        return text.replace("\n", form.newline).encode(target)
     except (SyntaxError, UnicodeError, LookupError) as error:
         raise ConfigError(
             f"cannot be written: {error}", "change that or the coding line", file=str(path)
         ) from None
 
 
-def _is_named(encoding: str, text: str) -> bool:
+def _is_declared(encoding: str, text: str) -> bool:
     """Return whether Python would read a text in this encoding: the default one, or the one named in the first two
     lines."""
     return encoding == "utf-8" or encoding in "\n".join(text.split("\n", 2)[:2])
@@ -120,7 +120,7 @@ class Draft:
     """When it was stored, in seconds since 1970."""
 
 
-def file_of_program(folder: str, path: str) -> Path:
+def find_program_data(folder: str, path: str) -> Path:
     """Return the file, in a folder of the app's data, that belongs to a program, given by its path or name."""
     return (
         session_folder()
@@ -142,7 +142,7 @@ def keep_draft(path: str, text: str) -> None:
     Raises:
         ConfigError: the draft cannot be written.
     """
-    file = file_of_program(FOLDER, path)
+    file = find_program_data(FOLDER, path)
     try:
         write_json(file, asdict(Draft(path, text, time.time())))
     except OSError as error:
@@ -154,20 +154,20 @@ def keep_draft(path: str, text: str) -> None:
 
 def find_draft(path: str) -> Draft | None:
     """Return the draft of a program, None if there is no readable one."""
-    draft = _draft_in(file_of_program(FOLDER, path))
+    draft = _read_draft(find_program_data(FOLDER, path))
     return draft if draft and draft.path == path else None
 
 
-def drafts() -> list[Draft]:
+def list_drafts() -> list[Draft]:
     """Return all drafts, the newest first."""
-    found = filter(None, map(_draft_in, (session_folder() / FOLDER).glob("*.json")))
-    return sorted(found, key=lambda draft: -draft.written_s)
+    drafts = filter(None, map(_read_draft, (session_folder() / FOLDER).glob("*.json")))
+    return sorted(drafts, key=lambda draft: -draft.written_s)
 
 
-def _draft_in(file: Path) -> Draft | None:
+def _read_draft(file: Path) -> Draft | None:
     try:
-        found = json.loads(read_regular(file, 2 * MAX_PROGRAM_BYTES))
-        return Draft(str(found["path"]), str(found["text"]), float(found["written_s"]))
+        fields = json.loads(read_regular(file, 2 * MAX_PROGRAM_BYTES))
+        return Draft(str(fields["path"]), str(fields["text"]), float(fields["written_s"]))
     except (OSError, ValueError, KeyError, TypeError, RecursionError):
         # Drafts are written atomically; a malformed file has nothing to restore.
         return None
@@ -177,4 +177,4 @@ def drop_draft(path: str) -> None:
     """Delete the draft of a program; one that cannot be deleted is offered again."""
     # The folder may be read-only by now; the text itself is safe.
     with suppress(OSError):
-        file_of_program(FOLDER, path).unlink(missing_ok=True)
+        find_program_data(FOLDER, path).unlink(missing_ok=True)

@@ -15,10 +15,10 @@ INDENT = "    "
 _LEAVES = re.compile(r"\s*(return|pass|break|continue|raise)\b")
 
 
-def indent_after(line: str) -> str:
+def compute_indent(line: str) -> str:
     """Return the indentation of the new line when Enter is pressed at the end of `line`."""
     here = line[: len(line) - len(line.lstrip())]
-    code = _without_comment(line).rstrip()
+    code = _strip_comment(line).rstrip()
     if code.endswith((":", "(", "[", "{")):
         return here + INDENT
     if _LEAVES.match(code):
@@ -26,35 +26,35 @@ def indent_after(line: str) -> str:
     return here
 
 
-def _without_comment(line: str) -> str:
-    from tuisim.app.editor.syntax import spans
+def _strip_comment(line: str) -> str:
+    from tuisim.app.editor.syntax import find_spans
 
-    return next((line[:start] for start, _, kind in spans(line)[0] if kind == "comment"), line)
+    return next((line[:start] for start, _, kind in find_spans(line)[0] if kind == "comment"), line)
 
 
-def indented(lines: Sequence[str]) -> list[str]:
+def indent_lines(lines: Sequence[str]) -> list[str]:
     """Return lines indented by one more level; empty ones stay empty."""
     return [INDENT + line if line.strip() else line for line in lines]
 
 
-def outdented(lines: Sequence[str]) -> list[str]:
+def outdent_lines(lines: Sequence[str]) -> list[str]:
     """Return lines indented by one level less, if they are indented."""
-    return [_outdented(line) for line in lines]
+    return [_outdent_line(line) for line in lines]
 
 
-def _outdented(line: str) -> str:
+def _outdent_line(line: str) -> str:
     if line.startswith("\t"):
         return line[1:]
     blanks = len(line) - len(line.lstrip(" "))
     return line[(blanks - 1) % len(INDENT) + 1 if blanks else 0 :]
 
 
-def blanks_to_delete(before: str) -> int:
+def count_deletable_blanks(before: str) -> int:
     """Return how many blanks backspace deletes at once after `before`: one level of indentation, else 0."""
     return (len(before) - 1) % len(INDENT) + 1 if before and not before.strip(" ") else 0
 
 
-def comment_toggled(lines: Sequence[str]) -> list[str]:
+def toggle_comments(lines: Sequence[str]) -> list[str]:
     """Return lines as comments, or uncommented if all of them are comments."""
     full = [line for line in lines if line.strip()]
     if full and all(line.lstrip().startswith("#") for line in full):
@@ -63,33 +63,35 @@ def comment_toggled(lines: Sequence[str]) -> list[str]:
     return [f"{line[:margin]}# {line[margin:]}" if line.strip() else line for line in lines]
 
 
-def places(lines: Sequence[str], wanted: str) -> list[tuple[int, int]]:
+def find_matches(lines: Sequence[str], search: str) -> list[tuple[int, int]]:
     """Return the matches of a text, as (line, column) from 0; case matters only if the text has capitals."""
-    if not wanted:
+    if not search:
         return []
-    flags = re.IGNORECASE if wanted == wanted.lower() else 0
-    pattern = re.compile(re.escape(wanted), flags)
+    flags = re.IGNORECASE if search == search.lower() else 0
+    pattern = re.compile(re.escape(search), flags)
     return [
-        (at, match.start()) for at, line in enumerate(lines) for match in pattern.finditer(line)
+        (row, match.start()) for row, line in enumerate(lines) for match in pattern.finditer(line)
     ]
 
 
-def differing_lines(one: str, other: str) -> int:
+def count_differing_lines(text: str, other: str) -> int:
     """Return how many lines differ between two texts."""
-    matcher = SequenceMatcher(None, source_lines(one), source_lines(other), autojunk=False)
+    matcher = SequenceMatcher(None, source_lines(text), source_lines(other), autojunk=False)
     changes = (op for op in matcher.get_opcodes() if op[0] != "equal")
     return sum(
         max(to - start, to_other - start_other) for _, start, to, start_other, to_other in changes
     )
 
 
-def same_lines(one: Sequence[str], other: Sequence[str]) -> int:
+def count_same_lines(lines: Sequence[str], other: Sequence[str]) -> int:
     """Return how many lines two texts have in common at their start."""
-    pairs = enumerate(zip(one, other, strict=False))
-    return next((at for at, (ours, theirs) in pairs if ours != theirs), min(len(one), len(other)))
+    pairs = enumerate(zip(lines, other, strict=False))
+    return next(
+        (index for index, (ours, theirs) in pairs if ours != theirs), min(len(lines), len(other))
+    )
 
 
-MOST_COMPARED = 400
+MAX_COMPARED = 400
 """Up to this many changed lines are compared one by one; of more, only the lines before and after are mapped."""
 
 
@@ -101,26 +103,29 @@ class LineMap:
         shown: Lines of the text shown.
     """
 
-    def __init__(self, run: Sequence[str], shown: Sequence[str]) -> None:
+    def __init__(self, run: Sequence[str], shown_lines: Sequence[str]) -> None:
         self._to_shown = [0] * (len(run) + 1)
-        self._to_run = [0] * (len(shown) + 1)
-        same = same_lines(run, shown)
-        last = same_lines(run[same:][::-1], shown[same:][::-1])
+        self._to_run = [0] * (len(shown_lines) + 1)
+        same = count_same_lines(run, shown_lines)
+        last = count_same_lines(run[same:][::-1], shown_lines[same:][::-1])
         self._join(0, 0, same)
-        self._join(len(run) - last, len(shown) - last, last)
-        old, new = run[same : len(run) - last], shown[same : len(shown) - last]
-        if max(len(old), len(new)) <= MOST_COMPARED:
+        self._join(len(run) - last, len(shown_lines) - last, last)
+        old, new = run[same : len(run) - last], shown_lines[same : len(shown_lines) - last]
+        if max(len(old), len(new)) <= MAX_COMPARED:
             for block in SequenceMatcher(None, old, new, autojunk=False).get_matching_blocks():
                 self._join(same + block.a, same + block.b, block.size)
 
-    def _join(self, run: int, shown: int, count: int) -> None:
-        for at in range(1, count + 1):
-            self._to_shown[run + at], self._to_run[shown + at] = shown + at, run + at
+    def _join(self, run_start: int, shown_start: int, count: int) -> None:
+        for offset in range(1, count + 1):
+            self._to_shown[run_start + offset], self._to_run[shown_start + offset] = (
+                shown_start + offset,
+                run_start + offset,
+            )
 
-    def to_shown(self, line: int) -> int:
+    def find_shown_line(self, line: int) -> int:
         """Return the line of the text shown for a line of the running text."""
         return self._to_shown[line] if 0 <= line < len(self._to_shown) else 0
 
-    def to_run(self, line: int) -> int:
+    def find_run_line(self, line: int) -> int:
         """Return the line of the running text for a line of the text shown."""
         return self._to_run[line] if 0 <= line < len(self._to_run) else 0

@@ -240,7 +240,7 @@ class GuideScreen(Dialog[None]):
         self._question = self._answered = self._at_first = ""
         self._found: list[SearchResult] = []
 
-    def is_ready_for(self, event: events.Event) -> bool:
+    def can_take(self, event: events.Event) -> bool:
         """Return whether what a key is meant for is there: the results of the search, where it leads to them."""
         leads_there = isinstance(event, events.Key) and event.key in (
             "enter",
@@ -248,11 +248,9 @@ class GuideScreen(Dialog[None]):
             "tab",
             "shift+tab",
         )
-        return super().is_ready_for(event) and not (
-            leads_there and self._answered != self._question
-        )
+        return super().can_take(event) and not (leads_there and self._answered != self._question)
 
-    def content(self) -> ComposeResult:
+    def compose_content(self) -> ComposeResult:
         yield Input(placeholder="Search: words or a question", compact=True, id="search")
         with Horizontal(id="both"):
             yield _Contents()

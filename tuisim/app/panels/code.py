@@ -22,7 +22,7 @@ from tuisim.app.editor.area import CodeArea, EditorCommand
 from tuisim.app.editor.assistant import Assistant
 from tuisim.app.editor.candidate_list import CandidateList
 from tuisim.app.editor.find_bar import FIND, LINE, FindBar
-from tuisim.app.editor.text_lines import LineMap, places
+from tuisim.app.editor.text_lines import LineMap, find_matches
 from tuisim.app.error_words import fitting
 from tuisim.app.panels import PANELS
 from tuisim.app.panels.titles import build_title
@@ -155,14 +155,14 @@ class Code(Vertical):
             self._area.placeholder = "" if name else self._nothing_open
             self._area.load_program(text)
             self._area.scroll_to(y=0, animate=False, force=True)
-            self._assistant.program_changed(key)
+            self._assistant.load_program(key)
             if not name:
                 self.stop_typing()
         elif text != self._shown:
             self._area.replace_program(text)
             # The error was in the former text.
             self._area.set_error(0)
-            self._assistant.text_changed()
+            self._assistant.schedule_check()
         self._shown = text
         self.set_title(name)
 
@@ -182,7 +182,7 @@ class Code(Vertical):
         self.border_title = title + edited
         words = fitting(self._error_words, self.size.width - _FRAME) if self.error_line else ""
         told = words or ("running text differs" if self.differs else self._break_words)
-        helped = Text() if words else self._assistant.said(self.size.width - _FRAME)
+        helped = Text() if words else self._assistant.describe_cursor(self.size.width - _FRAME)
         if self._area.is_completing:
             helped = Text("looking up …")
         elif not helped and (word := self._area.unknown_word) is not None:
@@ -294,7 +294,7 @@ class Code(Vertical):
         lines = self._area.document.lines
         if self._mapped is None or self._mapped[0] != lines:
             self._mapped = list(lines), LineMap(self._run_lines, lines)
-        return self._mapped[1].to_shown(line)
+        return self._mapped[1].find_shown_line(line)
 
     def show_pause(self, pause: PauseView | None) -> None:
         """Show the values where the program is paused, behind the lines that assign them; None while it runs."""
@@ -375,16 +375,16 @@ class Code(Vertical):
             self.show_line(self._line)
             self._show_values()
             self._say()
-            self._assistant.text_changed()
+            self._assistant.schedule_check()
             self.post_message(self.Edited(text))
 
     def on_text_area_selection_changed(self, event: TextArea.SelectionChanged) -> None:
         event.stop()
-        self._assistant.cursor_moved()
+        self._assistant.follow_cursor()
 
     def on_candidate_list_chosen(self, event: CandidateList.Chosen) -> None:
         event.stop()
-        self._area.put_in(event.name)
+        self._area.replace_word(event.name)
 
     def action_want(self, command: str) -> None:
         self.post_message(self.Wanted(ProgramCommand(command)))
@@ -432,7 +432,7 @@ class Code(Vertical):
         self._area.focus()
 
     def _find(self, wanted: str, by: int) -> None:
-        found = places(self._area.document.lines, wanted)
+        found = find_matches(self._area.document.lines, wanted)
         if not found:
             self._bar.say("not found" if wanted else "")
             return

@@ -15,7 +15,7 @@ from textual.message import Message
 from textual.widgets import Input, Label, OptionList, Static
 from textual.widgets.option_list import Option
 
-from tuisim.app.form import EntryPanel, reason, typed_number
+from tuisim.app.form import EntryPanel, format_error, parse_number
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ConfigError, ObstacleError
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, Obstacle
@@ -155,11 +155,11 @@ class Obstacles(EntryPanel):
             entry.remove_class("wrong")
             return
         try:
-            changed = {entry.id or "": typed_number(entry.value, ObstacleError)}
+            changed = {entry.id or "": parse_number(entry.value, ObstacleError)}
             box = replace(self._boxes[self.at], **changed)
         except ConfigError as error:
             entry.add_class("wrong")
-            self.say(f"{_FIELDS[entry.id or '']} {reason(error)}")
+            self.say(f"{_FIELDS[entry.id or '']} {format_error(error)}")
             return
         self.post_message(self.Edited(partial(_replaced, self.at, (box,))))
 

@@ -8,7 +8,7 @@ from datetime import datetime
 from enum import StrEnum
 from pathlib import Path
 
-from tuisim.app.editor.text_file import drafts, is_protected
+from tuisim.app.editor.text_file import is_protected, list_drafts
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import LogError
 from tuisim.base.folders import home_folder
@@ -47,7 +47,9 @@ def recent(new_name: str) -> list[Recent]:
     Args:
         new_name: Name of a program without a file.
     """
-    kept = [draft for draft in drafts() if not draft.path or _is_own(draft.path)][:_MOST_OF_KIND]
+    kept = [draft for draft in list_drafts() if not draft.path or _is_own(draft.path)][
+        :_MOST_OF_KIND
+    ]
     unsaved = [
         Recent(
             Kind.DRAFT,
