@@ -53,3 +53,23 @@ def test_a_comparison_that_nothing_uses_is_named(text: str, idle: tuple[int, str
 )
 def test_two_ways_that_do_the_same_are_named(text: str, equal: tuple[int, str] | None) -> None:
     assert find_slip(text) == equal
+
+
+@cases(
+    "text, definition",
+    {
+        "a function": ("import a\nN = 3\ndef main():\n    a.b()\n", (3, "main()")),
+        "the last": ("'Robot.'\nm = Motor(Port.A)\ndef f(): pass\nclass Arm: pass\n", (4, "Arm()")),
+        "a call": ("def main(): pass\nmain()\n", None),
+        "a value of a call": ("def main(): pass\nx = main()\n", None),
+        "a main part": ("def main(): pass\nif __name__ == '__main__':\n    main()\n", None),
+        "nothing": ("import a\n", None),
+    },
+)
+def test_a_program_that_only_defines_is_told(text: str, definition: tuple[int, str] | None) -> None:
+    idle = read_facts(Program("p.py", text)).idle_definition
+    if definition is None:
+        assert idle is None
+    else:
+        line, call = definition
+        assert idle == (line, f"the program only defines, and calls nothing: {call} is missing")

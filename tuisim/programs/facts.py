@@ -15,7 +15,7 @@ from tuisim.programs.mistakes import find_fault
 from tuisim.programs.questions import Question, QuestionReader, Word
 from tuisim.programs.robot.source import parsed
 from tuisim.programs.robot.thresholds import ProgramThreshold, find_light_read, find_thresholds
-from tuisim.programs.slips import list_slips
+from tuisim.programs.slips import find_idle_definition, list_slips
 from tuisim.programs.structure import STRUCTURES
 from tuisim.programs.waits import (
     LoopEnd,
@@ -127,6 +127,11 @@ class ProgramFacts:
     def slips(self) -> tuple[tuple[int, str], ...]:
         """The lines that do nothing, or always the same, and why, in words."""
         return tuple(list_slips(self._short_tree))
+
+    @cached_property
+    def idle_definition(self) -> tuple[int, str] | None:
+        """The last function or class of a program that only defines, and why nothing happens; None if it does more."""
+        return find_idle_definition(self._short_tree)
 
     @cached_property
     def light_read(self) -> LightRead:

@@ -14,6 +14,30 @@ def list_slips(tree: ast.Module) -> Iterator[tuple[int, str]]:
             yield slip
 
 
+def find_idle_definition(tree: ast.Module) -> tuple[int, str] | None:
+    """Return the last function of a program that only defines, and why nothing happens; None if it does more."""
+    last: ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef | None = None
+    for node in tree.body:
+        match node:
+            case ast.FunctionDef() | ast.AsyncFunctionDef() | ast.ClassDef():
+                last = node
+            case ast.Import() | ast.ImportFrom() | ast.Expr(value=ast.Constant()):
+                pass
+            case ast.Assign() | ast.AnnAssign() if _only_makes(node):
+                pass
+            case _:
+                return None
+    if last is None:
+        return None
+    return last.lineno, f"the program only defines, and calls nothing: {last.name}() is missing"
+
+
+def _only_makes(node: ast.AST) -> bool:
+    """Return whether all calls in a part of a program are of classes."""
+    calls = (part.func for part in ast.walk(node) if isinstance(part, ast.Call))
+    return all(ast.unparse(name).rpartition(".")[2][:1].isupper() for name in calls)
+
+
 def _find_uncalled_stop(tree: ast.Module) -> tuple[int, str] | None:
     """Return the first line that names what stops motors without calling it."""
     for node in ast.walk(tree):

@@ -28,7 +28,7 @@ from tuisim.engine.runtime.loader import LOOP_HOOK, compile_program
 def test_a_program_with_anything_to_tell_is_compiled_by_its_own_process(text: str) -> None:
     known, filters = KnownPrograms(), list(warnings.filters)
     limit = sys.getrecursionlimit()
-    assert [known.code(Program("p.py", text)) for _ in range(3)] == [None, None, None]
+    assert [known.code(Program("p.py", text), False) for _ in range(3)] == [None, None, None]
     assert (warnings.filters, sys.getrecursionlimit()) == (filters, limit)
 
 
@@ -39,12 +39,12 @@ def test_a_program_is_compiled_when_it_is_run_again(monkeypatch: pytest.MonkeyPa
     )
     compiled = []
 
-    def compile_noted(text: str, file: str) -> types.CodeType:
+    def compile_noted(text: str, file: str, drops_annotations: bool) -> types.CodeType:
         compiled.append(file)
-        return compile_program(text, file)
+        return compile_program(text, file, drops_annotations)
 
     monkeypatch.setattr(known_programs, "compile_program", compile_noted)
-    first, *others = [known.code(program) for _ in range(3)]
+    first, *others = [known.code(program, False) for _ in range(3)]
     assert (first, compiled) == (None, [program.file])
     assert others[0] is not None
     assert others[0] is others[1]
@@ -55,12 +55,19 @@ def test_a_program_is_compiled_when_it_is_run_again(monkeypatch: pytest.MonkeyPa
 
 def test_the_same_text_in_another_file_is_another_program() -> None:
     known = KnownPrograms()
-    codes = [known.code(Program(name, "x = 1")) for name in ("a.py", "b.py", "a.py", "b.py")]
+    codes = [known.code(Program(name, "x = 1"), False) for name in ("a.py", "b.py", "a.py", "b.py")]
     assert [code and code.co_filename for code in codes] == [None, None, "a.py", "b.py"]
+
+
+def test_a_program_whose_annotations_are_dropped_is_another_program() -> None:
+    known, program = KnownPrograms(), Program("p.py", "def f(a: b): pass")
+    codes = [known.code(program, drops) for drops in (True, False, True, False)]
+    names = [code and "b" in code.co_names for code in codes]
+    assert names == [None, None, False, True]
 
 
 def test_not_more_programs_are_kept_than_that() -> None:
     known = KnownPrograms()
     for number in range(3 * MOST_KNOWN):
-        known.code(Program("p.py", f"x = {number}"))
+        known.code(Program("p.py", f"x = {number}"), False)
     assert len(known._seen) <= MOST_KNOWN

@@ -42,6 +42,11 @@ class Library(StrEnum):
         """Whether the end of a program waits for its threads, as in Python; MicroPython ends with the main thread."""
         return self is not Library.PYBRICKS
 
+    @property
+    def drops_annotations(self) -> bool:
+        """Whether annotations are not evaluated: MicroPython's compiler drops them."""
+        return self is Library.PYBRICKS
+
 
 class MotorLaw(StrEnum):
     """How motors obey commands and move, and how the library drives them."""

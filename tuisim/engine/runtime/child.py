@@ -120,7 +120,8 @@ class Child:
     def expect(self, folder: Path, changes: Mapping[str, Any]) -> None:
         """Prepare for a run, as far as nothing of its program is executed; arguments as of `next_config`."""
         self._config = config = next_config(self._config, folder, changes)
-        self._runner.code = self._known_programs.code(config.program)
+        drops_annotations = config.spec.profile.motor_law.library.drops_annotations
+        self._runner.code = self._known_programs.code(config.program, drops_annotations)
 
     def _patch_modules(self, turn: Callable[[], None]) -> None:
         """Patch what programs find, and make what runs them."""

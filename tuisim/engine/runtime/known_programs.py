@@ -26,12 +26,12 @@ class KnownPrograms:
     """
 
     def __init__(self) -> None:
-        self._seen: set[tuple[str, str]] = set()
-        self._codes: dict[tuple[str, str], types.CodeType | None] = {}
+        self._seen: set[tuple[str, str, bool]] = set()
+        self._codes: dict[tuple[str, str, bool], types.CodeType | None] = {}
 
-    def code(self, program: Program) -> types.CodeType | None:
+    def code(self, program: Program, drops_annotations: bool) -> types.CodeType | None:
         """Return the code of a program that is about to be run; None if its own process has to compile it."""
-        key = program.file, program.text
+        key = program.text, program.file, drops_annotations
         if len(program.text) > MOST_CHARACTERS:
             return None
         if key not in self._seen:
@@ -45,14 +45,14 @@ class KnownPrograms:
         return self._codes[key]
 
 
-def _compiled(file: str, text: str) -> types.CodeType | None:
+def _compiled(text: str, file: str, drops_annotations: bool) -> types.CodeType | None:
     before = sys.getrecursionlimit()
     sys.setrecursionlimit(before - SPARE_FRAMES)
     wallclock.set_timer(signal.ITIMER_VIRTUAL, MOST_CPU_S)
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("error")
-            return compile_program(text, file)
+            return compile_program(text, file, drops_annotations)
     except Exception:  # whatever it is, it is told by the program's own process
         return None
     finally:

@@ -1,6 +1,7 @@
 """From source text to code: loop hooks, prelude, and names of the prelude without a part on this robot."""
 
 from __future__ import annotations
+import __future__
 
 import ast
 import types
@@ -99,24 +100,33 @@ def _is_text_encoding(name: str) -> bool:
         return False
 
 
-def compile_program(text: str, file: str) -> types.CodeType:
+def compile_program(text: str, file: str, drops_annotations: bool = False) -> types.CodeType:
     """Return the program's code, with loop hooks and its own line numbers.
+
+    Args:
+        text: The source.
+        file: The name of its file.
+        drops_annotations: Whether they are not evaluated.
 
     Raises:
         SyntaxError, ValueError: the text is not Python.
     """
     _check_encoding(text, file)
-    return compile_with_hooks(text, file)
+    return compile_with_hooks(text, file, drops_annotations)
 
 
-def compile_with_hooks(source: str | bytes, file: str) -> types.CodeType:
-    """Return the code of a program or of one of its modules, with loop hooks and its own line numbers.
+def compile_with_hooks(
+    source: str | bytes, file: str, drops_annotations: bool = False
+) -> types.CodeType:
+    """Return the code of a program or of one of its modules; arguments as of `compile_program`.
 
     Raises:
         SyntaxError, ValueError: the source is not Python.
     """
     tree = ast.parse(source, file)
-    return compile(_LoopHooks().visit(tree), file, "exec", dont_inherit=True)
+    flags = __future__.annotations.compiler_flag if drops_annotations else 0
+    code: types.CodeType = compile(_LoopHooks().visit(tree), file, "exec", flags, dont_inherit=True)
+    return code
 
 
 def compile_prelude(name: str) -> Iterator[tuple[str, types.CodeType]]:

@@ -41,10 +41,12 @@ class OwnLoader(SourceFileLoader):
 
     Args:
         module: The module.
+        drops_annotations: Whether its annotations are not evaluated.
     """
 
-    def __init__(self, module: OwnModule) -> None:
+    def __init__(self, module: OwnModule, drops_annotations: bool) -> None:
         super().__init__(module.name, module.file)
+        self._drops_annotations = drops_annotations
         self._data = module.text.encode("utf-8", "surrogateescape")
 
     def get_data(self, path: str) -> bytes:
@@ -53,7 +55,7 @@ class OwnLoader(SourceFileLoader):
 
     def source_to_code(self, data: Any, path: Any, *, _optimize: int = -1) -> types.CodeType:  # type: ignore[override]
         """Return the code of the module: its loops pass time as those of the program do."""
-        return compile_with_hooks(data, path)
+        return compile_with_hooks(data, path, self._drops_annotations)
 
     def path_stats(self, path: str) -> NoReturn:
         """Raise OSError: compiled code beside the file may belong to another text."""
@@ -67,10 +69,18 @@ class OwnModules(PathFinder):
         run_folder: Where the copies are stored.
         known: Modules of the run that is repeated; they are loaded instead of the files.
         brick_folder: What the program finds in the home folder of the brick is in this folder; empty without a brick.
+        drops_annotations: Whether annotations are not evaluated.
     """
 
-    def __init__(self, run_folder: Path, known: Sequence[OwnModule], brick_folder: str) -> None:
+    def __init__(
+        self,
+        run_folder: Path,
+        known: Sequence[OwnModule],
+        brick_folder: str,
+        drops_annotations: bool,
+    ) -> None:
         self._run_folder, self._brick_folder = run_folder, brick_folder
+        self._drops_annotations = drops_annotations
         self._missed: dict[str, int] = {}
         """How often a name was not found, beyond the first time, which is stored at once."""
         self._known: dict[str, list[OwnModule]] = {}
@@ -86,7 +96,7 @@ class OwnModules(PathFinder):
         """Return how to load a module; None if it does not exist."""
         if known := self._known.get(fullname):
             # A module that was reloaded may have had another text each time.
-            return _spec_of(known.pop(0) if len(known) > 1 else known[0])
+            return self._spec_of(known.pop(0) if len(known) > 1 else known[0])
         if path is None and self._brick_folder:
             path = [place_folder(str(folder), self._brick_folder) for folder in sys.path]
         spec = PathFinder.find_spec(fullname, path, target)
@@ -101,14 +111,31 @@ class OwnModules(PathFinder):
         note_module(self._run_folder, module)
         if module.missing:
             self._missed[fullname] = 0
-        return spec if spec is None or not module.file else _spec_of(module)
+        return spec if spec is None or not module.file else self._spec_of(module)
+
+    def _spec_of(self, module: OwnModule) -> ModuleSpec | None:
+        if module.missing:
+            return None
+        if not module.file:
+            spec = ModuleSpec(module.name, None, is_package=True)
+            spec.submodule_search_locations = list(module.folders or ())
+            return spec
+        from importlib.util import spec_from_file_location
+
+        OWN_FILES.add(module.file)
+        remember_source(module.file, module.text)
+        folders = None if module.folders is None else list(module.folders)
+        loader = OwnLoader(module, self._drops_annotations)
+        return spec_from_file_location(
+            module.name, module.file, loader=loader, submodule_search_locations=folders
+        )
 
 
-def find_modules_for(run_folder: Path, brick_folder: str) -> None:
+def find_modules_for(run_folder: Path, brick_folder: str, drops_annotations: bool) -> None:
     """Store modules that the program imports with its run; modules from a repeated run are loaded instead."""
     finders: list[Any] = sys.meta_path
     finders[finders.index(PathFinder)] = OwnModules(
-        run_folder, read_modules(run_folder), brick_folder
+        run_folder, read_modules(run_folder), brick_folder, drops_annotations
     )
 
 
@@ -128,20 +155,3 @@ def _own_module(name: str, spec: ModuleSpec) -> OwnModule | None:
         # Python reports the error.
         return None
     return OwnModule(name, spec.origin, folders, data.decode("utf-8", "surrogateescape"))
-
-
-def _spec_of(module: OwnModule) -> ModuleSpec | None:
-    if module.missing:
-        return None
-    if not module.file:
-        spec = ModuleSpec(module.name, None, is_package=True)
-        spec.submodule_search_locations = list(module.folders or ())
-        return spec
-    from importlib.util import spec_from_file_location
-
-    OWN_FILES.add(module.file)
-    remember_source(module.file, module.text)
-    folders = None if module.folders is None else list(module.folders)
-    return spec_from_file_location(
-        module.name, module.file, loader=OwnLoader(module), submodule_search_locations=folders
-    )

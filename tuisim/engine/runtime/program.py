@@ -264,15 +264,18 @@ class ProgramRunner:
         replace(os, "_exit", lambda status: self._exit_now(operator.index(status)))
 
     def _execute(self) -> None:
+        drops_annotations = self._config.spec.profile.motor_law.library.drops_annotations
         if self.code is None:
-            self.code = compile_program(self._config.program.text, self._session.program_file)
+            text, file = self._config.program.text, self._session.program_file
+            self.code = compile_program(text, file, drops_annotations)
         self.names["__file__"] = self._file
         if self._prelude_error is not None:
             raise self._prelude_error
         # Not earlier: a program named logging.py is not what the library means by `import logging`.
         folder = self._config.own_folder
         sys.path[:0] = [folder, *self._config.program.python_path]
-        find_modules_for(self._config.folder, folder if self._has_brick_folder else "")
+        brick_folder = folder if self._has_brick_folder else ""
+        find_modules_for(self._config.folder, brick_folder, drops_annotations)
         if self._starts_in_own_folder:
             # If a repeated run's folder no longer exists, only files that it opens there are missing.
             with suppress(OSError):

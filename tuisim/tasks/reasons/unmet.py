@@ -152,7 +152,7 @@ def find_recount(run: StoredRun, mat: Field | None = None) -> Unmet | None:
 
 
 def find_early_end(run: StoredRun, mat: Field | None = None) -> Unmet | None:
-    """Return that a program was over before the motors that it started could turn; None if it was not.
+    """Return that a program was over before the motors that it started could turn, or only defines; else None.
 
     Args:
         run: The run.
@@ -161,6 +161,8 @@ def find_early_end(run: StoredRun, mat: Field | None = None) -> Unmet | None:
     end = run.end
     if end is None or end.end is not End.FINISHED or run.time_s >= _MIN_RUN_S:
         return None
+    if idle := read_facts(run.program).idle_definition:
+        return Unmet(run.time_s, *idle)
     line, last, start = (
         read_facts(run.program).first_drive,
         run.telemetry.last(),

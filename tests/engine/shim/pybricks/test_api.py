@@ -59,7 +59,7 @@ USUAL_ROBOT = "eyes"
 
 VALUES: Mapping[str, str] = {
     **dict.fromkeys(("acceleration", "straight_acceleration", "turn_acceleration"), "500"),
-    **dict.fromkeys(("actuation", "duty_limit", "duty", "volume"), "50"),
+    **dict.fromkeys(("actuation", "duty_limit", "duty", "volume", "duty_offset"), "50"),
     **dict.fromkeys(("angle", "rotation_angle", "target_angle", "turn_rate"), "30"),
     **dict.fromkeys(
         ("append", "bold", "fill", "monospace", "silent", "sub", "timestamp", "clear"), "True"
@@ -78,6 +78,9 @@ VALUES: Mapping[str, str] = {
     **dict.fromkeys(("data", "values", "voltage"), "None"),
     **dict.fromkeys(("encode", "decode", "conversion"), "lambda value: value"),
     **dict.fromkeys(("stop_type", "then"), "Stop.BRAKE"),
+    **dict.fromkeys(("angle_tolerance", "speed_tolerance", "tight_loop_limit"), "40"),
+    **dict.fromkeys(("max_speed", "stall_speed", "stall_time"), "200"),
+    "device_type": "'EV3'",
     "*args": "*(lambda: 1, lambda: 2)",
     "*headers": "*('time', 'angle')",
     "*values": "*(1, 'two')",
@@ -232,7 +235,7 @@ def texts(member: str) -> set[str]:
     return found | {called(member, least)} if member not in ONLY_IN_FULL else found
 
 
-ONLY_IN_FULL = ("pybricks.ev3devices:Motor.reset_angle",)
+ONLY_IN_FULL = ("pybricks.ev3devices:Motor.reset_angle", "pybricks.experimental:run_parallel")
 """Members that refuse to be called without what has a default."""
 
 

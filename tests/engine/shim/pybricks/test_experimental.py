@@ -26,7 +26,7 @@ def fast():
     return move(1, 400)
 """
 STARTS = {
-    "run_parallel": "print(run_parallel(slow, fast))",
+    "run_parallel": "print(tuple(run_parallel(slow, fast).values()))",
     "threading": "threads = [threading.Thread(target=each) for each in (slow, fast)]\n"
     "for thread in threads:\n    thread.start()\nfor thread in threads:\n    thread.join()\nprint((360, 360))",
     "_thread": "_thread.start_new_thread(fast, ())\nslow()\nprint((360, 360))",
@@ -40,8 +40,20 @@ def test_two_motors_move_at_the_same_time(run_on: RunOn, start: str) -> None:
     assert done.lines == ["400 11", "200 19", "(360, 360)"], done.errors
 
 
-def test_an_error_ends_one_of_them(run_on: RunOn) -> None:
-    text = f"{MOVE}\nprint(run_parallel(lambda: 1 / 0, fast))"
+def test_results_are_found_by_function(run_on: RunOn) -> None:
+    text = f"{MOVE}\nfound = run_parallel(slow, fast)\nprint(found[slow], found[fast])"
+    assert run_on(text, profile="lego-micropython").lines[-1] == "360 360"
+
+
+def test_an_error_ends_the_others(run_on: RunOn) -> None:
+    text = f"{MOVE}\nrun_parallel(lambda: 1 / 0, fast)"
     done = run_on(text, profile="lego-micropython")
-    assert done.lines == ["400 11", "(None, 360)"]
+    assert done.lines == []
     assert "ZeroDivisionError: division by zero" in done.errors
+    assert done.errors[-1].startswith("RuntimeError: ")
+
+
+@pytest.mark.parametrize("functions", ["fast", "fast, 5", ""])
+def test_fewer_than_two_functions_are_refused(run_on: RunOn, functions: str) -> None:
+    done = run_on(f"{MOVE}\nrun_parallel({functions})", profile="lego-micropython")
+    assert "TypeError: run_parallel() needs two or more functions" in done.errors

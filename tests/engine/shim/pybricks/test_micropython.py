@@ -52,7 +52,27 @@ def test_the_interpreter_has_its_name_and_still_imports(here: Command, tmp_path:
     (tmp_path / "main.py").write_text(
         "import pybricks, sys, helper\nprint(sys.implementation.cache_tag)"
     )
-    assert here("run", "main.py").stdout == f"micropython\n{sys.implementation.cache_tag}\n"
+    assert (
+        here("run", "main.py").stdout == f"pybricks-micropython\n{sys.implementation.cache_tag}\n"
+    )
+
+
+def test_the_compiler_knows_its_names_and_drops_annotations(here: Command, tmp_path: Path) -> None:
+    (tmp_path / "helper.py").write_text(
+        "SIZE: Length = const(2)\n@micropython.viper\ndef half(x: ptr8) -> Half:\n    return x // SIZE\n"
+    )
+    (tmp_path / "main.py").write_text(
+        "import pybricks\nfrom helper import half\nN = const(20)\n"
+        "@micropython.native\ndef double(x: Number, *rest: List[int]) -> Nothing:\n    y: Other = 2 * x\n"
+        "    return y\nclass Robot:\n    arm: Arm = None\nprint(double(N), half(N))"
+    )
+    assert here("run", "main.py").stdout == "40 10\n"
+
+
+@pytest.mark.parametrize("text", ["@native\ndef f(): pass", "def f(x: Number): pass"])
+def test_other_names_are_not_known(run_on: RunOn, text: str) -> None:
+    done = run_on(text, profile=PROFILE if text.startswith("@") else "ev3")
+    assert "NameError" in done.errors[-1]
 
 
 def test_they_are_not_there_for_another_library(run_on: RunOn) -> None:

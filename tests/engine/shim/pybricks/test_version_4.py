@@ -9,7 +9,6 @@ import pytest
 from tests.engine.shim.pybricks.lab import Lab
 from tuisim.engine.core.profile import MotorLaw
 from tuisim.engine.shim.pybricks import robotics
-from tuisim.engine.shim.pybricks.motor import Motor as EarlierMotor
 from tuisim.engine.shim.pybricks.parameters import Port
 from tuisim.engine.shim.pybricks.tools import StopWatch, wait
 from tuisim.engine.shim.pybricks.version_4 import DriveBase, Motor, Stop, multitask, run_task
@@ -106,18 +105,6 @@ def test_a_race_ends_with_the_first(base: DriveBase) -> None:
     assert watch.time() == 250
     with pytest.raises(TypeError):
         run_task(5)
-
-
-def test_version_2_says_where_its_later_names_are() -> None:
-    Lab(MotorLaw.PYBRICKS, {"outA": "large", "outB": "large"})
-    robotics.DriveBase.current = None
-    base = robotics.DriveBase(EarlierMotor(Port.A), EarlierMotor(Port.B), 56, 114)
-    with pytest.raises(
-        AttributeError, match="no attribute 'curve': it is of Pybricks 4, which --profile pybricks4"
-    ):
-        base.curve(100, 90)
-    with pytest.raises(AttributeError, match=r"no attribute 'fly'$"):
-        base.fly()
 
 
 def test_what_is_counted_begins_again_at_a_reset(base: DriveBase) -> None:

@@ -60,6 +60,8 @@ class Brick:
     mixer: Mixer
     hint: Callable[[str], str]
     """Returns what is on the ports of a class of devices."""
+    find_later_class: Callable[[str], Any] = lambda _: None
+    """Returns the class of a name in version 4 of the library; None if it has none, or the program runs by it."""
     said: set[str] = field(default_factory=set)
     """What was said that is said once, by subject."""
     in_task: bool = False
@@ -184,25 +186,6 @@ class Brick:
             print(f"tuisim: {text}", file=sys.__stderr__)
 
 
-ONLY_IN_4 = frozenset(
-    {
-        "arc",
-        "brake",
-        "calibrate",
-        "close",
-        "curve",
-        "done",
-        "hold",
-        "load",
-        "model",
-        "move_by",
-        "stalled",
-        "system",
-    }
-)
-"""Attributes that some class has in version 4 of the library only."""
-
-
 class Connected:
     """A class of the library: its objects are parts of the brick."""
 
@@ -215,11 +198,17 @@ class Connected:
         return f"{type(self).__name__}({self.port or ''})"
 
     def __getattr__(self, name: str) -> Any:
-        known = name in ONLY_IN_4
-        hint = ": it is of Pybricks 4, which --profile pybricks4 chooses" if known else ""
+        later = self.brick.find_later_class(type(self).__name__)
+        hint = (
+            ": Pybricks 4 has it, which --profile pybricks4 chooses" if hasattr(later, name) else ""
+        )
         raise AttributeError(
             f"{type(self).__name__!r} object has no attribute {name!r}{hint}", name=name, obj=self
         )
+
+    def __dir__(self) -> list[str]:
+        # What errors and editors propose is public.
+        return [name for name in super().__dir__() if not name.startswith("_")]
 
 
 def invalid_argument() -> ValueError:

@@ -6,25 +6,36 @@ from collections.abc import Callable
 from typing import Any
 
 
-def run_parallel(*functions: Callable[[], Any]) -> tuple[Any, ...]:
-    """Run functions in threads of their own, wait until all are done, and return their results.
+def run_parallel(*functions: Callable[[], Any]) -> dict[Callable[[], Any], Any]:
+    """Run functions in threads of their own, wait until all are done, and return their results, by function.
 
-    The result of a function that an error has ended is None.
+    Raises:
+        TypeError: there are not two of them, or something is no function.
+        RuntimeError: an error has ended one of them; the others go on until the program ends.
     """
     # Not earlier: its functions are patched first.
     import threading
 
-    results: list[Any] = [None] * len(functions)
+    if len(functions) < 2 or not all(map(callable, functions)):
+        raise TypeError("run_parallel() needs two or more functions")
+    results: dict[Callable[[], Any], Any] = {}
+    errors: list[BaseException] = []
+    is_over = threading.Semaphore(0)
 
-    def run(at: int) -> None:
-        results[at] = functions[at]()
+    def run(function: Callable[[], Any]) -> None:
+        try:
+            results[function] = function()
+        except Exception as error:
+            errors.append(error)
+            raise
+        finally:
+            is_over.release()
 
-    threads = [
-        threading.Thread(target=run, name=getattr(function, "__name__", None), args=(at,))
-        for at, function in enumerate(functions)
-    ]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    return tuple(results)
+    for function in functions:
+        name = getattr(function, "__name__", None)
+        threading.Thread(target=run, name=name, args=(function,)).start()
+    for _ in functions:
+        is_over.acquire()
+        if errors:
+            raise RuntimeError(f"run_parallel: {errors[0]!r}", results)
+    return results

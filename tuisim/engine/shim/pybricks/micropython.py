@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import builtins
 import operator
 import re
 import sys
@@ -137,6 +138,8 @@ def install(session: DeviceSession) -> None:
         names[function] = _lenient(names[function], fitted)
     module = sys.modules["micropython"] = HardwareModule("micropython", _MEMORY)
     vars(module).update(LANGUAGE)
+    # The compiler knows them without an import.
+    vars(builtins).update(const=LANGUAGE["const"], micropython=module)
     # What is built in comes before files of the same name.
     sys.meta_path.insert(0, MicroPythonFinder(OF_PYTHON, BUILT_IN))
     sys.meta_path.append(MicroPythonFinder({}, INSTALLED))
@@ -219,6 +222,7 @@ def _named_tuple(name: str, fields: Any, **named: Any) -> type:
 
 LANGUAGE: Mapping[str, Any] = {
     "alloc_emergency_exception_buf": _without_effect,
+    "bytecode": _unchanged,
     "const": _unchanged,
     "heap_lock": _without_effect,
     "heap_unlock": _without_effect,
@@ -260,7 +264,13 @@ def _print_exception(error: BaseException, file: Any = None) -> None:
 
 SYSTEM: Mapping[str, Any] = {
     # The rest stays: Python's import needs it.
-    "implementation": types.SimpleNamespace(**{**vars(sys.implementation), "name": "micropython"}),
+    "implementation": types.SimpleNamespace(
+        **{
+            **vars(sys.implementation),
+            "name": "pybricks-micropython",
+            "version": (1, 11, 0),
+        }
+    ),
     "print_exception": _print_exception,
 }
 """What `sys` has in MicroPython only."""

@@ -28,6 +28,7 @@ from tuisim.engine.shim.pybricks import (
     speaker,
     tools,
     version_1,
+    wrappers,
 )
 from tuisim.engine.shim.pybricks.brick import Brick, Connected
 from tuisim.engine.shim.pybricks.unsimulated import (
@@ -37,9 +38,17 @@ from tuisim.engine.shim.pybricks.unsimulated import (
     refused_classes,
     refused_hub,
 )
+from tuisim.engine.shim.pybricks.unsimulated import (
+    MODULES as REFUSED,
+)
 from tuisim.engine.shim.session import DeviceSession
 from tuisim.engine.shim.sound import Mixer
-from tuisim.engine.shim.unsupported.modules import HardwareFinder, OtherLibrary
+from tuisim.engine.shim.unsupported.modules import (
+    BLUETOOTH,
+    HardwareFinder,
+    HardwareModule,
+    OtherLibrary,
+)
 
 
 def _public(module: types.ModuleType, *names: str) -> dict[str, Any]:
@@ -47,14 +56,17 @@ def _public(module: types.ModuleType, *names: str) -> dict[str, Any]:
 
 
 FILES = _public(media, "SoundFile", "ImageFile")
+SENSORS = ("TouchSensor", "ColorSensor", "InfraredSensor", "UltrasonicSensor", "GyroSensor")
 MODULES: Mapping[str, Mapping[str, Any]] = {
     "pybricks": {},
     "pybricks.hubs": _public(hubs, "EV3Brick"),
-    "pybricks.ev3devices": _public(motor, "Motor")
-    | _public(
-        ev3devices, "TouchSensor", "ColorSensor", "InfraredSensor", "UltrasonicSensor", "GyroSensor"
-    ),
-    "pybricks.ev3brick": _public(version_1, "sound", "display", "light", "buttons", "battery"),
+    "pybricks.display": _public(version_1, "Display", "Align") | _public(media, "ImageFile"),
+    "pybricks.ev3devices": _public(wrappers, "Motor", "Stop")
+    | {"CompatMotor": motor.Motor}
+    | _public(ev3devices, *SENSORS),
+    "pybricks.ev3brick": _public(version_1, "sound", "display", "light", "buttons", "battery")
+    | _public(version_1, "Display", "Speaker")
+    | _public(hubs, "EV3Brick"),
     "pybricks.experimental": _public(experimental, "run_parallel"),
     "pybricks.iodevices": _public(motor, "DCMotor")
     | _public(iodevices, "Ev3devSensor")
@@ -66,8 +78,13 @@ MODULES: Mapping[str, Mapping[str, Any]] = {
         parameters, "Port", "Stop", "Direction", "Button", "Color", "Align"
     )
     | FILES,
-    "pybricks.robotics": _public(robotics, "DriveBase"),
-    "pybricks.tools": _public(tools, "wait", "StopWatch", "DataLog") | {"print": print},
+    "pybricks.robotics": _public(wrappers, "DriveBase", "Stop", "wait")
+    | {"CompatDriveBase": robotics.DriveBase},
+    "pybricks.speaker": _public(version_1, "Speaker", "wait")
+    | _public(media, "SoundFile")
+    | {"Ev3devSpeaker": speaker.Speaker},
+    "pybricks.tools": _public(tools, "wait", "StopWatch", "DataLog", "localtime", "ticks_us")
+    | {"print": print},
     "pybricks.media": {},
     "pybricks.media.ev3dev": _public(image, "Image") | _public(font, "Font") | FILES,
 }
@@ -91,6 +108,11 @@ def _version_4() -> Mapping[str, Mapping[str, Any]]:
     }
 
 
+def _find_later_class(name: str) -> Any:
+    """Return the class of a name in version 4; None for none."""
+    return next((names[name] for names in _version_4().values() if name in names), None)
+
+
 def install(
     session: DeviceSession, built: BuiltBrick, plugs: Plugs, screen: Screen, mixer: Mixer
 ) -> None:
@@ -99,19 +121,24 @@ def install(
     sys.meta_path.append(HardwareFinder(Library.PYBRICKS))
     micropython.install(session)
     plugs.missing = OSError
-    brick = Brick(session, built, plugs, screen, mixer, partial(ports_hint, session))
-    Connected.brick = brick
     law = session.sim.spec.profile.motor_law
+    hint = partial(ports_hint, session)
+    brick = Brick(session, built, plugs, screen, mixer, hint)
+    if law != MotorLaw.PYBRICKS_4:
+        brick.find_later_class = _find_later_class
+    Connected.brick = brick
     sys.meta_path.insert(0, OtherHub())
     names = _version_4() if law == MotorLaw.PYBRICKS_4 else MODULES
     speaker.set_volumes(brick.mixer, speaker.START_VOLUMES)
     made = {name: types.ModuleType(name) for name in names}
+    made |= {name: HardwareModule(name, hardware) for name, hardware in REFUSED.items()}
+    vars(made["pybricks.bluetooth"]).update(BLUETOOTH)
     vars(made["pybricks.hubs"])["__getattr__"] = refused_hub
     for name, module in made.items():
-        vars(module).update(names[name])
+        vars(module).update(names.get(name, {}))
         parent, _, last = name.rpartition(".")
         if parent:
             setattr(made[parent], last, module)
-        if any(other.startswith(f"{name}.") for other in names):
+        if any(other.startswith(f"{name}.") for other in made):
             module.__path__ = []
     sys.modules.update(made)

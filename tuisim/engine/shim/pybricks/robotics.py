@@ -10,8 +10,6 @@ from tuisim.engine.core.servo.trajectory import MILLI
 from tuisim.engine.shim.plugs import PART_OF_KIND
 from tuisim.engine.shim.pybricks.brick import Connected, invalid_argument, not_permitted, whole
 from tuisim.engine.shim.pybricks.motor import Control, Motor
-from tuisim.engine.shim.pybricks.parameters import Stop
-from tuisim.engine.shim.pybricks.tools import wait
 from tuisim.engine.shim.pybricks.unsimulated import LOGGER
 from tuisim.engine.shim.unsupported.modules import refused_part
 
@@ -112,24 +110,10 @@ class DriveBase(Connected):
         self.brick.command()
         self.tell(Call.DRIVE_BASE, whole(speed), whole(turn_rate))
 
-    def drive_time(self, speed: float, steering: float, time: float) -> None:
-        """Drive for a time in milliseconds, and coast; from version 1.0."""
-        self.drive(speed, steering)
-        wait(time)
-        self.stop()
-
-    def stop(self, stop_type: Stop = Stop.COAST) -> None:
-        """Stop."""
+    def stop(self) -> None:
+        """Stop, and let the motors coast."""
         self.brick.command()
-        match stop_type:
-            case Stop.COAST:
-                self.tell(Call.STOP_BASE, None)
-            case Stop.BRAKE:
-                self.tell(Call.STOP_BASE, 0)
-            case Stop.HOLD:
-                self.straight(0)
-            case _:
-                raise invalid_argument()
+        self.tell(Call.STOP_BASE, None)
 
     # Readings
 

@@ -31,6 +31,17 @@ def _until(end_us: int) -> Waiting[None]:
         yield end_us
 
 
+def localtime(seconds: float | None = None) -> clock.struct_time:
+    """Return the simulated date and time, or those of a count of seconds."""
+    return clock.localtime(seconds)
+
+
+def ticks_us() -> int:
+    """Return the simulated time in microseconds, from 0 to a period."""
+    ticks: int = vars(clock)["ticks_us"]()
+    return ticks
+
+
 class StopWatch(Connected):
     """A stopwatch, which runs at once."""
 

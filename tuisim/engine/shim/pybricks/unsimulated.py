@@ -7,16 +7,24 @@ from collections.abc import Mapping, Sequence
 from typing import Any, NoReturn
 
 from tuisim.base.source import OTHER_HUB_DEVICES, OTHER_HUBS
-from tuisim.engine.shim.unsupported.modules import SPIKE, Hardware, refused_as, refused_part
+from tuisim.engine.core.profile import Library
+from tuisim.engine.shim.unsupported.modules import (
+    ON_THE_BRICK,
+    SPIKE,
+    Hardware,
+    refused_as,
+    refused_part,
+)
 
 LOGGER = Hardware(
     "the log of a motor",
     "tuisim records every motor: see the chart, or tuisim run --telemetry FILE",
 )
 _LEGO = "use the sensors of pybricks.ev3devices, or Ev3devSensor"
+_ANALOG = Hardware("an analog sensor", _LEGO)
 
 IO_DEVICES: Mapping[str, Hardware] = {
-    "AnalogSensor": Hardware("an analog sensor", _LEGO),
+    "AnalogSensor": _ANALOG,
     "I2CDevice": Hardware("an I2C device", _LEGO),
     "LUMPDevice": Hardware("a sensor with the protocol of LEGO's UART sensors", _LEGO),
     "UARTDevice": Hardware("an UART device", _LEGO),
@@ -24,6 +32,7 @@ IO_DEVICES: Mapping[str, Hardware] = {
 """Classes of `pybricks.iodevices`."""
 
 NXT_DEVICES: Mapping[str, Hardware] = {
+    "AnalogSensor": _ANALOG,
     "ColorSensor": Hardware("the NXT colour sensor", "use pybricks.ev3devices.ColorSensor"),
     "EnergyMeter": Hardware(
         "the energy meter", "EV3Brick().battery has the voltage and the current of the battery"
@@ -40,6 +49,19 @@ NXT_DEVICES: Mapping[str, Hardware] = {
     "VernierAdapter": Hardware("the adapter for Vernier sensors", _LEGO),
 }
 """Classes of `pybricks.nxtdevices`."""
+
+_BLUETOOTH = ON_THE_BRICK["bluetooth"].told_to(Library.PYBRICKS)
+_INSIDE = Hardware("what version 1.0 has inside", "use EV3Brick(), and its parts")
+MODULES: Mapping[str, Hardware] = {
+    "pybricks.bluetooth": _BLUETOOTH,
+    "pybricks.ev3devio": Hardware("the files of ev3dev", _LEGO),
+    "pybricks.uev3dev": _INSIDE,
+    **dict.fromkeys(
+        (f"pybricks.uev3dev.{name}" for name in ("display", "i2c", "messaging", "sound", "util")),
+        _INSIDE,
+    ),
+}
+"""Modules that can be imported but not used, with all that is in them."""
 
 
 class OtherHub:

@@ -1,4 +1,4 @@
-"""`pybricks.ev3brick` of version 1.0, which version 2.0 still has: sound, display, light, buttons and battery."""
+"""Modules of version 1.0 that version 2.0 still has: `pybricks.ev3brick`, `pybricks.speaker`, `pybricks.display`."""
 
 from __future__ import annotations
 
@@ -19,7 +19,12 @@ _brick = hubs.EV3Brick()
 battery = _brick.battery
 
 
-class Sound:
+class _OfBrick:
+    def __init__(self, device_type: str) -> None:
+        assert device_type == "EV3", "only the EV3 has it"
+
+
+class Speaker(_OfBrick):
     """The speaker. Each sound sets the volume, in percent."""
 
     def beep(
@@ -55,7 +60,7 @@ class Sound:
         _brick.speaker.say(text)
 
 
-class Display:
+class Display(_OfBrick):
     """The screen."""
 
     def clear(self) -> None:
@@ -91,7 +96,7 @@ class Display:
         screen.draw_image(x, y, source)
 
 
-sound, display = Sound(), Display()
+sound, display = Speaker("EV3"), Display("EV3")
 
 
 def light(color: Color | None) -> None:

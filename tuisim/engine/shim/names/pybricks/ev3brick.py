@@ -1,5 +1,8 @@
 """The brick, as version 1.0 has it."""
 
+from tuisim.engine.shim.pybricks.hubs import EV3Brick as EV3Brick
+from tuisim.engine.shim.pybricks.version_1 import Display as Display
+from tuisim.engine.shim.pybricks.version_1 import Speaker as Speaker
 from tuisim.engine.shim.pybricks.version_1 import (
     battery as battery,
 )

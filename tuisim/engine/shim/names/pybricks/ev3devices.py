@@ -15,4 +15,6 @@ from tuisim.engine.shim.pybricks.ev3devices import (
 from tuisim.engine.shim.pybricks.ev3devices import (
     UltrasonicSensor as UltrasonicSensor,
 )
-from tuisim.engine.shim.pybricks.motor import Motor as Motor
+from tuisim.engine.shim.pybricks.motor import Motor as CompatMotor  # noqa: F401 - it is seen
+from tuisim.engine.shim.pybricks.parameters import Stop as Stop
+from tuisim.engine.shim.pybricks.wrappers import Motor as Motor

@@ -2,6 +2,8 @@
 
 from tuisim.engine.shim.pybricks.tools import DataLog as DataLog
 from tuisim.engine.shim.pybricks.tools import StopWatch as StopWatch
+from tuisim.engine.shim.pybricks.tools import localtime as localtime
+from tuisim.engine.shim.pybricks.tools import ticks_us as ticks_us
 from tuisim.engine.shim.pybricks.tools import wait as wait
 from tuisim.engine.shim.pybricks.version_4 import multitask as multitask
 from tuisim.engine.shim.pybricks.version_4 import run_task as run_task

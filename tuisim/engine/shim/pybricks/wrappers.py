@@ -1,0 +1,80 @@
+"""Classes of version 2.0 that are Python files on the brick: they add what version 1.0 had to those in C."""
+
+from __future__ import annotations
+
+from tuisim.engine.core.commands.calls import Call
+from tuisim.engine.shim.pybricks import motor, robotics
+from tuisim.engine.shim.pybricks.parameters import Stop
+from tuisim.engine.shim.pybricks.tools import wait
+
+
+def _invalid_stop() -> ValueError:
+    return ValueError("Invalid Argument")
+
+
+class Motor(motor.Motor):
+    """A large or medium motor."""
+
+    def stop(self, stop_type: Stop = Stop.COAST) -> None:
+        """Let the motor coast, brake or hold."""
+        match stop_type:
+            case Stop.COAST:
+                super().stop()
+            case Stop.BRAKE:
+                self.brake()
+            case Stop.HOLD:
+                self.hold()
+            case _:
+                raise _invalid_stop()
+
+    def stalled(self) -> bool:
+        """Return whether something keeps the motion from going on."""
+        return self.control.stalled()
+
+    def set_run_settings(self, max_speed: float, acceleration: float) -> None:
+        """Set the highest speed and acceleration."""
+        self.control.limits(max_speed, acceleration)
+
+    def set_dc_settings(self, duty_limit: float, duty_offset: float) -> None:
+        """Set the highest power and the one that is added, in percent."""
+        self.control.limits(actuation=duty_limit)
+        self.control.pid(feed_forward=duty_offset)
+
+    def set_pid_settings(
+        self,
+        kp: float,
+        ki: float,
+        kd: float,
+        tight_loop_limit: float,
+        angle_tolerance: float,
+        speed_tolerance: float,
+        stall_speed: float,
+        stall_time: float,
+    ) -> None:
+        """Set the gains, when a move is done and when the motor is stalled; `tight_loop_limit` has no effect."""
+        self.control.pid(kp, ki, kd)
+        self.control.target_tolerances(speed_tolerance, angle_tolerance)
+        self.control.stall_tolerances(stall_speed, stall_time)
+
+
+class DriveBase(robotics.DriveBase):
+    """A robot with two driven wheels."""
+
+    def drive_time(self, speed: float, steering: float, time: float) -> None:
+        """Drive for a time in milliseconds, and coast."""
+        self.drive(speed, steering)
+        wait(time)
+        self.stop()
+
+    def stop(self, stop_type: Stop = Stop.COAST) -> None:
+        """Stop, and coast, brake or hold."""
+        match stop_type:
+            case Stop.COAST:
+                super().stop()
+            case Stop.BRAKE:
+                self.brick.command()
+                self.tell(Call.STOP_BASE, 0)
+            case Stop.HOLD:
+                self.straight(0)
+            case _:
+                raise _invalid_stop()
