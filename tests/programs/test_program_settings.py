@@ -11,6 +11,7 @@ import pytest
 
 from tests.cases import cases
 from tuisim.base.errors import ProfileError, RobotError
+from tuisim.base.source import FOR_SPIKE
 from tuisim.engine.core.profile import PROFILES
 from tuisim.programs.program_file import parse_program, read_program
 from tuisim.programs.program_settings import program_settings, require_library, robot_for
@@ -229,7 +230,7 @@ SPIKE: Mapping[str, str] = {
 @pytest.mark.parametrize("case", SPIKE)
 def test_nothing_that_cannot_help_is_advised_to_a_program_for_another_hub(case: str) -> None:
     source = parse_program(SPIKE[case], "p.py")
-    told = "p.py: it is a program for a SPIKE hub; tuisim simulates the EV3"
+    told = f"p.py: it is {FOR_SPIKE}"
     assert program_settings(source).decided.note == ""
     with pytest.raises(RobotError, match=told):
         robot_for(source, "it")

@@ -43,17 +43,18 @@ PRELUDE_TEXTS: Mapping[str, str] = {
 PYBRICKS = "pybricks"
 LIBRARIES = ("ev3dev2", "ev3dev", PYBRICKS)
 """The packages of the libraries for a brick: a program that imports one needs no prelude."""
-SPIKE_MODULES = (
-    "color_sensor",
-    "distance_sensor",
-    "force_sensor",
-    "hub",
-    "motor",
-    "motor_pair",
-    "runloop",
-    "spike",
-)
-"""Modules of LEGO's Python for the SPIKE hub."""
+SPIKE_MODULES: Mapping[str, str] = {
+    "color_sensor": "ColorSensor(Port.A).color() of pybricks.pupdevices",
+    "distance_sensor": "UltrasonicSensor(Port.A).distance() of pybricks.pupdevices",
+    "force_sensor": "ForceSensor(Port.A).pressed() of pybricks.pupdevices",
+    "hub": "PrimeHub() of pybricks.hubs",
+    "mindstorms": "InventorHub() of pybricks.hubs",
+    "motor": "Motor(Port.A).run_angle(720, 360) of pybricks.pupdevices",
+    "motor_pair": "DriveBase(left, right, 56, 112).straight(300) of pybricks.robotics",
+    "runloop": "run_task(main()) and await wait(1000) of pybricks.tools",
+    "spike": "PrimeHub() of pybricks.hubs",
+}
+"""Modules of LEGO's own Python for SPIKE and the Robot Inventor, and what Pybricks has in place of each."""
 OTHER_HUBS = (
     "CityHub",
     "EssentialHub",
@@ -66,7 +67,7 @@ OTHER_HUBS = (
 """Classes of `pybricks.hubs` for hubs of SPIKE, Technic and others."""
 OTHER_HUB_DEVICES = "pybricks.pupdevices"
 """The module of Pybricks for motors and sensors of these."""
-FOR_SPIKE = "a program for a SPIKE hub; tuisim simulates the EV3"
+FOR_SPIKE = "a program for SPIKE that tuisim does not run"
 """What is told about a program that imports one of these."""
 
 PRELUDES: Mapping[str, str] = {

@@ -10,6 +10,7 @@ import pytest
 from tests.cases import cases
 from tests.running import Run, Start, over
 from tuisim.app.snapshot import end_words
+from tuisim.base.source import SPIKE_MODULES
 from tuisim.engine.protocol import End
 from tuisim.engine.shim.unsupported.modules import BLUETOOTH, ELSEWHERE, ON_THE_BRICK, PACKAGES
 
@@ -58,10 +59,11 @@ def test_hints_have_the_names_of_the_programs_library(
     run: Run, profile: str, own: str, other: str
 ) -> None:
     text = "import socket\ntry:\n    socket.socket(socket.AF_BLUETOOTH)\nexcept Exception as error:\n    print(error)\n"
-    for name in (*ON_THE_BRICK, *ELSEWHERE):
+    names = [*ON_THE_BRICK, *(ELSEWHERE.keys() - SPIKE_MODULES.keys())]
+    for name in names:
         text += f"try:\n    import {name}\n    {name}.use()\nexcept Exception as error:\n    print(error)\n"
     told = run(text, profile=profile, prelude="none").lines
-    assert len(told) == 1 + len(ON_THE_BRICK) + len(ELSEWHERE)
+    assert len(told) == 1 + len(names)
     assert not any(other in line or "{" in line for line in told)
     assert (
         f"smbus.use: the I2C bus of the brick is not simulated (the sensors of {own}."
@@ -165,21 +167,24 @@ def test_the_guide_names_each_module(name: str, root: Path) -> None:
     assert f"`{name}`" in page
 
 
-SPIKE = "a program for a SPIKE hub; tuisim simulates the EV3"
-
-
 @pytest.mark.parametrize(
-    ("text", "profile"),
+    ("text", "profile", "told"),
     [
-        ("from pybricks.hubs import PrimeHub", "lego-micropython"),
-        ("from pybricks.pupdevices import Motor", "lego-micropython"),
-        ("import motor, runloop", "ev3"),
-        ("from spike import PrimeHub", "robolab"),
+        ("from pybricks.hubs import PrimeHub", "lego-micropython", "tuisim simulates the EV3"),
+        ("from pybricks.pupdevices import Motor", "lego-micropython", "tuisim simulates the EV3"),
+        (
+            "import motor, runloop",
+            "ev3",
+            "Motor(Port.A).run_angle(720, 360) of pybricks.pupdevices",
+        ),
+        ("from hub import port", "robolab", "PrimeHub() of pybricks.hubs"),
+        ("from spike import PrimeHub", "robolab", "PrimeHub() of pybricks.hubs"),
+        ("from mindstorms import MSHub", "robolab", "InventorHub() of pybricks.hubs"),
     ],
 )
-def test_programs_for_other_hubs_are_named(run: Run, text: str, profile: str) -> None:
+def test_programs_for_other_hubs_are_named(run: Run, text: str, profile: str, told: str) -> None:
     errors = run(text, profile=profile, prelude="none").errors
-    assert errors[-1].endswith(f"({SPIKE})")
+    assert errors[-1].endswith(f"{told})")
     assert "pip install" not in "\n".join(errors)
     tried = f"try:\n    {text}\nexcept ImportError:\n    print('without')"
     assert run(tried, profile=profile, prelude="none").lines == ["without"]

@@ -25,7 +25,7 @@ def run_parallel(*functions: Callable[[], Any]) -> dict[Callable[[], Any], Any]:
     def run(function: Callable[[], Any]) -> None:
         try:
             results[function] = function()
-        except Exception as error:
+        except Exception as error:  # whatever ends it ends the others, too
             errors.append(error)
             raise
         finally:

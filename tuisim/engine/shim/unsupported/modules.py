@@ -18,7 +18,7 @@ from typing import Any, NoReturn
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import NotSimulated
 from tuisim.base.repository import find_module_folder
-from tuisim.base.source import FOR_SPIKE, SPIKE_MODULES
+from tuisim.base.source import SPIKE_MODULES
 from tuisim.engine.core.profile import Library
 
 
@@ -117,7 +117,7 @@ ON_THE_BRICK: Mapping[str, Hardware] = {
 _PI = Hardware("the Raspberry Pi", "this is an EV3: use {library}")
 _PI_CAMERA = Hardware("the camera of the Raspberry Pi", CAMERA)
 _BRICKPI = Hardware("the BrickPi", "this is an EV3: use {library}")
-SPIKE = Hardware("the SPIKE hub", FOR_SPIKE)
+SPIKE = Hardware("the SPIKE hub", "tuisim simulates the EV3")
 
 ELSEWHERE: Mapping[str, Hardware] = {
     "RPi": _PI,
@@ -130,8 +130,10 @@ ELSEWHERE: Mapping[str, Hardware] = {
     "brickpi": _BRICKPI,
     "brickpi3": _BRICKPI,
     "microbit": Hardware("the micro:bit", "this is an EV3: use {library}"),
-    **dict.fromkeys(SPIKE_MODULES, SPIKE),
-    "mindstorms": Hardware("the hub of the Robot Inventor", "this is an EV3: use {library}"),
+    **{
+        name: Hardware("LEGO's own Python for SPIKE", f"in Pybricks, for the same hub: {instead}")
+        for name, instead in SPIKE_MODULES.items()
+    },
     "ev3sim": Hardware(
         "the simulator ev3sim", "leave out its import: the rest of the program needs only {library}"
     ),
