@@ -25,6 +25,10 @@ m = Motor(Port.B)
             ["True"],
         ),
         "coast": ("m.hold()\nm.stop()\nm.control.limits(500)\nprint('free')", ["free"]),
+        "after a move that lets go": (
+            "m.run_angle(500, 90, Stop.BRAKE)\nm.set_run_settings(500, 1000)\nprint('set')",
+            ["set"],
+        ),
         "of the class": ("Motor.stop(m, Stop.HOLD)\nprint('held')", ["held"]),
         "of a subclass": (
             "class Arm(Motor):\n    def stop(self):\n        super().stop(Stop.BRAKE)\nArm(Port.C).stop()\nprint(1)",
@@ -54,6 +58,10 @@ def test_a_motor_has_what_version_1_had(run_on: RunOn, text: str, lines: list[st
         ),
         "settings while it runs": (
             "m.run(100)\nm.set_run_settings(500, 1000)",
+            "OSError: [Errno 1] EPERM",
+        ),
+        "settings while it holds": (
+            "m.run_angle(100, 9)\nm.set_run_settings(500, 1000)",
             "OSError: [Errno 1] EPERM",
         ),
         "not all settings": ("m.set_run_settings(500)", "missing 1 required positional argument"),

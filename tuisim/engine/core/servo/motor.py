@@ -186,6 +186,11 @@ class ServoMotor:
         if self.control.actuation != self._actuation:
             self._limit_speed()
 
+    @property
+    def lets_go(self) -> bool:
+        """Whether nothing holds the motor after the motion that it follows."""
+        return self._guide is not None and self._ending in (Ending.COAST, Ending.BRAKE)
+
     def _limit_speed(self) -> None:
         """Take note of the highest speed that its power allows."""
         self._actuation = self.control.actuation

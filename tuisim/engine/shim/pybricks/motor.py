@@ -255,6 +255,10 @@ class Motor(DCMotor):
             self.brick.say_stalled(f"the motor on {self.port_names[0]} is", call)
         return self.move_done(now_us, motor.control)
 
+    def has_let_go(self) -> bool:
+        """Return whether a move is over after which nothing holds the motor."""
+        return self._motor.lets_go and self.move_done(self.brick.now_us, self._motor.control)
+
     def move_done(self, now_us: int, control: Controller) -> bool:
         """Return whether a controller of the motor has no move under way."""
         return control.done(
@@ -316,7 +320,7 @@ class Control(Connected):
         Raises:
             OSError: a move is under way, or the motor holds.
         """
-        if self._control.trajectory is not None:
+        if self._control.trajectory is not None and not self._owner.has_let_go():
             raise not_permitted()
         settings = self._control.settings
         changes = {

@@ -152,6 +152,10 @@ class DriveBase(Connected):
         total, difference = self._base.millis_at(self.brick.command())
         self._zeros = round(total / MILLI), round(difference / MILLI)
 
+    def has_let_go(self) -> bool:
+        """Return whether a move is over after which nothing holds the motors: each of these holds them."""
+        return False
+
     def move_done(self, now_us: int, control: Controller) -> bool:
         """Return whether one of its controllers has no move under way."""
         at = 0 if control is self._base.distance else 1
