@@ -45,7 +45,9 @@ CHILD_MAY_NOT_LOAD = (*HELP_MAY_NOT_LOAD, "argparse", "click")
 PRINTS = {"echo.py": "the one place", "relay.py": "passes on what a program prints"}
 """Files of the commands that may write to the terminal by themselves."""
 TEXTUAL_CALLS = re.compile(r"compose|compose_content|render|(on|action)_\w+")
-VALUE_METHODS = re.compile(r"allowed|metavar|choices|check|from_data|from_text|to_text|key_of")
+VALUE_METHODS = re.compile(
+    r"allowed|metavar|choices|check|parse_data|parse_text|format_text|name_key"
+)
 """What `Value` and `Spec` explain for all of their subclasses."""
 UNFINISHED = "|".join(("TO" + "DO", "FIX" + "ME", "XX" + "X", "NotImplemented" + "Error"))
 PLACES = "|".join(f"/{place}/" for place in ("work", "farm", "root", "home"))

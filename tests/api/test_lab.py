@@ -14,7 +14,7 @@ from tuisim.api.run import Run
 from tuisim.base.errors import ConfigError
 from tuisim.engine.core.commands.calls import Call
 from tuisim.engine.core.commands.table import obey
-from tuisim.engine.core.simulation import simulation_of
+from tuisim.engine.core.simulation import build_simulation
 from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.core.tick_record import NoRecording
 
@@ -121,12 +121,12 @@ STEPS = 3000
 
 
 def _time_bare_loop(spec: RunSpec) -> float:
-    sim = simulation_of(spec, NoRecording())
+    sim = build_simulation(spec, NoRecording())
     rest = (0.0,) * (6 if spec.profile.name == "ev3" else 0)
     call = Call.RUN_FOREVER if rest else Call.RUN
     start_s = perf_counter()
     for number in range(STEPS):
-        now_ns = sim.due_ns(sim.tick)
+        now_ns = sim.compute_due_ns(sim.tick)
         obey(sim, now_ns, 0, call, 300.0 + number % 2, *rest)
         obey(sim, now_ns, 1, call, 200.0 + number % 2, *rest)
         sim.advance(1)

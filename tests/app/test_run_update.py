@@ -7,7 +7,7 @@ from dataclasses import replace
 from tests.app.app_help import ready, settings, until
 from tests.engine.shim.late_programs import LATE_PROGRAMS
 from tuisim.app.app import LabApp
-from tuisim.engine.core.sensors import column_names
+from tuisim.engine.core.sensors import list_column_names
 from tuisim.programs.program_file import parse_program
 from tuisim.programs.program_settings import program_settings
 from tuisim.settings.build import build_run_spec
@@ -43,7 +43,7 @@ async def test_a_part_that_is_plugged_in_is_named_and_seen() -> None:
         assert recording is not None
         assert [motor.port for motor in recording.spec.robot.extra_motors] == ["outA"]
         assert recording.first_spec.robot.extra_motors == ()
-        assert "motor_a_duty_pc" in column_names(recording.spec)
+        assert "motor_a_duty_pc" in list_column_names(recording.spec)
         # In a past instant, the whole robot is in view.
         runs.timeline.go(recording.newest - 1)
         await pilot.pause()

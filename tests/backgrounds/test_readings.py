@@ -26,9 +26,9 @@ import pytest
 from mats import MATS
 from PIL import Image
 
-from tuisim.engine.core.field import Field, disc_mask
+from tuisim.engine.core.field import Field, build_disc_mask
 from tuisim.engine.core.geometry import Pose
-from tuisim.engine.core.sensors.color import box_corner
+from tuisim.engine.core.sensors.color import find_box_corner
 from tuisim.engine.core.spec import ColorSensorSpec
 
 SENSOR = ColorSensorSpec("left", "in2", -20.0, 30.0)
@@ -87,10 +87,10 @@ READINGS = table()
 def seen(field: Field, pose: Pose) -> np.ndarray:
     """The mean of the disc under the left sensor: red, green, blue."""
     diameter = SENSOR.diameter_mm
-    box = np.frombuffer(field.box(diameter, *box_corner(pose, SENSOR)), np.uint8).reshape(
+    box = np.frombuffer(field.read_box(diameter, *find_box_corner(pose, SENSOR)), np.uint8).reshape(
         diameter, diameter, 3
     )
-    mean: np.ndarray = box[np.array(disc_mask(diameter))].mean(axis=0)
+    mean: np.ndarray = box[np.array(build_disc_mask(diameter))].mean(axis=0)
     return mean
 
 

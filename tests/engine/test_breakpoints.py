@@ -19,7 +19,7 @@ from tuisim.engine.breakpoints import (
 )
 from tuisim.engine.core.conditions import ValueCondition, ValueSource
 from tuisim.engine.core.profile import PROFILES
-from tuisim.engine.core.sensors import columns_of
+from tuisim.engine.core.sensors import list_columns
 from tuisim.engine.core.spec import RobotSpec, RunSpec, WorldSpec
 
 RUN = RunSpec(RobotSpec(), WorldSpec(), PROFILES["ev3"])
@@ -106,7 +106,7 @@ def test_what_is_no_break_says_why_and_what_is_allowed(text: str, why: str) -> N
 
 
 def test_every_column_of_a_robot_can_be_compared_and_without_one_any_name() -> None:
-    for column in columns_of(RUN):
+    for column in list_columns(RUN):
         for name in (column.name, *column.also):
             assert parse_break(f"{name} > 1.5", RUN).rule == ValueCondition(column.name, ">", "1.5")
     assert parse_break("middle.red > 1").rule == ValueCondition("middle.red", ">", "1")

@@ -29,7 +29,7 @@ from tuisim.engine.core.spec import (
     TouchSpec,
     UltrasonicSpec,
 )
-from tuisim.engine.core.values import values_of
+from tuisim.engine.core.values import list_values
 from tuisim.engine.obstacles import OBSTACLES, load_obstacles, save_obstacles
 from tuisim.guide.catalogue import load_pages as guide_pages
 from tuisim.settings.build import build_run_spec
@@ -402,7 +402,7 @@ def test_a_profile_file_says_only_what_differs(
 
 
 def test_every_number_of_a_profile_says_where_it_comes_from() -> None:
-    lacking = {name for name, value in values_of(ProfileSpec).items() if not value.source}
+    lacking = {name for name, value in list_values(ProfileSpec).items() if not value.source}
     assert lacking == {"name", "title"}
 
 

@@ -20,7 +20,7 @@ from tests.cases import cases
 from tuisim.base import folders
 from tuisim.base.errors import BackgroundError
 from tuisim.engine import mat_cache, mats
-from tuisim.engine.core.field import disc_mask
+from tuisim.engine.core.field import build_disc_mask
 
 pytestmark = pytest.mark.usefixtures("real_mats")
 
@@ -56,7 +56,7 @@ def note_of(path: Path) -> Path:
 def naive_sums(pixels: np.ndarray, diameter: int, col: int, row: int) -> list[int]:
     """Sums over one disc, pixel by pixel, black off the mat."""
     total = [0, 0, 0]
-    for down, inside in enumerate(disc_mask(diameter)):
+    for down, inside in enumerate(build_disc_mask(diameter)):
         for right, is_inside in enumerate(inside):
             if is_inside and 0 <= row + down < HEIGHT and 0 <= col + right < WIDTH:
                 for channel, value in enumerate(pixels[row + down, col + right].tolist()):
@@ -84,8 +84,8 @@ def test_sums_equal_naive_sums_everywhere(home: Path) -> None:
             (dice.randrange(-40, WIDTH + 40), dice.randrange(-40, HEIGHT + 40)) for _ in range(150)
         ]
         for col, row in corners + edge + anywhere:
-            sums, disc = naive_sums(pixels, diameter, col, row), field.disc(diameter, col, row)
-            assert list(field.disc_sums(diameter, col, row)) == sums
+            sums, disc = naive_sums(pixels, diameter, col, row), field.read_disc(diameter, col, row)
+            assert list(field.sum_disc(diameter, col, row)) == sums
             assert [sum(disc[channel::3]) for channel in range(3)] == sums
 
 
@@ -95,15 +95,15 @@ def test_sums_of_unusual_diameters(diameter: int, home: Path) -> None:
     files = mat_cache.prepare(mats.background("Radial_red").image, [diameter])
     field, pixels = mat_cache.open_field(files), mat_cache.mat_pixels(files)
     for col, row in [(1130, 520), (-3, -3), (WIDTH - 2, 600)]:
-        assert list(field.disc_sums(diameter, col, row)) == naive_sums(pixels, diameter, col, row)
+        assert list(field.sum_disc(diameter, col, row)) == naive_sums(pixels, diameter, col, row)
 
 
 @pytest.mark.slow
 def test_white_discs_do_not_overflow(home: Path, tmp_path: Path) -> None:
     files = mat_cache.prepare(picture(tmp_path, fill="white"), [mat_cache.MAX_DIAMETER_PX])
-    pixels = sum(map(sum, disc_mask(mat_cache.MAX_DIAMETER_PX)))
+    pixels = sum(map(sum, build_disc_mask(mat_cache.MAX_DIAMETER_PX)))
     assert (
-        mat_cache.open_field(files).disc_sums(mat_cache.MAX_DIAMETER_PX, 500, 500)
+        mat_cache.open_field(files).sum_disc(mat_cache.MAX_DIAMETER_PX, 500, 500)
         == (255 * pixels,) * 3
     )
 
@@ -113,7 +113,7 @@ def test_pixels_are_those_of_the_image(home: Path) -> None:
     files = mat_cache.prepare(image, ())
     with Image.open(image) as opened:
         assert np.array_equal(mat_cache.mat_pixels(files), np.asarray(opened))
-    assert mat_cache.open_field(files).box(4, -1, -1)[12:24] == bytes(3) + b"\xff" * 9
+    assert mat_cache.open_field(files).read_box(4, -1, -1)[12:24] == bytes(3) + b"\xff" * 9
 
 
 def test_what_is_cached_is_not_made_again(home: Path, tmp_path: Path) -> None:
@@ -196,8 +196,8 @@ def test_a_damaged_file_is_made_again(
     with pytest.raises(BackgroundError):
         mat_cache.open_field(files)
     assert mat_cache.prepare(image, [10]) == files
-    assert mat_cache.open_field(files).disc_sums(10, 500, 500) == (69 * 255,) * 3
-    assert mat_cache.open_field(files).box(1, 500, 500) == b"\xff" * 3
+    assert mat_cache.open_field(files).sum_disc(10, 500, 500) == (69 * 255,) * 3
+    assert mat_cache.open_field(files).read_box(1, 500, 500) == b"\xff" * 3
 
 
 def test_a_copied_file_is_read_once_to_be_trusted(home: Path, tmp_path: Path) -> None:
@@ -224,7 +224,7 @@ def test_an_open_field_outlives_its_files(home: Path, tmp_path: Path) -> None:
     field = mat_cache.open_field(files)
     for path in cached(home):
         path.unlink()
-    assert field.disc_sums(10, 50, 50) == (69 * 255,) * 3
+    assert field.sum_disc(10, 50, 50) == (69 * 255,) * 3
 
 
 def test_the_cache_drops_what_was_not_used_longest(
@@ -290,7 +290,7 @@ def test_several_at_once_make_the_same_files(home: Path, tmp_path: Path) -> None
     assert len({each.result() for each in found}) == 1
     assert [path.suffix for path in cached(home)] == [".sums", ".rgb"]
     (files,) = {each.result() for each in found}
-    assert mat_cache.open_field(files).disc_sums(20, 500, 500) == (0, 0, 305 * 128)
+    assert mat_cache.open_field(files).sum_disc(20, 500, 500) == (0, 0, 305 * 128)
 
 
 @pytest.mark.parametrize("diameter", [0, -5, 129])
@@ -320,7 +320,7 @@ def test_opening_needs_no_heavy_library(home: Path, tmp_path: Path) -> None:
         "import json, sys\n"
         "from tuisim.engine import mat_cache as fields\n"
         "field = fields.open_field(fields.FieldFiles.from_plain(json.loads(sys.argv[1])))\n"
-        "print(field.disc_sums(20, 5, 5)[0])\n"
+        "print(field.sum_disc(20, 5, 5)[0])\n"
         "print(sorted({'numpy', 'PIL', 'platformdirs', 'tempfile'} & set(sys.modules)))\n"
     )
     command = [sys.executable, "-c", code, json.dumps(files.to_plain())]

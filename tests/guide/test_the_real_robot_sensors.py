@@ -13,15 +13,15 @@ from tuisim.engine.core.drift import draw_echo_bias_mm
 from tuisim.engine.core.drift_spec import DriftSpec
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.profile import EV3, PROFILES
-from tuisim.engine.core.sensors.ultrasonic import reading_mm
+from tuisim.engine.core.sensors.ultrasonic import measure_noisy_mm
 from tuisim.engine.core.servo.motor import ServoMotor
 from tuisim.engine.core.simulation import Simulation
 from tuisim.engine.core.spec import FIELD_WIDTH_MM, RobotSpec, RunSpec, UltrasonicSpec, WorldSpec
 from tuisim.engine.core.state import Instant
-from tuisim.engine.core.values import values_of
+from tuisim.engine.core.values import list_values
 from tuisim.guide.catalogue import load_pages
 
-TYPICAL: DriftSpec = values_of(WorldSpec)["drift"].from_text("typical")
+TYPICAL: DriftSpec = list_values(WorldSpec)["drift"].parse_text("typical")
 
 LIGHT = """
 from ev3dev2.sensor.lego import ColorSensor
@@ -86,7 +86,7 @@ def read_distance_mm(distance_mm: float, seed: int) -> int:
     sensor = UltrasonicSpec(ray_angles_deg=(0.0,))
     pose = Pose(FIELD_WIDTH_MM - sensor.y_mm - distance_mm, 500.0, 0.0)
     instant = Instant(0, pose, drift=TYPICAL, profile=EV3, seed=seed)
-    return reading_mm(sensor, instant, WorldSpec(drift=TYPICAL))
+    return measure_noisy_mm(sensor, instant, WorldSpec(drift=TYPICAL))
 
 
 def spin(sign: int, robot: RobotSpec, drift: DriftSpec) -> Simulation:
@@ -122,7 +122,7 @@ def test_infrared(tell: Callable[..., str], tmp_path: Path) -> None:
 @pytest.mark.parametrize(("name", "sign"), [("clockwise", 1), ("counter-clockwise", -1)])
 def test_turns(name: str, sign: int) -> None:
     sim = spin(sign, RobotSpec(), DriftSpec(gyro_scale_pc=TYPICAL.gyro_scale_pc))
-    counted_deg = 360 * sim.instant().gyro_deg / abs(sim.pose.heading_deg)
+    counted_deg = 360 * sim.build_instant().gyro_deg / abs(sim.pose.heading_deg)
     assert is_in_table(f"a whole turn {name}", f"{abs(counted_deg):.0f}°, with typical drift")
 
 

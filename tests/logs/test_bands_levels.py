@@ -9,7 +9,7 @@ import pyarrow as pa
 import pytest
 
 from tests.cases import for_each
-from tuisim.engine.core.noise import clamping
+from tuisim.engine.core.noise import compute_clamping
 from tuisim.engine.core.profile import EV3
 from tuisim.engine.core.spec import RobotSpec, RunSpec, WorldSpec
 from tuisim.logs.bands import (
@@ -35,7 +35,7 @@ from tuisim.logs.log import Log
 
 @for_each(value=[0, 3, 10, 128, 240, 250, 255], noise=[5, 20, 128])
 def test_clamping_is_undone(value: int, noise: int) -> None:
-    mean_percent = np.array([(value + clamping(noise).shift[value]) / 2.55])
+    mean_percent = np.array([(value + compute_clamping(noise).shift[value]) / 2.55])
     assert undo_clamping(mean_percent, noise) == pytest.approx(
         value / 2.55, abs=0.8 if noise < 128 else 4.0
     )

@@ -14,7 +14,7 @@ from tuisim.api.descriptions import read_options
 from tuisim.app.setup import next_run as plans
 from tuisim.app.setup.next_run import NextRun
 from tuisim.engine.core.spec import NoiseSpec, RunSpec
-from tuisim.engine.core.tree import to_plain
+from tuisim.engine.core.tree import dump_run
 from tuisim.notebook.lab import Lab
 from tuisim.programs.program_file import ProgramSource, read_program
 from tuisim.programs.program_settings import free_paths, program_settings
@@ -244,7 +244,7 @@ def values_of(spec: RunSpec) -> dict[str, object]:
         else:
             yield path, value
 
-    return dict(flat(to_plain(spec), ""))
+    return dict(flat(dump_run(spec), ""))
 
 
 @pytest.mark.parametrize(

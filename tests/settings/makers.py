@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from hypothesis import strategies as st
 
-from tuisim.engine.core.css_colors import css_names
+from tuisim.engine.core.css_colors import load_css_colors
 from tuisim.engine.core.spec import (
     INPUT_PORTS,
     MOTOR_ENDS,
@@ -36,7 +36,7 @@ pens = st.builds(
     PenSpec,
     x_mm=places,
     y_mm=places,
-    color=st.sampled_from(sorted(css_names())) | st.just("#0a1b2c"),
+    color=st.sampled_from(sorted(load_css_colors())) | st.just("#0a1b2c"),
     width_mm=mm(0.1, 200),
     down=st.booleans(),
 )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tuisim.engine.core.geometry import Pose
-from tuisim.engine.core.outline import outline_of
+from tuisim.engine.core.outline import build_outline
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, Obstacle, RobotSpec
 from tuisim.engine.mats import catalogue
 from tuisim.engine.obstacles import OBSTACLES
@@ -20,7 +20,7 @@ SHIPPED = {name: mat for name, mat in catalogue().items() if mat.shipped}
 @pytest.mark.parametrize("name", SHIPPED)
 def test_the_robot_starts_where_solid_walls_let_it_turn(name: str) -> None:
     spec = build_run_spec(Settings({"background": name, "profile": "ev3"}))
-    reach, start, mat = outline_of(spec.robot).reach_mm, spec.world.start, SHIPPED[name].start
+    reach, start, mat = build_outline(spec.robot).reach_mm, spec.world.start, SHIPPED[name].start
     assert reach <= start.x_mm <= FIELD_WIDTH_MM - reach
     assert reach <= start.y_mm <= FIELD_HEIGHT_MM - reach
     assert start.heading_deg == mat.heading_deg

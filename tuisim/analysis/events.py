@@ -15,8 +15,8 @@ from tuisim.engine.core.conditions import (
     NUMBER,
     Operator,
     ValueCondition,
-    comparison_form,
-    condition_in,
+    describe_comparison,
+    parse_condition,
 )
 from tuisim.engine.runs.arrays import FloatArray
 from tuisim.engine.runs.command_events import CommandEvent, CommandIndex, parse_command_search
@@ -104,7 +104,7 @@ def _meets(
 
 
 _OPERATORS = (Operator.LESS, Operator.GREATER, Operator.EQUAL)
-THRESHOLD_FORM = f"{comparison_form(_OPERATORS)}, such as `Colour > 50 +- 2`; `=` for both ways"
+THRESHOLD_FORM = f"{describe_comparison(_OPERATORS)}, such as `Colour > 50 +- 2`; `=` for both ways"
 FORM = f"{THRESHOLD_FORM}; `command` for what the program asked; several with `,` between them"
 _WIDTH = re.compile(rf"(?P<comparison>.+?)(?:\+-|±)\s*(?P<width>{NUMBER})\s*")
 
@@ -193,9 +193,9 @@ class CommandRow:
 def threshold_of(text: str) -> Threshold | None:
     """Return the threshold in a text such as `Colour < 50`, None if it is none."""
     match = _WIDTH.fullmatch(text)
-    found = condition_in(match["comparison"], value=NUMBER) if match else None
+    found = parse_condition(match["comparison"], value=NUMBER) if match else None
     width = float(match["width"]) if match and found else 0.0
-    found = found or condition_in(text, value=NUMBER)
+    found = found or parse_condition(text, value=NUMBER)
     if found is None or found.operator not in (*_OPERATORS, Operator.CHANGES):
         return None
     return Threshold(found.name, found.operator, found.value, hysteresis=width)

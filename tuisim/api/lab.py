@@ -13,12 +13,12 @@ from tuisim.api.keywords import check_keywords
 from tuisim.base.errors import ConfigError
 from tuisim.engine.core.commands.calls import Call, SimulationCommand
 from tuisim.engine.core.commands.table import DRIVEN_LAWS, obey
-from tuisim.engine.core.motors import top_speed_dps
+from tuisim.engine.core.motors import find_top_speed_dps
 from tuisim.engine.core.profile import NS_PER_S, MotorLaw
-from tuisim.engine.core.sensors import named_column, reader_of
+from tuisim.engine.core.sensors import build_reader, find_named_column
 from tuisim.engine.core.servo.control import Ending
 from tuisim.engine.core.servo.motor import ServoMotor
-from tuisim.engine.core.simulation import Simulation, simulation_of
+from tuisim.engine.core.simulation import Simulation, build_simulation
 from tuisim.engine.core.tick_record import NoRecording
 from tuisim.engine.mat_cache import open_field
 from tuisim.engine.runs.replay import give_command
@@ -74,10 +74,10 @@ class Lab:
     def _open(self, spec: RunSpec, columns: Sequence[str]) -> None:
         if spec.world.pen_marks:
             raise ConfigError("a Lab's sensors do not see the pen's trace", key="pen_marks")
-        self.columns = tuple(named_column(name, spec) for name in columns)
+        self.columns = tuple(find_named_column(name, spec) for name in columns)
         """What `step` returns."""
         self._readers = {
-            name: read for name in self.columns if (read := reader_of(name, spec)) is not None
+            name: read for name in self.columns if (read := build_reader(name, spec)) is not None
         }
         self._field = open_field(field_files(spec), has_floor=spec.world.is_open)
         self._spec, self._hz = spec, spec.profile.tick_hz
@@ -95,7 +95,7 @@ class Lab:
     @property
     def time_s(self) -> float:
         """The simulated time in seconds."""
-        return self._sim.due_ns(self._sim.tick) / NS_PER_S
+        return self._sim.compute_due_ns(self._sim.tick) / NS_PER_S
 
     @property
     def pose(self) -> Pose:
@@ -105,13 +105,13 @@ class Lab:
     @property
     def max_speed_dps(self) -> float:
         """The highest speed of a wheel's motor, in degrees per second."""
-        return top_speed_dps(self._spec.robot.left_motor, self._spec.profile)
+        return find_top_speed_dps(self._spec.robot.left_motor, self._spec.profile)
 
     def reset(self, seed: int | None = None) -> dict[str, float]:
         """Begin again, with another seed if one is given; return the columns at the start."""
         if seed is not None:
             self._spec = replace(self._spec, seed=seed)
-        self._sim = simulation_of(self._spec, NoRecording())
+        self._sim = build_simulation(self._spec, NoRecording())
         self._run = _find_run(self._sim)
         self._asked: tuple[float, float] | None = None
         return self.read()
@@ -137,11 +137,11 @@ class Lab:
         end = sim.tick + (round(period_s * self._hz) or 1 if period_s else 1)
         if left is not None and right is not None and self._asked != (left, right):
             self._asked = left, right
-            time_ns = sim.due_ns(sim.tick)
+            time_ns = sim.compute_due_ns(sim.tick)
             self._run(time_ns, 0, left)
             self._run(time_ns, 1, right)
         for command in commands:
-            sim.advance(sim.ticks_at(command.time_ns) - sim.tick)
+            sim.advance(sim.count_ticks(command.time_ns) - sim.tick)
             give_command(sim, command)
         sim.advance(end - sim.tick)
         return self.read()
@@ -163,7 +163,7 @@ def _find_run(sim: Simulation) -> Callable[[int, int, float], None]:
     """Return what lets a wheel's motor run: it takes the time in ns, the motor's number and its speed."""
     robot, law = sim.spec.robot, sim.spec.profile.motor_law
     signs = -1.0 if robot.left_reversed else 1.0, -1.0 if robot.right_reversed else 1.0
-    most = [top_speed_dps(motor.kind, sim.spec.profile) for motor in robot.motors]
+    most = [find_top_speed_dps(motor.kind, sim.spec.profile) for motor in robot.motors]
 
     def clip(number: int, speed_dps: float) -> float:
         return signs[number] * max(-most[number], min(most[number], speed_dps))

@@ -20,7 +20,7 @@ from tuisim.engine.breakpoints import (
     moved,
     parse_break,
 )
-from tuisim.engine.core.profile import due_ns
+from tuisim.engine.core.profile import compute_due_ns
 from tuisim.engine.protocol import UNKNOWN_ORDINAL, Inspected, Message, Paused, PauseReason
 from tuisim.engine.runs.replay_debugger import Position, ReplayDebugger
 
@@ -249,7 +249,7 @@ class DebugController:
     def _set_tick_time(self, paused: Paused) -> Paused:
         """Return a pause with the time of its tick, as every panel shows it: the program's own is somewhat later."""
         hz = self._run_controller.timeline.tick_hz
-        return replace(paused, time_ns=due_ns(paused.tick, hz))
+        return replace(paused, time_ns=compute_due_ns(paused.tick, hz))
 
     def _open_panels(self) -> None:
         if self._panels_opened:

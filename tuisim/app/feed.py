@@ -13,7 +13,7 @@ import numpy.typing as npt
 from tuisim.app.snapshot import CHART_PERIOD_S, RunPhase
 from tuisim.base.data_class import dataclass
 from tuisim.engine.core.field import Field
-from tuisim.engine.core.sensors import columns_of
+from tuisim.engine.core.sensors import list_columns
 from tuisim.engine.core.tick_record import FLAG_PEN_DOWN
 from tuisim.engine.runs.frames import column_values
 from tuisim.engine.runs.records import OutputRow
@@ -96,7 +96,7 @@ class Feed:
         records = run.telemetry.array(self._charted)[
             _thinned(0, end - self._charted, POINTS_A_FEED)
         ]
-        names = [column.name for column in columns_of(run.spec) if column.is_traced]
+        names = [column.name for column in list_columns(run.spec) if column.is_traced]
         values = column_values(
             names,
             records,

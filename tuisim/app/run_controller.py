@@ -15,7 +15,7 @@ from tuisim.app.timeline import Timeline
 from tuisim.base.data_class import dataclass
 from tuisim.engine import protocol
 from tuisim.engine.core.drift import find_drift
-from tuisim.engine.core.end_stops import flags_at_start
+from tuisim.engine.core.end_stops import build_start_flags
 from tuisim.engine.core.field import Field
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.spec import PRESSABLE, NoiseSpec, RunSpec
@@ -235,7 +235,7 @@ class RunController:
 
     def _at_rest(self, pose: Pose) -> Instant:
         spec = self.next_run.spec
-        flags = flags_at_start(spec.robot)
+        flags = build_start_flags(spec.robot)
         return Instant(
             0,
             pose,

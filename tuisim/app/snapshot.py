@@ -12,7 +12,7 @@ from tuisim.base.data_class import dataclass
 from tuisim.base.source import Program
 from tuisim.engine.core.field import Field
 from tuisim.engine.core.geometry import Pose
-from tuisim.engine.core.sensors import color, readings, ultrasonic
+from tuisim.engine.core.sensors import color, measure_sensors, ultrasonic
 from tuisim.engine.core.sensors.color import ColorReading
 from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.core.state import Instant
@@ -109,7 +109,7 @@ class Snapshot:
         if self.field is None:
             return {}
         return {
-            s.name: color.reading(s, self.instant, self.field)
+            s.name: color.measure_color(s, self.instant, self.field)
             for s in self.spec.robot.color_sensors
         }
 
@@ -117,14 +117,18 @@ class Snapshot:
     def ultrasonic_mm(self) -> int | None:
         """The distance; None without such a sensor."""
         sensor = self.spec.robot.ultrasonic
-        return ultrasonic.reading_mm(sensor, self.instant, self.spec.world) if sensor else None
+        return (
+            ultrasonic.measure_noisy_mm(sensor, self.instant, self.spec.world) if sensor else None
+        )
 
     @cached_property
     def rays(self) -> tuple[tuple[float, float], ...]:
         """Ultrasonic rays as (world angle in degrees, length in mm)."""
         sensor = self.spec.robot.ultrasonic
         return (
-            tuple(ultrasonic.rays_mm(self.instant.pose, sensor, self.spec.world)) if sensor else ()
+            tuple(ultrasonic.measure_rays_mm(self.instant.pose, sensor, self.spec.world))
+            if sensor
+            else ()
         )
 
     @cached_property
@@ -142,7 +146,7 @@ class Snapshot:
         """Measurements of sensors that not every robot has, by telemetry column, such as `bumper_pressed`."""
         if self.field is None:
             return {}
-        return readings(self.spec.robot.further_sensors, self.instant, self.spec, self.field)
+        return measure_sensors(self.spec.robot.further_sensors, self.instant, self.spec, self.field)
 
     def has_stopped_since(self, before: Snapshot | None) -> bool:
         """Whether the run stands still now, and did not at an earlier moment."""

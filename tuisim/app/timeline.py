@@ -11,17 +11,17 @@ from typing import TYPE_CHECKING
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ConfigError, closest, did_you_mean
 from tuisim.base.source import source_lines
-from tuisim.engine.core.columns import column_name
+from tuisim.engine.core.columns import find_column_name
 from tuisim.engine.core.conditions import (
     Operator,
     ValueCondition,
     ValueSource,
-    comparison_form,
-    run_condition_in,
-    spelled,
+    describe_comparison,
+    list_operators,
+    parse_run_condition,
 )
 from tuisim.engine.core.field import Field
-from tuisim.engine.core.sensors import column_names, columns_of, named_column
+from tuisim.engine.core.sensors import find_named_column, list_column_names, list_columns
 from tuisim.engine.runs.brick_state import BrickState, face_after
 from tuisim.engine.runs.command_events import parse_command_search
 from tuisim.engine.runs.frames import begins, column_values, held
@@ -159,7 +159,7 @@ _FORMS = (
     ("tick 120", "a tick"),
     ("line 12", "{which} time that line 12 runs"),
     ("sample Colour", "{which} sample with this name; `sample` alone: with any name"),
-    ("Colour < 90", f"{{which}} sample that matches; operators: {spelled()}"),
+    ("Colour < 90", f"{{which}} sample that matches; operators: {list_operators()}"),
     (
         "left_red_pc < 50",
         "{which} tick at which a column becomes so; also left_color changes, gyro_deg > 90, x_mm …",
@@ -183,7 +183,7 @@ def forms(timeline: Timeline) -> list[tuple[str, str]]:
 
 
 _HINT = (
-    f"3.5, tick 120, line 12, sample NAME, sample {comparison_form()}, COLUMN < 50, command, "
+    f"3.5, tick 120, line 12, sample NAME, sample {describe_comparison()}, COLUMN < 50, command, "
     "print REGEX, start or end"
 )
 _IN_FRONT = re.compile(r"^(back|first)\s+(.+)$", re.IGNORECASE)
@@ -313,11 +313,11 @@ def describe_commands(text: str, timeline: Timeline) -> str:
 def _condition(word: str, rest: str, text: str) -> ValueCondition | None:
     """Return the condition in the words of an instant; `word` is the first one, `rest` is without the direction."""
     if word == ValueSource.PRINT and rest:
-        return run_condition_in(f"{word} {rest}") or ValueCondition(
+        return parse_run_condition(f"{word} {rest}") or ValueCondition(
             "", Operator.MATCHES, rest, ValueSource.PRINT
         )
     is_sample = word == ValueSource.SAMPLE
-    return run_condition_in(
+    return parse_run_condition(
         f"{word} {rest}" if is_sample else re.sub(r"\s+(?:back|first)$", "", text.strip())
     )
 
@@ -325,7 +325,7 @@ def _condition(word: str, rest: str, text: str) -> ValueCondition | None:
 def _refuse(word: str, recording: Recording) -> ConfigError:
     """Return the error for what is no instant, with the form that is meant if it is like a name of the run."""
     printed = _read_printed_names(recording)
-    close = closest(word, [*column_names(recording.spec), *printed], 1)
+    close = closest(word, [*list_column_names(recording.spec), *printed], 1)
     forms = [f"`{name} < 50`" for name in close]
     hint = did_you_mean(forms + [f"`sample {name}`" for name in close if name in printed])
     return ConfigError(f"{word!r} is not an instant" if word else "no instant given", hint or _HINT)
@@ -384,16 +384,16 @@ def _read_printed_names(recording: Recording) -> list[str]:
 def _becomes(search: _Search, condition: ValueCondition, mat: Field | None) -> int:
     """Return the tick at which a column begins to meet a condition, or at which a printed name of no column does."""
     recording = search.recording
-    if column_name(condition.name, columns_of(recording.spec)) is None:
+    if find_column_name(condition.name, list_columns(recording.spec)) is None:
         printed = _read_printed_names(recording)
         if condition.name in printed:
             return _sample(search, replace(condition, source=ValueSource.SAMPLE))
         if close := closest(condition.name, printed, 1):
             raise ConfigError(f"this run has no {condition.name!r}", did_you_mean(close))
-    name = named_column(condition.name, recording.spec)
+    name = find_named_column(condition.name, recording.spec)
     if mat is None:
         raise ConfigError("the mat is still being opened", "a moment later")
-    condition = condition.of_column(name)
+    condition = condition.format_condition(name)
     values = column_values(
         (name,), recording.telemetry.array(), recording, recording.actions(), mat
     )

@@ -15,7 +15,7 @@ from tuisim.base.errors import ConfigError
 from tuisim.base.folders import user_path
 from tuisim.batch.parameters import SEED, Choice, checked_seeds, parse_seeds, parse_values
 from tuisim.engine import files
-from tuisim.engine.core.values import shown
+from tuisim.engine.core.values import quote
 from tuisim.engine.files import Location
 from tuisim.settings.worlds import BATCH_KEY, WORLD_SUFFIX, WorldFile, load_world, world_from_table
 from tuisim.tasks.task import MAX_JOBS, Keep, Value
@@ -187,5 +187,5 @@ def _choice(values: object, at: Location) -> Choice:
 
 def _scalar(value: object, at: Location) -> Value:
     if not isinstance(value, str | bool | int | float):
-        raise at.wrong(f"must be a text, a number, true or false, got {shown(value)}")
+        raise at.wrong(f"must be a text, a number, true or false, got {quote(value)}")
     return value

@@ -16,7 +16,7 @@ from tuisim.base.source import Program
 from tuisim.batch.parameters import SEED, Choice, Grid, checked_seeds, grid_of
 from tuisim.batch.table import check_expressions
 from tuisim.engine.core.spec import RunSpec
-from tuisim.engine.core.tree import to_plain
+from tuisim.engine.core.tree import dump_run
 from tuisim.engine.runs.handle import RunOptions, in_surroundings
 from tuisim.programs.program_settings import require_library
 from tuisim.settings.build import build_run_spec
@@ -193,7 +193,7 @@ class Plan:
         for subject in self.subjects:
             for values in own:
                 spec = self.spec_of(subject, values)
-                plain = [to_plain(spec), self.options_of(spec, subject.settings).to_plain()]
+                plain = [dump_run(spec), self.options_of(spec, subject.settings).to_plain()]
                 whole.update(json.dumps(plain, sort_keys=True).encode())
         whole.update(repr((programs, self.grid.axes, self.goals, str(self.keep))).encode())
         return {

@@ -14,7 +14,7 @@ from tuisim.base.errors import ConfigError, counted, listed
 from tuisim.commands.echo import echo, echo_error, echo_json, echo_lines, table
 from tuisim.engine.core.profile import MS, PROFILES, MotorLaw, ProfileSpec
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, RobotSpec, RunSpec, WorldSpec
-from tuisim.engine.core.values import values_of
+from tuisim.engine.core.values import list_values
 from tuisim.settings.command_line import AS_JSON, WordType, argument, command, option
 
 if TYPE_CHECKING:
@@ -43,9 +43,9 @@ def names_of(field: str) -> Iterable[str]:
         case "profile":
             return PROFILES
         case "columns":
-            from tuisim.engine.core.sensors import column_names
+            from tuisim.engine.core.sensors import list_column_names
 
-            return column_names(RunSpec(RobotSpec(), WorldSpec(), PROFILES["ev3"]))
+            return list_column_names(RunSpec(RobotSpec(), WorldSpec(), PROFILES["ev3"]))
         case "goals":
             from tuisim.tasks.goals.files import example_names
 
@@ -296,7 +296,7 @@ def profiles(words: Sequence[str], as_json: bool) -> int:
     echo_lines(
         table(("PROFILE", "FOR"), [(profile["name"], profile["title"]) for profile in shown]) + "\n"
     )
-    rules = values_of(ProfileSpec)
+    rules = list_values(ProfileSpec)
     rows = [
         [
             key.removesuffix("_ns"),

@@ -30,9 +30,9 @@ from tuisim.commands.echo import (
 from tuisim.commands.exit_status import describe, last_state
 from tuisim.commands.movies import movie, picture
 from tuisim.engine.core import tree
-from tuisim.engine.core.drift import draw_echo_bias_mm, draw_light_gain, drawn_errors, find_drift
+from tuisim.engine.core.drift import draw_echo_bias_mm, draw_errors, draw_light_gain, find_drift
 from tuisim.engine.core.spec import ColorSensorSpec, RunSpec, UltrasonicSpec
-from tuisim.engine.core.values import shown
+from tuisim.engine.core.values import quote
 from tuisim.engine.files import toml_form
 from tuisim.engine.protocol import Unended
 from tuisim.engine.runs.catalogue import RunInfo
@@ -166,7 +166,7 @@ def _plain(row: OutputRow) -> dict[str, object]:
 def _values(run: StoredRun) -> dict[str, Any]:
     """Return the values of a run that options and world files set, by path."""
     return {
-        path: toml_form(one.value, tree.at(run.spec, one.spec_path))
+        path: toml_form(one.value, tree.get_value(run.spec, one.spec_path))
         for path, one in RUN_VALUES.items()
     }
 
@@ -182,7 +182,7 @@ def _files_read(run: StoredRun) -> tuple[FilesRead, tuple[str, ...]]:
 def _drawn_words(spec: RunSpec) -> str:
     """Return the errors that the seed of a run with drift has drawn."""
     drift = find_drift(spec)
-    drawn = drawn_errors(drift, spec.seed)
+    drawn = draw_errors(drift, spec.seed)
     sizes = {"left wheel": drawn.left, "right wheel": drawn.right, "spacing": drawn.spacing}
     parts = [f"{name} {100 * (times - 1):+.2f} %" for name, times in sizes.items()]
     parts += [f"gyro {drawn.gyro_dps:+.3f} °/s", f"light from {degrees(drawn.bright_rad):.0f}°"]
@@ -217,7 +217,7 @@ def _show(run: StoredRun, *, as_json: bool) -> None:
     )
     echo(last_state(facts))
     if chosen := [
-        f"{path} {shown(value)}"
+        f"{path} {quote(value)}"
         for path, value in _values(run).items()
         if value != RUN_VALUES[path].default
     ]:

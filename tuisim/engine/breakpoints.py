@@ -16,9 +16,9 @@ from tuisim.base.syntax_tree import parse_expression
 from tuisim.engine.core.conditions import (
     ValueCondition,
     ValueSource,
-    comparison_form,
-    finite_number,
-    run_condition_in,
+    describe_comparison,
+    parse_finite_number,
+    parse_run_condition,
 )
 from tuisim.engine.core.spec import RunSpec
 
@@ -38,7 +38,7 @@ FORMS = (
 """The forms of a breakpoint, and when it pauses."""
 
 ALLOWED = (
-    f"{comparison_form()}, such as left_red_pc < 10 · x_mm > 1000 · sample Colour < 50; or 12 · 12 if x > 3 · "
+    f"{describe_comparison()}, such as left_red_pc < 10 · x_mm > 1000 · sample Colour < 50; or 12 · 12 if x > 3 · "
     "left_color changes · print matches REGEX · time 3.5 · stall"
 )
 
@@ -47,7 +47,7 @@ _NO_CONDITION = {
     "print": ("what is printed can only be matched", _PRINT_FORM),
     "sample": (
         "a sample has a name",
-        f"{comparison_form()}, such as: sample Colour < 50, sample Colour changes",
+        f"{describe_comparison()}, such as: sample Colour < 50, sample Colour changes",
     ),
 }
 """What is wrong with a text that begins like a condition, and the hint."""
@@ -201,7 +201,7 @@ def parse_watch(text: str) -> str:
 
 
 def _condition(text: str, word: str, run: RunSpec | None) -> ValueCondition:
-    found = run_condition_in(text)
+    found = parse_run_condition(text)
     if found is None or (found.source is ValueSource.SAMPLE and not found.name):
         raise _refuse(text, *_NO_CONDITION.get(word, ("is not a breakpoint",)))
     name = found.name
@@ -214,7 +214,7 @@ def _condition(text: str, word: str, run: RunSpec | None) -> ValueCondition:
         case ValueSource.COLUMN:
             name = _column(text, found.name, run)
     try:
-        return found.of_column(name)
+        return found.format_condition(name)
     except ValueError as error:
         raise _refuse(text, str(error)) from None
 
@@ -227,16 +227,16 @@ def _column(text: str, written: str, run: RunSpec | None) -> str:
         return written
     try:
         # Imported on demand: most runs have no breakpoints, and nothing else in a host needs the sensors.
-        from tuisim.engine.core.sensors import named_column
+        from tuisim.engine.core.sensors import find_named_column
 
-        return named_column(written, run)
+        return find_named_column(written, run)
     except ConfigError as error:
         raise _refuse(text, error.message, error.hint) from None
 
 
 def _seconds(text: str, written: str) -> float:
     try:
-        time_s = finite_number(written)
+        time_s = parse_finite_number(written)
     except ValueError as error:
         raise _refuse(text, str(error)) from None
     if time_s < 0.0:

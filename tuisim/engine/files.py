@@ -23,7 +23,7 @@ from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ConfigError, closest, did_you_mean, nearest
 from tuisim.base.folders import user_path
 from tuisim.engine.core.spec_fields import Spec
-from tuisim.engine.core.values import NamedNumber, NamedPart, Value, WrongValue, shown, values_of
+from tuisim.engine.core.values import NamedNumber, NamedPart, Value, WrongValue, list_values, quote
 
 if TYPE_CHECKING:
     from msgspec import inspect as types
@@ -226,7 +226,7 @@ def _json(text: str, file: str, error: type[ConfigError]) -> Any:
         found: dict[str, Any] = {}
         for key, value in pairs:
             if key in found:
-                raise error("is given twice", file=file, key=shown(key)[1:-1])
+                raise error("is given twice", file=file, key=quote(key)[1:-1])
             found[key] = value
         return found
 
@@ -251,12 +251,12 @@ def table(
         ConfigError: it is not a table, or has another key.
     """
     if not isinstance(data, dict):
-        raise at.wrong(f"must be {_TABLE}, got {shown(data)}")
+        raise at.wrong(f"must be {_TABLE}, got {quote(data)}")
     if keys is not None:
         known = list(keys)
         for key in data:
             if key not in known and key not in unlisted:
-                raise at.at(shown(key)[1:-1]).wrong("no such key", nearest(key[:MAX_NAME], known))
+                raise at.at(quote(key)[1:-1]).wrong("no such key", nearest(key[:MAX_NAME], known))
     return data
 
 
@@ -278,7 +278,7 @@ def entries(data: object, at: Location, most: int, what: str) -> list[tuple[obje
         ConfigError: it is not a list, or has more than `most` entries; `what` is their name in the plural.
     """
     if not isinstance(data, list):
-        raise at.wrong(f"must be a list, got {shown(data)}")
+        raise at.wrong(f"must be a list, got {quote(data)}")
     if len(data) > most:
         raise at.wrong(f"has {len(data)} {what}", f"at most {most}")
     return [(entry, at.at(f"[{number}]")) for number, entry in enumerate(data, start=1)]
@@ -292,7 +292,7 @@ def one_of(data: object, at: Location, allowed: Iterable[str]) -> str:
     """
     word, words = convert(data, str, at), list(allowed)
     if word not in words:
-        raise at.wrong(f"no such value {shown(word)}", f"one of {', '.join(words)}")
+        raise at.wrong(f"no such value {quote(word)}", f"one of {', '.join(words)}")
     return word
 
 
@@ -303,7 +303,7 @@ def read_value(data: object, value: Value, at: Location) -> Any:
         ConfigError: it is not allowed.
     """
     try:
-        return value.from_data(data)
+        return value.parse_data(data)
     except WrongValue as error:
         raise (at.at(error.part) if error.part else at).wrong(error.message, error.hint) from None
 
@@ -320,7 +320,7 @@ def read_part(data: object, base: _Spec | type[_Spec], at: Location, **given: ob
     """
     kind = base if isinstance(base, type) else type(base)
     values = {
-        key: value for key, value in values_of(kind).items() if key not in given and key != "name"
+        key: value for key, value in list_values(kind).items() if key not in given and key != "name"
     }
     found = {
         key: read_value(one, values[key], at.at(key))
@@ -403,7 +403,7 @@ def _walk(
                     yield from _walk(data[field.name], field.type, at.at(field.name))
         case types.TupleType(item_types=items), list():
             if len(data) != len(items):
-                raise at.wrong(f"must be a list of {len(items)} values, got {shown(data)}")
+                raise at.wrong(f"must be a list of {len(items)} values, got {quote(data)}")
             for number, (entry, item) in enumerate(zip(data, items, strict=True), start=1):
                 yield from _walk(entry, item, at.at(f"[{number}]"))
         case types.ListType(item_type=item) | types.VarTupleType(item_type=item), list() | tuple():
@@ -412,7 +412,7 @@ def _walk(
         case types.StrType(), str() if (
             not data.strip() or len(data) > MAX_LINE or not data.isprintable()
         ):
-            raise at.wrong(f"must be one line of text, got {shown(data)}")
+            raise at.wrong(f"must be one line of text, got {quote(data)}")
         case types.FloatType(), float() if not math.isfinite(data):
             raise _mismatch(data, info, at)
         case types.IntType(), int() if not isinstance(data, bool) and abs(data) > MAX_WHOLE:
@@ -431,9 +431,9 @@ def _mismatch(value: object, info: types.Type, at: Location) -> ConfigError:
         info = kinds[0] if len(kinds) == 1 else info
     if isinstance(info, types.EnumType):
         return at.wrong(
-            f"no such value {shown(value)}", f"one of {', '.join(each.value for each in info.cls)}"
+            f"no such value {quote(value)}", f"one of {', '.join(each.value for each in info.cls)}"
         )
-    return at.wrong(f"must be {_expected(info)}, got {shown(value)}")
+    return at.wrong(f"must be {_expected(info)}, got {quote(value)}")
 
 
 _TABLE = "a table of keys and values"
@@ -503,7 +503,7 @@ def toml_lines(
 
 def value_lines(part: Spec, keys: Iterable[str]) -> list[str]:
     """Return the lines of some values of a spec, with their help as comments."""
-    values = values_of(type(part))
+    values = list_values(type(part))
     found = {key: getattr(part, key) for key in keys}
     shown_values = {
         key: toml_form(values[key], one) for key, one in found.items() if one is not None
@@ -516,7 +516,7 @@ def toml_form(value: Value, found: Any) -> Scalar:
     if isinstance(value, NamedNumber):
         return value.named(found)
     if isinstance(value, NamedPart):
-        return value.to_text(found)
+        return value.format_text(found)
     scalar: Scalar = list(found) if isinstance(found, tuple) else found
     return scalar
 

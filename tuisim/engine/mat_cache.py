@@ -24,7 +24,7 @@ from tuisim.base.data_class import dataclass
 from tuisim.base.errors import BackgroundError
 from tuisim.base.folders import cache_folder
 from tuisim.base.regular_file import open_regular, read_regular
-from tuisim.engine.core.field import Field, disc_mask, find_floor_rgb
+from tuisim.engine.core.field import Field, build_disc_mask, find_floor_rgb
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 from tuisim.engine.mat_image import check_fit, decode, fits_as_it_is, read_file
 
@@ -230,7 +230,7 @@ def _disc_sums(pixels: NDArray[np.uint8], diameter: int) -> NDArray[np.uint32]:
     around = dark.reshape(len(dark), -1)
     spans = [
         (row, 3 * inside.index(True), 3 * (diameter - inside[::-1].index(True)))
-        for row, inside in enumerate(disc_mask(diameter))
+        for row, inside in enumerate(build_disc_mask(diameter))
         if any(inside)
     ]
     sums = np.empty((height + diameter, width + diameter, 3), np.uint32)

@@ -11,7 +11,7 @@ from pathlib import Path
 from tuisim.base.errors import ObstacleError
 from tuisim.engine import files
 from tuisim.engine.core.spec import Obstacle
-from tuisim.engine.core.values import shown, values_of
+from tuisim.engine.core.values import list_values, quote
 from tuisim.engine.files import Location
 
 NO_OBSTACLES = "None"
@@ -28,7 +28,7 @@ OBSTACLES: Mapping[str, tuple[Obstacle, ...]] = {
 
 MAX_OBSTACLES = 1000
 
-_KEYS = tuple(values_of(Obstacle))
+_KEYS = tuple(list_values(Obstacle))
 _HEAD = "# Obstacles for tuisim: lower left corner and size in mm; x from the field's left edge, y from its bottom."
 
 
@@ -57,10 +57,10 @@ def obstacles_from_sides(data: object, at: Location) -> tuple[Obstacle, ...]:
         ConfigError: as `obstacles_from_list`.
     """
     if not isinstance(data, list):
-        raise at.wrong(f"must be a list of [x, y, width, height], got {shown(data)}")
+        raise at.wrong(f"must be a list of [x, y, width, height], got {quote(data)}")
     for number, sides in enumerate(data, start=1):
         if not isinstance(sides, list) or len(sides) != len(_KEYS):
-            raise at.at(f"[{number}]").wrong(f"must be [x, y, width, height], got {shown(sides)}")
+            raise at.at(f"[{number}]").wrong(f"must be [x, y, width, height], got {quote(sides)}")
     return obstacles_from_list([dict(zip(_KEYS, sides, strict=True)) for sides in data], at)
 
 

@@ -36,8 +36,8 @@ def parse_press(text: str) -> Press:
         raise WrongValue(f"{name!r} cannot be pressed", nearest(name, PRESSABLE))
     # A leading minus is a sign: negative times are refused.
     begin, to, end = (times, "", "") if times.startswith("-") else times.partition("-")
-    from_s = _SECONDS.from_text(begin)
-    until_s = _SECONDS.from_text(end) if to else from_s + DEFAULT_PRESS_S
+    from_s = _SECONDS.parse_text(begin)
+    until_s = _SECONDS.parse_text(end) if to else from_s + DEFAULT_PRESS_S
     if until_s <= from_s:
         raise WrongValue(f"{text!r} ends before it begins", "NAME@FROM-UNTIL, in simulated seconds")
     return Press(name, from_s, until_s)
@@ -56,9 +56,9 @@ class Presses(Value):
     def metavar(self) -> str:
         return "NAME@S"
 
-    def from_data(self, data: object) -> tuple[str, ...]:
+    def parse_data(self, data: object) -> tuple[str, ...]:
         if not isinstance(data, list | tuple):
-            raise self.wrong(data)
+            raise self.build_error(data)
         if len(data) > MAX_PRESSES:
             raise WrongValue(f"has {len(data)} presses", f"at most {MAX_PRESSES}")
         for number, text in enumerate(data, start=1):
@@ -70,6 +70,6 @@ class Presses(Value):
                 raise WrongValue(error.message, error.hint, f"[{number}]") from None
         return tuple(data)
 
-    def from_text(self, text: str) -> tuple[str, ...]:
+    def parse_text(self, text: str) -> tuple[str, ...]:
         parse_press(text)
         return (text,)

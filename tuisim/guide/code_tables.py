@@ -5,9 +5,9 @@ from __future__ import annotations
 from tuisim.engine.breakpoints import FORMS
 from tuisim.engine.core.drift_spec import DriftSpec
 from tuisim.engine.core.profile import MS, PROFILES, ProfileSpec
-from tuisim.engine.core.sensors import column_names, mounted
+from tuisim.engine.core.sensors import list_column_names, list_mounted
 from tuisim.engine.core.spec import RobotSpec, RunSpec, WorldSpec
-from tuisim.engine.core.values import NamedNumber, values_of
+from tuisim.engine.core.values import NamedNumber, list_values
 from tuisim.engine.files import toml_value
 from tuisim.engine.runs.frames import MOTION_COLUMNS, SAMPLE_COLUMNS
 from tuisim.guide.tables import Table, code
@@ -66,7 +66,7 @@ def list_sample_columns() -> Table:
 
 def list_telemetry_columns() -> Table:
     """Return the columns of the telemetry of the default robot."""
-    sensors = [name for mount in mounted(RobotSpec()) for name in mount.names]
+    sensors = [name for mount in list_mounted(RobotSpec()) for name in mount.names]
     return _build_column_table(("time", *MOTION_COLUMNS, *sensors, "line"))
 
 
@@ -120,7 +120,7 @@ def list_profile_rules() -> Table:
             *(_format_rule(key, profile) for profile in PROFILES.values()),
             rule.source,
         )
-        for key, rule in values_of(ProfileSpec).items()
+        for key, rule in list_values(ProfileSpec).items()
         if rule.source
     ]
     return Table(("rule", *map(code, PROFILES), "source"), rows)
@@ -130,7 +130,7 @@ def list_drift_sizes() -> Table:
     """Return the sizes of drift, each with its typical size and its source."""
     numbers = [
         (key, number)
-        for key, number in values_of(DriftSpec).items()
+        for key, number in list_values(DriftSpec).items()
         if isinstance(number, NamedNumber)
     ]
     rows = [
@@ -154,4 +154,6 @@ def list_breakpoints() -> Table:
 
 def list_columns() -> Table:
     """Return the columns of a run of the default robot, those of its motors under profile `ev3` alone."""
-    return _build_column_table(column_names(RunSpec(RobotSpec(), WorldSpec(), PROFILES["ev3"])))
+    return _build_column_table(
+        list_column_names(RunSpec(RobotSpec(), WorldSpec(), PROFILES["ev3"]))
+    )

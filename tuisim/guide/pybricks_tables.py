@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from tuisim.engine.core.profile import LEGO_MICROPYTHON, PYBRICKS_4
-from tuisim.engine.core.servo.drive_base import base_settings, usual_settings
-from tuisim.engine.core.servo.settings import MODELS, ControlSettings, motor_settings
+from tuisim.engine.core.servo.drive_base import compute_base_settings, compute_usual_settings
+from tuisim.engine.core.servo.settings import MODELS, ControlSettings, compute_motor_settings
 from tuisim.guide.tables import Table, code
 
 _PROFILES = (LEGO_MICROPYTHON, PYBRICKS_4)
@@ -28,7 +28,7 @@ _MOTOR_ROWS: tuple[tuple[str, Callable[[ControlSettings], str]], ...] = (
 def list_motors() -> Table:
     """Return the settings of a new motor of each kind, under each profile of Pybricks."""
     kinds = [(profile, kind) for profile in _PROFILES for kind in MODELS]
-    settings = [motor_settings(profile.motor_law, kind) for profile, kind in kinds]
+    settings = [compute_motor_settings(profile.motor_law, kind) for profile, kind in kinds]
     columns = ("of a motor", *(f"{kind}, {code(profile.name)}" for profile, kind in kinds))
     return Table(columns, [(name, *map(cell, settings)) for name, cell in _MOTOR_ROWS])
 
@@ -43,11 +43,12 @@ def list_drive_bases() -> Table:
     for diameter_mm, track_mm in _WHEELS:
         usual = []
         for profile in _PROFILES:
-            motor = motor_settings(profile.motor_law, "large")
+            motor = compute_motor_settings(profile.motor_law, "large")
             usual.append(
                 str(
-                    usual_settings(
-                        profile.motor_law, *base_settings(motor, motor, diameter_mm, track_mm)
+                    compute_usual_settings(
+                        profile.motor_law,
+                        *compute_base_settings(motor, motor, diameter_mm, track_mm),
                     )
                 )
             )

@@ -12,13 +12,13 @@ import numpy as np
 
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ConfigError, LogError, among
-from tuisim.engine.core.columns import Column, measured_names
+from tuisim.engine.core.columns import Column, list_measured_names
 from tuisim.engine.core.conditions import NUMBER
-from tuisim.engine.core.drive import mm_per_degree
+from tuisim.engine.core.drive import compute_mm_per_degree
 from tuisim.engine.core.geometry import Pose
-from tuisim.engine.core.sensors import owners
+from tuisim.engine.core.sensors import list_owners
 from tuisim.engine.core.spec import RobotSpec, RunSpec
-from tuisim.engine.core.tree import from_plain
+from tuisim.engine.core.tree import load_run
 from tuisim.engine.runs.arrays import FloatArray
 from tuisim.engine.runs.frames import computed
 from tuisim.logs.columns import is_numeric, list_numeric_columns
@@ -153,16 +153,16 @@ def find_computed_columns(log: Log) -> dict[str, Callable[[], FloatArray]]:
     there = set(list_numeric_columns(log.table.schema))
     return {
         column.name: partial(_compute_column, column.of, columns, log, spec)
-        for columns, _ in owners(spec)
+        for columns, _ in list_owners(spec)
         for column in columns
         if column.of is not None
         and column.name not in there
-        and there.issuperset(measured_names(columns))
+        and there.issuperset(list_measured_names(columns))
     }
 
 
 def _compute_column(of: Any, columns: Sequence[Column], log: Log, spec: RunSpec) -> FloatArray:
-    measured = {name: log.numbers(name) for name in measured_names(columns)}
+    measured = {name: log.numbers(name) for name in list_measured_names(columns)}
     return computed(of, columns, measured, spec)
 
 
@@ -193,7 +193,7 @@ def read_spec(metadata: Mapping[str, Any], run: int = 0) -> RunSpec | None:
     """
     try:
         entry = metadata["runs"][run]
-        return from_plain(
+        return load_run(
             {key: value for key, value in entry.items() if key not in ("run", "program")}
         )
     except (KeyError, IndexError, TypeError, ValueError, AttributeError, ConfigError):
@@ -239,7 +239,7 @@ def compute_dead_reckoning(
         right_position_deg: Position of the right wheel's motor.
         start: Pose at the first count.
     """
-    left_per_degree, right_per_degree = mm_per_degree(robot)
+    left_per_degree, right_per_degree = compute_mm_per_degree(robot)
     left = np.diff(left_position_deg, prepend=left_position_deg[:1]) * left_per_degree
     right = np.diff(right_position_deg, prepend=right_position_deg[:1]) * right_per_degree
     turn_rad = (right - left) / robot.wheel_spacing_mm

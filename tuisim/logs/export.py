@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO, NamedTuple
 
 from tuisim.base.atomic import replacing
 from tuisim.base.errors import ConfigError, ExportError
-from tuisim.engine.core.tree import to_plain
+from tuisim.engine.core.tree import dump_run
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.logs.units import TIMEDELTA, WHOLE, parse_unit
 
@@ -218,7 +218,7 @@ def log_metadata(table: str, columns: Iterable[str], runs: Sequence[StoredRun]) 
                     "prelude": run.program.prelude,
                     **({"arguments": list(run.program.arguments)} if run.program.arguments else {}),
                 },
-                **to_plain(run.spec),
+                **dump_run(run.spec),
             }
             for ordinal, run in enumerate(runs, 1)
         ],

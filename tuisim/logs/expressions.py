@@ -20,11 +20,13 @@ import numpy as np
 
 from tuisim.base.errors import LogError, among
 from tuisim.base.syntax_tree import parse_expression
-from tuisim.engine.core.conditions import COMPARE, Operator, spelled
+from tuisim.engine.core.conditions import COMPARE, Operator, list_operators
 from tuisim.engine.runs.arrays import FloatArray
 
 MAX_CHARS = 1000
-ALLOWED = f"numbers, columns, + - * / // % ** {spelled()} and or not, a if b else c, and functions"
+ALLOWED = (
+    f"numbers, columns, + - * / // % ** {list_operators()} and or not, a if b else c, and functions"
+)
 
 _BINARY: Mapping[type[ast.AST], Callable[[Any, Any], Any]] = {
     ast.Add: operator.add,

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tuisim.base.data_class import dataclass
-from tuisim.engine.core.css_colors import css_names
+from tuisim.engine.core.css_colors import load_css_colors
 from tuisim.engine.core.sensors.color import find_response
 from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.runs.arrays import FloatArray, IntArray
@@ -40,7 +40,9 @@ class Grey:
 @cache
 def list_greys() -> Mapping[int, Grey]:
     """Return the named greys by channel value, 0 to 255."""
-    names = {red: name for name, (red, green, blue) in css_names().items() if red == green == blue}
+    names = {
+        red: name for name, (red, green, blue) in load_css_colors().items() if red == green == blue
+    }
     names |= _PLAIN_NAMES
     return {value: Grey(name, 100.0 * value / FULL) for value, name in sorted(names.items())}
 

@@ -15,8 +15,8 @@ from tuisim.engine.core.conditions import (
     COMPARE,
     Operator,
     ValueCondition,
-    comparison_form,
-    condition_in,
+    describe_comparison,
+    parse_condition,
 )
 from tuisim.engine.runs.arrays import IntArray
 from tuisim.logs.arrow import format_cell, match_condition, match_text, sort_places
@@ -42,7 +42,7 @@ class TableTask:
         return f"{self.word} {self.part:.0%}" if self.part else self.word
 
 
-FORM = f"{comparison_form((*COMPARE, Operator.CONTAINS))} and NAME a column; several with `and`"
+FORM = f"{describe_comparison((*COMPARE, Operator.CONTAINS))} and NAME a column; several with `and`"
 _STRETCH = 100_000
 """Rows that are searched at a time."""
 
@@ -55,7 +55,7 @@ def parse_conditions(text: str, columns: list[str]) -> list[ValueCondition]:
     """
     conditions = []
     for part in re.split(r"\s+and\s+|\s*,\s*", text.strip()):
-        condition = condition_in(part, name=r"[^<>=!~]+?", value=".*?")
+        condition = parse_condition(part, name=r"[^<>=!~]+?", value=".*?")
         if condition is None:
             raise LogError(f"no condition: {part!r}", FORM)
         if condition.name not in columns:

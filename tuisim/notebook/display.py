@@ -14,10 +14,10 @@ from IPython.display import DisplayHandle, display
 
 from tuisim.base.data_class import dataclass
 from tuisim.base.source import Program, source_lines
-from tuisim.engine.core.end_stops import flags_at_start
+from tuisim.engine.core.end_stops import build_start_flags
 from tuisim.engine.core.field import Field
 from tuisim.engine.core.geometry import shown_heading_deg
-from tuisim.engine.core.sensors import readings
+from tuisim.engine.core.sensors import measure_sensors
 from tuisim.engine.core.sensors.color import ColorReading
 from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.mat_cache import FieldFiles, mat_pixels, open_field
@@ -109,7 +109,7 @@ class Scene:
 def start_record(spec: RunSpec) -> TickRecord:
     """Return the state before any run."""
     start = spec.world.start
-    flags = flags_at_start(spec.robot)
+    flags = build_start_flags(spec.robot)
     return TickRecord(
         0, 0, start.x_mm, start.y_mm, start.heading_deg, 0.0, 0.0, 0.0, 0.0, 0.0, flags, 0
     )
@@ -124,7 +124,7 @@ def instrumentation(scene: Scene) -> list[Row]:
         ("RightMotor", f"{record.right_position_deg:.0f} counts, {record.right_speed_dps:.0f} °/s"),
     ]
     for sensor in spec.robot.sensors:
-        values = readings([sensor], instant, spec, field)
+        values = measure_sensors([sensor], instant, spec, field)
         name = getattr(sensor, "name", "gyro")
         shown = (
             f"Sensor{_LEFT_RIGHT.index(name) + 1} ({name})"

@@ -50,11 +50,13 @@ def arrays_at(
     spec: RunSpec, record: TickRecord, noise: NoiseSpec, field: Field
 ) -> list[tuple[ColorSensorSpec, bytes]]:
     """Return the pixels under the colour sensors at a tick: RGB bytes, row by row."""
-    from tuisim.engine.core.sensors.color import pixel_array
+    from tuisim.engine.core.sensors.color import read_pixel_array
     from tuisim.engine.runs.views import instant_of
 
     instant = instant_of(record, spec, noise)
-    return [(sensor, pixel_array(sensor, instant, field)) for sensor in spec.robot.color_sensors]
+    return [
+        (sensor, read_pixel_array(sensor, instant, field)) for sensor in spec.robot.color_sensors
+    ]
 
 
 def with_alpha(rgb: bytes) -> bytes:

@@ -204,13 +204,13 @@ def robot_state(
         highest_deg: The largest heading up to then.
         wheels: The registers of the wheel motors.
     """
-    from tuisim.engine.core.sensors import readings
+    from tuisim.engine.core.sensors import measure_sensors
     from tuisim.engine.core.tick_record import FLAG_LEFT_RUNNING, FLAG_PEN_DOWN, FLAG_RIGHT_RUNNING
     from tuisim.engine.runs.views import instant_of
     from tuisim.notebook.image_log import arrays_at, with_alpha
 
     start, pose, instant = spec.world.start, record.pose, instant_of(record, spec, noise)
-    measured = readings(spec.robot.sensors, instant, spec, field)
+    measured = measure_sensors(spec.robot.sensors, instant, spec, field)
     seen = {
         sensor.name: values_text(with_alpha(rgb))
         for sensor, rgb in arrays_at(spec, record, noise, field)

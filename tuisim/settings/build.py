@@ -9,7 +9,7 @@ from typing import Any
 
 from tuisim.engine.core import tree
 from tuisim.engine.core.geometry import Pose
-from tuisim.engine.core.outline import outline_of
+from tuisim.engine.core.outline import build_outline
 from tuisim.engine.core.profile import PROFILES, ProfileSpec
 from tuisim.engine.core.spec import (
     BACKGROUND_FITS,
@@ -44,7 +44,7 @@ def _start(settings: Settings, mat: Background, robot: RobotSpec, walled: bool) 
     """Return the mat's start pose, overridden by the settings; with solid walls, moved so the robot can turn."""
     start = (settings["for_brick"] and mat.brick_start) or mat.start
     if walled:
-        margin_mm = outline_of(robot).reach_mm
+        margin_mm = build_outline(robot).reach_mm
         start = replace(
             start,
             x_mm=_inside(start.x_mm, margin_mm, FIELD_WIDTH_MM),
@@ -115,7 +115,7 @@ def settings_from(spec: RunSpec) -> dict[str, Any]:
     """
     world = spec.world
     word, mat = mat_of_spec(world.background)
-    found = {path: tree.at(spec, one.spec_path) for path, one in RUN_VALUES.items()}
+    found = {path: tree.get_value(spec, one.spec_path) for path, one in RUN_VALUES.items()}
     return found | {
         "background": word,
         "robot": _robot(spec.robot, mat),

@@ -16,8 +16,16 @@ from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ConfigError
 from tuisim.base.source import PRELUDE_TEXTS
 from tuisim.engine.core.spec import EMPTY_MAT, RunSpec
-from tuisim.engine.core.tree import leaves
-from tuisim.engine.core.values import Choice, Flag, NamedNumber, Value, Whole, WrongValue, values_of
+from tuisim.engine.core.tree import list_leaves
+from tuisim.engine.core.values import (
+    Choice,
+    Flag,
+    NamedNumber,
+    Value,
+    Whole,
+    WrongValue,
+    list_values,
+)
 from tuisim.engine.presses import Presses
 from tuisim.terminal.picture_options import AUTO, CELLS, PIXELS
 
@@ -34,7 +42,7 @@ def parse(value: Value, text: str, key: str) -> Any:
         ConfigError: it is not allowed; `key` is to blame.
     """
     try:
-        return value.from_text(text)
+        return value.parse_text(text)
     except WrongValue as error:
         raise _blame(error, key) from None
 
@@ -66,7 +74,7 @@ class Name(Value):
     def metavar(self) -> str:
         return self._metavar
 
-    def from_data(self, data: object) -> str:
+    def parse_data(self, data: object) -> str:
         if not isinstance(data, str):
             raise self.wrong(data)
         if not data.strip():
@@ -88,13 +96,13 @@ def _default(path: str) -> Any:
     *outer, name = path.split(".")
     kind: Any = RunSpec
     for part in outer:
-        inner: Any = values_of(kind)[part]
+        inner: Any = list_values(kind)[part]
         kind = inner.of
     return kind.__dataclass_fields__[name].default
 
 
 def _run_values() -> Iterator[tuple[str, RunValue]]:
-    values = dict(leaves(RunSpec))
+    values = dict(list_leaves(RunSpec))
     for table in ("world.", "robot.", "seed"):
         for path, value in values.items():
             if path.startswith(table) and (
@@ -166,7 +174,7 @@ class Option:
             ConfigError: it is wrong; `key` is to blame.
         """
         try:
-            return self.value.from_data(value)
+            return self.value.parse_data(value)
         except WrongValue as error:
             raise _blame(error, key) from None
 

@@ -6,7 +6,7 @@ from typing import Any
 
 from tuisim.base.errors import ProfileError
 from tuisim.engine.core.profile import MAX_COST_MS, MS, PROFILES, ProfileSpec
-from tuisim.engine.core.values import Number, values_of
+from tuisim.engine.core.values import Number, list_values
 from tuisim.engine.files import (
     Location,
     one_of,
@@ -45,7 +45,7 @@ def profile_from_table(
     Raises:
         ProfileError: a key or a value is wrong.
     """
-    values = values_of(ProfileSpec)
+    values = list_values(ProfileSpec)
     in_ms = {_in_ms(key): key for key in values if key.endswith(_NS)}
     listed = ("base", *(key for key in values if not key.endswith(_NS)), *in_ms)
     given = table(data, at, listed, unlisted=frozenset(in_ms.values()))
@@ -75,7 +75,7 @@ def _in_ms(key: str) -> str:
 def profile_lines(spec: ProfileSpec, parent: str = "") -> list[str]:
     """Return a profile as TOML lines, with every value: the table `parent`, or a file of its own."""
     values = {}
-    for key in values_of(ProfileSpec):
+    for key in list_values(ProfileSpec):
         value = getattr(spec, key)
         cost_ms = value / MS if key.endswith(_NS) else 0.0
         if cost_ms and round(cost_ms * MS) == value:

@@ -31,7 +31,7 @@ from tuisim.engine.core.spec import (
     TouchSpec,
     UltrasonicSpec,
 )
-from tuisim.engine.core.values import Part, Value, shown, values_of
+from tuisim.engine.core.values import Part, Value, list_values, quote
 from tuisim.engine.files import Location, Scalar
 
 
@@ -92,7 +92,7 @@ ROBOTS: Mapping[str, RobotSpec] = {
 """Every robot by name."""
 
 DEFAULT_ROBOT = "Default_Robot"
-_VALUES = values_of(RobotSpec)
+_VALUES = list_values(RobotSpec)
 _BODY_KEYS = tuple(
     key
     for key, value in _VALUES.items()
@@ -113,7 +113,7 @@ _TABLES: Mapping[str, type] = {
 
 def values_in(table: str) -> Mapping[str, Value]:
     """Return the values that stand in a table of a robot file, by key."""
-    return values_of(_TABLES[table.partition(".")[0]])
+    return list_values(_TABLES[table.partition(".")[0]])
 
 
 _HEAD = (
@@ -221,14 +221,14 @@ def _single(data: object, mount: Mount, base: RobotSpec, at: Location) -> Sensor
 
 def _named(data: object, mount: Mount, base: RobotSpec, at: Location) -> tuple[SensorSpec, ...]:
     """Return the base's sensors with the table's changes, and those that the table adds; `false` removes one."""
-    found = {sensor.name: sensor for sensor in base.sensors_in(mount)}
+    found = {sensor.name: sensor for sensor in base.list_sensors(mount)}
     names = files.table(data, at)
     for name, sensor in names.items():
         place = at.at(name)
         if sensor is False:
             found.pop(name, None)
         elif not SENSOR_NAME.fullmatch(name):
-            wrong = at.at(shown(name)[1:-1]).wrong
+            wrong = at.at(quote(name)[1:-1]).wrong
             raise wrong(
                 "is not a valid sensor name", "letters, digits and _, a letter first, at most 31"
             )
@@ -238,7 +238,7 @@ def _named(data: object, mount: Mount, base: RobotSpec, at: Location) -> tuple[S
             if isinstance(sensor, dict):
                 # No port is free by itself.
                 files.required(
-                    files.table(sensor, place, [*values_of(mount.spec)][1:]), "port", place
+                    files.table(sensor, place, [*list_values(mount.spec)][1:]), "port", place
                 )
             found[name] = files.read_part(sensor, mount.spec, place, name=name)
     # A file that names all of them also sets their order.
@@ -325,7 +325,7 @@ def robot_from_json(data: object, name: str, at: Location) -> RobotChoice:
 def _json_noise(robot: Mapping[str, object], key: str, kind: str, at: Location) -> int | None:
     value = robot.get(key)
     return (
-        None if value is None else files.read_value(value, values_of(NoiseSpec)[kind], at.at(key))
+        None if value is None else files.read_value(value, list_values(NoiseSpec)[kind], at.at(key))
     )
 
 
@@ -343,7 +343,7 @@ def _json_part(
 
 def shown_keys(keys: Sequence[str]) -> str:
     """Return a short list of keys for a message, whatever their number and length."""
-    names = [shown(key)[1:-1] for key in keys[:_KEYS_SHOWN]]
+    names = [quote(key)[1:-1] for key in keys[:_KEYS_SHOWN]]
     return ", ".join(names) + (
         f" and {len(keys) - _KEYS_SHOWN} more" if len(keys) > _KEYS_SHOWN else ""
     )
@@ -400,15 +400,15 @@ def robot_lines(
             *(f"{files.toml_key(name)} = false" for name in gone),
         ]
     for mount in MOUNTS:
-        if mount.standard and not mount.many and not spec.sensors_in(mount):
+        if mount.standard and not mount.many and not spec.list_sensors(mount):
             # Keys of the robot itself must precede its first table.
             lines.insert(1 if parent else 0, f"{mount.key} = false")
     for mount in MOUNTS:
-        for sensor in spec.sensors_in(mount):
+        for sensor in spec.list_sensors(mount):
             place = f"{mount.key}.{files.toml_key(sensor.name)}" if mount.many else mount.key
             keys = [
                 key
-                for key in values_of(mount.spec)
+                for key in list_values(mount.spec)
                 if key != "name" and not _is_no_presser(sensor, key)
             ]
             lines += ["", f"[{under}{place}]", *files.value_lines(sensor, keys)]

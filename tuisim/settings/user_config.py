@@ -17,7 +17,7 @@ from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ConfigError, nearest, see_page
 from tuisim.base.folders import config_folder, user_path
 from tuisim.base.regular_file import read_regular
-from tuisim.engine.core.values import Value, shown
+from tuisim.engine.core.values import Value, quote
 from tuisim.engine.files import (
     Location,
     Scalar,
@@ -155,7 +155,7 @@ class UserConfig:
     def in_effect(self, *above: Mapping[str, Any]) -> list[str]:
         """Return the simulation's settings that no layer above overrides, each with its value."""
         return [
-            f"{one.name} = {shown(self.written[path])}"
+            f"{one.name} = {quote(self.written[path])}"
             for path, one in SETTINGS.items()
             if one.section is Section.SIMULATION
             and path in self.written
@@ -270,7 +270,7 @@ def _keys(value: object, at: Location) -> tuple[str, ...]:
         or not all(isinstance(key, str) and key for key in listed)
     ):
         raise at.wrong(
-            f"must be a key or a list of keys, got {shown(value)}",
+            f"must be a key or a list of keys, got {quote(value)}",
             'such as "x" or ["ctrl+x", "f5"]',
         )
     return tuple(listed)

@@ -18,7 +18,7 @@ from tuisim.engine.core import tree
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.profile import ProfileSpec
 from tuisim.engine.core.spec import START_VALUES, BeaconSpec, RemotePress, RunSpec
-from tuisim.engine.core.values import shown, values_of
+from tuisim.engine.core.values import list_values, quote
 from tuisim.engine.files import Location, Scalar
 from tuisim.engine.mats import find_mat, spec_name
 from tuisim.engine.obstacles import load_obstacles, obstacle_lines, obstacles_from_list
@@ -252,7 +252,7 @@ def pose_from_table(data: object, at: Location) -> Pose:
 
 def _argument(word: object, at: Location) -> str:
     if not isinstance(word, str):
-        raise at.wrong(f"must be text, got {shown(word)}", 'in quotes, such as "5"')
+        raise at.wrong(f"must be text, got {quote(word)}", 'in quotes, such as "5"')
     if "\0" in word:
         raise at.wrong("must be text without null characters")
     return word
@@ -379,7 +379,7 @@ def world_lines(
     mat = settings["background"]
     top["background"] = _relative(mat, folder) if os.sep in mat else mat
     values = {
-        path: files.toml_form(one.value, tree.at(spec, one.spec_path))
+        path: files.toml_form(one.value, tree.get_value(spec, one.spec_path))
         for path, one in RUN_VALUES.items()
     }
     # What came later is left out at its default, so that files do not change.
@@ -417,9 +417,9 @@ def world_lines(
 
 
 def _infrared_lines(beacon: BeaconSpec | None, remote: Iterable[RemotePress]) -> list[str]:
-    lines = ["", "[beacon]", *files.value_lines(beacon, values_of(BeaconSpec))] if beacon else []
+    lines = ["", "[beacon]", *files.value_lines(beacon, list_values(BeaconSpec))] if beacon else []
     for press in remote:
-        lines += ["", "[[remote]]", *files.value_lines(press, values_of(RemotePress))]
+        lines += ["", "[[remote]]", *files.value_lines(press, list_values(RemotePress))]
     return lines
 
 

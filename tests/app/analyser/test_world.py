@@ -13,7 +13,7 @@ from tuisim.app.analyser.world import has_poses, world_at
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.profile import ROBOLAB
 from tuisim.engine.core.spec import RobotSpec, RunSpec, WorldSpec
-from tuisim.engine.core.tree import to_plain
+from tuisim.engine.core.tree import dump_run
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.engine.runs.store import RunStore
 from tuisim.logs.columns import guess_columns
@@ -47,9 +47,9 @@ def run(home: Path) -> StoredRun:
 @pytest.mark.parametrize(
     "log, has",
     [
-        (opened({"runs": [to_plain(SPEC)]}, **POSES), True),
-        (opened({"runs": [{**to_plain(SPEC), "run": 1, "program": "p.py"}]}, **POSES), True),
-        (opened({"runs": [to_plain(SPEC)]}, x_mm=POSES["x_mm"]), False),
+        (opened({"runs": [dump_run(SPEC)]}, **POSES), True),
+        (opened({"runs": [{**dump_run(SPEC), "run": 1, "program": "p.py"}]}, **POSES), True),
+        (opened({"runs": [dump_run(SPEC)]}, x_mm=POSES["x_mm"]), False),
         (opened({"runs": [{"robot": 3}]}, **POSES), False),
         (opened({}, **POSES), False),
     ],
@@ -61,7 +61,7 @@ def test_a_file_has_a_world_if_it_says_which(log: OpenedLog, has: bool) -> None:
 
 
 def test_the_pose_of_a_file_is_that_of_its_row(home: Path) -> None:
-    world = world_at(opened({"runs": [to_plain(SPEC)]}, **POSES), 0)
+    world = world_at(opened({"runs": [dump_run(SPEC)]}, **POSES), 0)
     assert world is not None
     assert [world.at(float(row), row).instant.pose for row in (0, 1)] == [
         Pose(1, 3, 5),

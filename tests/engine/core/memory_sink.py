@@ -10,7 +10,7 @@ class MemorySink:
         self.count = 0
         self.buffer = bytearray(64 * 64)
 
-    def room(self, records: int) -> bytearray:
+    def reserve(self, records: int) -> bytearray:
         need = 64 * (1 + self.count + records)
         if need > len(self.buffer):
             self.buffer += bytes(2 * need)

@@ -28,7 +28,7 @@ from tuisim.engine.core.profile import NBEV3DEVSIM, NS_PER_S
 from tuisim.engine.core.simulation import Simulation
 from tuisim.engine.core.spec import RobotSpec, RunSpec, WorldSpec
 from tuisim.engine.core.tick_record import TICK_RECORD
-from tuisim.engine.core.tree import from_plain, to_plain
+from tuisim.engine.core.tree import dump_run, load_run
 from tuisim.engine.mat_cache import FieldFiles, open_field
 from tuisim.engine.runs.readings import ReadingsWriter
 from tuisim.engine.runs.run_folder import field_files
@@ -99,9 +99,9 @@ class Watched(BrowserMotor):
         self.registers += [self.speed_dps] * ticks
         return super().glide_evenly(ticks)
 
-    def _registers(self, ticks: int) -> list[float]:
+    def _advance_registers(self, ticks: int) -> list[float]:
         self.begin()
-        ahead = super()._registers(ticks)
+        ahead = super()._advance_registers(ticks)
         self.registers += ahead
         return ahead
 
@@ -193,7 +193,7 @@ def courses(jobs: Iterable[Job], folder: Path) -> list[Course]:
         {
             "text": job.text,
             "prelude": job.prelude,
-            "spec": to_plain(RunSpec(job.robot, job.world, NBEV3DEVSIM)),
+            "spec": dump_run(RunSpec(job.robot, job.world, NBEV3DEVSIM)),
         }
         for job in jobs
     ]
@@ -209,7 +209,7 @@ def main(folder: Path) -> None:
     """Run the programs of a folder, each in a fork."""
     vars(motion)["BrowserMotor"] = Watched
     for at, job in enumerate(json.loads((folder / "jobs.json").read_text())):
-        spec = from_plain(job["spec"])
+        spec = load_run(job["spec"])
         files = field_files(spec)
         child = os.fork()
         if not child:

@@ -7,10 +7,10 @@ from itertools import pairwise
 import pytest
 
 from tests.engine.core.memory_sink import MemorySink
-from tuisim.engine.core.brick_motor import BrickMotor, ramped
+from tuisim.engine.core.brick_motor import BrickMotor, ramp_speed
 from tuisim.engine.core.motors import POSITION, STOPPED
 from tuisim.engine.core.profile import PROFILES
-from tuisim.engine.core.simulation import Simulation, simulation_of
+from tuisim.engine.core.simulation import Simulation, build_simulation
 from tuisim.engine.core.spec import MotorSpec, RobotSpec, RunSpec, WorldSpec
 
 
@@ -28,12 +28,12 @@ from tuisim.engine.core.spec import MotorSpec, RobotSpec, RunSpec, WorldSpec
 def test_the_speed_changes_by_a_step_and_not_beyond_its_target(
     speed: float, target: float, step: float, after: float
 ) -> None:
-    assert ramped(speed, target, step) == after
+    assert ramp_speed(speed, target, step) == after
 
 
 def arm(weight: float = 0.0) -> tuple[Simulation, BrickMotor]:
     robot = RobotSpec(extra_motors=(MotorSpec("outA"),), weight=weight)
-    sim = simulation_of(RunSpec(robot, WorldSpec(), PROFILES["robolab"]), MemorySink())
+    sim = build_simulation(RunSpec(robot, WorldSpec(), PROFILES["robolab"]), MemorySink())
     motor = sim.others[0]
     assert isinstance(motor, BrickMotor)
     return sim, motor
@@ -54,7 +54,7 @@ def test_a_move_backwards_ends_at_its_goal() -> None:
 def test_a_motor_whose_count_is_set_beyond_its_goal_does_not_jump(backwards: bool) -> None:
     sign = -1.0 if backwards else 1.0
     robot = RobotSpec()
-    sim = simulation_of(RunSpec(robot, WorldSpec(), PROFILES["robolab"]), MemorySink())
+    sim = build_simulation(RunSpec(robot, WorldSpec(), PROFILES["robolab"]), MemorySink())
     for motor in sim.motors:
         assert isinstance(motor, BrickMotor)
         motor.run_to(sign * 360.0, 100.0, backwards)
@@ -107,7 +107,7 @@ def test_a_wheel_that_is_held_back_has_not_reached_its_goal() -> None:
 def test_wheels_end_their_moves_alike_however_ticks_are_divided(approach_dps2: float) -> None:
     ends = []
     for step in (1, 7, 400):
-        sim = simulation_of(RunSpec(RobotSpec(), WorldSpec(), PROFILES["robolab"]), MemorySink())
+        sim = build_simulation(RunSpec(RobotSpec(), WorldSpec(), PROFILES["robolab"]), MemorySink())
         for motor, goal_deg in ((sim.left, -300.0), (sim.right, 333.0)):
             assert isinstance(motor, BrickMotor)
             motor.run_to(goal_deg, 400.0, backwards=goal_deg < 0)

@@ -13,7 +13,7 @@ from tests.engine.core.memory_sink import MemorySink
 from tests.engine.core.motors import commanded
 from tuisim.engine.core.collision import Solids
 from tuisim.engine.core.geometry import Pose, world_point
-from tuisim.engine.core.outline import outline_of
+from tuisim.engine.core.outline import build_outline
 from tuisim.engine.core.profile import PROFILES
 from tuisim.engine.core.simulation import Simulation
 from tuisim.engine.core.spec import (
@@ -37,7 +37,7 @@ def simulation(
 
 def overlap_mm(sim: Simulation) -> float:
     """How deep the outline is in anything solid, by projecting on every edge's normal (independent of the code)."""
-    corners = [world_point(sim.pose, x, y) for x, y in outline_of(sim.spec.robot).corners_mm]
+    corners = [world_point(sim.pose, x, y) for x, y in build_outline(sim.spec.robot).corners_mm]
     deepest = max(
         max(-x, x - FIELD_WIDTH_MM, -y, y - FIELD_HEIGHT_MM) if sim.spec.world.walls else -math.inf
         for x, y in corners
@@ -62,7 +62,7 @@ def overlap_mm(sim: Simulation) -> float:
 
 def test_a_turn_beside_a_wall_pushes_the_robot_off_it() -> None:
     robot = RobotSpec()
-    solids, corners = Solids(WorldSpec(solid=True), robot), outline_of(robot).corners_mm
+    solids, corners = Solids(WorldSpec(solid=True), robot), build_outline(robot).corners_mm
     apart_mm = 1.0 - min(y for _, y in corners)
     deep_mm = -min(world_point(Pose(0, apart_mm, 20), *corner)[1] for corner in corners)
     assert deep_mm > 0
@@ -74,7 +74,7 @@ def test_a_turn_beside_a_wall_pushes_the_robot_off_it() -> None:
         (0, -1): (1000.0, FIELD_HEIGHT_MM - apart_mm, 180.0),
     }
     for (x, y), pose in poses.items():
-        part, aside_mm = solids.leeway(pose, 0.0, 20.0)
+        part, aside_mm = solids.find_leeway(pose, 0.0, 20.0)
         assert part == 1.0
         assert aside_mm == pytest.approx((deep_mm * x, deep_mm * y), abs=0.001)
 

@@ -12,8 +12,8 @@ from tuisim.analysis.events import events_of, thresholds_of
 from tuisim.analysis.model import Model, derive
 from tuisim.analysis.source import LogRequest, opening
 from tuisim.cli import run_command
-from tuisim.engine.core.columns import column_name
-from tuisim.engine.core.sensors import columns_of
+from tuisim.engine.core.columns import find_column_name
+from tuisim.engine.core.sensors import list_columns
 from tuisim.engine.runs.frames import column_values
 from tuisim.engine.runs.run_folder import StoredRun, open_mat
 from tuisim.engine.runs.store import RunStore
@@ -23,7 +23,7 @@ from tuisim.settings.options import Settings
 from tuisim.tasks.goals.judge import judge
 
 RUN = build_run_spec(Settings())
-TRACES = [column.name for column in columns_of(RUN) if column.is_traced]
+TRACES = [column.name for column in list_columns(RUN) if column.is_traced]
 PROGRAM = "tank_drive.on_for_rotations(30, 20, 1)\nx = 1\n"
 
 
@@ -158,4 +158,4 @@ def test_a_name_of_before_is_the_column_in_the_commands_for_logs(
     ],
 )
 def test_names_of_before_are_understood(text: str, name: str | None) -> None:
-    assert column_name(text, columns_of(RUN)) == name
+    assert find_column_name(text, list_columns(RUN)) == name

@@ -18,8 +18,8 @@ from tuisim.engine.core.conditions import (
     Edge,
     ValueCondition,
     ValueSource,
-    condition_in,
-    run_condition_in,
+    parse_condition,
+    parse_run_condition,
 )
 from tuisim.engine.core.profile import PROFILES
 from tuisim.engine.core.spec import RobotSpec
@@ -36,7 +36,7 @@ VALUES = (40.0, 50.0, 60.0)
 def by_breakpoint(condition: str) -> list[float]:
     rule = parse_break(f"sample {condition}").rule
     assert isinstance(rule, ValueCondition)
-    return [value for value in VALUES if Edge(rule).meets(value)]
+    return [value for value in VALUES if Edge(rule).update(value)]
 
 
 class OneRow:
@@ -107,10 +107,10 @@ def test_a_comparison_means_the_same_everywhere(
 @pytest.mark.parametrize("condition", ["x < 2", "x >= 2", "x != 1", "x changes"])
 def test_an_edge_is_found_in_a_recording_where_it_was_met_during_the_run(condition: str) -> None:
     values = np.random.default_rng(2).integers(0, 4, 300).astype(float)
-    found = condition_in(condition)
+    found = parse_condition(condition)
     assert found is not None
     edge = Edge(found)
-    met = [at for at, value in enumerate(values.tolist()) if edge.meets(value)]
+    met = [at for at, value in enumerate(values.tolist()) if edge.update(value)]
     assert begins(found, held(found, values)).tolist() == met
     assert 50 < len(met) < 250
 
@@ -130,7 +130,7 @@ RUN_CONDITIONS = {
 
 @pytest.mark.parametrize("text, condition", RUN_CONDITIONS.items(), ids=RUN_CONDITIONS)
 def test_conditions_on_a_run(text: str, condition: ValueCondition | None) -> None:
-    assert run_condition_in(text) == condition
+    assert parse_run_condition(text) == condition
 
 
 EVENTS = {

@@ -13,10 +13,10 @@ from tests.engine.core.memory_sink import MemorySink
 from tests.engine.core.motors import commanded
 from tuisim.engine.core.drift import (
     JERK_MM,
-    bright_side,
-    drawn_errors,
+    compute_light_share,
+    draw_bright_side,
+    draw_errors,
     find_drift,
-    light_share,
 )
 from tuisim.engine.core.drift_spec import NO_DRIFT, DriftSpec
 from tuisim.engine.core.geometry import Pose
@@ -31,9 +31,9 @@ from tuisim.engine.core.spec import (
     RunSpec,
     WorldSpec,
 )
-from tuisim.engine.core.values import values_of
+from tuisim.engine.core.values import list_values
 
-TYPICAL: DriftSpec = values_of(WorldSpec)["drift"].from_text("typical")
+TYPICAL: DriftSpec = list_values(WorldSpec)["drift"].parse_text("typical")
 ROBOT = RobotSpec(weight=0.0)
 SIDE_MM = 1000.0
 MM_PER_DEG = pi * ROBOT.wheel_diameter_mm / 360
@@ -57,7 +57,7 @@ def test_sensors_differ_only_where_bricks_were_measured(name: str) -> None:
     sizes = drift.gyro_scale_pc, drift.echo_bias_mm, drift.light_gain_pc
     assert all(sizes) if spec.profile.motor_law.is_measured else sizes == (0.0, 0.0, 0.0)
     assert (drift.wheel_pc, drift.gyro_dps, drift.light_pc) == (0.5, 0.05, 10.0)
-    assert find_drift(spec) == Simulation(spec, MemorySink()).instant().drift
+    assert find_drift(spec) == Simulation(spec, MemorySink()).build_instant().drift
 
 
 def move(sim: Simulation, left_deg: float, right_deg: float, speed_dps: float = 400.0) -> None:
@@ -96,7 +96,7 @@ def test_encoders_do_not_notice_drift(profile: str) -> None:
             else:
                 commanded(motor).run(speed)
         sim.advance(150)
-        now = sim.instant()
+        now = sim.build_instant()
         seen.append(
             (
                 now.left_position_deg,
@@ -126,12 +126,12 @@ def test_the_same_however_ticks_are_divided(noise: int, solid: bool) -> None:
 
 
 def test_a_seed_draws_the_same_errors_and_another_one_others() -> None:
-    assert drawn_errors(TYPICAL, 1) == drawn_errors(replace(TYPICAL), 1) != drawn_errors(TYPICAL, 2)
+    assert draw_errors(TYPICAL, 1) == draw_errors(replace(TYPICAL), 1) != draw_errors(TYPICAL, 2)
 
 
 def test_errors_of_wheels_have_the_spread_that_is_asked_for() -> None:
     drift = DriftSpec(wheel_pc=1.0, spacing_pc=2.0, gyro_dps=0.1)
-    drawn = [drawn_errors(drift, seed) for seed in range(2000)]
+    drawn = [draw_errors(drift, seed) for seed in range(2000)]
     for values, spread in (
         ([one.left - 1 for one in drawn], 0.01),
         ([one.right - 1 for one in drawn], 0.01),
@@ -145,7 +145,7 @@ def test_errors_of_wheels_have_the_spread_that_is_asked_for() -> None:
 def test_wrong_sizes_turn_a_square_as_far_as_the_closed_form_says() -> None:
     for seed in range(5):
         drift = DriftSpec(wheel_pc=1.0, spacing_pc=1.0)
-        drawn = drawn_errors(drift, seed)
+        drawn = draw_errors(drift, seed)
         error = drive_square(simulation(drift, seed))
         sides = 4 * SIDE_MM * (drawn.right - drawn.left) / (ROBOT.wheel_spacing_mm * drawn.spacing)
         turns = 2 * pi * ((drawn.left + drawn.right) / 2 / drawn.spacing - 1)
@@ -210,20 +210,22 @@ def test_the_gyro_drifts_while_the_robot_stands_and_begins_anew_at_its_reset() -
     drift = DriftSpec(gyro_dps=0.5)
     sim = simulation(drift, 1)
     sim.advance(20_000)
-    expected = drawn_errors(drift, 1).gyro_dps * 200
+    expected = draw_errors(drift, 1).gyro_dps * 200
     assert abs(expected) > 5
-    assert sim.instant().gyro_deg == pytest.approx(expected, abs=0.51)
+    assert sim.build_instant().gyro_deg == pytest.approx(expected, abs=0.51)
     sim.reset_gyro()
-    assert sim.instant().gyro_deg == 0
+    assert sim.build_instant().gyro_deg == 0
 
 
 @for_each(seed=range(4))
 def test_light_falls_from_one_side_of_the_field_to_the_other(seed: int) -> None:
     drift = DriftSpec(light_pc=20.0)
     corners = [
-        light_share(x, y, drift, seed) for x in (0, FIELD_WIDTH_MM) for y in (0, FIELD_HEIGHT_MM)
+        compute_light_share(x, y, drift, seed)
+        for x in (0, FIELD_WIDTH_MM)
+        for y in (0, FIELD_HEIGHT_MM)
     ]
     assert max(corners) == pytest.approx(1.0)
     assert min(corners) == pytest.approx(0.8)
-    across, up = bright_side(drift, seed)
-    assert light_share(1181 + 100 * across, 571.5 + 100 * up, drift, seed) > 0.9
+    across, up = draw_bright_side(drift, seed)
+    assert compute_light_share(1181 + 100 * across, 571.5 + 100 * up, drift, seed) > 0.9

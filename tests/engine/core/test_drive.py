@@ -144,7 +144,7 @@ def test_a_gear_divides_the_turns_of_the_motor(profile: str, gear_ratio: float) 
                 sim.pose.x_mm,
                 sim.pose.y_mm,
                 sim.pose.heading_deg,
-                sim.instant().turn_rate_dps,
+                sim.build_instant().turn_rate_dps,
             )
         )
     assert ends[1] == pytest.approx(ends[0])

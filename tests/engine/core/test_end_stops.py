@@ -11,7 +11,7 @@ from tests.engine.core.motors import COMMANDED, commanded
 from tuisim.engine.core.end_stops import NEAR_DEG, end_flag
 from tuisim.engine.core.motors import POSITION, STOPPED
 from tuisim.engine.core.profile import PROFILES
-from tuisim.engine.core.simulation import Simulation, simulation_of
+from tuisim.engine.core.simulation import Simulation, build_simulation
 from tuisim.engine.core.spec import MotorSpec, RobotSpec, RunSpec, WorldSpec
 from tuisim.engine.core.tick_record import END_FLAGS, TICK_RECORD
 
@@ -22,7 +22,7 @@ LOW, HIGH = (end_flag(ROBOT, "outA", end) for end in ("low", "high"))
 
 
 def arm_of(robot: RobotSpec = ROBOT, profile: str = "robolab") -> Simulation:
-    return simulation_of(RunSpec(robot, WorldSpec(), PROFILES[profile]), MemorySink())
+    return build_simulation(RunSpec(robot, WorldSpec(), PROFILES[profile]), MemorySink())
 
 
 @pytest.mark.parametrize("profile", COMMANDED)
@@ -39,7 +39,7 @@ def test_a_motor_stops_at_its_end(profile: str, dps: float, end_deg: float, flag
     sim.advance(sim.spec.profile.tick_hz * 2)
     counted_deg = end_deg * (2 if profile == "nbev3devsim" else 1)
     assert arm.position_deg == pytest.approx(counted_deg, abs=1e-9)
-    assert (arm.mode != STOPPED, sim.instant().press_flags) == (True, flag)
+    assert (arm.mode != STOPPED, sim.build_instant().press_flags) == (True, flag)
 
 
 def test_it_is_stalled_after_a_tenth_of_a_second() -> None:
@@ -89,7 +89,7 @@ def test_a_motor_near_its_end_is_at_it() -> None:
     for goal_deg in (-90 + NEAR_DEG + 1, -90 + NEAR_DEG - 1, -90 + NEAR_DEG + 1):
         commanded(arm).run_to(goal_deg, 100.0, backwards=goal_deg < arm.position_deg)
         sim.advance(200)
-        found.append(sim.instant().press_flags)
+        found.append(sim.build_instant().press_flags)
     assert found == [0, LOW, 0]
 
 
@@ -99,7 +99,7 @@ def test_a_motor_may_begin_at_its_end() -> None:
     sink = sim._sink
     assert isinstance(sink, MemorySink)
     flags = [record[-2] for record in TICK_RECORD.iter_unpack(sink.records())]
-    assert (flags[0] & END_FLAGS, sim.instant().press_flags) == (
+    assert (flags[0] & END_FLAGS, sim.build_instant().press_flags) == (
         end_flag(robot, "outA", "low"),
     ) * 2
 
@@ -115,7 +115,7 @@ def test_the_record_of_each_tick_says_which_end_a_motor_is_at(chunk: int) -> Non
         if at >= 100 > at - chunk:
             commanded(sim.others[1]).run(200.0)
         sim.advance(chunk)
-        told.append(sim.instant().press_flags)
+        told.append(sim.build_instant().press_flags)
     flags = [record[-2] & END_FLAGS for record in TICK_RECORD.iter_unpack(sink.records())]
     assert flags[chunk::chunk] == told
     assert flags.count(LOW) == sum(flags) // LOW == 58

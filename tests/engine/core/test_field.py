@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tuisim.engine.core.css_colors import Rgb
-from tuisim.engine.core.field import Field, disc_mask, find_floor_rgb
+from tuisim.engine.core.field import Field, build_disc_mask, find_floor_rgb
 
 WIDTH, HEIGHT = 9, 8
 
@@ -21,7 +21,7 @@ def pixel(col: int, row: int, around: Rgb = BLACK) -> Rgb:
 
 def disc_at(diameter: int, col: int, row: int, around: Rgb = BLACK) -> list[Rgb]:
     """The pixels of a disc."""
-    mask = disc_mask(diameter)
+    mask = build_disc_mask(diameter)
     return [
         pixel(col + right, row + down, around)
         for down in range(diameter)
@@ -48,10 +48,10 @@ def test_what_is_off_the_mat_is_black_or_the_floor(diameter: int, floor_rgb: Rgb
             box = [
                 pixel(col + x, row + y, around) for y in range(diameter) for x in range(diameter)
             ]
-            assert field.box(diameter, col, row) == bytes(sum(box, ()))
+            assert field.read_box(diameter, col, row) == bytes(sum(box, ()))
             disc = disc_at(diameter, col, row, around)
-            assert field.disc(diameter, col, row) == bytes(sum(disc, ()))
-            assert field.disc_sums(diameter, col, row) == tuple(map(sum, zip(*disc, strict=True)))
+            assert field.read_disc(diameter, col, row) == bytes(sum(disc, ()))
+            assert field.sum_disc(diameter, col, row) == tuple(map(sum, zip(*disc, strict=True)))
             assert field.pixel(col, row) == pixel(col, row, around)
 
 

@@ -16,7 +16,7 @@ from tuisim.engine.core.motor_columns import (
     name_motors,
 )
 from tuisim.engine.core.profile import PROFILES
-from tuisim.engine.core.sensors import column_names, named_column
+from tuisim.engine.core.sensors import find_named_column, list_column_names
 from tuisim.engine.core.spec import MotorSpec, RobotSpec, RunSpec, WorldSpec
 
 RUN = RunSpec(RobotSpec(extra_motors=(MotorSpec("outA"),)), WorldSpec(), PROFILES["ev3"])
@@ -58,20 +58,22 @@ def test_what_a_breakpoint_sees_is_what_is_recorded() -> None:
     size = MOTOR_RECORD.size * 3
     end = 64 + size * lab.sink.count
     assert lab.sim.motor_values == tuple(MOTOR_RECORD.iter_unpack(data[end - size : end]))
-    assert lab.sim.instant(with_motors=True).motors == lab.sim.motor_values
-    assert lab.sim.instant().motors == ()
+    assert lab.sim.build_instant(with_motors=True).motors == lab.sim.motor_values
+    assert lab.sim.build_instant().motors == ()
 
 
 def test_a_run_has_columns_of_its_motors_only_where_they_have_drivers() -> None:
     assert name_motors(RUN.robot) == ("left", "right", "motor_a")
-    names = column_names(RUN)
+    names = list_column_names(RUN)
     assert {"left_asked_dps", "right_measured_dps", "motor_a_duty_pc", "left_state"} < {*names}
     assert {f"motor_a_{state}" for state in STATES} < {*names}
     browser = replace(RUN, profile=PROFILES["robolab"])
-    assert not {name for name in column_names(browser) if name.endswith(("_duty_pc", "_state"))}
-    assert named_column("left duty pc", RUN) == "left_duty_pc"
+    assert not {
+        name for name in list_column_names(browser) if name.endswith(("_duty_pc", "_state"))
+    }
+    assert find_named_column("left duty pc", RUN) == "left_duty_pc"
     with pytest.raises(ConfigError) as refused:
-        named_column("left_holding", browser)
+        find_named_column("left_holding", browser)
     assert refused.value.hint == "only profile ev3 has it"
 
 

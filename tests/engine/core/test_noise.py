@@ -8,7 +8,13 @@ from math import sqrt
 
 import pytest
 
-from tuisim.engine.core.noise import clamping, noisy_channel, noisy_sums, reading_noise, stream
+from tuisim.engine.core.noise import (
+    add_noise_to_channel,
+    add_noise_to_sums,
+    compute_clamping,
+    draw_reading_noise,
+    generate_bytes,
+)
 
 COUNT = 305
 """Pixels of a disc of 20 mm."""
@@ -37,7 +43,9 @@ def drawn(disc: bytes, level: int, count: int) -> Iterator[tuple[float, ...]]:
     for tick in range(count):
         yield tuple(
             one / COUNT
-            for one in noisy_sums(lambda: disc, COUNT, sums, level, reading_noise(7, tick, "left"))
+            for one in add_noise_to_sums(
+                lambda: disc, COUNT, sums, level, draw_reading_noise(7, tick, "left")
+            )
         )
 
 
@@ -97,7 +105,10 @@ def test_readings_are_distributed_as_means_of_pixels(kind: str) -> None:
 
 @pytest.mark.parametrize("level", [1, 10, 128])
 def test_clamping_moves_a_value_as_its_errors_do(level: int) -> None:
-    law, errors = clamping(level), [round(level * (2 * byte / 255 - 1)) for byte in range(256)]
+    law, errors = (
+        compute_clamping(level),
+        [round(level * (2 * byte / 255 - 1)) for byte in range(256)],
+    )
     for value in range(256):
         mean, variance = moments([float(min(max(value + error, 0), 255)) for error in errors])
         assert (value + law.shift[value], law.variance[value]) == pytest.approx(
@@ -111,8 +122,12 @@ def test_pixels_have_the_mean_that_is_read(kind: str) -> None:
     channel = disc[0::3]
     sums = sum(channel), sum(channel), sum(channel)
     for tick in range(60):
-        total = noisy_sums(lambda: disc, COUNT, sums, level, reading_noise(3, tick, "right"))[0]
-        pixels = noisy_channel(channel, total, level, stream(3, tick, "right", COUNT))
+        total = add_noise_to_sums(
+            lambda: disc, COUNT, sums, level, draw_reading_noise(3, tick, "right")
+        )[0]
+        pixels = add_noise_to_channel(
+            channel, total, level, generate_bytes(3, tick, "right", COUNT)
+        )
         assert sum(pixels) == total
         assert all(
             abs(pixel - clear) <= level for pixel, clear in zip(pixels, channel, strict=True)
@@ -122,11 +137,11 @@ def test_pixels_have_the_mean_that_is_read(kind: str) -> None:
 def test_each_number_moves_its_own_channel_upwards() -> None:
     disc, level = DISCS["grey, never clamped"]
     sums = sum(disc[0::3]), sum(disc[1::3]), sum(disc[2::3])
-    still = noisy_sums(lambda: disc, COUNT, sums, level, (0.0, 0.0, 0.0))
+    still = add_noise_to_sums(lambda: disc, COUNT, sums, level, (0.0, 0.0, 0.0))
     for channel in range(3):
         numbers = [0.0, 0.0, 0.0]
         numbers[channel] = 1.0
-        moved = noisy_sums(lambda: disc, COUNT, sums, level, (*numbers,))
+        moved = add_noise_to_sums(lambda: disc, COUNT, sums, level, (*numbers,))
         assert [new > old for new, old in zip(moved, still, strict=True)] == [
             number > 0 for number in numbers
         ]
@@ -134,5 +149,5 @@ def test_each_number_moves_its_own_channel_upwards() -> None:
 
 @pytest.mark.parametrize("other", [(2, 5, "left"), (1, 6, "left"), (1, 5, "right")])
 def test_noise_depends_on_seed_tick_and_sensor(other: tuple[int, int, str]) -> None:
-    read: Callable[..., tuple[float, ...]] = reading_noise
+    read: Callable[..., tuple[float, ...]] = draw_reading_noise
     assert read(1, 5, "left") == read(1, 5, "left") != read(*other)

@@ -13,7 +13,7 @@ from tuisim.engine.core.field import Field
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.pen_marks import PenMarks
 from tuisim.engine.core.profile import ROBOLAB
-from tuisim.engine.core.sensors.color import pixel_array, reading
+from tuisim.engine.core.sensors.color import measure_color, read_pixel_array
 from tuisim.engine.core.simulation import Simulation
 from tuisim.engine.core.spec import (
     FIELD_HEIGHT_MM,
@@ -47,7 +47,7 @@ def drawn(white: Field, pen: PenSpec, heading_deg: float = 0.0) -> tuple[Simulat
     commanded(sim.right).run(500.0)
     for _ in range(10):
         sim.advance(10)
-        marks.take_in(sim.records_since(marks.records))
+        marks.add_records(sim.read_records(marks.records))
     return sim, marks
 
 
@@ -58,11 +58,11 @@ def test_a_pen_draws_on_the_floor_around_a_mat(white: Field) -> None:
     record = (0, 0, -300.0, 500.0, 180.0, *[0] * 5, FLAG_PEN_DOWN, 0)
     on_floor, off = PenMarks(replace(white, floor_rgb=(250, 251, 252)), spec), PenMarks(white, spec)
     for marks in (on_floor, off):
-        marks.take_in([record])
+        marks.add_records([record])
     corner = -300 - 10, FIELD_HEIGHT_MM - 500 - 10
-    assert on_floor.field.disc_sums(20, *corner) == (0, 255 * 305, 0)
-    assert off.field.disc_sums(20, *corner) == (0, 0, 0)
-    assert on_floor.field_of_first(0).disc_sums(20, *corner) == (250 * 305, 251 * 305, 252 * 305)
+    assert on_floor.field.sum_disc(20, *corner) == (0, 255 * 305, 0)
+    assert off.field.sum_disc(20, *corner) == (0, 0, 0)
+    assert on_floor.field_of_first(0).sum_disc(20, *corner) == (250 * 305, 251 * 305, 252 * 305)
 
 
 @pytest.mark.parametrize("x_mm", [550.0, 467.0], ids=["on the line", "on its beginning"])
@@ -70,8 +70,8 @@ def test_sensors_see_the_line_and_arrays_agree(white: Field, x_mm: float) -> Non
     _, marks = drawn(white, PenSpec(color="#102030", width_mm=10.0, down=True))
     sensor = RobotSpec().color_sensors[0]
     over = Instant(0, Pose(x_mm, 480.0, 0.0))
-    seen = reading(sensor, over, marks.field)
-    box = pixel_array(sensor, over, marks.field)
+    seen = measure_color(sensor, over, marks.field)
+    box = read_pixel_array(sensor, over, marks.field)
     inside = [
         pixel
         for pixel in zip(box[::3], box[1::3], box[2::3], strict=True)
@@ -80,7 +80,7 @@ def test_sensors_see_the_line_and_arrays_agree(white: Field, x_mm: float) -> Non
     means = [sum(values) / 305 for values in zip(*inside, strict=True)]
     assert [seen.red, seen.green, seen.blue] == means
     assert seen.red < seen.green < seen.blue < 220
-    assert reading(sensor, over, white).red == 255
+    assert measure_color(sensor, over, white).red == 255
 
 
 def test_pen_up_draws_nothing(white: Field) -> None:
@@ -93,16 +93,16 @@ def test_a_lifted_robot_draws_no_line(white: Field) -> None:
     before = len(marks.field.marks)
     sim.place(Pose(1500.0, 900.0, 0.0))
     sim.actions += 1
-    sim.rewrite_record()
+    sim.update_record()
     sim.advance(1)
-    marks.take_in(sim.records_since(marks.records))
+    marks.add_records(sim.read_records(marks.records))
     assert len(marks.field.marks) - before < 100
 
 
 def test_taking_in_at_once_or_bit_by_bit_is_the_same(white: Field) -> None:
     sim, marks = drawn(white, PenSpec(down=True, x_mm=20.0, y_mm=-30.0))
     again = PenMarks(white, replace(sim.spec))
-    again.take_in(sim.records_since(0))
+    again.add_records(sim.read_records(0))
     assert again.field.marks == marks.field.marks
 
 

@@ -18,9 +18,9 @@ from tuisim.app.snapshot import RunPhase, Snapshot
 from tuisim.base.source import Program
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.profile import ROBOLAB
-from tuisim.engine.core.sensors import SENSORS, SensorKind, mounted_sensor
+from tuisim.engine.core.sensors import SENSORS, SensorKind, build_mounted_sensor
 from tuisim.engine.core.spec import MOUNTS, Mount, RobotSpec, RunSpec, SensorSpec, WorldSpec
-from tuisim.engine.core.tree import from_plain, to_plain
+from tuisim.engine.core.tree import dump_run, load_run
 from tuisim.engine.protocol import Resume
 from tuisim.engine.runs.frames import MOTION_COLUMNS, telemetry_frame
 from tuisim.engine.runs.handle import RunOptions, start_run
@@ -49,7 +49,7 @@ print('done')
 
 def sensor_of(mount: Mount) -> Any:
     """A sensor that may stand there, as it comes."""
-    usual = RobotSpec().sensors_in(mount)
+    usual = RobotSpec().list_sensors(mount)
     return usual[0] if usual else mount.spec()
 
 
@@ -77,7 +77,7 @@ def test_every_kind_has_a_place_on_the_robot_and_a_device() -> None:
 @each_mount
 def test_a_run_remembers_it(mount: Mount) -> None:
     run = run_of(robot_with(mount, sensor_of(mount)))
-    assert from_plain(json.loads(json.dumps(to_plain(run)))) == run
+    assert load_run(json.loads(json.dumps(dump_run(run)))) == run
 
 
 @each_mount
@@ -93,7 +93,7 @@ def test_a_robots_file_says_all_of_it_and_may_leave_it_out(mount: Mount, tmp_pat
     assert load_robot(str(tmp_path / "robot.toml")) == robot
     word = f"[{mount.key}]\n{sensor.name} = false" if mount.many else f"{mount.key} = false"
     (tmp_path / "less.toml").write_text(f"{word}\n")
-    left = load_robot(str(tmp_path / "less.toml")).sensors_in(mount)
+    left = load_robot(str(tmp_path / "less.toml")).list_sensors(mount)
     assert sensor.name not in [other.name for other in left]
 
 
@@ -107,7 +107,7 @@ def test_the_settings_have_a_field_for_each_of_its_numbers(mount: Mount) -> None
             assert edit is not None, field.name
         if edit is not None and field.type == "float":
             changed = edit.write(plan, str(getattr(sensor, field.name) + 1.0))
-            (after,) = changed.spec.robot.sensors_in(mount)
+            (after,) = changed.spec.robot.list_sensors(mount)
             assert getattr(after, field.name) == getattr(sensor, field.name) + 1.0
 
 
@@ -179,6 +179,6 @@ def test_the_panels_show_it(kind: SensorKind) -> None:
 
 def test_kinds_are_told_apart_by_their_specs() -> None:
     sensors = [sensor_of(mount) for mount in MOUNTS]
-    assert [mounted_sensor(sensor).kind.spec for sensor in sensors] == [
+    assert [build_mounted_sensor(sensor).kind.spec for sensor in sensors] == [
         mount.spec for mount in MOUNTS
     ]

@@ -11,8 +11,8 @@ from tuisim.engine.core.drift_spec import NO_DRIFT
 from tuisim.engine.core.field import Field
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.profile import PROFILES, ROBOLAB
-from tuisim.engine.core.sensors import readings
-from tuisim.engine.core.simulation import Simulation, simulation_of
+from tuisim.engine.core.sensors import measure_sensors
+from tuisim.engine.core.simulation import Simulation, build_simulation
 from tuisim.engine.core.spec import (
     BeaconSpec,
     InfraredSpec,
@@ -24,13 +24,13 @@ from tuisim.engine.core.spec import (
     TouchSpec,
     WorldSpec,
 )
-from tuisim.engine.core.values import values_of
+from tuisim.engine.core.values import list_values
 
 
 def test_no_gyro_change_when_the_robot_is_lifted() -> None:
     sim = Simulation(RunSpec(RobotSpec(), WorldSpec(), ROBOLAB), MemorySink())
     sim.place(Pose(10.0, 20.0, -90.0))
-    instant = sim.instant()
+    instant = sim.build_instant()
     assert instant.gyro_zero_deg - instant.pose.heading_deg == 0
 
 
@@ -41,7 +41,7 @@ def test_a_motor_stays_where_it_is_when_others_are_plugged_in(profile: str) -> N
         RobotSpec(extra_motors=tuple(MotorSpec(port) for port in plugged))
         for plugged in ((), ports[:1], ports, ports[::-1])
     ]
-    sim = simulation_of(RunSpec(robots[0], WorldSpec(), PROFILES[profile]), MemorySink())
+    sim = build_simulation(RunSpec(robots[0], WorldSpec(), PROFILES[profile]), MemorySink())
     sim.change_robot(robots[1])
     run(sim, sim.others[0], 300)
     sim.advance(50)
@@ -63,9 +63,9 @@ def test_a_robot_that_turns_on_the_spot_counts_whole_turns(profile: str) -> None
     run(sim, sim.left, -300)
     run(sim, sim.right, 300)
     sim.advance(100)
-    before = sim.instant()
+    before = sim.build_instant()
     sim.advance(1900)
-    after = sim.instant()
+    after = sim.build_instant()
     turned_deg = before.turn_rate_dps * 1900 / sim.spec.profile.tick_hz
     assert turned_deg > 800
     gyro_deg = [one.pose.heading_deg - one.gyro_zero_deg for one in (before, after)]
@@ -75,7 +75,10 @@ def test_a_robot_that_turns_on_the_spot_counts_whole_turns(profile: str) -> None
 def test_a_tick_is_due_at_the_first_nanosecond_of_it() -> None:
     sim = Simulation(RunSpec(RobotSpec(), WorldSpec(), PROFILES["nbev3devsim"]), MemorySink())
     for tick in (1, 2, 3, 29, 30, 100_001):
-        assert [sim.ticks_at(sim.due_ns(tick) - off) for off in (0, 1)] == [tick, tick - 1]
+        assert [sim.count_ticks(sim.compute_due_ns(tick) - off) for off in (0, 1)] == [
+            tick,
+            tick - 1,
+        ]
 
 
 FULL = WorldSpec(
@@ -83,7 +86,7 @@ FULL = WorldSpec(
     solid=True,
     start=Pose(400, 600, 20),
     noise=NoiseSpec(10, 20),
-    drift=values_of(WorldSpec)["drift"].from_text("typical"),
+    drift=list_values(WorldSpec)["drift"].parse_text("typical"),
     beacon=BeaconSpec(1800, 200),
 )
 EQUIPPED = RobotSpec(
@@ -105,14 +108,18 @@ GIVEN = {
 @pytest.mark.parametrize("profile", GIVEN)
 def test_a_drive_in_a_full_world_gives_what_it_gave(profile: str) -> None:
     spec = RunSpec(EQUIPPED, FULL, PROFILES[profile], seed=4)
-    sim, dice, mat = simulation_of(spec, MemorySink()), Random(2), Field(0, 0, memoryview(b""), {})
+    sim, dice, mat = (
+        build_simulation(spec, MemorySink()),
+        Random(2),
+        Field(0, 0, memoryview(b""), {}),
+    )
     rows = []
     for _ in range(30):
         motors = (sim.left, sim.right, *sim.others)
         for motor in motors:
             run(sim, motor, dice.randrange(-700, 900))
         sim.advance(dice.randrange(2 * spec.profile.tick_hz))
-        seen = readings(EQUIPPED.sensors, sim.instant(), spec, mat)
+        seen = measure_sensors(EQUIPPED.sensors, sim.build_instant(), spec, mat)
         places = (sim.pose.x_mm, sim.pose.y_mm, sim.pose.heading_deg)
         blocked = motors[0].blocked_ticks + motors[2].blocked_ticks
         rows.append((*seen.values(), *places, *(one.position_deg for one in motors[::2]), blocked))
@@ -142,7 +149,9 @@ def test_few_ticks_are_run_one_by_one(profile: str, monkeypatch: pytest.MonkeyPa
     counts = []
     solid = replace(FULL, noise=NoiseSpec(), drift=NO_DRIFT)
     for world in (WorldSpec(), WorldSpec(noise=NoiseSpec(0, 20)), solid):
-        sim = simulation_of(RunSpec(RobotSpec(weight=3.0), world, PROFILES[profile]), MemorySink())
+        sim = build_simulation(
+            RunSpec(RobotSpec(weight=3.0), world, PROFILES[profile]), MemorySink()
+        )
         dice = Random(2)
         for _ in range(8):
             for motor in (sim.left, sim.right):

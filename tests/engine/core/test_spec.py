@@ -14,7 +14,7 @@ from tests.engine.core.memory_sink import MemorySink
 from tests.engine.core.motors import commanded
 from tuisim.base.errors import ConfigError
 from tuisim.engine.core.profile import PROFILES, ROBOLAB
-from tuisim.engine.core.simulation import FurtherMotors, Simulation, Turn, simulation_of
+from tuisim.engine.core.simulation import FurtherMotors, Simulation, Turn, build_simulation
 from tuisim.engine.core.spec import (
     BeaconSpec,
     InfraredSpec,
@@ -29,7 +29,7 @@ from tuisim.engine.core.spec import (
     WorldSpec,
 )
 from tuisim.engine.core.tick_record import TICK_RECORD
-from tuisim.engine.core.tree import from_plain, to_plain
+from tuisim.engine.core.tree import dump_run, load_run
 
 ROBOT = RobotSpec(
     color_sensors=(),
@@ -96,11 +96,11 @@ HOMING = replace(
 @pytest.mark.parametrize("robot", [ROBOT, HOMING], ids=["further parts", "mechanics"])
 def test_parts_are_kept_when_a_run_is_written_down(robot: RobotSpec) -> None:
     run = replace(RUN, robot=robot)
-    assert from_plain(json.loads(json.dumps(to_plain(run)))) == run
+    assert load_run(json.loads(json.dumps(dump_run(run)))) == run
 
 
 def test_what_is_as_usual_is_not_written_down() -> None:
-    robot = to_plain(RUN)["robot"]
+    robot = dump_run(RUN)["robot"]
     assert not {"left_reversed", "right_reversed", "gear_ratio"} & robot.keys()
     assert (robot["extra_motors"][0], list(robot["touch_sensors"][0])) == (
         {"port": "outA", "kind": "medium"},
@@ -110,7 +110,7 @@ def test_what_is_as_usual_is_not_written_down() -> None:
 
 @pytest.mark.parametrize("chunk", [1, 3, 7, 50, 1000])
 def test_further_motors_go_the_same_way_however_the_ticks_are_divided(chunk: int) -> None:
-    sim = simulation_of(RUN, MemorySink())
+    sim = build_simulation(RUN, MemorySink())
     arm, other = sim.others
     commanded(sim.left).run(300.0)
     commanded(arm).run_to(123.0, 400.0, backwards=False)
@@ -127,7 +127,7 @@ def test_further_motors_go_the_same_way_however_the_ticks_are_divided(chunk: int
 
 def _alone() -> tuple[float, float]:
     """Where the same robot gets to while no further motor runs."""
-    sim = simulation_of(RUN, MemorySink())
+    sim = build_simulation(RUN, MemorySink())
     commanded(sim.left).run(300.0)
     sim.advance(300)
     return sim.pose.x_mm, sim.pose.heading_deg
@@ -141,7 +141,7 @@ def test_an_obstacle_has_a_size(size_mm: tuple[float, float]) -> None:
 
 @pytest.mark.parametrize("profile", ["robolab", "nbev3devsim"])
 def test_turns_that_are_told_say_where_a_further_motor_is_at_any_tick(profile: str) -> None:
-    sim = simulation_of(replace(RUN, profile=PROFILES[profile]), MemorySink())
+    sim = build_simulation(replace(RUN, profile=PROFILES[profile]), MemorySink())
     assert isinstance(sim, FurtherMotors)
     told: list[tuple[int, tuple[Turn, ...]]] = [(0, ((0.0, 0.0),) * 2)]
     sim.on_turns = lambda turns: told.append((sim.tick, turns))

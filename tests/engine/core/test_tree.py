@@ -40,13 +40,13 @@ Said = Callable[..., str]
     ],
 )
 def test_a_value_has_a_path(path: str, value: object) -> None:
-    assert tree.at(RUN, path) == value
+    assert tree.get_value(RUN, path) == value
 
 
 @pytest.mark.parametrize("path", ["world.fog", "robot.color_sensors.middle.x_mm", "seed.x"])
 def test_there_is_nothing_at_other_paths(path: str) -> None:
     with pytest.raises(LookupError):
-        tree.at(RUN, path)
+        tree.get_value(RUN, path)
 
 
 def test_another_value_leaves_the_rest() -> None:
@@ -104,8 +104,8 @@ def test_values_of_one_part_are_checked_together() -> None:
 
 
 def test_plain_data_of_a_run_are_that_run() -> None:
-    plain = json.loads(json.dumps(tree.to_plain(RUN)))
-    assert tree.from_plain(plain) == tree.restore(plain) == RUN
+    plain = json.loads(json.dumps(tree.dump_run(RUN)))
+    assert tree.load_run(plain) == tree.restore(plain) == RUN
     # What came later is left out where it is as it was.
     assert "gear_ratio" not in plain["robot"]
     assert plain["robot"]["ultrasonic"] is None
@@ -126,33 +126,33 @@ def test_plain_data_of_a_run_are_that_run() -> None:
     ],
 )
 def test_data_of_another_kind_are_told(path: str, damage: object) -> None:
-    plain: dict[str, object] = json.loads(json.dumps(tree.to_plain(RUN)))
+    plain: dict[str, object] = json.loads(json.dumps(tree.dump_run(RUN)))
     whole: dict[str, Any] = {"": plain}
     inside: Any = whole
     *outer, last = ["", *path.split(".")] if path else [""]
     for name in outer:
         inside = inside[name]
     inside[last] = damage
-    for read in (tree.from_plain, tree.restore):
+    for read in (tree.load_run, tree.restore):
         with pytest.raises((KeyError, TypeError, ValueError, ConfigError)):
             read(whole[""])
 
 
 def test_only_what_comes_from_outside_is_checked() -> None:
-    plain = json.loads(json.dumps(tree.to_plain(RUN)))
+    plain = json.loads(json.dumps(tree.dump_run(RUN)))
     plain["world"]["noise"]["light"] = 129
     assert tree.restore(plain).world.noise.light == 129
     with pytest.raises(TypeError, match="weight is 'heavy'"):
         tree.restore({**plain, "robot": {**plain["robot"], "weight": "heavy"}})
     with pytest.raises(ConfigError, match=r"noise\.light"):
-        tree.from_plain(plain)
+        tree.load_run(plain)
     plain["robot"]["ultrasonic"] = {"ray_angles_deg": [-21.0, [-14.0]]}
     with pytest.raises(TypeError, match="ray_angles_deg is"):
         tree.restore(plain)
 
 
 def test_every_leaf_that_an_option_sets_says_what_it_is() -> None:
-    lacking = [path for path, value in tree.leaves(RunSpec) if value.flags and not value.help]
+    lacking = [path for path, value in tree.list_leaves(RunSpec) if value.flags and not value.help]
     assert lacking == []
 
 

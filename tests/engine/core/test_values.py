@@ -22,8 +22,8 @@ from tuisim.engine.core.values import (
     Value,
     Whole,
     WrongValue,
-    number_text,
-    shown,
+    format_number,
+    quote,
 )
 from tuisim.settings.options import parse
 
@@ -62,7 +62,7 @@ TYPICAL = DriftSpec(0.5, 1.0, 1.0, 1.0, 3.0, 0.05, 2.0, 14.0, 100.0, 10.0, 5.0)
     ],
 )
 def test_a_file_gives_it(kind: str, data: object, found: object) -> None:
-    value = KINDS[kind].from_data(data)
+    value = KINDS[kind].parse_data(data)
     assert (value, type(value)) == (found, type(found))
 
 
@@ -92,14 +92,14 @@ def test_a_file_gives_it(kind: str, data: object, found: object) -> None:
 )
 def test_a_wrong_value_of_a_file_is_told(kind: str, data: object, said: str) -> None:
     with pytest.raises(WrongValue) as caught:
-        KINDS[kind].from_data(data)
+        KINDS[kind].parse_data(data)
     assert caught.value.message.startswith(said)
 
 
 def test_one_of_several_is_told_by_its_place() -> None:
     for kind, data in (("numbers", [1, 10]), ("choices", ["a", "c"])):
         with pytest.raises(WrongValue) as caught:
-            KINDS[kind].from_data(data)
+            KINDS[kind].parse_data(data)
         assert caught.value.part == "[2]"
 
 
@@ -130,7 +130,7 @@ def test_an_option_or_a_form_gives_it_and_shows_it(
 ) -> None:
     value = parse(KINDS[kind], text, "-v")
     assert value == found
-    assert KINDS[kind].to_text(value) == again
+    assert KINDS[kind].format_text(value) == again
     assert parse(KINDS[kind], again, "-v") == value
 
 
@@ -166,11 +166,11 @@ def test_a_stored_run_may_have_a_seed_that_no_option_gives() -> None:
 
 
 def test_numbers_and_long_texts_are_shown_short() -> None:
-    assert [number_text(value) for value in (0.1 + 0.2, -0.0, 1e9, 2.50)] == [
+    assert [format_number(value) for value in (0.1 + 0.2, -0.0, 1e9, 2.50)] == [
         "0.3",
         "0",
         "1e+09",
         "2.5",
     ]
-    assert len(shown("a" * 999)) < 70
-    assert shown(False) == "false"
+    assert len(quote("a" * 999)) < 70
+    assert quote(False) == "false"

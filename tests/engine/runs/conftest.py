@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from tests.engine.runs.run_recorder import Recorder, begun
-from tuisim.engine.core.field import Field, disc_mask
+from tuisim.engine.core.field import Field, build_disc_mask
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.profile import ROBOLAB
 from tuisim.engine.core.spec import NoiseSpec, RobotSpec, RunSpec, WorldSpec
@@ -71,7 +71,7 @@ def field() -> Field:
     diameter = 20
     around = np.pad(pixels.astype(np.uint32), ((diameter, diameter), (diameter, diameter), (0, 0)))
     sums = np.zeros((MAT_HEIGHT_PX + diameter, MAT_WIDTH_PX + diameter, 3), np.uint32)
-    for row, cells in enumerate(disc_mask(diameter)):
+    for row, cells in enumerate(build_disc_mask(diameter)):
         for col, inside in enumerate(cells):
             if inside:
                 sums += around[row : row + len(sums), col : col + sums.shape[1]]

@@ -48,11 +48,11 @@ class Recorder:
     def print(self, text: str, line: int = 0, stream: Stream = Stream.STDOUT) -> None:
         """Write a row of output at the present tick."""
         tick = self.simulation.tick
-        self.output.write(text.encode(), tick, self.simulation.due_ns(tick), line, stream)
+        self.output.write(text.encode(), tick, self.simulation.compute_due_ns(tick), line, stream)
 
     def read(self, port: str, mode: str, line: int = 0) -> None:
         """Record that the program reads something at the present tick."""
-        time_ns = self.simulation.due_ns(self.simulation.tick)
+        time_ns = self.simulation.compute_due_ns(self.simulation.tick)
         self.readings.add(READING_CODES[port, mode], time_ns, line)
 
     def act(self, kind: str, **fields: Any) -> None:
@@ -60,7 +60,7 @@ class Recorder:
         if kind == "set_noise":
             self.simulation.noise = NoiseSpec(**fields)
         self.simulation.actions += 1
-        self.simulation.rewrite_record()
+        self.simulation.update_record()
         with open(self.run.folder / ACTIONS_FILE, "a", encoding="utf-8") as handle:
             handle.write(json.dumps({"tick": self.simulation.tick, "kind": kind, **fields}) + "\n")
 
@@ -70,7 +70,9 @@ class Recorder:
         self.output.close()
         self.readings.close()
         tick = self.simulation.tick
-        self.store.finish(self.run, Ended(end, tick, self.simulation.due_ns(tick), summary=summary))
+        self.store.finish(
+            self.run, Ended(end, tick, self.simulation.compute_due_ns(tick), summary=summary)
+        )
         self._unlock()
         return self.store.load_run(self.run.id)
 

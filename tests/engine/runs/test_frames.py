@@ -16,8 +16,8 @@ from tuisim.base.errors import LogError
 from tuisim.engine.core.drift_spec import DriftSpec
 from tuisim.engine.core.field import Field
 from tuisim.engine.core.geometry import Pose
-from tuisim.engine.core.sensors import readings
-from tuisim.engine.core.sensors.color import reading
+from tuisim.engine.core.sensors import measure_sensors
+from tuisim.engine.core.sensors.color import measure_color
 from tuisim.engine.core.spec import NoiseSpec, Obstacle, RunSpec, WorldSpec
 from tuisim.engine.mat_cache import FieldFiles, open_field, prepare
 from tuisim.engine.mats import background
@@ -135,7 +135,7 @@ def sensors_one_by_one(run: StoredRun, field: Field) -> pd.DataFrame:
     for tick in range(run.telemetry.count):
         record = run.telemetry.record(tick)
         instant = instant_of(record, run.spec, run.noise_at(record))
-        rows.append(readings(run.spec.robot.sensors, instant, run.spec, field))
+        rows.append(measure_sensors(run.spec.robot.sensors, instant, run.spec, field))
     return pd.DataFrame(rows)
 
 
@@ -250,7 +250,7 @@ def test_mat_is_opened_where_the_host_left_it(
 def reading_at(run: StoredRun, files: FieldFiles) -> float:
     record = run.telemetry.record(0)
     instant = instant_of(record, run.spec, NoiseSpec())
-    return reading(run.spec.robot.color_sensors[0], instant, open_field(files)).red
+    return measure_color(run.spec.robot.color_sensors[0], instant, open_field(files)).red
 
 
 @pytest.mark.quick_cases("never said")

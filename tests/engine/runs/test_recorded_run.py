@@ -106,7 +106,7 @@ def test_sensors_see_what_the_pen_had_drawn_by_then() -> None:
     records = run.telemetry.array().tolist()
     for tick in (30, 30, 31, 0, 59):
         drawn = PenMarks(mat, run.spec)
-        drawn.take_in(records[: tick + 1])
+        drawn.add_records(records[: tick + 1])
         seen = recording.field_at(tick, mat)
         assert isinstance(seen, MarkedField)
         assert (seen.marks, seen.blocks) == (drawn.field.marks, drawn.field.blocks)

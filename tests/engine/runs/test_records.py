@@ -49,7 +49,7 @@ def test_writers_ask_for_less_and_lose_nothing(
     writer.full = _say_full
     while True:
         try:
-            room = writer.room(1)
+            room = writer.reserve(1)
         except _Full:
             break
         at = 64 + 64 * writer.count

@@ -11,7 +11,7 @@ import pytest
 from tests.cases import cases
 from tuisim.engine.core.css_colors import Rgb
 from tuisim.engine.core.field import Field
-from tuisim.engine.core.sensors import mounted
+from tuisim.engine.core.sensors import list_mounted
 from tuisim.engine.core.spec import (
     GyroSpec,
     NoiseSpec,
@@ -66,7 +66,7 @@ def test_arrays_are_the_readings_to_the_bit(
     field = replace(field, floor_rgb=floor_rgb)
     run = replace(spec, robot=robot, world=replace(spec.world, walls=walls, obstacles=BOXES))
     records = places(400)
-    for kind, sensor, *_ in mounted(robot):
+    for kind, sensor, *_ in list_mounted(robot):
         found = measured_at_once(sensor, records, run, field, has_light_noise=False)
         assert found is not None
         one_by_one = [

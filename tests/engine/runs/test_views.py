@@ -42,7 +42,7 @@ from tuisim.engine.runs.records import HEADER_BYTES, OutputWriter, TelemetryWrit
 telemetry, output = TelemetryWriter(Path(sys.argv[1])), OutputWriter(Path(sys.argv[1]))
 for tick in range(int(sys.argv[2])):
     at = HEADER_BYTES + 64 * tick
-    telemetry.room(1)[at:at + 64] = TICK_RECORD.pack(tick, tick, *[float(tick)] * 5, 0, 0, 0, 0, 0)
+    telemetry.reserve(1)[at:at + 64] = TICK_RECORD.pack(tick, tick, *[float(tick)] * 5, 0, 0, 0, 0, 0)
     telemetry.publish(tick + 1)
     if tick % 10 == 0:
         output.write(b"n: %d" % tick, tick, tick, 1, 1)
@@ -56,7 +56,7 @@ from pathlib import Path
 from tuisim.engine.runs.records import TelemetryWriter
 used = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
 resource.setrlimit(resource.RLIMIT_AS, (used + (48 << 20), resource.getrlimit(resource.RLIMIT_AS)[1]))
-room = TelemetryWriter(Path(sys.argv[1])).room(1 << 20)
+room = TelemetryWriter(Path(sys.argv[1])).reserve(1 << 20)
 try:
     bytearray(64 << 20)
 except MemoryError:
@@ -70,7 +70,7 @@ def put(writer: TelemetryWriter, count: int) -> None:
     for tick in range(writer.count, writer.count + count):
         at = HEADER_BYTES + tick * TICK_RECORD.size
         record = TICK_RECORD.pack(tick, 7, tick + 0.5, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 1, 2)
-        writer.room(1)[at : at + TICK_RECORD.size] = record
+        writer.reserve(1)[at : at + TICK_RECORD.size] = record
         writer.publish(tick + 1)
 
 
@@ -132,7 +132,7 @@ def test_last_record_written_anew_is_read_anew(tmp_path: Path) -> None:
     view = TelemetryView(tmp_path)
     array = view.array()
     at = HEADER_BYTES + TICK_RECORD.size + 4
-    writer.room(0)[at : at + 4] = (99).to_bytes(4, "little")
+    writer.reserve(0)[at : at + 4] = (99).to_bytes(4, "little")
     put(writer, 1)
     assert view.array()["line"].tolist()[1] == 99
     assert not array.flags.writeable
@@ -175,7 +175,7 @@ def test_cut_off_telemetry_keeps_whole_records(tmp_path: Path) -> None:
 def test_row_that_was_never_published_is_not_read(tmp_path: Path) -> None:
     writer = TelemetryWriter(tmp_path)
     put(writer, 4)
-    writer.room(1)[HEADER_BYTES + 4 * 64 : HEADER_BYTES + 4 * 64 + 32] = b"\xff" * 32
+    writer.reserve(1)[HEADER_BYTES + 4 * 64 : HEADER_BYTES + 4 * 64 + 32] = b"\xff" * 32
     view = TelemetryView(tmp_path)
     assert (view.count, view.note) == (4, "")
     writer.close()
@@ -292,7 +292,7 @@ def drive_for(folder: Path, ticks: int) -> TelemetryWriter:
 def extend(writer: TelemetryWriter, ticks: int) -> None:
     for tick in range(writer.count, writer.count + ticks):
         at = HEADER_BYTES + TICK_RECORD.size * tick
-        writer.room(1)[at : at + TICK_RECORD.size] = TICK_RECORD.pack(
+        writer.reserve(1)[at : at + TICK_RECORD.size] = TICK_RECORD.pack(
             tick, 1, float(tick), *[0.0] * 4, 0, 0, 0, 0, 0
         )
         writer.publish(tick + 1)

@@ -7,7 +7,7 @@ import pytest
 
 from tests.cases import cases, for_each
 from tuisim.engine.core.geometry import Pose
-from tuisim.engine.core.outline import outline_of
+from tuisim.engine.core.outline import build_outline
 from tuisim.engine.core.spec import RobotSpec
 from tuisim.pictures.scene.mono_robot import body, pointer
 from tuisim.pictures.scene.pen import visible_on
@@ -21,7 +21,7 @@ ROWS, COLS = 20, 50
 @for_each(heading=range(0, 360, 45))
 def test_the_robot_in_signs_has_a_sign_of_its_own(heading: int) -> None:
     view = whole_field(2 * COLS, 4 * ROWS, CellPoints(2, 4))
-    signs = body(view, Pose(1181, 571, heading), outline_of(RobotSpec()))
+    signs = body(view, Pose(1181, 571, heading), build_outline(RobotSpec()))
 
     assert {GLYPHS[cell >> 48] for cell in signs.values()} == {"&"}
     assert 8 <= len(signs) <= 22

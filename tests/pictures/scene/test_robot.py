@@ -11,7 +11,7 @@ import pytest
 
 from tests.pictures.scene.scenes import MIDDLE, ROBOT, WHITE, pixel, spec_of
 from tuisim.engine.core.geometry import Pose, world_point
-from tuisim.engine.core.outline import outline_of
+from tuisim.engine.core.outline import build_outline
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, NO_PORT
 from tuisim.pictures.scene.pictures import world_picture
 from tuisim.pictures.scene.robot import COLORED, draw_robot
@@ -26,7 +26,7 @@ def near(x_mm: float, y_mm: float, places: Sequence[tuple[float, float]]) -> boo
 def test_a_robot_off_the_picture_is_left_out() -> None:
     picture = np.zeros((20, 40, 3), np.uint8)
 
-    draw_robot(picture, whole_field(40, 20), Pose(9000, -9000, 0), outline_of(ROBOT), COLORED)
+    draw_robot(picture, whole_field(40, 20), Pose(9000, -9000, 0), build_outline(ROBOT), COLORED)
 
     assert not picture.any()
 
@@ -34,7 +34,7 @@ def test_a_robot_off_the_picture_is_left_out() -> None:
 @pytest.mark.parametrize("robot", ROBOTS)
 def test_a_robot_is_filled_and_has_all_its_parts(robot: str) -> None:
     spec = spec_of(robot)
-    outline, picture = outline_of(spec.robot), world_picture(spec, WHITE, MIDDLE)
+    outline, picture = build_outline(spec.robot), world_picture(spec, WHITE, MIDDLE)
     wheel_mm = outline.half_width_mm - outline.wheel_width_mm / 2
     parts = {
         COLORED.body: [
@@ -58,7 +58,7 @@ def test_a_robot_is_filled_and_has_all_its_parts(robot: str) -> None:
 def test_a_robot_without_wheels_is_drawn_without_them() -> None:
     spec = spec_of()
     standing = replace(spec, robot=replace(spec.robot, left_port=NO_PORT, right_port=NO_PORT))
-    outline = outline_of(spec.robot)
+    outline = build_outline(spec.robot)
     place = world_point(MIDDLE, outline.half_width_mm - outline.wheel_width_mm / 2, 0.0)
     drawn = [pixel(world_picture(one, WHITE, MIDDLE), one.robot, place) for one in (spec, standing)]
     assert [bool(np.abs(np.subtract(color, COLORED.wheel)).max() < 60) for color in drawn] == [
@@ -70,7 +70,7 @@ def test_a_robot_without_wheels_is_drawn_without_them() -> None:
 @pytest.mark.parametrize("heading", [0, 90])
 def test_the_robot_is_drawn_as_large_as_what_collides(heading: int) -> None:
     # Bumpers are pressed before anything collides.
-    outline = outline_of(replace(spec_of("Small_Robot").robot, touch_sensors=()))
+    outline = build_outline(replace(spec_of("Small_Robot").robot, touch_sensors=()))
     view, picture = whole_field(FIELD_WIDTH_MM, FIELD_HEIGHT_MM), np.zeros_like(WHITE)
     pose = replace(MIDDLE, heading_deg=float(heading))
 

@@ -26,7 +26,7 @@ from tuisim.commands import app as app_command
 from tuisim.commands import resolve
 from tuisim.commands import run as run_command_module
 from tuisim.engine.core.spec import RunSpec
-from tuisim.engine.core.tree import from_plain, to_plain
+from tuisim.engine.core.tree import dump_run, load_run
 from tuisim.engine.obstacles import save_obstacles
 from tuisim.engine.runs import run_folder
 from tuisim.notebook import display
@@ -124,7 +124,7 @@ def _said() -> Iterator[tuple[io.StringIO, io.StringIO]]:
 def _of_held(held: _Held, out: str, err: str) -> Outcome:
     # A batch says nothing about most of its values twice: the specifications are those of `run.json`.
     runs = tuple(
-        {"spec": to_plain(spec), **more} for spec, more in zip(held.specs, held.more, strict=True)
+        {"spec": dump_run(spec), **more} for spec, more in zip(held.specs, held.more, strict=True)
     )
     return Outcome(0, out, err, runs, held.specs)
 
@@ -167,7 +167,7 @@ def of_cells(magics: Sequence[str]) -> Outcome:
             except TuisimError as error:
                 errors.append(f"{error}\n")
     spec = lab.spec
-    return Outcome(0, "", err.getvalue() + "".join(errors), ({"spec": to_plain(spec)},), (spec,))
+    return Outcome(0, "", err.getvalue() + "".join(errors), ({"spec": dump_run(spec)},), (spec,))
 
 
 def of_saved(words: Sequence[str], path: str, what: str) -> Outcome:
@@ -191,7 +191,7 @@ def of_saved(words: Sequence[str], path: str, what: str) -> Outcome:
 
 def read_back(plain: Plain) -> Plain:
     """Return the specification that a stored run has, as it is read from `run.json` and written again."""
-    return to_plain(from_plain(plain))
+    return dump_run(load_run(plain))
 
 
 def fixed_places() -> Mapping[str, str]:

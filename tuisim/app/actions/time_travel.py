@@ -12,7 +12,7 @@ from tuisim.app.snapshot import RunPhase
 from tuisim.app.timeline import describe_commands, find, forms
 from tuisim.base.errors import TuisimError
 from tuisim.engine import protocol
-from tuisim.engine.core.sensors import column_names
+from tuisim.engine.core.sensors import list_column_names
 from tuisim.tasks.reasons.reason import ReasonKind
 from tuisim.tasks.reasons.waiting import describe_so_far
 
@@ -150,7 +150,7 @@ def ask_instant(context: ActionContext) -> None:
         context.runs.state in (RunPhase.STARTING, RunPhase.RUNNING) and not context.runs.in_past
     )
     title = "Go to · pauses the program" if goes_on else f"Go to · now at {timeline.time_s:.2f} s"
-    words = column_names(spec)
+    words = list_column_names(spec)
     again = f"Enter: {timeline.searched}" if timeline.searched else ""
     context.app.push_screen(
         LinePrompt(

@@ -19,7 +19,7 @@ from tuisim.app.setup.poses import MAX_NAME, delete_pose, load_poses, save_pose
 from tuisim.base.errors import TuisimError
 from tuisim.engine.breakpoints import FORMS, Breakpoint, check_line, parse_break, parse_watch
 from tuisim.engine.core.geometry import Pose, shown_heading_deg
-from tuisim.engine.core.sensors import column_names
+from tuisim.engine.core.sensors import list_column_names
 from tuisim.engine.core.spec import RunSpec
 
 Entry = TypeVar("Entry")
@@ -76,7 +76,7 @@ class _TextList(_List[None], Generic[Entry]):
 
     def compose_content(self) -> ComposeResult:
         yield OptionList(markup=False)
-        yield LineInput("", column_names(self.run_spec), self.PLACEHOLDER)
+        yield LineInput("", list_column_names(self.run_spec), self.PLACEHOLDER)
         yield Static(id="message", classes="wrong", markup=False)
         yield from self.compose_explanation()
 

@@ -19,7 +19,7 @@ from tuisim.app.dialogs.chooser import MAX_NAME_COLUMNS, TABLES, ChoiceGroup, Ch
 from tuisim.base import palette
 from tuisim.base.errors import TuisimError
 from tuisim.engine.core.geometry import Pose
-from tuisim.engine.core.outline import outline_of
+from tuisim.engine.core.outline import build_outline
 from tuisim.engine.core.spec import ColorSensorSpec, RobotSpec, SensorSpec, TouchSpec
 from tuisim.pictures.scene.mono_robot import draw_mono_robot
 from tuisim.pictures.scene.robot import COLORED, GREY, MONO, RobotColors, draw_robot
@@ -169,7 +169,7 @@ class RobotParts(LinesPanel):
 
 def fit_view(robot: RobotSpec, width_px: int, height_px: int, cell: CellPoints) -> Viewport:
     """Return the view in which a robot, heading up, fills a picture with a rim around it."""
-    outline = outline_of(robot)
+    outline = build_outline(robot)
     bumpers_mm = [y_mm + _RIM_MM for _, y_mm, _ in outline.bumpers_mm]
     front_mm, back_mm = max([outline.front_mm, *bumpers_mm]) + _RIM_MM, outline.back_mm - _RIM_MM
     mm_per_px = max(
@@ -186,7 +186,7 @@ def draw_robot_picture(
     """Return a robot at the middle of the axes, heading up, with all sensors that have a place."""
     picture = np.empty((view.height_px, view.width_px, 3), np.uint8)
     picture[:] = (255, 255, 255) if mono else _PAPER_RGB
-    outline = outline_of(robot)
+    outline = build_outline(robot)
     if (sonar := robot.ultrasonic) is not None:
         # The world shows its rays instead.
         outline = replace(

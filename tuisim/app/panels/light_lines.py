@@ -26,7 +26,7 @@ class LightSeen:
     @property
     def value(self) -> str:
         """The number that the program gets."""
-        number = self.read.measured(self.color, self.reflected_max)
+        number = self.read.compute_value(self.color, self.reflected_max)
         if self.read is LightRead.REFLECTED:
             return f"{number:3.0f}"
         return f"{number:5.0f}" if self.read is LightRead.REFLECTION else f"{number:5.1f}"

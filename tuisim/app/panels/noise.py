@@ -13,13 +13,13 @@ from textual.widgets import Input, Label, Static
 from tuisim.app.form import EntryPanel, NumberInput, Slider
 from tuisim.base.data_class import dataclass
 from tuisim.engine.core.spec import NoiseSpec, RunSpec
-from tuisim.engine.core.values import Whole, WrongValue, values_of
+from tuisim.engine.core.values import Whole, WrongValue, list_values
 
 if TYPE_CHECKING:
     from tuisim.app.snapshot import Snapshot
 
-_KINDS = values_of(NoiseSpec)
-_SEED = values_of(RunSpec)["seed"]
+_KINDS = list_values(NoiseSpec)
+_SEED = list_values(RunSpec)["seed"]
 
 
 class Noise(EntryPanel):
@@ -96,7 +96,7 @@ class Noise(EntryPanel):
 
     def _apply(self, entry: Input) -> None:
         try:
-            seed = _SEED.from_text(entry.value.strip())
+            seed = _SEED.parse_text(entry.value.strip())
         except WrongValue as error:
             entry.add_class("wrong")
             self.say(f"{_SEED.label} {error.message}")

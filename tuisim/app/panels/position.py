@@ -33,7 +33,7 @@ def parse_field(field: str, text: str) -> float:
     """
     value = _FIELDS[field]
     try:
-        found: float = value.from_text(text.strip().replace(",", "."))
+        found: float = value.parse_text(text.strip().replace(",", "."))
     except WrongValue:
         shown = text.strip()[:12] or "nothing"
         raise ValueError(f"{value.label}: {value.allowed}, not {shown!r}") from None

@@ -22,7 +22,7 @@ from tuisim.app.render.world_text import draw_signs, draw_world_text, legend
 from tuisim.app.snapshot import AT_REST, Snapshot
 from tuisim.base.data_class import dataclass
 from tuisim.engine.core.geometry import Pose
-from tuisim.engine.core.outline import outline_of
+from tuisim.engine.core.outline import build_outline
 from tuisim.engine.core.spec import Obstacle, PenSpec
 from tuisim.pictures.scene.off_field import off_field_words
 from tuisim.pictures.scene.painter import Faint, ScenePainter, SceneState
@@ -421,7 +421,7 @@ class WorldView(PixelView):
         x_mm, y_mm = self._at(event)
         robot = self._snapshot.spec.robot
         half_mm = robot.wheel_spacing_mm / 2
-        reach_mm = half_mm * drawn_scale(outline_of(robot), self._port) + 1.5 * self._cell_mm
+        reach_mm = half_mm * drawn_scale(build_outline(robot), self._port) + 1.5 * self._cell_mm
         return math.hypot(x_mm - pose.x_mm, y_mm - pose.y_mm) <= max(
             reach_mm, half_mm - robot.back_mm / 2
         )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tuisim.app.snapshot import Snapshot
-from tuisim.engine.core.outline import outline_of
+from tuisim.engine.core.outline import build_outline
 from tuisim.pictures.scene.mono_robot import body, pointer
 from tuisim.pictures.scene.off_field import off_field_words
 from tuisim.pictures.scene.painter import Faint, ScenePainter, SceneState
@@ -81,7 +81,7 @@ def legend(now: Snapshot, width: int) -> str:
 
 def draw_signs(port: Viewport, scene: SceneState) -> dict[tuple[int, int], int]:
     """Return the signs that show the robots where there are no colours: cells by row and column."""
-    outline = outline_of(scene.robot)
+    outline = build_outline(scene.robot)
     reach_mm = outline.front_mm * drawn_scale(outline, port)
     now = dict(scene.faint).get(Faint.NOW)
     ghost = pointer(port, now, reach_mm, _GHOST_PIVOT) if now else {}

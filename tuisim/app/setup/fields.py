@@ -35,7 +35,7 @@ from tuisim.engine.core.spec import (
     SensorSpec,
     UltrasonicSpec,
 )
-from tuisim.engine.core.values import OFF, ON, Number, Numbers, Value, WrongValue, values_of
+from tuisim.engine.core.values import OFF, ON, Number, Numbers, Value, WrongValue, list_values
 from tuisim.settings.options import RUN_VALUES
 from tuisim.settings.robots import ROBOTS
 
@@ -94,7 +94,7 @@ def _parsed(value: Value, text: str) -> Any:
     """Return what was typed or chosen as a value; a comma may stand for the point of a number."""
     one_number = isinstance(value, Number) and not isinstance(value, Numbers)
     try:
-        return value.from_text(text.strip().replace(",", ".") if one_number else text.strip())
+        return value.parse_text(text.strip().replace(",", ".") if one_number else text.strip())
     except WrongValue as error:
         raise RobotError(error.message, error.hint) from None
 
@@ -127,8 +127,8 @@ def _value_field(edit_id: str, value: Value, path: Callable[[RobotSpec], str]) -
         return tree.put(robot, path(robot), None if is_none else _parsed(value, text))
 
     def read(robot: RobotSpec) -> str:
-        known = tree.at(robot, path(robot))
-        return "" if known is None else value.to_text(known)
+        known = tree.get_value(robot, path(robot))
+        return "" if known is None else value.format_text(known)
 
     return _robot_field(edit_id, value.label, read, change, value.choices)
 
@@ -159,7 +159,7 @@ def _body_fields() -> tuple[FormField, ...]:
             return _motor_port_field(key, value)
         return _value_field(key, value, lambda _: key)
 
-    shown = {key: value for key, value in values_of(RobotSpec).items() if value.label}
+    shown = {key: value for key, value in list_values(RobotSpec).items() if value.label}
     return (
         FormField("preset", "", _robot_word, with_robot, tuple(ROBOTS)),
         *(field_of(key, value) for key, value in shown.items()),
@@ -176,7 +176,7 @@ def _sensors(robot: RobotSpec) -> dict[str, SensorSpec]:
 def _path_of(robot: RobotSpec, name: str, key: str) -> str:
     """Return the path of a value of a sensor."""
     for mount in MOUNTS:
-        for sensor in robot.sensors_in(mount):
+        for sensor in robot.list_sensors(mount):
             if sensor.name == name:
                 return f"{mount.field}.{name}.{key}" if mount.many else f"{mount.field}.{key}"
     raise LookupError(name)
@@ -187,7 +187,7 @@ def _with_sensors(robot: RobotSpec, *parts: SensorSpec) -> RobotSpec:
     changed = {part.name: part for part in parts}
     found: dict[str, Any] = {}
     for mount in MOUNTS:
-        sensors = tuple(changed.get(part.name, part) for part in robot.sensors_in(mount))
+        sensors = tuple(changed.get(part.name, part) for part in robot.list_sensors(mount))
         found[mount.field] = sensors if mount.many else next(iter(sensors), None)
     return replace(robot, **found)
 
@@ -203,7 +203,7 @@ def _sensor_fields(part: SensorSpec) -> tuple[FormField, ...]:
         )
 
     return tuple(
-        field_of(key, value) for key, value in values_of(type(part)).items() if value.label
+        field_of(key, value) for key, value in list_values(type(part)).items() if value.label
     )
 
 
@@ -244,7 +244,7 @@ def _placed(plan: NextRun, text: str, name: str) -> NextRun:
     """Change a colour sensor's x; the other sensors stay where the mat has put them."""
     on_mat = {sensor.name: sensor for sensor in plan.spec.robot.color_sensors}
     robot = plan.robot_choice.spec
-    x_mm = _parsed(values_of(ColorSensorSpec)["x_mm"], text)
+    x_mm = _parsed(list_values(ColorSensorSpec)["x_mm"], text)
     sensors = [
         replace(sensor, x_mm=x_mm if sensor.name == name else on_mat[sensor.name].x_mm)
         for sensor in robot.color_sensors
@@ -307,7 +307,7 @@ def _run_field(path: str) -> FormField:
     return FormField(
         path,
         value.label or path.replace("_", " ")[:MAX_LABEL],
-        lambda plan: value.to_text(tree.at(plan.spec, spec_path)),
+        lambda plan: value.format_text(tree.get_value(plan.spec, spec_path)),
         lambda plan, text: with_values(plan, {path: _parsed(value, text)}),
         value.choices,
     )
@@ -318,7 +318,7 @@ def _pen_fields() -> tuple[FormField, ...]:
         path = f"pen.{key}"
         return _run_field(path) if path in RUN_VALUES else _value_field(path, value, lambda _: path)
 
-    return tuple(field_of(key, value) for key, value in values_of(PenSpec).items())
+    return tuple(field_of(key, value) for key, value in list_values(PenSpec).items())
 
 
 def _world_fields() -> tuple[FormField, ...]:

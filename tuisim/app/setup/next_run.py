@@ -343,7 +343,7 @@ def _put(plan: NextRun, values: Mapping[str, Any]) -> NextRun:
 
 def at_pose(plan: NextRun, pose: Pose) -> NextRun:
     """Return the plan with another start pose."""
-    return _put(plan, {path: tree.at(pose, path.removeprefix("start.")) for path in START})
+    return _put(plan, {path: tree.get_value(pose, path.removeprefix("start.")) for path in START})
 
 
 def with_noise(plan: NextRun, noise: NoiseSpec) -> NextRun:
@@ -352,7 +352,12 @@ def with_noise(plan: NextRun, noise: NoiseSpec) -> NextRun:
     before = plan.spec.world.noise
     changed = {"noise.light": noise.light, "noise.motor": noise.motor}
     return _put(
-        plan, {path: value for path, value in changed.items() if tree.at(before, path[6:]) != value}
+        plan,
+        {
+            path: value
+            for path, value in changed.items()
+            if tree.get_value(before, path[6:]) != value
+        },
     )
 
 

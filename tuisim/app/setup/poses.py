@@ -12,7 +12,7 @@ from tuisim.base.atomic import make_private_folder
 from tuisim.base.errors import ConfigError
 from tuisim.base.folders import home_folder
 from tuisim.engine.core.geometry import Pose, world_point
-from tuisim.engine.core.outline import outline_of
+from tuisim.engine.core.outline import build_outline
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, RunSpec
 from tuisim.engine.files import (
     Location,
@@ -50,7 +50,7 @@ def random_pose(spec: RunSpec, chance: random.Random) -> Pose | None:
 
 def fits(spec: RunSpec, pose: Pose) -> bool:
     """Return whether the robot's outline is on the field, and clear of obstacles where those are solid."""
-    corners = [world_point(pose, x, y) for x, y in outline_of(spec.robot).corners_mm]
+    corners = [world_point(pose, x, y) for x, y in build_outline(spec.robot).corners_mm]
     if not all(0 <= x <= FIELD_WIDTH_MM and 0 <= y <= FIELD_HEIGHT_MM for x, y in corners):
         return False
     if not spec.world.solid:

@@ -12,8 +12,8 @@ from tuisim.analysis.remembered import request_file
 from tuisim.analysis.source import LogRequest
 from tuisim.base.errors import ConfigError, LogError, among, listed
 from tuisim.commands.echo import echo_error, tell
-from tuisim.engine.core.columns import column_name
-from tuisim.engine.core.sensors import column_names, columns_of
+from tuisim.engine.core.columns import find_column_name
+from tuisim.engine.core.sensors import list_column_names, list_columns
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.engine.runs.store import RunStore
 from tuisim.logs.choices import ReadChoices
@@ -121,7 +121,8 @@ def _logs_of(runs: Sequence[StoredRun], arguments: Arguments) -> list[Log]:
     known = {name.partition(" #")[0] for name in samples.names}
     asked_for = _name_columns(arguments, known, runs)
     is_telemetry = bool(asked_for) and all(
-        asked_for.isdisjoint(known) and asked_for.issubset(column_names(run.spec)) for run in runs
+        asked_for.isdisjoint(known) and asked_for.issubset(list_column_names(run.spec))
+        for run in runs
     )
     return list(map(build_telemetry_log, runs)) if is_telemetry else [samples]
 
@@ -137,7 +138,8 @@ def _name_columns(
     run = runs[0].spec
     words: Sequence[str] = getattr(arguments, "variable", None) or ()
     arguments.variable = tuple(
-        word if word in known else column_name(word, columns_of(run)) or word for word in words
+        word if word in known else find_column_name(word, list_columns(run)) or word
+        for word in words
     )
     expression = getattr(arguments, "expression", "")
     return {*arguments.variable, *(find_names(expression) if expression else ())}
@@ -188,7 +190,7 @@ def names_of(log: Log, arguments: Arguments) -> tuple[str, ...]:
         matching = [name for name in with_rows if name == word or name.partition(" #")[0] == word]
         if not matching:
             run = read_spec(log.metadata)
-            columns = () if run is None else column_names(run)
+            columns = () if run is None else list_column_names(run)
             raise LogError(f"no variable {word!r}", among(word, with_rows, columns), file=log.title)
         found += matching
     return tuple(dict.fromkeys(found))

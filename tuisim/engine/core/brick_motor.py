@@ -25,7 +25,7 @@ from tuisim.engine.core.motors import (
 )
 
 
-def ramped(speed: float, target: float, step: float) -> float:
+def ramp_speed(speed: float, target: float, step: float) -> float:
     """Return the speed one tick later; it changes at most by `step`, or at once if that is 0."""
     if step == 0.0:
         speed = target
@@ -159,8 +159,8 @@ class BrickMotor:
         """Largest change of speed in one tick; 0 is unlimited."""
         if not self.slowest_ramp_dps2:
             return self._weight_step
-        asked = self.slowest_ramp_dps2 * self._tick_s
-        return min(self._weight_step, asked) if self._weight_step else asked
+        limit_dps = self.slowest_ramp_dps2 * self._tick_s
+        return min(self._weight_step, limit_dps) if self._weight_step else limit_dps
 
     @property
     def ramping_ticks(self) -> int:
@@ -184,7 +184,7 @@ class BrickMotor:
         if self.mode == STOPPED:
             return Glide([0.0] * ticks, [self.position_deg] * ticks)
         sign, tick_s = self.sign, self._tick_s
-        turns = [speed * sign * tick_s for speed in self._speeds_ahead(ticks)]
+        turns = [speed * sign * tick_s for speed in self._advance_speeds(ticks)]
         counts = list(accumulate(turns, initial=self.position_deg))
         self.position_deg = counts[-1]
         return Glide(turns, counts[1:])
@@ -200,22 +200,22 @@ class BrickMotor:
                 [round(steady + noise) for noise in noise_dps] if steady else [0] * ticks
             )
         else:
-            speeds = zip(self._speeds_ahead(ticks), noise_dps, strict=True)
+            speeds = zip(self._advance_speeds(ticks), noise_dps, strict=True)
             noisy = [round(speed + noise) if speed else 0 for speed, noise in speeds]
         if max(noisy) > limit or min(noisy) < -limit:
-            noisy = [max(-limit, min(limit, one)) for one in noisy]
-        turns = [one * sign * tick_s for one in noisy]
+            noisy = [max(-limit, min(limit, turn_dps)) for turn_dps in noisy]
+        turns = [turn_dps * sign * tick_s for turn_dps in noisy]
         counts = list(accumulate(turns, initial=self.position_deg))
         self.position_deg = counts[-1]
         return Glide(turns, counts[1:])
 
-    def _speeds_ahead(self, ticks: int) -> list[float]:
+    def _advance_speeds(self, ticks: int) -> list[float]:
         """Advance the speed by `ticks` ticks and return the speed after each."""
         speed, target, step = self.speed_dps, self.target_dps, self.ramp_step
         if speed == target or step == 0.0:
             speeds = [speed if speed == target else target] * ticks
         else:
-            # Same sums as `ramped`, without a call per tick; values beyond the target are clamped to it.
+            # Same sums as `ramp_speed`, without a call per tick; values beyond the target are clamped to it.
             change = step if speed < target else -step
             speeds = list(accumulate(repeat(change, ticks - 1), initial=speed + change))
             short = (
@@ -225,8 +225,8 @@ class BrickMotor:
         self.speed_dps = speeds[-1]
         return speeds
 
-    def quiet_ticks(self, tick: int) -> int:
-        """Return for how many ticks only the ramp changes this motor; see `Motor.quiet_ticks`."""
+    def count_quiet_ticks(self, tick: int) -> int:
+        """Return for how many ticks only the ramp changes this motor; see `Motor.count_quiet_ticks`."""
         if self.approach_dps2:
             return 0
         if self.mode == TIMED:
@@ -246,7 +246,7 @@ class BrickMotor:
             # The common case: only the ramp matters.
             if self.speed_dps != self.target_dps:
                 step = self.ramp_step if self.slowest_ramp_dps2 else self._weight_step
-                self.speed_dps = ramped(self.speed_dps, self.target_dps, step)
+                self.speed_dps = ramp_speed(self.speed_dps, self.target_dps, step)
             turned = self.speed_dps * self.sign * self._tick_s
             self.position_deg += turned
             return turned
@@ -255,10 +255,10 @@ class BrickMotor:
         if mode == TIMED and tick > self.end_tick:
             self.stop()
             return 0.0
-        self.speed_dps = ramped(self.speed_dps, self.target_dps, self.ramp_step)
+        self.speed_dps = ramp_speed(self.speed_dps, self.target_dps, self.ramp_step)
         if self.approach_dps2:
             self._slow_down(tick)
-        speed = self._disturbed(noise_dps) if noise_dps else self.speed_dps
+        speed = self._disturb(noise_dps) if noise_dps else self.speed_dps
         turned = speed * self.sign * self._tick_s
         if mode == POSITION:
             return self._step_to_goal(turned)
@@ -282,8 +282,8 @@ class BrickMotor:
     @property
     def _ramp_down_step(self) -> float:
         """Decrease of speed in one tick while the motor decelerates by itself."""
-        asked = self.approach_dps2 * self._tick_s
-        return min(self._weight_step, asked) if self._weight_step else asked
+        limit_dps = self.approach_dps2 * self._tick_s
+        return min(self._weight_step, limit_dps) if self._weight_step else limit_dps
 
     def _step_to_goal(self, turned: float) -> float:
         left = (self.goal_deg - self.position_deg) * self.sign
@@ -299,7 +299,7 @@ class BrickMotor:
         self.position_deg += turned
         return turned
 
-    def _disturbed(self, noise_dps: float) -> float:
+    def _disturb(self, noise_dps: float) -> float:
         if self.speed_dps == 0.0:
             return 0.0
         limit = self._limit_dps

@@ -102,7 +102,7 @@ class BrowserMotor:
         """Run one tick; see `Motor.step`."""
         speed = self.speed_dps
         if speed != self.speed_sp or noise_dps:
-            self.speed_dps = speed = self._next(speed, noise_dps)
+            self.speed_dps = speed = self._step_register(speed, noise_dps)
         turned = speed * self._tick_s
         command = self._command
         if command == FOREVER or (command == TIMED and tick < self.end_tick):
@@ -114,13 +114,13 @@ class BrowserMotor:
         if self.backwards:
             turned = -turned
         self.position_deg += turned
-        if self._beyond():
+        if self._is_beyond_goal():
             self.mode = STOPPED
             return 0.0
         self.position_deg += turned
         return turned * self.roll_sign + 0.0
 
-    def _next(self, speed: float, noise_dps: float = 0.0) -> float:
+    def _step_register(self, speed: float, noise_dps: float = 0.0) -> float:
         """Return the register after one more tick."""
         target, step = self.speed_sp, self._ramp_step
         if speed < target:
@@ -138,7 +138,7 @@ class BrowserMotor:
         noisy = float(math.floor(noisy + 0.5))
         return noisy if noisy <= self._limit_dps else self._limit_dps
 
-    def _beyond(self) -> bool:
+    def _is_beyond_goal(self) -> bool:
         return (
             self.position_deg < self.goal_deg
             if self.backwards
@@ -165,25 +165,29 @@ class BrowserMotor:
         way = abs(self._aim - self.speed_dps)
         return math.ceil(way / self._ramp_step) or int(way > 0)
 
-    def quiet_ticks(self, tick: int) -> int:
-        """Return for how many ticks only the register changes; see `Motor.quiet_ticks`."""
+    def count_quiet_ticks(self, tick: int) -> int:
+        """Return for how many ticks only the register changes; see `Motor.count_quiet_ticks`."""
         if self._command == FOREVER or (self.mode == STOPPED and self._command != POSITION):
             return ENDLESS
         if self._command == POSITION:
-            return self._quiet_ticks_to_goal()
+            return self._count_ticks_before_goal()
         # After a stop command the state changes in the next tick.
         return max(0, math.ceil(self.end_tick) - 1 - tick) if self._command == TIMED else 0
 
-    def _quiet_ticks_to_goal(self) -> int:
+    def _count_ticks_before_goal(self) -> int:
         if self._ended and self.speed_dps == self.speed_sp == 0.0:
             return ENDLESS
         if self._ended:
             # The motor must be beyond its goal and also stay there.
-            return ENDLESS if self._beyond() and self.speed_dps >= 0 and self.speed_sp >= 0 else 0
+            return (
+                ENDLESS
+                if self._is_beyond_goal() and self.speed_dps >= 0 and self.speed_sp >= 0
+                else 0
+            )
         # Rounding adds up to half a degree a second.
         fastest = (max(abs(self.speed_dps), abs(self.speed_sp)) + 0.5) * self._tick_s
         left = abs(self.goal_deg - self.position_deg)
-        return 0 if self._beyond() else max(0, int(left / (2 * fastest)) - 1)
+        return 0 if self._is_beyond_goal() else max(0, int(left / (2 * fastest)) - 1)
 
     def glide_evenly(self, ticks: int) -> EvenGlide:
         """Run quiet ticks at a steady speed; see `Motor.glide_evenly`."""
@@ -202,28 +206,28 @@ class BrowserMotor:
 
     def glide(self, ticks: int) -> Glide:
         """Run quiet ticks; see `Motor.glide`."""
-        speeds = self._registers(ticks)
+        speeds = self._advance_registers(ticks)
         tick_s = -self._tick_s if self._command == POSITION and self.backwards else self._tick_s
         turns = [speed * tick_s for speed in speeds]
-        counts = self._counts(turns)
+        counts = self._count_positions(turns)
         self.position_deg = counts[-1]
         if self.mode == STOPPED:
             return Glide([0.0] * ticks, counts)
         sign = self.roll_sign
         return Glide([turned * sign + 0.0 for turned in turns], counts)
 
-    def _registers(self, ticks: int) -> list[float]:
+    def _advance_registers(self, ticks: int) -> list[float]:
         """Advance the register by `ticks` ticks and return it after each."""
         speed, aim = self.speed_dps, self._aim
         speeds: list[float] = []
         while speed != aim and len(speeds) < ticks:
-            speed = self._next(speed)
+            speed = self._step_register(speed)
             speeds.append(speed)
         self.speed_dps = speed
         speeds += [speed] * (ticks - len(speeds))
         return speeds
 
-    def _counts(self, turns: list[float]) -> list[float]:
+    def _count_positions(self, turns: list[float]) -> list[float]:
         start = self.position_deg
         if self._command == POSITION and self.mode != STOPPED:
             twice = (turned for pair in zip(turns, turns, strict=True) for turned in pair)

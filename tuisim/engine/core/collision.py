@@ -16,7 +16,7 @@ import math
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
-from tuisim.engine.core.outline import outline_of
+from tuisim.engine.core.outline import build_outline
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, RobotSpec, WorldSpec
 
 TOUCH_MM = 1e-4
@@ -88,7 +88,7 @@ class Solids:
         self._boxes: list[Box] = [
             (o.x_mm, o.y_mm, o.x_mm + o.width_mm, o.y_mm + o.height_mm) for o in world.obstacles
         ]
-        outline = outline_of(robot)
+        outline = build_outline(robot)
         self._half_width, front, back = outline.half_width_mm, outline.front_mm, outline.back_mm
         self._middle, self._half_length = (front + back) / 2, (front - back) / 2
         self._turns_mm = robot.wheel_spacing_mm / 2 * (1.0 + 1e-9)
@@ -98,10 +98,10 @@ class Solids:
         self._near: list[Box] = []
         self._near_at = (math.inf, math.inf)
         self._free = Clearance((math.inf, math.inf, 0.0), 0.0, 0, 0.0)
-        self._last_asked: tuple[float, ...] = ()
+        self._last_motion: tuple[float, ...] = ()
         self._last_leeway = UNHINDERED
 
-    def free_way_mm(self, pose: PoseTuple, wanted_mm: float, straight: int = 0) -> float:
+    def find_free_way_mm(self, pose: PoseTuple, wanted_mm: float, straight: int = 0) -> float:
         """Return a lower bound of how far every point of the body can move without a collision.
 
         Args:
@@ -113,7 +113,7 @@ class Solids:
         if left >= wanted_mm:
             return left
         if self._free.pose != pose or self._free.straight != straight:
-            self._free = self._clearance(pose, straight)
+            self._free = self._compute_clearance(pose, straight)
         return max(self._free.any_mm, self._free.straight_mm)
 
     def remaining_mm(self, pose: PoseTuple) -> float:
@@ -122,103 +122,111 @@ class Solids:
         turned = math.radians(abs(pose[2] - heading)) * self.reach_mm
         return self._free.any_mm - math.hypot(pose[0] - x, pose[1] - y) - turned
 
-    def leeway(self, pose: PoseTuple, forward_mm: float, turn_deg: float) -> Leeway:
+    def find_leeway(self, pose: PoseTuple, forward_mm: float, turn_deg: float) -> Leeway:
         """Return how much of the motion of a tick is possible; turns are counter-clockwise."""
         way = abs(forward_mm) + abs(math.radians(turn_deg)) * self.reach_mm
         if self.remaining_mm(pose) >= way:
             return UNHINDERED
-        asked = (*pose, forward_mm, turn_deg)
+        motion = (*pose, forward_mm, turn_deg)
         # A robot that pushes against an obstacle asks the same in every tick.
-        if asked != self._last_asked:
-            self._last_asked, self._last_leeway = (
-                asked,
-                self._leeway(pose, forward_mm, turn_deg, way),
+        if motion != self._last_motion:
+            self._last_motion, self._last_leeway = (
+                motion,
+                self._compute_leeway(pose, forward_mm, turn_deg, way),
             )
         return self._last_leeway
 
-    def _leeway(self, pose: PoseTuple, forward_mm: float, turn_deg: float, way_mm: float) -> Leeway:
+    def _compute_leeway(
+        self, pose: PoseTuple, forward_mm: float, turn_deg: float, way_mm: float
+    ) -> Leeway:
         if self._free.pose != pose:
-            self._free = self._clearance(pose, 0)
+            self._free = self._compute_clearance(pose, 0)
         if self._free.any_mm >= way_mm:
             return UNHINDERED
-        body = self._body(*pose)
+        body = self._place_body(*pose)
         # A robot that is pushed aside moves up to twice the distance.
-        boxes = [box for box in self._boxes_near(pose) if _box_gap(body, box) <= 2 * way_mm]
-        gaps = list(self._gaps(body, boxes))
+        boxes = [
+            box for box in self._find_near_boxes(pose) if _measure_box_gap(body, box) <= 2 * way_mm
+        ]
+        gaps = list(self._measure_gaps(body, boxes))
         x_mm, y_mm, heading_deg = pose
         early_deg = turn_deg * self._early
 
-        def moved(part: float) -> Body:
+        def move_body(part: float) -> Body:
             heading, way = math.radians(heading_deg + early_deg * part), forward_mm * part
             x, y = x_mm + way * math.cos(heading), y_mm + way * math.sin(heading)
-            return self._body(x, y, heading_deg + turn_deg * part)
+            return self._place_body(x, y, heading_deg + turn_deg * part)
 
         floors = [-TOUCH_MM if gap >= -TOUCH_MM else gap - ROUNDING_MM for gap in gaps]
         if turn_deg and min(gaps, default=0.0) < -TOUCH_MM:
-            return self._pushed_aside(moved(1.0), boxes, floors)
+            return self._push_aside(move_body(1.0), boxes, floors)
 
-        def meets(part: float) -> bool:
+        def is_blocked(part: float) -> bool:
             return any(
                 gap < floor
-                for gap, floor in zip(self._gaps(moved(part), boxes), floors, strict=True)
+                for gap, floor in zip(
+                    self._measure_gaps(move_body(part), boxes), floors, strict=True
+                )
             )
 
-        part = _free_part(meets, way_mm)
+        part = _find_free_part(is_blocked, way_mm)
         if part < 1.0 and abs(forward_mm) <= abs(math.radians(turn_deg)) * self._turns_mm:
-            pushed = self._pushed_aside(moved(1.0), boxes, floors)
+            pushed = self._push_aside(move_body(1.0), boxes, floors)
             if pushed.part:
                 return pushed
         return Leeway(part, (0.0, 0.0))
 
-    def _pushed_aside(self, body: Body, boxes: list[Box], floors: list[float]) -> Leeway:
+    def _push_aside(self, body: Body, boxes: list[Box], floors: list[float]) -> Leeway:
         """Push a body aside until each gap is at least its value in `floors`; if that fails, allow no motion at all."""
         x_mm = y_mm = 0.0
         there = body
         for number, floor in enumerate(floors):
-            gap = list(self._gaps(there, boxes))[number]
+            gap = list(self._measure_gaps(there, boxes))[number]
             if gap < floor:
-                out_x, out_y = self._way_out(there, number, boxes)
+                out_x, out_y = self._find_way_out(there, number, boxes)
                 deeper = floor + ROUNDING_MM - gap
                 x_mm, y_mm = x_mm + deeper * out_x, y_mm + deeper * out_y
                 there = (body[0] + x_mm, body[1] + y_mm, *body[2:])
-        if any(gap < floor for gap, floor in zip(self._gaps(there, boxes), floors, strict=True)):
+        if any(
+            gap < floor for gap, floor in zip(self._measure_gaps(there, boxes), floors, strict=True)
+        ):
             return Leeway(0.0, (0.0, 0.0))
         return Leeway(1.0, (x_mm, y_mm))
 
     # Gaps
 
-    def gaps_mm(self, pose: PoseTuple) -> tuple[float, ...]:
+    def measure_gaps_mm(self, pose: PoseTuple) -> tuple[float, ...]:
         """Return the gaps between the body and everything, negative where they overlap.
 
         The left, right, lower and upper wall come first, if there are walls, then the obstacles in their order. A gap
         changes by no more than the fastest point of the body moves.
         """
-        return tuple(self._gaps(self._body(*pose), self._boxes))
+        return tuple(self._measure_gaps(self._place_body(*pose), self._boxes))
 
-    def _gaps(self, body: Body, boxes: list[Box]) -> Iterator[float]:
+    def _measure_gaps(self, body: Body, boxes: list[Box]) -> Iterator[float]:
         """Yield the gap between the body and each wall and box, negative if they overlap."""
         if self._walls:
-            yield from _wall_gaps(body)
+            yield from _measure_wall_gaps(body)
         for box in boxes:
-            yield _box_gap(body, box)
+            yield _measure_box_gap(body, box)
 
-    def _way_out(self, body: Body, number: int, boxes: list[Box]) -> tuple[float, float]:
+    def _find_way_out(self, body: Body, number: int, boxes: list[Box]) -> tuple[float, float]:
         """Return the direction of the shortest way out of an overlap; `number` is an index into `_gaps`."""
         if self._walls:
             if number < len(_AWAY_FROM_WALLS):
                 return _AWAY_FROM_WALLS[number]
             number -= len(_AWAY_FROM_WALLS)
-        return _way_out_of_box(body, boxes[number])
+        return _find_way_out_of_box(body, boxes[number])
 
-    def _clearance(self, pose: PoseTuple, straight: int) -> Clearance:
-        body = self._body(*pose)
+    def _compute_clearance(self, pose: PoseTuple, straight: int) -> Clearance:
+        body = self._place_body(*pose)
         # Boxes that are not near are at least this far away.
-        boxes = self._boxes_near(pose)
+        boxes = self._find_near_boxes(pose)
         any_mm = beyond = NEAR_MM - math.dist(pose[:2], self._near_at) if self._boxes else math.inf
         on_mm = beyond if straight else 0.0
         if self._walls:
-            any_mm = min(any_mm, *_wall_gaps(body))
-            on_mm = min(on_mm, _way_to_wall(body, straight)) if straight else 0.0
+            any_mm = min(any_mm, *_measure_wall_gaps(body))
+            on_mm = min(on_mm, _measure_way_to_wall(body, straight)) if straight else 0.0
         cx, cy, _, _, _, _, wide, high = body
         for box in boxes:
             left, lower, right, upper = box
@@ -226,12 +234,12 @@ class Solids:
             apart = max(left - cx - wide, cx - right - wide, lower - cy - high, cy - upper - high)
             if apart >= any_mm and not straight:
                 continue
-            gap = _box_gap(body, box)
+            gap = _measure_box_gap(body, box)
             any_mm = min(any_mm, gap)
             if gap < -TOUCH_MM:
                 on_mm = 0.0
             elif straight:
-                along, aside, before = _box_beside(body, box)
+                along, aside, before = _locate_box(body, box)
                 if aside < 0.0 and along < 0.0:
                     # Only a corner is clear of the box: the way may lead into it wherever its centre is.
                     on_mm = min(on_mm, gap)
@@ -239,7 +247,7 @@ class Solids:
                     on_mm = min(on_mm, along)
         return Clearance(pose, max(0.0, any_mm), straight, max(0.0, on_mm))
 
-    def _boxes_near(self, pose: PoseTuple) -> list[Box]:
+    def _find_near_boxes(self, pose: PoseTuple) -> list[Box]:
         x_mm, y_mm = pose[:2]
         if self._boxes and math.dist((x_mm, y_mm), self._near_at) > NEAR_MM / 2:
             self._near_at = (x_mm, y_mm)
@@ -251,7 +259,7 @@ class Solids:
             ]
         return self._near
 
-    def _body(self, x_mm: float, y_mm: float, heading_deg: float) -> Body:
+    def _place_body(self, x_mm: float, y_mm: float, heading_deg: float) -> Body:
         turn = math.radians(heading_deg)
         fx, fy = math.cos(turn), math.sin(turn)
         length, width = self._half_length, self._half_width
@@ -268,16 +276,16 @@ class Solids:
 
 
 _AWAY_FROM_WALLS = ((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0))
-"""Directions from the walls into the field, in the order of `_wall_gaps`."""
+"""Directions from the walls into the field, in the order of `_measure_wall_gaps`."""
 
 
-def _wall_gaps(body: Body) -> tuple[float, float, float, float]:
+def _measure_wall_gaps(body: Body) -> tuple[float, float, float, float]:
     """Return the gap to the left, right, lower and upper wall, negative if the body is in the wall."""
     cx, cy, _, _, _, _, wide, high = body
     return cx - wide, FIELD_WIDTH_MM - wide - cx, cy - high, FIELD_HEIGHT_MM - high - cy
 
 
-def _way_to_wall(body: Body, direction: int) -> float:
+def _measure_way_to_wall(body: Body, direction: int) -> float:
     """Return how far the body can move along its heading (direction 1) or against it (-1) before it meets a wall."""
     cx, cy, fx, fy, _, _, wide, high = body
     way = math.inf
@@ -291,21 +299,21 @@ def _way_to_wall(body: Body, direction: int) -> float:
     return way
 
 
-def _box_gap(body: Body, box: Box) -> float:
+def _measure_box_gap(body: Body, box: Box) -> float:
     """Return the largest gap between body and box along any separating axis, negative if they overlap."""
     cx, cy, _, _, _, _, wide, high = body
     left, lower, right, upper = box
     upright = max(left - cx, cx - right) - wide
     level = max(lower - cy, cy - upper) - high
-    along, aside, _ = _box_beside(body, box)
+    along, aside, _ = _locate_box(body, box)
     return max(upright, level, along, aside)
 
 
-def _way_out_of_box(body: Body, box: Box) -> tuple[float, float]:
+def _find_way_out_of_box(body: Body, box: Box) -> tuple[float, float]:
     """Return the direction in which a body that overlaps a box leaves it by the shortest way."""
     cx, cy, fx, fy, _, _, wide, high = body
     left, lower, right, upper = box
-    along, aside, in_front = _box_beside(body, box)
+    along, aside, in_front = _locate_box(body, box)
     middle_x, middle_y = (left + right) / 2, (lower + upper) / 2
     on_the_left = (middle_y - cy) * fx - (middle_x - cx) * fy > 0
     ways = (
@@ -317,7 +325,7 @@ def _way_out_of_box(body: Body, box: Box) -> tuple[float, float]:
     return max(ways)[1]
 
 
-def _box_beside(body: Body, box: Box) -> tuple[float, float, bool]:
+def _locate_box(body: Body, box: Box) -> tuple[float, float, bool]:
     """Return the gap to a box along the heading and across it, and whether the box is in front."""
     cx, cy, fx, fy, length, width, _, _ = body
     left, lower, right, upper = box
@@ -329,21 +337,23 @@ def _box_beside(body: Body, box: Box) -> tuple[float, float, bool]:
     return along, aside, forward > 0
 
 
-def _free_part(meets: Callable[[float], bool], way_mm: float) -> float:
-    """Return the largest fraction of a motion that is free of contact; `meets` answers for any fraction."""
+def _find_free_part(is_blocked: Callable[[float], bool], way_mm: float) -> float:
+    """Return the largest fraction of a motion that is free of contact; `is_blocked` answers for any fraction."""
     steps = max(1, math.ceil(way_mm / STEP_MM))
     for step in range(1, steps + 1):
-        if meets(step / steps):
+        if is_blocked(step / steps):
             return max(
-                0.0, _last_clear(meets, (step - 1) / steps, step / steps) - BACK_OFF_MM / way_mm
+                0.0,
+                _bisect_free_part(is_blocked, (step - 1) / steps, step / steps)
+                - BACK_OFF_MM / way_mm,
             )
     return 1.0
 
 
-def _last_clear(meets: Callable[[float], bool], clear: float, met: float) -> float:
+def _bisect_free_part(is_blocked: Callable[[float], bool], clear: float, met: float) -> float:
     for _ in range(_HALVINGS):
         part = (clear + met) / 2
-        if meets(part):
+        if is_blocked(part):
             met = part
         else:
             clear = part

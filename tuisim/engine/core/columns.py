@@ -36,7 +36,7 @@ class Column:
     """Other names that are understood."""
 
 
-def measured_names(columns: Iterable[Column]) -> tuple[str, ...]:
+def list_measured_names(columns: Iterable[Column]) -> tuple[str, ...]:
     """Return the names of the columns that are measured: those that telemetry exports if it is not asked for others."""
     return tuple(column.name for column in columns if column.of is None)
 
@@ -53,7 +53,7 @@ MOTION: tuple[Column, ...] = (
 """The columns of the robot itself."""
 
 
-def motion_of(instant: Instant, run: RunSpec, field: Field) -> tuple[float, ...]:
+def measure_motion(instant: Instant, run: RunSpec, field: Field) -> tuple[float, ...]:
     """Return what is measured of `MOTION`, in that order."""
     pose = instant.pose
     return (
@@ -67,7 +67,7 @@ def motion_of(instant: Instant, run: RunSpec, field: Field) -> tuple[float, ...]
     )
 
 
-def column_name(text: str, columns: Iterable[Column]) -> str | None:
+def find_column_name(text: str, columns: Iterable[Column]) -> str | None:
     """Return the name of the column that a text means, however its words are joined; None if there is none.
 
     Args:
@@ -77,9 +77,9 @@ def column_name(text: str, columns: Iterable[Column]) -> str | None:
     names = {column.name: (column.name, *column.also) for column in columns}
     if text in names:
         return text
-    wanted = _words(text)
-    return next((name for name, known in names.items() if wanted in map(_words, known)), None)
+    words = _split_words(text)
+    return next((name for name, known in names.items() if words in map(_split_words, known)), None)
 
 
-def _words(text: str) -> tuple[str, ...]:
+def _split_words(text: str) -> tuple[str, ...]:
     return tuple(word for word in re.findall(r"[^\W_]+|[%°]", text) if word != "sensor")

@@ -37,7 +37,9 @@ class Operator(StrEnum):
     @property
     def short(self) -> str:
         """The shortest spelling."""
-        return next((spelling for spelling, one in _SPELLINGS.items() if one is self), self.value)
+        return next(
+            (spelling for spelling, operator in _SPELLINGS.items() if operator is self), self.value
+        )
 
 
 COMPARE: Mapping[str, Callable[[Any, Any], Any]] = {
@@ -100,7 +102,7 @@ class ValueCondition:
             ValueError: it is none.
         """
         is_name = is_color(self.name) and self.value in COLOR_NAMES
-        return float(COLOR_NAMES.index(self.value)) if is_name else finite_number(self.value)
+        return float(COLOR_NAMES.index(self.value)) if is_name else parse_finite_number(self.value)
 
     def test(self) -> Callable[[Any, Any], Any]:
         """Return the function that tells whether it is true of a value, or of each value of an array.
@@ -117,7 +119,7 @@ class ValueCondition:
         compare, number = COMPARE[self.operator], self.number
         return lambda value, _: compare(value, number)
 
-    def of_column(self, name: str) -> ValueCondition:
+    def format_condition(self, name: str) -> ValueCondition:
         """Return the condition as it is written of a column with this name.
 
         Raises:
@@ -126,7 +128,7 @@ class ValueCondition:
         named = replace(self, name=name, sign=self.operator.value)
         if self.is_momentary:
             return named
-        common = replace(named, value=value_text(named.number, name, 12))
+        common = replace(named, value=format_value(named.number, name, 12))
         return common if common.number == named.number else replace(named, value=repr(named.number))
 
     def __str__(self) -> str:
@@ -143,7 +145,7 @@ class Edge:
         self._test, self._is_momentary = condition.test(), condition.is_momentary
         self._before, self._held = math.nan, False
 
-    def meets(self, value: float) -> bool:
+    def update(self, value: float) -> bool:
         """Process the next value; return whether the condition becomes true."""
         held = bool(self._test(value, self._before))
         was_held, self._held = self._held, held
@@ -151,7 +153,7 @@ class Edge:
         return held and (self._is_momentary or not was_held)
 
 
-def condition_in(text: str, name: str = r".+?", value: str = r"\S+") -> ValueCondition | None:
+def parse_condition(text: str, name: str = r".+?", value: str = r"\S+") -> ValueCondition | None:
     """Return the condition `NAME OP VALUE` or `NAME changes` that a text is; None if it is none.
 
     `name` and `value` are regular expressions of what is allowed.
@@ -160,16 +162,16 @@ def condition_in(text: str, name: str = r".+?", value: str = r"\S+") -> ValueCon
     if last == Operator.CHANGES and subject:
         return ValueCondition(subject.strip(), Operator.CHANGES)
     # Of several operators the first one counts after which everything is a value.
-    found = re.fullmatch(
+    match = re.fullmatch(
         rf"\s*(?P<name>{name})(?<![<>=!~])\s*(?P<sign>{_SIGNS})\s*(?P<value>{value})\s*", text
     )
-    return ValueCondition(found["name"], found["sign"], found["value"]) if found else None
+    return ValueCondition(match["name"], match["sign"], match["value"]) if match else None
 
 
-def run_condition_in(text: str) -> ValueCondition | None:
+def parse_run_condition(text: str) -> ValueCondition | None:
     """Return the condition on a run that a text is, None if it is none.
 
-    On a column as `condition_in`, except `~`; `sample NAME`, `sample NAME OP VALUE`, `sample NAME changes`;
+    On a column as `parse_condition`, except `~`; `sample NAME`, `sample NAME OP VALUE`, `sample NAME changes`;
     `print matches REGEX`.
     """
     word, _, rest = text.strip().partition(" ")
@@ -183,21 +185,21 @@ def run_condition_in(text: str) -> ValueCondition | None:
             else None
         )
     if word == ValueSource.SAMPLE:
-        found = condition_in(rest, name=r"\w*") or ValueCondition(rest, Operator.SEEN)
-        is_one = not found.name or found.name.isidentifier()
-        return replace(found, source=ValueSource.SAMPLE) if is_one else None
-    named = condition_in(text)
+        condition = parse_condition(rest, name=r"\w*") or ValueCondition(rest, Operator.SEEN)
+        is_one = not condition.name or condition.name.isidentifier()
+        return replace(condition, source=ValueSource.SAMPLE) if is_one else None
+    named = parse_condition(text)
     return None if named is None or named.operator is Operator.CONTAINS else named
 
 
-def spelled(operators: Iterable[str] = COMPARE) -> str:
+def list_operators(operators: Iterable[str] = COMPARE) -> str:
     """Return operators as they are listed in hints, each in its shortest spelling."""
-    return " ".join(Operator(one).short for one in operators)
+    return " ".join(Operator(operator).short for operator in operators)
 
 
-def comparison_form(operators: Iterable[str] = COMPARE) -> str:
+def describe_comparison(operators: Iterable[str] = COMPARE) -> str:
     """Return the form of a comparison, for the hint of an error."""
-    return f"NAME OP VALUE, OP one of {spelled(operators)}"
+    return f"NAME OP VALUE, OP one of {list_operators(operators)}"
 
 
 def is_color(column: str) -> bool:
@@ -205,14 +207,14 @@ def is_color(column: str) -> bool:
     return column.endswith(("_color", ".color"))
 
 
-def value_text(value: float, column: str, digits: int = 6) -> str:
+def format_value(value: float, column: str, digits: int = 6) -> str:
     """Return a value of a column as it is written: a colour by its name."""
     if is_color(column) and value in range(len(COLOR_NAMES)):
         return COLOR_NAMES[int(value)]
     return f"{value:.{digits}g}"
 
 
-def finite_number(text: str) -> float:
+def parse_finite_number(text: str) -> float:
     """Return a number.
 
     Raises:

@@ -41,18 +41,18 @@ _HEX = re.compile(r"#[0-9a-f]{6}")
 
 
 @cache
-def css_names() -> dict[str, Rgb]:
+def load_css_colors() -> dict[str, Rgb]:
     """Return red, green and blue, 0 … 255, of every CSS colour name."""
     pairs = (entry.split("#") for entry in _TABLE.split())
-    return {name: _channels(value) for name, value in pairs}
+    return {name: _split_channels(value) for name, value in pairs}
 
 
-def css_rgb(color: str) -> Rgb | None:
+def parse_css_rgb(color: str) -> Rgb | None:
     """Return red, green and blue, 0 … 255, of a CSS colour name or `#rrggbb`; None for anything else."""
     color = color.lower()
-    return _channels(color[1:]) if _HEX.fullmatch(color) else css_names().get(color)
+    return _split_channels(color[1:]) if _HEX.fullmatch(color) else load_css_colors().get(color)
 
 
-def _channels(value: str) -> Rgb:
+def _split_channels(value: str) -> Rgb:
     red, green, blue = bytes.fromhex(value)
     return red, green, blue

@@ -18,9 +18,9 @@ from math import cos, degrees, inf, log, pi, sin, sqrt
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from tuisim.engine.core.drift_spec import NO_DRIFT, DriftSpec
-from tuisim.engine.core.drive import Drive, float32, mm_per_degree, turn_rate_dps
-from tuisim.engine.core.motors import top_speed_dps
-from tuisim.engine.core.noise import drawn_numbers, wheel_slip
+from tuisim.engine.core.drive import Drive, compute_mm_per_degree, round_to_float32, turn_rate_dps
+from tuisim.engine.core.motors import find_top_speed_dps
+from tuisim.engine.core.noise import draw_numbers, draw_slip
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ MAX_DEVIATIONS = 3.0
 MAX_OVERSHOOT = 1.2
 """A motor turns no faster than this many times its top speed."""
 
-MOST_TIMES = 3.0
+MAX_TIMES = 3.0
 """A wheel that slips, of a robot with wrong sizes, never moves it as if it turned more than this many times as fast."""
 
 _FIRST_LOSS_DEG, _LAST_LOSS_DEG = 15.0, 50.0
@@ -61,41 +61,43 @@ def find_drift(spec: RunSpec) -> DriftSpec:
     drift = spec.world.drift
     if drift is NO_DRIFT or spec.profile.motor_law.is_measured:
         return drift
-    return _equal_sensors(drift)
+    return _build_equal_sensors(drift)
 
 
 @lru_cache(maxsize=16)
-def _equal_sensors(drift: DriftSpec) -> DriftSpec:
+def _build_equal_sensors(drift: DriftSpec) -> DriftSpec:
     return replace(drift, gyro_scale_pc=0.0, echo_bias_mm=0.0, light_gain_pc=0.0)
 
 
 @lru_cache(maxsize=64)
-def _drawn_normal(seed: int, channel: str) -> float:
+def _draw_normal(seed: int, channel: str) -> float:
     """Return a normally distributed number for one seed and channel, limited to `MAX_DEVIATIONS`."""
-    far, turn = drawn_numbers(seed, 0, channel, 2)
+    far, turn = draw_numbers(seed, 0, channel, 2)
     return max(-MAX_DEVIATIONS, min(MAX_DEVIATIONS, sqrt(-2 * log(1 - far)) * cos(2 * pi * turn)))
 
 
 def draw_light_gain(port: str, drift: DriftSpec, seed: int) -> float:
     """Return the brightness that the colour sensor on a port sees, as a multiple of the robot's."""
-    return 1 + _drawn_normal(seed, f"drift/light/{port}") * drift.light_gain_pc / 100
+    return 1 + _draw_normal(seed, f"drift/light/{port}") * drift.light_gain_pc / 100
 
 
 @lru_cache(maxsize=64)
 def draw_echo_bias_mm(port: str, drift: DriftSpec, seed: int) -> int:
     """Return the error of the distances of the ultrasonic sensor on a port."""
-    (share,) = drawn_numbers(seed, 0, f"drift/echo/{port}", 1)
+    (share,) = draw_numbers(seed, 0, f"drift/echo/{port}", 1)
     return round(drift.echo_bias_mm * (share - (1 - share) / 7))
 
 
 @lru_cache(maxsize=16)
-def drawn_errors(drift: DriftSpec, seed: int) -> DrawnErrors:
+def draw_errors(drift: DriftSpec, seed: int) -> DrawnErrors:
     """Return what a seed draws."""
-    ours = drawn_numbers(seed, 0, "drift", 9)
+    ours = draw_numbers(seed, 0, "drift", 9)
     # By Box and Muller.
     pairs = zip(ours[0:8:2], ours[1:8:2], strict=True)
     normals = [sqrt(-2 * log(1 - far)) * cos(2 * pi * turn) for far, turn in pairs]
-    left, right, spacing, gyro = (max(-MAX_DEVIATIONS, min(MAX_DEVIATIONS, one)) for one in normals)
+    left, right, spacing, gyro = (
+        max(-MAX_DEVIATIONS, min(MAX_DEVIATIONS, normal)) for normal in normals
+    )
     return DrawnErrors(
         1 + left * drift.wheel_pc / 100,
         1 + right * drift.wheel_pc / 100,
@@ -105,7 +107,7 @@ def drawn_errors(drift: DriftSpec, seed: int) -> DrawnErrors:
     )
 
 
-def sensed_turn_rate_dps(left_dps: float, right_dps: float, spec: RunSpec) -> float:
+def sense_turn_rate_dps(left_dps: float, right_dps: float, spec: RunSpec) -> float:
     """Return the counter-clockwise rate of turn that a gyro senses, from the speeds of the wheels' motors.
 
     The slip of wheels that accelerate is too short for it.
@@ -113,7 +115,7 @@ def sensed_turn_rate_dps(left_dps: float, right_dps: float, spec: RunSpec) -> fl
     drift = find_drift(spec)
     if drift.is_none:
         return turn_rate_dps(left_dps, right_dps, spec.robot)
-    drawn = drawn_errors(drift, spec.seed)
+    drawn = draw_errors(drift, spec.seed)
     rate = turn_rate_dps(left_dps * drawn.left, right_dps * drawn.right, spec.robot)
     rate = rate / drawn.spacing * (1 - drift.turn_slip_pc / 100)
     if drift.gyro_scale_pc:
@@ -121,23 +123,23 @@ def sensed_turn_rate_dps(left_dps: float, right_dps: float, spec: RunSpec) -> fl
     return rate - drawn.gyro_dps
 
 
-def light_share(x_mm: Any, y_mm: Any, drift: DriftSpec, seed: int) -> Any:
+def compute_light_share(x_mm: Any, y_mm: Any, drift: DriftSpec, seed: int) -> Any:
     """Return the share of the full brightness at places of the field, numbers or arrays: 1 at its brightest side."""
-    across, up = bright_side(drift, seed)
+    across, up = draw_bright_side(drift, seed)
     towards = (x_mm - FIELD_WIDTH_MM / 2) * across + (y_mm - FIELD_HEIGHT_MM / 2) * up
     return 1 - (0.5 - towards) * (drift.light_pc / 100)
 
 
 @lru_cache(maxsize=16)
-def bright_side(drift: DriftSpec, seed: int) -> tuple[float, float]:
+def draw_bright_side(drift: DriftSpec, seed: int) -> tuple[float, float]:
     """Return how much a mm along x and along y adds to the brightness: from side to side it is 1."""
-    way = drawn_errors(drift, seed).bright_rad
+    way = draw_errors(drift, seed).bright_rad
     across, up = cos(way), sin(way)
     size_mm = FIELD_WIDTH_MM * abs(across) + FIELD_HEIGHT_MM * abs(up)
     return across / size_mm, up / size_mm
 
 
-def lost_echoes(flatness_deg: float, drift: DriftSpec) -> float:
+def compute_lost_echoes(flatness_deg: float, drift: DriftSpec) -> float:
     """Return the share of pulses that a surface does not send back, at an angle off its normal."""
     share = (flatness_deg - _FIRST_LOSS_DEG) / (_LAST_LOSS_DEG - _FIRST_LOSS_DEG)
     return max(0.0, min(1.0, share)) * drift.echo_loss_pc / 100
@@ -156,16 +158,16 @@ class _Wheel:
         self.before_mm = 0.0
         """How far the wheel has turned in the tick before."""
 
-    def engaged_mm(self, motor_mm: float) -> float:
+    def engage_mm(self, motor_mm: float) -> float:
         """Return how far the wheel turns if the motor turns so far, by its real diameter."""
         half = self._half_mm
         if half:
-            at = self._play_mm + motor_mm
-            self._play_mm = max(-half, min(half, at))
-            motor_mm = at - self._play_mm
+            play_mm = self._play_mm + motor_mm
+            self._play_mm = max(-half, min(half, play_mm))
+            motor_mm = play_mm - self._play_mm
         return motor_mm * self._times
 
-    def slip_mm(self, way_mm: float) -> float:
+    def compute_slip_mm(self, way_mm: float) -> float:
         """Return how much of its way the wheel loses in a tick because it accelerates; it gains while it brakes."""
         speeding = (way_mm - self.before_mm) * self._accelerations
         self.before_mm = way_mm
@@ -193,34 +195,37 @@ class SlippingWheels:
         drift, hz, drawn = (
             find_drift(spec),
             spec.profile.tick_hz,
-            drawn_errors(find_drift(spec), spec.seed),
+            draw_errors(find_drift(spec), spec.seed),
         )
         self._seed = spec.seed
-        self._left_mm, self._right_mm = mm_per_degree(spec.robot)
+        self._left_mm, self._right_mm = compute_mm_per_degree(spec.robot)
         self._left, self._right = (
             _Wheel(times, drift.backlash_deg * abs(mm), drift.slip_pc / 100, hz)
             for times, mm in ((drawn.left, self._left_mm), (drawn.right, self._right_mm))
         )
         self._spacing, self._turn_slip = drawn.spacing, drift.turn_slip_pc / 100
 
-    def turned_deg(self, tick: int, left_deg: float, right_deg: float) -> tuple[float, float]:
+    def turn_deg(self, tick: int, left_deg: float, right_deg: float) -> tuple[float, float]:
         """Return the turns of the motors that would move a robot without errors as this one moves in a tick."""
         if not (left_deg or right_deg):
             self._left.before_mm = self._right.before_mm = 0.0
             return left_deg, right_deg
         left_mm, right_mm = left_deg * self._left_mm, right_deg * self._right_mm
-        left, right = self._left.engaged_mm(left_mm), self._right.engaged_mm(right_mm)
+        left, right = self._left.engage_mm(left_mm), self._right.engage_mm(right_mm)
         turning = (right - left) / 2
-        lost_left, lost_right = self._left.slip_mm(left), self._right.slip_mm(right)
+        lost_left, lost_right = self._left.compute_slip_mm(left), self._right.compute_slip_mm(right)
         scrubbed = self._turn_slip * turning
         if lost_left or lost_right or scrubbed:
-            by_left, by_right = wheel_slip(self._seed, tick)
+            by_left, by_right = draw_slip(self._seed, tick)
             lost_left += sqrt((abs(lost_left) + abs(scrubbed)) * JERK_MM) * by_left - scrubbed
             lost_right += sqrt((abs(lost_right) + abs(scrubbed)) * JERK_MM) * by_right + scrubbed
         left, right = left - lost_left, right - lost_right
         forward, turning = (left + right) / 2, (right - left) / 2 / self._spacing
-        most = MOST_TIMES * max(abs(left_mm), abs(right_mm))
-        left, right = (max(-most, min(most, one)) for one in (forward - turning, forward + turning))
+        limit_mm = MAX_TIMES * max(abs(left_mm), abs(right_mm))
+        left, right = (
+            max(-limit_mm, min(limit_mm, way_mm))
+            for way_mm in (forward - turning, forward + turning)
+        )
         return left / self._left_mm, right / self._right_mm
 
 
@@ -237,7 +242,7 @@ class WrongGyro:
     def __init__(self, spec: RunSpec, drive: Drive) -> None:
         drift, profile = find_drift(spec), spec.profile
         self._drive, self._scale = drive, 1 - drift.gyro_scale_pc / 100
-        self._drift_deg = drawn_errors(drift, spec.seed).gyro_dps / profile.tick_hz
+        self._drift_deg = draw_errors(drift, spec.seed).gyro_dps / profile.tick_hz
         self._max_deg = (profile.gyro_max_dps or inf) / profile.tick_hz
         self._carry_deg = 0.0
         self._drifts = not drift.is_none
@@ -255,11 +260,11 @@ class WrongGyro:
         exact_deg = (
             drive.gyro_zero_deg + self._drift_deg + self._carry_deg - (turned_deg - sensed_deg)
         )
-        drive.gyro_zero_deg = float32(exact_deg)
+        drive.gyro_zero_deg = round_to_float32(exact_deg)
         self._carry_deg = exact_deg - drive.gyro_zero_deg
 
 
-def slipping_wheels(spec: RunSpec) -> SlippingWheels | None:
+def build_slipping_wheels(spec: RunSpec) -> SlippingWheels | None:
     """Return the wheels of a run with drift; None if nothing drifts."""
     return None if find_drift(spec).is_none else SlippingWheels(spec)
 
@@ -275,8 +280,10 @@ def can_strain_gyro(spec: RunSpec) -> bool:
     if not spec.profile.gyro_max_dps:
         return False
     fastest_mm = sum(
-        abs(mm) * top_speed_dps(motor.kind, spec.profile)
-        for mm, motor in zip(mm_per_degree(spec.robot), spec.robot.wheel_motors, strict=True)
+        abs(mm) * find_top_speed_dps(motor.kind, spec.profile)
+        for mm, motor in zip(
+            compute_mm_per_degree(spec.robot), spec.robot.wheel_motors, strict=True
+        )
     )
     fastest_dps = MAX_OVERSHOOT * degrees(fastest_mm / spec.robot.wheel_spacing_mm)
     return fastest_dps > spec.profile.gyro_max_dps

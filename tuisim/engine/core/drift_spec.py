@@ -7,7 +7,7 @@ from typing import Any
 from tuisim.engine.core.spec_fields import Spec, named_number, spec
 
 
-def _drift(high: float, typical: float, unit: str, about: str, source: str) -> Any:
+def _build_field(high: float, typical: float, unit: str, about: str, source: str) -> Any:
     names = {"typical": typical}
     return named_number(
         0, high, names, default=0.0, later=True, unit=unit, help=about, source=source
@@ -20,14 +20,14 @@ class DriftSpec(Spec):
 
     KEY = "drift"
 
-    wheel_pc: float = _drift(
+    wheel_pc: float = _build_field(
         10,
         0.5,
         "%",
         "standard deviation of each wheel's diameter from the robot's, drawn once a run",
         "the manual of LEGO's MicroPython takes 55.5 mm for a tyre that is sold as 56 mm: 0.9 % less",
     )
-    spacing_pc: float = _drift(
+    spacing_pc: float = _build_field(
         10,
         1.0,
         "%",
@@ -35,7 +35,7 @@ class DriftSpec(Spec):
         "Borenstein & Feng, Measurement and Correction of Systematic Odometry Errors in Mobile Robots (1996): tyres "
         "touch the floor in an area, which leaves the effective distance uncertain by about 1 %",
     )
-    slip_pc: float = _drift(
+    slip_pc: float = _build_field(
         50,
         1.0,
         "%",
@@ -43,7 +43,7 @@ class DriftSpec(Spec):
         "a rubber tyre slips by its force / (10 to 30 × its load) as long as it grips (Pacejka, Tyre and Vehicle "
         "Dynamics): a tenth of the load, at 1 m/s², is 1 % of a soft tyre",
     )
-    turn_slip_pc: float = _drift(
+    turn_slip_pc: float = _build_field(
         50,
         1.0,
         "%",
@@ -51,28 +51,28 @@ class DriftSpec(Spec):
         "the same law: a castor with a third of the weight and a friction of 0.2 holds each wheel back with about "
         "a tenth of its load",
     )
-    backlash_deg: float = _drift(
+    backlash_deg: float = _build_field(
         90,
         3.0,
         "°",
         "play between a motor and its wheel: it turns so far after a reversal before the wheel does",
         "an estimate, as LEGO publishes none: about three counts of the encoder",
     )
-    gyro_dps: float = _drift(
+    gyro_dps: float = _build_field(
         20,
         0.05,
         "°/s",
         "standard deviation of the gyro's rate while the robot stands, drawn once a run",
         "LEGO states an accuracy of ±3° for the EV3 gyro: this is 3° in a minute",
     )
-    gyro_scale_pc: float = _drift(
+    gyro_scale_pc: float = _build_field(
         20,
         2.0,
         "%",
         "how much too little the gyro counts of a clockwise turn",
         "40 measurements on a turntable (EV3 Basic): 353° of 360° clockwise in 5 s, 361° counter-clockwise",
     )
-    echo_bias_mm: float = _drift(
+    echo_bias_mm: float = _build_field(
         100,
         14.0,
         "mm",
@@ -80,7 +80,7 @@ class DriftSpec(Spec):
         "measured at 5, 10, 15, 20, 25 and 30 cm: 5.0, 11.4, 14.8, 20.4, 25.4 and 31.4 "
         "(eriymirsai, 2022; the sensor is not named)",
     )
-    echo_loss_pc: float = _drift(
+    echo_loss_pc: float = _build_field(
         100,
         100.0,
         "%",
@@ -88,7 +88,7 @@ class DriftSpec(Spec):
         "surface; none up to 15°, in proportion between",
         "data sheet of the HC-SR04: effective up to 15°; the simulator's own limit is 50°",
     )
-    light_pc: float = _drift(
+    light_pc: float = _build_field(
         90,
         10.0,
         "%",
@@ -96,7 +96,7 @@ class DriftSpec(Spec):
         "EN 12464-1 lets the darkest place of a classroom have 60 % of the mean light; the sensor's own lamp, close "
         "to the mat, outshines most of that: a quarter of 40 %",
     )
-    light_gain_pc: float = _drift(
+    light_gain_pc: float = _build_field(
         30,
         5.0,
         "%",
@@ -108,7 +108,7 @@ class DriftSpec(Spec):
     @property
     def is_none(self) -> bool:
         """Whether nothing drifts."""
-        return self is NO_DRIFT or not any(self._contents())
+        return self is NO_DRIFT or not any(self._list_contents())
 
 
 NO_DRIFT = DriftSpec()

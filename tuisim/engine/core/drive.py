@@ -23,17 +23,17 @@ _FLOAT32 = Struct("<f")
 _WHOLE_TURN = 2 * math.pi
 
 
-def float32(value: float) -> float:
+def round_to_float32(value: float) -> float:
     """Return `value` rounded to single precision, as the telemetry stores it."""
     return float(_FLOAT32.unpack(_FLOAT32.pack(value))[0])
 
 
-def mm_per_degree(robot: RobotSpec) -> tuple[float, float]:
+def compute_mm_per_degree(robot: RobotSpec) -> tuple[float, float]:
     """Return how far the left and the right wheel roll forwards per degree of their motors; negative if reversed."""
-    return _signed(math.pi * robot.wheel_diameter_mm / 360.0 / robot.gear_ratio, robot)
+    return _sign_wheels(math.pi * robot.wheel_diameter_mm / 360.0 / robot.gear_ratio, robot)
 
 
-def _signed(forwards_mm: float, robot: RobotSpec) -> tuple[float, float]:
+def _sign_wheels(forwards_mm: float, robot: RobotSpec) -> tuple[float, float]:
     """Return the same way for the left and the right wheel, negative where the motor is reversed."""
     return (
         -forwards_mm if robot.left_reversed else forwards_mm,
@@ -68,13 +68,15 @@ class Records(NamedTuple):
     tick_hz: int
 
 
-def _fill(records: Records, at: int, left: EvenGlide, right: EvenGlide, zero_deg: float) -> None:
-    """Write what is the same in all records from offset `at` on; the loops then pack only the positions, quickly."""
+def _fill(
+    records: Records, offset: int, left: EvenGlide, right: EvenGlide, zero_deg: float
+) -> None:
+    """Write what is the same in all records from `offset` on; the loops then pack only the positions, quickly."""
     left_dps, right_dps = left.roll_deg * records.tick_hz, right.roll_deg * records.tick_hz
     zeros = 0, 0, 0.0, 0.0, 0.0, 0.0, 0.0
     common = TICK_RECORD.pack(*zeros, left_dps, right_dps, zero_deg, records.flags, records.actions)
     end = records.offsets.stop
-    records.buffer[at:end] = common * ((end - at) // 64)
+    records.buffer[offset:end] = common * ((end - offset) // 64)
 
 
 class Glide(NamedTuple):
@@ -124,12 +126,12 @@ def _glide_straight(
     x, y, heading, pack_into = drive.x_mm, drive.y_mm, drive.heading_deg, POSITION_FIELDS.pack_into
     across, up = forward_mm * cos(way), forward_mm * sin(way)
     left_at = right_at = 0.0
-    for at, tick, left_at, right_at in zip(
+    for offset, tick, left_at, right_at in zip(
         offsets, ticks, left.counts_deg, right.counts_deg, strict=True
     ):
         x += across
         y += up
-        pack_into(buffer, at, tick, line, x, y, heading, left_at, right_at)
+        pack_into(buffer, offset, tick, line, x, y, heading, left_at, right_at)
     drive.x_mm, drive.y_mm = x, y
     return left_at, right_at
 
@@ -152,10 +154,10 @@ class BrickDrive:
     )
 
     def __init__(self, robot: RobotSpec, start: Pose, early: float) -> None:
-        self._left_mm_per_deg, self._right_mm_per_deg = mm_per_degree(robot)
+        self._left_mm_per_deg, self._right_mm_per_deg = compute_mm_per_degree(robot)
         self._spacing_mm, self._early = robot.wheel_spacing_mm, early
         self.x_mm, self.y_mm, self.heading_deg = start.x_mm, start.y_mm, start.heading_deg
-        self.gyro_zero_deg = float32(start.heading_deg)
+        self.gyro_zero_deg = round_to_float32(start.heading_deg)
 
     def put(self, pose: Pose) -> None:
         """Set the robot's pose."""
@@ -177,7 +179,7 @@ class BrickDrive:
         left_per_deg, right_per_deg = self._left_mm_per_deg, self._right_mm_per_deg
         spacing, early, zero = self._spacing_mm, self._early, self.gyro_zero_deg
         x, y, heading, pack_into = self.x_mm, self.y_mm, self.heading_deg, TICK_RECORD.pack_into
-        for at, tick, left_deg, left_at, right_deg, right_at in zip(
+        for offset, tick, left_deg, left_at, right_deg, right_at in zip(
             offsets, ticks, *left, *right, strict=True
         ):
             left_mm, right_mm = left_deg * left_per_deg, right_deg * right_per_deg
@@ -188,7 +190,7 @@ class BrickDrive:
             heading += turned
             pack_into(
                 buffer,
-                at,
+                offset,
                 tick,
                 line,
                 x,
@@ -220,14 +222,14 @@ class BrickDrive:
         x, y, heading, pack_into = self.x_mm, self.y_mm, self.heading_deg, POSITION_FIELDS.pack_into
         early = turned * self._early
         left_at = right_at = 0.0
-        for at, tick, left_at, right_at in zip(
+        for offset, tick, left_at, right_at in zip(
             offsets, ticks, left.counts_deg, right.counts_deg, strict=True
         ):
             way = radians(heading + early)
             x += forward * cos(way)
             y += forward * sin(way)
             heading += turned
-            pack_into(buffer, at, tick, line, x, y, heading, left_at, right_at)
+            pack_into(buffer, offset, tick, line, x, y, heading, left_at, right_at)
         self.x_mm, self.y_mm, self.heading_deg = x, y, heading
         return left_at, right_at
 
@@ -255,7 +257,7 @@ class BrowserDrive:
     )
 
     def __init__(self, robot: RobotSpec, start: Pose, early: float) -> None:
-        self._left_rim_mm, self._right_rim_mm = _signed(
+        self._left_rim_mm, self._right_rim_mm = _sign_wheels(
             math.pi * robot.wheel_diameter_mm / robot.gear_ratio, robot
         )
         """How far each wheel rolls per turn of its motor."""
@@ -263,7 +265,7 @@ class BrowserDrive:
         self._left_deg = self._right_deg = self._forward_mm = self._turn = 0.0
         """Rotation of the wheels' motors in the last tick, and the step and turn that result from it."""
         self.put(start)
-        self.gyro_zero_deg = float32(self.heading_deg)
+        self.gyro_zero_deg = round_to_float32(self.heading_deg)
 
     def put(self, pose: Pose) -> None:
         """Set the robot's pose."""
@@ -284,7 +286,7 @@ class BrowserDrive:
             heading = self._heading + turned
             if heading > _WHOLE_TURN:
                 heading -= _WHOLE_TURN
-                self.gyro_zero_deg = float32(self.gyro_zero_deg - 360)
+                self.gyro_zero_deg = round_to_float32(self.gyro_zero_deg - 360)
             self._heading, self.heading_deg = heading, heading * 180.0 / math.pi
 
     def _step(self, left_deg: float, right_deg: float) -> tuple[float, float]:
@@ -300,7 +302,7 @@ class BrowserDrive:
         buffer, offsets, ticks, line, flags, actions, hz = records
         left_rim, right_rim = self._left_rim_mm, self._right_rim_mm
         spacing, early, zero = self._spacing_mm, self._early, self.gyro_zero_deg
-        x, y, heading, shown, pack_into = (
+        x, y, heading, shown_deg, pack_into = (
             self.x_mm,
             self.y_mm,
             self._heading,
@@ -308,7 +310,7 @@ class BrowserDrive:
             TICK_RECORD.pack_into,
         )
         whole, pi = _WHOLE_TURN, math.pi
-        for at, tick, left_deg, left_at, right_deg, right_at in zip(
+        for offset, tick, left_deg, left_at, right_deg, right_at in zip(
             offsets, ticks, *left, *right, strict=True
         ):
             left_mm, right_mm = left_deg / 360.0 * left_rim, right_deg / 360.0 * right_rim
@@ -319,16 +321,16 @@ class BrowserDrive:
             if turned:
                 heading += turned
                 if heading > whole:
-                    heading, zero = heading - whole, float32(zero - 360)
-                shown = heading * 180.0 / pi
+                    heading, zero = heading - whole, round_to_float32(zero - 360)
+                shown_deg = heading * 180.0 / pi
             pack_into(
                 buffer,
-                at,
+                offset,
                 tick,
                 line,
                 x,
                 y,
-                shown,
+                shown_deg,
                 left_at,
                 right_at,
                 left_deg * hz,
@@ -341,7 +343,7 @@ class BrowserDrive:
             x,
             y,
             heading,
-            shown,
+            shown_deg,
             zero,
         )
 
@@ -357,7 +359,7 @@ class BrowserDrive:
         x, y, heading, pack_into = self.x_mm, self.y_mm, self._heading, POSITION_FIELDS.pack_into
         whole, pi, early = _WHOLE_TURN, math.pi, turned * self._early
         left_at = right_at = 0.0
-        for at, tick, left_at, right_at in zip(
+        for offset, tick, left_at, right_at in zip(
             offsets, ticks, left.counts_deg, right.counts_deg, strict=True
         ):
             way = heading + early
@@ -366,8 +368,8 @@ class BrowserDrive:
             heading += turned
             if heading > whole:
                 heading -= whole
-                self.gyro_zero_deg = float32(self.gyro_zero_deg - 360)
-                _fill(records, at, left, right, self.gyro_zero_deg)
-            pack_into(buffer, at, tick, line, x, y, heading * 180.0 / pi, left_at, right_at)
+                self.gyro_zero_deg = round_to_float32(self.gyro_zero_deg - 360)
+                _fill(records, offset, left, right, self.gyro_zero_deg)
+            pack_into(buffer, offset, tick, line, x, y, heading * 180.0 / pi, left_at, right_at)
         self.x_mm, self.y_mm, self._heading, self.heading_deg = x, y, heading, heading * 180.0 / pi
         return left_at, right_at

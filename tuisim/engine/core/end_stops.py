@@ -23,7 +23,7 @@ def end_flag(robot: RobotSpec, port: str, end: str) -> int:
     return FLAG_FIRST_END << len(MOTOR_ENDS) * number + MOTOR_ENDS.index(end)
 
 
-def flags_at_start(robot: RobotSpec) -> int:
+def build_start_flags(robot: RobotSpec) -> int:
     """Return the flags of all motors at the start of a run."""
     return sum(EndStops(robot, motor).flags for motor in robot.extra_motors)
 
@@ -70,7 +70,7 @@ class Fence(EndStops):
 
     def __init__(self, robot: RobotSpec, spec: MotorSpec, motor: SimulatedMotor) -> None:
         super().__init__(robot, spec)
-        motor.fence(self._low_deg, self._high_deg)
+        motor.limit_axle(self._low_deg, self._high_deg)
 
     def step(self, motor: Motor, tick: int) -> None:
         """Run one tick of the motor."""

@@ -22,7 +22,7 @@ OUTSIDE_DISC_RGB = (245, 226, 225)
 """Colour of a pixel array in the corners of the box, outside the disc."""
 
 
-def disc_mask(diameter: int) -> list[list[bool]]:
+def build_disc_mask(diameter: int) -> list[list[bool]]:
     """Return which pixels of a box belong to its disc, as rows of `diameter` booleans."""
     radius = diameter / 2
     return [
@@ -31,15 +31,15 @@ def disc_mask(diameter: int) -> list[list[bool]]:
     ]
 
 
-def disc_pixels(diameter: int) -> int:
+def count_disc_pixels(diameter: int) -> int:
     """Return the number of pixels in a disc: 305 for 20, 69 for 10, 697 for 30."""
-    return sum(map(sum, disc_mask(diameter)))
+    return sum(map(sum, build_disc_mask(diameter)))
 
 
 @lru_cache(maxsize=16)
-def disc_spans(diameter: int) -> tuple[tuple[int, int, int], ...]:
+def list_disc_spans(diameter: int) -> tuple[tuple[int, int, int], ...]:
     """Return the rows of a disc: the row in its box, and the first and the end column."""
-    rows = enumerate(disc_mask(diameter))
+    rows = enumerate(build_disc_mask(diameter))
     return tuple(
         (row, inside.index(True), diameter - inside[::-1].index(True))
         for row, inside in rows
@@ -65,7 +65,7 @@ class Field:
     floor_rgb: Rgb | None = None
     """Colour of the floor around the mat; None for no floor, where nothing reflects."""
 
-    def disc_sums(self, diameter: int, col: int, row: int) -> tuple[int, int, int]:
+    def sum_disc(self, diameter: int, col: int, row: int) -> tuple[int, int, int]:
         """Return the sums of red, green and blue over a disc; the upper left corner of its box may be off the mat.
 
         `diameter` is a key of `sums`.
@@ -74,24 +74,24 @@ class Field:
         left, top = col + diameter, row + diameter
         if 0 <= left < width and 0 <= top < self.height_px + diameter:
             sums = self.sums[diameter]
-            at = (top * width + left) * 3
-            found = sums[at], sums[at + 1], sums[at + 2]
+            offset = (top * width + left) * 3
+            left_sums = sums[offset], sums[offset + 1], sums[offset + 2]
         else:
-            found = (0, 0, 0)
-        if self.floor_rgb is None or self.holds(diameter, col, row):
-            return found
+            left_sums = (0, 0, 0)
+        if self.floor_rgb is None or self.has_box(diameter, col, row):
+            return left_sums
         count = self._count_on_floor(diameter, col, row)
         red, green, blue = self.floor_rgb
-        return found[0] + count * red, found[1] + count * green, found[2] + count * blue
+        return left_sums[0] + count * red, left_sums[1] + count * green, left_sums[2] + count * blue
 
-    def holds(self, diameter: int, col: int, row: int) -> bool:
+    def has_box(self, diameter: int, col: int, row: int) -> bool:
         """Return whether all of a box is on the mat."""
         return 0 <= col <= self.width_px - diameter and 0 <= row <= self.height_px - diameter
 
     def _count_on_floor(self, diameter: int, col: int, row: int) -> int:
         """Return how many pixels of a disc are off the mat."""
         count = 0
-        for down, first, end in disc_spans(diameter):
+        for down, first, end in list_disc_spans(diameter):
             count += end - first
             if 0 <= row + down < self.height_px:
                 count -= max(0, min(col + end, self.width_px) - max(col + first, 0))
@@ -100,11 +100,11 @@ class Field:
     def pixel(self, col: int, row: int) -> Rgb:
         """Return a pixel of the mat, or of what is around it."""
         if 0 <= col < self.width_px and 0 <= row < self.height_px:
-            at = 3 * (row * self.width_px + col)
-            return self.pixels[at], self.pixels[at + 1], self.pixels[at + 2]
+            offset = 3 * (row * self.width_px + col)
+            return self.pixels[offset], self.pixels[offset + 1], self.pixels[offset + 2]
         return self.floor_rgb or (0, 0, 0)
 
-    def box(self, diameter: int, col: int, row: int) -> bytes:
+    def read_box(self, diameter: int, col: int, row: int) -> bytes:
         """Return the pixels of one box, row-major, three bytes per pixel."""
         off = bytes(self.floor_rgb or (0, 0, 0))
         left, right = max(col, 0), min(col + diameter, self.width_px)
@@ -112,22 +112,22 @@ class Field:
         rows = []
         for image_row in range(row, row + diameter):
             if 0 <= image_row < self.height_px and left < right:
-                at = 3 * image_row * self.width_px
-                inside = self.pixels[at + 3 * left : at + 3 * right]
+                offset = 3 * image_row * self.width_px
+                inside = self.pixels[offset + 3 * left : offset + 3 * right]
                 rows.append(before + bytes(inside) + after)
             else:
                 rows.append(off * diameter)
         return b"".join(rows)
 
-    def disc(self, diameter: int, col: int, row: int) -> bytes:
+    def read_disc(self, diameter: int, col: int, row: int) -> bytes:
         """Return the pixels of a disc, row by row, three bytes per pixel."""
-        if not self.holds(diameter, col, row):
-            return in_disc(Field.box(self, diameter, col, row), diameter)
+        if not self.has_box(diameter, col, row):
+            return in_disc(Field.read_box(self, diameter, col, row), diameter)
         pixels, line, corner = self.pixels, 3 * self.width_px, 3 * (row * self.width_px + col)
         return b"".join(
             [
                 pixels[corner + down * line + 3 * first : corner + down * line + 3 * end]
-                for down, first, end in disc_spans(diameter)
+                for down, first, end in list_disc_spans(diameter)
             ]
         )
 
@@ -137,7 +137,9 @@ def find_floor_rgb(width_px: int, height_px: int, pixels: memoryview) -> Rgb:
     line = 3 * width_px
     ends = range(0, line, 3), range(line * (height_px - 1), line * height_px, 3)
     sides = range(0, line * height_px, line), range(line - 3, line * height_px, line)
-    edge = Counter(bytes(pixels[at : at + 3]) for places in (*ends, *sides) for at in places)
+    edge = Counter(
+        bytes(pixels[offset : offset + 3]) for places in (*ends, *sides) for offset in places
+    )
     red, green, blue = edge.most_common(1)[0][0]
     return red, green, blue
 
@@ -146,7 +148,7 @@ def in_disc(box: bytes, diameter: int) -> bytes:
     """Return the pixels of the disc in a box, row by row, three bytes per pixel."""
     return b"".join(
         box[3 * (down * diameter + first) : 3 * (down * diameter + end)]
-        for down, first, end in disc_spans(diameter)
+        for down, first, end in list_disc_spans(diameter)
     )
 
 
@@ -165,7 +167,7 @@ def disc_weights(diameter: int, strategy: str) -> tuple[int, ...]:
     """
     radius = diameter / 2
     weights = []
-    for row, inside_row in enumerate(disc_mask(diameter)):
+    for row, inside_row in enumerate(build_disc_mask(diameter)):
         for col, inside in enumerate(inside_row):
             squared = (row - radius) ** 2 + (col - radius) ** 2
             weights.append(_weight(squared, radius, strategy) if inside else 0)

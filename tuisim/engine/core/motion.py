@@ -14,19 +14,32 @@ from tuisim.engine.core.brick_motor import BrickMotor
 from tuisim.engine.core.browser_motor import BrowserMotor
 from tuisim.engine.core.collision import Solids
 from tuisim.engine.core.drift import (
-    MOST_TIMES,
+    MAX_TIMES,
     build_gyro,
+    build_slipping_wheels,
     can_strain_gyro,
     find_drift,
-    slipping_wheels,
 )
-from tuisim.engine.core.drive import BrickDrive, BrowserDrive, Drive, Glide, Records, mm_per_degree
+from tuisim.engine.core.drive import (
+    BrickDrive,
+    BrowserDrive,
+    Drive,
+    Glide,
+    Records,
+    compute_mm_per_degree,
+)
 from tuisim.engine.core.driver.jiffies import draw_jiffies
 from tuisim.engine.core.driver.simulated import SimulatedMotor, build_axle, build_motor
-from tuisim.engine.core.end_stops import flags_at_start
+from tuisim.engine.core.end_stops import build_start_flags
 from tuisim.engine.core.motor_columns import MotorRecorder, MotorSink
-from tuisim.engine.core.motors import POSITION, STANDSTILL_DEG, Motor, MotorState, top_speed_dps
-from tuisim.engine.core.noise import wheel_noise, wheel_noises
+from tuisim.engine.core.motors import (
+    POSITION,
+    STANDSTILL_DEG,
+    Motor,
+    MotorState,
+    find_top_speed_dps,
+)
+from tuisim.engine.core.noise import draw_noise, draw_noises
 from tuisim.engine.core.profile import NS_PER_S, MotorLaw
 from tuisim.engine.core.servo.motor import ServoMotor
 from tuisim.engine.core.tick_record import (
@@ -51,11 +64,11 @@ ROOM_TICKS = 256
 CHECK_TICKS = 4
 """Obstacles are checked again when the distance known to be free is less than this many ticks need."""
 
-FEW_TICKS = 3
+MAX_SINGLE_TICKS = 3
 """Up to this number of ticks, setting up a tight loop costs more than it saves."""
 
 
-def stall_ticks(tick_hz: int) -> int:
+def compute_stall_ticks(tick_hz: int) -> int:
     """Return the number of ticks without motion after which a running motor is stalled."""
     return STALL_MS * tick_hz // 1000 + 1
 
@@ -64,18 +77,22 @@ WEIGHT_DPS2 = 5000.0
 """Change of speed per second, times the robot's weight."""
 
 
-def weight_step(spec: RunSpec) -> float:
+def compute_weight_step(spec: RunSpec) -> float:
     """Return the largest change of a motor's speed in one tick, in degrees per second; 0 is unlimited."""
     return WEIGHT_DPS2 / spec.robot.weight / spec.profile.tick_hz if spec.robot.weight else 0.0
 
 
-def motor_of(spec: RunSpec, kind: str, *, free: bool = False) -> Motor:
+def create_motor(spec: RunSpec, kind: str, *, free: bool = False) -> Motor:
     """Return a motor of one of `MOTOR_KINDS`, in its initial state.
 
     Args:
         free: Whether it drives no wheel.
     """
-    profile, step, fastest_dps = spec.profile, weight_step(spec), top_speed_dps(kind, spec.profile)
+    profile, step, fastest_dps = (
+        spec.profile,
+        compute_weight_step(spec),
+        find_top_speed_dps(kind, spec.profile),
+    )
     match profile.motor_law:
         case MotorLaw.BRICK:
             return BrickMotor(profile.tick_hz, step, fastest_dps)
@@ -90,7 +107,7 @@ def motor_of(spec: RunSpec, kind: str, *, free: bool = False) -> Motor:
             assert_never(profile.motor_law)
 
 
-def drive_of(spec: RunSpec) -> Drive:
+def build_drive(spec: RunSpec) -> Drive:
     """Return the drive of a run's robot, at its initial pose."""
     robot, start, early = spec.robot, spec.world.start, 0.5 if spec.profile.halfway_heading else 0.0
     match spec.profile.motor_law:
@@ -149,19 +166,19 @@ class Motion:
     def __init__(self, spec: RunSpec, sink: TickSink, others: tuple[Motor, ...]) -> None:
         self._hz = spec.profile.tick_hz
         self._tick_s = 1.0 / self._hz
-        self.stall_ticks = stall_ticks(self._hz)
-        self._left_mm_per_deg, self._right_mm_per_deg = mm_per_degree(spec.robot)
+        self.stall_ticks = compute_stall_ticks(self._hz)
+        self._left_mm_per_deg, self._right_mm_per_deg = compute_mm_per_degree(spec.robot)
         self._spacing_mm = spec.robot.wheel_spacing_mm
         self._early = 0.5 if spec.profile.halfway_heading else 0.0
         """Fraction of a tick's turn that already applies to the motion of that tick."""
         self._build_solids(spec)
         self.tick = 0
         left, right = spec.robot.wheel_motors
-        self.left, self.right = motor_of(spec, left.kind), motor_of(spec, right.kind)
+        self.left, self.right = create_motor(spec, left.kind), create_motor(spec, right.kind)
         self.motors: tuple[Motor, ...] = self.left, self.right, *others
         """All motors, in the order of `RobotSpec.motors`."""
         self.pen_down = spec.robot.pen.down
-        self.press_flags = flags_at_start(spec.robot)
+        self.press_flags = build_start_flags(spec.robot)
         """End stops that motors are at, and touch sensors that a hand presses: the bits of `PRESS_FLAGS`."""
         self.line = 0
         """Source line that spends the simulated time, for the record."""
@@ -182,30 +199,30 @@ class Motion:
         if self._solids is not None:
             # One wheel at full speed forwards, the other backwards.
             fastest = max(
-                top_speed_dps(motor.kind, spec.profile) for motor in spec.robot.wheel_motors
+                find_top_speed_dps(motor.kind, spec.profile) for motor in spec.robot.wheel_motors
             )
             farthest = fastest * self._tick_s * abs(self._left_mm_per_deg)
-            farthest *= 1 if find_drift(spec).is_none else MOST_TIMES
+            farthest *= 1 if find_drift(spec).is_none else MAX_TIMES
             self._longest_mm = farthest * (1 + 2 * self._solids.reach_mm / self._spacing_mm)
 
     def _begin(self, spec: RunSpec, sink: TickSink, motor_sink: MotorSink | None = None) -> None:
         """Take up its initial state, as far as it differs between runs of one robot in one world."""
         self.spec, self._sink = spec, sink
         self.noise = spec.world.noise
-        self.drive = drive_of(spec)
+        self.drive = build_drive(spec)
         """The robot's pose and how its wheels change it."""
-        self._slipping = slipping_wheels(spec)
+        self._slipping = build_slipping_wheels(spec)
         gyro = build_gyro(spec, self.drive)
         self._roll = self.drive.roll if gyro is None else gyro.roll
         """Moves the robot, and what its gyro senses."""
         self._strains_gyro = can_strain_gyro(spec)
         self._start_clocks()
-        self._buffer: Buffer = sink.room(ROOM_TICKS)
+        self._buffer: Buffer = sink.reserve(ROOM_TICKS)
         self._room_end = ROOM_TICKS
         """Number of records the buffer has space for."""
         self._motor_recorder = MotorRecorder(self._driven, motor_sink)
         self._motor_recorder.make_room(ROOM_TICKS)
-        TICK_RECORD.pack_into(self._buffer, 64, *self._fields())
+        TICK_RECORD.pack_into(self._buffer, 64, *self._build_record())
         self._publish(1)
 
     def _start_clocks(self) -> None:
@@ -232,7 +249,7 @@ class Motion:
         self._motor_recorder.record(count, ticks)
         self._sink.publish(count + ticks)
 
-    def next_change_ns(self, now_ns: int) -> int:
+    def find_next_change_ns(self, now_ns: int) -> int:
         """Return when a motor may change next, as far as a program can be told: with the next tick or look."""
         ends_ns = -(-(self.tick + 1) * NS_PER_S // self._hz)
         looks_ns = [motor.next_look_ns for motor in self._driven if motor.next_look_ns > now_ns]
@@ -257,7 +274,7 @@ class Motion:
         while done < ticks:
             if until_change and self._driven and self.notice_change():
                 break
-            quiet = self._quiet_ticks(ticks - done) if ticks - done > FEW_TICKS else 0
+            quiet = self._count_quiet_ticks(ticks - done) if ticks - done > MAX_SINGLE_TICKS else 0
             if quiet > 0:
                 self._glide(quiet)
                 done += quiet
@@ -268,21 +285,21 @@ class Motion:
                     break
         return done
 
-    def _quiet_ticks(self, most: int) -> int:
+    def _count_quiet_ticks(self, most: int) -> int:
         """Return for how many ticks, at most `most`, nothing but ramps and motion happens."""
         left, right = self.left, self.right
-        if self._slipping is not None or (self.noise.motor and not self._glides_with_noise()):
+        if self._slipping is not None or (self.noise.motor and not self._can_glide_with_noise()):
             return 0
         if self._strains_gyro and not (left.resting and right.resting):
             return 0
         return min(
             most,
-            left.quiet_ticks(self.tick),
-            right.quiet_ticks(self.tick),
+            left.count_quiet_ticks(self.tick),
+            right.count_quiet_ticks(self.tick),
             self._clear_ticks(most),
         )
 
-    def _glides_with_noise(self) -> bool:
+    def _can_glide_with_noise(self) -> bool:
         """Return whether motors with noise can run several ticks at once: nothing blocks them, and none has a goal."""
         left, right = self.left, self.right
         if self._solids is not None or left.mode == POSITION or right.mode == POSITION:
@@ -300,23 +317,23 @@ class Motion:
         if self._solids is not None and self._solids.remaining_mm(self._pose()) < self._longest_mm:
             before = left.state(), right.state()
         noise = self.noise.motor
-        left_noise, right_noise = wheel_noise(self.spec.seed, tick, noise) if noise else (0.0, 0.0)
+        left_noise, right_noise = draw_noise(self.spec.seed, tick, noise) if noise else (0.0, 0.0)
         modes = None if self._driven else (left.mode, right.mode)
         left_deg, right_deg = left.step(tick, left_noise), right.step(tick, right_noise)
         if modes is not None and modes != (left.mode, right.mode):
             self.changed = True
         left_roll, right_roll = left_deg, right_deg
         if slipping is not None:
-            left_roll, right_roll = slipping.turned_deg(tick, left_deg, right_deg)
+            left_roll, right_roll = slipping.turn_deg(tick, left_deg, right_deg)
         if before is not None:
-            part, aside_mm = self._obstructed(before, left_roll, right_roll)
+            part, aside_mm = self._undo_blocked(before, left_roll, right_roll)
             left_deg, right_deg = left_deg * part, right_deg * part
             left_roll, right_roll = left_roll * part, right_roll * part
         self._roll(left_roll, right_roll)
         if aside_mm is not None:
             self._push(aside_mm)
         if self._driven:
-            self._bar_wheels()
+            self._free_wheels()
         self._left_dps, self._right_dps = left_deg * self._hz, right_deg * self._hz
         flags = (left.mode and FLAG_LEFT_RUNNING) | (right.mode and FLAG_RIGHT_RUNNING)
         flags |= (self.pen_down and FLAG_PEN_DOWN) | self.press_flags
@@ -350,7 +367,7 @@ class Motion:
             return most
         if left.blocked_ticks or right.blocked_ticks:
             return 0
-        left_ends, right_ends = self._wheel_ends(left, right)
+        left_ends, right_ends = self._list_wheel_speeds(left, right)
         per_dps = self._tick_s * abs(self._left_mm_per_deg)
         straight, turn = 0, 0.0
         if left_ends == right_ends and left_ends[0] * left_ends[1] >= 0:
@@ -366,11 +383,11 @@ class Motion:
         if way == 0.0:
             return most
         pose = self._pose()
-        free = self._solids.free_way_mm(pose, way * min(most, CHECK_TICKS), straight)
+        free = self._solids.find_free_way_mm(pose, way * min(most, CHECK_TICKS), straight)
         # Without any obstacle it is infinite.
         return most if free >= way * most else int(free / way)
 
-    def _wheel_ends(
+    def _list_wheel_speeds(
         self, left: Motor, right: Motor
     ) -> tuple[tuple[float, float], tuple[float, float]]:
         """Return the current and the target speed that each wheel's motor gives it, positive forwards."""
@@ -384,7 +401,7 @@ class Motion:
         drive = self.drive
         return drive.x_mm, drive.y_mm, drive.heading_deg
 
-    def _obstructed(
+    def _undo_blocked(
         self, before: tuple[MotorState, MotorState], left_deg: float, right_deg: float
     ) -> tuple[float, tuple[float, float] | None]:
         """Undo the part of a tick that an obstacle or wall blocks.
@@ -397,7 +414,7 @@ class Motion:
             return 1.0, None
         turn_deg = degrees((right_mm - left_mm) / self._spacing_mm)
         pose = self._pose()
-        part, aside_mm = self._solids.leeway(pose, (left_mm + right_mm) / 2, turn_deg)
+        part, aside_mm = self._solids.find_leeway(pose, (left_mm + right_mm) / 2, turn_deg)
         if part == 1.0:
             self.left.blocked_ticks = self.right.blocked_ticks = 0
             return part, aside_mm
@@ -409,27 +426,27 @@ class Motion:
                 self.changed = True
         return part, aside_mm
 
-    def _bar_wheels(self) -> None:
+    def _free_wheels(self) -> None:
         """Set free the wheels that nothing blocks any more."""
         left, right = self._driven[0], self._driven[1]
         if not (left.is_barred or right.is_barred):
             return
         left_deg, right_deg = left.tendency_deg, right.tendency_deg
         left_mm, right_mm = left_deg * self._left_mm_per_deg, right_deg * self._right_mm_per_deg
-        blocked = self._meets(left_mm, right_mm)
+        blocked = self._is_blocked(left_mm, right_mm)
         left.bar(left_deg if blocked else 0.0)
         right.bar(right_deg if blocked else 0.0)
 
-    def _meets(self, left_mm: float, right_mm: float) -> bool:
+    def _is_blocked(self, left_mm: float, right_mm: float) -> bool:
         """Whether an obstacle allows no part of a motion of the wheels that is worth mentioning."""
         if self._solids is None or (left_mm == 0.0 and right_mm == 0.0):
             return False
         turn_deg = degrees((right_mm - left_mm) / self._spacing_mm)
-        part = self._solids.leeway(self._pose(), (left_mm + right_mm) / 2, turn_deg).part
+        part = self._solids.find_leeway(self._pose(), (left_mm + right_mm) / 2, turn_deg).part
         way_mm = part * max(abs(left_mm), abs(right_mm))
         return way_mm < STANDSTILL_DEG * abs(self._left_mm_per_deg)
 
-    def _fields(self) -> tuple[float, ...]:
+    def _build_record(self) -> tuple[float, ...]:
         """Return the record of the current tick."""
         return (
             self.tick,
@@ -440,11 +457,11 @@ class Motion:
             self._left_dps,
             self._right_dps,
             self.drive.gyro_zero_deg,
-            self._flags(),
+            self._build_flags(),
             self.actions & 0xFFFF,
         )
 
-    def _flags(self) -> int:
+    def _build_flags(self) -> int:
         return (
             (FLAG_LEFT_RUNNING if self.left.mode else 0)
             | (FLAG_RIGHT_RUNNING if self.right.mode else 0)
@@ -456,7 +473,7 @@ class Motion:
         """Return a buffer with space for `ticks` more records, and usually for some beyond."""
         end = self._sink.count + ticks
         if end > self._room_end:
-            self._buffer, self._room_end = self._sink.room(ticks + ROOM_TICKS), end + ROOM_TICKS
+            self._buffer, self._room_end = self._sink.reserve(ticks + ROOM_TICKS), end + ROOM_TICKS
             self._motor_recorder.make_room(self._room_end)
         return self._buffer
 
@@ -470,7 +487,7 @@ class Motion:
                 else min(ticks, max(self.left.ramping_ticks, self.right.ramping_ticks))
             )
             part = ramping or ticks
-            if part <= FEW_TICKS:
+            if part <= MAX_SINGLE_TICKS:
                 for _ in range(part):
                     self.tick_once()
                 ticks -= part
@@ -478,15 +495,21 @@ class Motion:
             # Before anything moves: without space for the records there are no ticks.
             buffer = self._make_room(part)
             sink, hz = self._sink, self._hz
-            at, flags, actions = 64 + 64 * sink.count, self._flags(), self.actions & 0xFFFF
+            offset, flags, actions = (
+                64 + 64 * sink.count,
+                self._build_flags(),
+                self.actions & 0xFFFF,
+            )
             offsets, ticks_ahead = (
-                range(at, at + 64 * part, 64),
+                range(offset, offset + 64 * part, 64),
                 range(self.tick + 1, self.tick + 1 + part),
             )
             records = Records(buffer, offsets, ticks_ahead, self.line, flags, actions, hz)
             if ramping:
                 left, right = (
-                    self._glides(part) if noise else (self.left.glide(part), self.right.glide(part))
+                    self._glide_with_noise(part)
+                    if noise
+                    else (self.left.glide(part), self.right.glide(part))
                 )
                 self.drive.glide(records, left, right)
                 left_deg, right_deg = left.rolls_deg[-1], right.rolls_deg[-1]
@@ -500,8 +523,8 @@ class Motion:
             self._publish(part)
             ticks -= part
 
-    def _glides(self, ticks: int) -> tuple[Glide, Glide]:
+    def _glide_with_noise(self, ticks: int) -> tuple[Glide, Glide]:
         """Run the motors with noise."""
         assert isinstance(self.left, BrickMotor) and isinstance(self.right, BrickMotor)
-        left, right = wheel_noises(self.spec.seed, self.tick + 1, ticks, self.noise.motor)
+        left, right = draw_noises(self.spec.seed, self.tick + 1, ticks, self.noise.motor)
         return self.left.glide_noisily(ticks, left), self.right.glide_noisily(ticks, right)

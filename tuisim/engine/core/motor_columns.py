@@ -95,12 +95,12 @@ class MotorRecorder:
         buffer = self._buffer
         if buffer is None:
             return
-        begin = at = 64 + self._size * tick
+        begin = offset = 64 + self._size * tick
         for motor in self._motors:
-            motor.record(buffer, at)
-            at += MOTOR_RECORD.size
+            motor.record(buffer, offset)
+            offset += MOTOR_RECORD.size
         if ticks > 1:
-            buffer[at : begin + self._size * ticks] = buffer[begin:at] * (ticks - 1)
+            buffer[offset : begin + self._size * ticks] = buffer[begin:offset] * (ticks - 1)
 
     def read_values(self, tick: int) -> tuple[MotorValues, ...]:
         """Return what was recorded at a tick; without a sink, what the drivers know now."""

@@ -26,7 +26,7 @@ STANDSTILL_DEG = 1e-3
 """A wheel that turns less than this in a tick does not turn."""
 
 
-def top_speed_dps(kind: str, profile: ProfileSpec) -> float:
+def find_top_speed_dps(kind: str, profile: ProfileSpec) -> float:
     """Return the speed of a kind of motor without load."""
     return MEDIUM_MAX_SPEED_DPS if kind == "medium" else profile.max_speed_dps
 
@@ -78,7 +78,7 @@ class Motor(Protocol):
     def step(self, tick: int, noise_dps: float) -> float:
         """Run one tick of any kind with noise added to the speed, and return the rotation of the wheel, in degrees."""
 
-    def quiet_ticks(self, tick: int) -> int:
+    def count_quiet_ticks(self, tick: int) -> int:
         """Return for how many ticks after `tick` only the ramp changes this motor."""
 
     def glide(self, ticks: int) -> Glide:

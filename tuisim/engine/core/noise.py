@@ -28,7 +28,7 @@ _WHEEL_NUMBERS = Struct(f"<{2 * _BLOCK_TICKS}I")
 
 
 @cache
-def _shake_128() -> Any:
+def _load_shake_128() -> Any:
     # Imported on first use: a program without noise starts faster.
     from hashlib import shake_128
 
@@ -37,17 +37,17 @@ def _shake_128() -> Any:
 
 def prepare() -> None:
     """Load what noise needs, so that it need not be loaded when the first random bytes are drawn."""
-    _shake_128()
+    _load_shake_128()
 
 
-def stream(seed: int, tick: int, channel: str, size: int) -> bytes:
+def generate_bytes(seed: int, tick: int, channel: str, size: int) -> bytes:
     """Return `size` random bytes for one seed, tick and channel."""
-    random: bytes = _shake_128()(f"{seed}/{tick}/{channel}".encode()).digest(size)
+    random: bytes = _load_shake_128()(f"{seed}/{tick}/{channel}".encode()).digest(size)
     return random
 
 
 @lru_cache(maxsize=8)
-def _errors(level: int) -> tuple[int, ...]:
+def _list_errors(level: int) -> tuple[int, ...]:
     """Return the error of a pixel for each byte of the stream: uniform ±level, rounded."""
     return tuple(round(level * (2 * byte / 255 - 1)) for byte in range(256))
 
@@ -65,9 +65,9 @@ class Clamping(NamedTuple):
 
 
 @lru_cache(maxsize=8)
-def clamping(level: int) -> Clamping:
+def compute_clamping(level: int) -> Clamping:
     """Return what errors of up to ±level do to each value of a pixel."""
-    errors = sorted(_errors(level))
+    errors = sorted(_list_errors(level))
     first, second = [0, *accumulate(errors)], [0, *accumulate(error * error for error in errors)]
     shift, variance = [], []
     count, below, above = len(errors), 0, len(errors)
@@ -90,7 +90,7 @@ def clamping(level: int) -> Clamping:
     return Clamping(tuple(shift), tuple(variance), even, second[-1] / count)
 
 
-def noisy_sums(
+def add_noise_to_sums(
     disc: Callable[[], bytes],
     count: int,
     sums: tuple[int, int, int],
@@ -106,27 +106,27 @@ def noisy_sums(
         level: The largest error of a pixel.
         normals: Three normally distributed numbers.
     """
-    most = _PIXEL_MAX * count
-    if sums == (0, 0, 0) or sums == (most, most, most):
+    max_sum = _PIXEL_MAX * count
+    if sums == (0, 0, 0) or sums == (max_sum, max_sum, max_sum):
         red = green = blue = b"\xff" * count if sums[0] else bytes(count)
     else:
         pixels = disc()
         red, green, blue = pixels[0::3], pixels[1::3], pixels[2::3]
-    shift, spread = red_shift, red_spread = _moved(red, level)
+    shift, spread = red_shift, red_spread = _compute_shift(red, level)
     first = round(sums[0] + shift + spread * normals[0])
     # Most mats are grey: what holds for one channel holds for the others.
-    shift, spread = (red_shift, red_spread) if green == red else _moved(green, level)
+    shift, spread = (red_shift, red_spread) if green == red else _compute_shift(green, level)
     second = round(sums[1] + shift + spread * normals[1])
-    shift, spread = (red_shift, red_spread) if blue == red else _moved(blue, level)
+    shift, spread = (red_shift, red_spread) if blue == red else _compute_shift(blue, level)
     third = round(sums[2] + shift + spread * normals[2])
-    if 0 <= first <= most and 0 <= second <= most and 0 <= third <= most:
+    if 0 <= first <= max_sum and 0 <= second <= max_sum and 0 <= third <= max_sum:
         return first, second, third
-    return min(max(first, 0), most), min(max(second, 0), most), min(max(third, 0), most)
+    return min(max(first, 0), max_sum), min(max(second, 0), max_sum), min(max(third, 0), max_sum)
 
 
-def _moved(values: bytes, level: int) -> tuple[float, float]:
+def _compute_shift(values: bytes, level: int) -> tuple[float, float]:
     """Return how far the sum of a channel's values moves on average, and the standard deviation of its error."""
-    law, count = clamping(level), len(values)
+    law, count = compute_clamping(level), len(values)
     if values.count(values[0]) == count:
         return count * law.shift[values[0]], sqrt(count * law.variance[values[0]])
     clamped = values.translate(None, law.even)
@@ -145,25 +145,25 @@ def _moved(values: bytes, level: int) -> tuple[float, float]:
 
 
 @lru_cache(maxsize=8)
-def _reading_block(seed: int, block: int, channel: str) -> bytes:
-    return stream(seed, block, f"{channel}/mean", _BLOCK_TICKS * _READING_BYTES)
+def _generate_reading_block(seed: int, block: int, channel: str) -> bytes:
+    return generate_bytes(seed, block, f"{channel}/mean", _BLOCK_TICKS * _READING_BYTES)
 
 
-def drawn_numbers(seed: int, tick: int, channel: str, count: int) -> list[float]:
+def draw_numbers(seed: int, tick: int, channel: str, count: int) -> list[float]:
     """Return numbers from 0 up to 1, evenly distributed, for one seed, tick and channel."""
-    numbers = Struct(f"<{count}I").unpack(stream(seed, tick, channel, 4 * count))
+    numbers = Struct(f"<{count}I").unpack(generate_bytes(seed, tick, channel, 4 * count))
     return [number / _NUMBERS for number in numbers]
 
 
-def reading_noise(seed: int, tick: int, channel: str) -> tuple[float, float, float]:
+def draw_reading_noise(seed: int, tick: int, channel: str) -> tuple[float, float, float]:
     """Return three normally distributed numbers for what a sensor reads in one tick."""
     block, offset = divmod(tick, _BLOCK_TICKS)
     numbers = _FOUR_NUMBERS.unpack_from(
-        _reading_block(seed, block, channel), offset * _READING_BYTES
+        _generate_reading_block(seed, block, channel), offset * _READING_BYTES
     )
-    at, turn, other, further = numbers
+    radius, turn, other, further = numbers
     # By Box and Muller: two numbers from one place on a disc, the third from another.
-    far, angle = sqrt(-2 * log((at + 1) / _NUMBERS)), turn * _TURN
+    far, angle = sqrt(-2 * log((radius + 1) / _NUMBERS)), turn * _TURN
     return (
         far * cos(angle),
         far * sin(angle),
@@ -171,69 +171,67 @@ def reading_noise(seed: int, tick: int, channel: str) -> tuple[float, float, flo
     )
 
 
-def noisy_channel(pixels: bytes, total: int, level: int, random: bytes) -> bytes:
+def add_noise_to_channel(pixels: bytes, total: int, level: int, random: bytes) -> bytes:
     """Return one channel of some pixels with errors of up to ±level, whose sum is a given one.
 
     Args:
         pixels: The values of the channel.
-        total: Their sum after the noise, from `noisy_sums`.
+        total: Their sum after the noise, from `add_noise_to_sums`.
         level: The largest error of a pixel.
         random: As many random bytes as there are pixels.
     """
-    errors = _errors(level)
-    found = [
+    errors = _list_errors(level)
+    values = [
         min(max(pixel + errors[byte], 0), _PIXEL_MAX)
         for pixel, byte in zip(pixels, random, strict=True)
     ]
-    missing = total - sum(found)
+    missing = total - sum(values)
     step = 1 if missing > 0 else -1
     # Small steps everywhere, beginning where the stream says, leave the errors as they are distributed.
-    order = sorted(range(len(found)), key=random.__getitem__)
+    order = sorted(range(len(values)), key=random.__getitem__)
     while missing:
         before = missing
-        for at in order:
+        for index in order:
             if (
                 missing
-                and 0 <= found[at] + step <= _PIXEL_MAX
-                and abs(found[at] + step - pixels[at]) <= level
+                and 0 <= values[index] + step <= _PIXEL_MAX
+                and abs(values[index] + step - pixels[index]) <= level
             ):
-                found[at] += step
+                values[index] += step
                 missing -= step
         if missing == before:
             break
-    return bytes(found)
+    return bytes(values)
 
 
 @lru_cache(maxsize=8)
-def _wheel_block(
+def _generate_wheel_block(
     seed: int, block: int, most: float, channel: str = "wheels"
 ) -> tuple[list[float], list[float]]:
-    numbers = _WHEEL_NUMBERS.unpack(stream(seed, block, channel, _WHEEL_NUMBERS.size))
+    numbers = _WHEEL_NUMBERS.unpack(generate_bytes(seed, block, channel, _WHEEL_NUMBERS.size))
     noises = [(number / 2147483647.5 - 1.0) * most for number in numbers]
     return noises[0::2], noises[1::2]
 
 
-def wheel_noises(
-    seed: int, tick: int, count: int, most_dps: int
-) -> tuple[list[float], list[float]]:
+def draw_noises(seed: int, tick: int, count: int, most_dps: int) -> tuple[list[float], list[float]]:
     """Return the noise of the left and the right wheel in several ticks: uniform, up to ±`most_dps`."""
     block, offset = divmod(tick, _BLOCK_TICKS)
-    left, right = _wheel_block(seed, block, most_dps)
+    left, right = _generate_wheel_block(seed, block, most_dps)
     left, right = left[offset : offset + count], right[offset : offset + count]
     while len(left) < count:
         block, missing = block + 1, count - len(left)
-        more = _wheel_block(seed, block, most_dps)
+        more = _generate_wheel_block(seed, block, most_dps)
         left, right = left + more[0][:missing], right + more[1][:missing]
     return left, right
 
 
-def wheel_noise(seed: int, tick: int, most_dps: int) -> tuple[float, float]:
+def draw_noise(seed: int, tick: int, most_dps: int) -> tuple[float, float]:
     """Return the noise of the left and the right wheel in one tick: uniform, up to ±`most_dps`."""
-    left, right = _wheel_block(seed, tick // _BLOCK_TICKS, most_dps)
+    left, right = _generate_wheel_block(seed, tick // _BLOCK_TICKS, most_dps)
     return left[tick % _BLOCK_TICKS], right[tick % _BLOCK_TICKS]
 
 
-def wheel_slip(seed: int, tick: int) -> tuple[float, float]:
+def draw_slip(seed: int, tick: int) -> tuple[float, float]:
     """Return a number for the slip of the left and the right wheel in one tick: uniform, with a variance of 1."""
-    left, right = _wheel_block(seed, tick // _BLOCK_TICKS, sqrt(3), "slip")
+    left, right = _generate_wheel_block(seed, tick // _BLOCK_TICKS, sqrt(3), "slip")
     return left[tick % _BLOCK_TICKS], right[tick % _BLOCK_TICKS]

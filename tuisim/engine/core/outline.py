@@ -57,7 +57,7 @@ class RobotOutline:
         )
 
 
-def outline_of(robot: RobotSpec) -> RobotOutline:
+def build_outline(robot: RobotSpec) -> RobotOutline:
     """Return the outline of a robot."""
     sensors = [sensor.y_mm for sensor in robot.color_sensors]
     return RobotOutline(
@@ -73,11 +73,11 @@ def outline_of(robot: RobotSpec) -> RobotOutline:
         bumpers_mm=tuple(
             (touch.x_mm, touch.y_mm, touch.width_mm / 2) for touch in robot.touch_sensors
         ),
-        other_sensors_mm=tuple(_other_sensors(robot)),
+        other_sensors_mm=tuple(_list_other_sensors(robot)),
     )
 
 
-def _other_sensors(robot: RobotSpec) -> Iterator[Point]:
+def _list_other_sensors(robot: RobotSpec) -> Iterator[Point]:
     for sensor in robot.further_sensors:
         if (
             not isinstance(sensor, TouchSpec | UltrasonicSpec)

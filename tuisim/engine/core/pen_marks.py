@@ -8,7 +8,7 @@ from itertools import islice
 from math import floor
 
 from tuisim.base.data_class import dataclass
-from tuisim.engine.core.css_colors import css_rgb
+from tuisim.engine.core.css_colors import parse_css_rgb
 from tuisim.engine.core.field import Field, disc_weights, in_disc
 from tuisim.engine.core.geometry import Pose, world_point
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, RunSpec
@@ -38,18 +38,18 @@ class MarkedField(Field):
         mat = field.width_px, field.height_px, field.pixels, field.sums, field.floor_rgb
         return cls(*mat, marks, blocks)
 
-    def _touched(self, diameter: int, col: int, row: int) -> bool:
+    def _has_marks(self, diameter: int, col: int, row: int) -> bool:
         rows = range(row // _BLOCK_PX, (row + diameter) // _BLOCK_PX + 1)
         cols = range(col // _BLOCK_PX, (col + diameter) // _BLOCK_PX + 1)
         return any(
             (block_col, block_row) in self.blocks for block_row in rows for block_col in cols
         )
 
-    def disc_sums(self, diameter: int, col: int, row: int) -> tuple[int, int, int]:
-        """As `Field.disc_sums`, including marks."""
-        # Field.disc_sums by name: `slots=True` makes a new class, which `super()` without arguments does not find.
-        red, green, blue = Field.disc_sums(self, diameter, col, row)
-        if not self._touched(diameter, col, row):
+    def sum_disc(self, diameter: int, col: int, row: int) -> tuple[int, int, int]:
+        """As `Field.sum_disc`, including marks."""
+        # Field.sum_disc by name: `slots=True` makes a new class, which `super()` without arguments does not find.
+        red, green, blue = Field.sum_disc(self, diameter, col, row)
+        if not self._has_marks(diameter, col, row):
             return red, green, blue
         for number, inside in enumerate(disc_weights(diameter, "mean")):
             place = (col + number % diameter, row + number // diameter)
@@ -61,24 +61,24 @@ class MarkedField(Field):
                 blue += drawn[2] - below[2]
         return red, green, blue
 
-    def disc(self, diameter: int, col: int, row: int) -> bytes:
-        """As `Field.disc`, including marks."""
-        if self._touched(diameter, col, row):
-            return in_disc(self.box(diameter, col, row), diameter)
-        return Field.disc(self, diameter, col, row)
+    def read_disc(self, diameter: int, col: int, row: int) -> bytes:
+        """As `Field.read_disc`, including marks."""
+        if self._has_marks(diameter, col, row):
+            return in_disc(self.read_box(diameter, col, row), diameter)
+        return Field.read_disc(self, diameter, col, row)
 
-    def box(self, diameter: int, col: int, row: int) -> bytes:
+    def read_box(self, diameter: int, col: int, row: int) -> bytes:
         """As `Field.box`, including marks."""
-        pixels = Field.box(self, diameter, col, row)
-        if not self._touched(diameter, col, row):
+        pixels = Field.read_box(self, diameter, col, row)
+        if not self._has_marks(diameter, col, row):
             return pixels
         drawn_on = bytearray(pixels)
         for down in range(diameter):
             for right in range(diameter):
                 drawn = self.marks.get((col + right, row + down))
                 if drawn is not None:
-                    at = 3 * (down * diameter + right)
-                    drawn_on[at : at + 3] = bytes(drawn)
+                    offset = 3 * (down * diameter + right)
+                    drawn_on[offset : offset + 3] = bytes(drawn)
         return bytes(drawn_on)
 
 
@@ -91,7 +91,7 @@ class PenMarks:
 
     def __init__(self, field: Field, spec: RunSpec) -> None:
         self._pen = spec.robot.pen
-        self._rgb = css_rgb(self._pen.color) or (0, 0, 0)
+        self._rgb = parse_css_rgb(self._pen.color) or (0, 0, 0)
         self.field = MarkedField.on(field, {})
         """The mat with everything drawn up to now."""
         self.records = 0
@@ -103,7 +103,7 @@ class PenMarks:
         """Return the mat with only the first `count` marks, as it was at that time."""
         return MarkedField.on(self.field, dict(islice(self.field.marks.items(), count)))
 
-    def take_in(self, records: Iterable[tuple[float, ...]]) -> None:
+    def add_records(self, records: Iterable[tuple[float, ...]]) -> None:
         """Continue the trace with the next tick records, which have the fields of `TICK_RECORD`."""
         for _, _, x_mm, y_mm, heading_deg, *_, flags, actions in records:
             self.records += 1
@@ -114,21 +114,21 @@ class PenMarks:
             # A robot that was moved by hand draws no line.
             last = self._last if self._last is not None and self._last_actions == actions else point
             if last is point or last != point:
-                self._stroke(last, point)
+                self._draw_stroke(last, point)
             self._last, self._last_actions = point, int(actions)
 
-    def _pixels(self, start: float, end: float) -> range:
+    def _list_pixels(self, start: float, end: float) -> range:
         """Return the columns or rows of the pixels that a stroke may reach."""
         radius = self._pen.width_mm / 2
         return range(floor(min(start, end) - radius), int(max(start, end) + radius) + 1)
 
-    def _stroke(self, start: _Point, end: _Point) -> None:
+    def _draw_stroke(self, start: _Point, end: _Point) -> None:
         radius = self._pen.width_mm / 2
         x0, y0, x1, y1 = start[0], FIELD_HEIGHT_MM - start[1], end[0], FIELD_HEIGHT_MM - end[1]
         dx, dy = x1 - x0, y1 - y0
         squared = dx * dx + dy * dy
         field = self.field
-        cols, rows = self._pixels(x0, x1), self._pixels(y0, y1)
+        cols, rows = self._list_pixels(x0, x1), self._list_pixels(y0, y1)
         if field.floor_rgb is None:
             cols = range(max(0, cols.start), min(field.width_px, cols.stop))
             rows = range(max(0, rows.start), min(field.height_px, rows.stop))

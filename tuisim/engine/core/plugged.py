@@ -90,11 +90,11 @@ def plug_parts(robot: RobotSpec, parts: Sequence[PluggedPart]) -> RobotSpec:
             # Both wheels change at once.
             robot = robot if following is None else _change_wheels(robot, part, following)
         elif part.role != RIGHT:
-            robot = _plug_one(robot, part)
+            robot = _plug_part(robot, part)
     return robot
 
 
-def _plug_one(robot: RobotSpec, part: PluggedPart) -> RobotSpec:
+def _plug_part(robot: RobotSpec, part: PluggedPart) -> RobotSpec:
     if part.part in SENSOR_PARTS:
         return _add_sensor(robot, part.port, SENSOR_PARTS[part.part])
     motor = MotorSpec(part.port, MOTOR_PARTS[part.part])
@@ -107,7 +107,7 @@ def _plug_one(robot: RobotSpec, part: PluggedPart) -> RobotSpec:
 
 def _change_wheels(robot: RobotSpec, left: PluggedPart, right: PluggedPart) -> RobotSpec:
     others = _leave_out(robot.extra_motors, (left.port, right.port))
-    wheels = (MotorSpec(one.port, MOTOR_PARTS[one.part]) for one in (left, right))
+    wheels = (MotorSpec(wheel.port, MOTOR_PARTS[wheel.part]) for wheel in (left, right))
     return _put_wheels(replace(robot, extra_motors=others), *wheels)
 
 
@@ -138,7 +138,7 @@ def _add_sensor(robot: RobotSpec, port: str, kind: type[SensorSpec]) -> RobotSpe
     sides = ORDERS[kind] if alike or kind is not TouchSpec else ("front",)
     choices = [SENSOR_MAKERS[kind](port, side, names, body) for side in sides]
     places = {_find_place(sensor) for sensor in alike}
-    new = next((one for one in choices if _find_place(one) not in places), choices[-1])
+    new = next((choice for choice in choices if _find_place(choice) not in places), choices[-1])
     return _put_sensors(robot, [*others, new])
 
 
@@ -151,12 +151,14 @@ def _put_sensors(robot: RobotSpec, sensors: Sequence[SensorSpec]) -> RobotSpec:
     fields: dict[str, Any] = {}
     left = [*sensors]
     for mount in sorted(MOUNTS, key=lambda mount: mount.many):
-        alike = [one for one in left if type(one) is mount.spec]
+        alike = [sensor for sensor in left if type(sensor) is mount.spec]
         if mount.many:
             fields[mount.field] = tuple(alike)
         else:
             before = getattr(robot, mount.field)
-            first = next((one for one in alike if one == before), alike[0] if alike else None)
+            first = next(
+                (sensor for sensor in alike if sensor == before), alike[0] if alike else None
+            )
             fields[mount.field], alike = first, alike[:0] if first is None else [first]
-        left = [one for one in left if one not in alike]
+        left = [sensor for sensor in left if sensor not in alike]
     return replace(robot, **fields)

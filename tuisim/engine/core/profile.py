@@ -26,7 +26,7 @@ MS = 1_000_000
 NS_PER_S = 1_000_000_000
 
 
-def due_ns(tick: int, tick_hz: int) -> int:
+def compute_due_ns(tick: int, tick_hz: int) -> int:
     """Return when a tick is due, in ns from the start: ceil(tick · 10⁹ / tick_hz)."""
     return -(-tick * NS_PER_S // tick_hz)
 
@@ -84,7 +84,7 @@ _NEW = "choice of this project"
 MAX_COST_MS = 60_000
 
 
-def _cost(*, default: int, source: str, later: bool = False) -> Any:
+def _build_cost(*, default: int, source: str, later: bool = False) -> Any:
     """Return a field for a cost in simulated nanoseconds, which files give in milliseconds, too."""
     return whole(0, MAX_COST_MS * MS, default=default, unit="ns", source=source, later=later)
 
@@ -98,33 +98,33 @@ class ProfileSpec(Spec):
     name: str = text(what="name")
     title: str = text(what="title")
     tick_hz: int = whole(1, 1000, source=f"{_NEW}: 100; {_OLD}: 30")
-    """Ticks per second; see `due_ns`."""
+    """Ticks per second; see `compute_due_ns`."""
 
-    color_read_ns: int = _cost(
+    color_read_ns: int = _build_cost(
         default=10 * MS, source=f"{_OLD}: it waits before it takes the value; {_BRICK}; {_FAST}"
     )
-    color_code_read_ns: int = _cost(
+    color_code_read_ns: int = _build_cost(
         default=20 * MS,
         source=f"{_OLD}: it waits twice; ev3, lego-micropython: a reading like any other",
     )
     """`color` and `color_name`."""
-    ultrasonic_read_ns: int = _cost(
+    ultrasonic_read_ns: int = _build_cost(
         default=10 * MS,
         source=f"{_OLD}: it waits before it takes the value; ev3, lego-micropython: a reading like any other",
     )
-    gyro_read_ns: int = _cost(
+    gyro_read_ns: int = _build_cost(
         default=20 * MS,
         source=f"{_OLD}: it waits twice; ev3, lego-micropython: a reading like any other",
     )
-    attribute_read_ns: int = _cost(
+    attribute_read_ns: int = _build_cost(
         default=1 * MS,
         source=f"{_NEW}, so that polling takes time; {_OLD}: nothing; {_BRICK}; {_FAST}",
     )
     """Any other device attribute."""
-    clock_read_ns: int = _cost(
+    clock_read_ns: int = _build_cost(
         default=20_000, source=f"{_NEW}, so that loops on the clock end; {_OLD}: nothing"
     )
-    display_update_ns: int = _cost(
+    display_update_ns: int = _build_cost(
         default=10 * MS,
         source=f"{_NEW}, an estimate: 130 steps per pixel at the brick's 300 MHz; the old simulator has none; "
         "lego-micropython: its firmware draws in C",
@@ -181,20 +181,20 @@ class ProfileSpec(Spec):
         source="ev3dev starts a program in its own folder; a course starts it in the notebook's",
     )
     """Whether a program starts in its own folder, not in the user's working directory."""
-    mode_switch_ns: int = _cost(
+    mode_switch_ns: int = _build_cost(
         default=0,
         later=True,
         source="Pybricks 2.0, `pbdevice.c`: 30 ms; ev3: 15 ms, an estimate: the driver waits for a message in the "
         "new mode; the course, the old simulator: none",
     )
     """Time that a sensor needs for the first reading in another mode than before."""
-    infrared_switch_ns: int = _cost(
+    infrared_switch_ns: int = _build_cost(
         default=0,
         later=True,
         source="Pybricks 2.0, `pbdevice.c`, and ev3: 1100 ms (pybricks/support, issue 14)",
     )
     """Likewise, of the infrared sensor."""
-    stale_reading_ns: int = _cost(
+    stale_reading_ns: int = _build_cost(
         default=0,
         later=True,
         source="measured on a brick (pybricks/support, issue 14): ev3: old values up to 18 ms after the change, "
@@ -254,13 +254,13 @@ class ProfileSpec(Spec):
     )
     """Whether a change of mode sets the angle of a gyro to 0, unless the sensor keeps it."""
 
-    attribute_write_ns: int = _cost(
+    attribute_write_ns: int = _build_cost(
         default=0,
         later=True,
         source="measured on a brick (ev3dev-lang-python, issue 732): 1.1 ms; the course, the old simulator: nothing",
     )
     """Any write of a device attribute."""
-    cached_read_ns: int = _cost(
+    cached_read_ns: int = _build_cost(
         default=0,
         later=True,
         source="measured on a brick (ev3dev-lang-python, issue 732): 0.14 ms; the course, the old simulator: nothing",

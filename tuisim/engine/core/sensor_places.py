@@ -65,17 +65,17 @@ def _name(base: str, side: str, names: Collection[str]) -> str:
     return next(name for name in choices if name not in names)
 
 
-def _color(port: str, side: str, names: Collection[str], _body: Body) -> SensorSpec:
+def _place_color(port: str, side: str, names: Collection[str], _body: Body) -> SensorSpec:
     x_mm, y_mm = DOWN[side]
     name = str(side) if side not in names else _name("color", side, names)
     return ColorSensorSpec(name, port, x_mm, y_mm)
 
 
-def _ultrasonic(port: str, side: str, names: Collection[str], _body: Body) -> SensorSpec:
+def _place_ultrasonic(port: str, side: str, names: Collection[str], _body: Body) -> SensorSpec:
     return UltrasonicSpec(_name("ultrasonic", side, names), port, *LOOKS[side])
 
 
-def _infrared(port: str, side: str, names: Collection[str], _body: Body) -> SensorSpec:
+def _place_infrared(port: str, side: str, names: Collection[str], _body: Body) -> SensorSpec:
     return InfraredSpec(_name("infrared", side, names), port, *LOOKS[side])
 
 
@@ -89,15 +89,15 @@ def _touch(port: str, side: str, names: Collection[str], body: Body) -> SensorSp
     )
 
 
-def _gyro(port: str, _side: str, names: Collection[str], _body: Body) -> SensorSpec:
+def _place_gyro(port: str, _side: str, names: Collection[str], _body: Body) -> SensorSpec:
     return GyroSpec(_name("gyro", "", names), port)
 
 
 SENSOR_MAKERS: Mapping[type[SensorSpec], Callable[[str, str, Collection[str], Body], Any]] = {
-    ColorSensorSpec: _color,
-    UltrasonicSpec: _ultrasonic,
-    GyroSpec: _gyro,
+    ColorSensorSpec: _place_color,
+    UltrasonicSpec: _place_ultrasonic,
+    GyroSpec: _place_gyro,
     TouchSpec: _touch,
-    InfraredSpec: _infrared,
+    InfraredSpec: _place_infrared,
 }
 """Make a sensor of a class: they take its port, its side, the names of the other sensors, and the robot's body."""

@@ -6,13 +6,13 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from tuisim.engine.core.drift import can_strain_gyro, find_drift, sensed_turn_rate_dps
-from tuisim.engine.core.drive import float32, turn_rate_dps
+from tuisim.engine.core.drift import can_strain_gyro, find_drift, sense_turn_rate_dps
+from tuisim.engine.core.drive import round_to_float32, turn_rate_dps
 from tuisim.engine.core.driver.jiffies import draw_jiffies
 from tuisim.engine.core.driver.simulated import SimulatedMotor, change_load
 from tuisim.engine.core.end_stops import build_stops
 from tuisim.engine.core.geometry import Pose
-from tuisim.engine.core.motion import Motion, motor_of
+from tuisim.engine.core.motion import Motion, create_motor
 from tuisim.engine.core.motor_columns import MotorSink
 from tuisim.engine.core.profile import NS_PER_S
 from tuisim.engine.core.servo.bases import DriveBases
@@ -50,7 +50,7 @@ class Simulation(Motion):
     def __init__(self, spec: RunSpec, sink: TickSink) -> None:
         extra = spec.robot.extra_motors
         self.others: tuple[Motor, ...] = tuple(
-            motor_of(spec, motor.kind, free=True) for motor in extra
+            create_motor(spec, motor.kind, free=True) for motor in extra
         )
         """Motors that do not drive a wheel, in the order of `RobotSpec.extra_motors`."""
         self._stops = tuple(
@@ -75,11 +75,11 @@ class Simulation(Motion):
 
     # Reading
 
-    def due_ns(self, tick: int) -> int:
-        """Return when a tick is due, in ns from the start: `profile.due_ns`, inlined."""
+    def compute_due_ns(self, tick: int) -> int:
+        """Return when a tick is due, in ns from the start: `profile.compute_due_ns`, inlined."""
         return -(-tick * NS_PER_S // self._hz)
 
-    def ticks_at(self, time_ns: int) -> int:
+    def count_ticks(self, time_ns: int) -> int:
         """Return the number of ticks that are due at a time."""
         return time_ns * self._hz // NS_PER_S
 
@@ -89,13 +89,17 @@ class Simulation(Motion):
         drive = self.drive
         return Pose(drive.x_mm, drive.y_mm, drive.heading_deg)
 
-    def instant(self, *, with_motors: bool = False) -> Instant:
+    def build_instant(self, *, with_motors: bool = False) -> Instant:
         """Return the current instant, with values rounded as the telemetry stores them.
 
         Args:
             with_motors: Whether with what the drivers know of the motors.
         """
-        left, right, spec = float32(self._left_dps), float32(self._right_dps), self.spec
+        left, right, spec = (
+            round_to_float32(self._left_dps),
+            round_to_float32(self._right_dps),
+            self.spec,
+        )
         return Instant(
             tick=self.tick,
             pose=self.pose,
@@ -105,7 +109,7 @@ class Simulation(Motion):
             right_speed_dps=right,
             turn_rate_dps=turn_rate_dps(left, right, spec.robot)
             if self._slipping is None
-            else sensed_turn_rate_dps(left, right, spec),
+            else sense_turn_rate_dps(left, right, spec),
             gyro_zero_deg=self.drive.gyro_zero_deg,
             press_flags=self.press_flags,
             noise=self.noise,
@@ -115,7 +119,7 @@ class Simulation(Motion):
             motors=self.motor_values if with_motors else (),
         )
 
-    def records_since(self, first: int) -> Iterator[tuple[float, ...]]:
+    def read_records(self, first: int) -> Iterator[tuple[float, ...]]:
         """Return the tick records from `first` on, with the fields of `TICK_RECORD`."""
         return TICK_RECORD.iter_unpack(self._buffer[64 + 64 * first : 64 + 64 * self._sink.count])
 
@@ -143,13 +147,13 @@ class Simulation(Motion):
         """Set the robot's pose; the gyro keeps its angle."""
         drive, before_deg = self.drive, self.drive.heading_deg
         drive.put(pose)
-        drive.gyro_zero_deg = float32(drive.gyro_zero_deg + drive.heading_deg - before_deg)
+        drive.gyro_zero_deg = round_to_float32(drive.gyro_zero_deg + drive.heading_deg - before_deg)
         if self._driven:
-            self._bar_wheels()
+            self._free_wheels()
 
     def reset_gyro(self) -> None:
         """Make the current heading the gyro's 0."""
-        self.drive.gyro_zero_deg = float32(self.drive.heading_deg)
+        self.drive.gyro_zero_deg = round_to_float32(self.drive.heading_deg)
 
     def change_robot(self, robot: RobotSpec) -> None:
         """Go on with a robot that has other parts.
@@ -159,7 +163,7 @@ class Simulation(Motion):
         before = {
             find_place(number, motor): number for number, motor in enumerate(self.spec.robot.motors)
         }
-        sources = [before.get(find_place(at, motor)) for at, motor in enumerate(robot.motors)]
+        sources = [before.get(find_place(index, motor)) for index, motor in enumerate(robot.motors)]
         self.spec = replace(self.spec, robot=robot)
         earlier = self.motors
         motors = [
@@ -195,7 +199,7 @@ class Simulation(Motion):
 
     def _add_motor(self, kind: str, *, free: bool) -> Motor:
         """Return a motor that has been at rest until now."""
-        motor = motor_of(self.spec, kind, free=free)
+        motor = create_motor(self.spec, kind, free=free)
         if isinstance(motor, SimulatedMotor):
             motor.start_clock(draw_jiffies(self.spec.seed))
         motor.glide_evenly(self.tick)
@@ -212,18 +216,18 @@ class Simulation(Motion):
     def has_driven(self) -> bool:
         """Whether a wheel has turned, or is about to."""
         is_moving = self.left.mode or self.right.mode
-        return bool(is_moving) or any(record[7] or record[8] for record in self.records_since(0))
+        return bool(is_moving) or any(record[7] or record[8] for record in self.read_records(0))
 
     def has_turned(self, number: int) -> bool:
         """Return whether a motor that drives no wheel has turned or is about to, by its number among them."""
         motor = self.others[number]
         return bool(motor.mode or motor.position_deg) or self._reported[number] != (0.0, 0.0)
 
-    def rewrite_record(self) -> None:
+    def update_record(self) -> None:
         """Write the current tick's record again, after a change from outside."""
         # In one write: readers see this record already.
-        at = 64 * self._sink.count
-        self._buffer[at : at + 64] = TICK_RECORD.pack(*self._fields())
+        offset = 64 * self._sink.count
+        self._buffer[offset : offset + 64] = TICK_RECORD.pack(*self._build_record())
 
 
 REPORT_DEG = 0.25
@@ -289,6 +293,6 @@ class FurtherMotors(Simulation):
             self.on_turns(turns)
 
 
-def simulation_of(spec: RunSpec, sink: TickSink) -> Simulation:
+def build_simulation(spec: RunSpec, sink: TickSink) -> Simulation:
     """Return the simulation of a run: the plain one if the wheel motors are its only motors."""
     return FurtherMotors(spec, sink) if spec.robot.extra_motors else Simulation(spec, sink)

@@ -35,7 +35,7 @@ from tuisim.engine.core.spec_fields import (
     text,
     whole,
 )
-from tuisim.engine.core.values import Number, Part, Parts, values_of
+from tuisim.engine.core.values import Number, Part, Parts, list_values
 
 FIELD_WIDTH_MM = 2362
 """Width of the field; one mat pixel is one mm."""
@@ -98,7 +98,7 @@ _MAX_RANGE_DEG = 100_000
 _MAX_POSITION_MM = 10_000
 
 
-def _x(default: Any = MISSING) -> Any:
+def _build_x(default: Any = MISSING) -> Any:
     return number(
         -500,
         500,
@@ -109,26 +109,26 @@ def _x(default: Any = MISSING) -> Any:
     )
 
 
-def _y(default: Any = MISSING) -> Any:
+def _build_y(default: Any = MISSING) -> Any:
     return number(-500, 500, default=default, unit="mm", label="y mm", help="forward of the axle")
 
 
-def _direction() -> Any:
+def _build_direction() -> Any:
     about = "counter-clockwise from straight ahead"
     return number(-360, 360, default=0.0, unit="°", label="Angle °", help=about)
 
 
-def _input_port(default: str) -> Any:
+def _build_input_port(default: str) -> Any:
     return choice(INPUT_PORTS, what="port", default=default, label="Port", help="in1 … in4")
 
 
-def _output_port(default: str, label: str) -> Any:
+def _build_output_port(default: str, label: str) -> Any:
     return choice(
         (*OUTPUT_PORTS, NO_PORT), what="port", default=default, label=label, help="outA … outD"
     )
 
 
-def _sensor_name(default: str) -> Any:
+def _build_sensor_name(default: str) -> Any:
     return text(what="sensor name", pattern=SENSOR_NAME, default=default)
 
 
@@ -177,11 +177,11 @@ class MotorSpec(Spec):
 class SensorSpec(Spec):
     """Any sensor."""
 
-    name: str = _sensor_name("sensor")
+    name: str = _build_sensor_name("sensor")
     """Prefix of its telemetry columns, such as `left`."""
-    port: str = _input_port("in1")
+    port: str = _build_input_port("in1")
 
-    def key_of(self, name: str) -> str:
+    def name_key(self, name: str) -> str:
         return f"{self.name}.{name}"
 
 
@@ -189,10 +189,10 @@ class SensorSpec(Spec):
 class TouchSpec(SensorSpec):
     """A touch sensor: pressed while its bumper touches an obstacle or a wall, or by a motor at its end stop."""
 
-    name: str = _sensor_name("touch")
-    port: str = _input_port("in1")
-    x_mm: float = _x(0.0)
-    y_mm: float = _y(45.0)
+    name: str = _build_sensor_name("touch")
+    port: str = _build_input_port("in1")
+    x_mm: float = _build_x(0.0)
+    y_mm: float = _build_y(45.0)
     width_mm: float = number(
         1, 500, default=20.0, unit="mm", label="width mm", help="of the bumper, across the robot"
     )
@@ -219,11 +219,11 @@ class TouchSpec(SensorSpec):
 class InfraredSpec(SensorSpec):
     """The infrared sensor: proximity, direction and distance of a beacon, buttons of a remote control."""
 
-    name: str = _sensor_name("infrared")
-    port: str = _input_port("in4")
-    x_mm: float = _x(0.0)
-    y_mm: float = _y(20.0)
-    angle_deg: float = _direction()
+    name: str = _build_sensor_name("infrared")
+    port: str = _build_input_port("in4")
+    x_mm: float = _build_x(0.0)
+    y_mm: float = _build_y(20.0)
+    angle_deg: float = _build_direction()
     """Direction, counter-clockwise from straight ahead."""
 
 
@@ -233,8 +233,8 @@ class ColorSensorSpec(SensorSpec):
 
     name: str = text(what="sensor name", pattern=SENSOR_NAME)
     port: str = choice(INPUT_PORTS, what="port", label="Port", help="in1 … in4")
-    x_mm: float = _x()
-    y_mm: float = _y()
+    x_mm: float = _build_x()
+    y_mm: float = _build_y()
     # A disc of 1 pixel has no pixel strictly inside it.
     diameter_mm: int = whole(
         2, 100, default=20, unit="mm", label="⌀ mm", help="of the visible disc, whole mm"
@@ -273,11 +273,11 @@ class ColorSensorSpec(SensorSpec):
 class UltrasonicSpec(SensorSpec):
     """The forward distance sensor: the nearest echo of a fan of rays."""
 
-    name: str = _sensor_name("ultrasonic")
-    port: str = _input_port("in1")
-    x_mm: float = _x(0.0)
-    y_mm: float = _y(20.0)
-    angle_deg: float = _direction()
+    name: str = _build_sensor_name("ultrasonic")
+    port: str = _build_input_port("in1")
+    x_mm: float = _build_x(0.0)
+    y_mm: float = _build_y(20.0)
+    angle_deg: float = _build_direction()
     max_range_mm: float = number(
         1, 10_000, default=2550.0, unit="mm", label="Range mm", help="reported when no echo returns"
     )
@@ -306,8 +306,8 @@ class UltrasonicSpec(SensorSpec):
 class GyroSpec(SensorSpec):
     """The gyro: clockwise angle since the last reset, and rate of turn."""
 
-    name: str = _sensor_name("gyro")
-    port: str = _input_port("in4")
+    name: str = _build_sensor_name("gyro")
+    port: str = _build_input_port("in4")
     keeps_angle: bool = flag(
         default=False,
         later=True,
@@ -385,8 +385,8 @@ class PenSpec(Spec):
 
     KEY = "pen"
 
-    x_mm: float = _x(0.0)
-    y_mm: float = _y(0.0)
+    x_mm: float = _build_x(0.0)
+    y_mm: float = _build_y(0.0)
     color: str = color(
         default="red",
         label="Colour",
@@ -446,9 +446,9 @@ class RobotSpec(Spec):
         help=f"{', '.join(ROBOT_WEIGHTS)}, or a number",
     )
     """0 changes speed at once; otherwise the acceleration is 5000 / weight degrees per second each second."""
-    left_port: str = _output_port("outB", "Left motor")
+    left_port: str = _build_output_port("outB", "Left motor")
     """Port of the motor of the left wheel; `NO_PORT`, as `right_port`, on a robot without wheels."""
-    right_port: str = _output_port("outC", "Right motor")
+    right_port: str = _build_output_port("outC", "Right motor")
     color_sensors: tuple[ColorSensorSpec, ...] = parts(
         ColorSensorSpec,
         default=(
@@ -535,21 +535,21 @@ class RobotSpec(Spec):
     @property
     def sensors(self) -> tuple[SensorSpec, ...]:
         """All mounted sensors, in the order of the telemetry columns."""
-        return tuple(sensor for mount in MOUNTS for sensor in self.sensors_in(mount))
+        return tuple(sensor for mount in MOUNTS for sensor in self.list_sensors(mount))
 
     @property
     def further_sensors(self) -> tuple[SensorSpec, ...]:
         """Sensors that are not standard equipment, in the same order."""
         return tuple(
-            sensor for mount in MOUNTS if not mount.standard for sensor in self.sensors_in(mount)
+            sensor for mount in MOUNTS if not mount.standard for sensor in self.list_sensors(mount)
         )
 
-    def sensors_in(self, mount: Mount) -> tuple[SensorSpec, ...]:
+    def list_sensors(self, mount: Mount) -> tuple[SensorSpec, ...]:
         """Return the sensors of one mount."""
-        found = getattr(self, mount.field)
+        sensors = getattr(self, mount.field)
         if mount.many:
-            return tuple(found)
-        return () if found is None else (found,)
+            return tuple(sensors)
+        return () if sensors is None else (sensors,)
 
     def check(self) -> None:
         used = self._check_wheel_ports()
@@ -626,7 +626,7 @@ class Mount(NamedTuple):
 
 MOUNTS = tuple(
     Mount(name, value.of, isinstance(value, Parts), value.standard, value.key or name)
-    for name, value in values_of(RobotSpec).items()
+    for name, value in list_values(RobotSpec).items()
     if isinstance(value, Part) and issubclass(value.of, SensorSpec)
 )
 """All fields for sensors, in the order of the telemetry columns."""

@@ -25,7 +25,7 @@ from tuisim.engine.core.values import (
     Value,
     Whole,
     WrongValue,
-    values_of,
+    list_values,
 )
 
 
@@ -143,8 +143,8 @@ class Spec:
         return spec
 
     def _set_values(self, values: Mapping[str, Any]) -> None:
-        for name, one in self.__dataclass_fields__.items():
-            value = values.get(name, one.default)
+        for name, spec_field in self.__dataclass_fields__.items():
+            value = values.get(name, spec_field.default)
             if value is MISSING:
                 raise TypeError(f"{type(self).__name__} lacks {name}")
             object.__setattr__(self, name, value)
@@ -152,15 +152,15 @@ class Spec:
             raise TypeError(f"{type(self).__name__} has no {', '.join(unknown)}")
 
     def _check_values(self) -> None:
-        for name, value in values_of(type(self)).items():
-            found = getattr(self, name)
-            if found is None and value.optional:
+        for name, value in list_values(type(self)).items():
+            data = getattr(self, name)
+            if data is None and value.optional:
                 continue
             try:
-                value.check(found)
+                value.check(data)
             except WrongValue as error:
                 raise self.ERROR(
-                    error.message, error.hint, key=self.key_of(name) + error.part
+                    error.message, error.hint, key=self.name_key(name) + error.part
                 ) from None
 
     def check(self) -> None:
@@ -170,7 +170,7 @@ class Spec:
             ConfigError: one is broken.
         """
 
-    def key_of(self, name: str) -> str:
+    def name_key(self, name: str) -> str:
         """Return the name of a value in errors."""
         return f"{self.KEY}.{name}" if self.KEY else name
 
@@ -180,27 +180,27 @@ class Spec:
     def __delattr__(self, name: str) -> NoReturn:
         raise AttributeError(f"{type(self).__name__} is frozen")
 
-    def _contents(self) -> tuple[Any, ...]:
+    def _list_contents(self) -> tuple[Any, ...]:
         return tuple(getattr(self, name) for name in self.__dataclass_fields__)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Spec) or type(other) is not type(self):
             return NotImplemented
-        return self._contents() == other._contents()
+        return self._list_contents() == other._list_contents()
 
     def __hash__(self) -> int:
         try:
             return self._hash
         except AttributeError:
-            object.__setattr__(self, "_hash", hash(self._contents()))
+            object.__setattr__(self, "_hash", hash(self._list_contents()))
             return self._hash
 
     def __repr__(self) -> str:
-        pairs = zip(self.__dataclass_fields__, self._contents(), strict=True)
+        pairs = zip(self.__dataclass_fields__, self._list_contents(), strict=True)
         return f"{type(self).__name__}({', '.join(f'{name}={value!r}' for name, value in pairs)})"
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return type(self), self._contents()
+        return type(self), self._list_contents()
 
 
 @dataclass_transform(

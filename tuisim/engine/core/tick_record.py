@@ -50,7 +50,7 @@ class TickSink(Protocol):
 
     count: int
 
-    def room(self, records: int) -> Buffer:
+    def reserve(self, records: int) -> Buffer:
         """Return a writable buffer in which record k of 64 bytes starts at 64 + 64·k; valid until the next call."""
 
     def publish(self, count: int) -> None:
@@ -62,7 +62,7 @@ class NoRecording:
 
     count = 0
 
-    def room(self, records: int) -> Buffer:
+    def reserve(self, records: int) -> Buffer:
         """Return a buffer that nobody reads."""
         return bytearray(64 * (records + 1))
 

@@ -43,12 +43,12 @@ class WrongValue(ValueError):  # noqa: N818  # the name says what it is
         """Which part of the value is wrong, such as `[2]`; empty for the whole of it."""
 
 
-def shown(value: object) -> str:
+def quote(value: object) -> str:
     """Return the `repr` of a value for messages, shortened."""
     return str(value).lower() if isinstance(value, bool) else _SHORT.repr(value)
 
 
-def number_text(value: float) -> str:
+def format_number(value: float) -> str:
     """Return a number for people: six digits, no exponent where none is needed, no -0."""
     text = f"{value:.6g}"
     return "0" if text == "-0" else text
@@ -109,31 +109,31 @@ class Value(ABC):
         Raises:
             WrongValue: it is not allowed.
         """
-        self.from_data(value)
+        self.parse_data(value)
 
     @abstractmethod
-    def from_data(self, data: object) -> Any:
+    def parse_data(self, data: object) -> Any:
         """Return the value that a document gives: texts, numbers, booleans, lists.
 
         Raises:
             WrongValue: it is not allowed.
         """
 
-    def from_text(self, text: str) -> Any:
+    def parse_text(self, text: str) -> Any:
         """Return the value that an option or a form gives.
 
         Raises:
             WrongValue: it is not allowed.
         """
-        return self.from_data(text)
+        return self.parse_data(text)
 
-    def to_text(self, value: Any) -> str:
+    def format_text(self, value: Any) -> str:
         """Return a value as an option or a form has it."""
         return str(value)
 
-    def wrong(self, value: object) -> WrongValue:
+    def build_error(self, value: object) -> WrongValue:
         """Return the error about a value, to be raised."""
-        return WrongValue(f"must be {self.allowed}, got {shown(value)}")
+        return WrongValue(f"must be {self.allowed}, got {quote(value)}")
 
 
 class Flag(Value):
@@ -163,17 +163,17 @@ class Flag(Value):
     def choices(self) -> tuple[str, ...]:
         return ON, OFF
 
-    def from_data(self, data: object) -> bool:
+    def parse_data(self, data: object) -> bool:
         if not isinstance(data, bool):
-            raise self.wrong(data)
+            raise self.build_error(data)
         return data
 
-    def from_text(self, text: str) -> bool:
+    def parse_text(self, text: str) -> bool:
         if text not in (ON, OFF):
             raise WrongValue(f"no such value {text!r}", f"one of {ON}, {OFF}")
         return text == ON
 
-    def to_text(self, value: Any) -> str:
+    def format_text(self, value: Any) -> str:
         return ON if value else OFF
 
 
@@ -200,24 +200,24 @@ class Number(Value):
             or not isinstance(value, kind)
             or not self.low <= value <= self.high
         ):
-            raise self.wrong(value)
+            raise self.build_error(value)
 
-    def from_data(self, data: object) -> float:
+    def parse_data(self, data: object) -> float:
         self.check(data)
         return float(data)  # type: ignore[arg-type]  # checked
 
-    def from_text(self, text: str) -> float:
-        found: float = self._parsed(text, float)
-        return found
+    def parse_text(self, text: str) -> float:
+        number: float = self._parse_number(text, float)
+        return number
 
-    def _parsed(self, text: str, kind: type) -> Any:
+    def _parse_number(self, text: str, kind: type) -> Any:
         try:
-            return self.from_data(kind(text))
+            return self.parse_data(kind(text))
         except ValueError:
-            raise self.wrong(text) from None
+            raise self.build_error(text) from None
 
-    def to_text(self, value: Any) -> str:
-        return number_text(value)
+    def format_text(self, value: Any) -> str:
+        return format_number(value)
 
 
 class Whole(Number):
@@ -233,15 +233,15 @@ class Whole(Number):
     def check(self, value: Any) -> None:
         self._check(value, int)
 
-    def from_data(self, data: object) -> int:
+    def parse_data(self, data: object) -> int:
         self.check(data)
         return data  # type: ignore[return-value]  # checked
 
-    def from_text(self, text: str) -> int:
-        found: int = self._parsed(text, int)
-        return found
+    def parse_text(self, text: str) -> int:
+        number: int = self._parse_number(text, int)
+        return number
 
-    def to_text(self, value: Any) -> str:
+    def format_text(self, value: Any) -> str:
         return str(value)
 
 
@@ -252,11 +252,11 @@ class Seed(Whole):
 
     def check(self, value: Any) -> None:
         if isinstance(value, bool) or not isinstance(value, int):
-            raise self.wrong(value)
+            raise self.build_error(value)
 
-    def from_data(self, data: object) -> int:
+    def parse_data(self, data: object) -> int:
         self._check(data, int)
-        return super().from_data(data)
+        return super().parse_data(data)
 
 
 class NamedNumber(Number):
@@ -276,22 +276,22 @@ class NamedNumber(Number):
     def allowed(self) -> str:
         return f"{', '.join(self.names)}, or {super().allowed}"
 
-    def from_data(self, data: object) -> float:
+    def parse_data(self, data: object) -> float:
         if isinstance(data, str) and data in self.names:
             return self.names[data]
-        return super().from_data(data)
+        return super().parse_data(data)
 
-    def from_text(self, text: str) -> float:
+    def parse_text(self, text: str) -> float:
         name = text.lower()
-        return self.names[name] if name in self.names else super().from_text(text)
+        return self.names[name] if name in self.names else super().parse_text(text)
 
     def named(self, value: float) -> str | float:
         """Return the name of a number that has one, else the number."""
         return next((name for name, number in self.names.items() if number == value), value)
 
-    def to_text(self, value: Any) -> str:
-        found = self.named(value)
-        return found if isinstance(found, str) else number_text(found)
+    def format_text(self, value: Any) -> str:
+        name = self.named(value)
+        return name if isinstance(name, str) else format_number(name)
 
 
 class Numbers(Number):
@@ -310,28 +310,28 @@ class Numbers(Number):
 
     def check(self, value: Any) -> None:
         if not isinstance(value, list | tuple):
-            raise WrongValue(f"must be a list, got {shown(value)}")
+            raise WrongValue(f"must be a list, got {quote(value)}")
         if not 1 <= len(value) <= self.most:
             raise WrongValue(f"must be {self.allowed}, got {len(value)}")
-        one = Number(self.low, self.high)
-        for at, each in enumerate(value, start=1):
+        number = Number(self.low, self.high)
+        for place, each in enumerate(value, start=1):
             try:
-                one.check(each)
+                number.check(each)
             except WrongValue as error:
-                raise WrongValue(error.message, error.hint, f"[{at}]") from None
+                raise WrongValue(error.message, error.hint, f"[{place}]") from None
 
-    def from_data(self, data: object) -> Any:
+    def parse_data(self, data: object) -> Any:
         self.check(data)
         return tuple(map(float, data))  # type: ignore[call-overload]  # checked
 
-    def from_text(self, text: str) -> Any:
+    def parse_text(self, text: str) -> Any:
         try:
-            return self.from_data([float(word) for word in text.replace(",", " ").split()])
+            return self.parse_data([float(word) for word in text.replace(",", " ").split()])
         except ValueError:
-            raise self.wrong(text) from None
+            raise self.build_error(text) from None
 
-    def to_text(self, value: Any) -> str:
-        return " ".join(map(number_text, value))
+    def format_text(self, value: Any) -> str:
+        return " ".join(map(format_number, value))
 
 
 class Text(Value):
@@ -365,15 +365,15 @@ class Text(Value):
 
     def check(self, value: Any) -> None:
         if not isinstance(value, str):
-            raise self.wrong(value)
+            raise self.build_error(value)
         if self.pattern and not self.pattern.fullmatch(value):
-            raise WrongValue(f"{shown(value)} is not a valid {self.what}")
+            raise WrongValue(f"{quote(value)} is not a valid {self.what}")
 
-    def from_data(self, data: object) -> str:
+    def parse_data(self, data: object) -> str:
         self.check(data)
         text = str(data)
         if not text.strip() or not text.isprintable() or len(text) > self.most:
-            raise WrongValue(f"must be one line of 1 to {self.most} characters, got {shown(text)}")
+            raise WrongValue(f"must be one line of 1 to {self.most} characters, got {quote(text)}")
         return text
 
 
@@ -398,7 +398,7 @@ class Choice(Value):
 
     @property
     def allowed(self) -> str:
-        return f"one of {', '.join(str(one) for one in self._choices if one != '')}"
+        return f"one of {', '.join(str(choice) for choice in self._choices if choice != '')}"
 
     @property
     def metavar(self) -> str:
@@ -408,12 +408,12 @@ class Choice(Value):
     def choices(self) -> tuple[Any, ...]:
         return self._choices
 
-    def from_data(self, data: object) -> Any:
+    def parse_data(self, data: object) -> Any:
         for each in self._choices:
             # True and 1.0 equal 1.
             if each == data and not isinstance(data, bool | float):
                 return each
-        raise WrongValue(f"no such {self.what} {shown(data)}", self.allowed)
+        raise WrongValue(f"no such {self.what} {quote(data)}", self.allowed)
 
     def restore(self, data: Any) -> Any:
         """Return the choice that a stored run gives as a text or number, without checking it.
@@ -441,13 +441,13 @@ class Choices(Choice):
 
     def check(self, value: Any) -> None:
         if not isinstance(value, list | tuple):
-            raise self.wrong(value)
-        for at, each in enumerate(value, start=1):
+            raise self.build_error(value)
+        for place, each in enumerate(value, start=1):
             if each not in self._choices:
                 known = f"one of {', '.join(self._choices)}"
-                raise WrongValue(f"no such {self.what} {shown(each)}", known, f"[{at}]")
+                raise WrongValue(f"no such {self.what} {quote(each)}", known, f"[{place}]")
 
-    def from_data(self, data: object) -> Any:
+    def parse_data(self, data: object) -> Any:
         self.check(data)
         return tuple(data)  # type: ignore[arg-type]  # checked
 
@@ -467,17 +467,17 @@ class Color(Value):
 
     def check(self, value: Any) -> None:
         if not isinstance(value, str):
-            raise self.wrong(value)
+            raise self.build_error(value)
 
-    def from_data(self, data: object) -> str:
+    def parse_data(self, data: object) -> str:
         self.check(data)
-        from tuisim.engine.core.css_colors import css_names, css_rgb
+        from tuisim.engine.core.css_colors import load_css_colors, parse_css_rgb
 
         word = str(data)
-        if css_rgb(word) is None:
-            guess = did_you_mean(closest(word, css_names()))
+        if parse_css_rgb(word) is None:
+            guess = did_you_mean(closest(word, load_css_colors()))
             raise WrongValue(
-                f"no such colour {shown(word)}", f"{guess} any CSS colour name, or #rrggbb".lstrip()
+                f"no such colour {quote(word)}", f"{guess} any CSS colour name, or #rrggbb".lstrip()
             )
         return word.lower()
 
@@ -506,7 +506,7 @@ class Part(Value):
         super().__init__(**about)
         self.of: Any = of
         self.key, self.standard = key, standard
-        self.values = values_of(of) if values is None else values
+        self.values = list_values(of) if values is None else values
 
     @property
     def allowed(self) -> str:
@@ -514,11 +514,11 @@ class Part(Value):
 
     def check(self, value: Any) -> None:
         if not isinstance(value, self.of):
-            raise self.wrong(value)
+            raise self.build_error(value)
 
-    def from_data(self, data: object) -> Any:
+    def parse_data(self, data: object) -> Any:
         # A table of a file is read key by key, by `tuisim.engine.files`.
-        raise self.wrong(data)
+        raise self.build_error(data)
 
 
 class NamedPart(Part):
@@ -540,10 +540,12 @@ class NamedPart(Part):
 
     @property
     def _sizes(self) -> dict[str, dict[str, float]]:
-        numbers = {name: one for name, one in self.values.items() if isinstance(one, NamedNumber)}
-        words = dict.fromkeys(word for one in numbers.values() for word in one.names)
+        numbers = {
+            name: number for name, number in self.values.items() if isinstance(number, NamedNumber)
+        }
+        words = dict.fromkeys(word for number in numbers.values() for word in number.names)
         return {"none": {}} | {
-            word: {name: one.names[word] for name, one in numbers.items()} for word in words
+            word: {name: number.names[word] for name, number in numbers.items()} for word in words
         }
 
     @property
@@ -554,54 +556,54 @@ class NamedPart(Part):
     def choices(self) -> tuple[Any, ...]:
         return tuple(self._sizes)
 
-    def from_data(self, data: object) -> Any:
+    def parse_data(self, data: object) -> Any:
         if isinstance(data, self.of):
             return data
         if isinstance(data, dict):
-            return self.changed(self.of(), data)
+            return self.replace_values(self.of(), data)
         if not isinstance(data, str) or not data.strip():
-            raise self.wrong(data)
-        found: dict[str, object] = {}
+            raise self.build_error(data)
+        values: dict[str, object] = {}
         for place, word in enumerate(data.replace(",", " ").split()):
             name, equals, text = word.partition("=")
             if equals:
-                found[name] = _number_or_text(text)
+                values[name] = _parse_number_or_text(text)
             elif place or name not in self._sizes:
-                raise WrongValue(f"no such value {shown(word)}", self.allowed)
+                raise WrongValue(f"no such value {quote(word)}", self.allowed)
             else:
-                found |= self._sizes[name]
-        return self.changed(self.of(), found)
+                values |= self._sizes[name]
+        return self.replace_values(self.of(), values)
 
-    def changed(self, base: Any, data: Mapping[str, object]) -> Any:
+    def replace_values(self, base: Any, data: Mapping[str, object]) -> Any:
         """Return the spec with some of its values replaced by those that a document gives.
 
         Raises:
             WrongValue: one is unknown, or not allowed.
         """
-        found = {}
-        for name, one in data.items():
+        changes = {}
+        for name, item in data.items():
             if name not in self.values:
                 raise WrongValue("no such key", nearest(name, self.values), name)
             try:
-                found[name] = self.values[name].from_data(one)
+                changes[name] = self.values[name].parse_data(item)
             except WrongValue as error:
                 raise WrongValue(error.message, error.hint, name) from None
-        return replace(base, **found)
+        return replace(base, **changes)
 
-    def to_text(self, value: Any) -> str:
-        usual = [(word, self.from_data(word)) for word in self._sizes]
-        (word, near), *_ = sorted(usual, key=lambda one: len(self._apart(value, one[1])))
+    def format_text(self, value: Any) -> str:
+        usual = [(word, self.parse_data(word)) for word in self._sizes]
+        (word, near), *_ = sorted(usual, key=lambda one: len(self._list_differences(value, one[1])))
         apart = [
             f"{name}={getattr(value, name)!r}".removesuffix(".0")
-            for name in self._apart(value, near)
+            for name in self._list_differences(value, near)
         ]
         return " ".join(apart if apart and near == self.of() else (word, *apart))
 
-    def _apart(self, value: Any, other: Any) -> list[str]:
+    def _list_differences(self, value: Any, other: Any) -> list[str]:
         return [name for name in self.values if getattr(value, name) != getattr(other, name)]
 
 
-def _number_or_text(text: str) -> float | str:
+def _parse_number_or_text(text: str) -> float | str:
     try:
         return float(text)
     except ValueError:
@@ -614,17 +616,17 @@ class Parts(Part):
     __slots__ = ()
 
     def check(self, value: Any) -> None:
-        if not isinstance(value, tuple) or not all(isinstance(one, self.of) for one in value):
-            raise self.wrong(value)
+        if not isinstance(value, tuple) or not all(isinstance(part, self.of) for part in value):
+            raise self.build_error(value)
 
 
-def values_of(kind: type) -> Mapping[str, Value]:
+def list_values(kind: type) -> Mapping[str, Value]:
     """Return the values of a spec by name, in their order."""
-    found = _VALUES.get(kind)
-    if found is None:
+    values = _VALUES.get(kind)
+    if values is None:
         fields: Mapping[str, Field[Any]] = kind.__dataclass_fields__  # type: ignore[attr-defined]  # a data class
-        found = _VALUES[kind] = {name: one.metadata[METADATA] for name, one in fields.items()}
-    return found
+        values = _VALUES[kind] = {name: field.metadata[METADATA] for name, field in fields.items()}
+    return values
 
 
 _VALUES: dict[type, Mapping[str, Value]] = {}

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, assert_never
 
 from tuisim.base.data_class import dataclass
 from tuisim.base.source import source_lines
-from tuisim.engine.core.tree import to_plain
+from tuisim.engine.core.tree import dump_run
 from tuisim.engine.runs.records import TEXT_STREAMS, OutputRow, Stream, line_of
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.engine.runs.samples import samples_of
@@ -279,7 +279,7 @@ def _first_row(one: Iterator[_Row], two: Iterator[_Row], prefix: bool) -> RowDif
 
 
 def _setup(first: StoredRun, second: StoredRun) -> Iterator[tuple[str, str, str]]:
-    plain = to_plain(first.spec), to_plain(second.spec)
+    plain = dump_run(first.spec), dump_run(second.spec)
     names = {**_flat(plain[0]), **_flat(plain[1])}
     values = _flat(plain[0]), _flat(plain[1])
     for name in names:

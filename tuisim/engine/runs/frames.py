@@ -11,13 +11,13 @@ from itertools import chain, pairwise, repeat
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
 
-from tuisim.engine.core.columns import MOTION, Column, measured_names
+from tuisim.engine.core.columns import MOTION, Column, list_measured_names
 from tuisim.engine.core.conditions import ValueCondition
 from tuisim.engine.core.field import Field
 from tuisim.engine.core.motor_columns import find_motor_owners
 from tuisim.engine.core.pen_marks import PenMarks
 from tuisim.engine.core.profile import NS_PER_S
-from tuisim.engine.core.sensors import MountedSensor, columns_of, mounted
+from tuisim.engine.core.sensors import MountedSensor, list_columns, list_mounted
 from tuisim.engine.core.spec import NoiseSpec, RunSpec
 from tuisim.engine.core.tick_record import TICK_RECORD
 from tuisim.engine.protocol import SetNoise, UserAction
@@ -51,7 +51,7 @@ _POSE = ("x_mm", "y_mm", "heading_deg")
 SAMPLE_COLUMNS = ("index", "variable", "value", "time", "run", *_POSE, "line")
 """Columns of the samples frame, in order."""
 
-MOTION_COLUMNS = measured_names(MOTION)
+MOTION_COLUMNS = list_measured_names(MOTION)
 """Columns of the telemetry frame that are copied from the recording."""
 
 _MOST = 1e15
@@ -148,7 +148,7 @@ def telemetry_columns(run: StoredRun, field: Field | None = None) -> dict[str, A
     """
     records = _sound(run.telemetry.array())
     mat = open_mat(run) if field is None else field
-    exported = measured_names(columns_of(run.spec))
+    exported = list_measured_names(list_columns(run.spec))
     values = column_values(exported, records, run, run.actions, mat)
     return {"time": tick_times_s(records, run.spec), **values, "line": records["line"].astype("i8")}
 
@@ -164,7 +164,7 @@ def column_values(
     """Return columns at every tick by name: float64, shape (n,).
 
     Args:
-        names: Some of `columns_of` the run.
+        names: Some of `list_columns` the run.
         records: Telemetry, structured as `TICK_FIELDS`, shape (n,).
         run: The run.
         actions: The user's actions, which may have changed the noise.
@@ -175,7 +175,7 @@ def column_values(
     spec = run.spec
     sensors = [
         mount
-        for mount in mounted(spec.robot)
+        for mount in list_mounted(spec.robot)
         if any(column.name in names for column in mount.columns)
     ]
     measured = {name: records[name].astype("f8") for name in MOTION_COLUMNS}
@@ -206,7 +206,7 @@ def computed(
     """Return what is computed from the measured columns of an owner, at every tick, shape (n,)."""
     import numpy as np
 
-    rows = zip(*(measured[name].tolist() for name in measured_names(columns)), strict=True)
+    rows = zip(*(measured[name].tolist() for name in list_measured_names(columns)), strict=True)
     return np.array(of(rows, spec), np.float64)
 
 
@@ -329,7 +329,7 @@ def _field_with_marks(field: Field, spec: RunSpec) -> FieldAt:
     pen = PenMarks(field, spec)
 
     def field_at(record: tuple[float, ...]) -> Field:
-        pen.take_in([record])
+        pen.add_records([record])
         return pen.field
 
     return field_at

@@ -20,7 +20,7 @@ from tuisim.base.source import Program, user_python_path
 from tuisim.engine.breakpoints import parse_breakpoints
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.plugged import PluggedPart
-from tuisim.engine.core.profile import due_ns
+from tuisim.engine.core.profile import compute_due_ns
 from tuisim.engine.core.spec import NoiseSpec, RunSpec
 from tuisim.engine.mat_cache import FieldFiles
 from tuisim.engine.protocol import (
@@ -322,7 +322,7 @@ class RunHandle:
         if self._announced is not None and not falsified and not self._exceeded:
             return self._announced
         tick = max(0, self.telemetry.count - 1)
-        time_ns = due_ns(tick, self.spec.profile.tick_hz)
+        time_ns = compute_due_ns(tick, self.spec.profile.tick_hz)
         if falsified:
             return Ended(
                 End.FALSIFIED,
@@ -373,7 +373,7 @@ class RunHandle:
         if (
             is_whole
             and end is not None
-            and not due_ns(end.tick, hz) <= end.time_ns <= due_ns(end.tick + 1, hz)
+            and not compute_due_ns(end.tick, hz) <= end.time_ns <= compute_due_ns(end.tick + 1, hz)
         ):
             return f"its end at tick {end.tick} has another time"
         try:

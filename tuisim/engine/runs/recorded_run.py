@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from tuisim.base.errors import LogError
 from tuisim.engine.core.field import Field
-from tuisim.engine.core.motion import stall_ticks
+from tuisim.engine.core.motion import compute_stall_ticks
 from tuisim.engine.core.pen_marks import MarkedField, PenMarks
 from tuisim.engine.core.spec import NoiseSpec, RunSpec
 from tuisim.engine.core.state import Instant, MotorValues
@@ -67,7 +67,7 @@ class Recording:
             source.actions if isinstance(source, StoredRun) else ()
         )
         """The user's actions, as far as `actions` has last found them."""
-        self._stall_ticks = stall_ticks(self.spec.profile.tick_hz)
+        self._stall_ticks = compute_stall_ticks(self.spec.profile.tick_hz)
         self._marks: _TimedMarks | None = None
         self.answers = (
             tuple(source.options.get("answers", ())) if isinstance(source, StoredRun) else answers
@@ -176,7 +176,7 @@ class _TimedMarks:
             for record in TICK_RECORD.iter_unpack(
                 self._run.telemetry.array(len(self._counts)).data
             ):
-                self._drawn.take_in([record])
+                self._drawn.add_records([record])
                 self._counts.append(len(marks))
         count = self._counts[min(tick, len(self._counts) - 1)] if self._counts else 0
         if count == len(marks):

@@ -207,7 +207,7 @@ class TelemetryWriter(MappedWriter):
         )
         self.count = 0
 
-    def room(self, records: int) -> mmap.mmap:
+    def reserve(self, records: int) -> mmap.mmap:
         """Return the map, with space for `records` more records after `count`."""
         need = HEADER_BYTES + (self.count + records) * TICK_RECORD.size
         if need > self._capacity:

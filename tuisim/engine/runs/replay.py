@@ -16,7 +16,7 @@ from tuisim.engine.core.commands.check import CommandCheck
 from tuisim.engine.core.commands.table import CALLS, obey
 from tuisim.engine.core.motor_columns import MOTOR_RECORD, name_motors
 from tuisim.engine.core.profile import NS_PER_S
-from tuisim.engine.core.simulation import Simulation, simulation_of
+from tuisim.engine.core.simulation import Simulation, build_simulation
 from tuisim.engine.core.tick_record import TICK_RECORD, NoRecording
 from tuisim.engine.protocol import Stop, UserAction
 from tuisim.engine.runs.motor_records import arrange_records
@@ -52,7 +52,7 @@ class _Ticks:
         self.count = 0
         self.buffer = bytearray(HEADER_BYTES)
 
-    def room(self, records: int) -> bytearray:
+    def reserve(self, records: int) -> bytearray:
         need = HEADER_BYTES + TICK_RECORD.size * (self.count + records)
         if need > len(self.buffer):
             self.buffer += bytes(2 * need)
@@ -103,14 +103,14 @@ def replay(
         LogError: no program can have given these commands, or they take longer than they may.
     """
     ticks, motors = _Ticks(), _Motors(spec.robot)
-    sim = simulation_of(spec, NoRecording())
+    sim = build_simulation(spec, NoRecording())
     sim.restart(spec, ticks, motors if sim.notices else None)
     advance, check = _build_advance(sim, actions), CommandCheck(sim)
     give_up_s = thread_time() + limit_s
     for number, command in enumerate(commands):
         if not number % _LOOK_EVERY and thread_time() > give_up_s:
             raise LogError(f"what the program did takes more than {limit_s:g} s to work out again")
-        tick = sim.ticks_at(command.time_ns)
+        tick = sim.count_ticks(command.time_ns)
         fault = check.find_disorder(command.time_ns)
         if tick > last_tick:
             fault = "is after the end of the run"

@@ -12,7 +12,7 @@ from tuisim.base.atomic import replacing
 from tuisim.base.errors import LogError
 from tuisim.base.regular_file import read_regular
 from tuisim.engine.core.motor_columns import has_driver
-from tuisim.engine.core.profile import NS_PER_S, due_ns
+from tuisim.engine.core.profile import NS_PER_S, compute_due_ns
 from tuisim.engine.core.tick_record import TICK_FIELDS, TICK_RECORD
 from tuisim.engine.protocol import UserAction
 from tuisim.engine.runs.command_records import read_commands
@@ -70,7 +70,10 @@ def replay_run(
     run = replace(run, telemetry=TelemetryView(run.folder), actions=done)
     run.telemetry.read_on()
     run.telemetry.holds = True
-    return run, f"{due_ns(min(parted, last_tick), run.spec.profile.tick_hz) / NS_PER_S:.2f} s"
+    return (
+        run,
+        f"{compute_due_ns(min(parted, last_tick), run.spec.profile.tick_hz) / NS_PER_S:.2f} s",
+    )
 
 
 def _replay_commands(

@@ -16,9 +16,9 @@ from tuisim.base.regular_file import read_regular
 from tuisim.base.source import Program
 from tuisim.engine.core.field import Field
 from tuisim.engine.core.plugged import PLUGGED_DIAMETER_MM, PluggedPart, plug_parts
-from tuisim.engine.core.profile import NS_PER_S, due_ns
+from tuisim.engine.core.profile import NS_PER_S, compute_due_ns
 from tuisim.engine.core.spec import NoiseSpec, RunSpec
-from tuisim.engine.core.tree import restore, to_plain
+from tuisim.engine.core.tree import dump_run, restore
 from tuisim.engine.mat_cache import FieldFiles, open_field, prepare
 from tuisim.engine.mats import background
 from tuisim.engine.protocol import End, Ended, RunState, SetNoise, Unended, UserAction
@@ -96,7 +96,7 @@ class StoredRun:
         if self.end is not None:
             return self.end.time_ns / NS_PER_S
         last = self.telemetry.last()
-        return due_ns(last.tick, self.spec.profile.tick_hz) / NS_PER_S if last else 0.0
+        return compute_due_ns(last.tick, self.spec.profile.tick_hz) / NS_PER_S if last else 0.0
 
     def noise_at(self, record: TickRecord) -> NoiseSpec:
         """Return the noise at the tick of a telemetry record."""
@@ -147,7 +147,7 @@ def new_run_data(
         "created": created,
         "live": live,
         "program": {name: getattr(program, name) for name in _PROGRAM_KEYS},
-        "spec": to_plain(spec),
+        "spec": dump_run(spec),
         "plugged": [],
         "field": None if field is None else dict(field),
         "options": dict(options or {}),

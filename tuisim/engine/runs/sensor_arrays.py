@@ -12,12 +12,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tuisim.engine.core.drift import draw_echo_bias_mm, find_drift, sensed_turn_rate_dps
-from tuisim.engine.core.field import Field, disc_mask
-from tuisim.engine.core.noise import stream
+from tuisim.engine.core.drift import draw_echo_bias_mm, find_drift, sense_turn_rate_dps
+from tuisim.engine.core.field import Field, build_disc_mask
+from tuisim.engine.core.noise import generate_bytes
 from tuisim.engine.core.sensors import SENSORS
-from tuisim.engine.core.sensors.color import EVEN, WHITE, disc_pixels_of, find_response, light_seen
-from tuisim.engine.core.sensors.ultrasonic import MAX_ECHO_DEG, MIN_ECHO_DEG, Edge, surfaces
+from tuisim.engine.core.sensors.color import (
+    EVEN,
+    WHITE,
+    compute_light,
+    disc_pixels_of,
+    find_response,
+)
+from tuisim.engine.core.sensors.ultrasonic import MAX_ECHO_DEG, MIN_ECHO_DEG, Edge, find_surfaces
 from tuisim.engine.core.spec import (
     FIELD_HEIGHT_MM,
     ColorSensorSpec,
@@ -78,7 +84,7 @@ def quiet_color_columns(
     if response != EVEN:
         means = response.dark * inside[:, None] + means * response.span / WHITE
     if drift.light_pc or drift.light_gain_pc:
-        light = np.broadcast_to(light_seen(x_mm, y_mm, sensor, drift, run.seed), x_mm.shape)
+        light = np.broadcast_to(compute_light(x_mm, y_mm, sensor, drift, run.seed), x_mm.shape)
         means = np.minimum(means * light[:, None], WHITE)
     return {name: means[:, channel] for channel, name in enumerate(SENSORS["color"].names(sensor))}
 
@@ -99,7 +105,7 @@ def _sum_discs(col: Array, row: Array, diameter: int, field: Field) -> tuple[Arr
     if field.floor_rgb is None:
         return sums, inside
     counts = np.zeros((diameter + 1, diameter + 1), np.uint32)
-    counts[1:, 1:] = np.array(disc_mask(diameter)).cumsum(0).cumsum(1)
+    counts[1:, 1:] = np.array(build_disc_mask(diameter)).cumsum(0).cumsum(1)
     left, right = (np.clip(end - col, 0, diameter) for end in (diameter, width))
     upper, lower = (np.clip(end - row, 0, diameter) for end in (diameter, height))
     on_mat = counts[lower, right] - counts[upper, right] - counts[lower, left] + counts[upper, left]
@@ -118,7 +124,7 @@ def _gyro(sensor: GyroSpec, records: Array, run: RunSpec, field: Field) -> tuple
     right_dps: Any = records["right_speed_dps"].astype("f8")
     angle_deg = records["gyro_zero_deg"].astype("f8") - records["heading_deg"]
     fastest = run.profile.gyro_max_dps or np.inf
-    rate_dps: Any = np.clip(-sensed_turn_rate_dps(left_dps, right_dps, run), -fastest, fastest)
+    rate_dps: Any = np.clip(-sense_turn_rate_dps(left_dps, right_dps, run), -fastest, fastest)
     return _rounded(angle_deg), _rounded(rate_dps)
 
 
@@ -127,7 +133,7 @@ def _ultrasonic(
 ) -> tuple[Array, ...]:
     start = world_points_mm(records, sensor.x_mm, sensor.y_mm)
     facing_deg = records["heading_deg"] + sensor.angle_deg
-    found = surfaces(run.world)
+    found = find_surfaces(run.world)
     nearest_mm = np.full(len(records), sensor.max_range_mm)
     for ray_deg in sensor.ray_angles_deg:
         cos, sin = cos_and_sin(facing_deg + ray_deg)
@@ -147,7 +153,7 @@ def _ultrasonic(
     distance_mm = np.where(is_near, farthest, distance_mm)
     if not sensor.noise_mm:
         return (distance_mm,)
-    drawn = (stream(run.seed, tick, sensor.name, 4) for tick in records["tick"].tolist())
+    drawn = (generate_bytes(run.seed, tick, sensor.name, 4) for tick in records["tick"].tolist())
     shares = np.array([int.from_bytes(four, "little") / 2147483647.5 - 1 for four in drawn])
     noisy_mm = _rounded(distance_mm + sensor.noise_mm * shares)
     return (np.clip(noisy_mm, 0.0, farthest),)

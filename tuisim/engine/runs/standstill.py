@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import counted
-from tuisim.engine.core.profile import NS_PER_S, due_ns
+from tuisim.engine.core.profile import NS_PER_S, compute_due_ns
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, RunSpec
 from tuisim.engine.core.tick_record import FLAG_LEFT_RUNNING, FLAG_RIGHT_RUNNING
 from tuisim.engine.runs.views import TelemetryView
@@ -31,7 +31,7 @@ _STILL = 1e-3
 
 WALL = "the wall"
 _WALLS = 4
-"""`Solids.gaps_mm` begins with the walls."""
+"""`Solids.measure_gaps_mm` begins with the walls."""
 
 _POSE = ["x_mm", "y_mm", "heading_deg"]
 
@@ -93,7 +93,7 @@ def standstill_of(telemetry: TelemetryView, spec: RunSpec) -> Standstill | None:
     kinds = sorted({stretch.at for stretch in stretches}, reverse=True)
 
     def time_s(tick: int) -> float:
-        return due_ns(tick, spec.profile.tick_hz) / NS_PER_S
+        return compute_due_ns(tick, spec.profile.tick_hz) / NS_PER_S
 
     return Standstill(
         " and ".join(kinds),
@@ -138,7 +138,7 @@ def _stretches(records: NDArray[Any], spec: RunSpec) -> Iterator[_Stretch]:
     import numpy as np
 
     from tuisim.engine.core.collision import Solids
-    from tuisim.engine.core.motion import stall_ticks
+    from tuisim.engine.core.motion import compute_stall_ticks
     from tuisim.engine.core.motors import STANDSTILL_DEG
     from tuisim.engine.runs.arrays import find_spans
 
@@ -148,7 +148,7 @@ def _stretches(records: NDArray[Any], spec: RunSpec) -> Iterator[_Stretch]:
     pushes = runs.copy()
     for name in ("left_speed_dps", "right_speed_dps"):
         pushes &= np.abs(records[name]) < STANDSTILL_DEG * spec.profile.tick_hz
-    solids, shortest = Solids(spec.world, spec.robot), stall_ticks(spec.profile.tick_hz)
+    solids, shortest = Solids(spec.world, spec.robot), compute_stall_ticks(spec.profile.tick_hz)
     now: _Stretch | None = None
     for start, end in find_spans(pushes).tolist():
         if at := _touched(solids, records, start, spec):
@@ -162,7 +162,7 @@ def _stretches(records: NDArray[Any], spec: RunSpec) -> Iterator[_Stretch]:
 
 def _touched(solids: Solids, records: NDArray[Any], tick: int, spec: RunSpec) -> str:
     """Return what the robot touches at a tick, in words; empty if it is nothing."""
-    gaps = solids.gaps_mm(_pose(records, tick))
+    gaps = solids.measure_gaps_mm(_pose(records, tick))
     number = next((number for number, gap in enumerate(gaps) if gap < _CONTACT_MM), None)
     if number is None:
         return ""

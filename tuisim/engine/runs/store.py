@@ -19,7 +19,7 @@ from tuisim.base.folders import home_folder
 from tuisim.base.regular_file import of_the_machine, open_regular
 from tuisim.base.source import Program
 from tuisim.engine.core.plugged import PluggedPart
-from tuisim.engine.core.profile import NS_PER_S, due_ns
+from tuisim.engine.core.profile import NS_PER_S, compute_due_ns
 from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.protocol import RUN_STATES, End, Ended, Unended
 from tuisim.engine.runs.catalogue import HOME_HINT, Catalogue, RunInfo, locked
@@ -565,4 +565,4 @@ def _with_last_record(info: RunInfo, folder: Path) -> RunInfo:
         tick_hz = int(read_run_file(folder)["spec"]["profile"]["tick_hz"])
     except (LogError, KeyError, TypeError):
         return replace(info, ticks=last.tick)
-    return replace(info, ticks=last.tick, time_s=due_ns(last.tick, tick_hz) / NS_PER_S)
+    return replace(info, ticks=last.tick, time_s=compute_due_ns(last.tick, tick_hz) / NS_PER_S)

@@ -34,4 +34,4 @@ def change_simulation(sim: Simulation, action: Message) -> None:
         case _:
             raise TypeError(f"not a user action: {action!r}")
     sim.actions += 1
-    sim.rewrite_record()
+    sim.update_record()

@@ -85,7 +85,7 @@ class TickRecord:
 
 def instant_of(record: TickRecord, spec: RunSpec, noise: NoiseSpec) -> Instant:
     """Return the instant of a record with the noise at its tick, for the functions of `engine.core.sensors`."""
-    from tuisim.engine.core.drift import sensed_turn_rate_dps
+    from tuisim.engine.core.drift import sense_turn_rate_dps
 
     return Instant(
         tick=record.tick,
@@ -94,7 +94,7 @@ def instant_of(record: TickRecord, spec: RunSpec, noise: NoiseSpec) -> Instant:
         right_position_deg=record.right_position_deg,
         left_speed_dps=record.left_speed_dps,
         right_speed_dps=record.right_speed_dps,
-        turn_rate_dps=sensed_turn_rate_dps(record.left_speed_dps, record.right_speed_dps, spec),
+        turn_rate_dps=sense_turn_rate_dps(record.left_speed_dps, record.right_speed_dps, spec),
         gyro_zero_deg=record.gyro_zero_deg,
         press_flags=record.flags & PRESS_FLAGS,
         noise=noise,

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 from tuisim.engine import protocol
 from tuisim.engine.core.profile import NS_PER_S
-from tuisim.engine.core.simulation import Turn, simulation_of
+from tuisim.engine.core.simulation import Turn, build_simulation
 from tuisim.engine.core.tick_record import NoRecording
 from tuisim.engine.mat_cache import open_field
 from tuisim.engine.runs.brick_state import motors_row
@@ -104,7 +104,7 @@ class Child:
 
     def __init__(self, config: RunConfig) -> None:
         self._config = config
-        self._sim = simulation_of(config.spec, NoRecording())
+        self._sim = build_simulation(config.spec, NoRecording())
         self._early_commands: list[tuple[int, int, Call, tuple[float, ...]]] = []
         """Those of the prelude."""
         self._sim.on_command = lambda *command: self._early_commands.append(command)
@@ -241,7 +241,7 @@ class Child:
         sim = self._sim
         # Not at the session's time: in a paced run it advances in smaller steps.
         self._output.row_at(
-            motors_row(turns), Stream.MOTORS, sim.tick, sim.due_ns(sim.tick), sim.line
+            motors_row(turns), Stream.MOTORS, sim.tick, sim.compute_due_ns(sim.tick), sim.line
         )
 
     def _after_write(self) -> None:

@@ -350,9 +350,9 @@ class RunControl:
         sim = session.sim
         # A command that is received meanwhile can change it, also to full speed.
         while speed := self._speed:
-            wall, simulated = wallclock.monotonic(), sim.due_ns(sim.tick + 1)
+            wall, simulated = wallclock.monotonic(), sim.compute_due_ns(sim.tick + 1)
             # A signal may remove it at any moment.
-            anchor = self._anchor = self._anchor or (wall, sim.due_ns(sim.tick))
+            anchor = self._anchor = self._anchor or (wall, sim.compute_due_ns(sim.tick))
             wait_s = anchor[0] + (simulated - anchor[1]) / 1e9 / speed - wall
             if wait_s < -BEHIND_S:
                 self._anchor = None

@@ -119,7 +119,7 @@ class Session:
         self.shown_ports: tuple[str, ...] | None = None
         self.pressed: frozenset[str] = frozenset()
         """The brick's buttons that are pressed."""
-        self._due = sim.due_ns(1)
+        self._due = sim.compute_due_ns(1)
         hz = sim.spec.profile.tick_hz
         self._hz = hz
         self._tick_ns = 0 if NS_PER_S % hz else NS_PER_S // hz
@@ -167,7 +167,7 @@ class Session:
         """The mat in its current state, with pen marks if they are visible to sensors."""
         if self._pen is None:
             return self._field
-        self._pen.take_in(self.sim.records_since(self._pen.records))
+        self._pen.add_records(self.sim.read_records(self._pen.records))
         return self._pen.field
 
     def spend(self, duration_ns: int, code: int = -1) -> None:
@@ -186,7 +186,7 @@ class Session:
             sim = self.sim
             sim.line = line = self.program_line(3)
             # Most readings make exactly one tick due, and whole tick lengths can be added up.
-            # Same value as `sim.due_ns(sim.tick + 2)`.
+            # Same value as `sim.compute_due_ns(sim.tick + 2)`.
             following = (
                 self._due + self._tick_ns
                 if self._tick_ns
@@ -198,12 +198,12 @@ class Session:
                 if code >= 0:
                     self.readings.add(code, until, line)
                 return
-            ticks = sim.ticks_at(until) - sim.tick
+            ticks = sim.count_ticks(until) - sim.tick
             if ticks > CHUNK_TICKS:
                 self.advance(until, False)
             else:
                 sim.advance(ticks)
-                self.now, self._due = until, sim.due_ns(sim.tick + 1)
+                self.now, self._due = until, sim.compute_due_ns(sim.tick + 1)
         if code >= 0:
             self.note_reading(code, line)
 
@@ -330,8 +330,8 @@ class Session:
             changed = self._run_ticks(until, on_change)
         # A wait that a motor ended is over at the tick in which the motor stopped, or when its driver noticed it.
         sim = self.sim
-        self.now = max(self.now, sim.due_ns(sim.tick), sim.changed_ns) if changed else until
-        self._due = self.sim.due_ns(self.sim.tick + 1)
+        self.now = max(self.now, sim.compute_due_ns(sim.tick), sim.changed_ns) if changed else until
+        self._due = self.sim.compute_due_ns(self.sim.tick + 1)
         return changed
 
     def _run_ticks(self, until: int, on_change: bool) -> bool:
@@ -342,20 +342,20 @@ class Session:
         if self.flags & LIVE and not self.stop_reason:
             return self._run_live(until, on_change)
         sim.changed = False
-        target = sim.ticks_at(until)
+        target = sim.count_ticks(until)
         while sim.tick < target:
             sim.advance(min(target - sim.tick, CHUNK_TICKS), on_change)
             if on_change and sim.changed:
                 return True
             if self.flags & ATTENTION:
-                self.now = max(self.now, sim.due_ns(sim.tick))
+                self.now = max(self.now, sim.compute_due_ns(sim.tick))
                 self.checkpoint(before_tick=True)
         return False
 
     def _run_live(self, until: int, on_change: bool) -> bool:
         sim, steering = self.sim, self.steering
         sim.changed = False
-        target = sim.ticks_at(until)
+        target = sim.count_ticks(until)
         if not steering.wanted:
             self.flags &= ~LIVE
         while sim.tick < target:
@@ -363,7 +363,7 @@ class Session:
             if on_change and sim.notice_change():
                 return True
             # Never beyond the last tick of this wait.
-            self.now = max(self.now, sim.due_ns(sim.tick))
+            self.now = max(self.now, sim.compute_due_ns(sim.tick))
             ticks = steering.before_ticks(self, target - sim.tick)
             sim.advance(ticks, on_change)
             if steering.debugged:
@@ -375,7 +375,7 @@ class Session:
     def rush_to(self, tick: int) -> None:
         """Do not call the control before this tick is due."""
         self.flags &= ~LIVE
-        self._quick_ns = min(self._limit_ns, self.sim.due_ns(tick) - 1)
+        self._quick_ns = min(self._limit_ns, self.sim.compute_due_ns(tick) - 1)
 
     def debug(self) -> DebugHooks:
         """Return the debugger; it is created on first use."""

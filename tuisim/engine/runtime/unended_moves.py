@@ -51,4 +51,4 @@ def _let_rest(session: Session, motors: Collection[SimulatedMotor]) -> None:
     end_ns = min(session.now + MAX_REST_NS, session.limits.time_ns or 1 << 62)
     while session.now < end_ns and not all(motor.resting for motor in motors):
         session.sim.line = 0
-        session.advance(min(session.sim.due_ns(session.sim.tick + 1), end_ns), True)
+        session.advance(min(session.sim.compute_due_ns(session.sim.tick + 1), end_ns), True)

@@ -16,7 +16,7 @@ from tuisim.engine.core.brick_motor import BrickMotor
 from tuisim.engine.core.browser_motor import BrowserMotor
 from tuisim.engine.core.driver.simulated import SimulatedMotor
 from tuisim.engine.core.motors import Motor
-from tuisim.engine.core.sensors import mounted
+from tuisim.engine.core.sensors import list_mounted
 from tuisim.engine.core.servo.motor import ServoMotor
 from tuisim.engine.core.spec import (
     INPUT_PORTS,
@@ -98,7 +98,7 @@ def find_connections(robot: RobotSpec) -> dict[str, Connection]:
     found = {
         motor.port: Connection(KINDS[motor.kind].driver_name, "tacho-motor") for motor in motors
     }
-    for kind, sensor, *_ in mounted(robot):
+    for kind, sensor, *_ in list_mounted(robot):
         found[sensor.port] = Connection(kind.driver_name, kind.port_mode)
     return found
 

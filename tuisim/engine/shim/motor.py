@@ -262,7 +262,7 @@ class TachoMotor(Tacho):
             self._tell(RUN, float(speed))
         elif text == "run-timed":
             end_ns = self._session.now + self._numbers["time_sp"] * MS
-            self._tell(RUN_UNTIL, float(speed), float(self._session.sim.ticks_at(end_ns)))
+            self._tell(RUN_UNTIL, float(speed), float(self._session.sim.count_ticks(end_ns)))
         elif text == "run-to-rel-pos":
             self._run_relative(float(speed))
             return

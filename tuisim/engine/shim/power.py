@@ -79,7 +79,7 @@ class Battery:
         """Return the charge drawn since the start, in ampere seconds."""
         sim = self._session.sim
         tick_s = 1 / sim.spec.profile.tick_hz
-        for record in sim.records_since(self._records):
+        for record in sim.read_records(self._records):
             self._records += 1
             left_dps, right_dps, flags = record[7], record[8], int(record[10])
             drawn_a = BRICK_A

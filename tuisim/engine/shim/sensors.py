@@ -174,8 +174,8 @@ class ColorDevice(LegoSensor):
         self._stale_ns = profile.stale_reading_ns
         self._left_values: dict[str, tuple[int, ...]] = {}
         self._spec = spec
-        self._clear = color.rgb_reader(spec, profile, session.field)
-        self._noisy = color.noisy_rgb_reader(spec, profile, session.field)
+        self._clear = color.build_rgb_reader(spec, profile, session.field)
+        self._noisy = color.build_noisy_rgb_reader(spec, profile, session.field)
         drift = find_drift(session.sim.spec)
         self._in_full = (
             session.sim.spec.world.pen_marks or drift.light_pc > 0 or drift.light_gain_pc > 0
@@ -194,7 +194,7 @@ class ColorDevice(LegoSensor):
         def ambient() -> tuple[int]:
             return (sum(self.channels()) * profile.ambient_percent // (3 * white),)
 
-        tell_color = color.bricks_color_code if profile.brick_colors else color.color_code
+        tell_color = color.find_brick_color_code if profile.brick_colors else color.find_color_code
 
         return {
             "COL-REFLECT": Mode(reflected, read, units="pct"),
@@ -216,7 +216,9 @@ class ColorDevice(LegoSensor):
             self._seen_tick, self._seen_actions = sim.tick, sim.actions
             light, drive = sim.noise.light, sim.drive
             if self._in_full or (light and self._spec.strategy != "mean"):
-                self._seen = color.reading(self._spec, sim.instant(), self._session.field).rgb
+                self._seen = color.measure_color(
+                    self._spec, sim.build_instant(), self._session.field
+                ).rgb
             elif light:
                 place = drive.x_mm, drive.y_mm, drive.heading_deg
                 self._seen = self._noisy(*place, light, sim.spec.seed, sim.tick)
@@ -265,7 +267,11 @@ def ultrasonic_sensor(
         nonlocal last
         ping = sim.tick // period
         if last[:2] != (ping, sim.actions):
-            last = (ping, sim.actions, ultrasonic.reading_mm(spec, sim.instant(), sim.spec.world))
+            last = (
+                ping,
+                sim.actions,
+                ultrasonic.measure_noisy_mm(spec, sim.build_instant(), sim.spec.world),
+            )
         return last[2]
 
     def inches() -> tuple[int]:
@@ -295,10 +301,10 @@ class GyroDevice(LegoSensor):
         read = sim.spec.profile.gyro_read_ns
 
         def angle() -> int:
-            return sim.instant().gyro_deg
+            return sim.build_instant().gyro_deg
 
         def rate() -> int:
-            return max(-MAX_RATE_DPS, min(MAX_RATE_DPS, sim.instant().gyro_rate_dps))
+            return max(-MAX_RATE_DPS, min(MAX_RATE_DPS, sim.build_instant().gyro_rate_dps))
 
         modes = {
             "GYRO-ANG": Mode(lambda: (angle(),), read, 0, "deg", "s16"),
@@ -333,7 +339,7 @@ def touch_sensor(session: DeviceSession, spec: TouchSpec) -> LegoSensor:
     sim = session.sim
 
     def pressed() -> tuple[int]:
-        return (int(touch.measure(spec, sim.instant(), sim.spec, session.field)[0]),)
+        return (int(touch.measure(spec, sim.build_instant(), sim.spec, session.field)[0]),)
 
     modes = {"TOUCH": Mode(pressed, sim.spec.profile.attribute_read_ns)}
     return LegoSensor(session, spec.port, SENSORS["touch"].driver_name, modes, "TOUCH")
@@ -354,7 +360,9 @@ def infrared_sensor(session: DeviceSession, spec: InfraredSpec) -> LegoSensor:
             lambda: infrared.remote(time_s(), world, session.pressed), read, units="btn"
         ),
         "IR-REM-A": Mode(
-            lambda: (infrared.remote_bits(time_s(), world, session.pressed),), read, form="s16"
+            lambda: (infrared.compute_remote_bits(time_s(), world, session.pressed),),
+            read,
+            form="s16",
         ),
         "IR-CAL": Mode(lambda: (0, 0), read, form="s16"),
     }

@@ -10,8 +10,13 @@ import numpy.typing as npt
 from tuisim.base.data_class import dataclass
 from tuisim.base.source import Program
 from tuisim.engine.core.css_colors import Rgb
-from tuisim.engine.core.field import Field, disc_mask
-from tuisim.engine.core.sensors.color import ColorReading, LightRead, pixel_array, reading
+from tuisim.engine.core.field import Field, build_disc_mask
+from tuisim.engine.core.sensors.color import (
+    ColorReading,
+    LightRead,
+    measure_color,
+    read_pixel_array,
+)
 from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.core.state import Instant
 from tuisim.programs.facts import ProgramThreshold, read_facts
@@ -50,7 +55,7 @@ class DiscFace:
     @property
     def value_words(self) -> str:
         """What the program gets."""
-        value = self.read.measured(self.seen, self.reflected_max)
+        value = self.read.compute_value(self.seen, self.reflected_max)
         match self.read:
             case LightRead.REFLECTED:
                 return f"{value:.0f} of {self.reflected_max}"
@@ -64,7 +69,7 @@ class DiscFace:
     @property
     def share(self) -> float:
         """What the program gets, as a share of what it gets on white."""
-        return self.read.measured(self.seen, self.reflected_max) / self.read.most(
+        return self.read.compute_value(self.seen, self.reflected_max) / self.read.find_white(
             self.reflected_max
         )
 
@@ -72,7 +77,7 @@ class DiscFace:
     def limit_shares(self) -> tuple[float, ...]:
         """The thresholds on the same scale, those on it."""
         shares = [
-            one.value / one.read.most(self.reflected_max)
+            one.value / one.read.find_white(self.reflected_max)
             for one in self.thresholds
             if not one.read.is_color
         ]
@@ -86,7 +91,7 @@ class DiscFace:
         """
         said = []
         for one in self.thresholds:
-            holds = one.holds(one.read.measured(self.seen, self.reflected_max))
+            holds = one.holds(one.read.compute_value(self.seen, self.reflected_max))
             said.append(one.words + ("" if holds is None else ": yes" if holds else ": no"))
         asking = (
             f"line {one.line}{':' if one.is_aim else ' asks'} {words}"
@@ -133,7 +138,7 @@ def disc_faces(
     for sensor in spec.robot.color_sensors:
         limits = thresholds.get(sensor.name, ())
         read = next((one.read for one in limits if not one.read.is_color), first)
-        box, seen = pixel_array(sensor, instant, field), reading(sensor, instant, field)
+        box, seen = read_pixel_array(sensor, instant, field), measure_color(sensor, instant, field)
         faces.append(DiscFace(sensor.name, box, seen, read, spec.profile.reflected_max, limits))
     return faces
 
@@ -162,10 +167,10 @@ def draw_disc(
     mm_per_px = (diameter + 2 * rim_mm) / side_px
     east = _from_middle(width_px, fine) * mm_per_px
     north = _from_middle(height_px, fine) * mm_per_px * tall
-    # A disc lies around the middle of a pixel of its box, see `disc_mask`.
+    # A disc lies around the middle of a pixel of its box, see `build_disc_mask`.
     cols, rows = (np.floor(at + diameter / 2 + 0.5).astype(np.intp) for at in (east, north))
     inside = np.zeros((diameter + 2, diameter + 2), bool)
-    inside[1:-1, 1:-1] = disc_mask(diameter)
+    inside[1:-1, 1:-1] = build_disc_mask(diameter)
     cols, rows = cols.clip(-1, diameter), rows.clip(-1, diameter)
     within = inside[rows[:, None] + 1, cols[None, :] + 1]
     is_rim = np.hypot(north[:, None], east[None, :]) <= diameter / 2 + rim_mm

@@ -11,7 +11,7 @@ import numpy as np
 from tuisim.base.data_class import dataclass
 from tuisim.engine.core.css_colors import Rgb
 from tuisim.engine.core.geometry import Pose, world_point
-from tuisim.engine.core.outline import RobotOutline, outline_of
+from tuisim.engine.core.outline import RobotOutline, build_outline
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, BeaconSpec, Obstacle, RobotSpec
 from tuisim.pictures.scene.floor import (
     draw_grid,
@@ -128,7 +128,7 @@ class ScenePainter:
         """Return the picture, shape (view.height_px, view.width_px, 3)."""
         picture = self._ground_picture(view, scene).copy()
         if self._outline is None or scene.robot is not self._robot:
-            self._robot, self._outline = scene.robot, outline_of(scene.robot)
+            self._robot, self._outline = scene.robot, build_outline(scene.robot)
         outline = self._outline
         if scene.rays and scene.robot.ultrasonic is not None:
             ultrasonic = scene.robot.ultrasonic

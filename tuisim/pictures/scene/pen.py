@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tuisim.base.data_class import dataclass
-from tuisim.engine.core.css_colors import Rgb, css_rgb
+from tuisim.engine.core.css_colors import Rgb, parse_css_rgb
 from tuisim.engine.core.spec import PenSpec, RobotSpec, RunSpec
 from tuisim.engine.core.tick_record import FLAG_PEN_DOWN
 from tuisim.engine.runs.arrays import FloatArray, world_points_mm
@@ -101,7 +101,7 @@ _FALLBACK = "red"
 
 def pen_rgb(color: str) -> Rgb:
     """Return the colour of a pen: a CSS name or `#rrggbb`; red for anything else."""
-    found = css_rgb(color) or css_rgb(_FALLBACK)
+    found = parse_css_rgb(color) or parse_css_rgb(_FALLBACK)
     assert found is not None
     return found
 

@@ -10,9 +10,9 @@ import numpy as np
 
 from tuisim.engine.core.css_colors import Rgb
 from tuisim.engine.core.geometry import Pose
-from tuisim.engine.core.outline import outline_of
+from tuisim.engine.core.outline import build_outline
 from tuisim.engine.core.sensors.touch import pressed
-from tuisim.engine.core.sensors.ultrasonic import rays_mm
+from tuisim.engine.core.sensors.ultrasonic import measure_rays_mm
 from tuisim.engine.core.spec import PenSpec, RobotSpec, RunSpec
 from tuisim.pictures.scene.painter import FRAME_PX, ScenePainter, SceneState
 from tuisim.pictures.scene.pen import FAR_MM, PenTrace, Piece, pen_trace
@@ -57,7 +57,7 @@ def world_view(robot: RobotSpec, mm_per_px: float = MM_PER_PX, area: Area = FIEL
     """Return a view in which a robot is completely visible while its axle is in an area."""
     # The field is no multiple of three mm wide: the rest of the last column is left out.
     width_px, height_px = (max(int(side_mm / mm_per_px), 1) for side_mm in area.size_mm)
-    rim_px = math.ceil(drawn_reach_mm(outline_of(robot)) / mm_per_px) + FRAME_PX
+    rim_px = math.ceil(drawn_reach_mm(build_outline(robot)) / mm_per_px) + FRAME_PX
     left_mm, top_mm = area.left - rim_px * mm_per_px, area.upper + rim_px * mm_per_px
     return Viewport(width_px + 2 * rim_px, height_px + 2 * rim_px, mm_per_px, left_mm, top_mm)
 
@@ -72,7 +72,7 @@ def find_view(spec: RunSpec, area: Area = FIELD) -> Viewport:
 
 def fitting_view(robot: RobotSpec, width_px: int, height_px: int, area: Area = FIELD) -> Viewport:
     """Return the view of `world_view` in the largest scale that fits a size."""
-    reach_mm = drawn_reach_mm(outline_of(robot))
+    reach_mm = drawn_reach_mm(build_outline(robot))
     # The rim is rounded up to whole pixels on both sides.
     sides = zip(area.size_mm, (width_px, height_px), strict=True)
     mm_per_px = max(
@@ -95,7 +95,7 @@ def scene_of(spec: RunSpec, pose: Pose | None, *, rays: bool = False) -> SceneSt
         robot,
         at,
         world.obstacles,
-        tuple(rays_mm(at, sensor, world)) if sensor else (),
+        tuple(measure_rays_mm(at, sensor, world)) if sensor else (),
         pressed=tuple(
             not touch.pressed_by and pressed(at, touch, world) for touch in robot.touch_sensors
         ),

@@ -7,8 +7,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from tuisim.engine.core.conditions import Operator, ValueCondition, ValueSource, run_condition_in
-from tuisim.engine.core.sensors import named_column
+from tuisim.engine.core.conditions import Operator, ValueCondition, ValueSource, parse_run_condition
+from tuisim.engine.core.sensors import find_named_column
 from tuisim.engine.core.spec import BUTTONS, RunSpec
 from tuisim.engine.protocol import SetButtons, UserAction
 from tuisim.engine.runs.brick_state import LED_NAMES, BrickState, face_after
@@ -44,19 +44,19 @@ def with_column(wanted: ValueCondition, run: RunSpec) -> ValueCondition:
         or wanted.name in (*BRICK_COLUMNS, *BRICK_TEXTS)
     ):
         return wanted
-    return replace(wanted, name=named_column(wanted.name, run))
+    return replace(wanted, name=find_named_column(wanted.name, run))
 
 
 def goal_condition_in(text: str) -> ValueCondition | None:
     """Return the condition that a text of a goal is, None if it is none.
 
-    As `run_condition_in`, and `sound matches REGEX`, `display matches REGEX`.
+    As `parse_run_condition`, and `sound matches REGEX`, `display matches REGEX`.
     """
     word, _, rest = text.strip().partition(" ")
     verb, _, pattern = rest.strip().partition(" ")
     if word in BRICK_TEXTS and verb == Operator.MATCHES:
         return ValueCondition(word, Operator.MATCHES, pattern.strip()) if pattern.strip() else None
-    return run_condition_in(text)
+    return parse_run_condition(text)
 
 
 def text_ticks(condition: ValueCondition, rows: Iterable[OutputRow]) -> list[int]:

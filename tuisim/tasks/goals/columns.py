@@ -123,7 +123,7 @@ def _gaps_mm(records: Array, evidence: Evidence) -> Array:
     poses = zip(*(records[name].tolist() for name in ("x_mm", "y_mm", "heading_deg")), strict=True)
     found: list[float] = []
     for pose, same in groupby(poses):
-        found += [min(solids.gaps_mm(pose), default=float("inf"))] * len(list(same))
+        found += [min(solids.measure_gaps_mm(pose), default=float("inf"))] * len(list(same))
     return np.array(found)
 
 

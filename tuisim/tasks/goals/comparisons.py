@@ -10,8 +10,8 @@ from tuisim.engine.core.conditions import (
     COMPARE,
     Operator,
     ValueCondition,
-    comparison_form,
-    condition_in,
+    describe_comparison,
+    parse_condition,
 )
 from tuisim.programs.facts import STRUCTURES
 from tuisim.tasks.goals.brick import goal_condition_in
@@ -47,7 +47,9 @@ def _comparison(text: str, key: str) -> ValueCondition:
     found = goal_condition_in(text)
     if found is None:
         raise ConfigError(
-            f"no comparison: {text!r}", f"{comparison_form()}, such as left_red_pc < 10", key=key
+            f"no comparison: {text!r}",
+            f"{describe_comparison()}, such as left_red_pc < 10",
+            key=key,
         )
     if found.operator is Operator.MATCHES:
         require_regex(found.value, key)
@@ -78,7 +80,9 @@ class KeepCondition(Condition):
         for number, text in enumerate(self.comparisons, start=1):
             key = f"comparisons[{number}]"
             if _comparison(text, key).is_momentary:
-                raise ConfigError(f"is only true at instants: {text!r}", comparison_form(), key=key)
+                raise ConfigError(
+                    f"is only true at instants: {text!r}", describe_comparison(), key=key
+                )
 
     @property
     def conditions(self) -> tuple[ValueCondition, ...]:
@@ -123,10 +127,12 @@ class StructureCondition(Condition):
     def __post_init__(self) -> None:
         check_count(self.comparisons, "comparisons")
         for number, text in enumerate(self.comparisons, start=1):
-            key, found = f"comparisons[{number}]", condition_in(text)
+            key, found = f"comparisons[{number}]", parse_condition(text)
             if found is None or found.operator not in COMPARE or not found.value.isdecimal():
                 raise ConfigError(
-                    f"no comparison: {text!r}", f"{comparison_form()}, such as loops >= 1", key=key
+                    f"no comparison: {text!r}",
+                    f"{describe_comparison()}, such as loops >= 1",
+                    key=key,
                 )
             if found.name not in STRUCTURES:
                 raise ConfigError(
@@ -138,4 +144,4 @@ class StructureCondition(Condition):
     @property
     def conditions(self) -> tuple[ValueCondition, ...]:
         """What the texts mean."""
-        return tuple(found for text in self.comparisons if (found := condition_in(text)))
+        return tuple(found for text in self.comparisons if (found := parse_condition(text)))

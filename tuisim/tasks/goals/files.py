@@ -20,7 +20,7 @@ from tuisim.engine import files
 from tuisim.engine.core.conditions import ValueCondition
 from tuisim.engine.core.profile import PROFILES
 from tuisim.engine.core.spec import RunSpec, WorldSpec
-from tuisim.engine.core.values import shown
+from tuisim.engine.core.values import quote
 from tuisim.engine.files import Location
 from tuisim.settings.options import names_world
 from tuisim.settings.robots import DEFAULT_ROBOT, RobotChoice, choose_robot
@@ -318,12 +318,12 @@ def _check_lists(kind: type[Condition], data: object, at: Location) -> None:
         if field is None:
             continue
         if key == kind.SHORT and field.type == "tuple[str, ...]" and not isinstance(value, list):
-            raise at.at(key).wrong(f"must be text, or a list of texts, got {shown(value)}")
+            raise at.at(key).wrong(f"must be text, or a list of texts, got {quote(value)}")
         if field.type == "tuple[Range, ...]" and not (
             isinstance(value, list) and all(map(_is_list, value))
         ):
             raise at.at(key).wrong(
-                f"must be [[from, to]], or one such pair for each, got {shown(value)}"
+                f"must be [[from, to]], or one such pair for each, got {quote(value)}"
             )
 
 
@@ -335,7 +335,7 @@ def _limit(data: object, at: Location) -> str | float:
     if isinstance(data, str):
         return files.convert(data, str, at)
     if isinstance(data, bool) or not isinstance(data, int | float):
-        raise at.wrong(f"must be the name of a goal, or a time in seconds, got {shown(data)}")
+        raise at.wrong(f"must be the name of a goal, or a time in seconds, got {quote(data)}")
     return files.convert(data, Seconds, at)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from tuisim.engine.core.collision import Solids
-from tuisim.engine.core.outline import outline_of
+from tuisim.engine.core.outline import build_outline
 from tuisim.engine.core.spec import Obstacle, RobotSpec, WorldSpec
 from tuisim.tasks.goals.evidence import Evidence, EvidencePoint, EvidenceSpan
 from tuisim.tasks.goals.found import Occurrence, distance_words
@@ -235,7 +235,7 @@ def _points(part: BodyPart, records: Array, robot: RobotSpec) -> list[tuple[Arra
         return [(x_mm, y_mm)]
     turn = np.radians(records["heading_deg"])
     cos, sin = np.cos(turn), np.sin(turn)
-    corners = outline_of(robot).corners_mm
+    corners = build_outline(robot).corners_mm
     return [
         (x_mm + ahead * cos + aside * sin, y_mm + ahead * sin - aside * cos)
         for aside, ahead in corners
@@ -257,7 +257,7 @@ def _circle_gap_mm(area: AreaCondition, records: Array, robot: RobotSpec) -> Arr
     """Return the distance of the robot's body from the centre of a circle, at every tick."""
     import numpy as np
 
-    outline = outline_of(robot)
+    outline = build_outline(robot)
     turn = np.radians(records["heading_deg"])
     dx, dy = area.x_mm - records["x_mm"], area.y_mm - records["y_mm"]
     ahead, aside = dx * np.cos(turn) + dy * np.sin(turn), dx * np.sin(turn) - dy * np.cos(turn)
@@ -319,7 +319,7 @@ def _first_contact(
         x_mm, y_mm, heading_deg = (
             float(records[name][at]) for name in ("x_mm", "y_mm", "heading_deg")
         )
-        gaps = solids.gaps_mm((x_mm, y_mm, heading_deg))
+        gaps = solids.measure_gaps_mm((x_mm, y_mm, heading_deg))
         near = {number for number, gap in enumerate(gaps) if gap < gap_mm}
         if near_from_start is None:
             near_from_start = near if forgiven else set()

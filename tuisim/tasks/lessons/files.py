@@ -22,7 +22,7 @@ from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ConfigError
 from tuisim.base.folders import user_path
 from tuisim.engine import files
-from tuisim.engine.core.values import shown
+from tuisim.engine.core.values import quote
 from tuisim.engine.files import Location
 from tuisim.settings.worlds import WorldFile, world_from_table
 from tuisim.tasks.goals.files import goals_from_list, line_in_errors
@@ -207,7 +207,7 @@ def _role(info: str, at: Location) -> Role | None:
         return None
     if words[0] != "python" or words[1] not in list(Role) or len(words) > 2:
         allowed = ", ".join(f"python {role}" for role in Role)
-        raise at.wrong(f"no such block of code {shown(info)}", f"one of {allowed}; or only python")
+        raise at.wrong(f"no such block of code {quote(info)}", f"one of {allowed}; or only python")
     return Role(words[1])
 
 
@@ -377,10 +377,10 @@ def _check_models(step: LessonStep, at: Location) -> None:
         try:
             event = model_event(step.check, text) if key == "model" else event_of(step.check, text)
         except ValueError:
-            raise at.at(key).wrong(f"must be a number, got {shown(text)}") from None
+            raise at.at(key).wrong(f"must be a number, got {quote(text)}") from None
         if is_met(step.check, [event]) is not (key == "model"):
             raise at.at(key).wrong(
-                f"{shown(text)} {'does not pass' if key == 'model' else 'passes'}"
+                f"{quote(text)} {'does not pass' if key == 'model' else 'passes'}"
             )
 
 

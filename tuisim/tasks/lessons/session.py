@@ -13,7 +13,7 @@ from tuisim.base.data_class import dataclass
 from tuisim.base.errors import TuisimError
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.spec import RunSpec, WorldSpec
-from tuisim.engine.core.values import values_of
+from tuisim.engine.core.values import list_values
 from tuisim.engine.runs.recorded_run import Recording
 from tuisim.engine.runs.store import load_run
 from tuisim.settings.build import build_run_spec
@@ -234,7 +234,7 @@ class LessonSession:
             return ""
         world = self._build_spec().world
         if _list_place(elsewhere.world) == _list_place(world):
-            noise, drift = world.noise, values_of(WorldSpec)["drift"].to_text(world.drift)
+            noise, drift = world.noise, list_values(WorldSpec)["drift"].format_text(world.drift)
             levels = f"light {noise.light}, motors {noise.motor} (panel Noise, z), drift {drift} (panel Settings, Z)"
             return f"This run had other noise or drift: the lesson's is {levels}."
         if in_run:

@@ -12,7 +12,7 @@ from tuisim.base.data_class import dataclass
 from tuisim.base.faults import describe_fault
 from tuisim.base.source import user_python_path
 from tuisim.engine.core.spec import RunSpec
-from tuisim.engine.core.tree import to_plain
+from tuisim.engine.core.tree import dump_run
 from tuisim.engine.runs.handle import RunOptions
 from tuisim.engine.runs.presses import press_actions
 from tuisim.engine.runs.removal import remove_tree
@@ -141,7 +141,7 @@ def _turns(entry: RunEntry, plan: MarkPlan) -> list[_Turn]:
         )
         for seed in plan.seeds:
             spec = replace(of_world, seed=seed)
-            own = [repr(world), options.to_plain(), to_plain(spec)]
+            own = [repr(world), options.to_plain(), dump_run(spec)]
             text = json.dumps([*basis, *own], sort_keys=True, default=str).encode(
                 "utf-8", "surrogatepass"
             )

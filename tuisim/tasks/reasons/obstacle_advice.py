@@ -7,9 +7,9 @@ from dataclasses import replace
 
 from tuisim.engine.core.collision import TOUCH_MM, Solids
 from tuisim.engine.core.geometry import Pose
-from tuisim.engine.core.outline import outline_of
+from tuisim.engine.core.outline import build_outline
 from tuisim.engine.core.sensors.infrared import PROXIMITY_RANGE_MM, proximity
-from tuisim.engine.core.sensors.ultrasonic import distance_mm
+from tuisim.engine.core.sensors.ultrasonic import measure_distance_mm
 from tuisim.engine.core.spec import InfraredSpec, RunSpec, UltrasonicSpec, WorldSpec
 from tuisim.engine.obstacles import OBSTACLES
 
@@ -21,7 +21,7 @@ _NEAREST_MM = 40.0
 
 def find_nearest(sensor: UltrasonicSpec, spec: RunSpec) -> float:
     """Return the least distance in mm that an ultrasonic sensor reads when its robot stands at a wall."""
-    front_mm = outline_of(spec.robot).front_mm if spec.profile.solid or spec.world.solid else 0.0
+    front_mm = build_outline(spec.robot).front_mm if spec.profile.solid or spec.world.solid else 0.0
     return max(float(spec.profile.min_echo_mm), front_mm - sensor.y_mm)
 
 
@@ -45,7 +45,7 @@ def find_obstacle(
     if limit is None or (pose.x_mm, pose.y_mm) != (start.x_mm, start.y_mm):
         return ""
     per_unit = 1.0 if isinstance(sensor, UltrasonicSpec) else PROXIMITY_RANGE_MM / 100
-    way_mm = max(_NEAREST_MM, limit * per_unit * _SHARE, outline_of(spec.robot).front_mm + 1.0)
+    way_mm = max(_NEAREST_MM, limit * per_unit * _SHARE, build_outline(spec.robot).front_mm + 1.0)
     for name, world in sets.items():
         for box in world.obstacles:
             x_mm = math.floor(box.x_mm - sensor.y_mm - way_mm)
@@ -60,10 +60,13 @@ def _measure(
     """Return how far a sensor sees an obstacle of a world; infinite if it sees none, or the robot has no room there."""
     bare = replace(world, obstacles=())
     if isinstance(sensor, UltrasonicSpec):
-        distance, free = distance_mm(pose, sensor, world), distance_mm(pose, sensor, bare)
+        distance, free = (
+            measure_distance_mm(pose, sensor, world),
+            measure_distance_mm(pose, sensor, bare),
+        )
         is_seen = spec.profile.min_echo_mm <= distance < free
     else:
         distance = proximity(pose, sensor, world)
         is_seen = distance < proximity(pose, sensor, bare)
-    gaps = Solids(world, spec.robot).gaps_mm((pose.x_mm, pose.y_mm, pose.heading_deg))
+    gaps = Solids(world, spec.robot).measure_gaps_mm((pose.x_mm, pose.y_mm, pose.heading_deg))
     return distance if is_seen and min(gaps, default=0.0) >= -TOUCH_MM else math.inf

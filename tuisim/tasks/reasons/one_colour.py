@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from tuisim.base.data_class import dataclass
 from tuisim.engine.core.columns import COLOR_NAMES
-from tuisim.engine.core.sensors.color import color_code
+from tuisim.engine.core.sensors.color import find_color_code
 from tuisim.engine.runs.sensor_arrays import quiet_color_columns
 from tuisim.tasks.reasons.lost_line import is_on_mat
 
@@ -68,6 +68,6 @@ def find_one_color(
         drives = (step_mm[ticks] > 0).sum() >= _MIN_READINGS and way_mm.sum() >= _MIN_WAY_MM
         if drives and (first is None or ticks[0] < first.tick):
             red, green, blue = (int(level) for level in channels.mean(axis=1))
-            name = COLOR_NAMES[color_code(red, green, blue)].lower()
+            name = COLOR_NAMES[find_color_code(red, green, blue)].lower()
             first = OneColor(int(ticks[0]), sensor.name, name)
     return first

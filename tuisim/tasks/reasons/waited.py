@@ -20,8 +20,8 @@ from tuisim.base.source import Program
 from tuisim.engine.core.columns import COLOR_NAMES
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.profile import NS_PER_S, Library
-from tuisim.engine.core.sensors import mounted_sensor
-from tuisim.engine.core.sensors.color import color_code
+from tuisim.engine.core.sensors import build_mounted_sensor
+from tuisim.engine.core.sensors.color import find_color_code
 from tuisim.engine.core.spec import (
     BUTTONS,
     INPUT_PORTS,
@@ -432,7 +432,7 @@ class _Search:
         state = self._records[["x_mm", "y_mm", "heading_deg", "flags"]][ticks]
         poses = ticks[np.sort(np.unique(state, return_index=True)[1])]
         # Only a colour sensor looks at the mat.
-        measure: Callable[..., tuple[float, ...]] = mounted_sensor(sensor).kind.measure
+        measure: Callable[..., tuple[float, ...]] = build_mounted_sensor(sensor).kind.measure
         for tick in poses[:: 1 + len(poses) // _MAX_POSES].tolist():
             instant = instant_of(run.telemetry.record(tick), run.spec, run.spec.world.noise)
             yield measure(sensor, instant, run.spec, None)
@@ -469,7 +469,7 @@ class _Search:
         if np.ptp(channels, axis=1).max() > _SAME_LIGHT:
             return None
         red, green, blue = (int(level) for level in channels.mean(axis=1))
-        return COLOR_NAMES[color_code(red, green, blue)].lower()
+        return COLOR_NAMES[find_color_code(red, green, blue)].lower()
 
 
 def _list_sought(

@@ -128,7 +128,7 @@ def test_a_motor_moves_the_same_however_often_one_looks(seed: int) -> None:
 @for_each(seed=range(30))
 def test_steps_of_the_speed_control_are_the_same_one_by_one(seed: int) -> None:
     shown = [*play(build_motor(), seed, None)]
-    with patch.object(DriverMotor, "_regulates", lambda *_: False):
+    with patch.object(DriverMotor, "_can_regulate", lambda *_: False):
         assert [*play(build_motor(), seed, None)] == shown
 
 
@@ -136,7 +136,7 @@ def test_a_move_is_looked_at_often_only_near_its_target() -> None:
     motor, positions = build_motor(), []
     give(motor, 0, Command.RUN_TO_REL_POS, speed_dps=500, position=1500)
     motor.run_until(100 * MS)
-    control, regulate = DriverMotor.control, DriverMotor._regulate
+    control, regulate = DriverMotor.control, DriverMotor._run_speed_control
 
     def note_control(self: DriverMotor, time_ns: int) -> None:
         positions.append(self.position)
@@ -146,7 +146,7 @@ def test_a_move_is_looked_at_often_only_near_its_target() -> None:
         positions.append(self.position)
         return regulate(self, step_ns, end_ns)
 
-    with patch.multiple(DriverMotor, control=note_control, _regulate=note_regulate):
+    with patch.multiple(DriverMotor, control=note_control, _run_speed_control=note_regulate):
         motor.run_until(4000 * MS)
     assert motor.position >= 1500
     assert len([position for position in positions if position < 1490]) < 100

@@ -45,6 +45,6 @@ def test_a_move_at_speed_0_arrives_only_where_it_is() -> None:
 def test_another_number_for_the_position_moves_a_hold_along() -> None:
     driver = build_driver()
     driver.halt(0, StopAction.HOLD)
-    driver.renumber(1000)
+    driver.set_position(1000)
     run(driver, 0, 100)
     assert driver.position == 1000 and driver.axle.speed_dps == 0.0

@@ -15,7 +15,7 @@ from tuisim.engine.core.driver.regulator import StopAction
 from tuisim.engine.core.driver.simulated import SimulatedMotor, load_wheel
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.profile import PROFILES
-from tuisim.engine.core.simulation import Simulation, simulation_of
+from tuisim.engine.core.simulation import Simulation, build_simulation
 from tuisim.engine.core.spec import MotorSpec, NoiseSpec, Obstacle, RobotSpec, RunSpec, WorldSpec
 
 TICK_NS = 10 * MS
@@ -34,7 +34,7 @@ class Lab:
     def __init__(self, world: WorldSpec = WORLD, robot: RobotSpec = ROBOT, seed: int = 0) -> None:
         self.sink = MemorySink()
         spec = RunSpec(robot, world, PROFILES["ev3"], seed=seed)
-        self.sim: Simulation = simulation_of(spec, self.sink)
+        self.sim: Simulation = build_simulation(spec, self.sink)
         self.motors = [
             motor
             for motor in (self.sim.left, self.sim.right, *self.sim.others)
@@ -141,7 +141,7 @@ def test_a_wheel_at_a_wall_stalls_as_late_as_a_blocked_one_and_rests(
     # 305 ms after the contact, which is up to a tick before.
     assert 29 <= lab.sim.tick - contact_tick <= 32
     lab.sim.advance(10)
-    assert left.is_at_rest and right.is_at_rest and lab.sim._quiet_ticks(1000) == 1000
+    assert left.is_at_rest and right.is_at_rest and lab.sim._count_quiet_ticks(1000) == 1000
     pose = lab.sim.pose
     lab.sim.place(Pose(pose.x_mm - 300, pose.y_mm, heading_deg))
     lab.sim.advance(10)

@@ -11,7 +11,7 @@ import pytest
 
 from tests.cases import cases
 from tuisim.engine import mat_cache, mats
-from tuisim.engine.core.field import OUTSIDE_DISC_RGB, Field, disc_mask, disc_pixels
+from tuisim.engine.core.field import OUTSIDE_DISC_RGB, Field, build_disc_mask, count_disc_pixels
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.sensors import color
 from tuisim.engine.core.spec import ColorSensorSpec, NoiseSpec, RobotSpec
@@ -66,7 +66,7 @@ def test_rainbow_bands(
     mean_percent: float,
     mat: OpenMat,
 ) -> None:
-    seen = color.reading(LEFT, at(x_mm, 500), mat("Rainbow_bands"))
+    seen = color.measure_color(LEFT, at(x_mm, 500), mat("Rainbow_bands"))
     assert (seen.rgb, seen.code, seen.name) == (rgb, code, name)
     assert (seen.red_percent, seen.mean_percent) == pytest.approx((red_percent, mean_percent))
 
@@ -87,14 +87,14 @@ def test_rainbow_bands(
     },
 )
 def test_edges(name: str, x_mm: float, red: float, mat: OpenMat) -> None:
-    seen = color.reading(LEFT, at(x_mm, 500), mat(name))
+    seen = color.measure_color(LEFT, at(x_mm, 500), mat(name))
     digits = len(str(float(red)).partition(".")[2])
     assert seen.red == pytest.approx(red, abs=0.5 * 10**-digits)
 
 
 @pytest.mark.parametrize("diameter, pixels", [(10, 69), (20, 305), (30, 697)])
 def test_disc_has_the_known_number_of_pixels(diameter: int, pixels: int) -> None:
-    assert disc_pixels(diameter) == pixels
+    assert count_disc_pixels(diameter) == pixels
 
 
 @cases(
@@ -111,7 +111,7 @@ def test_disc_has_the_known_number_of_pixels(diameter: int, pixels: int) -> None
 )
 def test_box_corner(pose: Pose, corner: tuple[int, int]) -> None:
     nudged = Pose(pose.x_mm + 1e-9, pose.y_mm - 1e-9, pose.heading_deg)
-    assert color.box_corner(nudged, LEFT) == corner
+    assert color.find_box_corner(nudged, LEFT) == corner
 
 
 @cases(
@@ -136,28 +136,28 @@ def test_box_corner(pose: Pose, corner: tuple[int, int]) -> None:
     },
 )
 def test_color_code(rgb: tuple[int, int, int], code: int) -> None:
-    assert color.color_code(*rgb) == code
+    assert color.find_color_code(*rgb) == code
 
 
 @pytest.mark.parametrize("light", [0, 20], ids=["clear", "noisy"])
 def test_pixel_array_is_what_the_reading_is_made_of(light: int, mat: OpenMat) -> None:
     instant, field = at(1010, 500, 33, light=light), mat("Rainbow_bands")
-    array = color.pixel_array(LEFT, instant, field)
+    array = color.read_pixel_array(LEFT, instant, field)
     pixels = [tuple(array[at : at + 3]) for at in range(0, len(array), 3)]
-    inside = [is_inside for row in disc_mask(LEFT.diameter_mm) for is_inside in row]
+    inside = [is_inside for row in build_disc_mask(LEFT.diameter_mm) for is_inside in row]
     assert len(pixels) == LEFT.diameter_mm**2
     assert {pixel for pixel, is_inside in zip(pixels, inside, strict=True) if not is_inside} == {
         OUTSIDE_DISC_RGB
     }
     reds = [pixel[0] for pixel, is_inside in zip(pixels, inside, strict=True) if is_inside]
-    assert color.reading(LEFT, instant, field).red == sum(reds) / len(reds)
+    assert color.measure_color(LEFT, instant, field).red == sum(reds) / len(reds)
 
 
 def noisy(
     mat: OpenMat, *, light: int = 20, seed: int = 1, tick: int = 7, sensor: ColorSensorSpec = LEFT
 ) -> bytes:
     """The pixels of the disc on the mid grey band."""
-    return color.pixel_array(
+    return color.read_pixel_array(
         sensor, at(1125, 500, light=light, seed=seed, tick=tick), mat("Grey_bands")
     )
 
@@ -177,7 +177,7 @@ def test_noise_differs_by(other: dict[str, Any], mat: OpenMat) -> None:
 
 @pytest.mark.parametrize("light", [1, 20, 127, 128])
 def test_noise_stays_within_its_level_and_reaches_it(light: int, mat: OpenMat) -> None:
-    inside = [is_inside for row in disc_mask(20) for is_inside in row for _ in range(3)]
+    inside = [is_inside for row in build_disc_mask(20) for is_inside in row for _ in range(3)]
     seen = [
         byte for tick in range(20) for byte in compress(noisy(mat, light=light, tick=tick), inside)
     ]

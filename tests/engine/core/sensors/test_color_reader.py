@@ -9,10 +9,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tuisim.engine.core.field import Field, disc_pixels
+from tuisim.engine.core.field import Field, count_disc_pixels
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.profile import EV3, ROBOLAB, ProfileSpec
-from tuisim.engine.core.sensors.color import reading, rgb_reader
+from tuisim.engine.core.sensors.color import build_rgb_reader, measure_color
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, RobotSpec
 from tuisim.engine.core.state import Instant
 
@@ -22,7 +22,7 @@ LEFT, RIGHT = RobotSpec().color_sensors
 
 def random_field() -> Field:
     """A narrow mat whose disc sums are any that a disc can have."""
-    most = 255 * disc_pixels(DIAMETER)
+    most = 255 * count_disc_pixels(DIAMETER)
     size = (FIELD_HEIGHT_MM + DIAMETER) * (WIDTH_PX + DIAMETER) * 3
     sums = np.random.default_rng(1).integers(0, most, size, np.uint32, endpoint=True)
     pixels = memoryview(bytes(range(256)) * (WIDTH_PX * FIELD_HEIGHT_MM * 3 // 256 + 1))
@@ -48,19 +48,19 @@ def test_whole_channels_are_those_of_a_reading(
 ) -> None:
     instant = Instant(0, Pose(x_mm, y_mm, heading_deg), profile=profile)
     for sensor in SENSORS:
-        seen = reading(sensor, instant, field)
-        assert rgb_reader(sensor, profile, field)(x_mm, y_mm, heading_deg) == seen.rgb
+        seen = measure_color(sensor, instant, field)
+        assert build_rgb_reader(sensor, profile, field)(x_mm, y_mm, heading_deg) == seen.rgb
 
 
 @pytest.mark.parametrize("profile", [ROBOLAB, EV3])
 @pytest.mark.parametrize("strategy", ["gaussian", "centre"])
 def test_weighted_discs_are_read_as_well(strategy: str, profile: ProfileSpec) -> None:
     sensor = replace(LEFT, strategy=strategy)
-    seen = reading(sensor, Instant(0, Pose(20.0, 500.0, 30.0), profile=profile), FIELD)
-    assert rgb_reader(sensor, profile, FIELD)(20.0, 500.0, 30.0) == seen.rgb
+    seen = measure_color(sensor, Instant(0, Pose(20.0, 500.0, 30.0), profile=profile), FIELD)
+    assert build_rgb_reader(sensor, profile, FIELD)(20.0, 500.0, 30.0) == seen.rgb
     assert any(seen.rgb)
 
 
 def test_whole_channels_of_every_mean() -> None:
-    count = disc_pixels(DIAMETER)
+    count = count_disc_pixels(DIAMETER)
     assert all(int(total / count) == total // count for total in range(255 * count + 1))

@@ -10,18 +10,18 @@ import pytest
 
 from tuisim.engine.core.drift import draw_light_gain
 from tuisim.engine.core.drift_spec import NO_DRIFT, DriftSpec
-from tuisim.engine.core.field import Field, disc_pixels
+from tuisim.engine.core.field import Field, count_disc_pixels
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.profile import EV3, PROFILES, ROBOLAB, ProfileSpec
 from tuisim.engine.core.sensors.color import (
     EVEN,
     ColorReading,
     LightRead,
-    bricks_color_code,
+    build_noisy_rgb_reader,
+    find_brick_color_code,
     find_response,
-    noisy_rgb_reader,
-    pixel_array,
-    reading,
+    measure_color,
+    read_pixel_array,
 )
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, ColorSensorSpec, NoiseSpec, RobotSpec
 from tuisim.engine.core.state import Instant
@@ -34,7 +34,7 @@ POSE = Pose(20.0, 500.0, 0.0)
 def paint(grey: int) -> Field:
     """Return a narrow mat of one grey, with the sums of the discs that are wholly on it."""
     size = (FIELD_HEIGHT_MM + DIAMETER) * (WIDTH_PX + DIAMETER) * 3
-    sums = memoryview(array("I", [disc_pixels(DIAMETER) * grey]) * size)
+    sums = memoryview(array("I", [count_disc_pixels(DIAMETER) * grey]) * size)
     pixels = memoryview(bytes([grey]) * (WIDTH_PX * FIELD_HEIGHT_MM * 3))
     return Field(WIDTH_PX, FIELD_HEIGHT_MM, pixels, {DIAMETER: sums})
 
@@ -46,14 +46,16 @@ def read(
     drift: DriftSpec = NO_DRIFT,
     seed: int = 0,
 ) -> ColorReading:
-    return reading(sensor, Instant(0, POSE, profile=profile, drift=drift, seed=seed), paint(grey))
+    return measure_color(
+        sensor, Instant(0, POSE, profile=profile, drift=drift, seed=seed), paint(grey)
+    )
 
 
 @pytest.mark.parametrize(("grey", "percent"), [(255, 85), (0, 5), (128, 45)])
 def test_white_and_black_are_as_far_apart_as_on_a_brick(grey: int, percent: int) -> None:
     seen = read(grey)
-    assert LightRead.REFLECTED.measured(seen, 100) == percent
-    assert LightRead.REFLECTION.measured(seen, 100) == percent
+    assert LightRead.REFLECTED.compute_value(seen, 100) == percent
+    assert LightRead.REFLECTION.compute_value(seen, 100) == percent
     assert len(set(seen.rgb)) == 1
 
 
@@ -65,31 +67,33 @@ def test_only_the_courses_sensors_read_the_mat_as_it_is(profile: ProfileSpec) ->
 @pytest.mark.parametrize("profile", [ROBOLAB, EV3])
 def test_a_sensor_may_have_its_own_white_and_black(profile: ProfileSpec) -> None:
     sensor = replace(LEFT, white_percent=62.0, black_percent=7.0)
-    shown = [LightRead.REFLECTION.measured(read(grey, profile, sensor), 100) for grey in (255, 0)]
+    shown = [
+        LightRead.REFLECTION.compute_value(read(grey, profile, sensor), 100) for grey in (255, 0)
+    ]
     assert shown == [62, 7]
 
 
 def test_beyond_the_edge_nothing_reflects() -> None:
     off = Instant(0, Pose(-500.0, 500.0, 0.0), profile=EV3, noise=NoiseSpec())
-    assert reading(LEFT, off, paint(255)).rgb == (0, 0, 0)
-    assert reading(LEFT, off, paint(255)).name == "NoColor"
+    assert measure_color(LEFT, off, paint(255)).rgb == (0, 0, 0)
+    assert measure_color(LEFT, off, paint(255)).name == "NoColor"
     assert read(0).name == "Black"
 
 
 @pytest.mark.parametrize("grey", [0, 100, 255])
 def test_the_quick_way_with_noise_agrees(grey: int) -> None:
     field, place = paint(grey), (POSE.x_mm, POSE.y_mm, POSE.heading_deg)
-    noisy = noisy_rgb_reader(LEFT, EV3, field)
+    noisy = build_noisy_rgb_reader(LEFT, EV3, field)
     for tick in range(30):
         instant = Instant(tick, POSE, profile=EV3, noise=NoiseSpec(light=20), seed=1)
-        assert noisy(*place, 20, 1, tick) == reading(LEFT, instant, field).rgb
+        assert noisy(*place, 20, 1, tick) == measure_color(LEFT, instant, field).rgb
 
 
 def test_the_picture_shows_what_the_sensor_reads() -> None:
     instant = Instant(0, POSE, profile=EV3)
-    box = pixel_array(LEFT, instant, paint(255))
+    box = read_pixel_array(LEFT, instant, paint(255))
     middle = 3 * (DIAMETER * DIAMETER // 2 + DIAMETER // 2)
-    assert tuple(box[middle : middle + 3]) == reading(LEFT, instant, paint(255)).rgb
+    assert tuple(box[middle : middle + 3]) == measure_color(LEFT, instant, paint(255)).rgb
 
 
 def test_sensors_differ_by_drift() -> None:
@@ -121,4 +125,4 @@ def test_sensors_differ_by_drift() -> None:
     ],
 )
 def test_colors_of_the_brick(rgb: tuple[int, int, int], code: int) -> None:
-    assert bricks_color_code(*rgb) == code
+    assert find_brick_color_code(*rgb) == code

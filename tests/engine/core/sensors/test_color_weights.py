@@ -9,7 +9,7 @@ import pytest
 from tuisim.engine import mat_cache, mats
 from tuisim.engine.core.field import Field
 from tuisim.engine.core.geometry import Pose
-from tuisim.engine.core.sensors.color import reading
+from tuisim.engine.core.sensors.color import measure_color
 from tuisim.engine.core.spec import STRATEGIES, NoiseSpec, RobotSpec
 from tuisim.engine.core.state import Instant
 
@@ -36,7 +36,7 @@ def grey_bands() -> Field:
 
 def seen(field: Field, x_mm: float, strategy: str, light: int = 0) -> float:
     instant = Instant(3, Pose(x_mm, 500.0, 0.0), noise=NoiseSpec(light, 0), seed=1)
-    return reading(replace(LEFT, strategy=strategy), instant, field).red
+    return measure_color(replace(LEFT, strategy=strategy), instant, field).red
 
 
 @pytest.mark.parametrize("x_mm, reds", EDGE.items())

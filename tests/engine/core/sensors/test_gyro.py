@@ -33,12 +33,12 @@ def spin(sign: int, profile: str, drift: DriftSpec, step: int, robot: RobotSpec)
 @pytest.mark.parametrize("sign", [1, -1])
 def test_an_angle_misses_what_is_faster_than_the_gyro_senses(sign: int) -> None:
     sim = spin(sign, "lego-micropython", NO_DRIFT, 300, SMALL)
-    instant = sim.instant()
+    instant = sim.build_instant()
     assert abs(instant.turn_rate_dps) > 600
     assert instant.gyro_rate_dps == sign * 440
-    last_s = sim.instant().gyro_zero_deg - sim.instant().pose.heading_deg
+    last_s = sim.build_instant().gyro_zero_deg - sim.build_instant().pose.heading_deg
     sim.advance(100)
-    now = sim.instant().gyro_zero_deg - sim.instant().pose.heading_deg
+    now = sim.build_instant().gyro_zero_deg - sim.build_instant().pose.heading_deg
     assert now - last_s == pytest.approx(sign * 440, abs=0.01)
     # In a standing start it senses the beginning in full.
     assert 0 < 3 * 440 - abs(last_s) < 440 / 4
@@ -57,7 +57,7 @@ def test_the_same_however_ticks_are_divided(drift: DriftSpec, robot: RobotSpec) 
 @pytest.mark.parametrize(("sign", "share"), [(1, 0.98), (-1, 1.0)])
 def test_it_counts_too_little_of_a_clockwise_turn(sign: int, share: float) -> None:
     sim = spin(sign, "lego-micropython", DriftSpec(gyro_scale_pc=2.0), 300, RobotSpec())
-    instant = sim.instant()
+    instant = sim.build_instant()
     turned_deg = -instant.pose.heading_deg
     assert sign * turned_deg > 600
     assert instant.gyro_deg == pytest.approx(share * turned_deg, abs=0.51)
@@ -65,6 +65,6 @@ def test_it_counts_too_little_of_a_clockwise_turn(sign: int, share: float) -> No
 
 
 def test_no_limit_without_one() -> None:
-    instant = spin(1, "lego-micropython", NO_DRIFT, 300, SMALL).instant()
+    instant = spin(1, "lego-micropython", NO_DRIFT, 300, SMALL).build_instant()
     free = replace(instant, profile=PROFILES["robolab"])
     assert free.gyro_rate_dps == round(-instant.turn_rate_dps) > 440

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tuisim.engine.core.geometry import Pose
-from tuisim.engine.core.sensors.infrared import proximity, remote, remote_bits, seek
+from tuisim.engine.core.sensors.infrared import compute_remote_bits, proximity, remote, seek
 from tuisim.engine.core.spec import BeaconSpec, InfraredSpec, Obstacle, RemotePress, WorldSpec
 
 EYE = InfraredSpec(x_mm=0, y_mm=50)
@@ -69,4 +69,11 @@ def test_the_later_of_two_presses_counts() -> None:
         (6, 0, 0, 2),
         (0, 0, 0, 0),
     ]
-    assert [remote_bits(time_s, world) for time_s in times_s] == [262, 278, 278, 406, 406, 262]
+    assert [compute_remote_bits(time_s, world) for time_s in times_s] == [
+        262,
+        278,
+        278,
+        406,
+        406,
+        262,
+    ]

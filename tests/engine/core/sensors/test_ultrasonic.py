@@ -6,7 +6,7 @@ import pytest
 
 from tests.cases import cases
 from tuisim.engine.core.geometry import Pose
-from tuisim.engine.core.sensors.ultrasonic import distance_mm, rays_mm
+from tuisim.engine.core.sensors.ultrasonic import measure_distance_mm, measure_rays_mm
 from tuisim.engine.core.spec import Obstacle, UltrasonicSpec, WorldSpec
 
 SENSOR = UltrasonicSpec()
@@ -27,7 +27,7 @@ POST = WorldSpec(obstacles=(Obstacle(900, 500, 200, 200),))
     ],
 )
 def test_walls_from_the_middle(heading_deg: float, expected_mm: int) -> None:
-    assert distance_mm(Pose(1000, 500, heading_deg), SENSOR, WALLS) == expected_mm
+    assert measure_distance_mm(Pose(1000, 500, heading_deg), SENSOR, WALLS) == expected_mm
 
 
 @cases(
@@ -49,21 +49,24 @@ def test_walls_from_the_middle(heading_deg: float, expected_mm: int) -> None:
     },
 )
 def test_distance(pose: Pose, world: WorldSpec, expected_mm: int) -> None:
-    assert distance_mm(pose, SENSOR, world) == expected_mm
+    assert measure_distance_mm(pose, SENSOR, world) == expected_mm
 
 
 def test_range_is_the_most_that_is_reported() -> None:
-    assert distance_mm(Pose(500, 500, 0), UltrasonicSpec(max_range_mm=1000), WALLS) == 1000
+    assert measure_distance_mm(Pose(500, 500, 0), UltrasonicSpec(max_range_mm=1000), WALLS) == 1000
 
 
 def test_a_sensor_mounted_backwards_looks_back() -> None:
-    assert distance_mm(Pose(1000, 500, 0), UltrasonicSpec(angle_deg=180, y_mm=-20), WALLS) == 980
+    assert (
+        measure_distance_mm(Pose(1000, 500, 0), UltrasonicSpec(angle_deg=180, y_mm=-20), WALLS)
+        == 980
+    )
 
 
 def test_every_ray_is_given_and_the_nearest_counts() -> None:
-    rays = rays_mm(Pose(1000, 500, 30), SENSOR, WALLS)
+    rays = measure_rays_mm(Pose(1000, 500, 30), SENSOR, WALLS)
     assert [angle for angle, _ in rays] == [9, 16, 23, 30, 37, 44, 51]
-    assert round(min(length for _, length in rays)) == distance_mm(
+    assert round(min(length for _, length in rays)) == measure_distance_mm(
         Pose(1000, 500, 30), SENSOR, WALLS
     )
     assert all(0 < length <= 2550 for _, length in rays)

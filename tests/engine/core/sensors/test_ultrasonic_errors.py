@@ -10,7 +10,7 @@ from tuisim.engine.core.drift import draw_echo_bias_mm
 from tuisim.engine.core.drift_spec import NO_DRIFT, DriftSpec
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.profile import EV3, ROBOLAB, ProfileSpec
-from tuisim.engine.core.sensors.ultrasonic import reading_mm
+from tuisim.engine.core.sensors.ultrasonic import measure_noisy_mm
 from tuisim.engine.core.spec import FIELD_WIDTH_MM, UltrasonicSpec, WorldSpec
 from tuisim.engine.core.state import Instant
 
@@ -22,7 +22,7 @@ def read(
     distance_mm: float, profile: ProfileSpec, drift: DriftSpec = NO_DRIFT, seed: int = 0
 ) -> int:
     pose = Pose(FIELD_WIDTH_MM - SENSOR.y_mm - distance_mm, 500.0, 0.0)
-    return reading_mm(
+    return measure_noisy_mm(
         SENSOR, Instant(0, pose, drift=drift, profile=profile, seed=seed), WorldSpec(drift=drift)
     )
 
@@ -48,5 +48,5 @@ def test_a_bias_is_drawn_once_a_run_and_adds_to_each_echo() -> None:
 def test_without_an_echo_there_is_nothing_to_add_to() -> None:
     far = Instant(0, Pose(100.0, 500.0, 90.0), drift=BIASED, profile=EV3, seed=3)
     open_world = WorldSpec(walls=False, drift=BIASED)
-    assert reading_mm(SENSOR, far, open_world) == 2550
-    assert reading_mm(replace(SENSOR, noise_mm=5.0), far, open_world) > 2540
+    assert measure_noisy_mm(SENSOR, far, open_world) == 2550
+    assert measure_noisy_mm(replace(SENSOR, noise_mm=5.0), far, open_world) > 2540

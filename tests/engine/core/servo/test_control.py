@@ -9,7 +9,7 @@ import pytest
 from tests.cases import for_each
 from tuisim.engine.core.profile import MotorLaw
 from tuisim.engine.core.servo.control import Controller
-from tuisim.engine.core.servo.settings import motor_settings
+from tuisim.engine.core.servo.settings import compute_motor_settings
 from tuisim.engine.core.servo.trajectory import Segment
 
 MS_US = 1000
@@ -26,7 +26,7 @@ def rest(now_us: int) -> Segment:
 
 
 def build_controller(*, slips: bool = False) -> Controller:
-    return Controller(motor_settings(MotorLaw.PYBRICKS, "large"), slips=slips)
+    return Controller(compute_motor_settings(MotorLaw.PYBRICKS, "large"), slips=slips)
 
 
 @pytest.mark.parametrize("end_us", [None, END_US])
@@ -49,7 +49,7 @@ def test_another_command_begins_where_the_motion_is(seed: int) -> None:
     for _ in range(40):
         now_us += chance.randrange(1, 400) * MS_US
         if chance.random() < 0.3:
-            control.fall_behind(now_us, HELD_US, FAR_MILLI, 0)
+            control.note_lag(now_us, HELD_US, FAR_MILLI, 0)
         milli, rate = control.milli(now_us), control.rate(now_us)
         time_us = chance.choice((None, chance.randrange(1000, 2000) * MS_US))
         control.run(now_us, rest, chance.randrange(-900, 900), ACCELERATION, time_us)
@@ -60,7 +60,7 @@ def test_another_command_begins_where_the_motion_is(seed: int) -> None:
 def test_a_robot_that_was_held_begins_where_its_wheels_have_come_to() -> None:
     control = build_controller(slips=True)
     control.run(0, rest, 500, ACCELERATION)
-    control.fall_behind(200 * MS_US, HELD_US, FAR_MILLI, 0)
+    control.note_lag(200 * MS_US, HELD_US, FAR_MILLI, 0)
     control.run(200 * MS_US, rest, 500, ACCELERATION)
     assert control.milli(200 * MS_US) == 0
 
@@ -68,8 +68,8 @@ def test_a_robot_that_was_held_begins_where_its_wheels_have_come_to() -> None:
 def test_a_move_that_was_held_goes_on_later() -> None:
     held, free = build_controller(), build_controller()
     for control in (held, free):
-        control.move_to(0, rest, 900, 700, ACCELERATION)
-    held.fall_behind(100 * MS_US, HELD_US, FAR_MILLI, 0)
+        control.move_to_position(0, rest, 900, 700, ACCELERATION)
+    held.note_lag(100 * MS_US, HELD_US, FAR_MILLI, 0)
     for rate in (None, 300):
         if rate is not None:
             held.run(150 * MS_US, rest, rate, ACCELERATION, 900 * MS_US)
@@ -79,8 +79,10 @@ def test_a_move_that_was_held_goes_on_later() -> None:
             before_us = now_us - HELD_US
             assert held.milli(now_us) == free.milli(before_us)
             assert held.rate(now_us) == free.rate(before_us)
-            end_us = free.segment_end_us(before_us)
-            assert held.segment_end_us(now_us) == (None if end_us is None else end_us + HELD_US)
+            end_us = free.find_segment_end_us(before_us)
+            assert held.find_segment_end_us(now_us) == (
+                None if end_us is None else end_us + HELD_US
+            )
 
 
 def test_a_motion_is_stalled_once_its_time_is_over() -> None:
@@ -88,5 +90,5 @@ def test_a_motion_is_stalled_once_its_time_is_over() -> None:
     stall_us = control.settings.stall_time_ms * MS_US
     control.run(0, rest, 500, ACCELERATION)
     for passed_us, is_stalled in ((stall_us - MS_US, False), (MS_US, True)):
-        control.fall_behind(2 * stall_us, passed_us, FAR_MILLI, 0)
+        control.note_lag(2 * stall_us, passed_us, FAR_MILLI, 0)
         assert control.stalled is is_stalled

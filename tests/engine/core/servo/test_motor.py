@@ -58,9 +58,11 @@ class Robot:
                 settings = motor.control.settings
                 rate = chance.randrange(-1600, 1601)
                 if chance.random() < 0.5:
-                    motor.control.run(now_us, motor.measured, rate, settings.acceleration, 700_000)
+                    motor.control.run(
+                        now_us, motor.measure_start, rate, settings.acceleration, 700_000
+                    )
                 else:
-                    motor.control.run(now_us, motor.measured, rate, settings.acceleration)
+                    motor.control.run(now_us, motor.measure_start, rate, settings.acceleration)
                 motor.follow(ending=chance.choice((Ending.COAST, Ending.BRAKE, Ending.HOLD)))
             case 2:
                 motor.control.hold(now_us, chance.randrange(-500_000, 500_000))
@@ -70,8 +72,13 @@ class Robot:
             case 4:
                 target, rate = chance.randrange(-900, 900), chance.randrange(50, 2000)
                 relative, settings = chance.random() < 0.5, motor.control.settings
-                motor.control.move_to(
-                    now_us, motor.measured, target, rate, settings.acceleration, relative=relative
+                motor.control.move_to_position(
+                    now_us,
+                    motor.measure_start,
+                    target,
+                    rate,
+                    settings.acceleration,
+                    relative=relative,
                 )
                 motor.follow(ending=chance.choice((Ending.COAST, Ending.BRAKE, Ending.HOLD)))
             case _:
@@ -101,7 +108,7 @@ def test_a_motor_that_held_stands_when_it_is_let_go() -> None:
     robot.sim.advance(100)
     robot.base.move(robot.now_us, 0, 0)
     robot.base.stop(robot.now_us, None)
-    assert robot.base.rates_at(robot.now_us) == (0, 0)
+    assert robot.base.find_rates(robot.now_us) == (0, 0)
 
 
 def test_a_robot_at_a_wall_drives_back() -> None:
@@ -121,7 +128,7 @@ def test_a_robot_at_a_wall_drives_back() -> None:
 def test_a_motion_for_a_time_ends_at_a_wall(ending: Ending) -> None:
     robot = Robot(WALLED)
     for motor in robot.motors:
-        motor.control.run(robot.now_us, motor.measured, 1000, 3200, 4_000_000)
+        motor.control.run(robot.now_us, motor.measure_start, 1000, 3200, 4_000_000)
         motor.follow(ending=ending)
     robot.sim.advance(399)
     assert [motor.mode for motor in robot.motors] == [TIMED, TIMED]
@@ -162,7 +169,7 @@ def test_commands_give_what_they_gave(profile: str, seed: int, given: str) -> No
                 *(pose.x_mm, pose.y_mm, pose.heading_deg, left.position_deg, right.position_deg),
                 *(left.counts_per_s, left.moving_dps, left.aim_dps, left.mode),
                 *(left.resting, left.control.stalled, robot.base.stalled, left.blocked_ticks),
-                *(*robot.base.millis_at(soon_us), *robot.base.rates_at(soon_us)),
+                *(*robot.base.find_millis(soon_us), *robot.base.find_rates(soon_us)),
             )
         )
     sums = [sum(map(abs, values)) for values in zip(*rows, strict=True)]

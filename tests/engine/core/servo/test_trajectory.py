@@ -13,10 +13,10 @@ from tuisim.engine.core.servo.trajectory import (
     MS_US,
     Segment,
     Trajectory,
-    angle_move,
-    endless_move,
-    proportional,
-    timed_move,
+    build_angle_move,
+    build_endless_move,
+    build_timed_move,
+    scale_move,
 )
 
 MAX_MILLI_OFF, MAX_US_OFF = 2.5 * MILLI, 8 * MS_US
@@ -30,10 +30,10 @@ def check_joints(trajectory: Trajectory) -> None:
     parts = trajectory[:2] if trajectory.endless else trajectory[:4]
     for part, following in pairwise(parts):
         assert part.start_us <= following.start_us + MAX_US_OFF
-        assert part.milli_at(following.start_us) == pytest.approx(
+        assert part.find_milli(following.start_us) == pytest.approx(
             following.milli, abs=MAX_MILLI_OFF
         )
-        assert part.rate_at(following.start_us) == pytest.approx(following.rate, abs=MAX_RATE_OFF)
+        assert part.find_rate(following.start_us) == pytest.approx(following.rate, abs=MAX_RATE_OFF)
         assert abs(following.rate) <= FASTEST
 
 
@@ -50,7 +50,7 @@ def draw_move(seed: int) -> tuple[Segment, int, int, int]:
 @for_each(seed=SEEDS)
 def test_a_move_ends_at_its_target(seed: int) -> None:
     start, rate, acceleration, target = draw_move(seed)
-    trajectory = angle_move(start, target, rate, acceleration, FASTEST)
+    trajectory = build_angle_move(start, target, rate, acceleration, FASTEST)
     check_joints(trajectory)
     assert trajectory.end[1:] == (target * MILLI, 0, 0)
     assert trajectory.first[:2] == start[:2]
@@ -61,7 +61,7 @@ def test_a_move_ends_at_its_target(seed: int) -> None:
 def test_a_move_for_a_time_ends_with_it(seed: int) -> None:
     start, rate, acceleration, target = draw_move(seed)
     time_us = (1 + 2 * abs(target)) * MS_US
-    trajectory = timed_move(start, time_us, rate, acceleration, FASTEST)
+    trajectory = build_timed_move(start, time_us, rate, acceleration, FASTEST)
     check_joints(trajectory)
     assert trajectory.end.start_us == start.start_us + time_us
     assert trajectory.end[2:] == (0, 0)
@@ -73,7 +73,7 @@ def test_a_move_for_a_time_ends_with_it(seed: int) -> None:
 @for_each(seed=SEEDS)
 def test_a_move_without_an_end_reaches_its_rate(seed: int) -> None:
     start, rate, acceleration, _ = draw_move(seed)
-    trajectory = endless_move(start, rate, acceleration, FASTEST)
+    trajectory = build_endless_move(start, rate, acceleration, FASTEST)
     check_joints(trajectory)
     assert trajectory.first[:3] == start[:3]
     assert abs(trajectory.even.rate - rate) <= max(0, abs(rate) - FASTEST)
@@ -82,8 +82,8 @@ def test_a_move_without_an_end_reaches_its_rate(seed: int) -> None:
 @for_each(seed=SEEDS)
 def test_a_move_in_proportion_has_the_times_of_its_leader(seed: int) -> None:
     start, rate, acceleration, target = draw_move(seed)
-    leader = angle_move(start, 2000 + abs(target), rate, acceleration, FASTEST)
-    follower = proportional(angle_move(start, target, rate, acceleration, FASTEST), leader)
+    leader = build_angle_move(start, 2000 + abs(target), rate, acceleration, FASTEST)
+    follower = scale_move(build_angle_move(start, target, rate, acceleration, FASTEST), leader)
     assert (follower.first.milli, follower.end.milli) == (start.milli, target * MILLI)
     share = (target * MILLI - start.milli) / (leader.end.milli - start.milli)
     for part, led in zip(follower[:4], leader[:4], strict=True):
@@ -99,21 +99,21 @@ def test_a_move_in_proportion_has_the_times_of_its_leader(seed: int) -> None:
 def test_each_time_lies_in_a_part(is_endless: bool) -> None:
     start = Segment(7 * MS_US, 0, -300, 0)
     trajectory = (
-        endless_move(start, 500, 900, FASTEST)
+        build_endless_move(start, 500, 900, FASTEST)
         if is_endless
-        else angle_move(start, 2000, 500, 900, FASTEST)
+        else build_angle_move(start, 2000, 500, 900, FASTEST)
     )
     parts = trajectory[:2] if is_endless else trajectory[:4]
     ends_us = [*(part.start_us for part in parts[1:]), None]
     for part, end_us in zip(parts, ends_us, strict=True):
         middle_us = part.start_us + 100 * MS_US if end_us is None else (part.start_us + end_us) // 2
-        assert trajectory.segment(middle_us) == part
-        assert trajectory.segment_end_us(middle_us) == end_us
+        assert trajectory.find_segment(middle_us) == part
+        assert trajectory.find_segment_end_us(middle_us) == end_us
 
 
 @for_each(seed=SEEDS)
 def test_positions_at_several_times_are_those_at_each(seed: int) -> None:
     start, rate, acceleration, target = draw_move(seed)
-    for part in angle_move(start, target, rate, acceleration, FASTEST)[:4]:
+    for part in build_angle_move(start, target, rate, acceleration, FASTEST)[:4]:
         times_us = range(part.start_us, part.start_us + 300 * MS_US, 7 * MS_US)
-        assert part.millis(times_us) == [part.milli_at(time_us) for time_us in times_us]
+        assert part.list_millis(times_us) == [part.find_milli(time_us) for time_us in times_us]

@@ -18,7 +18,7 @@ import pytest
 from tests.engine.shim.pybricks.lab import TICK_NS, Lab
 from tuisim.engine.core.profile import MotorLaw
 from tuisim.engine.core.servo.control import Controller
-from tuisim.engine.core.servo.trajectory import MILLI, divided
+from tuisim.engine.core.servo.trajectory import MILLI, divide
 from tuisim.engine.shim.pybricks import robotics, version_4
 from tuisim.engine.shim.pybricks.motor import Motor
 from tuisim.engine.shim.pybricks.parameters import Direction, Port, Stop
@@ -100,9 +100,7 @@ class Experiment:
             if control.trajectory is None:
                 found.append(None)
                 continue
-            found.append(
-                (divided(control.milli(now_ms * 1000), MILLI), control.rate(now_ms * 1000))
-            )
+            found.append((divide(control.milli(now_ms * 1000), MILLI), control.rate(now_ms * 1000)))
         self.seen.append((now_ms, found))
 
     def run(self) -> Experiment:

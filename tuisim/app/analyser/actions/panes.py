@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from tuisim.analysis.events import CommandRow, Event, EventChoice, events_of, thresholds_of
 from tuisim.app.analyser.world import NO_POSES, has_poses
 from tuisim.base.errors import LogError
-from tuisim.engine.core.conditions import spelled
+from tuisim.engine.core.conditions import list_operators
 from tuisim.logs.log import Log
 from tuisim.logs.table import TableTask, TableView, parse_conditions
 
@@ -73,7 +73,7 @@ def world(screen: LogScreen) -> None:
 
 
 _FILTERS = (
-    ("value > 50", f"the rows for which that is true; {spelled()}"),
+    ("value > 50", f"the rows for which that is true; {list_operators()}"),
     ("variable ~ col", "the rows whose text contains col"),
     ("value > 50 and time < 3", "the rows for which both are true"),
     ("(nothing)", "all rows"),

@@ -60,7 +60,7 @@ def set_duty(sim: Simulation, time_ns: int, part: int, values: tuple[float, ...]
     _find_motor(sim, part).obey(time_ns, Setting.DUTY, int(values[0]))
 
 
-def renumber(sim: Simulation, time_ns: int, part: int, values: tuple[float, ...]) -> None:
+def set_position(sim: Simulation, time_ns: int, part: int, values: tuple[float, ...]) -> None:
     """Make the present position another one."""
     _find_motor(sim, part).obey(time_ns, Setting.POSITION, int(values[0]))
 

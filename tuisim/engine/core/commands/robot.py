@@ -38,7 +38,7 @@ def move_pen(sim: Simulation, _time_ns: int, _part: int, values: tuple[float, ..
     sim.pen_down = bool(values[0])
 
 
-def plug(sim: Simulation, _time_ns: int, _part: int, values: tuple[float, ...]) -> None:
+def plug_in(sim: Simulation, _time_ns: int, _part: int, values: tuple[float, ...]) -> None:
     """Plug in parts, all at once.
 
     Raises:

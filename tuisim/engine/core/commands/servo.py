@@ -58,7 +58,7 @@ def set_milli(sim: Simulation, time_ns: int, part: int, values: tuple[float, ...
 def hold(sim: Simulation, time_ns: int, part: int, _values: tuple[float, ...]) -> None:
     """Let the controller stay where the motor is."""
     motor, now_us = _find_motor(sim, part), time_ns // 1000
-    motor.control.hold(now_us, motor.measured(now_us).milli)
+    motor.control.hold(now_us, motor.measure_start(now_us).milli)
 
 
 def hold_milli(sim: Simulation, time_ns: int, part: int, values: tuple[float, ...]) -> None:
@@ -74,7 +74,7 @@ def run_control(sim: Simulation, time_ns: int, part: int, values: tuple[float, .
     rate, acceleration, time_us, ending = values
     motor = _find_motor(sim, part)
     motor.control.run(
-        time_ns // 1000, motor.measured, int(rate), int(acceleration), _read_optional(time_us)
+        time_ns // 1000, motor.measure_start, int(rate), int(acceleration), _read_optional(time_us)
     )
     if ending == ending:
         motor.follow(ending=_find_ending(values, 3))
@@ -84,9 +84,9 @@ def move(sim: Simulation, time_ns: int, part: int, values: tuple[float, ...]) ->
     """Let the controller move to a position, at a rate, with an acceleration, relative or not."""
     target, rate, acceleration, relative = values
     motor = _find_motor(sim, part)
-    motor.control.move_to(
+    motor.control.move_to_position(
         time_ns // 1000,
-        motor.measured,
+        motor.measure_start,
         int(target),
         int(rate),
         int(acceleration),

@@ -61,7 +61,7 @@ CALLS: Mapping[Call, CallSpec] = {
     Call.RESET_GYRO: CallSpec(robot.reset_gyro, target=Target.ROBOT),
     Call.MOVE_PEN: CallSpec(robot.move_pen, (_FLAG,), target=Target.ROBOT),
     Call.PLUG: CallSpec(
-        robot.plug,
+        robot.plug_in,
         ((0.0, robot.PART_CODES - 1.0),) * MAX_VALUES,
         may_be_missing=True,
         target=Target.ROBOT,
@@ -84,7 +84,7 @@ CALLS: Mapping[Call, CallSpec] = {
         for command, call in driver.COMMAND_CALLS.items()
     },
     Call.SET_DUTY: CallSpec(driver.set_duty, ((-100.0, 100.0),), frozenset({MotorLaw.EV3DEV})),
-    Call.RENUMBER: CallSpec(driver.renumber, (_ANY,), frozenset({MotorLaw.EV3DEV})),
+    Call.RENUMBER: CallSpec(driver.set_position, (_ANY,), frozenset({MotorLaw.EV3DEV})),
     Call.SET_CONSTANT: CallSpec(
         driver.set_constant, (_FLAG, (0.0, 2.0), _INT), frozenset({MotorLaw.EV3DEV})
     ),

@@ -20,7 +20,7 @@ CAPACITY = 256
 """How many of the last changes are remembered."""
 LAST_NOTE = -43 * LOOK
 """When a counter that stood was noted last before the run: the driver has been at work for 400 ms."""
-MOST = 2 * CAPACITY
+MAX_CHANGES = 2 * CAPACITY
 FIRST_NOTE = LAST_NOTE - (CAPACITY - 1) * IDLE_LOOKS * LOOK
 STRIDE = 4
 """The driver looks back by this many changes, or twice, three times … as many."""
@@ -64,15 +64,15 @@ class Counter:
         if count == last:
             return
         if count > last:
-            part, per_count, one = (last + 1 - 2.0 * begin_deg) / way, 1.0 / way, 1
+            part, per_count, direction = (last + 1 - 2.0 * begin_deg) / way, 1.0 / way, 1
         else:
-            part, per_count, one = (last - 2.0 * begin_deg) / way, -1.0 / way, -1
+            part, per_count, direction = (last - 2.0 * begin_deg) / way, -1.0 / way, -1
         straight, counts = self._straight, self._counts
-        self._straight = count - last + (straight if straight * one > 0 else 0)
+        self._straight = count - last + (straight if straight * direction > 0 else 0)
         half_time = 0.5 * duration
         first_half, second_half = half_time / middle, half_time / (1.0 - middle)
         while last != count:
-            last += one
+            last += direction
             counts.append(last)
             times.append(
                 floor(
@@ -83,7 +83,7 @@ class Counter:
             )
             part += per_count
         self.count, self._speed_dps = count, None
-        if len(times) > MOST:
+        if len(times) > MAX_CHANGES:
             del times[:-CAPACITY], counts[:-CAPACITY]
 
     def record_rest(self, end: float) -> None:
@@ -99,16 +99,16 @@ class Counter:
         times += looks
         self._counts += repeat(self.count, len(looks))
         self._speed_dps = None
-        del times[:-MOST], self._counts[:-MOST]
+        del times[:-MAX_CHANGES], self._counts[:-MAX_CHANGES]
 
     def take_back(self, angle_deg: float) -> None:
         """Forget the last changes in one direction: an obstacle has stopped the axle at an angle before them."""
         count, counts = floor(2 * angle_deg), self._counts
-        one = 1 if self.count > count else -1
-        while self.count != count and counts[-1] - counts[-2] == one:
+        direction = 1 if self.count > count else -1
+        while self.count != count and counts[-1] - counts[-2] == direction:
             del counts[-1], self._times[-1]
-            self.count -= one
-            self._straight -= one
+            self.count -= direction
+            self._straight -= direction
             self._speed_dps = None
 
     def is_straight(self, speed_dps: float) -> bool:
@@ -128,14 +128,14 @@ class Counter:
         """
         if not times:
             return
-        one = 1 if count > self.count else -1
+        direction = 1 if count > self.count else -1
         self._straight += count - self.count
-        self._counts += range(count - one * (len(times) - 1), count + one, one)
+        self._counts += range(count - direction * (len(times) - 1), count + direction, direction)
         self._times += times
         self.count, self._speed_dps = count, None
-        del self._times[:-MOST], self._counts[:-MOST]
+        del self._times[:-MAX_CHANGES], self._counts[:-MAX_CHANGES]
 
-    def refill(self, time: float, angle_deg: float, speed_dps: float) -> None:
+    def fill_evenly(self, time: float, angle_deg: float, speed_dps: float) -> None:
         """Set the last changes as if the axle had turned evenly, for longer than any speed is measured.
 
         Args:
@@ -145,12 +145,12 @@ class Counter:
         """
         self.count = count = floor(2 * angle_deg)
         per_count = CLOCK_HZ / (2 * speed_dps)
-        edge, one = (count, -1) if speed_dps > 0 else (count + 1, 1)
-        self._straight = -CAPACITY * one
+        edge, direction = (count, -1) if speed_dps > 0 else (count + 1, 1)
+        self._straight = -CAPACITY * direction
         backs = range(CAPACITY - 1, -1, -1)
-        self._counts = [count + one * back for back in backs]
+        self._counts = [count + direction * back for back in backs]
         self._times = [
-            int(time - (2 * angle_deg - edge - one * back) * per_count) for back in backs
+            int(time - (2 * angle_deg - edge - direction * back) * per_count) for back in backs
         ]
         self._speed_dps = None
 

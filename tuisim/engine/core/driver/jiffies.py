@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tuisim.base.data_class import dataclass
-from tuisim.engine.core.noise import drawn_numbers
+from tuisim.engine.core.noise import draw_numbers
 
 JIFFY_US = 10_000
 NS_PER_US = 1000
@@ -48,7 +48,7 @@ class Jiffies:
 
 def draw_jiffies(seed: int) -> Jiffies:
     """Return the clock of a run; its jiffies begin with a step of the control."""
-    first, phase, look = drawn_numbers(seed, 0, "jiffies", 3)
+    first, phase, look = draw_numbers(seed, 0, "jiffies", 3)
     steps = JIFFY_US // STEP_US
     return Jiffies(
         int(first * FIRST_JIFFIES), int(phase * steps) * STEP_US, 1 + int(look * LOOK_JIFFIES)

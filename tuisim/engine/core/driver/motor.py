@@ -225,11 +225,11 @@ class DriverMotor(MotorDriver):
             if self._due_ns <= step_ns:
                 self._fire()
                 continue
-            if self._is_regulated and self._regulates(step_ns):
+            if self._is_regulated and self._can_regulate(step_ns):
                 end_ns = min(self._due_ns, time_ns + 1)
                 if self._arrival_action is not None:
                     end_ns = min(end_ns, self._find_arrival_ns(step_ns))
-                self._step_ns = self._regulate(step_ns, end_ns)
+                self._step_ns = self._run_speed_control(step_ns, end_ns)
                 if self._step_ns != step_ns:
                     continue
             elif self._control is None and self._try_to_roll():
@@ -263,8 +263,8 @@ class DriverMotor(MotorDriver):
         return (
             self._timers_ns == NEVER_NS
             and self.axle.stands
-            and self._knows_count()
-            and self._control_rests()
+            and self._is_count_known()
+            and self._is_control_at_rest()
         )
 
     def settle(self) -> bool:
@@ -272,7 +272,7 @@ class DriverMotor(MotorDriver):
         self.is_at_rest = (
             self.is_stalled == self.is_running
             and not (self.speed_dps or self._timers_ns < NEVER_NS)
-            and self._control_rests()
+            and self._is_control_at_rest()
             and self.state_bits == self._looked_bits
             and (self.axle.stands or self.axle.is_blocked)
         )
@@ -334,20 +334,20 @@ class DriverMotor(MotorDriver):
             values: The set points of a command; the constant, duty or position that is set.
         """
         if isinstance(values, SetPoints):
-            self._command(time_ns, call, values)
+            self._run_command(time_ns, call, values)
         elif isinstance(values, Constant):
             self.wake(time_ns)
             control = self.speed_control if values.control == "speed" else self.hold_control
             setattr(control, values.name, values.value)
         elif call is POSITION:
             self.wake(time_ns)
-            self.renumber(values)
+            self.set_position(values)
         elif self._last_command is RUN_DIRECT:
             self.wake(time_ns)
             self.run_direct(time_ns, values)
 
-    def _command(self, time_ns: int, command: Command | Setting, active: SetPoints) -> None:
-        if command is RUN_FOREVER and self._runs_on(active):
+    def _run_command(self, time_ns: int, command: Command | Setting, active: SetPoints) -> None:
+        if command is RUN_FOREVER and self._keeps_running(active):
             if active != self.active:
                 self.wake(time_ns)
                 self.active = active
@@ -380,7 +380,7 @@ class DriverMotor(MotorDriver):
         else:
             self._reset(time_ns)
 
-    def _runs_on(self, active: SetPoints) -> bool:
+    def _keeps_running(self, active: SetPoints) -> bool:
         """Whether `run-forever` was the last command, too, and no ramp was or is set: at most the speed changes."""
         before = self.active
         return (
@@ -434,11 +434,11 @@ class DriverMotor(MotorDriver):
         self.halt(time_ns, COAST)
         self.speed_control.reset()
         self.hold_control.reset()
-        self.renumber(0)
+        self.set_position(0)
 
-    def arrive(self, time_ns: int, action: StopAction) -> None:
+    def end_move(self, time_ns: int, action: StopAction) -> None:
         """End a move to a position, and all ramps and timers with it."""
-        super().arrive(time_ns, action)
+        super().end_move(time_ns, action)
         self._set_timers()
         self.is_ramping = False
 

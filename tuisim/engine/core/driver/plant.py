@@ -137,7 +137,7 @@ class Axle:
     @property
     def is_blocked(self) -> bool:
         """Whether it is at rest because an obstacle is in the way of a torque that is enough."""
-        return not (self.speed_dps or self.stands or self._leaves_rest(self.goal_dps > 0.0))
+        return not (self.speed_dps or self.stands or self._can_start(self.goal_dps > 0.0))
 
     @property
     def turns_freely(self) -> bool:
@@ -178,7 +178,7 @@ class Axle:
         """Turn until the time is over or the axle comes to rest on its way, and return the time that is left, in ns."""
         circuit, speed_dps = self.circuit, self.speed_dps
         forwards = speed_dps > 0.0 if speed_dps else self.goal_dps > 0.0
-        if not speed_dps and not self._leaves_rest(forwards):
+        if not speed_dps and not self._can_start(forwards):
             return 0.0
         constant_s, decay = circuit.time_constant_s, circuit.step_decay
         if duration_ns != STEP_NS:
@@ -196,7 +196,7 @@ class Axle:
             self.speed_dps = left_ns = 0.0
         return left_ns
 
-    def _leaves_rest(self, forwards: bool) -> bool:
+    def _can_start(self, forwards: bool) -> bool:
         """Whether the axle at rest begins to turn: the torque is enough, and no obstacle is in the way."""
         if abs(self.goal_dps) <= self.circuit.breakaway_dps:
             return False

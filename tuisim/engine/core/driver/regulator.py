@@ -150,7 +150,7 @@ class MotorDriver:
             self.move_axle(time_ns)
             self.axle.power(None if action is COAST else 0)
 
-    def renumber(self, position: int) -> None:
+    def set_position(self, position: int) -> None:
         """Make the present position another one; a target becomes it, too."""
         self._offset = position - self._raw
         self.position = self.target = self.hold_control.setpoint = position
@@ -213,7 +213,7 @@ class MotorDriver:
             self.duty = duty
             axle.power(duty)
         if self._arrival_action is not None:
-            self._approach(time_ns, self._arrival_action)
+            self._slow_down(time_ns, self._arrival_action)
 
     def _try_to_roll(self) -> bool:
         """Return whether the motor rolls on from now, without any control, and its steps can be left out."""
@@ -244,7 +244,7 @@ class MotorDriver:
             self._roll.tell_counter()
             self._roll = None
 
-    def _regulates(self, step_ns: int) -> bool:
+    def _can_regulate(self, step_ns: int) -> bool:
         """Whether the next step is one of the speed control alone, with a motor that turns."""
         return (
             self.speed_dps != 0
@@ -260,7 +260,7 @@ class MotorDriver:
         top_dps = max(abs(self.axle.speed_dps), MAX_DUTY * self.axle.circuit.dps_per_percent)
         return step_ns + int(way_deg / (top_dps * STEP_S)) * STEP_NS
 
-    def _regulate(self, step_ns: int, end_ns: int) -> int:
+    def _run_speed_control(self, step_ns: int, end_ns: int) -> int:
         """Run steps of the speed control alone, in few calls, as long as the motor turns on.
 
         Returns:
@@ -296,11 +296,11 @@ class MotorDriver:
             self._still_ns = self._moved_ns
         return step_ns
 
-    def _knows_count(self) -> bool:
+    def _is_count_known(self) -> bool:
         """Whether nothing has turned the axle since its position was read."""
         return self._raw == divide(self.counter.count, 2)
 
-    def _control_rests(self) -> bool:
+    def _is_control_at_rest(self) -> bool:
         """Whether the control of a motor at rest sets the same duty in every step."""
         control = self._control
         value = self.speed_dps if control is self.speed_control else self.position
@@ -320,7 +320,7 @@ class MotorDriver:
         elif time_ns - self._still_ns > STALL_NS:
             self.is_stalled = True
 
-    def _approach(self, time_ns: int, action: StopAction) -> None:
+    def _slow_down(self, time_ns: int, action: StopAction) -> None:
         """Slow down before the target, and stop at it."""
         target, position, speed_dps = self.target, self.position, self.speed_dps
         setpoint = self.speed_control.setpoint
@@ -331,8 +331,8 @@ class MotorDriver:
             self.is_lowering = True
         # A speed of 0 arrives only where it is already.
         if (position >= target or setpoint < 0) and (position <= target or setpoint > 0):
-            self.arrive(time_ns, action)
+            self.end_move(time_ns, action)
 
-    def arrive(self, time_ns: int, action: StopAction) -> None:
+    def end_move(self, time_ns: int, action: StopAction) -> None:
         """End a move to a position."""
         self.halt(time_ns, action, held=self.target)

@@ -165,10 +165,10 @@ class SimulatedMotor(DriverMotor):
         """Approximate number of ticks until the speed is steady; 0 only if it is steady."""
         return 0 if self.is_at_rest or self._cruise_dps else 1
 
-    def renumber(self, position: int) -> None:
+    def set_position(self, position: int) -> None:
         """Make the present position another one; a target becomes it, too."""
         before = self.position
-        super().renumber(position)
+        super().set_position(position)
         self.position_deg += position - before
 
     def record(self, buffer: Buffer, at: int) -> None:
@@ -202,7 +202,7 @@ class SimulatedMotor(DriverMotor):
             self.leave_roll()
             self.move_axle(end_ns)
         if noise_dps and axle.speed_dps:
-            self._turn_to(end_ns, axle.angle_deg + noise_dps / self._hz)
+            self._turn_axle(end_ns, axle.angle_deg + noise_dps / self._hz)
         turned_deg = axle.angle_deg - self._angle_deg
         self._angle_deg = axle.angle_deg
         self.position_deg += turned_deg
@@ -211,13 +211,13 @@ class SimulatedMotor(DriverMotor):
             if turned_deg == 0.0 and (axle.low_deg > -inf or axle.high_deg < inf):
                 self.blocked_ticks = 0 if axle.stands else self.blocked_ticks + 1
         elif self._control is self.speed_control:
-            self._consider_cruise(end_ns, noise_dps)
+            self._begin_cruise(end_ns, noise_dps)
         self.counting_dps = axle.speed_dps
         return turned_deg
 
     # Even speed
 
-    def _consider_cruise(self, now_ns: int, noise_dps: float) -> None:
+    def _begin_cruise(self, now_ns: int, noise_dps: float) -> None:
         """Run on evenly if the control has kept its speed for a while, and nothing is due for a while."""
         setpoint = self.speed_control.setpoint
         if noise_dps or not -MAX_ERROR_DPS <= self.speed_dps - setpoint <= MAX_ERROR_DPS:
@@ -227,12 +227,12 @@ class SimulatedMotor(DriverMotor):
         if self._even_ticks < EVEN_TICKS or abs(setpoint) < MIN_CRUISE_DPS:
             return
         cruise_dps = setpoint + copysign(CUT_OFF_DPS, setpoint)
-        end_ns = min(self._timers_ns, now_ns + self._free_ns(cruise_dps))
+        end_ns = min(self._timers_ns, now_ns + self._estimate_free_ns(cruise_dps))
         if end_ns > now_ns + self._tick_ns and self.state_bits == self._looked_bits:
             self._cruise_dps, self._cruise_end_ns = cruise_dps, end_ns
             self.axle.speed_dps = cruise_dps
 
-    def _free_ns(self, cruise_dps: float) -> int:
+    def _estimate_free_ns(self, cruise_dps: float) -> int:
         """Return how long nothing but the control matters: target and stops are far."""
         axle = self.axle
         end_deg = axle.high_deg if cruise_dps > 0 else axle.low_deg
@@ -246,7 +246,7 @@ class SimulatedMotor(DriverMotor):
         now_ns, cruise_dps, axle = self._end_ns(self._tick), self._cruise_dps, self.axle
         self._cruise_dps, self._even_ticks = 0.0, 0
         axle.angle_deg, self._moved_ns = self._angle_deg, now_ns
-        self.counter.refill(now_ns * TICKS_PER_NS, axle.angle_deg, cruise_dps)
+        self.counter.fill_evenly(now_ns * TICKS_PER_NS, axle.angle_deg, cruise_dps)
         self._step_ns = (now_ns // STEP_NS + 1) * STEP_NS
         self.read_counts(self.counter.count)
 
@@ -266,14 +266,14 @@ class SimulatedMotor(DriverMotor):
         since_s = (time_ns // STEP_NS * STEP_NS - self._end_ns(self._tick)) / NS_PER_S
         self.read_counts(floor(2 * (self._angle_deg + self._cruise_dps * since_s)))
 
-    def _turn_to(self, time_ns: int, angle_deg: float) -> None:
+    def _turn_axle(self, time_ns: int, angle_deg: float) -> None:
         """Turn the axle from outside, at once."""
         self.leave_roll()
         axle, before_deg = self.axle, self.axle.angle_deg
         axle.angle_deg = min(max(angle_deg, axle.low_deg), axle.high_deg)
         self.counter.record(time_ns * TICKS_PER_NS, 0.0, before_deg, axle.angle_deg, 0.5)
 
-    def quiet_ticks(self, tick: int) -> int:
+    def count_quiet_ticks(self, tick: int) -> int:
         """Return for how many ticks after `tick` the motor rests or runs evenly."""
         self._tick = tick
         if self.is_at_rest:
@@ -315,7 +315,7 @@ class SimulatedMotor(DriverMotor):
         before_deg = before[-1]
         there_deg = before_deg + (self._angle_deg - before_deg) * part
         self.counter.take_back(there_deg)
-        self._turn_to(self._moved_ns, there_deg)
+        self._turn_axle(self._moved_ns, there_deg)
         self.position_deg += axle.angle_deg - self._angle_deg
         self._angle_deg = axle.angle_deg
         axle.speed_dps = self.counting_dps = 0.0
@@ -345,7 +345,7 @@ class SimulatedMotor(DriverMotor):
         if not direction:
             self.blocked_ticks = 0
 
-    def fence(self, low_deg: float, high_deg: float) -> None:
+    def limit_axle(self, low_deg: float, high_deg: float) -> None:
         """Keep the axle between two angles from where it is now."""
         self.leave_roll()
         angle_deg = self.axle.angle_deg

@@ -15,7 +15,13 @@ from typing import Any, NamedTuple
 
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ConfigError, nearest
-from tuisim.engine.core.columns import MOTION, Column, column_name, measured_names, motion_of
+from tuisim.engine.core.columns import (
+    MOTION,
+    Column,
+    find_column_name,
+    list_measured_names,
+    measure_motion,
+)
 from tuisim.engine.core.field import Field
 from tuisim.engine.core.motor_columns import find_motor_owners
 from tuisim.engine.core.profile import PROFILES
@@ -49,7 +55,7 @@ class SensorKind:
 
     def names(self, sensor: Any) -> tuple[str, ...]:
         """Return the names of what is measured of a sensor: its columns of telemetry."""
-        return measured_names(self.columns(sensor))
+        return list_measured_names(self.columns(sensor))
 
 
 SENSORS: Mapping[str, SensorKind] = {
@@ -66,48 +72,51 @@ Measure = Callable[[Instant, RunSpec, Field], tuple[float, ...]]
 """Returns the values of the columns of an owner that are measured."""
 
 
-def owners(run: RunSpec) -> list[tuple[tuple[Column, ...], Measure]]:
+def list_owners(run: RunSpec) -> list[tuple[tuple[Column, ...], Measure]]:
     """Return the columns of the robot, of each sensor and of each motor with a driver, and how they are measured."""
     of_sensors = [
-        (mount.columns, partial(mount.kind.measure, mount.sensor)) for mount in mounted(run.robot)
+        (mount.columns, partial(mount.kind.measure, mount.sensor))
+        for mount in list_mounted(run.robot)
     ]
-    return [(MOTION, motion_of), *of_sensors, *find_motor_owners(run)]
+    return [(MOTION, measure_motion), *of_sensors, *find_motor_owners(run)]
 
 
-def columns_of(run: RunSpec) -> tuple[Column, ...]:
+def list_columns(run: RunSpec) -> tuple[Column, ...]:
     """Return the columns of a run, in the order of telemetry."""
-    return tuple(column for columns, _ in owners(run) for column in columns)
+    return tuple(column for columns, _ in list_owners(run) for column in columns)
 
 
-def column_names(run: RunSpec) -> tuple[str, ...]:
-    """Return the names of `columns_of`."""
-    return tuple(column.name for column in columns_of(run))
+def list_column_names(run: RunSpec) -> tuple[str, ...]:
+    """Return the names of `list_columns`."""
+    return tuple(column.name for column in list_columns(run))
 
 
-def named_column(text: str, run: RunSpec) -> str:
-    """Return the name of the column that a text means, see `column_name`.
+def find_named_column(text: str, run: RunSpec) -> str:
+    """Return the name of the column that a text means, see `find_column_name`.
 
     Raises:
         ConfigError: the run has no such column.
     """
-    found = column_name(text, columns_of(run))
-    if found is None:
-        measured = column_names(replace(run, profile=PROFILES["ev3"]))
-        hint = "only profile ev3 has it" if text in measured else nearest(text, column_names(run))
+    name = find_column_name(text, list_columns(run))
+    if name is None:
+        measured = list_column_names(replace(run, profile=PROFILES["ev3"]))
+        hint = (
+            "only profile ev3 has it" if text in measured else nearest(text, list_column_names(run))
+        )
         raise ConfigError(f"this robot has no {text!r}", hint)
-    return found
+    return name
 
 
-def reader_of(name: str, run: RunSpec) -> Callable[[Instant, RunSpec, Field], float] | None:
+def build_reader(name: str, run: RunSpec) -> Callable[[Instant, RunSpec, Field], float] | None:
     """Return a function that gives the value of a column at an instant `with_motors`; None if the run has none."""
-    for columns, measure in owners(run):
+    for columns, measure in list_owners(run):
         for column in columns:
             if column.name == name:
-                return partial(_value, column, measured_names(columns), measure)
+                return partial(_measure_value, column, list_measured_names(columns), measure)
     return None
 
 
-def _value(
+def _measure_value(
     column: Column,
     names: tuple[str, ...],
     measure: Measure,
@@ -121,13 +130,13 @@ def _value(
     )
 
 
-def readings(
+def measure_sensors(
     sensors: Iterable[SensorSpec], instant: Instant, spec: RunSpec, field: Field
 ) -> dict[str, float]:
     """Return what some sensors measure at an instant, by column."""
     return {
         name: value
-        for mount in map(mounted_sensor, sensors)
+        for mount in map(build_mounted_sensor, sensors)
         for name, value in zip(
             mount.names,
             mount.kind.measure(mount.sensor, instant, spec, field),
@@ -151,13 +160,13 @@ _KINDS = {kind.spec: kind for kind in SENSORS.values()}
 
 
 @lru_cache(maxsize=64)
-def mounted_sensor(sensor: SensorSpec) -> MountedSensor:
+def build_mounted_sensor(sensor: SensorSpec) -> MountedSensor:
     """Return a sensor with what its kind says about it."""
     kind = _KINDS[type(sensor)]
     return MountedSensor(kind, sensor, kind.columns(sensor), kind.names(sensor))
 
 
 @lru_cache(maxsize=16)
-def mounted(robot: RobotSpec) -> tuple[MountedSensor, ...]:
+def list_mounted(robot: RobotSpec) -> tuple[MountedSensor, ...]:
     """Return the robot's sensors, in the order of the telemetry columns."""
-    return tuple(map(mounted_sensor, robot.sensors))
+    return tuple(map(build_mounted_sensor, robot.sensors))

@@ -11,16 +11,21 @@ from typing import TYPE_CHECKING, Any, NamedTuple, assert_never
 
 from tuisim.base.data_class import dataclass
 from tuisim.engine.core.columns import COLOR_NAMES, Column
-from tuisim.engine.core.drift import draw_light_gain, light_share
+from tuisim.engine.core.drift import compute_light_share, draw_light_gain
 from tuisim.engine.core.field import (
     OUTSIDE_DISC_RGB,
     Field,
-    disc_pixels,
+    count_disc_pixels,
     disc_weights,
     weighted_mean,
 )
 from tuisim.engine.core.geometry import Pose, world_point
-from tuisim.engine.core.noise import noisy_channel, noisy_sums, reading_noise, stream
+from tuisim.engine.core.noise import (
+    add_noise_to_channel,
+    add_noise_to_sums,
+    draw_reading_noise,
+    generate_bytes,
+)
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, ColorSensorSpec, RunSpec
 from tuisim.engine.core.state import Instant
 
@@ -65,8 +70,8 @@ class ColorReading:
 
     @property
     def code(self) -> int:
-        """Colour code, see `color_code` and `bricks_color_code`."""
-        return bricks_color_code(*self.rgb) if self.is_bricks else color_code(*self.rgb)
+        """Colour code, see `find_color_code` and `find_brick_color_code`."""
+        return find_brick_color_code(*self.rgb) if self.is_bricks else find_color_code(*self.rgb)
 
     @property
     def name(self) -> str:
@@ -89,7 +94,7 @@ def hsv(red: int, green: int, blue: int) -> tuple[int, int, int]:
     return int(60 * hue), int(100 * span / high), int(100 * high / 255)
 
 
-def color_code(red: int, green: int, blue: int) -> int:
+def find_color_code(red: int, green: int, blue: int) -> int:
     """Return the colour code of a reading: 1 black, 2 blue, 3 green, 4 yellow, 5 red, 6 white."""
     hue, saturation, value = hsv(red, green, blue)
     if saturation < 20:
@@ -100,12 +105,12 @@ def color_code(red: int, green: int, blue: int) -> int:
     return 5
 
 
-def bricks_color_code(red: int, green: int, blue: int) -> int:
+def find_brick_color_code(red: int, green: int, blue: int) -> int:
     """Return the colour code of a reading as on the brick: also 0 for nothing and 7 for brown."""
     hue, saturation, value = hsv(red, green, blue)
     if not value:
         return 0
-    code = color_code(red, green, blue)
+    code = find_color_code(red, green, blue)
     if code == WHITE_CODE and min(red, green, blue) < WHITE_SHARE * WHITE:
         return 0
     is_brown = saturation >= MIN_BROWN_SATURATION and value < MAX_BROWN_VALUE
@@ -137,7 +142,7 @@ class LightRead(StrEnum):
         """Whether it is the colour, and no number."""
         return self in (LightRead.COLOR, LightRead.COLOR_NAME)
 
-    def measured(self, seen: ColorReading, reflected_max: int) -> float:
+    def compute_value(self, seen: ColorReading, reflected_max: int) -> float:
         """Return what a program gets; the colour code for a colour.
 
         Args:
@@ -146,7 +151,7 @@ class LightRead(StrEnum):
         """
         match self:
             case LightRead.REFLECTED:
-                return int(seen.red) * self.most(reflected_max) // WHITE
+                return int(seen.red) * self.find_white(reflected_max) // WHITE
             case LightRead.REFLECTION:
                 return int(seen.red) * 100 // WHITE
             case LightRead.PERCENT:
@@ -158,12 +163,12 @@ class LightRead(StrEnum):
             case _:
                 assert_never(self)
 
-    def most(self, reflected_max: int) -> int:
+    def find_white(self, reflected_max: int) -> int:
         """Return the value on white."""
         return reflected_max if self is LightRead.REFLECTED else 100
 
 
-def box_corner(pose: Pose, spec: ColorSensorSpec) -> tuple[int, int]:
+def find_box_corner(pose: Pose, spec: ColorSensorSpec) -> tuple[int, int]:
     """Return the image column and row of the corner of the box under a sensor."""
     x_mm, y_mm = world_point(pose, spec.x_mm, spec.y_mm)
     radius = spec.diameter_mm / 2
@@ -198,13 +203,13 @@ def find_response(spec: ColorSensorSpec, profile: ProfileSpec) -> Response:
     return Response(dark, ceil(WHITE * white / 100) - dark)
 
 
-def light_seen(x_mm: Any, y_mm: Any, spec: ColorSensorSpec, drift: DriftSpec, seed: int) -> Any:
+def compute_light(x_mm: Any, y_mm: Any, spec: ColorSensorSpec, drift: DriftSpec, seed: int) -> Any:
     """Return the brightness that a sensor sees at places of the field, numbers or arrays: 1 without drift."""
-    share = light_share(x_mm, y_mm, drift, seed) if drift.light_pc else 1.0
+    share = compute_light_share(x_mm, y_mm, drift, seed) if drift.light_pc else 1.0
     return share * draw_light_gain(spec.port, drift, seed) if drift.light_gain_pc else share
 
 
-def _is_over(field: Field, diameter: int, corner: tuple[int, int]) -> bool:
+def _has_floor(field: Field, diameter: int, corner: tuple[int, int]) -> bool:
     """Return whether a box is on the mat, at least in part, or on the floor around it."""
     col, row = corner
     is_on_mat = -diameter <= col < field.width_px and -diameter <= row < field.height_px
@@ -214,9 +219,9 @@ def _is_over(field: Field, diameter: int, corner: tuple[int, int]) -> bool:
 def clear_reading(spec: ColorSensorSpec, pose: Pose, field: Field) -> ColorReading:
     """Return the mean of the mat under a colour sensor, without noise."""
     if spec.strategy != "mean":
-        box = field.box(spec.diameter_mm, *box_corner(pose, spec))
+        box = field.read_box(spec.diameter_mm, *find_box_corner(pose, spec))
         return ColorReading(*weighted_mean(box, spec.diameter_mm, spec.strategy))
-    red, green, blue = field.disc_sums(spec.diameter_mm, *box_corner(pose, spec))
+    red, green, blue = field.sum_disc(spec.diameter_mm, *find_box_corner(pose, spec))
     count = disc_pixels_of(spec.diameter_mm)
     return ColorReading(red / count, green / count, blue / count)
 
@@ -230,16 +235,16 @@ def _read_in_full(
     heading_deg: float,
 ) -> tuple[int, int, int]:
     instant = Instant(0, Pose(x_mm, y_mm, heading_deg), profile=profile)
-    return reading(spec, instant, field).rgb
+    return measure_color(spec, instant, field).rgb
 
 
-def rgb_reader(
+def build_rgb_reader(
     spec: ColorSensorSpec, profile: ProfileSpec, field: Field
 ) -> Callable[[float, float, float], tuple[int, int, int]]:
     """Return a function that gives a sensor's channels without noise and drift, truncated to integers.
 
     It takes the robot's x and y in mm and its heading in degrees, and agrees with
-    `reading(...).rgb`. A tight control loop spends much of its time here, so everything
+    `measure_color(...).rgb`. A tight control loop spends much of its time here, so everything
     that depends on the sensor is precomputed, and the steps are inlined.
     """
     if spec.strategy != "mean" or field.floor_rgb is not None:
@@ -259,29 +264,29 @@ def rgb_reader(
         )
         if not (0 <= col < width and 0 <= row < height):
             return 0, 0, 0
-        at = (row * width + col) * 3
+        offset = (row * width + col) * 3
         if is_even:
-            return sums[at] // count, sums[at + 1] // count, sums[at + 2] // count
+            return sums[offset] // count, sums[offset + 1] // count, sums[offset + 2] // count
         return (
-            int(dark + sums[at] / count * span / WHITE),
-            int(dark + sums[at + 1] / count * span / WHITE),
-            int(dark + sums[at + 2] / count * span / WHITE),
+            int(dark + sums[offset] / count * span / WHITE),
+            int(dark + sums[offset + 1] / count * span / WHITE),
+            int(dark + sums[offset + 2] / count * span / WHITE),
         )
 
     return read
 
 
-def noisy_rgb_reader(
+def build_noisy_rgb_reader(
     spec: ColorSensorSpec, profile: ProfileSpec, field: Field
 ) -> Callable[[float, float, float, int, int, int], tuple[int, int, int]]:
     """Return a function that gives a sensor's channels with noise, truncated to integers.
 
     It takes the robot's x and y in mm, its heading in degrees, and the level, seed and tick of the noise, and agrees
-    with `reading(...).rgb`; as `rgb_reader`, it is called in every turn of a control loop.
+    with `measure_color(...).rgb`; as `build_rgb_reader`, it is called in every turn of a control loop.
     """
     diameter, right_mm, forward_mm, name = spec.diameter_mm, spec.x_mm, spec.y_mm, spec.name
     radius, count = diameter / 2, disc_pixels_of(diameter)
-    disc_sums, disc, response = field.disc_sums, field.disc, find_response(spec, profile)
+    disc_sums, disc, response = field.sum_disc, field.read_disc, find_response(spec, profile)
 
     def read(
         x_mm: float, y_mm: float, heading_deg: float, level: int, seed: int, tick: int
@@ -290,11 +295,13 @@ def noisy_rgb_reader(
         across, up = cos(turn), sin(turn)
         col = int(x_mm + across * right_mm - up * forward_mm - radius)
         row = int(FIELD_HEIGHT_MM - (y_mm + up * right_mm + across * forward_mm) - radius)
-        sums, normals = disc_sums(diameter, col, row), reading_noise(seed, tick, name)
-        red, green, blue = noisy_sums(lambda: disc(diameter, col, row), count, sums, level, normals)
+        sums, normals = disc_sums(diameter, col, row), draw_reading_noise(seed, tick, name)
+        red, green, blue = add_noise_to_sums(
+            lambda: disc(diameter, col, row), count, sums, level, normals
+        )
         if response == EVEN:
             return red // count, green // count, blue // count
-        is_over = _is_over(field, diameter, (col, row))
+        is_over = _has_floor(field, diameter, (col, row))
         return (
             int(response.channel(red / count, is_over)),
             int(response.channel(green / count, is_over)),
@@ -304,53 +311,57 @@ def noisy_rgb_reader(
     return read
 
 
-def _noisy_sums(spec: ColorSensorSpec, instant: Instant, field: Field) -> tuple[int, int, int]:
+def _measure_noisy_sums(
+    spec: ColorSensorSpec, instant: Instant, field: Field
+) -> tuple[int, int, int]:
     """Return the sums of the channels in the disc under a sensor, including noise."""
-    diameter, (col, row) = spec.diameter_mm, box_corner(instant.pose, spec)
-    normals = reading_noise(instant.seed, instant.tick, spec.name)
-    return noisy_sums(
-        lambda: field.disc(diameter, col, row),
+    diameter, (col, row) = spec.diameter_mm, find_box_corner(instant.pose, spec)
+    normals = draw_reading_noise(instant.seed, instant.tick, spec.name)
+    return add_noise_to_sums(
+        lambda: field.read_disc(diameter, col, row),
         disc_pixels_of(diameter),
-        field.disc_sums(diameter, col, row),
+        field.sum_disc(diameter, col, row),
         instant.noise.light,
         normals,
     )
 
 
-def _seen_box(spec: ColorSensorSpec, instant: Instant, field: Field) -> bytes:
+def _read_noisy_box(spec: ColorSensorSpec, instant: Instant, field: Field) -> bytes:
     """Return the pixels of the box under a sensor; the mean of those in the disc is what the sensor reads."""
     diameter = spec.diameter_mm
-    box = field.box(diameter, *box_corner(instant.pose, spec))
+    box = field.read_box(diameter, *find_box_corner(instant.pose, spec))
     if not instant.noise.light:
         return box
     seen = bytearray(box)
-    inside = [at for at, weight in enumerate(disc_weights(diameter, "mean")) if weight]
-    random = stream(instant.seed, instant.tick, spec.name, 3 * len(inside))
-    for channel, total in enumerate(_noisy_sums(spec, instant, field)):
-        clear = bytes(box[3 * at + channel] for at in inside)
-        for at, value in zip(
+    inside = [index for index, weight in enumerate(disc_weights(diameter, "mean")) if weight]
+    random = generate_bytes(instant.seed, instant.tick, spec.name, 3 * len(inside))
+    for channel, total in enumerate(_measure_noisy_sums(spec, instant, field)):
+        clear = bytes(box[3 * index + channel] for index in inside)
+        for index, value in zip(
             inside,
-            noisy_channel(clear, total, instant.noise.light, random[channel::3]),
+            add_noise_to_channel(clear, total, instant.noise.light, random[channel::3]),
             strict=True,
         ):
-            seen[3 * at + channel] = value
+            seen[3 * index + channel] = value
     return bytes(seen)
 
 
-def reading(spec: ColorSensorSpec, instant: Instant, field: Field) -> ColorReading:
+def measure_color(spec: ColorSensorSpec, instant: Instant, field: Field) -> ColorReading:
     """Return the reading of a colour sensor at an instant, including noise, its response and the light of the place."""
-    mean, tell = _mean_of_mat(spec, instant, field), _teller(spec, instant, field)
+    mean, tell = _mean_of_mat(spec, instant, field), _build_channel_reader(spec, instant, field)
     return ColorReading(
         tell(mean.red), tell(mean.green), tell(mean.blue), instant.profile.brick_colors
     )
 
 
-def _teller(spec: ColorSensorSpec, instant: Instant, field: Field) -> Callable[[float], float]:
+def _build_channel_reader(
+    spec: ColorSensorSpec, instant: Instant, field: Field
+) -> Callable[[float], float]:
     """Return a function that gives what a sensor reads of a channel of the mat."""
     response = find_response(spec, instant.profile)
-    is_over = _is_over(field, spec.diameter_mm, box_corner(instant.pose, spec))
+    is_over = _has_floor(field, spec.diameter_mm, find_box_corner(instant.pose, spec))
     place = world_point(instant.pose, spec.x_mm, spec.y_mm)
-    light: float = light_seen(*place, spec, instant.drift, instant.seed)
+    light: float = compute_light(*place, spec, instant.drift, instant.seed)
     return lambda value: min(response.channel(value, is_over) * light, float(WHITE))
 
 
@@ -359,32 +370,34 @@ def _mean_of_mat(spec: ColorSensorSpec, instant: Instant, field: Field) -> Color
         return clear_reading(spec, instant.pose, field)
     if spec.strategy != "mean":
         return ColorReading(
-            *weighted_mean(_seen_box(spec, instant, field), spec.diameter_mm, spec.strategy)
+            *weighted_mean(_read_noisy_box(spec, instant, field), spec.diameter_mm, spec.strategy)
         )
-    red, green, blue = _noisy_sums(spec, instant, field)
+    red, green, blue = _measure_noisy_sums(spec, instant, field)
     count = disc_pixels_of(spec.diameter_mm)
     return ColorReading(red / count, green / count, blue / count)
 
 
-disc_pixels_of = lru_cache(maxsize=16)(disc_pixels)
+disc_pixels_of = lru_cache(maxsize=16)(count_disc_pixels)
 """`field.disc_pixels`, cached."""
 
 
-def pixel_array(spec: ColorSensorSpec, instant: Instant, field: Field) -> bytes:
+def read_pixel_array(spec: ColorSensorSpec, instant: Instant, field: Field) -> bytes:
     """Return the pixels under a sensor as RGB bytes, row-major, d × d pixels, including noise and light.
 
     Pixels outside the disc are OUTSIDE_DISC_RGB.
     """
-    box = bytearray(_lit_box(spec, instant, field))
-    for at, weight in enumerate(disc_weights(spec.diameter_mm, "mean")):
+    box = bytearray(_read_lit_box(spec, instant, field))
+    for index, weight in enumerate(disc_weights(spec.diameter_mm, "mean")):
         if not weight:
-            box[3 * at : 3 * at + 3] = bytes(OUTSIDE_DISC_RGB)
+            box[3 * index : 3 * index + 3] = bytes(OUTSIDE_DISC_RGB)
     return bytes(box)
 
 
-def _lit_box(spec: ColorSensorSpec, instant: Instant, field: Field) -> bytes:
-    tell = _teller(spec, instant, field)
-    return _seen_box(spec, instant, field).translate(bytes(round(tell(value)) for value in _LEVELS))
+def _read_lit_box(spec: ColorSensorSpec, instant: Instant, field: Field) -> bytes:
+    tell = _build_channel_reader(spec, instant, field)
+    return _read_noisy_box(spec, instant, field).translate(
+        bytes(round(tell(value)) for value in _LEVELS)
+    )
 
 
 _LEVELS = range(WHITE + 1)
@@ -425,5 +438,5 @@ def measure(
     spec: ColorSensorSpec, instant: Instant, run: RunSpec, field: Field
 ) -> tuple[float, ...]:
     """Return what is measured of `columns`: mean red, green and blue, 0 … 255."""
-    seen = reading(spec, instant, field)
+    seen = measure_color(spec, instant, field)
     return seen.red, seen.green, seen.blue

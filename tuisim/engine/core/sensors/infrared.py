@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from tuisim.engine.core.columns import Column
 from tuisim.engine.core.geometry import Pose, world_point
-from tuisim.engine.core.sensors.ultrasonic import first_hit_mm, surfaces
+from tuisim.engine.core.sensors.ultrasonic import find_first_hit_mm, find_surfaces
 from tuisim.engine.core.spec import REMOTE_BY_HAND, REMOTE_CODES, InfraredSpec, RunSpec, WorldSpec
 
 if TYPE_CHECKING:
@@ -32,21 +32,22 @@ _REM_A_NONE = 262
 _REM_A_BUTTONS = {"top_left": 16, "bottom_left": 32, "top_right": 64, "bottom_right": 128}
 
 
-def _way_mm(
+def _measure_way_mm(
     place: tuple[float, float], angle_deg: float, world: WorldSpec, most_mm: float
 ) -> float:
     """Return how far light travels before it meets a surface, at most `most_mm`."""
-    found, angle = surfaces(world), math.radians(angle_deg)
+    edges, angle = find_surfaces(world), math.radians(angle_deg)
     (x_mm, y_mm), cos, sin = place, math.cos(angle), math.sin(angle)
-    way = first_hit_mm(found.upright, found.upright_at, (x_mm, y_mm), (cos, sin), most_mm)
-    return first_hit_mm(found.level, found.level_at, (y_mm, x_mm), (sin, cos), way)
+    way = find_first_hit_mm(edges.upright, edges.upright_at, (x_mm, y_mm), (cos, sin), most_mm)
+    return find_first_hit_mm(edges.level, edges.level_at, (y_mm, x_mm), (sin, cos), way)
 
 
 def proximity(pose: Pose, spec: InfraredSpec, world: WorldSpec) -> int:
     """Return the distance to the nearest surface ahead, 0 … 100 % of `PROXIMITY_RANGE_MM`."""
     place, facing = world_point(pose, spec.x_mm, spec.y_mm), pose.heading_deg + spec.angle_deg
     nearest = min(
-        _way_mm(place, facing + ray_deg, world, PROXIMITY_RANGE_MM) for ray_deg in RAY_ANGLES_DEG
+        _measure_way_mm(place, facing + ray_deg, world, PROXIMITY_RANGE_MM)
+        for ray_deg in RAY_ANGLES_DEG
     )
     return round(100 * nearest / PROXIMITY_RANGE_MM)
 
@@ -64,13 +65,13 @@ def seek(pose: Pose, spec: InfraredSpec, world: WorldSpec) -> tuple[int, ...]:
     if (
         way_mm <= SEEK_RANGE_MM
         and abs(aside_deg) <= SEEK_ANGLE_DEG
-        and _way_mm((x_mm, y_mm), bearing_deg, world, way_mm) >= way_mm - 1e-9
+        and _measure_way_mm((x_mm, y_mm), bearing_deg, world, way_mm) >= way_mm - 1e-9
     ):
         seen = (round(SEEK_STEPS * aside_deg / SEEK_ANGLE_DEG), round(100 * way_mm / SEEK_RANGE_MM))
     return NOT_FOUND * (beacon.channel - 1) + seen + NOT_FOUND * (4 - beacon.channel)
 
 
-def _pressed(
+def _find_pressed(
     channel: int, time_s: float, world: WorldSpec, by_hand: Collection[str]
 ) -> frozenset[str]:
     """Return the buttons pressed on a channel; of two presses at the same time the later in the list counts."""
@@ -92,15 +93,16 @@ def remote(
         world: The world.
         by_hand: Names of `REMOTE_BY_HAND`: while there is one, its buttons are pressed on every channel, and no others.
     """
-    one, two, three, four = (
-        REMOTE_CODES.get(_pressed(channel, time_s, world, by_hand), 0) for channel in range(1, 5)
+    button_1, two, three, four = (
+        REMOTE_CODES.get(_find_pressed(channel, time_s, world, by_hand), 0)
+        for channel in range(1, 5)
     )
-    return one, two, three, four
+    return button_1, two, three, four
 
 
-def remote_bits(time_s: float, world: WorldSpec, by_hand: Collection[str] = ()) -> int:
+def compute_remote_bits(time_s: float, world: WorldSpec, by_hand: Collection[str] = ()) -> int:
     """Return the buttons pressed on channel 1 as bits; arguments as of `remote`."""
-    pressed = _pressed(1, time_s, world, by_hand)
+    pressed = _find_pressed(1, time_s, world, by_hand)
     return _REM_A_NONE + sum(_REM_A_BUTTONS.get(button, 0) for button in pressed)
 
 

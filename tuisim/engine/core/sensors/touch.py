@@ -31,12 +31,12 @@ def pressed(pose: Pose, spec: TouchSpec, world: WorldSpec) -> bool:
     """Return whether either end or the centre of a bumper touches something."""
     half = spec.width_mm / 2
     return any(
-        _meets(*world_point(pose, spec.x_mm + aside, spec.y_mm), world)
+        _is_pressed(*world_point(pose, spec.x_mm + aside, spec.y_mm), world)
         for aside in (-half, 0.0, half)
     )
 
 
-def _meets(x_mm: float, y_mm: float, world: WorldSpec) -> bool:
+def _is_pressed(x_mm: float, y_mm: float, world: WorldSpec) -> bool:
     near = REACH_MM
     if world.walls and not (
         near < x_mm < FIELD_WIDTH_MM - near and near < y_mm < FIELD_HEIGHT_MM - near

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 
 from tuisim.base.data_class import dataclass
 from tuisim.engine.core.columns import Column
-from tuisim.engine.core.drift import draw_echo_bias_mm, lost_echoes
+from tuisim.engine.core.drift import compute_lost_echoes, draw_echo_bias_mm
 from tuisim.engine.core.geometry import Pose, world_point
-from tuisim.engine.core.noise import drawn_numbers, stream
+from tuisim.engine.core.noise import draw_numbers, generate_bytes
 from tuisim.engine.core.spec import (
     FIELD_HEIGHT_MM,
     FIELD_WIDTH_MM,
@@ -43,19 +43,19 @@ class Surfaces:
     level_at: tuple[float, ...]
 
 
-def surfaces(world: WorldSpec) -> Surfaces:
+def find_surfaces(world: WorldSpec) -> Surfaces:
     """Return every edge that can echo: the four walls and the sides of the obstacles."""
     # Cached by identity: hashing a world with many obstacles would cost more than the rays.
     global _last_asked
     if _last_asked is None or _last_asked[0] is not world:
-        _last_asked = (world, _sorted_surfaces(world))
+        _last_asked = (world, _sort_surfaces(world))
     return _last_asked[1]
 
 
 _last_asked: tuple[WorldSpec, Surfaces] | None = None
 
 
-def _sorted_surfaces(world: WorldSpec) -> Surfaces:
+def _sort_surfaces(world: WorldSpec) -> Surfaces:
     boxes = [(o.x_mm, o.y_mm, o.x_mm + o.width_mm, o.y_mm + o.height_mm) for o in world.obstacles]
     if world.walls:
         boxes.append((0.0, 0.0, float(FIELD_WIDTH_MM), float(FIELD_HEIGHT_MM)))
@@ -68,12 +68,12 @@ def _sorted_surfaces(world: WorldSpec) -> Surfaces:
     )
 
 
-def _echoes(edge_deg: float, heading_deg: float) -> bool:
+def _is_echoing(edge_deg: float, heading_deg: float) -> bool:
     """Return whether the angle between an edge and the heading is above 40 and below 140 degrees."""
     return MIN_ECHO_DEG < abs(edge_deg - heading_deg) % 180.0 < MAX_ECHO_DEG
 
 
-def first_hit_mm(
+def find_first_hit_mm(
     edges: tuple[Edge, ...],
     places: tuple[float, ...],
     start: tuple[float, float],
@@ -97,8 +97,8 @@ def first_hit_mm(
         passing = range(bisect_left(places, across), len(edges))
     else:
         passing = range(bisect_right(places, across) - 1, -1, -1)
-    for at in passing:
-        place, low, high = edges[at]
+    for index in passing:
+        place, low, high = edges[index]
         way = (place - across) / across_step
         if way >= most:
             return most
@@ -107,31 +107,41 @@ def first_hit_mm(
     return most
 
 
-def rays_mm(pose: Pose, spec: UltrasonicSpec, world: WorldSpec) -> list[tuple[float, float]]:
+def measure_rays_mm(
+    pose: Pose, spec: UltrasonicSpec, world: WorldSpec
+) -> list[tuple[float, float]]:
     """Return each ray as (world angle in degrees, length in mm); the length is at most the range."""
     start, facing = world_point(pose, spec.x_mm, spec.y_mm), pose.heading_deg + spec.angle_deg
     angles = [facing + ray_deg for ray_deg in spec.ray_angles_deg]
     return [
-        (angle, _ray_mm(start, angle, facing, surfaces(world), spec.max_range_mm))
+        (angle, _measure_ray_mm(start, angle, facing, find_surfaces(world), spec.max_range_mm))
         for angle in angles
     ]
 
 
-def _ray_mm(
-    start: tuple[float, float], angle_deg: float, facing_deg: float, found: Surfaces, most: float
+def _measure_ray_mm(
+    start: tuple[float, float],
+    angle_deg: float,
+    facing_deg: float,
+    surfaces: Surfaces,
+    max_mm: float,
 ) -> float:
-    """Return the distance at which one ray meets a surface that echoes, at most `most`."""
+    """Return the distance at which one ray meets a surface that echoes, at most `max_mm`."""
     x_mm, y_mm = start
     angle = math.radians(angle_deg)
     cos, sin = math.cos(angle), math.sin(angle)
-    if _echoes(90.0, facing_deg):
-        most = first_hit_mm(found.upright, found.upright_at, (x_mm, y_mm), (cos, sin), most)
-    if _echoes(0.0, facing_deg):
-        most = first_hit_mm(found.level, found.level_at, (y_mm, x_mm), (sin, cos), most)
-    return most
+    if _is_echoing(90.0, facing_deg):
+        max_mm = find_first_hit_mm(
+            surfaces.upright, surfaces.upright_at, (x_mm, y_mm), (cos, sin), max_mm
+        )
+    if _is_echoing(0.0, facing_deg):
+        max_mm = find_first_hit_mm(
+            surfaces.level, surfaces.level_at, (y_mm, x_mm), (sin, cos), max_mm
+        )
+    return max_mm
 
 
-def distance_mm(
+def measure_distance_mm(
     pose: Pose, spec: UltrasonicSpec, world: WorldSpec, heard: Surfaces | None = None
 ) -> int:
     """Return the distance to the nearest echo in whole mm, `max_range_mm` if there is none, without noise.
@@ -143,35 +153,39 @@ def distance_mm(
         heard: The surfaces that send this pulse back; None for all.
     """
     start, facing = world_point(pose, spec.x_mm, spec.y_mm), pose.heading_deg + spec.angle_deg
-    found, nearest = heard or surfaces(world), spec.max_range_mm
+    surfaces, nearest = heard or find_surfaces(world), spec.max_range_mm
     for ray_deg in spec.ray_angles_deg:
         # A ray need not be followed beyond the nearest echo found.
-        nearest = _ray_mm(start, facing + ray_deg, facing, found, nearest)
+        nearest = _measure_ray_mm(start, facing + ray_deg, facing, surfaces, nearest)
     return round(nearest)
 
 
-def _heard(spec: UltrasonicSpec, instant: Instant, world: WorldSpec) -> Surfaces | None:
+def _find_echoing_surfaces(
+    spec: UltrasonicSpec, instant: Instant, world: WorldSpec
+) -> Surfaces | None:
     """Return the surfaces that send back the pulse of an instant; None if no pulse can be lost."""
     drift = instant.drift
     if not drift.echo_loss_pc:
         return None
-    found = surfaces(world)
-    by_upright, by_level = drawn_numbers(instant.seed, instant.tick, f"{spec.name}/echo", 2)
+    echoing = find_surfaces(world)
+    by_upright, by_level = draw_numbers(instant.seed, instant.tick, f"{spec.name}/echo", 2)
     # From 0 to 90 degrees off the normal of the upright surfaces, which points along x.
     flat = abs((instant.pose.heading_deg + spec.angle_deg + 90.0) % 180.0 - 90.0)
-    if by_upright < lost_echoes(flat, drift):
-        found = replace(found, upright=(), upright_at=())
-    if by_level < lost_echoes(90.0 - flat, drift):
-        found = replace(found, level=(), level_at=())
-    return found
+    if by_upright < compute_lost_echoes(flat, drift):
+        echoing = replace(echoing, upright=(), upright_at=())
+    if by_level < compute_lost_echoes(90.0 - flat, drift):
+        echoing = replace(echoing, level=(), level_at=())
+    return echoing
 
 
-def reading_mm(spec: UltrasonicSpec, instant: Instant, world: WorldSpec) -> int:
+def measure_noisy_mm(spec: UltrasonicSpec, instant: Instant, world: WorldSpec) -> int:
     """Return the distance in whole mm including the sensor's errors and noise, 0 … `max_range_mm`.
 
     Without an echo it is `max_range_mm`, also at what is closer than the sensor measures.
     """
-    distance = distance_mm(instant.pose, spec, world, _heard(spec, instant, world))
+    distance = measure_distance_mm(
+        instant.pose, spec, world, _find_echoing_surfaces(spec, instant, world)
+    )
     farthest = round(spec.max_range_mm)
     if distance < instant.profile.min_echo_mm:
         distance = farthest
@@ -181,7 +195,8 @@ def reading_mm(spec: UltrasonicSpec, instant: Instant, world: WorldSpec) -> int:
     if not spec.noise_mm:
         return distance
     share = (
-        int.from_bytes(stream(instant.seed, instant.tick, spec.name, 4), "little") / 2147483647.5
+        int.from_bytes(generate_bytes(instant.seed, instant.tick, spec.name, 4), "little")
+        / 2147483647.5
         - 1
     )
     return max(0, min(farthest, round(distance + spec.noise_mm * share)))
@@ -196,4 +211,4 @@ def measure(
     spec: UltrasonicSpec, instant: Instant, run: RunSpec, field: Field
 ) -> tuple[float, ...]:
     """Return the value of `columns`."""
-    return (float(reading_mm(spec, instant, run.world)),)
+    return (float(measure_noisy_mm(spec, instant, run.world)),)

@@ -15,12 +15,12 @@ from tuisim.engine.core.servo.trajectory import (
     Measure,
     Segment,
     Trajectory,
-    angle_move,
-    divided,
-    endless_move,
-    proportional,
-    standing,
-    timed_move,
+    build_angle_move,
+    build_endless_move,
+    build_rest,
+    build_timed_move,
+    divide,
+    scale_move,
 )
 
 
@@ -79,30 +79,30 @@ class Controller:
         """Return where the motion is wanted to be, in thousandths of a count."""
         assert self.trajectory is not None
         then_us = now_us - self._paused_us
-        return self.trajectory.segment(then_us).milli_at(then_us) - self._behind_milli
+        return self.trajectory.find_segment(then_us).find_milli(then_us) - self._behind_milli
 
-    def millis(self, times_us: range) -> list[int]:
+    def list_millis(self, times_us: range) -> list[int]:
         """Return where the motion is wanted to be at several times of one segment."""
         assert self.trajectory is not None
         paused_us, behind = self._paused_us, self._behind_milli
         then_us = range(times_us.start - paused_us, times_us.stop - paused_us, times_us.step)
-        millis = self.trajectory.segment(then_us[0]).millis(then_us)
+        millis = self.trajectory.find_segment(then_us[0]).list_millis(then_us)
         return [milli - behind for milli in millis] if behind else millis
 
-    def halves(self, now_us: int, _motor: object) -> int:
+    def find_target(self, now_us: int, _motor: object) -> int:
         """Return where a motor is wanted to be; see `motor.Guide`."""
         return 2 * self.milli(now_us)
 
-    def many_halves(self, times_us: range, _motor: object) -> list[int]:
+    def list_targets(self, times_us: range, _motor: object) -> list[int]:
         """Return where a motor is wanted to be at several times of one segment."""
-        return [2 * milli for milli in self.millis(times_us)]
+        return [2 * milli for milli in self.list_millis(times_us)]
 
     def rate(self, now_us: int, _motor: object = None) -> int:
         """Return the wanted rate; 0 while it is passive."""
         if self.trajectory is None:
             return 0
         then_us = now_us - self._paused_us
-        return self.trajectory.segment(then_us).rate_at(then_us)
+        return self.trajectory.find_segment(then_us).find_rate(then_us)
 
     @property
     def end_us(self) -> int | None:
@@ -111,11 +111,11 @@ class Controller:
             return None
         return self.trajectory.end_us + self._paused_us
 
-    def segment_end_us(self, now_us: int) -> int | None:
+    def find_segment_end_us(self, now_us: int) -> int | None:
         """Return when the current segment of the trajectory ends; None if it does not."""
         if self.trajectory is None:
             return None
-        end_us = self.trajectory.segment_end_us(now_us - self._paused_us)
+        end_us = self.trajectory.find_segment_end_us(now_us - self._paused_us)
         return None if end_us is None else end_us + self._paused_us
 
     # Commands
@@ -126,9 +126,9 @@ class Controller:
 
     def hold(self, now_us: int, milli: int) -> None:
         """Stay at a position."""
-        self._begin(standing(now_us, milli), timed=False)
+        self._begin(build_rest(now_us, milli), timed=False)
 
-    def move_to(
+    def move_to_position(
         self,
         now_us: int,
         measured: Measure,
@@ -154,18 +154,18 @@ class Controller:
             min(abs(rate), settings.speed),
             min(abs(acceleration), settings.acceleration),
         )
-        start, spliced = self._starts(now_us, measured)
+        start, spliced = self._find_start(now_us, measured)
         if relative:
-            target += divided(start.milli, MILLI)
-        found = angle_move(start, target, rate, acceleration, settings.speed)
-        if spliced is not None and found.first.acceleration == start.acceleration:
-            found = angle_move(spliced, target, rate, acceleration, settings.speed)
-        self._begin(found, timed=False)
+            target += divide(start.milli, MILLI)
+        trajectory = build_angle_move(start, target, rate, acceleration, settings.speed)
+        if spliced is not None and trajectory.first.acceleration == start.acceleration:
+            trajectory = build_angle_move(spliced, target, rate, acceleration, settings.speed)
+        self._begin(trajectory, timed=False)
 
-    def keep_pace_with(self, other: Controller) -> None:
+    def match_pace(self, other: Controller) -> None:
         """Make the new trajectory take as long as that of another controller, in proportion to it at every time."""
         if self.trajectory is not None and other.trajectory is not None:
-            self.trajectory = proportional(self.trajectory, other.trajectory)
+            self.trajectory = scale_move(self.trajectory, other.trajectory)
 
     def run(
         self,
@@ -185,30 +185,30 @@ class Controller:
         Raises:
             ValueError: the time is negative or too long.
         """
-        if time_us is None and self._runs_at(now_us, rate):
+        if time_us is None and self._is_running_evenly(now_us, rate):
             return
         settings = self.settings
         acceleration = min(abs(acceleration), settings.acceleration)
-        start, spliced = self._starts(now_us, measured)
+        start, spliced = self._find_start(now_us, measured)
         if time_us is None:
-            found = endless_move(start, rate, acceleration, settings.speed)
-            if spliced is not None and found.first.acceleration == start.acceleration:
-                found = endless_move(spliced, rate, acceleration, settings.speed)
+            trajectory = build_endless_move(start, rate, acceleration, settings.speed)
+            if spliced is not None and trajectory.first.acceleration == start.acceleration:
+                trajectory = build_endless_move(spliced, rate, acceleration, settings.speed)
         else:
-            found = timed_move(start, time_us, rate, acceleration, settings.speed)
-            if spliced is not None and found.first.acceleration == start.acceleration:
+            trajectory = build_timed_move(start, time_us, rate, acceleration, settings.speed)
+            if spliced is not None and trajectory.first.acceleration == start.acceleration:
                 takes_us = time_us + now_us - spliced.start_us
-                found = timed_move(spliced, takes_us, rate, acceleration, settings.speed)
+                trajectory = build_timed_move(spliced, takes_us, rate, acceleration, settings.speed)
         # What a motion at a speed has forgotten, the next one does not catch up either.
         behind_milli = (
             self._behind_milli
             if self.timed and self.trajectory is not None and not self._slips
             else 0
         )
-        self._begin(found, timed=True)
+        self._begin(trajectory, timed=True)
         self._behind_milli = behind_milli
 
-    def _runs_at(self, now_us: int, rate: int) -> bool:
+    def _is_running_evenly(self, now_us: int, rate: int) -> bool:
         """Return whether a motion at a rate has reached it, so that the same command changes nothing."""
         if (
             not self.timed
@@ -228,14 +228,14 @@ class Controller:
             and not passed_us % MS_US
         )
 
-    def _starts(self, now_us: int, measured: Measure) -> tuple[Segment, Segment | None]:
+    def _find_start(self, now_us: int, measured: Measure) -> tuple[Segment, Segment | None]:
         """Return where a new trajectory begins, and where the running segment began, if it changes the speed."""
         if self.trajectory is None or (self._slips and self._behind_milli):
             return measured(now_us), None
         then_us = now_us - self._paused_us
-        running = self.trajectory.segment(then_us)
+        running = self.trajectory.find_segment(then_us)
         start = Segment(
-            now_us, running.milli_at(then_us), running.rate_at(then_us), running.acceleration
+            now_us, running.find_milli(then_us), running.find_rate(then_us), running.acceleration
         )
         if not running.acceleration:
             return start, None
@@ -247,7 +247,7 @@ class Controller:
 
     # Following
 
-    def fall_behind(self, now_us: int, passed_us: int, milli: int, rate: int) -> None:
+    def note_lag(self, now_us: int, passed_us: int, milli: int, rate: int) -> None:
         """Take note that the motion is not where it is wanted to be.
 
         Args:
@@ -282,7 +282,7 @@ class Controller:
             self.trajectory is not None and self._stalled_us >= self.settings.stall_time_ms * MS_US
         )
 
-    def is_over(self, now_us: int) -> bool:
+    def has_ended(self, now_us: int) -> bool:
         """Return whether a motion for a time has come to its end."""
         return self.timed and (end_us := self.end_us) is not None and now_us >= end_us
 

@@ -11,49 +11,51 @@ from typing import TYPE_CHECKING
 from tuisim.engine.core.motors import FOREVER
 from tuisim.engine.core.servo.control import Controller, Ending
 from tuisim.engine.core.servo.motor import ServoMotor
-from tuisim.engine.core.servo.settings import FIRMWARES, ControlSettings, pair_settings
+from tuisim.engine.core.servo.settings import FIRMWARES, ControlSettings, combine_settings
 from tuisim.engine.core.servo.trajectory import Measure, Segment
 
 if TYPE_CHECKING:
     from tuisim.engine.core.profile import MotorLaw
 
 
-def base_settings(
+def compute_base_settings(
     left: ControlSettings, right: ControlSettings, wheel_diameter_mm: float, axle_track_mm: float
 ) -> tuple[ControlSettings, ControlSettings]:
     """Return the settings of both controllers: of the distance in mm, and of the heading in degrees."""
     per_deg = left.counts_per_unit
     return (
-        pair_settings(left, right, 2 * per_deg * 360 / (pi * wheel_diameter_mm)),
-        pair_settings(left, right, 2 * per_deg * axle_track_mm / wheel_diameter_mm),
+        combine_settings(left, right, 2 * per_deg * 360 / (pi * wheel_diameter_mm)),
+        combine_settings(left, right, 2 * per_deg * axle_track_mm / wheel_diameter_mm),
     )
 
 
-def usual_settings(
+def compute_usual_settings(
     law: MotorLaw, distance: ControlSettings, heading: ControlSettings
 ) -> tuple[int, int, int, int]:
     """Return speed, acceleration, rate of turn and its acceleration of a new drive base, in mm and degrees."""
     firmware = FIRMWARES[law]
 
-    def part(control: ControlSettings, counts: int, fraction: tuple[int, int]) -> int:
+    def scale(control: ControlSettings, counts: int, fraction: tuple[int, int]) -> int:
         if firmware.divides_units:
             return control.units(counts) * fraction[0] // fraction[1]
         return round(counts * fraction[0] / fraction[1] / control.counts_per_unit)
 
     return (
-        part(distance, distance.speed, firmware.straight_speed),
-        part(distance, distance.acceleration, firmware.straight_acceleration),
-        part(heading, heading.speed, firmware.turn_rate),
-        part(heading, heading.acceleration, firmware.turn_acceleration),
+        scale(distance, distance.speed, firmware.straight_speed),
+        scale(distance, distance.acceleration, firmware.straight_acceleration),
+        scale(heading, heading.speed, firmware.turn_rate),
+        scale(heading, heading.acceleration, firmware.turn_acceleration),
     )
 
 
-def _move_by(
+def _move_relative(
     control: Controller, now_us: int, measured: Measure, way: float, speed: int, acceleration: int
 ) -> None:
     counts = control.settings.counts
     target = counts(int(way)) if way == int(way) else round(way * control.settings.counts_per_unit)
-    control.move_to(now_us, measured, target, counts(speed), counts(acceleration), relative=True)
+    control.move_to_position(
+        now_us, measured, target, counts(speed), counts(acceleration), relative=True
+    )
 
 
 class DriveBase:
@@ -81,12 +83,12 @@ class DriveBase:
     ) -> None:
         self.left, self.right, self.motors = left, right, (left, right)
         ours = left.control.settings, right.control.settings
-        distance, heading = base_settings(*ours, wheel_diameter_mm, axle_track_mm)
+        distance, heading = compute_base_settings(*ours, wheel_diameter_mm, axle_track_mm)
         self.distance = Controller(distance, slips=True)
         """Controls the sum; its units are mm."""
         self.heading = Controller(heading, slips=True)
         """Controls the difference; its units are degrees."""
-        self.usual = usual_settings(left.law, self.distance.settings, self.heading.settings)
+        self.usual = compute_usual_settings(left.law, self.distance.settings, self.heading.settings)
         """How it moves, unless the program says something else; in mm and degrees."""
         self._at_us, self._behind_us, self._millis = -1, -1, (0, 0)
 
@@ -97,19 +99,19 @@ class DriveBase:
         """Whether it moves or holds its motors, both of them."""
         return self.left.guide is self and self.right.guide is self
 
-    def millis_at(self, now_us: int) -> tuple[int, int]:
+    def find_millis(self, now_us: int) -> tuple[int, int]:
         """Return sum and difference, in thousandths of a count."""
-        left, right = self.left.milli_at(now_us), self.right.milli_at(now_us)
+        left, right = self.left.find_milli(now_us), self.right.find_milli(now_us)
         return left + right, left - right
 
-    def rates_at(self, now_us: int) -> tuple[int, int]:
+    def find_rates(self, now_us: int) -> tuple[int, int]:
         """Return the rates of sum and difference, in counts per second."""
-        left, right = self.left.counts_per_s_at(now_us), self.right.counts_per_s_at(now_us)
+        left, right = self.left.find_counts_per_s(now_us), self.right.find_counts_per_s(now_us)
         return left + right, left - right
 
     def done(self, now_us: int) -> bool:
         """Return whether no move is under way."""
-        (total, difference), rates = self.millis_at(now_us), self.rates_at(now_us)
+        (total, difference), rates = self.find_millis(now_us), self.find_rates(now_us)
         return self.distance.done(now_us, total, rates[0]) and self.heading.done(
             now_us, difference, rates[1]
         )
@@ -134,11 +136,13 @@ class DriveBase:
         """
         self._begin(now_us)
         speed, acceleration, turn_rate, turn_acceleration = self.usual
-        _move_by(self.distance, now_us, self._total, distance_mm, speed, acceleration)
-        _move_by(self.heading, now_us, self._difference, turn_deg, turn_rate, turn_acceleration)
+        _move_relative(self.distance, now_us, self._measure_total, distance_mm, speed, acceleration)
+        _move_relative(
+            self.heading, now_us, self._measure_difference, turn_deg, turn_rate, turn_acceleration
+        )
         if distance_mm and turn_deg:
             fast, slow = sorted((self.distance, self.heading), key=lambda one: one.end_us or 0)
-            fast.keep_pace_with(slow)
+            fast.match_pace(slow)
         self._take(ending)
 
     def drive(self, now_us: int, speed_mm_s: int, turn_rate_dps: int) -> None:
@@ -149,8 +153,10 @@ class DriveBase:
         self._begin(now_us)
         distance, heading = self.distance, self.heading
         ours, other = distance.settings, heading.settings
-        distance.run(now_us, self._total, ours.counts(speed_mm_s), ours.acceleration)
-        heading.run(now_us, self._difference, other.counts(turn_rate_dps), other.acceleration)
+        distance.run(now_us, self._measure_total, ours.counts(speed_mm_s), ours.acceleration)
+        heading.run(
+            now_us, self._measure_difference, other.counts(turn_rate_dps), other.acceleration
+        )
         self._at_us = -1
         if not runs:
             self._take(Ending.HOLD)
@@ -162,12 +168,12 @@ class DriveBase:
         self.distance.release()
         self.heading.release()
 
-    def _total(self, now_us: int) -> Segment:
-        left, right = self.left.measured(now_us), self.right.measured(now_us)
+    def _measure_total(self, now_us: int) -> Segment:
+        left, right = self.left.measure_start(now_us), self.right.measure_start(now_us)
         return Segment(now_us, left.milli + right.milli, left.rate + right.rate, 0)
 
-    def _difference(self, now_us: int) -> Segment:
-        left, right = self.left.measured(now_us), self.right.measured(now_us)
+    def _measure_difference(self, now_us: int) -> Segment:
+        left, right = self.left.measure_start(now_us), self.right.measure_start(now_us)
         return Segment(now_us, left.milli - right.milli, left.rate - right.rate, 0)
 
     def _begin(self, now_us: int) -> None:
@@ -192,7 +198,7 @@ class DriveBase:
         one, other = self.distance.end_us, self.heading.end_us
         return None if one is None or other is None else max(one, other)
 
-    def halves(self, now_us: int, motor: ServoMotor) -> int:
+    def find_target(self, now_us: int, motor: ServoMotor) -> int:
         """Return where a motor is wanted to be."""
         if now_us != self._at_us:
             self._at_us, self._millis = (
@@ -202,9 +208,11 @@ class DriveBase:
         total, difference = self._millis
         return total + difference if motor is self.left else total - difference
 
-    def many_halves(self, times_us: range, motor: ServoMotor) -> list[int]:
+    def list_targets(self, times_us: range, motor: ServoMotor) -> list[int]:
         """Return where a motor is wanted to be at several times of one segment."""
-        both = zip(self.distance.millis(times_us), self.heading.millis(times_us), strict=True)
+        both = zip(
+            self.distance.list_millis(times_us), self.heading.list_millis(times_us), strict=True
+        )
         if motor is self.left:
             return [total + difference for total, difference in both]
         return [total - difference for total, difference in both]
@@ -214,24 +222,24 @@ class DriveBase:
         total, difference = self.distance.rate(now_us), self.heading.rate(now_us)
         return (total + difference) / 2 if motor is self.left else (total - difference) / 2
 
-    def segment_end_us(self, now_us: int) -> int | None:
+    def find_segment_end_us(self, now_us: int) -> int | None:
         """Return when the current segment of either trajectory ends; None if neither does."""
         ends = [
             end
             for control in (self.distance, self.heading)
-            if (end := control.segment_end_us(now_us)) is not None
+            if (end := control.find_segment_end_us(now_us)) is not None
         ]
         return min(ends, default=None)
 
-    def fall_behind(self, now_us: int, passed_us: int, _milli: int, _rate: int) -> None:
+    def note_lag(self, now_us: int, passed_us: int, _milli: int, _rate: int) -> None:
         """Take note that a motor is not where it is wanted to be; the second of two calls for a time does nothing."""
         if now_us == self._behind_us:
             return
         self._behind_us, self._at_us = now_us, -1
         millis, rates = (
-            (one.milli for one in self.motors),
-            (one.counts_per_s for one in self.motors),
+            (motor.milli for motor in self.motors),
+            (motor.counts_per_s for motor in self.motors),
         )
         (left, right), (left_rate, right_rate) = millis, rates
-        self.distance.fall_behind(now_us, passed_us, left + right, left_rate + right_rate)
-        self.heading.fall_behind(now_us, passed_us, left - right, left_rate - right_rate)
+        self.distance.note_lag(now_us, passed_us, left + right, left_rate + right_rate)
+        self.heading.note_lag(now_us, passed_us, left - right, left_rate - right_rate)

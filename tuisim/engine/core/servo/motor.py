@@ -21,7 +21,12 @@ from tuisim.engine.core.motors import (
     MotorState,
 )
 from tuisim.engine.core.servo.control import Controller, Ending
-from tuisim.engine.core.servo.settings import BATTERY_V, COUNTS_PER_DEG, MODELS, motor_settings
+from tuisim.engine.core.servo.settings import (
+    BATTERY_V,
+    COUNTS_PER_DEG,
+    MODELS,
+    compute_motor_settings,
+)
 from tuisim.engine.core.servo.trajectory import MILLI, Segment
 
 if TYPE_CHECKING:
@@ -39,19 +44,19 @@ class Guide(Protocol):
     def end_us(self) -> int | None:
         """When the motion ends; None if it does not."""
 
-    def halves(self, now_us: int, motor: ServoMotor) -> int:
+    def find_target(self, now_us: int, motor: ServoMotor) -> int:
         """Return where the motor is wanted to be."""
 
-    def many_halves(self, times_us: range, motor: ServoMotor) -> list[int]:
+    def list_targets(self, times_us: range, motor: ServoMotor) -> list[int]:
         """Return where the motor is wanted to be at several times of one segment."""
 
     def rate(self, now_us: int, motor: ServoMotor) -> float:
         """Return the wanted rate, in counts per second."""
 
-    def segment_end_us(self, now_us: int) -> int | None:
+    def find_segment_end_us(self, now_us: int) -> int | None:
         """Return when the current segment of the motion ends; None if it does not."""
 
-    def fall_behind(self, now_us: int, passed_us: int, milli: int, rate: int) -> None:
+    def note_lag(self, now_us: int, passed_us: int, milli: int, rate: int) -> None:
         """Take note that a motor is not where it is wanted to be, for a time since the last call."""
 
 
@@ -101,7 +106,7 @@ class ServoMotor:
         self.blocked_ticks = 0
         self.sign = 1
         """-1 if the program counts against the motor's own direction."""
-        self.control = Controller(motor_settings(law, kind))
+        self.control = Controller(compute_motor_settings(law, kind))
         """The motor's own controller."""
         self._guide: Guide | None = None
         self._ending = Ending.HOLD
@@ -135,22 +140,25 @@ class ServoMotor:
         """Its speed, in the program's direction."""
         return round(self.speed_dps * self.sign * COUNTS_PER_DEG)
 
-    def milli_at(self, now_us: int) -> int:
+    def find_milli(self, now_us: int) -> int:
         """Return where it is at a time after the last tick, before anything can hold it back."""
         if self._guide is not None and self._course is not None:
-            return self._guide.halves(now_us, self) // 2
+            return self._guide.find_target(now_us, self) // 2
         return self.milli
 
-    def counts_per_s_at(self, now_us: int) -> int:
+    def find_counts_per_s(self, now_us: int) -> int:
         """Return its speed at a time after the last tick."""
         if self._guide is None:
             return round(self._free_dps * self.sign * COUNTS_PER_DEG)
         return self.counts_per_s if self._course is None else round(self._guide.rate(now_us, self))
 
-    def measured(self, now_us: int) -> Segment:
+    def measure_start(self, now_us: int) -> Segment:
         """Return where a motion begins that nothing has controlled before, as the encoder shows it."""
         return Segment(
-            now_us, round(self.milli_at(now_us) / MILLI) * MILLI, self.counts_per_s_at(now_us), 0
+            now_us,
+            round(self.find_milli(now_us) / MILLI) * MILLI,
+            self.find_counts_per_s(now_us),
+            0,
         )
 
     # Commands
@@ -163,7 +171,7 @@ class ServoMotor:
         self.sign = sign
         if not keeps_angle:
             self.position_deg = self._jump_deg = 0.0
-        self.control.settings = motor_settings(self.law, self.kind, gear_ratio)
+        self.control.settings = compute_motor_settings(self.law, self.kind, gear_ratio)
 
     def follow(self, guide: Guide | None = None, ending: Ending = Ending.HOLD) -> None:
         """Follow a guide from now on, if none is given the motor's own controller, which has just got its trajectory.
@@ -194,7 +202,7 @@ class ServoMotor:
     def _limit_speed(self) -> None:
         """Take note of the highest speed that its power allows."""
         self._actuation = self.control.actuation
-        self._fastest_deg = self.model.steady_dps(self._actuation, BATTERY_V) * self._tick_s
+        self._fastest_deg = self.model.find_steady_dps(self._actuation, BATTERY_V) * self._tick_s
 
     def run_freely(self, now_us: int, duty: int | None) -> None:
         """Let go of what it follows, and run with a power.
@@ -204,8 +212,8 @@ class ServoMotor:
         """
         guide, self._free_us = self._guide, now_us
         if guide is not None:
-            there = self.milli_at(now_us) * self.sign / (MILLI * COUNTS_PER_DEG)
-            self._free_dps = self.counts_per_s_at(now_us) * self.sign / COUNTS_PER_DEG
+            there = self.find_milli(now_us) * self.sign / (MILLI * COUNTS_PER_DEG)
+            self._free_dps = self.find_counts_per_s(now_us) * self.sign / COUNTS_PER_DEG
             self._jump_deg = there - self.position_deg
             self._guide = self._course = None
             self.control.release()
@@ -215,7 +223,7 @@ class ServoMotor:
 
     def set_position(self, now_us: int, milli: int) -> None:
         """Make the current position another one; a motion ends there, and the motor holds."""
-        shift = milli - self.milli_at(now_us)
+        shift = milli - self.find_milli(now_us)
         self.position_deg += shift * self.sign / (MILLI * COUNTS_PER_DEG)
         if self._course is not None:
             self._course += 2 * shift
@@ -233,7 +241,7 @@ class ServoMotor:
         return (
             self.position_deg
             if guide is None or end_us is None
-            else self._deg(guide.halves(end_us, self))
+            else self._convert_to_deg(guide.find_target(end_us, self))
         )
 
     @property
@@ -242,7 +250,7 @@ class ServoMotor:
         end_us = self._guide.end_us if self._guide else None
         return ENDLESS if end_us is None else end_us / self._tick_us
 
-    def _deg(self, halves: int) -> float:
+    def _convert_to_deg(self, halves: int) -> float:
         return halves * self.sign / HALVES_PER_DEG
 
     def state(self) -> MotorState:
@@ -280,7 +288,7 @@ class ServoMotor:
         guide = self._guide
         if guide is None:
             return self.speed_dps
-        end_us = guide.segment_end_us(self._tick * self._tick_us)
+        end_us = guide.find_segment_end_us(self._tick * self._tick_us)
         now_us = self._tick * self._tick_us if end_us is None else end_us
         return guide.rate(now_us, self) * self.sign / COUNTS_PER_DEG
 
@@ -294,18 +302,18 @@ class ServoMotor:
         """Number of ticks that the last `quiet_ticks` allowed: a servo motor always glides along its trajectory."""
         return 0 if self.mode == STOPPED else self._quiet
 
-    def quiet_ticks(self, tick: int) -> int:
-        """Return for how many ticks the motor only follows one segment; see `Motor.quiet_ticks`."""
-        self._tick, self._quiet = tick, self._quiet_ticks(tick)
+    def count_quiet_ticks(self, tick: int) -> int:
+        """Return for how many ticks the motor only follows one segment; see `Motor.count_quiet_ticks`."""
+        self._tick, self._quiet = tick, self._count_following_ticks(tick)
         return self._quiet
 
-    def _quiet_ticks(self, tick: int) -> int:
+    def _count_following_ticks(self, tick: int) -> int:
         if self.mode == STOPPED:
             return ENDLESS
         guide, now_us = self._guide, tick * self._tick_us
         if guide is None or self._course is None or not self._can_follow(guide, now_us):
             return 0
-        end_us = guide.segment_end_us(now_us)
+        end_us = guide.find_segment_end_us(now_us)
         if end_us is not None:
             return max(0, (end_us - 1) // self._tick_us - tick)
         return 0 if guide.end_us is not None else ENDLESS
@@ -313,7 +321,9 @@ class ServoMotor:
     def _can_follow(self, guide: Guide, now_us: int) -> bool:
         """Return whether the motor is fast enough for the next tick and for the rest of the segment."""
         assert self._course is not None
-        next_deg = abs(guide.halves(now_us + self._tick_us, self) - self._course) / HALVES_PER_DEG
+        next_deg = (
+            abs(guide.find_target(now_us + self._tick_us, self) - self._course) / HALVES_PER_DEG
+        )
         fastest_dps = max(abs(self.moving_dps), abs(self.aim_dps))
         return next_deg <= self._fastest_deg and fastest_dps * self._tick_s <= self._fastest_deg
 
@@ -327,11 +337,14 @@ class ServoMotor:
             return Glide([0.0] * ticks, [self.position_deg] * ticks)
         tick_us = self._tick_us
         times_us = range((self._tick + 1) * tick_us, (self._tick + ticks + 1) * tick_us, tick_us)
-        halves = self._guide.many_halves(times_us, self)
-        turns = [self._deg(after - before) for before, after in pairwise([self._course, *halves])]
+        halves = self._guide.list_targets(times_us, self)
+        turns = [
+            self._convert_to_deg(after - before)
+            for before, after in pairwise([self._course, *halves])
+        ]
         self._course, self._tick = halves[-1], self._tick + ticks
-        self.position_deg, self.speed_dps = self._deg(halves[-1]), turns[-1] * self._hz
-        return Glide(turns, [self._deg(one) for one in halves])
+        self.position_deg, self.speed_dps = self._convert_to_deg(halves[-1]), turns[-1] * self._hz
+        return Glide(turns, [self._convert_to_deg(half) for half in halves])
 
     def step(self, tick: int, noise_dps: float) -> float:
         """Run one tick; see `Motor.step`."""
@@ -340,15 +353,15 @@ class ServoMotor:
             return 0.0
         now_us, guide = tick * self._tick_us, self._guide
         if guide is None:
-            return self._run_on(now_us)
+            return self._run_freely(now_us)
         if self._course is None:
-            if guide is self.control and self.control.is_over(now_us):
+            if guide is self.control and self.control.has_ended(now_us):
                 # A motion for a time ends where it is.
                 self.control.hold(now_us, self.milli)
                 self._end()
                 return 0.0
-            guide.fall_behind(now_us - self._tick_us, self._tick_us, self.milli, self.counts_per_s)
-        halves = guide.halves(now_us, self)
+            guide.note_lag(now_us - self._tick_us, self._tick_us, self.milli, self.counts_per_s)
+        halves = guide.find_target(now_us, self)
         if self._course is not None:
             turned = (halves - self._course) * self.sign / HALVES_PER_DEG
             if not noise_dps and -self._fastest_deg <= turned <= self._fastest_deg:
@@ -361,7 +374,7 @@ class ServoMotor:
 
     def _catch_up(self, halves: int, noise_dps: float) -> float:
         """Run towards where the motor is wanted to be."""
-        fastest_deg, wanted_deg = self._fastest_deg, self._deg(halves)
+        fastest_deg, wanted_deg = self._fastest_deg, self._convert_to_deg(halves)
         turned = max(-fastest_deg, min(fastest_deg, wanted_deg - self.position_deg))
         reached = turned == wanted_deg - self.position_deg and not noise_dps
         turned += noise_dps * self._tick_s if turned else 0.0
@@ -381,7 +394,7 @@ class ServoMotor:
                 0 if self._ending == Ending.BRAKE else None,
             )
 
-    def _run_on(self, now_us: int) -> float:
+    def _run_freely(self, now_us: int) -> float:
         """Run one tick without a guide."""
         axle, left_ns = self.axle, min(self._tick_us, now_us - self._free_us) * 1000.0
         begin_deg, axle.speed_dps = axle.angle_deg, self._free_dps

@@ -12,7 +12,7 @@ from math import pi
 
 from tuisim.base.data_class import dataclass
 from tuisim.engine.core.profile import MotorLaw
-from tuisim.engine.core.servo.trajectory import divided
+from tuisim.engine.core.servo.trajectory import divide
 
 COUNTS_PER_DEG = 2
 """Counts of a motor's encoder per degree."""
@@ -57,14 +57,14 @@ class ControlSettings:
 
     def counts(self, units: int) -> int:
         """Return a number of the program's units in counts, rounded."""
-        return _times(units, self.scale)
+        return _multiply(units, self.scale)
 
     def units(self, counts: int) -> int:
         """Return a number of counts in the program's units, rounded; the firmware multiplies by a rounded inverse."""
-        return _times(counts, (_ONE * _ONE + self.scale // 2) // self.scale)
+        return _multiply(counts, (_ONE * _ONE + self.scale // 2) // self.scale)
 
 
-def _times(number: int, factor: int) -> int:
+def _multiply(number: int, factor: int) -> int:
     """Return a number times a factor of 1/65,536, rounded."""
     size = (abs(number) * factor + _ONE // 2) // _ONE
     return size if number >= 0 else -size
@@ -79,7 +79,7 @@ class MotorModel:
     torque_nm_per_a: float
     friction_nm: float
 
-    def steady_dps(self, actuation: int, battery_v: float) -> float:
+    def find_steady_dps(self, actuation: int, battery_v: float) -> float:
         """Return the speed that a power leads to; 0 if friction holds the motor."""
         ideal_dps = battery_v * abs(actuation) / FULL_ACTUATION / self.back_emf_v_s * 180 / pi
         speed = max(0.0, ideal_dps - self.friction_dps)
@@ -147,7 +147,7 @@ FIRMWARES: Mapping[MotorLaw, Firmware] = {
 }  # fmt: skip
 
 
-def motor_settings(law: MotorLaw, kind: str, gear_ratio: float = 1.0) -> ControlSettings:
+def compute_motor_settings(law: MotorLaw, kind: str, gear_ratio: float = 1.0) -> ControlSettings:
     """Return the settings of a new motor.
 
     Args:
@@ -175,7 +175,7 @@ def motor_settings(law: MotorLaw, kind: str, gear_ratio: float = 1.0) -> Control
     )
 
 
-def pair_settings(
+def combine_settings(
     left: ControlSettings, right: ControlSettings, counts_per_unit: float
 ) -> ControlSettings:
     """Return the settings of one controller of a drive base, which moves the sum or the difference of two motors.
@@ -189,9 +189,9 @@ def pair_settings(
         speed=left.speed + right.speed,
         acceleration=2 * (left.acceleration + right.acceleration),
         actuation=left.actuation + right.actuation,
-        kp=divided(left.kp + right.kp, 4),
-        ki=divided(left.ki + right.ki, 4),
-        kd=divided(left.kd + right.kd, 4),
+        kp=divide(left.kp + right.kp, 4),
+        ki=divide(left.ki + right.ki, 4),
+        kd=divide(left.kd + right.kd, 4),
         integral_range=left.integral_range + right.integral_range,
         integral_rate=left.integral_rate + right.integral_rate,
         feed_forward=(left.feed_forward + right.feed_forward) // 2,

@@ -15,26 +15,26 @@ MS_US = 1000
 """Microseconds in a millisecond."""
 MILLI = 1000
 """Thousandths of a count in a count."""
-LONGEST_US = 1_800_000_000
+MAX_DURATION_US = 1_800_000_000
 """No move takes longer than this: half an hour."""
 ENDLESS_S = 60
 """What the firmware assumes an endless move to take. It has no effect on the motion."""
 
 
-def divided(dividend: int, divisor: int) -> int:
+def divide(dividend: int, divisor: int) -> int:
     """Return a quotient, rounded towards zero as in C."""
     quotient = abs(dividend) // abs(divisor)
     return quotient if (dividend < 0) == (divisor < 0) else -quotient
 
 
-def duration_us(change: int, rate: int) -> int:
+def compute_duration_us(change: int, rate: int) -> int:
     """Return how long a change takes at a rate per second."""
-    return divided(change * 1000, rate) * MS_US
+    return divide(change * 1000, rate) * MS_US
 
 
 def rate_change(acceleration: int, time_us: int) -> int:
     """Return how much an acceleration changes a rate."""
-    return divided(acceleration * (time_us // MS_US), 1000)
+    return divide(acceleration * (time_us // MS_US), 1000)
 
 
 class Segment(NamedTuple):
@@ -45,7 +45,7 @@ class Segment(NamedTuple):
     rate: int
     acceleration: int
 
-    def milli_at(self, time_us: int) -> int:
+    def find_milli(self, time_us: int) -> int:
         """Return the position at a time in this segment."""
         passed_us, rate, acceleration = time_us - self.start_us, self.rate, self.acceleration
         # Each quotient rounds towards zero; each motor asks in every tick.
@@ -60,26 +60,26 @@ class Segment(NamedTuple):
             else milli
         )
 
-    def rate_at(self, time_us: int) -> int:
+    def find_rate(self, time_us: int) -> int:
         """Return the rate at a time in this segment."""
         return self.rate + (
             rate_change(self.acceleration, time_us - self.start_us) if self.acceleration else 0
         )
 
-    def millis(self, times_us: range) -> list[int]:
-        """Return the positions at several times in this segment, which `at` gives one by one."""
+    def list_millis(self, times_us: range) -> list[int]:
+        """Return the positions at several times in this segment, which `time_us` gives one by one."""
         sign, way, steps = (
             (1 if self.rate >= 0 else -1),
             abs(self.rate),
-            [at - self.start_us for at in times_us],
+            [time_us - self.start_us for time_us in times_us],
         )
-        even = [self.milli + sign * (way * at // 1000) for at in steps]
+        even = [self.milli + sign * (way * time_us // 1000) for time_us in steps]
         if not self.acceleration:
             return even
         sign, change = (1 if self.acceleration >= 0 else -1), abs(self.acceleration)
         return [
-            milli + sign * (change * at // 1000 * at // 2_000_000)
-            for milli, at in zip(even, steps, strict=True)
+            milli + sign * (change * time_us // 1000 * time_us // 2_000_000)
+            for milli, time_us in zip(even, steps, strict=True)
         ]
 
 
@@ -102,7 +102,7 @@ class Trajectory(NamedTuple):
         """When it stops."""
         return self.end.start_us
 
-    def segment(self, time_us: int) -> Segment:
+    def find_segment(self, time_us: int) -> Segment:
         """Return the segment that a time lies in."""
         if time_us < self.even.start_us:
             return self.first
@@ -110,7 +110,7 @@ class Trajectory(NamedTuple):
             return self.even
         return self.last if time_us <= self.end.start_us else self.end
 
-    def segment_end_us(self, time_us: int) -> int | None:
+    def find_segment_end_us(self, time_us: int) -> int | None:
         """Return when the segment of a time ends; None if it does not."""
         if time_us < self.even.start_us:
             return self.even.start_us
@@ -119,13 +119,13 @@ class Trajectory(NamedTuple):
         return self.last.start_us if time_us < self.last.start_us else self.end.start_us
 
 
-def standing(time_us: int, milli: int) -> Trajectory:
+def build_rest(time_us: int, milli: int) -> Trajectory:
     """Return the trajectory that stays at a position, given in thousandths of a count."""
     there = Segment(time_us, milli, 0, 0)
     return Trajectory(there, there, there, there)
 
 
-def angle_move(
+def build_angle_move(
     start: Segment, target: int, rate: int, acceleration: int, fastest: int
 ) -> Trajectory:
     """Return the move to a position.
@@ -142,36 +142,36 @@ def angle_move(
     """
     if not rate:
         raise ValueError("the speed of a move to a position is 0")
-    begin, origin = divided(start.milli, MILLI), start.milli
+    begin, origin = divide(start.milli, MILLI), start.milli
     if target == begin:
-        return standing(start.start_us, target * MILLI)
+        return build_rest(start.start_us, target * MILLI)
     sign = 1 if target > begin else -1
-    wanted, length = min(abs(rate), fastest), abs(target - begin)
+    top_rate, length = min(abs(rate), fastest), abs(target - begin)
     w0 = max(-fastest, min(fastest, start.rate * sign))
     if w0 > 0 and w0 * w0 // (2 * acceleration) > length:
         w0 = isqrt(2 * acceleration * length)
     # Forwards from position 0; a move backwards is its mirror image.
-    if w0 < wanted:
-        a0, from_rest = acceleration, -divided(w0 * w0, 2 * acceleration)
-        if length - from_rest >= wanted * wanted // acceleration:
+    if w0 < top_rate:
+        a0, from_rest = acceleration, -divide(w0 * w0, 2 * acceleration)
+        if length - from_rest >= top_rate * top_rate // acceleration:
             th1, th2, w1 = (
-                from_rest + wanted * wanted // (2 * acceleration),
-                length - wanted * wanted // (2 * acceleration),
-                wanted,
+                from_rest + top_rate * top_rate // (2 * acceleration),
+                length - top_rate * top_rate // (2 * acceleration),
+                top_rate,
             )
         else:
-            th1 = th2 = divided(length + from_rest, 2)
+            th1 = th2 = divide(length + from_rest, 2)
             w1 = isqrt(2 * acceleration * (th1 - from_rest))
     else:
-        a0, w1 = -acceleration, wanted
+        a0, w1 = -acceleration, top_rate
         th1, th2 = (
-            divided(w0 * w0 - wanted * wanted, 2 * acceleration),
-            length - wanted * wanted // (2 * acceleration),
+            divide(w0 * w0 - top_rate * top_rate, 2 * acceleration),
+            length - top_rate * top_rate // (2 * acceleration),
         )
-    t1 = start.start_us + duration_us(w1 - w0, a0)
-    t2 = t1 + (duration_us(th2 - th1, w1) if th2 != th1 else 0)
-    t3 = t2 + duration_us(w1, acceleration)
-    if t3 - start.start_us > LONGEST_US:
+    t1 = start.start_us + compute_duration_us(w1 - w0, a0)
+    t2 = t1 + (compute_duration_us(th2 - th1, w1) if th2 != th1 else 0)
+    t3 = t2 + compute_duration_us(w1, acceleration)
+    if t3 - start.start_us > MAX_DURATION_US:
         raise ValueError("the move takes longer than half an hour")
     return Trajectory(
         Segment(start.start_us, origin, sign * w0, sign * a0),
@@ -181,7 +181,7 @@ def angle_move(
     )
 
 
-def endless_move(start: Segment, rate: int, acceleration: int, fastest: int) -> Trajectory:
+def build_endless_move(start: Segment, rate: int, acceleration: int, fastest: int) -> Trajectory:
     """Return the motion at a speed that does not end.
 
     Args:
@@ -190,21 +190,21 @@ def endless_move(start: Segment, rate: int, acceleration: int, fastest: int) -> 
         acceleration: How it speeds up or down.
         fastest: The highest rate.
     """
-    at = start.start_us
+    start_us = start.start_us
     limit = min(fastest, acceleration * ENDLESS_S)
-    wanted, w0 = max(-limit, min(limit, rate)), max(-limit, min(limit, start.rate))
-    change = wanted - w0
+    target_rate, w0 = max(-limit, min(limit, rate)), max(-limit, min(limit, start.rate))
+    change = target_rate - w0
     speeds_up = change > 0 or (not change and rate < 0)
-    first = Segment(at, start.milli, w0, acceleration if speeds_up else -acceleration)
+    first = Segment(start_us, start.milli, w0, acceleration if speeds_up else -acceleration)
     if not change:
         even = first._replace(acceleration=0)
         return Trajectory(first, even, even, even, True)
-    t1 = at + abs(change) * 1000 // acceleration * MS_US
-    even = Segment(t1, first.milli_at(t1), wanted, 0)
+    t1 = start_us + abs(change) * 1000 // acceleration * MS_US
+    even = Segment(t1, first.find_milli(t1), target_rate, 0)
     return Trajectory(first, even, even, even, True)
 
 
-def timed_move(
+def build_timed_move(
     start: Segment, time_us: int, rate: int, acceleration: int, fastest: int
 ) -> Trajectory:
     """Return the move that takes a time, with its ramps.
@@ -219,44 +219,47 @@ def timed_move(
     Raises:
         ValueError: the time is negative, or longer than half an hour.
     """
-    if not 0 <= time_us <= LONGEST_US:
+    if not 0 <= time_us <= MAX_DURATION_US:
         raise ValueError("the time of a move is from 0 to half an hour")
     sign = 1 if rate >= 0 else -1
     limit = min(fastest, rate_change(acceleration, time_us))
-    wanted = min(abs(rate), limit)
+    target_rate = min(abs(rate), limit)
     w0 = max(-limit, min(limit, sign * start.rate))
-    if w0 < wanted:
-        a0, t1, w1 = acceleration, duration_us(wanted - w0, acceleration), wanted
-        room_us = time_us - duration_us(w0, acceleration)
+    if w0 < target_rate:
+        a0, t1, w1 = acceleration, compute_duration_us(target_rate - w0, acceleration), target_rate
+        room_us = time_us - compute_duration_us(w0, acceleration)
         if t1 >= room_us // 2:
-            t1, w1 = room_us // 2, divided(rate_change(acceleration, time_us), 2) + divided(w0, 2)
+            t1, w1 = room_us // 2, divide(rate_change(acceleration, time_us), 2) + divide(w0, 2)
     else:
-        a0, t1, w1 = -acceleration, duration_us(w0 - wanted, acceleration), wanted
-    t3 = duration_us(w1, acceleration)
-    at = start.start_us
-    first = Segment(at, start.milli, sign * w0, sign * a0)
-    even = Segment(at + t1, first.milli_at(at + t1), sign * w1, 0)
-    t2 = at + time_us - t3
-    last = Segment(t2, even.milli_at(t2), sign * w1, -sign * acceleration)
-    return Trajectory(first, even, last, Segment(t2 + t3, last.milli_at(t2 + t3), 0, 0))
+        a0, t1, w1 = -acceleration, compute_duration_us(w0 - target_rate, acceleration), target_rate
+    t3 = compute_duration_us(w1, acceleration)
+    start_us = start.start_us
+    first = Segment(start_us, start.milli, sign * w0, sign * a0)
+    even = Segment(start_us + t1, first.find_milli(start_us + t1), sign * w1, 0)
+    t2 = start_us + time_us - t3
+    last = Segment(t2, even.find_milli(t2), sign * w1, -sign * acceleration)
+    return Trajectory(first, even, last, Segment(t2 + t3, last.find_milli(t2 + t3), 0, 0))
 
 
-def proportional(trajectory: Trajectory, leader: Trajectory) -> Trajectory:
+def scale_move(trajectory: Trajectory, leader: Trajectory) -> Trajectory:
     """Return a move with the ends of a trajectory and the times of a leader, in proportion to its positions."""
     begin, whole = trajectory.first.milli, trajectory.end.milli - trajectory.first.milli
     from_milli, way = leader.first.milli, leader.end.milli - leader.first.milli
 
-    def part(number: int) -> int:
-        return divided(number * whole, way) if way else 0
+    def scale(number: int) -> int:
+        return divide(number * whole, way) if way else 0
 
-    def scaled(one: Segment) -> Segment:
+    def scale_segment(segment: Segment) -> Segment:
         return Segment(
-            one.start_us,
-            begin + part(one.milli - from_milli),
-            part(one.rate),
-            part(one.acceleration),
+            segment.start_us,
+            begin + scale(segment.milli - from_milli),
+            scale(segment.rate),
+            scale(segment.acceleration),
         )
 
     return Trajectory(
-        scaled(leader.first), scaled(leader.even), scaled(leader.last), scaled(leader.end)
+        scale_segment(leader.first),
+        scale_segment(leader.even),
+        scale_segment(leader.last),
+        scale_segment(leader.end),
     )

@@ -8,10 +8,10 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any
 
 from tuisim.engine.breakpoints import Breakpoint, LineBreak, StallBreak, TimeBreak
-from tuisim.engine.core.columns import column_name
-from tuisim.engine.core.conditions import Edge, Operator, ValueCondition, ValueSource, value_text
+from tuisim.engine.core.columns import find_column_name
+from tuisim.engine.core.conditions import Edge, Operator, ValueCondition, ValueSource, format_value
 from tuisim.engine.core.profile import NS_PER_S
-from tuisim.engine.core.sensors import columns_of, reader_of
+from tuisim.engine.core.sensors import build_reader, list_columns
 from tuisim.engine.runs.records import SAMPLE_STREAMS, Stream
 from tuisim.engine.runs.samples import value_reader
 from tuisim.engine.runtime.debugger.value_text import evaluate_truth
@@ -175,16 +175,16 @@ class Watcher:
         edge = Edge(condition)
         if isinstance(rule, TimeBreak) and self._time_s() >= rule.time_s:
             # That time has passed already and does not come again.
-            edge.meets(rule.time_s)
+            edge.update(rule.time_s)
 
         def check() -> str:
             number = value()
-            return value_text(number, condition.name) if edge.meets(number) else ""
+            return format_value(number, condition.name) if edge.update(number) else ""
 
         return check
 
     def _time_s(self) -> float:
-        return self._session.sim.due_ns(self._session.sim.tick) / NS_PER_S
+        return self._session.sim.compute_due_ns(self._session.sim.tick) / NS_PER_S
 
     def _stalled(self) -> float:
         sim = self._session.sim
@@ -194,10 +194,10 @@ class Watcher:
         """Return a function that reads a column; None if this robot does not have it."""
         session, sim = self._session, self._session.sim
         spec = sim.spec
-        read = reader_of(column_name(column, columns_of(spec)) or "", spec)
+        read = build_reader(find_column_name(column, list_columns(spec)) or "", spec)
         if read is None:
             return None
-        return lambda: read(sim.instant(with_motors=True), sim.spec, session.field)
+        return lambda: read(sim.build_instant(with_motors=True), sim.spec, session.field)
 
 
 def _first(found: Iterator[tuple[str, str]]) -> tuple[str, str] | None:
@@ -211,6 +211,6 @@ def _row_check(condition: ValueCondition) -> Callable[[str], str]:
 
     def check(row: str) -> str:
         value = read(row)
-        return row if value is not None and edge.meets(value) else ""
+        return row if value is not None and edge.update(value) else ""
 
     return check

@@ -364,7 +364,7 @@ class Debugger:
         self, reason: PauseReason, ordinal: int, text: str = "", value: str = ""
     ) -> None:
         session = self._session
-        session.now = max(session.now, session.sim.due_ns(session.sim.tick))
+        session.now = max(session.now, session.sim.compute_due_ns(session.sim.tick))
         self._hold(self._moment(session.sim.line, reason, text, value, ordinal))
 
     def _hold(self, moment: Paused) -> None:

@@ -12,7 +12,7 @@ from contextlib import suppress
 from typing import Any
 
 from tuisim.base.data_class import dataclass
-from tuisim.engine.core.sensors import reader_of
+from tuisim.engine.core.sensors import build_reader
 from tuisim.engine.protocol import FrameState, Inspect, Inspected, ThreadState, Variable, Watched
 from tuisim.engine.runtime.debugger.fork import apart
 from tuisim.engine.runtime.debugger.tracer import Tracer
@@ -200,9 +200,11 @@ class Inspector:
     def _columns_in(self, watches: tuple[str, ...]) -> dict[str, float]:
         """Return the values of the recording's columns that watches name."""
         sim, field = self._session.sim, self._session.field
-        readers = {name: reader_of(name, sim.spec) for text in watches for name in _names_in(text)}
+        readers = {
+            name: build_reader(name, sim.spec) for text in watches for name in _names_in(text)
+        }
         return {
-            name: read(sim.instant(with_motors=True), sim.spec, field)
+            name: read(sim.build_instant(with_motors=True), sim.spec, field)
             for name, read in readers.items()
             if read is not None
         }

@@ -176,5 +176,5 @@ def _goal(session: Session, port: str, motor: Motor) -> str:
     if motor.mode == POSITION:
         return f"motor {port} to reach {motor.goal_deg:.0f}°"
     if motor.mode == TIMED:
-        return f"motor {port} to stop at {session.sim.due_ns(math.ceil(motor.end_tick)) / NS_PER_S:.2f} s"
+        return f"motor {port} to stop at {session.sim.compute_due_ns(math.ceil(motor.end_tick)) / NS_PER_S:.2f} s"
     return f"motor {port} to stop"

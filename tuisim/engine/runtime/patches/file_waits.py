@@ -77,7 +77,7 @@ class FileWaits:
         while not found and (until is None or session.now < until):
             rest = POLL_NS if until is None else until - session.now
             if devices:
-                to_tick = session.sim.next_change_ns(session.now) - session.now
+                to_tick = session.sim.find_next_change_ns(session.now) - session.now
                 rest = to_tick if until is None else min(rest, to_tick)
             session.spend(min(rest, POLL_NS) if session.flags & THREADS else rest)
             found = look()

@@ -10,7 +10,7 @@ from functools import wraps
 from itertools import count
 from typing import Any
 
-from tuisim.engine.core.noise import stream
+from tuisim.engine.core.noise import generate_bytes
 from tuisim.engine.runtime.patches.replacement import replace
 
 
@@ -23,7 +23,9 @@ def patch_urandom(seed: Callable[[], int]) -> None:
         length = operator.index(size)
         # For negative sizes the real function raises the proper error.
         return (
-            stream(seed(), next(draws), "urandom", length) if length >= 0 else real_urandom(length)
+            generate_bytes(seed(), next(draws), "urandom", length)
+            if length >= 0
+            else real_urandom(length)
         )
 
     replace(os, "urandom", urandom, (1, 1))
@@ -37,7 +39,7 @@ def finish_uuid(seed: int, module: types.ModuleType) -> None:
     made_up: Any = module
     made_up._generate_time_safe = made_up._UuidCreate = None
     # RFC 9562, 6.10: in a node number without a network card the lowest bit of the first byte is set.
-    made_up._node = int.from_bytes(stream(seed, 0, "uuid node", 6), "big") | 1 << 40
+    made_up._node = int.from_bytes(generate_bytes(seed, 0, "uuid node", 6), "big") | 1 << 40
 
 
 def finish_random(seed: int, module: types.ModuleType) -> None:

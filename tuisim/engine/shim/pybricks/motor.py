@@ -12,7 +12,7 @@ from tuisim.engine.core.commands.servo import SETTINGS
 from tuisim.engine.core.servo.control import Controller, Ending
 from tuisim.engine.core.servo.motor import ServoMotor
 from tuisim.engine.core.servo.settings import FULL_ACTUATION
-from tuisim.engine.core.servo.trajectory import LONGEST_US, MILLI, MS_US
+from tuisim.engine.core.servo.trajectory import MAX_DURATION_US, MILLI, MS_US
 from tuisim.engine.shim.brick import MOTOR_CLASS
 from tuisim.engine.shim.pybricks.brick import (
     Connected,
@@ -144,12 +144,12 @@ class Motor(DCMotor):
     def angle(self) -> int:
         """Return the angle in degrees."""
         now_us = self.brick.read("position", *self.port_names)
-        return self._motor.control.settings.units(round(self._motor.milli_at(now_us) / MILLI))
+        return self._motor.control.settings.units(round(self._motor.find_milli(now_us) / MILLI))
 
     def speed(self) -> int:
         """Return the speed in degrees per second."""
         now_us = self.brick.read("speed", *self.port_names)
-        return self._motor.control.settings.units(self._motor.counts_per_s_at(now_us))
+        return self._motor.control.settings.units(self._motor.find_counts_per_s(now_us))
 
     def reset_angle(self, angle: float | None = None) -> None:
         """Make the current angle another one; a motion ends there."""
@@ -196,7 +196,7 @@ class Motor(DCMotor):
         """Run at a speed for a time in milliseconds."""
         self._command()
         settings, time_us = self._motor.control.settings, whole(time) * MS_US
-        if not 0 <= time_us <= LONGEST_US:
+        if not 0 <= time_us <= MAX_DURATION_US:
             raise invalid_argument()
         rate = settings.counts(whole(speed))
         self.tell(Call.RUN_AT, rate, settings.acceleration, time_us, None)
@@ -262,7 +262,7 @@ class Motor(DCMotor):
     def move_done(self, now_us: int, control: Controller) -> bool:
         """Return whether a controller of the motor has no move under way."""
         return control.done(
-            now_us, self._motor.milli_at(now_us), self._motor.counts_per_s_at(now_us)
+            now_us, self._motor.find_milli(now_us), self._motor.find_counts_per_s(now_us)
         )
 
     def run_until_stalled(

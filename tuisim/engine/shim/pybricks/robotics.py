@@ -130,7 +130,7 @@ class DriveBase(Connected):
         return self._position(self._read())[1]
 
     def _position(self, now_us: int) -> tuple[int, int]:
-        total, difference = self._base.millis_at(now_us)
+        total, difference = self._base.find_millis(now_us)
         return (
             self._base.distance.settings.units(round(total / MILLI) - self._zeros[0]),
             self._base.heading.settings.units(round(difference / MILLI) - self._zeros[1]),
@@ -139,7 +139,7 @@ class DriveBase(Connected):
     def state(self) -> tuple[int, int, int, int]:
         """Return distance, speed, angle and rate of turn."""
         now_us, base = self._read(), self._base
-        (distance, angle), (speed, turn_rate) = self._position(now_us), base.rates_at(now_us)
+        (distance, angle), (speed, turn_rate) = self._position(now_us), base.find_rates(now_us)
         return (
             distance,
             base.distance.settings.units(speed),
@@ -149,7 +149,7 @@ class DriveBase(Connected):
 
     def reset(self) -> None:
         """Make the current distance and angle 0."""
-        total, difference = self._base.millis_at(self.brick.command())
+        total, difference = self._base.find_millis(self.brick.command())
         self._zeros = round(total / MILLI), round(difference / MILLI)
 
     def has_let_go(self) -> bool:
@@ -160,7 +160,7 @@ class DriveBase(Connected):
         """Return whether one of its controllers has no move under way."""
         at = 0 if control is self._base.distance else 1
         return control.done(
-            now_us, self._base.millis_at(now_us)[at], self._base.rates_at(now_us)[at]
+            now_us, self._base.find_millis(now_us)[at], self._base.find_rates(now_us)[at]
         )
 
     # Settings

@@ -71,7 +71,7 @@ class Motor(motor.Motor):
             return None
 
         def passed(now_us: int) -> bool:
-            return motor.guide is None or (motor.milli_at(now_us) - target) * rate >= 0
+            return motor.guide is None or (motor.find_milli(now_us) - target) * rate >= 0
 
         return self.brick.finish(self.brick.until_done(passed, lambda: None))
 
@@ -141,7 +141,7 @@ class DriveBase(robotics.DriveBase):
             turn_rate = round(abs(speed) * angle_deg / abs(distance_mm))
         else:
             speed, turn_rate = 0, turn_rate if angle_deg > 0 else -turn_rate
-        begin = base.millis_at(self.brick.command())[0 if by_way else 1]
+        begin = base.find_millis(self.brick.command())[0 if by_way else 1]
         control, way = (base.distance, distance_mm) if by_way else (base.heading, angle_deg)
         target = abs(way) * control.settings.counts_per_unit * MILLI
         self.drive(speed, turn_rate)
@@ -150,7 +150,8 @@ class DriveBase(robotics.DriveBase):
 
         def passed(now_us: int) -> bool:
             return (
-                not base.active or abs(base.millis_at(now_us)[0 if by_way else 1] - begin) >= target
+                not base.active
+                or abs(base.find_millis(now_us)[0 if by_way else 1] - begin) >= target
             )
 
         return self.brick.finish(self.brick.until_done(passed, lambda: None))
@@ -195,7 +196,7 @@ class DriveBase(robotics.DriveBase):
         """Return the turned angle in degrees, clockwise."""
         now_us, base = self._read(), self._base
         return (
-            base.millis_at(now_us)[1] / MILLI - self._zeros[1]
+            base.find_millis(now_us)[1] / MILLI - self._zeros[1]
         ) / base.heading.settings.counts_per_unit
 
     def brake(self) -> None:
