@@ -107,6 +107,19 @@ def test_a_race_ends_with_the_first(base: DriveBase) -> None:
         run_task(5)
 
 
+def test_it_drives_to_a_place(base: DriveBase) -> None:
+    base.move_by(100, 100)
+    assert base.distance() == pytest.approx(141, abs=1)
+    assert base.angle() == pytest.approx(-45, abs=0.5)
+
+    async def main() -> None:
+        await call(base.move_by, 100, 0)
+
+    run_task(main())
+    assert base.distance() == pytest.approx(241, abs=1)
+    assert base.angle() == pytest.approx(0, abs=0.5)
+
+
 def test_what_is_counted_begins_again_at_a_reset(base: DriveBase) -> None:
     base.straight(100)
     base.turn(90)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import io
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from enum import Enum
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -48,7 +47,7 @@ MOST_PIXELS = 4_000_000
 """Larger images do not fit into the memory of the brick."""
 
 
-def paint_of(color: Enum | None) -> Paint | None:
+def paint_of(color: Any) -> Paint | None:
     """Return the paint of a colour; None paints nothing.
 
     Raises:
@@ -56,9 +55,9 @@ def paint_of(color: Enum | None) -> Paint | None:
     """
     if color is None:
         return None
-    if not isinstance(color, Enum):
+    if (name := getattr(color, "name", None)) is None:
         raise TypeError(f"a Color is needed, not {type(color).__name__}")
-    return PAINTS.get(color.name)
+    return PAINTS.get(name) or (None if name == "NONE" else getattr(color, "rgb", None))
 
 
 class Canvas(Connected):

@@ -5,9 +5,9 @@ In a task, which `run_task` runs, a blocking call returns at once what the task 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from enum import Enum
-from math import degrees, radians
+from math import atan2, degrees, hypot, radians
 from typing import Any
 
 from tuisim.engine.core.commands.calls import Call
@@ -16,6 +16,7 @@ from tuisim.engine.core.servo.trajectory import MILLI
 from tuisim.engine.shim.pybricks import hubs, motor, robotics
 from tuisim.engine.shim.pybricks.brick import Connected, Waiting, invalid_argument, whole
 from tuisim.engine.shim.pybricks.ev3devices import ColorSensor as EarlierColorSensor
+from tuisim.engine.shim.pybricks.hsv_color import Color as Color
 from tuisim.engine.shim.pybricks.motor import ending_of, gear_ratio
 from tuisim.engine.shim.pybricks.parameters import Button, Direction, Port, shown_by_name
 
@@ -160,6 +161,30 @@ class DriveBase(robotics.DriveBase):
         """Drive a distance in mm."""
         return self._move(whole(distance), 0, "straight()", ending_of(ENDINGS, then), wait=wait)
 
+    def move_by(self, dx: float, dy: float, then: Stop = Stop.HOLD) -> None:
+        """Turn to the direction of a place, and drive there.
+
+        Args:
+            dx, dy: How far the place is in mm: where the heading is 0, and to the left of that.
+            then: How it ends.
+        """
+        return self.brick.finish(self._move_by(whole(dx), whole(dy), then))
+
+    def _move_by(self, dx: int, dy: int, then: Stop) -> Waiting[None]:
+        heading_deg, distance = -degrees(atan2(dy, dx)), hypot(dx, dy)
+        yield from self._wait_for(lambda: self.turn(round(heading_deg), absolute=True))
+        yield from self._wait_for(lambda: self.straight(distance, then))
+
+    def _wait_for(self, move: Callable[[], Any]) -> Waiting[None]:
+        """Begin a move, and wait for its end as a task does."""
+        brick, in_task = self.brick, self.brick.in_task
+        brick.in_task = True
+        try:
+            awaited = move()
+        finally:
+            brick.in_task = in_task
+        yield from awaited.__await__()
+
     def turn(
         self, angle: float, then: Stop = Stop.HOLD, wait: bool = True, absolute: bool = False
     ) -> None:
@@ -233,40 +258,6 @@ class ColorSensor(EarlierColorSensor):
         """Return the colour; `Color.NONE` if there is none."""
         found = super().color()
         return Color.NONE if found is None else Color[found.name]
-
-
-@shown_by_name
-class Color(Enum):
-    """Colours, by hue in degrees, saturation and value in percent."""
-
-    NONE = (0, 0, 0)
-    BLACK = (0, 0, 10)
-    GRAY = (0, 0, 50)
-    WHITE = (0, 0, 100)
-    RED = (0, 100, 100)
-    BROWN = (30, 100, 50)
-    ORANGE = (30, 100, 100)
-    YELLOW = (60, 100, 100)
-    GREEN = (120, 100, 100)
-    CYAN = (180, 100, 100)
-    BLUE = (240, 100, 100)
-    VIOLET = (270, 100, 100)
-    MAGENTA = (300, 100, 100)
-
-    @property
-    def h(self) -> int:
-        """The hue."""
-        return self.value[0]
-
-    @property
-    def s(self) -> int:
-        """The saturation."""
-        return self.value[1]
-
-    @property
-    def v(self) -> int:
-        """The value."""
-        return self.value[2]
 
 
 class Buttons(hubs.Buttons):
