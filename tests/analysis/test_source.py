@@ -35,7 +35,7 @@ def test_notes_are_kept_with_a_file(tmp_path: Path, home: Path) -> None:
 
 
 def test_a_log_from_a_pipe_keeps_no_notes() -> None:
-    with pytest.raises(LogError, match="cannot be kept"):
+    with pytest.raises(LogError, match="cannot be stored"):
         model_of(long_log()).add_note("text", 0.0, 0.0, "", 0)
 
 

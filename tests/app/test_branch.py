@@ -135,7 +135,7 @@ async def test_a_paused_run_branches_paused_and_is_kept() -> None:
         at = app.run_controller.timeline.at
         assert at is not None
         await pilot.press("R")
-        await until_shown(pilot, "ends now and is kept")
+        await until_shown(pilot, "ends now and is stored")
         await pilot.press("n")
         assert app.run_controller.timeline.at == at
         await pilot.press("y")

@@ -52,7 +52,7 @@ async def test_it_goes_to_each_reason_and_back_to_the_end() -> None:
         await ask(pilot, app, "1.00 s, line 2: NameError: name 'colour' is not defined")
         timeline = app.run_controller.timeline
         assert not app.run_controller.in_past
-        await ask(pilot, app, "the robot left the way of run")
+        await ask(pilot, app, "the robot left the path of run")
         assert timeline.at is not None
         assert 0 < timeline.tick < 30
         assert app.run_controller.snapshot().earlier_pose is not None

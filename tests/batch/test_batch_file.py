@@ -91,7 +91,7 @@ def test_a_batch_file_has_a_table_batch(write: Any, text: str, expected: bool) -
         "seed text": ("[batch]\nseeds = '3..1'", "batch.seeds: 3..1 has no values"),
         "twice": (
             "[batch]\nseeds = 1\nset.seed = 2",
-            "batch.seeds: is given together with set.seed",
+            "batch.seeds: cannot be combined with set.seed",
         ),
         "no values": ("[batch]\nset.noise.motor = []", "batch.set.noise.motor: has no values"),
         "nested list": ("[batch]\nset.a = [[1]]", r"batch.set.a\[1\]: must be a text, a number"),
@@ -99,7 +99,7 @@ def test_a_batch_file_has_a_table_batch(write: Any, text: str, expected: bool) -
         "keep": ("[batch]\nkeep = 'some'", "batch.keep: no such value 'some'"),
         "expression": ("[batch]\nexpressions.a = 1", "batch.expressions.a: must be text"),
         "no world": ("[batch]\nworld = 'none.toml'", "none.toml: there is no such file"),
-        "two": ("walls = true\n[batch]\nworld = 'a.toml'", "batch.world: is given together with"),
+        "two": ("walls = true\n[batch]\nworld = 'a.toml'", "batch.world: cannot be combined with"),
         "key of a world": (
             "wall = true\n[batch]",
             "spec.toml: wall: no such key .did you mean walls",

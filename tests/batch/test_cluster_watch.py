@@ -61,7 +61,7 @@ CANNOT_WORK = {
     ),
     "no worker any more": (
         ({"a": __version__}, {}),
-        "tcp://lab:8786: the cluster has no worker (with --out, --resume goes on with the rows so far)",
+        "tcp://lab:8786: the cluster has no worker (with --out, --resume continues with the rows so far)",
     ),
     "no tuisim": (
         ({"a": __version__, "b": NOBODY},),
@@ -77,11 +77,11 @@ CANNOT_WORK = {
     ),
     "lost": (
         ({"a": __version__}, "lost"),
-        "tcp://lab:8786: the scheduler is lost (with --out, --resume goes on with the rows so far)",
+        "tcp://lab:8786: the scheduler is lost (with --out, --resume continues with the rows so far)",
     ),
     "a scheduler that hangs": (
         ({"a": __version__}, TimeoutError()),
-        "tcp://lab:8786: the scheduler does not answer (with --out, --resume goes on with the rows so far)",
+        "tcp://lab:8786: the scheduler does not answer (with --out, --resume continues with the rows so far)",
     ),
 }
 

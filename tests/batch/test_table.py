@@ -99,9 +99,9 @@ def test_a_later_expression_uses_an_earlier_one() -> None:
         "misspelt": ("new", "x_m + 1", "no column 'x_m'.*did you mean x_mm.*NAME_last"),
         "syntax": ("new", "x_mm +", "cannot read the expression"),
         "function": ("new", "open(1)", "no function 'open'"),
-        "taken": ("x_mm", "1", "is no name for a new column"),
-        "not a name": ("a b", "1", "is no name for a new column"),
-        "a variable's": ("Colour_last", "1", "is no name for a new column"),
+        "taken": ("x_mm", "1", "cannot be the name of a new column"),
+        "not a name": ("a b", "1", "cannot be the name of a new column"),
+        "a variable's": ("Colour_last", "1", "cannot be the name of a new column"),
     },
 )
 def test_wrong_expressions_are_found_before_anything_is_run(

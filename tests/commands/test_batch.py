@@ -130,7 +130,7 @@ def test_an_interrupted_batch_keeps_what_is_done(
     assert batch("mine.py", "--seeds", "0..4", "--out", "rows.csv") == 130
     assert pd.read_csv("rows.csv")["seed"].tolist() == [0, 1]
     assert (
-        "interrupted after 2 of 5 runs; rows.csv has these rows, and --resume goes on"
+        "interrupted after 2 of 5 runs; rows.csv has these rows, and --resume continues"
         in capsys.readouterr().err
     )
 
@@ -187,7 +187,7 @@ def test_a_complete_batch_is_not_run_again(
 @cases(
     "words, message",
     {
-        "again": ((), "rows.csv.part: holds the rows of an interrupted batch (--resume goes on"),
+        "again": ((), "rows.csv.part: holds the rows of an interrupted batch (--resume continues"),
         "another batch": (("--resume", "-M", "5"), "rows.csv.part: is of another batch"),
     },
 )

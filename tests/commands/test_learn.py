@@ -197,7 +197,7 @@ BAD = {
     "no such number": (("22",), "there is no lesson 22 (1 to 21. See `tuisim learn list`)"),
     "no telling": (
         ("2", "--library", "pybricks"),
-        "--library: the lesson sensor-eyes is not told for pybricks (one of first-",
+        "--library: the lesson sensor-eyes has no version for pybricks (one of first-",
     ),
     "a library of no lesson": (
         ("--library", "pybricks"),

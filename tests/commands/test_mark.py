@@ -152,7 +152,7 @@ def _interrupt(folder: Path, home: Path) -> Path:
         journals = list((home / "marks").glob("*.jsonl")) if home.exists() else []
     command.send_signal(signal.SIGINT)
     said = command.communicate(timeout=PATIENCE_S)[1]
-    assert (command.returncode, "with --resume goes on" in said) == (130, True)
+    assert (command.returncode, "with --resume continues" in said) == (130, True)
     return journals[0]
 
 
@@ -197,7 +197,7 @@ def test_a_class_is_marked_as_a_table(tmp_path: Path, here: Command) -> None:
     )
     # Where bubblewrap is missing, a line says so.
     notes = [line for line in done.stderr.splitlines() if not line.startswith("note: bwrap ")]
-    assert notes == ["note: not marked, because they are no Python programs: notes.doc"]
+    assert notes == ["note: not marked, because they are not Python programs: notes.doc"]
 
 
 def test_a_long_name_leaves_the_marks_on_the_screen(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -239,7 +239,7 @@ BAD = {
     ),
     "feedback into a file": (
         "goals.toml class --feedback goals.toml",
-        "--feedback: goals.toml is no folder",
+        "--feedback: goals.toml is not a folder",
     ),
     "unknown mat": ("goals.toml class -b Grey", "no such mat 'Grey'"),
 }
@@ -380,7 +380,7 @@ def test_a_signal_ends_a_marking_in_good_order(
         assert run_command(["mark", str(GOALS), str(tmp_path / "class")]) == code
     finally:
         signal.signal(number, before)
-    assert "--resume goes on" in capsys.readouterr().err
+    assert "--resume continues" in capsys.readouterr().err
 
 
 def test_a_program_that_this_machine_cannot_read_is_missing_in_the_marks(
@@ -420,7 +420,7 @@ def test_a_mat_that_cannot_be_read_is_the_students_own_fault(tmp_path: Path, her
     done = here("mark", "goals.toml", "class", "--seeds", "0", "--jobs", "1", "--no-isolate")
     assert done.returncode == 0
     assert done.stderr == (
-        "note: left out, because nobody hands them in: zoe/mat.png, which is no file\n"
+        "note: left out, because nobody hands them in: zoe/mat.png, which is not a file\n"
     )
     rows = [line.split(maxsplit=4) for line in done.stdout.splitlines()[1:3]]
     assert [row[:4] for row in rows] == [["eve", "0", "0%", "0"], ["zoe", "0", "0%", "0"]]

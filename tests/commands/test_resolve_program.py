@@ -90,7 +90,7 @@ def test_a_program_that_needs_no_other_robot_gets_the_usual_one(
     "words, message",
     [
         (["--from", "none.py"], "none.py: there is no such program"),
-        (["--from", "claw.py", "Explorer"], "--from: is given together with Explorer"),
+        (["--from", "claw.py", "Explorer"], "--from: cannot be combined with Explorer"),
         (["--out", "x.toml"], "--out: needs a program"),
         (["--from", "claw.py", "--out", "x.txt"], "x.txt: must end in .toml"),
         (["--from", "claw.py", "--out", "none/x.toml"], "none/x.toml: cannot be written"),

@@ -37,5 +37,5 @@ def test_batches_and_marks_tell_what_the_brick_would_refuse(here: Command, tmp_p
     assert done.returncode == 0
     assert f"note: ada: {told}" in done.stderr and "note: bob" not in done.stderr
     feedback = " ".join((tmp_path / "told" / "ada.txt").read_text().split())
-    assert f"Your program would not start on a brick: {told}" in feedback
+    assert f"Your program would not run on a brick: {told}" in feedback
     assert "brick" not in (tmp_path / "told" / "bob.txt").read_text()

@@ -267,7 +267,7 @@ WRONG: dict[str, tuple[str, str]] = {
     ),
     "profile: both": (
         "gyro_read_ms = 1\ngyro_read_ns = 1",
-        "gyro_read_ms: is given together with gyro_read_ns",
+        "gyro_read_ms: cannot be combined with gyro_read_ns",
     ),
     "world: mat": (
         "background = 'Grey_band'",
@@ -295,7 +295,7 @@ WRONG: dict[str, tuple[str, str]] = {
     ),
     "world: two sets": (
         "obstacles = 'Wall'\nobstacle = []",
-        "obstacle: is given together with obstacles (give",
+        "obstacle: cannot be combined with obstacles (give",
     ),
     "world: profile": ("profile = 'ev4'", "profile: no such profile 'ev4' (did you mean ev3?"),
     "world: profile inside": (

@@ -114,7 +114,7 @@ def test_the_shell_lists_the_contents_and_searches(here: Command) -> None:
             2,
             "guide: no such page 'keyz' (did you mean keys? See `tuisim guide`)",
         ),
-        "two at once": (["keys", "--search", "x"], 2, "exclude each other"),
+        "two at once": (["keys", "--search", "x"], 2, "cannot be combined"),
         "HTML": (["--html", "a"], 2, "no such option: --html (`tuisim guide` and the key ?"),
         "nothing found": (["--search", "xyzzy"], 1, "No page has these words: xyzzy"),
     },

@@ -183,7 +183,7 @@ OLD_MISTAKES = [
         id="no function",
     ),
     pytest.param(
-        "lambda text: 'JSON::{'", "roboSim.pyresponder: the answer is no JSON: ", id="no JSON"
+        "lambda text: 'JSON::{'", "roboSim.pyresponder: the answer is not JSON: ", id="no JSON"
     ),
 ]
 

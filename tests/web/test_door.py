@@ -57,7 +57,7 @@ async def test_that_there_is_no_room_is_told_once_a_minute() -> None:
     for time_s in (0.0, 1.0, 59.0, 61.0):
         now_s[0] = time_s
         hears(loop, {"exception": OSError(errno.EMFILE, "Too many open files")})
-    assert reports == ["No visitor can come: Too many open files"] * 2
+    assert reports == ["The server cannot accept visitors: Too many open files"] * 2
 
 
 def test_the_guide_names_what_visitors_may_use() -> None:

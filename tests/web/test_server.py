@@ -272,7 +272,7 @@ async def test_a_packet_that_makes_no_sense_ends_its_app_only(sent: str, visited
     while (message := await socket.receive(PATIENCE_S)).type is not WSMsgType.CLOSE:
         pass
     await gone(pid)
-    assert message.extra == "The app has been ended."
+    assert message.extra == "The app has ended."
     assert is_there(other)
 
 
@@ -343,10 +343,10 @@ ENDS = {
     "the user quits": ("0 a note", "", []),
     "what to open is gone": (f"2 note: x\n{GONE}\n", GONE, [f"note: x\n{GONE}"]),
     "a long reason": ("2 tuisim: " + "é" * 300, "tuisim: " + "é" * 57, ["tuisim: " + "é" * 300]),
-    "somebody ends it": ("143 ", "The app has been ended.", []),
+    "somebody ends it": ("143 ", "The app has ended.", []),
     "a failure": (
         "1 Traceback",
-        "The app has failed; the server's terminal tells more.",
+        "The app has failed; the server's terminal says why.",
         ["Traceback"],
     ),
 }
@@ -401,7 +401,7 @@ async def test_the_end_of_the_server_ends_all_apps() -> None:
     async with ClientSession() as client:
         async with listening(server, "127.0.0.1", 0) as port:
             started = [await Visitor(client, port).started() for _ in range(2)]
-        assert [await heard(socket) for socket, _ in started] == ["The server has been ended."] * 2
+        assert [await heard(socket) for socket, _ in started] == ["The server has stopped."] * 2
     assert [is_there(pid) for _, pid in started] == [False, False]
 
 

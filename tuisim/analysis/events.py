@@ -105,7 +105,7 @@ def _meets(
 
 _OPERATORS = (Operator.LESS, Operator.GREATER, Operator.EQUAL)
 THRESHOLD_FORM = f"{describe_comparison(_OPERATORS)}, such as `Colour > 50 +- 2`; `=` for both ways"
-FORM = f"{THRESHOLD_FORM}; `command` for what the program asked; several with `,` between them"
+FORM = f"{THRESHOLD_FORM}; `command` for commands of the program; several with `,` between them"
 _WIDTH = re.compile(rf"(?P<comparison>.+?)(?:\+-|±)\s*(?P<width>{NUMBER})\s*")
 
 

@@ -388,9 +388,7 @@ class Model:
 
     def _place(self, run: int) -> Path:
         if run >= len(self._places):
-            raise LogError(
-                "notes cannot be kept", "only with a file or a run, not what comes from a pipe"
-            )
+            raise LogError("notes cannot be stored", "open a file or a run instead of a pipe")
         return self._places[run]
 
 

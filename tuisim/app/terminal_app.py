@@ -266,7 +266,7 @@ class TerminalApp(BufferedApp):
             words = with_keys_of(self, "Drawn with characters: {pixels} brings the pixels back")
             self.notify(words, markup=False)
         else:
-            self.notify("This terminal draws no pixels, as far as it tells", markup=False)
+            self.notify("This terminal does not report that it can draw pixels", markup=False)
 
     def action_save_screen(self) -> None:
         """Save the whole screen as SVG and PNG, in the working directory."""

@@ -162,7 +162,7 @@ _FORMS = (
     ("Colour < 90", f"{{which}} sample that matches; operators: {list_operators()}"),
     (
         "left_red_pc < 50",
-        "{which} tick at which a column becomes so; also left_color changes, gyro_deg > 90, x_mm …",
+        "{which} tick at which a comparison becomes true; also left_color changes, gyro_deg > 90, x_mm …",
     ),
     (
         "command run",
@@ -170,7 +170,10 @@ _FORMS = (
     ),
     ("print REGEX", "{which} printed line that matches the regular expression"),
     ("start, end", "the first and the latest instant"),
-    ("… back, … first", "any of these but times: searched backwards, or from the start of the run"),
+    (
+        "… back, … first",
+        "any of these except times: search backwards, or from the start of the run",
+    ),
 )
 """The accepted forms, with what they mean."""
 
@@ -350,7 +353,7 @@ def _line(search: _Search, line: int) -> int:
     came = begins(at_it, held(at_it, search.recording.telemetry.array()["line"])).tolist()
     tick = search.nearest(sorted({*came, *search.recording.rows.ticks_of_line(line)}))
     if tick is None:
-        hint = "only lines that let time pass, or print, can be found"
+        hint = "a search finds only lines that let time pass or print"
         raise ConfigError(f"line {line} does not run {search.words}", hint)
     return tick
 

@@ -244,4 +244,4 @@ def require_regex(pattern: str, key: str) -> None:
     try:
         re.compile(pattern)
     except (re.error, RecursionError, OverflowError) as error:
-        raise ConfigError(f"{pattern!r} is no regular expression: {error}", key=key) from None
+        raise ConfigError(f"{pattern!r} is not a regular expression: {error}", key=key) from None

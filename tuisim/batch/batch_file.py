@@ -82,14 +82,14 @@ def load_batch(path: Path, mats: str | None = None) -> BatchFile:
     data = dict(files.table(files.read_file(path, ConfigError), Location(str(path))))
     at = Location(str(path)).at(BATCH_KEY)
     if BATCH_KEY not in data:
-        raise ConfigError("is no batch", f"a batch has a table [{BATCH_KEY}]", file=str(path))
+        raise ConfigError("is not a batch", f"a batch has a table [{BATCH_KEY}]", file=str(path))
     table = files.convert(data.pop(BATCH_KEY), _BatchTable, at)
     folder = path.parent
     world = None
     if table.world is not UNSET:
         if data:
             raise at.at("world").wrong(
-                f"is given together with {', '.join(data)}", "a world file, or its keys"
+                f"cannot be combined with {', '.join(data)}", "a world file, or its keys"
             )
         with files.errors_at(at.file, at.at("world").key):
             world = load_world(folder / table.world, mats)
@@ -145,7 +145,7 @@ def _choices(table: _BatchTable, at: Location) -> dict[str, Choice]:
     if table.seeds is not UNSET:
         place = at.at("seeds")
         if SEED in found:
-            raise place.wrong(f"is given together with set.{SEED}", "give only one of them")
+            raise place.wrong(f"cannot be combined with set.{SEED}", "give only one of them")
         listed = table.seeds if isinstance(table.seeds, list) else [table.seeds]
         try:
             found[SEED] = (

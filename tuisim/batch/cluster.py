@@ -57,7 +57,9 @@ def run_on_cluster(
     """
     if scheduler and not _ADDRESS.fullmatch(scheduler):
         hint = "its host and port, such as tcp://host:8786"
-        raise ConfigError(f"is no address of a scheduler: {scheduler!r}", hint, key="--scheduler")
+        raise ConfigError(
+            f"is not an address of a scheduler: {scheduler!r}", hint, key="--scheduler"
+        )
     distributed = _dask()
     cluster = None
     try:

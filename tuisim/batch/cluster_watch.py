@@ -17,7 +17,7 @@ PATIENCE_S = 4.0
 """How long scheduler and workers may take for an answer, and how long a cluster may be without a worker."""
 _VERSION = "__import__('tuisim').__version__"
 """Evaluated by a worker, which may know nothing of tuisim."""
-_GOES_ON = "with --out, --resume goes on with the rows so far"
+_GOES_ON = "with --out, --resume continues with the rows so far"
 
 
 def within(seconds: float, call: Callable[..., _Found], *args: Any, **named: Any) -> _Found:

@@ -45,7 +45,7 @@ class PartialTable:
         except OSError as error:
             raise ConfigError(f"cannot be read: {error.strerror}", file=str(self._path)) from None
         if _decoded(head) != self._identity:
-            hint = "the same programs, parameters, goals and limits go on; remove the file to begin again"
+            hint = "--resume needs the same programs, parameters, goals and limits; to start again, remove the file"
             raise ConfigError("is of another batch", hint, file=str(self._path))
         # The last line of a killed process may be incomplete.
         found = [row for line in lines if isinstance(row := _decoded(line), dict) and RUN in row]

@@ -95,7 +95,7 @@ class Sweep:
             columns = usual_columns(self._plan.names, [goal.name for goal in self._plan.goals])
             self.rows = partial.rows() or rows_of_table(out, self._identity, columns)
         elif os.path.exists(path):
-            hint = "--resume goes on with it; remove the file to begin again"
+            hint = "--resume continues it; to start again, remove the file"
             raise ConfigError("holds the rows of an interrupted batch", hint, file=str(path))
         return partial.open(self.rows)
 

@@ -182,7 +182,7 @@ def check_expressions(
         key = f"--expr {name}"
         if name in known or is_statistic(name) or not name.isidentifier():
             hint = "a name of letters, digits and _ that no column has and that ends in none of their suffixes"
-            raise ConfigError("is no name for a new column", hint, key=key)
+            raise ConfigError("cannot be the name of a new column", hint, key=key)
         try:
             used = find_names(quoted(text, known))
             # With no rows, this finds whatever is not allowed.

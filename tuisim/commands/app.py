@@ -97,7 +97,7 @@ def read_opened(arguments: Arguments) -> Opened | None:
     A PROGRAM is a Python file, a notebook, one of its cells (FILE.ipynb#2), a world or goals file, or an example by
     name. The words after -- are its arguments.
 
-    A program from a real robot gets the robot that it talks about, unless -r names one: see tuisim guide real-programs.
+    A program from a real robot gets the robot that it describes, unless -r names one: see tuisim guide real-programs.
 
     A program's first line, such as `# %%sim_magic_preloaded -b Grey_bands`, can also hold options. The command line
     takes precedence over a world file, the world file over the first line.

@@ -166,7 +166,7 @@ class _Batch:
 
     def _tell_interrupted(self) -> None:
         out = self.request.out
-        kept = f"; {out} has these rows, and --resume goes on" if out and self.rows else ""
+        kept = f"; {out} has these rows, and --resume continues" if out and self.rows else ""
         echo_error(
             f"tuisim: interrupted after {len(self.rows):,} of {counted(len(self.request.plan), 'run')}{kept}"
         )

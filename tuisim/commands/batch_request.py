@@ -77,7 +77,7 @@ OPTIONS = (
         "--resume",
         is_flag=True,
         group=_RESULTS,
-        help="Go on with an interrupted batch that wrote the same --out.",
+        help="Continue an interrupted batch that wrote the same --out.",
     ),
     option(
         "--json",
@@ -134,7 +134,7 @@ def read_request(arguments: Arguments) -> Request:
     plan.check_expressions(expressions)
     out = arguments.out or file.out
     if arguments.resume and out is None:
-        raise ConfigError("needs the table to go on with", "--out FILE", key="--resume")
+        raise ConfigError("needs the table that it continues", "--out FILE", key="--resume")
     target = check_target(out) if out is not None else None
     return Request(plan, expressions, target, _workers(arguments, file), arguments.resume)
 
@@ -147,7 +147,7 @@ def _workers(arguments: Arguments, file: BatchFile) -> Workers:
     }
     named = [name for name, value in given.items() if value]
     if len(named) > 1:
-        raise ConfigError(f"is given together with {named[0]}", "give one of them", key=named[1])
+        raise ConfigError(f"cannot be combined with {named[0]}", "give one of them", key=named[1])
     jobs = arguments.jobs or (0 if named else file.jobs or 0)
     return Workers(jobs, arguments.scheduler or "", arguments.workers)
 
@@ -215,7 +215,7 @@ def _typed_choices(arguments: Arguments) -> dict[str, Choice]:
     if arguments.seeds is not None:
         if SEED in found:
             raise ConfigError(
-                "is given together with --set seed", "give one of them", key="--seeds"
+                "cannot be combined with --set seed", "give one of them", key="--seeds"
             )
         found[SEED] = parse_seeds(arguments.seeds)
     return found

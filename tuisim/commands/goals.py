@@ -237,7 +237,7 @@ def try_task(goals_path: str, wrong: Sequence[str], seeds: str, timeout: float, 
 
 @command(
     argument("kind", "KIND", lambda: tuple(DRAWN_MATS)),
-    option("--seed", type=int, default=0, metavar="N", help="Draw it by this number (0)."),
+    option("--seed", type=int, default=0, metavar="N", help="Seed of the drawing (0)."),
     option("--out", metavar="FILE", type=WordType(), help="The image: .png (KIND-N.png)."),
     name="mat",
     help=f"""Draw a mat by a seed for another world of a task, and print that world for the task's file.

@@ -44,7 +44,7 @@ def _names() -> Sequence[str]:
     choice(
         "--library",
         [one.value for one in Library],
-        help="Open the lesson as it is told for programs with this library.",
+        help="Open the version of the lesson for this library.",
     ),
     option("--text", "as_text", is_flag=True, help="Print the lesson, even on a terminal."),
     name="open",
@@ -149,7 +149,7 @@ def _list(folder: str | None, *, as_json: bool) -> int:
         for number, one in enumerate(lessons, start=1)
     ]
     echo_lines(table(("", "LESSON", "ABOUT", "TIME", "PROGRESS"), rows))
-    echo("`tuisim learn LESSON` opens one; `tuisim learn` goes on where you left.")
+    echo("`tuisim learn LESSON` opens one; `tuisim learn` continues where you left off.")
     return 0
 
 
@@ -213,7 +213,7 @@ def _plain(lesson: Lesson, progress: LessonProgress) -> dict[str, Any]:
     option(
         "--strict",
         is_flag=True,
-        help="Exit code 1 also for warnings, such as a wrong way that is not tried.",
+        help="Return exit code 1 for warnings, too, such as a wrong way that is not tried.",
     ),
 )
 def check(paths: Sequence[str], no_runs: bool, strict: bool) -> int:

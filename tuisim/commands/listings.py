@@ -156,7 +156,7 @@ def _size(one: Taken) -> str:
         "program",
         metavar="PROGRAM|RUN",
         type=WordType(names=lambda: names_of("programs")),
-        help="Print the robot that a program for a real brick talks about, with the lines that say so, or that of a "
+        help="Print the robot of a program for a real brick, with the line behind each part; or the robot of a "
         "run, by its number or `last`, with the parts that were plugged in.",
     ),
     option(
@@ -174,7 +174,7 @@ def robots(robot: str | None, program: str | None, out: str | None, as_json: boo
 
     if program is not None:
         if robot is not None:
-            raise ConfigError(f"is given together with {robot}", "name one", key="--from")
+            raise ConfigError(f"cannot be combined with {robot}", "name one", key="--from")
         return _robot_from(program, out, as_json=as_json)
     if out is not None:
         raise ConfigError("needs a program", "tuisim robots --from PROGRAM --out FILE", key="--out")

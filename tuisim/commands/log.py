@@ -98,7 +98,7 @@ OPTIONS: Mapping[str, GroupedOption] = {
         type=COLUMN,
         default="",
         metavar="TEXT",
-        help="Variable, operator, threshold: 'Colour < 50 +- 2'; or 'command', what a run's program asked.",
+        help="Variable, operator, threshold: 'Colour < 50 +- 2'; or 'command' for commands of the program.",
     ),
     "hysteresis": option(
         "--hysteresis",
@@ -208,7 +208,7 @@ SUBCOMMANDS: Mapping[str, Subcommand] = {
         "to the level after. A band on which the log begins or ends is cut off; – means that an edge is not known.",
     ),
     "events": Subcommand(
-        "Find where a variable crosses --at, or --when; or what the program asked",
+        "Find where a variable crosses --at, or --when; or commands of the program",
         "tables:events",
         ("at", "when", "hysteresis", *_TABLE),
     ),

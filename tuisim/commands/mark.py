@@ -73,14 +73,14 @@ _OPTIONS = (
         "--isolate",
         is_flag=True,
         group=_RUNS,
-        help="Refuse to mark where programs cannot be isolated: without network, your files, and much memory.",
+        help="Refuse to mark if programs cannot be isolated: without network, without your files, with limited memory.",
     ),
     option(
         "--no-isolate",
         "no_isolate",
         is_flag=True,
         group=_RUNS,
-        help="Do not isolate programs; otherwise each runs through bubblewrap, where that starts.",
+        help="Do not isolate programs; by default each runs in bubblewrap, if that works.",
     ),
     option(
         "--max-mb",
@@ -89,13 +89,13 @@ _OPTIONS = (
         metavar="MB",
         type=WordType(lambda word: parse(_MEGABYTES, word, "--max-mb")),
         group=_RUNS,
-        help=f"Run no hand-in that is larger ({MOST_BYTES >> 20}).",
+        help=f"Do not run hand-ins that are larger ({MOST_BYTES >> 20}).",
     ),
     option(
         "--resume",
         is_flag=True,
         group=_RUNS,
-        help="Go on where an earlier marking with these goals ended; run only what is new or has changed.",
+        help="Continue an interrupted marking with these goals; run only what is new or has changed.",
     ),
     keep_option(USUAL_KEEP, _RUNS),
     option(
@@ -132,7 +132,7 @@ _OPTIONS = (
         "goal_columns",
         is_flag=True,
         group=_RESULTS,
-        help="Give each goal a column of its own in the gradebook's file.",
+        help="Give each goal its own column in the gradebook's file.",
     ),
     option(
         "--overrides",
@@ -145,7 +145,7 @@ _OPTIONS = (
         "--movies",
         is_flag=True,
         group=_RESULTS,
-        help="Give the page's report of each run that missed a goal a movie with the goals on it.",
+        help="Add a movie with the goals to the report of each run that missed a goal.",
     ),
     option(
         "--feedback",
@@ -172,8 +172,8 @@ _OPTIONS = (
     Programs run in the world of GOALS; if it names none, in that of their first line. A program that hangs, floods or
     crashes affects its own marks only. Where bubblewrap is installed and starts, each program is isolated.
 
-    Exit code: 0 all programs have marks, 1 this machine could not make some runs (--resume makes them), or a goal's
-    regular expression took too long, 2 bad input, 130 interrupted (--resume goes on).
+    Exit code: 0 all programs have marks, 1 this machine could not make some runs (--resume tries them again), or a
+    goal's regular expression took too long, 2 bad input, 130 interrupted (--resume continues).
     """,
 )
 def mark(**given: Any) -> int:
@@ -251,14 +251,14 @@ def _tell_so_far(marking: Marking) -> None:
         "nothing exported;"
     )
     kept = counted(sum(map(len, marking.outcomes.values())), "run")
-    echo_error(f"tuisim: {kept} kept: the same command with --resume goes on")
+    echo_error(f"tuisim: {kept} stored: the same command with --resume continues")
 
 
 def _tell_notes(marking: Marking) -> None:
     """Tell what was not marked, and whose programs would not start on a brick."""
     if marking.ignored:
         names = listed(marking.ignored)
-        echo_error(f"note: not marked, because they are no Python programs: {names}")
+        echo_error(f"note: not marked, because they are not Python programs: {names}")
     if marking.left_out:
         echo_error(f"note: left out, because nobody hands them in: {listed(marking.left_out)}")
     for student in marking.students:
@@ -342,7 +342,9 @@ def _check(arguments: Arguments, task: GoalsFile) -> None:
         and os.path.exists(arguments.feedback)
         and not os.path.isdir(arguments.feedback)
     ):
-        raise ConfigError(f"{arguments.feedback} is no folder", "name a folder", key="--feedback")
+        raise ConfigError(
+            f"{arguments.feedback} is not a folder", "name a folder", key="--feedback"
+        )
 
 
 def _write(exports: Iterable[tuple[Path, Callable[[], None]]]) -> int:
@@ -397,7 +399,7 @@ def _isolates(arguments: Arguments) -> bool:
     """
     if arguments.isolate and arguments.no_isolate:
         raise ConfigError(
-            "is given together with --no-isolate", "give only one of them", key="--isolate"
+            "cannot be combined with --no-isolate", "give only one of them", key="--isolate"
         )
     if arguments.no_isolate:
         return False

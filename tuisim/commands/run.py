@@ -118,7 +118,7 @@ _OPTIONS = (
     A PROGRAM is a Python file, a notebook, one of its cells (FILE.ipynb#2), a world file or an example by name. Its
     output goes to stdout, everything else to stderr; the words after -- are its arguments.
 
-    A program from a real robot gets the robot that it talks about, unless -r names one: see tuisim robots --from, and
+    A program from a real robot gets the robot that it describes, unless -r names one: see tuisim robots --from, and
     tuisim guide real-programs.
 
     Exit code: 0 finished, 1 the program raised an exception, 2 bad input, 3 stopped by a limit or a breakpoint; with

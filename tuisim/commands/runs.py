@@ -266,7 +266,7 @@ def rm(words: Sequence[str], older_than: str | None) -> int:
             freed += 0 if target else bytes_in(folder)
             store.remove(run_id)
             if target:
-                echo_error(f"note: run {run_id} was a link; its target was kept: {target}")
+                echo_error(f"note: run {run_id} was a link; its target was not removed: {target}")
     if older_than is not None:
         echo(f"{counted(len(found), 'run')} removed, {size(freed)}")
     return 0

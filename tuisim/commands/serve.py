@@ -38,7 +38,7 @@ _SERVER = (
         metavar="N",
         group=_GROUP,
         type=WordType(lambda text: parse(_VISITORS, text, "--max-visitors")),
-        help=f"Most apps at the same time ({DEFAULT_VISITORS}), with those that no tab shows now.",
+        help=f"Maximum number of apps at the same time ({DEFAULT_VISITORS}), including those that no tab shows.",
     ),
     option(
         "--keep",
@@ -46,7 +46,7 @@ _SERVER = (
         metavar="MIN",
         group=_GROUP,
         type=WordType(lambda text: parse(_MINUTES, text, "--keep")),
-        help=f"End an app that no tab has shown for so many minutes ({DEFAULT_KEEP_MIN:g}); an unused one, after 1.",
+        help=f"End an app that no tab has shown for this many minutes ({DEFAULT_KEEP_MIN:g}); an unused one, after 1.",
     ),
     option(
         "--idle",
@@ -54,14 +54,14 @@ _SERVER = (
         metavar="MIN",
         group=_GROUP,
         type=WordType(lambda text: parse(_MINUTES, text, "--idle")),
-        help="End the app of a visitor after so many minutes without input (never).",
+        help="End the app of a visitor after this many minutes without input (never).",
     ),
     option(
         "--host",
         default="127.0.0.1",
         metavar="ADDRESS",
         group=_GROUP,
-        help="Listen on another address than 127.0.0.1, which only this machine reaches; nothing is encrypted.",
+        help="Listen on this address; only this machine can reach the default, 127.0.0.1. Nothing is encrypted.",
     ),
 )
 
@@ -75,8 +75,8 @@ _SERVER = (
     ),
     help="""Open the app in a browser.
 
-    Prints an address with a secret part. Whoever has this address can run programs as you. ctrl+c ends the server and
-    the apps of all visitors.
+    The command prints an address with a secret part. Whoever has this address can run programs as you. ctrl+c ends
+    the server and the apps of all visitors.
 
     PROGRAM and options are those of `tuisim open`. This command needs the extra `web`.
     """,

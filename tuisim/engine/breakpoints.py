@@ -27,11 +27,14 @@ FORMS = (
     ("12 if x > 3", "line 12 is about to run, and the expression is true"),
     (
         "left_red_pc < 10",
-        "a column becomes so; also ultrasonic_mm <= 200, gyro_deg > 90, x_mm > 1000",
+        "a comparison becomes true; also ultrasonic_mm <= 200, gyro_deg > 90, x_mm > 1000",
     ),
     ("left_color changes", "the sensor sees another colour; left_color == Blue: it sees this one"),
-    ("sample Colour < 50", "such a sample is printed; also sample Colour changes, sample Colour"),
-    ("print matches black", "a line is printed in which the regular expression is found"),
+    (
+        "sample Colour < 50",
+        "the program prints such a sample; also sample Colour changes, sample Colour",
+    ),
+    ("print matches black", "the program prints a line that matches the regular expression"),
     ("time 3.5", "3.5 simulated seconds have passed"),
     ("stall", "an obstacle stalls a running motor"),
 )
@@ -44,7 +47,7 @@ ALLOWED = (
 
 _PRINT_FORM = "such as: print matches black|white"
 _NO_CONDITION = {
-    "print": ("what is printed can only be matched", _PRINT_FORM),
+    "print": ("a printed line can only be compared with `matches`", _PRINT_FORM),
     "sample": (
         "a sample has a name",
         f"{describe_comparison()}, such as: sample Colour < 50, sample Colour changes",

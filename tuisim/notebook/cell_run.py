@@ -381,7 +381,7 @@ def _parsed(who: str, text: str) -> Any:
         return json.loads(text)
     except (ValueError, RecursionError) as error:
         raise ConfigError(
-            f"the answer is no JSON: {error}", f'{JSON_PREFIX}{{"key": 1}} is one', key=who
+            f"the answer is not JSON: {error}", f'{JSON_PREFIX}{{"key": 1}} is one', key=who
         ) from None
 
 

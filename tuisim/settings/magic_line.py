@@ -148,7 +148,7 @@ def _options_of_app() -> list[GroupedOption]:
             metavar="URL",
             type=WordType(_origin),
             group=group,
-            help="Another address under which this notebook is read, such as http://lab:8888.",
+            help="The address of this notebook, if it is another one, such as http://lab:8888.",
         ),
     ]
 

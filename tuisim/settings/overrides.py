@@ -89,7 +89,9 @@ def _nested(values: Mapping[str, Any], at: Location) -> dict[str, Any]:
             if not isinstance(inside, dict):
                 raise at.at(key).wrong(f"is inside {part}, which has a value")
         if last in inside:
-            raise at.at(key).wrong("is given together with keys inside it", "give only one of them")
+            raise at.at(key).wrong(
+                "cannot be combined with keys inside it", "give only one of them"
+            )
         inside[last] = value
     return table
 

@@ -56,7 +56,7 @@ def profile_from_table(
         if key in in_ms:
             if in_ms[key] in given:
                 raise at.at(key).wrong(
-                    f"is given together with {in_ms[key]}", "give only one of them"
+                    f"cannot be combined with {in_ms[key]}", "give only one of them"
                 )
             found[in_ms[key]] = round(read_value(value, _COST_MS, at.at(key)) * MS)
         elif key in values:

@@ -44,8 +44,8 @@ class Section(StrEnum):
 
 
 ABOUT: Mapping[Section, str] = {
-    Section.SIMULATION: "What runs in the app and by `tuisim run` use where neither a switch nor the program's magic "
-    "line says it. It does not apply with a world file, goals or a lesson: they are the same for everybody.",
+    Section.SIMULATION: "Defaults for the app and `tuisim run`; options and the program's first line take precedence. "
+    "They do not apply with a world file, goals or a lesson: these are the same for everybody.",
     Section.APP: "How the app looks and sounds.",
     Section.KEYS: "Other keys for actions of the app: `tuisim guide keys` lists the actions by id.",
 }

@@ -54,9 +54,7 @@ def write_template() -> Path:
     """
     path = config_file()
     if path.exists() or path.is_symlink():
-        raise ConfigError(
-            "exists already", "it is left as it is; delete it first to begin anew", file=str(path)
-        )
+        raise ConfigError("exists already", "to start again, delete it first", file=str(path))
     _write(path, template())
     return path
 

@@ -161,7 +161,7 @@ def world_from_table(
     if "obstacle" in world:
         if "obstacles" in world:
             raise at.at("obstacle").wrong(
-                "is given together with obstacles", "give only one of them"
+                "cannot be combined with obstacles", "give only one of them"
             )
         found["obstacles"] = obstacles_from_list(
             world["obstacle"], at.at("obstacle", ObstacleError)

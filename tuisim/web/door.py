@@ -88,7 +88,7 @@ class Door:
             loop.default_exception_handler(context)
         elif self._clock() >= self._told_s + _TOLD_EVERY_S:
             self._told_s = self._clock()
-            self._report(f"No visitor can come: {error.strerror}")
+            self._report(f"The server cannot accept visitors: {error.strerror}")
 
 
 def _abort(handler: web.RequestHandler) -> None:

@@ -42,7 +42,7 @@ _FOLDERS = {
     "fonts": Path(__file__).parent.parent / "pictures" / "charts" / "fonts",
 }
 """Folders of files that every visitor gets, by name."""
-_REFUSAL = "This address leads nowhere; `tuisim serve` prints the right one.\n"
+_REFUSAL = "This address is wrong; `tuisim serve` prints the right one.\n"
 _REFUSAL_PAGE = f"""\
 <!DOCTYPE html>
 <html lang="en">
@@ -257,7 +257,7 @@ class Server:
     async def send_all_away(self, _: object = None) -> None:
         """End the apps of all visitors."""
         for visit in self._visits.values():
-            visit.end("The server has been ended.")
+            visit.end("The server has stopped.")
         await asyncio.gather(*self._lives.values())
 
 

@@ -184,9 +184,7 @@ class WebSession(AppService):
         if last.startswith("tuisim: "):
             return last
         return (
-            "The app has failed; the server's terminal tells more."
-            if last
-            else "The app has been ended."
+            "The app has failed; the server's terminal says why." if last else "The app has ended."
         )
 
     async def stop(self) -> None:

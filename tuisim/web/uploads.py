@@ -55,7 +55,9 @@ class Uploads:
         if size > MAX_FILE_BYTES:
             raise ConfigError(f"larger than {MAX_FILE_BYTES >> 20} MB")
         if self._used_bytes > MAX_BYTES:
-            raise ConfigError(f"no room: {MAX_BYTES >> 30} GB have been brought to this server")
+            raise ConfigError(
+                f"no room: {MAX_BYTES >> 30} GB of files have been dropped on this server"
+            )
 
 
 def _check_name(name: str) -> None:

@@ -72,5 +72,5 @@ async def test_another_mat_is_written_into_the_file_if_one_agrees(
 def test_the_first_line_is_explained_below_it(skeleton: Skeleton) -> None:
     lines = build_program_text("Loop", "colorLeft", skeleton).splitlines()
     (at,) = (number for number, line in enumerate(lines) if "%%sim_magic" in line)
-    assert lines[at + 1].startswith("# Lays out the mat")
+    assert lines[at + 1].startswith("# Chooses the mat")
     assert len(lines[at + 1]) < 70

@@ -41,7 +41,7 @@ def test_reckoning_without_noise_is_exact(here: Command) -> None:
     here("log", "reckon", "last", "--out", "reckoned.csv")
     assert pd.read_csv("reckoned.csv").error_mm.max() < 0.01
     lines = here("log", "reckon", "last").stdout.splitlines()
-    assert lines[-1].startswith("reckoned place: 0.00 mm off at the end, at most 0.00 mm")
+    assert lines[-1].startswith("dead reckoning: 0.00 mm off at the end, at most 0.00 mm")
 
 
 def test_reckoning_is_wrong_where_the_robot_drifts(here: Command) -> None:
@@ -57,7 +57,7 @@ def test_reckoning_is_wrong_where_the_robot_drifts(here: Command) -> None:
         assert reckoned.split()[line] == f"{rows[-1][f'reckoned_{name}']:.2f}"
         assert error.split()[line] == f"{rows[-1][f'reckoned_{name}'] - rows[-1][name]:.2f}"
     assert summary.startswith(
-        f"reckoned place: {rows[-1]['error_mm']:.2f} mm off at the end, at most "
+        f"dead reckoning: {rows[-1]['error_mm']:.2f} mm off at the end, at most "
     )
 
 

@@ -145,7 +145,7 @@ def test_what_takes_too_long_to_work_out_again_ends() -> None:
         for time_ns in count():
             yield SimulationCommand(time_ns, 0, Call.STOP, (0.0,) * MAX_VALUES)
 
-    with pytest.raises(LogError, match=r"takes more than 0\.2 s to work out again"):
+    with pytest.raises(LogError, match=r"takes more than 0\.2 s to replay"):
         replay(spec, command(), (), 100_000, limit_s=0.2)
 
 

@@ -104,5 +104,5 @@ def test_commands_that_are_missing_or_more_than_are_recorded_are_named(stored: S
 def test_parts_that_were_told_of_must_be_plugged_in(stored: Stored) -> None:
     run = stored("")
     told = replace(run.spec, robot=replace(run.spec.robot, gyro=None))
-    with pytest.raises(LogError, match="has other parts than those that the program has told of"):
+    with pytest.raises(LogError, match="parts differ from those that the program has reported"):
         replay_run(replace(run, spec=told), ())

@@ -133,4 +133,4 @@ CRASHES = {
 def test_a_crash_names_the_line(run: Run, signal: str, text: str, before: str) -> None:
     done = run(before + text, prelude="none")
     assert (done.ended.end, done.ended.error_line, done.lines) == ("crashed", 3, ["A: 1"])
-    assert done.ended.summary == f"the program's process was ended by {signal} in line 3"
+    assert done.ended.summary == f"the program's process was killed by {signal} in line 3"

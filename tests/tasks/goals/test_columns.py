@@ -69,11 +69,11 @@ GOALS = {
     "counted lines": ("count = { of = 'print matches ^ok', at_least = 2, at_most = 2 }", ""),
     "too many lines": (
         "count = { of = 'print matches ^ok', at_most = 1 }",
-        "came 2 times, at most 1 are asked for.",
+        "came 2 times; the goal allows at most 1.",
     ),
     "too few samples": (
         "count = { of = 'sample Grey', at_least = 3 }",
-        "came 2 times, at least 3 are asked for.",
+        "came 2 times; the goal needs at least 3.",
     ),
     "a column": ("count = { of = 'x_mm > 550', at_least = 1, at_most = 1 }", ""),
     "a sound": ("when = 'sound matches beep'", ""),

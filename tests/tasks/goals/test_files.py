@@ -97,7 +97,7 @@ BAD = {
     ),
     "area of two shapes": (
         goal("inside = { x_mm = 0, y_mm = 0, radius_mm = 5, width_mm = 5 }"),
-        "goal[2].inside.radius_mm: is given together",
+        "goal[2].inside.radius_mm: cannot be combined",
     ),
     "unknown part": (
         goal("inside = { x_mm = 0, y_mm = 0, radius_mm = 5, part = 'head' }"),
@@ -113,11 +113,11 @@ BAD = {
     ),
     "invalid regex": (
         goal("print = ['ok', '(']"),
-        "line 7: goal[2].print.lines[2]: '(' is no regular expression: mis",
+        "line 7: goal[2].print.lines[2]: '(' is not a regular expression: mis",
     ),
     "invalid regex of a dialogue": (
         goal("dialogue = [{ answer = '5', reply = '*' }]"),
-        "goal[2].dialogue.turns[1].reply: '*' is no regular",
+        "goal[2].dialogue.turns[1].reply: '*' is not a regular",
     ),
     "turn without answer": (
         goal("dialogue = [{ reply = '5' }]"),
@@ -321,7 +321,7 @@ BAD = {
     ),
     "a sound of no pattern": (
         goal("when = 'sound matches ('"),
-        "when.comparisons[1]: '(' is no regular expression",
+        "when.comparisons[1]: '(' is not a regular expression",
     ),
     "a structure of nothing": (
         goal("structure = 'lops >= 1'"),

@@ -38,11 +38,11 @@ side(
 STRUCTURE = {
     "a loop": ("loops >= 1", ""),
     "only one loop does anything": ("for <= 1", ""),
-    "no loop that waits": ("while >= 1", "while >= 1 is asked for, and the program has 0."),
+    "no loop that waits": ("while >= 1", "The goal needs while >= 1; the program has 0."),
     "a function that is called": ("functions = 1", ""),
-    "two functions": ("functions >= 2", "functions >= 2 is asked for, and the program has 1."),
+    "two functions": ("functions >= 2", "The goal needs functions >= 2; the program has 1."),
     "lines": ("lines <= 13", ""),
-    "fewer lines": ("lines <= 12", "lines <= 12 is asked for, and the program has 13."),
+    "fewer lines": ("lines <= 12", "The goal needs lines <= 12; the program has 13."),
     "blocks in blocks": ("depth = 3", ""),
     "no class": ("classes = 0", ""),
 }

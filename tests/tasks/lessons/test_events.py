@@ -157,12 +157,12 @@ UNREADY = {
     "no run": (
         RAN,
         Typed("1", has_run=False),
-        "Run the program first: the question is about its run.",
+        "Run the program first: the question is about that run.",
     ),
     "another run": (
         RAN,
         Typed("1", printed=("x",)),
-        "The run in view has not printed that: do what the step says",
+        "This run has not printed that: do what the step says",
     ),
     "ready": (HERE, Typed("1", x_mm=300.0), ""),
 }

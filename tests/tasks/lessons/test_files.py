@@ -91,7 +91,7 @@ BAD = {
     ),
     "no such choice": (
         step("question = { ask = 'Q', answer = 'x', choices = ['y'] }"),
-        "is none of the choices",
+        "is not one of the choices",
     ),
     "why is no text": (step("run = 'end'\nwhy = 5"), ", line 10: step[1].why: must be text, got 5"),
     "no such panel": (
@@ -100,7 +100,7 @@ BAD = {
     ),
     "no regex": (
         step("breakpoint = '('"),
-        "step[1].breakpoint.matches: '(' is no regular expression",
+        "step[1].breakpoint.matches: '(' is not a regular expression",
     ),
     "no model": (step("breakpoint = 'x'"), "step[1].model: is missing"),
     "visit backwards": (

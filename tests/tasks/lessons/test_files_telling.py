@@ -49,7 +49,7 @@ BAD = {
     "no name": ("tells = 5\n", "it-other.md, line 2: tells: must be text, got 5"),
     "a telling": (
         "tells = 'it-other.md'\n",
-        "line 2: tells: it-other.md is a telling, too (name the lesson that it",
+        "line 2: tells: it-other.md is a version of a lesson itself (name the",
     ),
     "a step more": (
         "tells = 'it.md'\n[[step]]\nname = 'b'\nrun = 'end'\n",

@@ -90,7 +90,7 @@ def test_a_run_from_elsewhere_says_what_to_do(home: Path) -> None:
     assert over == "This run began elsewhere: m moves the robot to its start, then R."
     assert back.endswith("The robot is back at its start: R runs the program.")
     session.look(_sight(_run("b", **{"noise.light": 3})))
-    assert "other noise or drift" in session.describe_elsewhere(there, in_run=False)
+    assert "different noise or drift" in session.describe_elsewhere(there, in_run=False)
 
 
 def test_runs_count_in_any_order_of_their_trials_and_the_newest_is_told_of(home: Path) -> None:
@@ -100,9 +100,9 @@ def test_runs_count_in_any_order_of_their_trials_and_the_newest_is_told_of(home:
         assert session.look(_sight(_run(run_id))) is Change.TRY
         trials.append(session.attempt.trial)
     first, second = trials
-    assert first and second and session.attempt.remark.endswith("also tried from farther back …")
+    assert first and second and session.attempt.remark.endswith("also runs from farther back …")
     assert session.take_trial(first, [(BACK, _judged(GoalState.MISSED))]) is Change.SHOW
-    assert "also tried" in session.attempt.remark
+    assert "also runs" in session.attempt.remark
     session.take_trial(second, [(BACK, _judged(GoalState.MISSED))])
     missed = "Also tried from farther back, it does not work (start x = 460 mm): It was too short."
     assert session.attempt.remark == missed

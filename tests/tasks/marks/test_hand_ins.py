@@ -101,7 +101,7 @@ def test_what_nobody_hands_in_is_named_once(tmp_path: Path) -> None:
     assert [one.name for one in found.students] == ["ada", "ben"]
     assert sorted(found.left_out) == sorted(
         [".git", "._main.py", "__MACOSX", "__pycache__", "node_modules", "venv"]
-        + [f"{name}/pipe, which is no file" for name in ("ada", "ben")]
+        + [f"{name}/pipe, which is not a file" for name in ("ada", "ben")]
     )
 
 

@@ -121,7 +121,7 @@ def test_what_fits_one_world_only_is_found_by_the_others(tmp_path: Path, here: C
         and "Hidden goals: 0 of 2 points" in told["tells"]
     )
     said = " ".join(told["tells"].split())
-    assert "did not run to its end in each of the other worlds in which it was tried." in said
+    assert "did not run to its end in every other world in which it ran." in said
     assert not [
         word for word in ("4711", "ValueError", "quick", "direction", "Line 8") if word in said
     ]

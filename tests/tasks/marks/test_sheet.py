@@ -298,7 +298,7 @@ def test_feedback_says_what_was_met_missed_and_why() -> None:
         "",
         "Grey bands",
         "",
-        "Your program was run 4 times, with other random numbers each time: 3 of 4 runs met every",
+        "Your program ran 4 times, each time with different random numbers: 3 of 4 runs met every",
         "goal.",
         "",
         "[met in part] Stop at the place. (5.25 of 7)",

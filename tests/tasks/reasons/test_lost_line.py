@@ -103,11 +103,11 @@ GOOD = {
     "stays inside": STAYS_INSIDE,
 }
 WRONG = {
-    "the sign of two sensors": (WRONG_SIGN, "1.04", "right sensor left the black, and saw it no"),
+    "the sign of two sensors": (WRONG_SIGN, "1.04", "right sensor left the black, and did not"),
     "and then far over the mat": (
         WRONG_SIDES,
         "1.03",
-        "right sensor left the black, and saw it no",
+        "right sensor left the black, and did not",
     ),
     "too fast": (EDGE.format(seconds=9, left=30, right=40), "", "the robot left the mat"),
     "the sides swapped": (EDGE.format(seconds=18, left=20, right=5), "0.", "sensor left the black"),

@@ -56,7 +56,7 @@ CASES = {
     "in a thread": (IN_A_THREAD, ReasonKind.RAISED, "1.00 s, line 4: ZeroDivisionError: division"),
     "at a wall": (AT_THE_WALL, ReasonKind.BLOCKED, "line 2: the robot stood at an obstacle from"),
     "waits": (WAITS, ReasonKind.BLOCKED, "2.00 s, line 4: from here on it waited: touch sensor on"),
-    "lost": (WRONG_SIGN, ReasonKind.LOST, "line 4: the right sensor left the black, and saw it"),
+    "lost": (WRONG_SIGN, ReasonKind.LOST, "line 4: the right sensor left the black, and did"),
     "never stopped": (
         "from ev3dev2.motor import *\nLargeMotor(OUTPUT_B).on(20)\nimport time\ntime.sleep(1)\n",
         ReasonKind.ENDED,
@@ -131,13 +131,13 @@ def test_a_turn_that_is_meant_is_no_reason(text: str) -> None:
 END = {
     "a lost line": (
         WRONG_SIGN.replace("get_clock() < 8", "True"),
-        ", line 4: the right sensor left the black, and saw it no more",
+        ", line 4: the right sensor left the black, and did not see it again",
     ),
-    "at once": ("tank_drive.on(20, 20)\n", "0.00 s, line 1: the program was over when"),
+    "at once": ("tank_drive.on(20, 20)\n", "0.00 s, line 1: the program ended when"),
     "a band between two reads": (
         "# %%sim_magic_preloaded -b Grey_bands\nimport time\ntank_drive.on(80, 80)\n"
         "while colorLeft.reflected_light_intensity_pc > 10:\n    time.sleep(1.02)\n",
-        " s, line 4: what this line waited for came between two reads: it was ",
+        " s, line 4: the value that this line waited for came between two reads: it was ",
     ),
     "as it should": ("tank_drive.on_for_seconds(20, 20, 1)\n", ""),
     "a wait": (WAITS, ""),

@@ -92,13 +92,16 @@ def test_a_level_that_is_a_little_too_low_just_misses_a_band() -> None:
 
 FAST = f"{BANDS}import time\ntank_drive.on(SpeedPercent(80), SpeedPercent(80))\n"
 SELDOM = f"{FAST}while {LIGHT} > {{limit}}:\n    print({LIGHT})\n    time.sleep({{pause}})\n"
-SKIP = "at 3.61 s, but it was read only at 3.07 s and 4.09 s: line 6 takes too long"
+SKIP = "at 3.61 s, but the program read it only at 3.07 s and 4.09 s: line 6 takes too long"
 
 
 def test_a_band_between_two_reads_is_told() -> None:
     miss = find_near_miss(run_text(SELDOM.format(limit=10, pause=1)))
     assert miss is not None
-    assert miss.text == f"what this line waited for came between two reads: it was 6.27 % {SKIP}"
+    assert (
+        miss.text
+        == f"the value that this line waited for came between two reads: it was 6.27 % {SKIP}"
+    )
 
 
 def test_a_loop_that_goes_on_says_what_came_between_two_reads() -> None:
@@ -169,15 +172,15 @@ def test_what_other_libraries_read_is_measured(text: str, words: str) -> None:
 EARLY = {
     "no wait": (
         f"{DRIVES}tank_drive.off()\n",
-        "the program was over when the motors that this line starts had",
+        "the program ended when the motors that this line starts had",
     ),
     "a small turn": (
         f"{BANDS}tank_drive.on_for_degrees(30, 30, 1)\n",
-        "when the motors that this line starts had moved the robot by 0.5 mm",
+        "when the motors that this line starts had moved the robot by only 0.5 mm",
     ),
     "a text that is no number": (
         f"{DRIVES}while colorLeft.color == 'White':\n    pass\ntank_drive.off()\n",
-        "the loop was over at once: the colour sensor on in2 read 6, not 'White'",
+        "the loop ended at once: the colour sensor on in2 read 6, not 'White'",
     ),
     "another colour": (
         f"{DRIVES}while colorLeft.color == ColorSensor.COLOR_RED:\n    pass\n",
@@ -185,7 +188,7 @@ EARLY = {
     ),
     "a true limit": (
         f"{DRIVES}while {LIGHT} < 20:\n    pass\ntank_drive.off()\n",
-        "the loop was over at once: the colour sensor on in2 read 100 %, already 20 % or more",
+        "the loop ended at once: the colour sensor on in2 read 100 %, already 20 % or more",
     ),
 }
 

@@ -101,7 +101,7 @@ PROGRAMS = {
     ),
     "socket": (
         ACCEPT,
-        "socket.accept in line 6: nobody connected: --speed 1 gives the other program the time to come",
+        "socket.accept in line 6: nobody connected: --speed 1 gives the other program time to connect",
     ),
     "on purpose": (PLAY, ""),
 }
@@ -193,7 +193,7 @@ VAIN = {
     "too early": (
         SECOND,
         "down@1",
-        "down was pressed at 1 s, before the program asked (first at 2.5 s): --press down@3",
+        "down was pressed at 1 s, before the program first checked (at 2.5 s): --press down@3",
     ),
     "another button": (SECOND, "enter@3", "only enter was pressed, not down: --press down@3"),
     "one of two": (TWO, "left@1", "only left was pressed, not up: --press up@1-2 --press left@1-2"),
@@ -207,10 +207,10 @@ VAIN = {
         "enter@0.5",
         "enter was pressed at 0.5 s, and the program waits for more: add --press enter@1",
     ),
-    "between two looks": (
+    "between two checks": (
         SLOW,
         "touch@1.1-1.3",
-        "touch sensor on in1: touch was pressed at 1.1 s, between two looks (0.7 s apart):",
+        "touch sensor on in1: touch was pressed at 1.1 s, between two checks (0.7 s apart):",
     ),
 }
 
@@ -327,7 +327,7 @@ def test_buttons_that_are_asked_for_at_once_are_pressed_at_once() -> None:
         needs_all=True,
         pressed=(up, left),
     )
-    assert describe_awaited(awaited) == "up and left were not pressed at once"
+    assert describe_awaited(awaited) == "up and left were not pressed at the same time"
     assert "shift with ↑ and ← holds up and left" in describe_wait_with_keys([awaited], SPEC)
 
 

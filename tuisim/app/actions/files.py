@@ -75,7 +75,7 @@ def open_brought(context: ActionContext, path: Path) -> None:
     """Open a file that the user has brought to the page: a program, a world, goals, or a log to be analysed."""
     if path.suffix in _OPENABLE_SUFFIXES and context.runs.in_run:
         context.app.say(
-            f"{path.name} is here, and can be opened once the run has ended: {{open}} opens it"
+            f"{path.name} has arrived; you can open it when the run has ended: {{open}} opens it"
         )
     elif path.suffix in _OPENABLE_SUFFIXES:
         open_path(context, str(path))

@@ -76,7 +76,7 @@ def _can_undo(now: Situation) -> str:
 
 
 def _can_draw_pixels(now: Situation) -> str:
-    return "" if now.has_pixels else "This terminal draws no pixels, as far as it tells"
+    return "" if now.has_pixels else "This terminal does not report that it can draw pixels"
 
 
 def _can_nudge(now: Situation) -> str:
@@ -446,7 +446,7 @@ ACTIONS: Mapping[str, LabAction] = {
         Action(
             "begin",
             "f4",
-            "Begin: a new program, or go on with one",
+            "Begin: a new program, or continue one",
             FILES,
             files.show_welcome,
             _can_change_world,
@@ -640,7 +640,7 @@ ACTIONS: Mapping[str, LabAction] = {
         Action("theme", "f10", "Theme: light, high contrast and others", APP, app.choose_theme),
         Action("settings", "asterisk", "Settings: your own defaults", APP, app.open_settings),
         Action("undo", "backspace", _UNDO, APP, app.undo, _can_undo, "undo"),
-        Action("copy", "ctrl+c", "Copy what has the focus, or was clicked", APP, app.copy),
+        Action("copy", "ctrl+c", "Copy the text of the panel with the focus", APP, app.copy),
         Action("redraw", "ctrl+l", "Redraw a screen that other output overwrote", APP, app.redraw),
         Action("screenshot", "I,f12", _SCREENSHOT, APP, app.save_screen, shown_key="I"),
         Action("suspend", "ctrl+z", "Suspend; fg in the shell resumes", APP, app.suspend),

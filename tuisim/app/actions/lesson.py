@@ -79,8 +79,8 @@ def show_menu(context: ActionContext) -> None:
         if step := session.step:
             here.append((_SKIP, "Skip", f"Leave this step undone: {step.title}"))
         if session.lesson.model_answer:
-            alone = "Drive without that of the model answer again"
-            beside = "See the way of the model answer, not its program"
+            alone = "Drive without the robot of the model answer again"
+            beside = "Watch the model answer drive, without its program"
             here.append((_MODEL, "Grey robot", alone if context.runs.companion else beside))
         here.append((_OVER, "Start over", f"All steps again: {session.lesson.title}"))
     progress = load_progress()
@@ -124,7 +124,7 @@ def _handle_choice(context: ActionContext, choice: str | None) -> None:
 def _ask_restart(context: ActionContext) -> None:
     from tuisim.app.dialogs.question import Question
 
-    text = "All steps of this lesson are open again, and its program is as at first. A copy of yours is kept."
+    text = "All steps of this lesson are open again, and its program is as at first. Your program is saved as a copy."
     answers = (("s", "Start over"),)
 
     def handle_answer(key: str | None) -> None:
@@ -132,7 +132,7 @@ def _ask_restart(context: ActionContext) -> None:
             context.document.run_when_saved(context.lesson.start_over)
 
     context.app.push_screen(
-        Question("Start over?", text, answers, "goes on as it is"), handle_answer
+        Question("Start over?", text, answers, "keeps the lesson as it is"), handle_answer
     )
 
 

@@ -208,7 +208,7 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         is_first = before is None and not opened.request.telemetry
         if is_first and not model.log.rows and any(run.telemetry.count for run in opened.runs):
             self.say(
-                "Nothing was printed with a name: this is the telemetry. {telemetry} shows the printed samples"
+                "The program printed no samples: this is the telemetry. {telemetry} shows the printed samples"
             )
             self.open(replace(opened.request, telemetry=True))
             return
@@ -385,7 +385,7 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         """Ask how the file is to be read."""
         request = self.request
         if not is_readable_again(request.file):
-            self.say("Only a file can be read in another way, not a run or a pipe")
+            self.say("You can change only how a file is read, not a run or a pipe")
             return
         self._ask_choices(request, read_beginning(request.file, request.choices))
 
@@ -403,7 +403,7 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         try:
             remember_choices(self.request.file, choices)
         except OSError as error:
-            self.say(f"The choices are not remembered: {error.strerror or error}")
+            self.say(f"The choices cannot be saved: {error.strerror or error}")
         self.open(LogRequest(self.request.file, choices=choices))
 
     def copy(self, text: str, what: str) -> None:

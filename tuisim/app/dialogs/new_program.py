@@ -91,12 +91,12 @@ tank = MoveTank(OUTPUT_B, OUTPUT_C)
 """
 _SAYS = {
     Skeleton.LOG: "Log the {noun} sixty times while driving.",
-    Skeleton.UNTIL: "Drive until the {noun} says stop.",
+    Skeleton.UNTIL: "Drive until the {noun} reaches a limit.",
     Skeleton.LIBRARY: "Log the {noun} sixty times while driving, as on a real robot.",
     Skeleton.EMPTY: "A new program.",
 }
-_EXPLAINS = "# Lays out the mat, and makes tank_drive, colorLeft and other names.\n"
-_EXPLAINS_BRICK = "# Lays out the mat; the program runs as on a brick.\n"
+_EXPLAINS = "# Chooses the mat, and defines tank_drive, colorLeft and other names.\n"
+_EXPLAINS_BRICK = "# Chooses the mat; the program runs as on a brick.\n"
 BRICK_MAGIC = "sim_magic", "--profile ev3"
 """Magic and words of a program with imports: it runs as on the brick."""
 

@@ -102,7 +102,7 @@ class BranchQuestion(Dialog[str]):
             if branch.edited
             else "runs again up to this instant"
         )
-        ends = f" {branch.of.name.capitalize()} ends now and is kept." if in_run else ""
+        ends = f" {branch.of.name.capitalize()} ends now and is stored." if in_run else ""
         then = "continues from here" if branch.goes_on else "pauses here"
         self._text = (
             f"{program} {again}, with all your actions until then, and {then}{change}.{ends}"
@@ -144,7 +144,7 @@ class LeaveQuestion(Dialog[bool]):
     ]
 
     def compose_content(self) -> ComposeResult:
-        yield Static("A program is running. Everything logged so far is kept.", markup=False)
+        yield Static("A program is running. Everything logged so far is stored.", markup=False)
         yield from _compose_answers([("yes", "y", "Stop it and quit"), ("leave", "n", "Stay")])
 
     def action_yes(self) -> None:

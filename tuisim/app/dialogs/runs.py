@@ -209,7 +209,7 @@ class RunChooser(ListDialog):
         options.add_options(Option(self.line(run), id=run.id) for run in matches[:MAX_LISTED])
         options.highlighted = 0 if matches else None
         if not self._runs:
-            self.say("No runs yet: each run of a program is kept")
+            self.say("No runs yet: every run of a program is stored here")
         elif len(matches) > MAX_LISTED:
             self.say(f"The newest {MAX_LISTED} of {len(matches):,} runs: search for the others")
         else:

@@ -303,7 +303,7 @@ def reckon(arguments: Arguments) -> int:
     formats = dict(zip(("at_the_end", *POSE), ("", ".2f", ".2f", ".2f"), strict=True))
     show_rows([dict(zip(formats, row, strict=True)) for row in rows], arguments, formats)
     echo(
-        f"reckoned place: {end['error_mm']:.2f} mm off at the end, at most {worst['error_mm']:.2f} mm, "
+        f"dead reckoning: {end['error_mm']:.2f} mm off at the end, at most {worst['error_mm']:.2f} mm, "
         f"at {worst['time']:.2f} s"
     )
     return 0

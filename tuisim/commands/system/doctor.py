@@ -36,7 +36,7 @@ _EXACTLY = re.compile(r"([A-Za-z0-9._-]+)\s*(?:==([^;,\s]+))?")
     instead={"--clean": "what killed processes have left is removed when tuisim runs again"},
     help="""Check the terminal and the machine, for use and for bug reports.
 
-    Each line tells what was found and, after ->, what to do about it. The exit code is 0 unless something prevents the
+    Each line shows a result and, after ->, what to do about it. The exit code is 0 unless something prevents the
     use of tuisim.
 
     If a killed app has left the terminal without an echo or with a hidden cursor, type `tuisim doctor --reset` and

@@ -14,12 +14,12 @@ from tuisim.settings.user_config_file import write_template
     option(
         "--init",
         is_flag=True,
-        help=f"Write a {FILE} with every setting in comments, unless there is one.",
+        help=f"Write a {FILE} with every setting as a comment, unless the file exists.",
     ),
     name="config",
     help=f"""Show your settings and keys, and where each comes from; check {FILE}.
 
-    The first line is the path of the file. Empty values are decided by the mat or the robot; `tuisim guide settings`
+    The first line is the path of the file. Empty values depend on the mat or the robot; `tuisim guide settings`
     explains the settings.
     """,
 )
@@ -32,7 +32,7 @@ def config(as_json: bool, init: bool) -> int:
     if init:
         if as_json:
             raise ConfigError(
-                "--init and --json exclude each other", "give one of them", key="config"
+                "--init and --json cannot be combined", "give one of them", key="config"
             )
         echo(f"written: {write_template()}")
         return 0

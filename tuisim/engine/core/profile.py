@@ -270,7 +270,7 @@ class ProfileSpec(Spec):
 
 ROBOLAB = ProfileSpec(
     name="robolab",
-    title="the course as its text says, defects mended",
+    title="the course as its text says, with bugs fixed",
     tick_hz=100,
     ambient_percent=10,
     halfway_heading=True,

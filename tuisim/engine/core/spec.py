@@ -151,7 +151,7 @@ class MotorSpec(Spec):
         default=None,
         later=True,
         unit="°",
-        help="end stop backwards, from the position at the start",
+        help="end stop backwards, relative to the position at the start",
     )
     """The motor turns no further backwards than here; 0 or below."""
     high_deg: float | None = number(
@@ -160,7 +160,7 @@ class MotorSpec(Spec):
         default=None,
         later=True,
         unit="°",
-        help="end stop forwards, from the position at the start",
+        help="end stop forwards, relative to the position at the start",
     )
     """The motor turns no further forwards than here; 0 or above."""
 
@@ -210,7 +210,7 @@ class TouchSpec(SensorSpec):
         what="end",
         default="low",
         later=True,
-        help="low or high: the motor's end stop where it does",
+        help="low or high: the end stop of the motor that presses it",
     )
     """The end stop at which that motor presses it, one of `MOTOR_ENDS`."""
 
@@ -254,7 +254,7 @@ class ColorSensorSpec(SensorSpec):
         later=True,
         unit="%",
         label="White %",
-        help="reflected light of white; by default as the profile says",
+        help="reflected light of white; the default depends on the profile",
     )
     """Reflected light of white; None: `ProfileSpec.white_percent`."""
     black_percent: float | None = number(
@@ -264,7 +264,7 @@ class ColorSensorSpec(SensorSpec):
         later=True,
         unit="%",
         label="Black %",
-        help="reflected light of black; by default as the profile says",
+        help="reflected light of black; the default depends on the profile",
     )
     """Reflected light of black; None: `ProfileSpec.black_percent`."""
 
@@ -312,7 +312,7 @@ class GyroSpec(SensorSpec):
         default=False,
         later=True,
         label="Keeps angle",
-        help="a newer sensor, from date code N4 on: a change of mode leaves its angle",
+        help="a newer sensor, from date code N4 on: keeps its angle when the mode changes",
     )
     """Whether a change of mode leaves the angle as it is, where the profile lets it restart."""
 
@@ -503,7 +503,7 @@ class RobotSpec(Spec):
         unit="kg",
         later=True,
         label="Mass kg",
-        help="with brick and battery; only where motors are as on the brick",
+        help="with brick and battery; only for motors as on the brick",
     )
     battery_v: float = number(
         5,
@@ -754,7 +754,7 @@ class WorldSpec(Spec):
     floor: bool = flag(
         default=False,
         later=True,
-        help="where there are no walls, the ground goes on around the mat in the colour of its edges",
+        help="where there are no walls, the ground continues around the mat in the colour of its edges",
     )
     """Whether the mat lies on a floor of its own colour."""
     beacon: BeaconSpec | None = part(BeaconSpec, default=None)

@@ -275,7 +275,7 @@ class RunHandle:
             self.spec = add_plugged(self.first_spec, self.plugged)
             self._store.note_plugged(self._run, self.plugged)
         except RobotError as error:
-            self._events.falsified = f"it plugged in what does not fit: {error.message}"
+            self._events.falsified = f"it plugged in a part that does not fit: {error.message}"
         except LogError as error:
             self.unstored = self._what_is_wrong(error)
 
@@ -367,7 +367,7 @@ class RunHandle:
         ticks = telemetry.count
         if is_whole and end is not None and end.tick != ticks - 1:
             return (
-                f"it ends at tick {end.tick}, and {counted(ticks, 'tick is', 'ticks are')} recorded"
+                f"it ends at tick {end.tick}, but {counted(ticks, 'tick is', 'ticks are')} recorded"
             )
         hz = self.spec.profile.tick_hz
         if (

@@ -109,7 +109,7 @@ def replay(
     give_up_s = thread_time() + limit_s
     for number, command in enumerate(commands):
         if not number % _LOOK_EVERY and thread_time() > give_up_s:
-            raise LogError(f"what the program did takes more than {limit_s:g} s to work out again")
+            raise LogError(f"what the program did takes more than {limit_s:g} s to replay")
         tick = sim.count_ticks(command.time_ns)
         fault = check.find_disorder(command.time_ns)
         if tick > last_tick:

@@ -87,7 +87,7 @@ def _replay_commands(
     except ValueError as error:
         raise LogError("damaged: these are no commands", file=str(run.folder)) from error
     if ticks.robot != run.spec.robot:
-        raise LogError("the robot has other parts than those that the program has told of")
+        raise LogError("the robot's parts differ from those that the program has reported")
     return ticks
 
 

@@ -401,7 +401,7 @@ class RunControl:
         except OSError as error:
             # Without this record the run could not be repeated.
             session.ask_stop(
-                End.DISK_FULL, f"what was done cannot be written down: {error.strerror}"
+                End.DISK_FULL, f"the user's action cannot be recorded: {error.strerror}"
             )
 
     def write_down_stop(self, tick: int) -> None:

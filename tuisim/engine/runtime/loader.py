@@ -160,7 +160,7 @@ def point_at_prelude(error: BaseException) -> None:
         case _:
             how = ""
     error.add_note(
-        f"`{error.name}` is a predefined name, which this program has not asked for: {magic}{how}."
+        f"`{error.name}` is a predefined name, which this program has not enabled: {magic}{how}."
     )
 
 

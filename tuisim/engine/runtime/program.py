@@ -303,7 +303,8 @@ class ProgramRunner:
                 return ProgramOutcome(End.OUTPUT_LIMIT, 0, error.message, error_line=line)
             case MemoryError():
                 return self._raised(
-                    MemoryError("the program used up the memory it may have"), error.__traceback__
+                    MemoryError("the program used all the memory that it may have"),
+                    error.__traceback__,
                 )
         return self._raised(error, error.__traceback__)
 

@@ -56,7 +56,7 @@ class ProgramRobot:
     def list_lines(self) -> list[str]:
         """Return the lines of a robot file with what the program changes in the default robot, and why."""
         lines = [
-            f"# The robot that {self.program} talks about: {DEFAULT_ROBOT} with these parts changed. "
+            f"# The robot that {self.program} describes: {DEFAULT_ROBOT} with these parts changed. "
             "-r takes this file.",
             "# Lengths in mm, angles in degrees; x to the right of the midpoint between the wheels, y forward of it.",
         ]

@@ -138,14 +138,14 @@ def find_miscount(condition: CountCondition, evidence: Evidence, span: EvidenceS
         return replace(unfit, moment=EvidencePoint(max(0, span.first_tick)), line=0)
     times = counted(len(moments), "time")
     if condition.at_most is not None and len(moments) > condition.at_most:
-        text = f"{named} came {times}, at most {condition.at_most:,} are asked for."
+        text = f"{named} came {times}; the goal allows at most {condition.at_most:,}."
         return Occurrence(moments[condition.at_most], text)
     if len(moments) >= condition.at_least:
         return Occurrence()
     decided = span.stop or (evidence.last if span.over else None)
     line = evidence.line(moments[-1]) if moments else 0
     return Occurrence(
-        decided, f"{named} came {times}, at least {condition.at_least:,} are asked for.", line
+        decided, f"{named} came {times}; the goal needs at least {condition.at_least:,}.", line
     )
 
 

@@ -47,7 +47,7 @@ def _asked(pattern: str) -> str:
         return f"matches {_shown(words)}"
     # What a line must not say is told by the goal's own words, and no student reads it from the pattern.
     return (
-        "says what is asked for"
+        "says what the goal needs"
         if re.search(r"\(\?<?[=!]", pattern)
         else f"matches {_shown(pattern)}"
     )
@@ -131,7 +131,7 @@ def _again(condition: PrintCondition, rows: list[OutputRow], evidence: Evidence)
     reason = f"{_shown(row.text)} was printed again at {row.time_ns / NS_PER_S:.2f} s, at x = {x_mm:.0f} mm"
     return Occurrence(
         None,
-        f"{reason}: {counted(len(rows), 'such line')} in all, and each is asked for once.",
+        f"{reason}: {counted(len(rows), 'such line')} in all; the goal needs each line once.",
         row.line,
     )
 
@@ -149,9 +149,7 @@ def _fault(
     if fault := _elsewhere(condition, count, row.tick, evidence):
         return f"{when}, when {fault}"
     if condition.still and (speed_mm_s := _speed_mm_s(row.tick, evidence)) > _STILL_MM_S:
-        return (
-            f"{when}, when the robot still moved, by {speed_mm_s:.0f} mm/s: it must have stopped."
-        )
+        return f"{when}, while the robot was still moving at {speed_mm_s:.0f} mm/s: it must have stopped."
     if condition.reading is None:
         return ""
     noun = NOUNS[condition.reading]
@@ -238,8 +236,7 @@ def find_levels(condition: LogCondition, evidence: Evidence, span: EvidenceSpan)
     if condition.apart_mm and (gap := _gap(condition, [one for _, one in samples], evidence)):
         return gap
     if condition.once and len(samples) > len(condition.levels):
-        wanted = f"{len(condition.levels)} {'is' if len(condition.levels) == 1 else 'are'}"
-        reason = f"{len(samples):,} samples {condition.name} were printed, {wanted} asked for."
+        reason = f"{len(samples):,} samples {condition.name} were printed; the goal needs {len(condition.levels)}."
         return Occurrence(None, reason, samples[-1][1].line)
     if condition.once and not span.over:
         return Occurrence()
@@ -263,7 +260,7 @@ def _gap(condition: LogCondition, samples: list[Sample], evidence: Evidence) -> 
             when = f"Between {before.time_ns / NS_PER_S:.2f} s and {after.time_ns / NS_PER_S:.2f} s"
             reason = f"{when} the robot went {way_mm:.0f} mm without a sample {condition.name}"
             return Occurrence(
-                None, f"{reason}; at most {condition.apart_mm:g} mm are asked for.", after.line
+                None, f"{reason}; the goal allows at most {condition.apart_mm:g} mm.", after.line
             )
     return None
 

@@ -152,9 +152,14 @@ def find_pass(condition: PassCondition, evidence: Evidence, span: EvidenceSpan) 
         if not near.any():
             nearest = start + int(away_mm[start:].argmin())
             after = f" after place {count}" if count and condition.in_order else ""
+            which = (
+                f"{count + 1} of {len(condition.places_mm)} "
+                if len(condition.places_mm) > 1
+                else ""
+            )
             text = (
-                f"The robot came no nearer than {distance_words(away_mm[nearest])} to place {count + 1} of "
-                f"{len(condition.places_mm)} ({x_mm:g}, {y_mm:g}){after}, at {evidence.time_words(first + nearest)}."
+                f"The robot came no nearer than {distance_words(away_mm[nearest])} to place {which}"
+                f"({x_mm:g}, {y_mm:g}){after}, at {evidence.time_words(first + nearest)}."
             )
             return Occurrence(None, text, line_of_motion(records, nearest))
         at = start + int(near.argmax())

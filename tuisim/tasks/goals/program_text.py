@@ -51,7 +51,7 @@ def find_structure(
         for wanted in condition.conditions:
             count = read_facts(evidence.program).count_structure(wanted.name)
             if not COMPARE[wanted.operator](count, wanted.number):
-                return Occurrence(None, f"{wanted} is asked for, and the program has {count}.")
+                return Occurrence(None, f"The goal needs {wanted}; the program has {count}.")
     except RecursionError as error:
         return Occurrence(None, f"The program cannot be read: {error}.")
     return Occurrence(START)

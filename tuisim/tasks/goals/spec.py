@@ -103,7 +103,9 @@ class ReachCondition(Condition):
         if self.x_mm is None and self.y_mm is None and self.heading_deg is None:
             raise ConfigError("names no place and no heading", "give x_mm, y_mm or heading_deg")
         if self.at_end and self.for_s:
-            raise ConfigError("is given together with at_end", "give only one of them", key="for_s")
+            raise ConfigError(
+                "cannot be combined with at_end", "give only one of them", key="for_s"
+            )
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,7 +124,7 @@ class AreaCondition(Condition):
     def __post_init__(self) -> None:
         if self.radius_mm is not None and (self.width_mm is not None or self.height_mm is not None):
             raise ConfigError(
-                "is given together with width_mm or height_mm", "give only one", key="radius_mm"
+                "cannot be combined with width_mm or height_mm", "give only one", key="radius_mm"
             )
         if self.radius_mm is None and (self.width_mm is None or self.height_mm is None):
             raise ConfigError("has no size", "give width_mm and height_mm, or radius_mm")
@@ -329,7 +331,7 @@ class CallsCondition(Condition):
                     f"{call!r} is not the name of a call", hint, key=f"calls[{number}]"
                 )
             if wrong := next(filter(iskeyword, call.removesuffix("()").split(".")), ""):
-                hint = "a function or method such as tank_drive.on_for_rotations; loops and definitions are no calls"
+                hint = "a function or method such as tank_drive.on_for_rotations; loops and definitions are not calls"
                 raise ConfigError(
                     f"{wrong!r} is a keyword, which no program can call",
                     hint,

@@ -111,7 +111,9 @@ def others_of(
         )
         where = files.convert(files.required(found, "where", place), str, place.at("where"))
         if any(where == one.where for one in others):
-            raise place.at("where").wrong(f"there are two {where!r}", "say what is other in each")
+            raise place.at("where").wrong(
+                f"there are two {where!r}", "say what is different in each"
+            )
         own = read_goals(found["goal"], place.at("goal"), path.parent) if "goal" in found else ()
         own_names = tuple(goal.name for goal in own)
         named = files.convert(found.get("goals", []), tuple[str, ...], place.at("goals"))

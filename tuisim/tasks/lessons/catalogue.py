@@ -102,7 +102,7 @@ def telling_of(lesson: Path, library: Library, folder: Path | str | None = None)
             if one.endswith(told_name("", library))
         ]
         raise ConfigError(
-            f"the lesson {name} is not told for {library}",
+            f"the lesson {name} has no version for {library}",
             f"one of {', '.join(told)}",
             key="--library",
         )

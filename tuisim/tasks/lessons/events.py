@@ -197,11 +197,11 @@ def is_right(question: QuestionCheck, text: str) -> bool:
 def unready(question: QuestionCheck, event: Typed) -> str:
     """Return in a sentence what must happen before an answer counts; empty if that has happened."""
     if question.run and not event.has_run:
-        return "Run the program first: the question is about its run."
+        return "Run the program first: the question is about that run."
     if event.printed is not None and not any(
         re.search(question.printed, line) for line in ("", *event.printed)
     ):
-        return "The run in view has not printed that: do what the step says, and run again."
+        return "This run has not printed that: do what the step says, and run again."
     if event.seen is not None and question.seen and not event.seen & set(question.seen):
         return f"Look first: {' or '.join(view.capitalize() for view in question.seen)} shows it."
     places, x_mm = question.at_x_mm, event.x_mm
@@ -270,7 +270,7 @@ def note_fault(check: NoteCheck, event: Noted) -> str:
         and abs(event.level - check.level) > check.within
     ):
         return f"{note} samples with a mean of {event.level:.1f}; this step is about those with {check.level:g}."
-    return f"{note} the right samples, but its text is not what the step asks for."
+    return f"{note} the right samples, but its text does not say what the step asks for."
 
 
 def event_of(check: Check, text: str) -> Event:

@@ -147,7 +147,7 @@ def _with_told(data: Any, path: Path) -> Any:
     other = path.parent / files.convert(data[TELLS], str, at)
     told = files.parse_toml(_front(_read(other).split("\n"), other)[0], str(other), ConfigError)
     if TELLS in told:
-        raise at.wrong(f"{other.name} is a telling, too", "name the lesson that it tells")
+        raise at.wrong(f"{other.name} is a version of a lesson itself", "name the original lesson")
     return merge_telling(told, data)
 
 

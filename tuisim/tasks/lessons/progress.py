@@ -110,7 +110,7 @@ def load_progress() -> dict[str, LessonProgress]:
         return {name: _lesson(entry) for name, entry in json.loads(text).items()}
     except (ValueError, TypeError, KeyError, AttributeError, OverflowError, RecursionError):
         raise ConfigError(
-            "is damaged", "delete it to begin all lessons anew", file=str(path)
+            "is damaged", "to start all lessons again, delete it", file=str(path)
         ) from None
 
 

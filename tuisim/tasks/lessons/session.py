@@ -236,7 +236,7 @@ class LessonSession:
         if _list_place(elsewhere.world) == _list_place(world):
             noise, drift = world.noise, list_values(WorldSpec)["drift"].format_text(world.drift)
             levels = f"light {noise.light}, motors {noise.motor} (panel Noise, z), drift {drift} (panel Settings, Z)"
-            return f"This run had other noise or drift: the lesson's is {levels}."
+            return f"This run had different noise or drift: the lesson has {levels}."
         if in_run:
             return "This run began elsewhere."
         if pose == world.start:
@@ -350,7 +350,7 @@ class LessonSession:
         if not (is_good and sight.is_over and check.also) or is_tried:
             return Change.SHOW
         attempt.trial = WorldTrial(self.lesson, check, run.run_id, run.folder)
-        attempt.remark = f"Your program is now also tried {check.also[0].where} …"
+        attempt.remark = f"Your program now also runs {check.also[0].where} …"
         return Change.TRY
 
     def take_trial(self, trial: WorldTrial, judged: WorldJudgements) -> Change:
@@ -428,7 +428,7 @@ def _list_place(world: WorldSpec) -> tuple[object, ...]:
 def _why_elsewhere(missed: Judgement) -> str:
     """Return why a goal is missed in another world, without the numbers and words that are asked for there."""
     if any(isinstance(part, LogCondition | PrintCondition) for part in missed.goal.parts):
-        return "what it prints is not what the robot sees there, at the places where it sees it."
+        return "it does not print what the robot sees there, where the robot sees it."
     return missed.reason
 
 

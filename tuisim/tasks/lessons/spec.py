@@ -105,7 +105,7 @@ class QuestionCheck:
         if self.within and not isinstance(self.answer, int | float):
             raise ConfigError("is only for numbers", key="within")
         if self.choices and self.answer not in self.choices:
-            raise ConfigError(f"{self.answer!r} is none of the choices", key="answer")
+            raise ConfigError(f"{self.answer!r} is not one of the choices", key="answer")
         for number, (left, right) in enumerate(self.at_x_mm, start=1):
             if left >= right:
                 raise ConfigError(

@@ -67,7 +67,7 @@ def _build_map(found: Sequence[MissesOfRun]) -> Picture | None:
     students = {miss.student for miss in misses}
     view = world_view(first.spec.robot)
     return Picture(
-        f"Where goals were missed: {len(misses)} places of {len(students)} students; a dot tells whose it is",
+        f"Where goals were missed: {len(misses)} places of {len(students)} students; each dot says whose it is",
         encode_picture(picture),
         picture.size,
         view,

@@ -19,7 +19,7 @@ from tuisim.tasks.marks.sheet import Cell, Sheet, SheetRow
 SUFFIX = ".txt"
 WIDTH = 88
 MOST_ERROR_LINES = 20
-_ELSEWHERE = "in each of the other worlds in which it was tried"
+_ELSEWHERE = "in every other world in which it ran"
 """What is told of a hidden world."""
 MOST_NAME_BYTES = 160
 """Longer names of files are cut off: with seed and suffix they must fit into the 255 bytes of common file systems."""
@@ -70,7 +70,7 @@ def _feedback_of(sheet: Sheet, row: SheetRow, source: str) -> str:
         parts += [f"    {line}" for line in source_lines(row.error)[-MOST_ERROR_LINES:]]
         parts += [""] if row.error else []
     if row.refusal:
-        parts += [_wrapped(f"Your program would not start on a brick: {row.refusal}"), ""]
+        parts += [_wrapped(f"Your program would not run on a brick: {row.refusal}"), ""]
     quoted = source_lines(source)
     cells = list(zip(sheet.columns, row.cells, strict=True))
     for column, cell in cells:
@@ -82,13 +82,13 @@ def _feedback_of(sheet: Sheet, row: SheetRow, source: str) -> str:
 
 def _how_often(row: SheetRow) -> list[str]:
     if row.stopped_early:
-        return ["Your program was run once: it would not end in other runs either.", ""]
+        return ["Your program ran once: it would not end in other runs either.", ""]
     if row.runs < 2:
         return []
     full = round(row.robustness * row.runs)
     return [
         _wrapped(
-            f"Your program was run {row.runs} times, with other random numbers each time: "
+            f"Your program ran {row.runs} times, each time with different random numbers: "
             f"{full} of {row.runs} runs met every goal."
         ),
         "",
@@ -124,9 +124,7 @@ def _goal(column: Goal, cell: Cell, runs: int, lines: Sequence[str]) -> list[str
         return found
     if cell.hidden:
         found.append(
-            _wrapped(
-                f"Why: it is as asked for in the task's own world, but not {_ELSEWHERE}.", "    "
-            )
+            _wrapped(f"Why: it is right in the task's own world, but not {_ELSEWHERE}.", "    ")
         )
     elif cell.met:
         found.append(

@@ -23,7 +23,7 @@ from tuisim.tasks.goals.judgement import points_of
 from tuisim.tasks.goals.spec import Goal
 from tuisim.tasks.marks.sheet import Sheet, SheetRow, rounded
 
-BY_TUTOR = "set by the tutor"
+BY_TUTOR = "given by the tutor"
 
 
 @dataclass(frozen=True, slots=True)

@@ -141,7 +141,7 @@ def _ranges(seeds: Sequence[int]) -> str:
 
 def _tabulate(similar: Similar) -> Mapping[str, object]:
     """Return what the page shows of programs that resemble each other."""
-    heads = ("", "equal but for names, numbers and texts", "of these equal to the letter")
+    heads = ("", "equal except for names, numbers and texts", "of these exactly equal")
     groups = [
         (
             str(len(group.names)),

@@ -310,7 +310,7 @@ def _what_is_refused(folder: Path, name: str, search: _Search) -> str:
                     )
             else:
                 search.left_out[
-                    f"{name}/{_shown(os.path.relpath(path, folder))}, which is no file"
+                    f"{name}/{_shown(os.path.relpath(path, folder))}, which is not a file"
                 ] = None
     return ""
 
@@ -376,7 +376,7 @@ def _program_cell(path: Path, cell: str) -> ProgramSource:
         )
     if unknown := cells[0].unknown:
         raise ConfigError(
-            f"{unknown} in its magic line is defined only in the notebook", file=path.name
+            f"{unknown} in its first line is defined only in the notebook", file=path.name
         )
     return cells[0].source
 

@@ -279,7 +279,7 @@ def _describe_loss(run: StoredRun, lost: LostLine) -> Reason:
     """Return what a sensor lost, and when it was seen again."""
     text = f"the {lost.sensor} sensor left the {'black' if lost.is_black else 'dark'}"
     if lost.seen_again is None:
-        return _lost_at(run, lost.tick, f"{text}, and saw it no more")
+        return _lost_at(run, lost.tick, f"{text}, and did not see it again")
     sensor, tick = lost.seen_again
     who = "it" if sensor == lost.sensor else f"the {sensor} one"
     after_s = (tick - lost.tick) / run.spec.profile.tick_hz
@@ -291,5 +291,5 @@ def _find_difference(run: StoredRun, earlier: Recording) -> Iterator[Reason]:
     hz = run.spec.profile.tick_hz, earlier.spec.profile.tick_hz
     time_s = parted_at_s(run.telemetry.array(), earlier.telemetry.array(), hz)
     if time_s is not None:
-        text = f"the robot left the way of {earlier.name}"
+        text = f"the robot left the path of {earlier.name}"
         yield Reason(ReasonKind.DIFFERS, time_s, _line_at(run, time_s), text)

@@ -176,7 +176,7 @@ def find_early_end(run: StoredRun, mat: Field | None = None) -> Unmet | None:
     if way_mm >= _MIN_WAY_MM or turn_deg >= _MIN_TURN_DEG or has_turned_part:
         return None
     text = (
-        "the program was over when the motors that this line starts had moved the robot by "
+        "the program ended when the motors that this line starts had moved the robot by only "
         f"{way_mm:.1f} mm"
     )
     return _find_first(_Search.find_met, run, mat) or Unmet(run.time_s, line, text)
@@ -239,7 +239,7 @@ class _Search:
                 yield miss
             if skip := self._find_skip(loop, stay, series):
                 tick, what = skip
-                text = f"what this line waited for came between two reads: {what}"
+                text = f"the value that this line waited for came between two reads: {what}"
                 yield Unmet(tick / self._hz, loop.line, text)
 
     def find_met(self) -> Iterator[Unmet]:
@@ -248,7 +248,7 @@ class _Search:
             series = self._measure(loop, (0, len(self._records)))
             if series is None:
                 continue
-            text = f"the loop was over at once: {series.device} read"
+            text = f"the loop ended at once: {series.device} read"
             if series.column == "color":
                 (name,) = name_seen(loop, series.values[:1])
                 if loop.operator == "!=" and name != name_limit(loop):
@@ -391,8 +391,8 @@ class _Search:
             return None
         lines, counts = np.unique(self._records["line"][start + 1 : end], return_counts=True)
         what = (
-            f"it was {_round(every.values[first])}{every.unit} at {tick / self._hz:.2f} s, but it "
-            f"was read only at {start / self._hz:.2f} s and {end / self._hz:.2f} s: "
+            f"it was {_round(every.values[first])}{every.unit} at {tick / self._hz:.2f} s, but the program "
+            f"read it only at {start / self._hz:.2f} s and {end / self._hz:.2f} s: "
             f"line {lines[counts.argmax()]} takes too long"
         )
         return tick, what

@@ -125,13 +125,13 @@ def _describe_presses(awaited: Awaited) -> str:
         others = "" if awaited.subject is Subject.TOUCH else f", not {' or '.join(missing)}"
         return f"only {' and '.join(names)} {'was' if len(names) == 1 else 'were'} pressed{others}"
     if awaited.needs_all:
-        return f"{' and '.join(wants)} were not pressed at once"
+        return f"{' and '.join(wants)} were not pressed at the same time"
     if awaited.waits_again:
         return f"{hits[-1].name} was pressed at {hits[-1].from_s:.3g} s, and the program waits for more"
     words = f"{hits[0].name} was pressed at {hits[0].from_s:.3g} s"
     if all(press.until_s <= awaited.since_s for press in hits):
-        return f"{words}, before the program asked (first at {awaited.since_s:.3g} s)"
-    return f"{words}, between two looks ({awaited.pace_s:.2g} s apart)"
+        return f"{words}, before the program first checked (at {awaited.since_s:.3g} s)"
+    return f"{words}, between two checks ({awaited.pace_s:.2g} s apart)"
 
 
 def _find_color(awaited: Awaited) -> str:
@@ -165,7 +165,7 @@ def name_remedy(awaited: Awaited, spec: RunSpec, is_live: bool = False) -> str:
         case Subject.CONNECTION | Subject.DATA if is_live:
             return "start the other program while this one runs"
         case Subject.CONNECTION | Subject.DATA:
-            return "--speed 1 gives the other program the time to come"
+            return "--speed 1 gives the other program time to connect"
         case Subject.GAMEPAD:
             return "the brick's buttons drive by hand (--press enter@1, or K in the app)"
         case other:
@@ -207,7 +207,7 @@ def _name_obstacle(awaited: Awaited, spec: RunSpec) -> str:
     for sensor in spec.robot.sensors:
         if sensor.port == awaited.port and isinstance(sensor, UltrasonicSpec | InfraredSpec):
             options = find_obstacle(sensor, spec, pose, limit)
-    return f"{options or '-o with a file (tuisim obstacles)'} puts one before it"
+    return f"{options or '-o with a file (tuisim obstacles)'} puts one in front of it"
 
 
 def _name_nearest(awaited: Awaited, spec: RunSpec) -> str:

@@ -44,10 +44,14 @@ STARTED, SPOKE, ENDED = Started(PROTOCOL_VERSION, 7), Spoke("x", 5), Ended(End.F
     [
         ([STARTED, SPOKE, SPOKE, ENDED], 4, ""),
         ([ENDED], 1, ""),
-        ([SPOKE], 0, "sent the message spoke, which cannot come first"),
-        ([STARTED, STARTED], 1, "sent the message started, which cannot come again"),
-        ([STARTED, ENDED, SPOKE], 2, "sent the message spoke, which cannot come here"),
-        ([STARTED, InputWanted("?")], 1, "sent the message input_wanted, which cannot come here"),
+        ([SPOKE], 0, "sent the message spoke, which must not come first"),
+        ([STARTED, STARTED], 1, "sent the message started, which must not come again"),
+        ([STARTED, ENDED, SPOKE], 2, "sent the message spoke, which must not come here"),
+        (
+            [STARTED, InputWanted("?")],
+            1,
+            "sent the message input_wanted, which must not come here",
+        ),
         ([Started(PROTOCOL_VERSION + 1, 7)], 0, "speaks protocol"),
         ([STARTED, Spoke("x", -(1 << 53)), SPOKE], 1, "sent an invalid message"),
     ],

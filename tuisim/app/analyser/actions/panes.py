@@ -23,8 +23,8 @@ _THRESHOLDS = (
     ("Colour = 50", "both"),
     ("Colour = 50 +- 5", "only if it goes 5 beyond on either side"),
     ("Colour < 50, Left > 3", "several"),
-    ("command", "what the program of a run asked of motors and sensors, and what came of it"),
-    ("command left run", "only what has these words in the names of part and command"),
+    ("command", "commands of a run's program to motors and sensors, and their effect"),
+    ("command left run", "only commands with these words in the part or the command"),
     ("(nothing)", "none"),
 )
 

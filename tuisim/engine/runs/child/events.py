@@ -152,14 +152,12 @@ class EventStream:
                 )
             case _ if not isinstance(event, self._allowed) or isinstance(self._last, Ended):
                 self.falsified = (
-                    f"the program's process sent the message {event.kind}, which cannot come here"
+                    f"the program's process sent the message {event.kind}, which must not come here"
                 )
             # A run that cannot begin ends without a start.
             case _ if is_start != is_first and not (is_first and isinstance(event, Ended)):
                 when = "first" if is_first else "again"
-                self.falsified = (
-                    f"the program's process sent the message {event.kind}, which cannot come {when}"
-                )
+                self.falsified = f"the program's process sent the message {event.kind}, which must not come {when}"
         return None if self.falsified else event
 
 

@@ -348,7 +348,7 @@ def what_ended(exit_status: int, folder: Path, line: int) -> str:
     """Return the reason why a child ended without an event: a signal and a line, or exit status and error text."""
     if exit_status < 0:
         where = f" in line {line}" if line else ""
-        return f"the program's process was ended by {_signal_name(-exit_status)}{where}"
+        return f"the program's process was killed by {_signal_name(-exit_status)}{where}"
     log = ""
     with suppress(OSError):
         log = read_regular(folder / LOG_FILE, MOST_BYTES).decode("utf-8", "replace").strip()

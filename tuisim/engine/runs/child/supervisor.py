@@ -97,7 +97,7 @@ def supervised() -> Iterator[None]:
         from tuisim.base.errors import HostError
 
         raise HostError(
-            f"the process that watches over programs cannot be started: {error.strerror or error}"
+            f"the process that supervises programs cannot be started: {error.strerror or error}"
         ) from error
     with process:
         assert process.stdin is not None

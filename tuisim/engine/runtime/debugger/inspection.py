@@ -23,7 +23,7 @@ from tuisim.engine.runtime.session import Session
 
 LOOK_LIMIT_S = 0.3
 """Time for the program's own code to render all values together, in real seconds."""
-TOO_LONG = "values that are worked out by the program's own code take too long"
+TOO_LONG = "values that the program's own code computes take too long"
 MOST_NAMES = 200
 MOST_FRAMES = 200
 MOST_WATCHES = 50
