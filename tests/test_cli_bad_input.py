@@ -63,7 +63,7 @@ BAD = {
     "a log in the app": ("rows.csv", "rows.csv: is a log, not a program"),
     "an option that is gone": (
         "doctor --clean",
-        "no such option: --clean (what killed processes have left is removed when tuisim runs again)",
+        "no such option: --clean (tuisim removes the files of killed processes when it runs again)",
     ),
     "unknown option": (
         "run prog.py --zigzag",

@@ -54,4 +54,6 @@ async def test_a_button_says_that_it_does_nothing_above_the_lab() -> None:
         app.post_message(ActionAsked("analyse"))
         await until(pilot, lambda: isinstance(app.screen, Analyser))
         app.post_message(ActionAsked("run"))
-        await until(pilot, lambda: "That is in the lab: leave this screen first" in notices(app))
+        await until(
+            pilot, lambda: "That works only in the lab: leave this screen first" in notices(app)
+        )

@@ -179,7 +179,9 @@ def test_what_greets_otherwise_is_told_in_one_line(tmp_path: Path) -> None:
         greeted.add_done_callback(lambda found: found.result().sendall(b"SSH-2.0-OpenSSH_9.6\r\n"))
         address = f"tcp://127.0.0.1:{listens.getsockname()[1]}"
         _check_told(
-            tmp_path, address, f"no scheduler answers at {address}: what listens there is none"
+            tmp_path,
+            address,
+            f"no scheduler answers at {address}: what answers there is not a scheduler",
         )
         greeted.result().close()
 

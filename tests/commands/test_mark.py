@@ -402,7 +402,7 @@ def test_a_program_that_this_machine_cannot_read_is_missing_in_the_marks(
     )
     said = capsys.readouterr()
     assert "ada      10      100%" in said.out
-    assert "the marks are without eve: eve.py: cannot be read: Input/output error" in said.err
+    assert "the marks do not include eve: eve.py: cannot be read: Input/output error" in said.err
 
 
 def test_a_mat_that_cannot_be_read_is_the_students_own_fault(tmp_path: Path, here: Command) -> None:
@@ -420,7 +420,7 @@ def test_a_mat_that_cannot_be_read_is_the_students_own_fault(tmp_path: Path, her
     done = here("mark", "goals.toml", "class", "--seeds", "0", "--jobs", "1", "--no-isolate")
     assert done.returncode == 0
     assert done.stderr == (
-        "note: left out, because nobody hands them in: zoe/mat.png, which is not a file\n"
+        "note: left out, because they are not part of a hand-in: zoe/mat.png, which is not a file\n"
     )
     rows = [line.split(maxsplit=4) for line in done.stdout.splitlines()[1:3]]
     assert [row[:4] for row in rows] == [["eve", "0", "0%", "0"], ["zoe", "0", "0%", "0"]]
@@ -456,7 +456,9 @@ def test_a_run_that_could_not_be_started_is_missing_in_the_marks_until_it_is_res
     assert run_command(words) == 1
     said = capsys.readouterr()
     assert "ada      10      100%" in said.out
-    assert "this machine could not make 1 run; the marks are without: ada with seed 1" in said.err
+    assert (
+        "this machine could not make 1 run; the marks do not include: ada with seed 1" in said.err
+    )
     assert "Too many open files; the same command with --resume" in said.err
 
     assert run_command([*words, "--resume"]) == 0
@@ -488,7 +490,7 @@ def test_a_careless_regular_expression_is_named_and_the_rest_is_marked(
         "ben      ?       0%          ?     1      The regular expression '((a|aa)+)+$' takes more than"
         in said.out
     )
-    assert "tuisim: “said” cannot be judged, so that there are no points for ben:" in said.err
+    assert "tuisim: “said” cannot be judged, so there are no points for ben:" in said.err
 
 
 def test_a_marking_without_a_place_for_copies_says_so(

@@ -111,7 +111,7 @@ def a_port_in_use() -> Iterator[str]:
 REFUSED = {
     "a port in use": (
         "--port PORT",
-        "--port: port PORT is in use (name another one, or 0 for any free one)",
+        "--port: port PORT is in use (choose another one, or 0 for any free one)",
     ),
     "no port": ("--port 70000", "--port: must be a whole number from 0 to 65535, got '70000'"),
     "no visitors": (

@@ -172,7 +172,8 @@ def test_a_program_that_is_answered_runs_in_the_cell(cell: Cell) -> None:
     )
     assert "{'messages': ['aa']}" in shown.out
     assert (
-        shown.err == "tuisim: note: a program that is answered runs here; the app shows its run\n"
+        shown.err
+        == "tuisim: note: a program that uses a function in the notebook runs here; the app shows its run\n"
     )
 
 

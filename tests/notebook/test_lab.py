@@ -112,7 +112,7 @@ def test_loggers_with_and_without_set_up_log_the_same(done: Done) -> None:
     for name in ("logger", "logger with set-up"):
         assert levels(done[name])[0::50] == [100.0, 0.0]
         assert texts(done[name]) == ["finished · 5.610 s · 51 samples"]
-    # Both runs are in the frame; the robot stands where the figures of the old simulator have it.
+    # Both runs are in the frame; the robot stands where the numbers of the old simulator have it.
     assert ast.literal_eval(result(done["both"]).replace("np.float64", "")) == (
         True,
         51,

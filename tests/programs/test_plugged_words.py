@@ -39,7 +39,7 @@ def test_parts_in_words(parts: tuple[PluggedPart, ...], words: str) -> None:
 
 
 def test_the_newest_part_is_told_when_it_is_whole() -> None:
-    begin = "— plugged in, as the program asked for it: "
+    begin = "— plugged in, because the program opened it: "
     assert describe_newest([TOUCH], RUN) == f"{begin}touch sensor on in1 (line 9)"
     assert describe_newest([TOUCH, WHEELS[0]], RUN) == ""
     assert describe_newest([TOUCH, *WHEELS], RUN) == (

@@ -88,7 +88,7 @@ def test_a_failure_of_the_reader_gives_the_default_robot_and_a_sentence(
     monkeypatch.setattr("tuisim.programs.robot.assembly.build_robot", fail)
     source = parse_program("from ev3dev2.motor import MoveTank\n", "p.py")
     decided = program_settings(source).decided
-    why = "tuisim failed to read the robot from its text (ZeroDivisionError)"
+    why = "tuisim failed to read the robot from its source (ZeroDivisionError)"
     assert decided.note.startswith(
         f"p.py runs as on a brick (profile ev3); {why}: it gets the default robot. "
     )
@@ -105,7 +105,7 @@ def test_an_impossible_size_gives_the_default_robot_and_a_sentence() -> None:
     source = parse_program(text, "p.py")
     decided = program_settings(source).decided
     why = (
-        "no robot can be what its text says (wheel_spacing_mm: must be a number from 1 to 1000, "
+        "its source describes an impossible robot (wheel_spacing_mm: must be a number from 1 to 1000, "
         "got 12000.0)"
     )
     assert decided.note.startswith(

@@ -44,7 +44,7 @@ class LogRequest:
         if not self.is_remembered or self.choices == NO_CHOICES:
             return log
         options = " ".join(self.choices.format_options())
-        note = f"read as chosen in the analyser: {options} (any of these options replaces all)"
+        note = f"read as chosen in the analyser: {options} (giving one of these options replaces all of them)"
         return replace(log, notes=(note, *log.notes))
 
 

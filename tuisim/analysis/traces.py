@@ -201,6 +201,6 @@ def aligned(log: Log, series: Sequence[Series], way: str) -> list[FloatArray | N
         one.run: there[0].time_s for one in event.among(series) if (there := event.crossings(one))
     }
     if not found:
-        raise LogError(f"no run comes to {way}", FORM)
+        raise LogError(f"no run reaches {way}", FORM)
     # A run without the event is aligned like the earliest one.
     return [one.time_s - found.get(one.run, min(found.values())) for one in series]

@@ -128,7 +128,7 @@ def leave(code: int) -> int:
         if not unfinished() or time.monotonic() > give_up:
             for path in drop_unfinished():
                 print(
-                    f"tuisim: {path} was not written: the app was left before it was complete",
+                    f"tuisim: {path} was not written: the app ended before the file was complete",
                     file=sys.stderr,
                 )
             for stream in (sys.stdout, sys.stderr):

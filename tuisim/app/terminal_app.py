@@ -294,9 +294,7 @@ class TerminalApp(BufferedApp):
         except OSError as error:
             raise TuisimError(f"{command[0]} cannot start: {error.strerror or error}") from None
         if not is_lent:
-            raise TuisimError(
-                f"{command[0]} needs a terminal, and here is none to give it, as in a browser"
-            )
+            raise TuisimError(f"{command[0]} needs a terminal, which a browser does not have")
 
     @on(ActionAsked)
     def act_as_asked(self, event: ActionAsked) -> None:
@@ -307,7 +305,7 @@ class TerminalApp(BufferedApp):
         elif isinstance(host, ActionHost) and event.name in host.ACTIONS:
             host.action_act(event.name)
         elif host is not self and isinstance(self, ActionHost) and event.name in self.ACTIONS:
-            self.notify("That is in the lab: leave this screen first", markup=False)
+            self.notify("That works only in the lab: leave this screen first", markup=False)
 
     def action_command_palette(self) -> None:
         """Offer every action of the screen, else of the app; not above a dialog, which its dialogs would cover."""

@@ -115,7 +115,7 @@ def _no_scheduler(scheduler: str, error: Exception) -> ConfigError:
     why = str(error).partition("\n")[0] or type(error).__name__
     if isinstance(error, MemoryError):
         # It takes any greeting for the size of a message.
-        why = "what listens there is none"
+        why = "what answers there is not a scheduler"
     if scheduler:
         return ConfigError(
             f"no scheduler answers at {scheduler}: {why}",

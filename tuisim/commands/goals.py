@@ -209,12 +209,13 @@ def _details(judgement: Judgement) -> Iterator[str]:
     timeout_option(_RUNS, TIME_LIMIT_S),
     jobs_option(group=_RUNS),
     name="try",
-    help="""Say what a task gives to programs that do nothing for it, for its author.
+    help="""Say how many points a program can earn without doing a task.
 
-    Runs an empty program, one that stands still and one that prints the answers, then the program that TASK names,
-    its model, and the wrong examples: each PROGRAM, a file or a folder of them. Each is judged as `tuisim mark` does.
+    The command runs an empty program, one that stands still and one that prints the answers, then the program that
+    TASK names, its model, and each PROGRAM, a wrong example or a folder of them. It judges each as `tuisim mark` does.
 
-    Exit code: 0 if only the model gets points, and wrong examples not all; 1 if not; 2 if a file is wrong.
+    Exit code: 0 if the first three get no points, the model gets all and no wrong example gets all; 1 if not; 2 if a
+    file is wrong.
     """,
 )
 def try_task(goals_path: str, wrong: Sequence[str], seeds: str, timeout: float, jobs: int) -> int:
@@ -240,10 +241,10 @@ def try_task(goals_path: str, wrong: Sequence[str], seeds: str, timeout: float, 
     option("--seed", type=int, default=0, metavar="N", help="Seed of the drawing (0)."),
     option("--out", metavar="FILE", type=WordType(), help="The image: .png (KIND-N.png)."),
     name="mat",
-    help=f"""Draw a mat by a seed for another world of a task, and print that world for the task's file.
+    help=f"""Draw a mat for another world of a task, and print that world for the task's file.
 
-    KIND is one of {", ".join(DRAWN_MATS)}: grey bands at drawn places, the last one black, or a black line in bends.
-    The same seed draws the same mat again.
+    KIND is one of {", ".join(DRAWN_MATS)}: grey bands at random places, the last one black, or a black line with
+    bends. The same seed draws the same mat again.
     """,
 )
 def draw_mat(kind: str, seed: int, out: str | None) -> int:

@@ -166,7 +166,7 @@ def _install(manager: KernelSpecManager, place: Path, name: str) -> None:
     file = folder / _SPEC_FILE
     if os.path.exists(file) and _read(file) is None:
         raise ConfigError(
-            f"{name!r} already names another kernel, in {folder}",
+            f"{name!r} is already the name of another kernel, in {folder}",
             "choose another name",
             key="--name",
         )

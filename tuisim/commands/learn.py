@@ -50,8 +50,8 @@ def _names() -> Sequence[str]:
     name="open",
     help="""Open a lesson in the app; without a terminal, print it.
 
-    A LESSON is given by its name or number, see `tuisim learn list`, or as a file. Without one, the app goes on with
-    the lesson that was opened last; without a terminal, the lessons are listed.
+    A LESSON is a name or number from `tuisim learn list`, or a file. Without one, the app continues with the last
+    opened lesson; without a terminal, the command lists the lessons.
     """,
 )
 def open_lesson(word: str | None, folder: str | None, library: str | None, as_text: bool) -> int:

@@ -42,7 +42,7 @@ COLUMNS = (
         tuple(SECONDS),
         group="Columns",
         callback=_or_empty,
-        help="Unit of the time column, if its name has none.",
+        help="Unit of the time column, if its name does not give it.",
     ),
     option(
         "--value",
@@ -65,7 +65,7 @@ COLUMNS = (
         default=1,
         metavar="N",
         group="Text",
-        help="Which of several tables in the file (1).",
+        help="Number of the table, if the file has several (1).",
     ),
     option(
         "--encoding",
@@ -79,7 +79,7 @@ COLUMNS = (
         tuple(SIGNS),
         group="Text",
         callback=_or_empty,
-        help="What is between the cells.",
+        help="Separator between the cells.",
     ),
     choice(
         "--decimal",

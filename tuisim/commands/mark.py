@@ -170,7 +170,7 @@ _OPTIONS = (
     student; a student's folder contains the program main.py, a single program, or the one that GOALS names.
 
     Programs run in the world of GOALS; if it names none, in that of their first line. A program that hangs, floods or
-    crashes affects its own marks only. Where bubblewrap is installed and starts, each program is isolated.
+    crashes affects only its own marks. If bubblewrap is installed and works, each program is isolated.
 
     Exit code: 0 all programs have marks, 1 this machine could not make some runs (--resume tries them again), or a
     goal's regular expression took too long, 2 bad input, 130 interrupted (--resume continues).
@@ -260,7 +260,9 @@ def _tell_notes(marking: Marking) -> None:
         names = listed(marking.ignored)
         echo_error(f"note: not marked, because they are not Python programs: {names}")
     if marking.left_out:
-        echo_error(f"note: left out, because nobody hands them in: {listed(marking.left_out)}")
+        echo_error(
+            f"note: left out, because they are not part of a hand-in: {listed(marking.left_out)}"
+        )
     for student in marking.students:
         if student.refusal:
             echo_error(f"note: {printable(f'{student.name}: {student.refusal}')}")
@@ -270,7 +272,7 @@ def _tell_unread(marking: Marking) -> int:
     """Tell whose programs this machine could not read; return the exit code."""
     unread = [student for student in marking.students if student.is_unread]
     for student in unread:
-        echo_error(f"tuisim: the marks are without {printable(student.name)}: {student.problem}")
+        echo_error(f"tuisim: the marks do not include {printable(student.name)}: {student.problem}")
     return 1 if unread else 0
 
 
@@ -281,7 +283,7 @@ def _tell_missing(marking: Marking) -> int:
         return 0
     names = listed([f"{printable(name)} with seed {one.seed}" for name, one in missing])
     echo_error(
-        f"tuisim: this machine could not make {counted(len(missing), 'run')}; the marks are without: {names}"
+        f"tuisim: this machine could not make {counted(len(missing), 'run')}; the marks do not include: {names}"
     )
     echo_error(
         f"tuisim: {missing[0][1].failure}; the same command with --resume runs what is missing"
@@ -296,7 +298,7 @@ def _tell_unknown(marking: Marking) -> int:
     unjudged = marking.unjudged
     for goal, reason, names in unjudged:
         echo_error(
-            f"tuisim: “{goal}” cannot be judged, so that there are no points for {listed(map(printable, names))}:"
+            f"tuisim: “{goal}” cannot be judged, so there are no points for {listed(map(printable, names))}:"
         )
         echo_error(f"tuisim: {reason}")
     return 1 if unjudged else 0

@@ -266,7 +266,7 @@ class Lab:
         view = self._live.find_shown()
         if view is not None and listener.answers:
             print(
-                "tuisim: note: a program that is answered runs here; the app shows its run",
+                "tuisim: note: a program that uses a function in the notebook runs here; the app shows its run",
                 file=sys.stderr,
             )
             view = None

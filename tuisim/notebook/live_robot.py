@@ -24,13 +24,11 @@ if TYPE_CHECKING:
 REQUEST, REPLY = "tuisim_app_request", "tuisim_app_reply"
 """The messages by which a page asks for the address of the app, and gets it."""
 SENTENCE = (
-    "This is a picture: JupyterLab on this machine shows the robot live here, to be dragged, and elsewhere "
+    "This is a picture. JupyterLab on this machine shows the live robot here, to drag it; elsewhere, "
     "%sim_app --origin ADDRESS does."
 )
 NEEDS_WEB = "This is a picture: to see the robot live here and drag it, pip install -e '.[web]' in the clone of tuisim."
-HOW_TO_DRAG = (
-    "Drag the robot where it is live: %sim_app shows that in a cell. Or place it by -x, -y and -a."
-)
+HOW_TO_DRAG = "To drag the robot, show the live robot in a cell with %sim_app. Or place it with -x, -y and -a."
 DEFAULT_HEIGHT_PX = 560
 _OFFER = Path(__file__).with_name("live_robot.html")
 _LOCAL = ("localhost", "127.0.0.1")

@@ -17,7 +17,7 @@ def describe_plugged(run: StoredRun) -> str:
         return ""
     words = f"plugged in {parts}{_name_remedy(run.plugged, run.spec)}"
     shown = f"; `tuisim robots --from {run.number}` shows the robot" if run.number else ""
-    return f"{run.program.name} asked for parts that its text does not show: {words}{shown}"
+    return f"{run.program.name} opened parts that its source does not show: {words}{shown}"
 
 
 def _name_remedy(parts: Sequence[PluggedPart], spec: RunSpec) -> str:
@@ -30,7 +30,7 @@ def describe_newest(parts: Sequence[PluggedPart], spec: RunSpec) -> str:
     """Return what was plugged in last; empty for a left wheel, which is told of together with the right one."""
     last = parts[-2:] if parts[-1].role == RIGHT else parts[-1:]
     words = f"{list_parts(last)}{_name_remedy(last, spec)}"
-    return "" if parts[-1].role == LEFT else f"— plugged in, as the program asked for it: {words}"
+    return "" if parts[-1].role == LEFT else f"— plugged in, because the program opened it: {words}"
 
 
 def list_parts(parts: Sequence[PluggedPart]) -> str:

@@ -156,9 +156,9 @@ def facts_of(program: Program) -> SourceFacts:
         # What is wrong with the program is said when it runs.
         return SourceFacts()
     except RobotError as error:
-        why = f"no robot can be what its text says ({error.message})"
+        why = f"its source describes an impossible robot ({error.message})"
     except Exception as error:  # no text ends a run before it begins
-        why = f"tuisim failed to read the robot from its text ({type(error).__name__})"
+        why = f"tuisim failed to read the robot from its source ({type(error).__name__})"
     unread = f"{why}: it gets the default robot"
     return replace(facts, unread=unread, shown_ports=() if facts.library else None)
 
@@ -349,7 +349,7 @@ def robot_for(source: ProgramSource, name: str) -> ProgramRobot:
     facts = _facts_in_run(source)
     if facts.robot is None and (facts.unread or facts.hides_parts):
         raise RobotError(
-            facts.unread or "makes its motors and sensors where tuisim cannot read their ports",
+            facts.unread or "creates its motors and sensors where tuisim cannot find their ports",
             "`tuisim robots Default_Robot` shows the robot that it gets",
             file=source.program.name,
         )

@@ -357,10 +357,10 @@ def _note(ended_by: asyncio.Future[signal.Signals], number: signal.Signals) -> N
 def _cannot_listen(host: str, port: int, error: OSError) -> ConfigError:
     if error.errno == errno.EADDRINUSE:
         return ConfigError(
-            f"port {port} is in use", "name another one, or 0 for any free one", key="--port"
+            f"port {port} is in use", "choose another one, or 0 for any free one", key="--port"
         )
     if error.errno == errno.EACCES:
-        return ConfigError(f"you may not use port {port}", "name one from 1024 on", key="--port")
+        return ConfigError(f"you may not use port {port}", "choose one from 1024", key="--port")
     return ConfigError(
         f"cannot listen on {host}: {error.strerror or error}",
         "127.0.0.1 always works",

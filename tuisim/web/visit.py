@@ -201,7 +201,7 @@ class Visit:
                 self._left = asyncio.get_running_loop().call_later(
                     min(keep_s if self._is_used else unused_s, keep_s, _LONGEST_S),
                     self.end,
-                    "No tab has shown this session for too long.",
+                    "No tab has shown this session for a long time.",
                 )
 
     async def open_file(self, path: Path) -> None:

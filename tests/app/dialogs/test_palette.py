@@ -64,7 +64,7 @@ async def test_the_palette_keeps_its_place_while_the_list_becomes_shorter() -> N
         await pilot.pause()
         assert frame.region == before
         assert pilot.app.screen.query_one("#message").display
-        await until_shown(pilot, "No command has these words")
+        await until_shown(pilot, "No command contains these words")
 
 
 async def test_words_of_no_command_are_a_question_to_the_guide() -> None:

@@ -47,5 +47,5 @@ async def test_what_names_no_robot_shows_none() -> None:
         await until(pilot, lambda: isinstance(app.screen, RobotPicker))
         await until(pilot, lambda: "wheels" in screen_text(app))
         await pilot.press(*"xyz")
-        await until(pilot, lambda: "no name has these words" in screen_text(app))
+        await until(pilot, lambda: "no name contains these words" in screen_text(app))
         await until(pilot, lambda: "wheels" not in screen_text(app))

@@ -39,7 +39,7 @@ def test_pages_of_a_lesson(tmp_path: Path) -> None:
         "Your run: so.",
         "Far enough.",
     ]
-    assert page(2)[4:7] == ["M shows the steps before again.", "", "3. Do it"]
+    assert page(2)[4:7] == ["M shows earlier steps again.", "", "3. Do it"]
     assert "skipped" in page(1)
     assert {"✗ Drive.", "  Too short."} <= set(page(1, at=1, judgements=(missed,)))
     failed = page(1, at=1, judgements=(missed,), error="NameError: no x (line 3)")
@@ -58,7 +58,7 @@ def test_pages_of_a_lesson(tmp_path: Path) -> None:
         (0, "Q types"),
         (0, "Y shows hint"),
         (1, "d edits the program, R runs it"),
-        (1, "M shows the steps"),
+        (1, "M shows earlier steps"),
     ],
 )
 def test_keys_that_need_escape_first_are_called_so(at: int, text: str, tmp_path: Path) -> None:

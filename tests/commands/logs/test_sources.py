@@ -69,9 +69,7 @@ def test_what_was_chosen_in_the_analyser_counts_and_is_said(
 ) -> None:
     (tmp_path / "log.csv").write_text("boot;light\n0;1\n20;2\n")
     remember_choices("log.csv", ReadChoices(time="boot", unit="ms"))
-    note = (
-        "read as chosen in the analyser: --time boot --unit ms (any of these options replaces all)"
-    )
+    note = "read as chosen in the analyser: --time boot --unit ms (giving one of these options replaces all of them)"
     done = here("log", "summary", "log.csv")
     assert (done.returncode, f"note: log.csv: {note}\n" in done.stderr) == (0, True)
     (row,) = json.loads(here("log", "summary", "log.csv", "--json").stdout)

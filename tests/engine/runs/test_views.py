@@ -223,7 +223,7 @@ def test_of_a_run_with_a_damaged_recording_the_other_one_is_read(
     with file.open("r+b") as handle:
         handle.write(b"no magic")
     run = store.load_run(file.parent.name)
-    assert run.notes == (f"{name}: not a tuisim recording: nothing of it can be read",)
+    assert run.notes == (f"{name}: not a tuisim recording: it cannot be read",)
     assert (len(run.output.all_rows()), run.telemetry.count) == (rows, ticks)
 
 

@@ -10,13 +10,13 @@ _EV3DEV2 = (
     "from time import sleep\n"
     "left, right = LargeMotor('outB'), LargeMotor('outC')\n"
 )
-_LEFT_AND_RIGHT = "ended while outB and outC were still told to turn"
+_LEFT_AND_RIGHT = "ended while outB and outC were still set to turn"
 LEFT = {
     "a tank": ("MoveTank('outB', 'outC').on(50, 50)", "ev3", _LEFT_AND_RIGHT),
     "one motor": (
         "right.run_direct(duty_cycle_sp=-30)",
         "ev3",
-        "ended while outC was still told to turn",
+        "ended while outC was still set to turn",
     ),
     "an exit": (
         "left.on(10); right.on(10); raise SystemExit(2)",
@@ -122,7 +122,7 @@ def test_a_live_run_ends_as_one_in_the_background(run: Run) -> None:
     text = _EV3DEV2 + "left.on_for_degrees(30, 200, block=False); right.on(10)"
     live = run(text, profile="ev3", live=True, speed=0.0)
     background = run(text, profile="ev3")
-    assert live.ended.summary == "ended while outC was still told to turn"
+    assert live.ended.summary == "ended while outC was still set to turn"
     assert (live.ended.time_ns, live.ended.summary, live.recording) == (
         background.ended.time_ns,
         background.ended.summary,

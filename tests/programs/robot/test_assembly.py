@@ -16,7 +16,7 @@ from tests.programs.robot.reading import built
         ),
         (
             "MoveTank(OUTPUT_A, OUTPUT_D)\nMoveTank(OUTPUT_B, OUTPUT_C)",
-            "MoveTank on outB and outC is taken",
+            "MoveTank on outB and outC is not used",
         ),
         (
             "ColorSensor('in1')\nTouchSensor('in1')\nTouchSensor('in1')",

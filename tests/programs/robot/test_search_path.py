@@ -97,7 +97,7 @@ def test_a_module_elsewhere_in_the_repository_is_named(folder: Path) -> None:
 def test_no_default_robot_stands_for_parts_that_are_not_found(folder: Path) -> None:
     text = f"{HEAD}for kind in (LargeMotor, MediumMotor):\n    made = [build(kind, eval(one)) for one in PORTS]\n"
     (folder / "main.py").write_text(text)
-    with pytest.raises(RobotError, match="where tuisim cannot read their ports"):
+    with pytest.raises(RobotError, match="where tuisim cannot find their ports"):
         robot_for(read_program(folder / "main.py"), "it")
     (folder / "main.py").write_text(f"{HEAD}print(1)\n")
     assert robot_for(read_program(folder / "main.py"), "it").built is None

@@ -305,7 +305,7 @@ BAD = {
     ),
     "nothing that is kept": (
         goal("keep = { share = 0.5 }"),
-        "line 7: goal[2].keep: does not say what is kept",
+        "line 7: goal[2].keep: does not say what to keep",
     ),
     "a gap from large to small": (
         goal("keep = { gap_mm = [5, 2] }"),

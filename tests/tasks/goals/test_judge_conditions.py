@@ -600,7 +600,7 @@ READINGS = {
         "print = { lines = ['a', 'b'], once = true }",
         (says("a b"), says("a b"), wait(1)),
         "missed",
-        reason="'a b' says several of the lines at once.",
+        reason="'a b' matches several of the lines at once.",
     ),
     "print while moving": Case(
         "print = { lines = ['a'], still = true }",

@@ -60,7 +60,7 @@ CASES = {
     "never stopped": (
         "from ev3dev2.motor import *\nLargeMotor(OUTPUT_B).on(20)\nimport time\ntime.sleep(1)\n",
         ReasonKind.ENDED,
-        "the program ended while outB was still told to turn",
+        "the program ended while outB was still set to turn",
     ),
     "not called": (
         "tank_drive.on_for_seconds(20, 20, 1)\ntank_drive.off\n",

@@ -124,7 +124,7 @@ def _handle_choice(context: ActionContext, choice: str | None) -> None:
 def _ask_restart(context: ActionContext) -> None:
     from tuisim.app.dialogs.question import Question
 
-    text = "All steps of this lesson are open again, and its program is as at first. Your program is saved as a copy."
+    text = "All steps of this lesson are open again, with the original program. Your program is saved as a copy."
     answers = (("s", "Start over"),)
 
     def handle_answer(key: str | None) -> None:

@@ -67,7 +67,7 @@ def go_to_time(context: ActionContext, time_s: float | None, sample: str = "") -
     ):
         context.debugger.choose_line(tick, line)
         if not context.panels.shown("code"):
-            context.app.say(f"Line {line} has printed this: {{panel-code}} shows it")
+            context.app.say(f"Line {line} printed this: {{panel-code}} shows it")
     go_to_tick(context, tick)
 
 

@@ -235,7 +235,11 @@ class Chooser(ListDialog):
         listed.clear_options()
         listed.add_options(self._build_options(groups))
         self.say(
-            "" if groups else "no such file here" if is_path(typed) else "no name has these words"
+            ""
+            if groups
+            else "no such file here"
+            if is_path(typed)
+            else "no name contains these words"
         )
         if not groups:
             self.clear_preview()
@@ -437,7 +441,7 @@ class MatPicker(Chooser):
         )
         groups = [ChoiceGroup("", [(name, name, "") for name in known])]
         find = partial(find_mat, folder=folder)
-        super().__init__("Mats", groups, laid, "path of an image of your own", find, IMAGES)
+        super().__init__("Mats", groups, laid, "path of your own image", find, IMAGES)
         self._mats, self._folder = known, folder
         self._shown = ""
         self._pictures: dict[tuple[str, Viewport], Pixels] = {}

@@ -150,8 +150,8 @@ class Palette(SearchList):
 
     TITLE_TEXT: str = "Commands"
     NOTHING: str = (
-        "No command has these words: Enter asks the guide, also about what the shell does, such as a movie. Or try one "
-        "word for what you see or do, such as mat, grey, chart, pen or speed."
+        "No command contains these words: Enter searches the guide, also for commands of the shell, such as movies. Or "
+        "try one word for what you see or do, such as mat, grey, chart, pen or speed."
     )
 
     def __init__(self, actions: Iterable[Action[Any, Any]], now: object) -> None:

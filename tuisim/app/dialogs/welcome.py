@@ -29,14 +29,14 @@ class Begin(StrEnum):
 
 
 _TEXT = (
-    "This is a robot lab. A program drives the robot over a printed mat, and all that its sensors see is shown, drawn "
-    "and logged. How do you want to begin?"
+    "This is a robot lab. A program drives the robot over a printed mat, and you see, plot and log what its sensors "
+    "measure. How do you want to begin?"
 )
 _CHOICES = {
     Begin.NEW: ("A new program", "Choose its mat, a sensor and a skeleton"),
     Begin.EXAMPLE: ("Run the example", "It drives over grey bands and logs them"),
     Begin.LEARN: ("Learn", "Lessons, from the first run to a line follower"),
-    Begin.OPEN: ("Open a file", "A program of your own, or one of the examples"),
+    Begin.OPEN: ("Open a file", "Your own program, or one of the examples"),
 }
 _KEY_WORDS = (
     "Always: {open} opens a file, {lesson-menu} the lessons, {help} shows all keys, {quit} quits."

@@ -176,11 +176,11 @@ def _page(view: LessonView, page: int, width: int, away: Away) -> Iterator[Line]
     if not is_current:
         state = view.states[page]
         yield []
-        words = "Not yet: a step before it is open" if state is StepState.OPEN else f"{state}"
+        words = "Not yet: an earlier step is not done" if state is StepState.OPEN else f"{state}"
         yield from _wrapped(
             f"{words}: {step.why}" if state is StepState.DONE and step.why else words, width, _PALE
         )
-        yield from _wrapped("← → turn to the other steps.", width, _PALE)
+        yield from _wrapped("← → show the other steps.", width, _PALE)
         return
     yield []
     for number, hint in enumerate(step.hints[: view.hints], start=1):
@@ -212,7 +212,7 @@ def _done(step: LessonStep, story: str, width: int, away: Away) -> Iterator[Line
     yield from _wrapped(f"✓ {step.title}", width, _GOOD)
     yield from _wrapped(story, width, _PALE)
     yield from _wrapped(step.why, width, _PLAIN)
-    yield from _wrapped(f"{_escape(away)}M shows the steps before again.", width, _PALE)
+    yield from _wrapped(f"{_escape(away)}M shows earlier steps again.", width, _PALE)
     yield []
 
 

@@ -106,7 +106,7 @@ def cells_finding(cells: CellSet, term: str = "", variable: str = "") -> Finding
     value = f"{cells} ({_POINTS[cells]})"
     if cells is CellSet.ASCII:
         advice = (
-            f"TERM={term} promises no more; if the terminal shows more: --cells half"
+            f"TERM={term} reports no more than this; if the terminal shows more: --cells half"
             if term
             else f"Finer glyphs need UTF-8: {_use_utf8(variable)}"
         )
@@ -202,7 +202,7 @@ def home_finding(folder: str, why_not: str) -> Finding:
         why_not: Why it cannot be written; empty if it can.
     """
     if why_not:
-        advice = "Runs cannot be stored: correct the permissions, or export TUISIM_HOME=FOLDER"
+        advice = "Runs cannot be stored: fix the permissions, or export TUISIM_HOME=FOLDER"
         return Finding("home folder", f"{folder}: {why_not}", State.PROBLEM, advice)
     return Finding("home folder", f"{folder} (writable)")
 
@@ -222,9 +222,7 @@ def store_finding(count: int, size_bytes: int, free_bytes: int) -> Finding:
 def assets_finding(why_not: str) -> Finding:
     """Judge whether the mats and the examples are there; `why_not` is empty if they are."""
     if why_not:
-        return Finding(
-            "mats", why_not, State.PROBLEM, "Install tuisim again, or correct TUISIM_ASSETS"
-        )
+        return Finding("mats", why_not, State.PROBLEM, "Install tuisim again, or fix TUISIM_ASSETS")
     return Finding("mats", "found")
 
 

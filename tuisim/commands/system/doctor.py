@@ -33,7 +33,7 @@ _EXACTLY = re.compile(r"([A-Za-z0-9._-]+)\s*(?:==([^;,\s]+))?")
 @command(
     AS_JSON,
     option("--reset", is_flag=True, help="Restore a terminal that a killed app has left unusable."),
-    instead={"--clean": "what killed processes have left is removed when tuisim runs again"},
+    instead={"--clean": "tuisim removes the files of killed processes when it runs again"},
     help="""Check the terminal and the machine, for use and for bug reports.
 
     Each line shows a result and, after ->, what to do about it. The exit code is 0 unless something prevents the

@@ -43,7 +43,7 @@ _FIRST_LOSS_DEG, _LAST_LOSS_DEG = 15.0, 50.0
 
 
 class DrawnErrors(NamedTuple):
-    """What is drawn once a run."""
+    """What is drawn once per run."""
 
     left: float
     """The diameter of the left wheel, as a multiple of the robot's."""

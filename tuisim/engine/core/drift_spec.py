@@ -24,14 +24,14 @@ class DriftSpec(Spec):
         10,
         0.5,
         "%",
-        "standard deviation of each wheel's diameter from the robot's, drawn once a run",
+        "standard deviation of each wheel's diameter from the robot's, drawn once per run",
         "the manual of LEGO's MicroPython takes 55.5 mm for a tyre that is sold as 56 mm: 0.9 % less",
     )
     spacing_pc: float = _build_field(
         10,
         1.0,
         "%",
-        "standard deviation of the distance of the wheels from the robot's, drawn once a run",
+        "standard deviation of the distance of the wheels from the robot's, drawn once per run",
         "Borenstein & Feng, Measurement and Correction of Systematic Odometry Errors in Mobile Robots (1996): tyres "
         "touch the floor in an area, which leaves the effective distance uncertain by about 1 %",
     )
@@ -47,7 +47,7 @@ class DriftSpec(Spec):
         50,
         1.0,
         "%",
-        "mean slip of the part of a wheel's way that turns the robot",
+        "mean slip of the part of a wheel's distance that turns the robot",
         "the same law: a castor with a third of the weight and a friction of 0.2 holds each wheel back with about "
         "a tenth of its load",
     )
@@ -55,14 +55,14 @@ class DriftSpec(Spec):
         90,
         3.0,
         "°",
-        "play between a motor and its wheel: it turns so far after a reversal before the wheel does",
+        "backlash between a motor and its wheel: how far the motor turns after a reversal before the wheel turns",
         "an estimate, as LEGO publishes none: about three counts of the encoder",
     )
     gyro_dps: float = _build_field(
         20,
         0.05,
         "°/s",
-        "standard deviation of the gyro's rate while the robot stands, drawn once a run",
+        "standard deviation of the gyro's rate while the robot stands, drawn once per run",
         "LEGO states an accuracy of ±3° for the EV3 gyro: this is 3° in a minute",
     )
     gyro_scale_pc: float = _build_field(
@@ -76,7 +76,7 @@ class DriftSpec(Spec):
         100,
         14.0,
         "mm",
-        "largest error of an ultrasonic sensor's distances, drawn once a run from -1/7 of it up to it",
+        "largest error of an ultrasonic sensor's distances, drawn once per run from -1/7 of it up to it",
         "measured at 5, 10, 15, 20, 25 and 30 cm: 5.0, 11.4, 14.8, 20.4, 25.4 and 31.4 "
         "(eriymirsai, 2022; the sensor is not named)",
     )
@@ -100,7 +100,7 @@ class DriftSpec(Spec):
         30,
         5.0,
         "%",
-        "standard deviation of each colour sensor's brightness from the robot's, drawn once a run",
+        "standard deviation of each colour sensor's brightness from the robot's, drawn once per run",
         "an estimate, as nobody publishes it: sold line followers calibrate each sensor by itself "
         "(redrobots.xyz, 2019)",
     )

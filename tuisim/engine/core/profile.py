@@ -278,7 +278,7 @@ ROBOLAB = ProfileSpec(
 
 NBEV3DEVSIM = ProfileSpec(
     name="nbev3devsim",
-    title="the figures of the old simulator",
+    title="the numbers of the old simulator",
     tick_hz=30,
     attribute_read_ns=0,
     clock_read_ns=0,

@@ -228,11 +228,11 @@ class _View(ABC):
         try:
             published = published_length(head, self._magic, self._path.name)
         except LogError as error:
-            self._damage = f"{error.message}: nothing of it can be read"
+            self._damage = f"{error.message}: it cannot be read"
             return
         self._has_begun = True
         if self._most_bytes is not None and published > self._most_bytes:
-            self._damage = f"{self._path.name} is longer than a recording can be"
+            self._damage = f"{self._path.name} is too long for a recording"
             return
         room = max(0, os.fstat(fd).st_size - HEADER_BYTES) // self._record_bytes
         self._published = max(published, self._published)
@@ -363,7 +363,7 @@ class TelemetryView(_View):
             return end
         for tick, record in enumerate(TICK_RECORD.iter_unpack(part), begin):
             if record[0] != tick or not all(abs(value) <= _MOST_NUMBER for value in record):
-                what = f"record {tick} of {self._path.name} is not one that the simulation writes"
+                what = f"record {tick} of {self._path.name} cannot come from the simulation"
                 self._damage = self._damage or what
                 return tick
         return end
@@ -459,7 +459,7 @@ class OutputView(_View):
                 stream in DRAWN_STREAMS and not is_sound(Stream(stream), bytes(data[body]))
             ):
                 self._damage = (
-                    f"the row at byte {at} of {self._path.name} is not one that the brick writes"
+                    f"the row at byte {at} of {self._path.name} cannot come from the brick"
                 )
                 return at
             at = after

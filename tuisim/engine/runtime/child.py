@@ -85,7 +85,7 @@ def main(arguments: list[str], prepared: Child | None = None) -> NoReturn:
             Path(arguments[0], name).unlink(missing_ok=True)
         end, summary = protocol.End.DISK_FULL, _no_room(error)
         if not is_full(error):
-            end, summary = protocol.End.CRASHED, f"the run cannot begin: {error.strerror or error}"
+            end, summary = protocol.End.CRASHED, f"the run cannot start: {error.strerror or error}"
         channel.send(protocol.Ended(end, 0, 0, 1, summary))
         wallclock.exit_process(0)
     child.run()

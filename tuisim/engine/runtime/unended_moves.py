@@ -41,7 +41,7 @@ def finish_moves(session: Session) -> str:
         return ""
     *others, last = turning
     ports = f"{', '.join(others)} and {last}" if others else last
-    return f"ended while {ports} {'were' if others else 'was'} still told to turn"
+    return f"ended while {ports} {'were' if others else 'was'} still set to turn"
 
 
 def _let_rest(session: Session, motors: Collection[SimulatedMotor]) -> None:

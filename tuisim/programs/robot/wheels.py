@@ -79,7 +79,7 @@ def _of_pairs(pairs: Sequence[Pair]) -> WheelMotors | None:
     chosen = likely[0]
     others = [pair for pair in likely if {pair.left, pair.right} != {chosen.left, chosen.right}]
     doubt = (
-        f"{others[0].class_name} on {others[0].left} and {others[0].right} is taken for no wheels"
+        f"{others[0].class_name} on {others[0].left} and {others[0].right} is not used for wheels"
         if others
         else ""
     )

@@ -71,7 +71,7 @@ class KeepCondition(Condition):
 
     def __post_init__(self) -> None:
         if not self.comparisons and self.gap_mm is None:
-            raise ConfigError("does not say what is kept", "give comparisons or gap_mm")
+            raise ConfigError("does not say what to keep", "give comparisons or gap_mm")
         if self.gap_mm is not None and self.gap_mm[0] >= self.gap_mm[1]:
             raise ConfigError(
                 f"must be from small to large, got {self.gap_mm[0]:g} to {self.gap_mm[1]:g}",

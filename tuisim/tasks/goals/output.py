@@ -111,7 +111,9 @@ def _not_once(
     fits = [(row, sum(search(row.text) for search in searches)) for _, row in rows]
     if several := [row for row, count in fits if count > 1]:
         return Occurrence(
-            None, f"{_shown(several[0].text)} says several of the lines at once.", several[0].line
+            None,
+            f"{_shown(several[0].text)} matches several of the lines at once.",
+            several[0].line,
         )
     fitting = [row for row, count in fits if count]
     if len(fitting) > len(condition.lines):

@@ -91,4 +91,4 @@ def describe_so_far(recording: Recording) -> str:
         if is_standing(recording.telemetry, recording.spec)
         else "it is in"
     )
-    return f"Nothing wrong until {last / hz:.2f} s: {robot} {where}. {{pause}} goes on"
+    return f"Nothing wrong until {last / hz:.2f} s: {robot} {where}. {{pause}} resumes"

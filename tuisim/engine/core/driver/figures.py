@@ -22,7 +22,7 @@ PLANT_SOURCES = {
     "torque_nm_per_a": _MEASURED,
     "inertia_kg_m2": f"{_LARGE}; {_GUESS}",
     "damping_nm_s": _MEASURED,
-    "friction_nm": "large: the duty below which free motors stand still, from logs in five public repositories; "
+    "friction_nm": "large: the duty cycle below which free motors do not move, from logs in five public repositories; "
     f"{_MEDIUM}",
     "breakaway_nm": f"large: a free motor in the logs of Lab_1 starts at 6 to 7 % of duty; {_GUESS}",
 }
@@ -53,7 +53,7 @@ def list_figures() -> list[Figure]:
         },
         "control_ms": (STEP_NS / 1e6, _DRIVER),
         "stall_ms": (STALL_NS / 1e6, _DRIVER),
-        "look_ms": (LOOK_NS / 1e6, f"{_DRIVER}: how often it tells of a new state"),
+        "look_ms": (LOOK_NS / 1e6, f"{_DRIVER}: how often it reports a new state"),
         "jiffy_ms": (JIFFY_US / 1000, "the configuration of that kernel: 100 Hz"),
     }
     return [

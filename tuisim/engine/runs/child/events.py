@@ -134,7 +134,7 @@ class EventStream:
             left -= len(chunk)
         *lines, self._rest = data.split(b"\n")
         if len(self._rest) > MOST_EVENT_BYTES:
-            self.falsified = "the program's process sent an endless message"
+            self.falsified = "the program's process sent a message without an end"
         return lines
 
     def _decoded(self, line: bytes) -> Message | None:
