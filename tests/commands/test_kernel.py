@@ -81,7 +81,7 @@ def foreign(prefix: Path) -> None:
         "no folder": ("install --prefix file", "kernel.json: cannot be written: "),
         "other's": (
             "install --prefix prefix --name other",
-            "--name: 'other' already names another",
+            "--name: 'other' is already the name of another",
         ),
         "not ours": (
             "remove --prefix prefix --name other",

@@ -228,7 +228,7 @@ def test_a_run_that_is_worked_out_again_earns_what_the_program_did(
         assert (result.end, states) == ("finished", [GoalState.MET] * 2)
         return
     assert (result.end, states) == ("falsified", [GoalState.MISSED, GoalState.MET])
-    assert result.summary.endswith("it differs from what the program did from 0.50 s on")
+    assert result.summary.endswith("from 0.50 s on, it differs from what the program did")
 
 
 def test_a_command_that_no_program_can_give_is_told_without_the_folder(tmp_path: Path) -> None:

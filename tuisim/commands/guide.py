@@ -34,7 +34,7 @@ def _names() -> Sequence[str]:
         "words",
         metavar="WORDS",
         type=WordType(),
-        help="List the pages that answer words or a question.",
+        help="Search the pages for words or a question.",
     ),
     instead={"--html": "`tuisim guide` and the key ? of the app show all pages"},
 )

@@ -47,7 +47,7 @@ _size = option("--size", default="", metavar="WxH", help="Width and height in pi
         "--speed",
         type=float,
         metavar="N",
-        help="Multiple of real time (1; more for more than a minute).",
+        help="Multiple of real time (1; faster for a run over a minute).",
     ),
     option("--fps", type=float, default=20.0, metavar="N", help="Frames per second, 1 to 50 (20)."),
     _panels,

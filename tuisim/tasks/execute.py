@@ -127,7 +127,7 @@ def _replay_run(task: Task, run: StoredRun, ended: Ended) -> tuple[StoredRun, En
     run, parted = replay_run(run, task.options.actions, task.real_time_limit_s or math.inf)
     if not parted:
         return run, ended
-    why = describe_falsified(f"it differs from what the program did from {parted} on")
+    why = describe_falsified(f"from {parted} on, it differs from what the program did")
     return run, replace(ended, end=End.FALSIFIED, exit_code=1, summary=why)
 
 

@@ -46,7 +46,7 @@ def test_a_run_whose_folder_cannot_be_used_says_why(tmp_path: Path) -> None:
     finally:
         for fd in {fd for pipe in pipes for fd in pipe} - {event_fd}:
             os.close(fd)
-    reason = "the run cannot begin: No such file or directory"
+    reason = "the run cannot start: No such file or directory"
     assert (told, done.stderr) == ([Ended(End.CRASHED, 0, 0, 1, reason)], b"")
 
 

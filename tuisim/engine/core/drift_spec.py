@@ -92,7 +92,7 @@ class DriftSpec(Spec):
         90,
         10.0,
         "%",
-        "how much darker the field is at one side than at the opposite one, whose direction is drawn",
+        "how much darker one side of the field is than the opposite side; the direction is random",
         "EN 12464-1 lets the darkest place of a classroom have 60 % of the mean light; the sensor's own lamp, close "
         "to the mat, outshines most of that: a quarter of 40 %",
     )

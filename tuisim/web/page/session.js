@@ -116,7 +116,7 @@ const session = (() => {
         });
         const last = document.createElement("p");
         if (found.free > 0) last.append(button("Start another one", () => done("")));
-        else last.append("No place is free for another one.");
+        else last.append("The server has no room for another app.");
         const head = document.createElement("h1");
         head.textContent = "Which app?";
         dialog.replaceChildren(head, ...rows, last);
