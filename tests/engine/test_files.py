@@ -17,8 +17,8 @@ from tests.settings.makers import boxes, mm, presses, robots
 from tuisim.base.errors import ConfigError, ObstacleError, RobotError
 from tuisim.batch.batch_file import load_batch
 from tuisim.engine.core.profile import PROFILES, MotorLaw, ProfileSpec
+from tuisim.engine.core.remote_spec import BeaconSpec
 from tuisim.engine.core.spec import (
-    BeaconSpec,
     GyroSpec,
     InfraredSpec,
     MotorSpec,
@@ -98,7 +98,7 @@ own_profiles = st.builds(
         }
     ),
     seed=st.integers(0, 2**63 - 1),
-    beacon=st.none() | st.builds(BeaconSpec, mm(-1e4, 1e4), mm(-1e4, 1e4), st.integers(1, 4)),
+    beacon=st.none() | st.builds(BeaconSpec, mm(-1e4, 1e4), st.just(-5.5)),
     remote=st.lists(presses, max_size=3).map(tuple),
     program=st.sampled_from([None, "log_greys.py"]),
 )

@@ -220,8 +220,6 @@ def test_what_is_for_the_other_library_is_refused(case: str) -> None:
 
 
 SPIKE: Mapping[str, str] = {
-    "pybricks": "from pybricks.hubs import PrimeHub\n",
-    "devices": "from pybricks.pupdevices import Motor\nfrom pybricks.parameters import Port\nMotor(Port.A)\n",
     "lego": "import motor, runloop\nfrom hub import port\n",
     "old lego": "from spike import PrimeHub\n",
 }
@@ -234,16 +232,30 @@ def test_nothing_that_cannot_help_is_advised_to_a_program_for_another_hub(case: 
     assert program_settings(source).decided.note == ""
     with pytest.raises(RobotError, match=told):
         robot_for(source, "it")
-    if "pybricks" in SPIKE[case]:
-        with pytest.raises(ProfileError) as caught:
-            program_settings(source, {"profile": "ev3"})
-        assert str(caught.value) == told
 
 
 def test_the_name_that_chooses_pybricks_4_is_said() -> None:
     source = parse_program(f"{BASE}base.straight(100, wait=False)\n", "p.py")
     note = program_settings(source).decided.note
     assert "Pybricks 4, whose wait= of straight() it uses (profile pybricks4)" in note
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "from pybricks.hubs import PrimeHub\n",
+        "from pybricks.pupdevices import Motor\nfrom pybricks.parameters import Port\nMotor(Port.A)\n",
+    ],
+)
+def test_a_program_for_a_hub_runs_on_a_robot_with_it(text: str) -> None:
+    settings = program_settings(parse_program(text, "p.py")).settings
+    robot = settings["robot"].spec
+    assert (settings["profile"], robot.hub, robot.gyro.port) == ("pybricks4", "PrimeHub", "inside")
+    assert (robot.wheel_diameter_mm, robot.wheel_spacing_mm, robot.sensors) == (
+        56,
+        112,
+        (robot.gyro,),
+    )
 
 
 def test_a_program_for_more_than_one_hub_is_one_for_the_brick() -> None:

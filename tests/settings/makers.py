@@ -5,6 +5,7 @@ from __future__ import annotations
 from hypothesis import strategies as st
 
 from tuisim.engine.core.css_colors import load_css_colors
+from tuisim.engine.core.remote_spec import RemotePress
 from tuisim.engine.core.spec import (
     INPUT_PORTS,
     MOTOR_ENDS,
@@ -17,7 +18,6 @@ from tuisim.engine.core.spec import (
     MotorSpec,
     Obstacle,
     PenSpec,
-    RemotePress,
     RobotSpec,
     TouchSpec,
     UltrasonicSpec,

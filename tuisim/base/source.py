@@ -55,18 +55,8 @@ SPIKE_MODULES: Mapping[str, str] = {
     "spike": "PrimeHub() of pybricks.hubs",
 }
 """Modules of LEGO's own Python for SPIKE and the Robot Inventor, and what Pybricks has in place of each."""
-OTHER_HUBS = (
-    "CityHub",
-    "EssentialHub",
-    "InventorHub",
-    "MoveHub",
-    "PrimeHub",
-    "TechnicHub",
-    "VirtualHub",
-)
-"""Classes of `pybricks.hubs` for hubs of SPIKE, Technic and others."""
-OTHER_HUB_DEVICES = "pybricks.pupdevices"
-"""The module of Pybricks for motors and sensors of these."""
+HUB_DEVICES = "pybricks.pupdevices"
+"""The module of Pybricks for motors and sensors of hubs other than the EV3."""
 FOR_SPIKE = "a program for SPIKE that tuisim does not run"
 """What is told about a program that imports one of these."""
 

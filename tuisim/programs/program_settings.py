@@ -21,6 +21,7 @@ from tuisim.programs.robot.course import uses_course_names
 from tuisim.programs.robot.pybricks_version import find_version_4_name
 from tuisim.programs.robot.source import (
     Module,
+    find_hub,
     is_for_other_hub,
     library_of,
     missing_module,
@@ -145,7 +146,9 @@ def facts_of(program: Program) -> SourceFacts:
         library = _library_in(program, modules)
         facts = SourceFacts(library)
         if library is Library.PYBRICKS:
-            facts = replace(facts, version_4_name=find_version_4_name(modules.values()))
+            facts = replace(
+                facts, version_4_name=find_hub(modules) or find_version_4_name(modules.values())
+            )
         if is_for_other_hub(modules):
             return replace(facts, unread=f"it is {FOR_SPIKE}", for_other_hub=True)
         if not modules or library is None:
@@ -168,17 +171,18 @@ def _facts_in(program: Program, modules: dict[str, Module], facts: SourceFacts) 
     from tuisim.programs.robot.brick_syntax import refused_lines
     from tuisim.programs.robot.library import SENSES_WALLS
     from tuisim.programs.robot.mentions import mentions_in
-    from tuisim.programs.robot.report import USUAL, hides_parts
+    from tuisim.programs.robot.report import find_usual, hides_parts
 
     mentions = mentions_in(modules)
-    robot = build_robot(mentions, program.name, USUAL)
+    usual = find_usual(mentions.hub)
+    robot = build_robot(mentions, program.name, usual)
     return replace(
         facts,
         of_course=uses_course_names(modules, program.text),
         robot=robot,
         refused=refused_lines(modules.values()) if facts.library is Library.PYBRICKS else (),
         unread=missing_module(program, modules),
-        shown_ports=find_shown_ports(mentions, robot.choice.spec if robot else USUAL),
+        shown_ports=find_shown_ports(mentions, robot.choice.spec if robot else usual),
         senses_walls=any(one.kind in SENSES_WALLS for one in mentions.devices),
         hides_parts=hides_parts(mentions),
     )

@@ -8,7 +8,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 
 from tuisim.base.data_class import dataclass
 from tuisim.engine.core.columns import COLOR_NAMES
-from tuisim.engine.core.spec import BUTTONS, REMOTE_BY_HAND
+from tuisim.engine.core.remote_spec import REMOTE_BY_HAND
+from tuisim.engine.core.spec import BUTTONS
 
 Word = str | float
 

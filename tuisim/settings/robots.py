@@ -14,6 +14,7 @@ from typing import Any
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ConfigError, RobotError
 from tuisim.engine import files
+from tuisim.engine.core.hub_spec import HUB_PORTS, INSIDE
 from tuisim.engine.core.spec import (
     MOTOR_KINDS,
     MOUNTS,
@@ -21,6 +22,7 @@ from tuisim.engine.core.spec import (
     ROBOT_WEIGHTS,
     SENSOR_NAME,
     ColorSensorSpec,
+    GyroSpec,
     InfraredSpec,
     MotorSpec,
     Mount,
@@ -87,11 +89,26 @@ ROBOTS: Mapping[str, RobotSpec] = {
             touch_sensors=(TouchSpec("bumper", "in1", 0.0, 60.0, 60.0),),
             infrared=InfraredSpec(port="in3"),
         ),
+        RobotSpec(
+            name="Prime_Robot",
+            wheel_spacing_mm=112.0,
+            back_mm=-70.0,
+            left_port="A",
+            right_port="B",
+            color_sensors=(),
+            ultrasonic=None,
+            gyro=GyroSpec("imu", INSIDE),
+            left_motor="medium-angular",
+            right_motor="medium-angular",
+            left_reversed=True,
+            hub="PrimeHub",
+        ),
     )
 }
 """Every robot by name."""
 
 DEFAULT_ROBOT = "Default_Robot"
+HUB_ROBOT = "Prime_Robot"
 _VALUES = list_values(RobotSpec)
 _BODY_KEYS = tuple(
     key
@@ -182,7 +199,7 @@ def _motors(robot: Mapping[str, Any], base: RobotSpec, at: Location) -> dict[str
     motors = {motor.port: motor for motor in base.extra_motors}
     found: dict[str, Any] = {}
     at = at.at("motors")
-    for port, data in files.table(robot["motors"], at, OUTPUT_PORTS).items():
+    for port, data in files.table(robot["motors"], at, (*OUTPUT_PORTS, *HUB_PORTS)).items():
         wheel = wheels.get(port)
         if wheel and data is False:
             raise at.at(port).wrong(

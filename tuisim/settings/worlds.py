@@ -17,7 +17,8 @@ from tuisim.engine import files
 from tuisim.engine.core import tree
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.profile import ProfileSpec
-from tuisim.engine.core.spec import START_VALUES, BeaconSpec, RemotePress, RunSpec
+from tuisim.engine.core.remote_spec import BeaconSpec, RemotePress
+from tuisim.engine.core.spec import START_VALUES, RunSpec
 from tuisim.engine.core.values import list_values, quote
 from tuisim.engine.files import Location, Scalar
 from tuisim.engine.mats import find_mat, spec_name

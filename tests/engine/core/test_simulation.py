@@ -11,10 +11,10 @@ from tuisim.engine.core.drift_spec import NO_DRIFT
 from tuisim.engine.core.field import Field
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.profile import PROFILES, ROBOLAB
+from tuisim.engine.core.remote_spec import BeaconSpec
 from tuisim.engine.core.sensors import measure_sensors
 from tuisim.engine.core.simulation import Simulation, build_simulation
 from tuisim.engine.core.spec import (
-    BeaconSpec,
     InfraredSpec,
     MotorSpec,
     NoiseSpec,

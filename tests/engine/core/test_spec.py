@@ -14,14 +14,13 @@ from tests.engine.core.memory_sink import MemorySink
 from tests.engine.core.motors import commanded
 from tuisim.base.errors import ConfigError
 from tuisim.engine.core.profile import PROFILES, ROBOLAB
+from tuisim.engine.core.remote_spec import BeaconSpec, RemotePress
 from tuisim.engine.core.simulation import FurtherMotors, Simulation, Turn, build_simulation
 from tuisim.engine.core.spec import (
-    BeaconSpec,
     InfraredSpec,
     MotorSpec,
     NoiseSpec,
     Obstacle,
-    RemotePress,
     RobotSpec,
     RunSpec,
     TouchSpec,

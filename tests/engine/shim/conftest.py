@@ -12,15 +12,12 @@ from tests.running import Done, over
 from tuisim.base.source import Program
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.profile import PROFILES
+from tuisim.engine.core.remote_spec import REMOTE_CHANNELS, REMOTE_CODES, BeaconSpec, RemotePress
 from tuisim.engine.core.spec import (
-    REMOTE_CHANNELS,
-    REMOTE_CODES,
-    BeaconSpec,
     GyroSpec,
     InfraredSpec,
     MotorSpec,
     Obstacle,
-    RemotePress,
     RobotSpec,
     RunSpec,
     TouchSpec,

@@ -10,10 +10,10 @@ import pytest
 
 from tests.pictures.scene.scenes import ROBOT, VIEW, at, painter
 from tuisim.engine.core.geometry import Pose
+from tuisim.engine.core.remote_spec import BeaconSpec
 from tuisim.engine.core.spec import (
     FIELD_HEIGHT_MM,
     FIELD_WIDTH_MM,
-    BeaconSpec,
     InfraredSpec,
     Obstacle,
     RobotSpec,

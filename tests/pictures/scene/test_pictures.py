@@ -12,10 +12,10 @@ from tests.pictures.scene.scenes import CORNERS, MIDDLE, pixel, spec_of
 from tests.running import Run
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.profile import ROBOLAB
+from tuisim.engine.core.remote_spec import BeaconSpec
 from tuisim.engine.core.spec import (
     FIELD_HEIGHT_MM,
     FIELD_WIDTH_MM,
-    BeaconSpec,
     Obstacle,
     PenSpec,
     RobotSpec,

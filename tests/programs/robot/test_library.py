@@ -20,7 +20,7 @@ from tuisim.programs.robot.library import (
     [
         ("outA", "outA"),
         (" ev3-ports:in4\n", "in4"),
-        ("outE", ""),
+        ("outG", ""),
         ("in1 ", "in1"),
         ("xoutA", ""),
         (1, ""),

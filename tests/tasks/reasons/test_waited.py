@@ -11,16 +11,9 @@ from tests.cases import cases
 from tests.engine.runs.run_recorder import Recorder
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.profile import PROFILES
+from tuisim.engine.core.remote_spec import RemotePress
 from tuisim.engine.core.sensors.touch import find_hand_flags
-from tuisim.engine.core.spec import (
-    InfraredSpec,
-    Obstacle,
-    RemotePress,
-    RobotSpec,
-    RunSpec,
-    TouchSpec,
-    WorldSpec,
-)
+from tuisim.engine.core.spec import InfraredSpec, Obstacle, RobotSpec, RunSpec, TouchSpec, WorldSpec
 from tuisim.engine.protocol import End
 from tuisim.engine.runs.records import Stream
 from tuisim.engine.runs.side_files import READINGS_FILE

@@ -8,10 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
-from itertools import pairwise
+from itertools import pairwise, product
 from typing import Any
 
 from tuisim.base.data_class import dataclass
+from tuisim.engine.core.hub_spec import HUB_MOTORS, HUB_PORTS
 from tuisim.engine.core.sensor_places import ORDERS, SENSOR_MAKERS, measure_body
 from tuisim.engine.core.spec import (
     INPUT_PORTS,
@@ -29,7 +30,13 @@ from tuisim.engine.core.spec import (
 )
 
 MOTOR_PARTS: Mapping[str, str] = {"LargeMotor": "large", "MediumMotor": "medium"}
-"""Kinds of motors, by the classes of parts."""
+"""Kinds of motors of the EV3, by the classes of parts."""
+HUB_MOTOR_PARTS: Mapping[str, str] = {
+    f"{''.join(word.capitalize() for word in kind.split('-'))}Motor": kind for kind in HUB_MOTORS
+}
+"""Likewise, of the hubs: such as `MediumAngularMotor`."""
+MOTOR_KIND_OF: Mapping[str, str] = {**MOTOR_PARTS, **HUB_MOTOR_PARTS}
+"""All of them."""
 SENSOR_PARTS: Mapping[str, type[SensorSpec]] = {
     "ColorSensor": ColorSensorSpec,
     "UltrasonicSensor": UltrasonicSpec,
@@ -45,13 +52,26 @@ ROLES = ("", LEFT, RIGHT, LATE)
 """What a motor that is plugged in is for: nothing special, a wheel, or a wheel if it had not been too late for that."""
 
 
+PART_CODES: Mapping[tuple[str, str, str], int] = {
+    place: code
+    for code, place in enumerate(
+        (
+            *product(ROLES, (*OUTPUT_PORTS, *INPUT_PORTS), (*MOTOR_PARTS, *SENSOR_PARTS)),
+            *product(ROLES, HUB_PORTS, (*HUB_MOTOR_PARTS, *SENSOR_PARTS)),
+        )
+    )
+    if place[1] in HUB_PORTS or (place[1] in OUTPUT_PORTS) == (place[2] in MOTOR_PARTS)
+}
+"""The number of each role, port and class that fit, by which commands name them."""
+
+
 @dataclass(frozen=True, slots=True)
 class PluggedPart:
     """A part that was plugged in when the program asked for it."""
 
     port: str
     part: str
-    """Its class, such as `ColorSensor`: one of `MOTOR_PARTS` or `SENSOR_PARTS`."""
+    """Its class, such as `ColorSensor`: one of `MOTOR_KIND_OF` or `SENSOR_PARTS`."""
     tick: int
     """After this tick, before the next one."""
     line: int
@@ -60,10 +80,7 @@ class PluggedPart:
     """One of `ROLES`. The entry of a left wheel is followed by that of the right one."""
 
     def __post_init__(self) -> None:
-        known, ports = (
-            (MOTOR_PARTS, OUTPUT_PORTS) if self.part in MOTOR_PARTS else (SENSOR_PARTS, INPUT_PORTS)
-        )
-        if self.part not in known or self.port not in ports or self.role not in ROLES:
+        if (self.role, self.port, self.part) not in PART_CODES:
             raise ValueError(f"no part: {self.part!r} on {self.port!r} as {self.role!r}")
 
     def to_plain(self) -> dict[str, Any]:
@@ -97,17 +114,17 @@ def plug_parts(robot: RobotSpec, parts: Sequence[PluggedPart]) -> RobotSpec:
 def _plug_part(robot: RobotSpec, part: PluggedPart) -> RobotSpec:
     if part.part in SENSOR_PARTS:
         return _add_sensor(robot, part.port, SENSOR_PARTS[part.part])
-    motor = MotorSpec(part.port, MOTOR_PARTS[part.part])
+    motor = MotorSpec(part.port, MOTOR_KIND_OF[part.part])
     others = _leave_out(robot.extra_motors, (part.port,))
     if part.port in (robot.left_port, robot.right_port):
         # A robot with a wheel on one side only drives nowhere.
-        robot = _put_wheels(robot, MotorSpec(NO_PORT, "large"), MotorSpec(NO_PORT, "large"))
+        robot = _put_wheels(robot, *(replace(one, port=NO_PORT) for one in robot.wheel_motors))
     return replace(robot, extra_motors=(*others, motor))
 
 
 def _change_wheels(robot: RobotSpec, left: PluggedPart, right: PluggedPart) -> RobotSpec:
     others = _leave_out(robot.extra_motors, (left.port, right.port))
-    wheels = (MotorSpec(wheel.port, MOTOR_PARTS[wheel.part]) for wheel in (left, right))
+    wheels = (MotorSpec(one.port, MOTOR_KIND_OF[one.part]) for one in (left, right))
     return _put_wheels(replace(robot, extra_motors=others), *wheels)
 
 

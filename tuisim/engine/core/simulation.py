@@ -151,9 +151,14 @@ class Simulation(Motion):
         if self._driven:
             self._free_wheels()
 
-    def reset_gyro(self) -> None:
-        """Make the current heading the gyro's 0."""
-        self.drive.gyro_zero_deg = round_to_float32(self.drive.heading_deg)
+    def reset_gyro(self, shown_deg: float = 0.0) -> None:
+        """Let the gyro show an angle at the current heading, clockwise."""
+        self.drive.gyro_zero_deg = round_to_float32(self.drive.heading_deg + shown_deg)
+
+    @property
+    def gyro_deg(self) -> float:
+        """The angle that the gyro shows, clockwise, not rounded."""
+        return self.drive.gyro_zero_deg - self.drive.heading_deg
 
     def change_robot(self, robot: RobotSpec) -> None:
         """Go on with a robot that has other parts.

@@ -17,7 +17,16 @@ from typing import Any, NamedTuple
 from tuisim.base.errors import ObstacleError, RobotError, require_one_of
 from tuisim.engine.core.drift_spec import NO_DRIFT, DriftSpec
 from tuisim.engine.core.geometry import Pose
+from tuisim.engine.core.hub_spec import (
+    EV3_MOTORS,
+    HUB_MOTORS,
+    HUB_PORTS,
+    HUBS,
+    INSIDE,
+    check_motor_kinds,
+)
 from tuisim.engine.core.profile import ProfileSpec
+from tuisim.engine.core.remote_spec import MAX_POSITION_MM, REMOTE_BY_HAND, BeaconSpec, RemotePress
 from tuisim.engine.core.spec_fields import (
     Spec,
     choice,
@@ -30,7 +39,6 @@ from tuisim.engine.core.spec_fields import (
     part,
     parts,
     seed,
-    some,
     spec,
     text,
     whole,
@@ -58,8 +66,8 @@ BACKGROUND_FITS = ("stretch", "fit", "centre", "corner")
 """How the user's image becomes a mat: stretched over the field, as large as fits, or pixel for pixel in the
 centre or from the upper left corner."""
 
-MOTOR_KINDS = ("large", "medium")
-"""Kinds of motors, for `MotorSpec.kind` and the wheel motors."""
+MOTOR_KINDS = (*EV3_MOTORS, *HUB_MOTORS)
+"""Kinds of motors, for `MotorSpec.kind` and the wheel motors: those of the EV3, and those of hubs."""
 
 EMPTY_MAT = "Empty_Map"
 """The mat without anything on it."""
@@ -67,26 +75,11 @@ EMPTY_MAT = "Empty_Map"
 BUTTONS = ("up", "down", "left", "right", "enter", "backspace")
 """The brick's buttons, by their names in the library."""
 
-REMOTE_BUTTONS = ("top_left", "bottom_left", "top_right", "bottom_right", "beacon")
-"""Buttons of the remote control, by their names in ev3dev2."""
-
-REMOTE_BY_HAND = {
-    "remote.left_up": "top_left",
-    "remote.left_down": "bottom_left",
-    "remote.right_up": "top_right",
-    "remote.right_down": "bottom_right",
-    "remote.beacon": "beacon",
-}
-"""Names of the remote control's buttons for presses by hand; each of `REMOTE_BUTTONS` by its name."""
-
 TOUCH = "touch"
 """Presses every touch sensor by hand."""
 
-PRESSABLE = (*BUTTONS, TOUCH, *INPUT_PORTS, *REMOTE_BY_HAND)
+PRESSABLE = (*BUTTONS, TOUCH, *INPUT_PORTS, *REMOTE_BY_HAND, *HUB_PORTS)
 """What can be pressed by hand: buttons, touch sensors by their ports, and the remote control."""
-
-REMOTE_CHANNELS = (1, 2, 3, 4)
-"""Channels of a remote control or beacon."""
 
 MOTOR_ENDS = ("low", "high")
 """Ends of the range of a motor with end stops, for `TouchSpec.pressed_at`."""
@@ -95,7 +88,6 @@ MIN_RANGE_DEG = 5.0
 """Smallest distance between the end stops of a motor."""
 
 _MAX_RANGE_DEG = 100_000
-_MAX_POSITION_MM = 10_000
 
 
 def _build_x(default: Any = MISSING) -> Any:
@@ -119,13 +111,14 @@ def _build_direction() -> Any:
 
 
 def _build_input_port(default: str) -> Any:
-    return choice(INPUT_PORTS, what="port", default=default, label="Port", help="in1 … in4")
+    ports = (*INPUT_PORTS, *HUB_PORTS)
+    return choice(ports, what="port", default=default, label="Port", help="in1 … in4")
 
 
 def _build_output_port(default: str, label: str) -> Any:
-    return choice(
-        (*OUTPUT_PORTS, NO_PORT), what="port", default=default, label=label, help="outA … outD"
-    )
+    ports = (*OUTPUT_PORTS, NO_PORT, *HUB_PORTS)
+    about = "outA … outD"
+    return choice(ports, what="port", default=default, label=label, help=about)
 
 
 def _build_sensor_name(default: str) -> Any:
@@ -143,8 +136,13 @@ class MotorSpec(Spec):
     A motor that is mounted the other way round just has its stops at other degrees, so this is no value of its own.
     """
 
-    port: str = choice((*OUTPUT_PORTS, NO_PORT), what="port")
-    kind: str = choice(MOTOR_KINDS, what="kind of motor", default="medium", help="large or medium")
+    port: str = choice((*OUTPUT_PORTS, NO_PORT, *HUB_PORTS), what="port")
+    kind: str = choice(
+        MOTOR_KINDS,
+        what="kind of motor",
+        default="medium",
+        help=f"large or medium; of a hub {', '.join(HUB_MOTORS)}",
+    )
     low_deg: float | None = number(
         -_MAX_RANGE_DEG,
         0,
@@ -198,7 +196,7 @@ class TouchSpec(SensorSpec):
     )
     """Width of the bumper, across the robot."""
     pressed_by: str = choice(
-        (*OUTPUT_PORTS, ""),
+        (*OUTPUT_PORTS, "", *HUB_PORTS),
         what="port",
         default="",
         later=True,
@@ -232,7 +230,7 @@ class ColorSensorSpec(SensorSpec):
     """A downward colour sensor: the mean of a disc of mat pixels."""
 
     name: str = text(what="sensor name", pattern=SENSOR_NAME)
-    port: str = choice(INPUT_PORTS, what="port", label="Port", help="in1 … in4")
+    port: str = choice((*INPUT_PORTS, *HUB_PORTS), what="port", label="Port", help="in1 … in4")
     x_mm: float = _build_x()
     y_mm: float = _build_y()
     # A disc of 1 pixel has no pixel strictly inside it.
@@ -307,7 +305,13 @@ class GyroSpec(SensorSpec):
     """The gyro: clockwise angle since the last reset, and rate of turn."""
 
     name: str = _build_sensor_name("gyro")
-    port: str = _build_input_port("in4")
+    port: str = choice(
+        (*INPUT_PORTS, *HUB_PORTS, INSIDE),
+        what="port",
+        default="in4",
+        label="Port",
+        help="in1 … in4",
+    )
     keeps_angle: bool = flag(
         default=False,
         later=True,
@@ -315,68 +319,6 @@ class GyroSpec(SensorSpec):
         help="a newer sensor, from date code N4 on: keeps its angle when the mode changes",
     )
     """Whether a change of mode leaves the angle as it is, where the profile lets it restart."""
-
-
-@spec
-class BeaconSpec(Spec):
-    """An infrared beacon on the field, in world coordinates."""
-
-    ERROR = ObstacleError
-    KEY = "beacon"
-
-    x_mm: float = number(-_MAX_POSITION_MM, _MAX_POSITION_MM, unit="mm")
-    y_mm: float = number(-_MAX_POSITION_MM, _MAX_POSITION_MM, unit="mm")
-    channel: int = choice(REMOTE_CHANNELS, what="channel", default=1, help="1 to 4")
-
-
-@spec
-class RemotePress(Spec):
-    """Buttons of the remote control that are pressed for some time."""
-
-    ERROR = ObstacleError
-    KEY = "remote"
-
-    buttons: tuple[str, ...] = some(
-        REMOTE_BUTTONS,
-        what="button",
-        help=f"one or two of {', '.join(REMOTE_BUTTONS[:4])}, or beacon",
-    )
-    """One or two of `REMOTE_BUTTONS`; `beacon` only alone, since the sensor cannot distinguish other combinations."""
-    from_s: float = number(0, 1e9, default=0.0, unit="s", help="simulated seconds")
-    until_s: float = number(0, 1e9, default=1e9, unit="s")
-    channel: int = choice(REMOTE_CHANNELS, what="channel", default=1, help="1 to 4")
-
-    def check(self) -> None:
-        if frozenset(self.buttons) not in REMOTE_CODES:
-            raise ObstacleError(
-                f"the sensor does not report {', '.join(self.buttons) or 'no button'}",
-                f"one or two of {', '.join(REMOTE_BUTTONS[:4])}, or beacon",
-                key="remote.buttons",
-            )
-        if not self.from_s <= self.until_s:
-            raise ObstacleError("ends before it begins", key="remote.until_s")
-
-
-REMOTE_CODES = {
-    frozenset(buttons.split("+")): code
-    for code, buttons in enumerate(
-        (
-            "top_left",
-            "bottom_left",
-            "top_right",
-            "bottom_right",
-            "top_left+top_right",
-            "top_left+bottom_right",
-            "bottom_left+top_right",
-            "bottom_left+bottom_right",
-            "beacon",
-            "top_left+bottom_left",
-            "top_right+bottom_right",
-        ),
-        start=1,
-    )
-}
-"""Value of the sensor for each set of buttons; 0 is none."""
 
 
 @spec
@@ -514,6 +456,24 @@ class RobotSpec(Spec):
         label="Battery V",
         help="without a load: it sets the highest speed",
     )
+    hub: str = choice(
+        ("", *HUBS),
+        what="hub",
+        default="",
+        later=True,
+        help="the hub of Pybricks in place of the EV3, such as PrimeHub",
+    )
+    """The hub in place of the EV3, one of `HUBS`; empty for the EV3."""
+
+    @property
+    def output_ports(self) -> tuple[str, ...]:
+        """The ports for motors."""
+        return tuple(HUBS[self.hub].ports) if self.hub else OUTPUT_PORTS
+
+    @property
+    def input_ports(self) -> tuple[str, ...]:
+        """The ports for sensors."""
+        return tuple(HUBS[self.hub].ports) if self.hub else INPUT_PORTS
 
     @property
     def has_wheels(self) -> bool:
@@ -553,14 +513,19 @@ class RobotSpec(Spec):
 
     def check(self) -> None:
         used = self._check_wheel_ports()
+        wheels = {"left_motor": self.left_motor, "right_motor": self.right_motor}
+        others = {f"motors.{motor.port}": motor.kind for motor in self.extra_motors}
+        check_motor_kinds(self.hub, {**wheels, **others})
         for motor in self.extra_motors:
-            require_one_of(motor.port, "port", OUTPUT_PORTS, "motors")
+            require_one_of(motor.port, "port", self.output_ports, "motors")
             if motor.port in used:
                 raise RobotError(
                     f"two motors are on {motor.port}", "give each its own port", key="motors"
                 )
             used.add(motor.port)
         for sensor in self.sensors:
+            if sensor.port != INSIDE:
+                require_one_of(sensor.port, "port", self.input_ports, f"{sensor.name}.port")
             if sensor.port in used:
                 raise RobotError(
                     f"two sensors are on {sensor.port}",
@@ -577,7 +542,7 @@ class RobotSpec(Spec):
         if self.left_port == self.right_port == NO_PORT:
             return set()
         for key in ("left_port", "right_port"):
-            require_one_of(getattr(self, key), "port", OUTPUT_PORTS, key)
+            require_one_of(getattr(self, key), "port", self.output_ports, key)
         if self.left_port == self.right_port:
             raise RobotError(
                 f"both motors are on {self.left_port}", "give each its own port", key="right_port"
@@ -638,10 +603,10 @@ class Obstacle(Spec):
 
     ERROR = ObstacleError
 
-    x_mm: float = number(-_MAX_POSITION_MM, _MAX_POSITION_MM, unit="mm")
-    y_mm: float = number(-_MAX_POSITION_MM, _MAX_POSITION_MM, unit="mm")
-    width_mm: float = number(-_MAX_POSITION_MM, _MAX_POSITION_MM, unit="mm")
-    height_mm: float = number(-_MAX_POSITION_MM, _MAX_POSITION_MM, unit="mm")
+    x_mm: float = number(-MAX_POSITION_MM, MAX_POSITION_MM, unit="mm")
+    y_mm: float = number(-MAX_POSITION_MM, MAX_POSITION_MM, unit="mm")
+    width_mm: float = number(-MAX_POSITION_MM, MAX_POSITION_MM, unit="mm")
+    height_mm: float = number(-MAX_POSITION_MM, MAX_POSITION_MM, unit="mm")
 
     def check(self) -> None:
         for key in ("width_mm", "height_mm"):
@@ -673,8 +638,8 @@ class NoiseSpec(Spec):
 
 START_VALUES = {
     "x_mm": Number(
-        -_MAX_POSITION_MM,
-        _MAX_POSITION_MM,
+        -MAX_POSITION_MM,
+        MAX_POSITION_MM,
         unit="mm",
         flags=("-x", "--x", "--xpos"),
         in_config=False,
@@ -682,8 +647,8 @@ START_VALUES = {
         help="start x in mm",
     ),
     "y_mm": Number(
-        -_MAX_POSITION_MM,
-        _MAX_POSITION_MM,
+        -MAX_POSITION_MM,
+        MAX_POSITION_MM,
         unit="mm",
         flags=("-y", "--y", "--ypos"),
         in_config=False,

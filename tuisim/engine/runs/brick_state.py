@@ -23,6 +23,11 @@ ROW_BYTES = -(-DISPLAY_WIDTH // 8)
 """Bytes per row of the picture; the bits after the last pixel are 0."""
 
 LED_NAMES = ("left red", "left green", "right red", "right green")
+HUB_LIGHT_NAMES = ("red", "green", "blue")
+"""The LEDs of a hub's status light."""
+SIDE_PIXELS = 5
+PIXEL_NAMES = tuple(f"{row}{column}" for row in range(SIDE_PIXELS) for column in range(SIDE_PIXELS))
+"""The LEDs of a hub's matrix, row by row from the top."""
 
 BLANK = bytes(ROW_BYTES * DISPLAY_HEIGHT)
 _MOST_CELLS = 1000

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import LogError
 from tuisim.base.regular_file import of_the_machine, read_regular
+from tuisim.engine.core.hub_spec import HUB_PORTS, INSIDE
 from tuisim.engine.core.profile import NS_PER_S
 from tuisim.engine.core.spec import INPUT_PORTS, OUTPUT_PORTS
 from tuisim.engine.runs.records import HEADER_BYTES, MappedWriter, published_length
@@ -41,7 +42,10 @@ SOCKET_PORT = "socket"
 """What stands for a port when the program waits for a socket."""
 GAMEPAD_PORT = "gamepad"
 """What stands for a port when the program looks for input devices."""
-READING_PORTS = (*INPUT_PORTS, *OUTPUT_PORTS, BUTTONS_PORT, SOCKET_PORT, GAMEPAD_PORT)
+READING_PORTS = (
+    *(*INPUT_PORTS, *OUTPUT_PORTS, BUTTONS_PORT, SOCKET_PORT, GAMEPAD_PORT),
+    *(*HUB_PORTS, INSIDE),
+)
 MODES_BY_KIND: Mapping[str, tuple[str, ...]] = {
     "color": ("COL-REFLECT", "COL-AMBIENT", "COL-COLOR", "REF-RAW", "RGB-RAW", "COL-CAL"),
     "ultrasonic": ("US-DIST-CM", "US-DIST-IN", "US-LISTEN", "US-SI-CM", "US-SI-IN"),

@@ -170,8 +170,10 @@ def ports_hint(session: DeviceSession, class_name: str) -> str:
     """Return which devices are on which ports, as a hint for a failed look-up; empty for other classes."""
     if class_name not in (MOTOR_CLASS, SENSOR_CLASS):
         return ""
-    ports = OUTPUT_PORTS if class_name == MOTOR_CLASS else INPUT_PORTS
-    plugged = find_connections(session.sim.spec.robot)
+    robot = session.sim.spec.robot
+    devices = robot.motors if class_name == MOTOR_CLASS else robot.sensors
+    ports = [device.port for device in devices]
+    plugged = find_connections(robot)
     parts = [f"{port} {plugged[port].driver_name}" for port in sorted(plugged) if port in ports]
     there = f"This robot has: {', '.join(parts) or 'nothing of the kind'}."
     return f"{there} Another robot: -r ROBOT; `tuisim robots --from PROGRAM --out FILE` writes the program's own."

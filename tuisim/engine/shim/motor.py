@@ -12,6 +12,7 @@ from tuisim.engine.core.brick_motor import BrickMotor
 from tuisim.engine.core.browser_motor import BrowserMotor
 from tuisim.engine.core.commands.calls import Call
 from tuisim.engine.core.commands.table import obey
+from tuisim.engine.core.hub_spec import HUB_MOTORS
 from tuisim.engine.core.motors import MEDIUM_MAX_SPEED_DPS, POSITION, STOPPED, TIMED, Motor
 from tuisim.engine.core.profile import MS
 from tuisim.engine.core.servo.motor import ServoMotor
@@ -56,6 +57,7 @@ class MotorKind:
 KINDS = {
     "large": MotorKind("lego-ev3-l-motor", 1050, 80_000),
     "medium": MotorKind("lego-ev3-m-motor", int(MEDIUM_MAX_SPEED_DPS), 160_000),
+    **{kind: MotorKind(f"spike-{kind}", 1000, 0) for kind in HUB_MOTORS},
 }
 """By `MotorSpec.kind`."""
 

@@ -17,6 +17,7 @@ from tuisim.engine.core.commands.table import obey
 from tuisim.engine.core.plugged import (
     LATE,
     LEFT,
+    MOTOR_KIND_OF,
     MOTOR_PARTS,
     RIGHT,
     SENSOR_PARTS,
@@ -27,7 +28,7 @@ from tuisim.engine.core.spec import INPUT_PORTS, NO_PORT, OUTPUT_PORTS
 from tuisim.engine.shim.brick import MOTOR_CLASS, SENSOR_CLASS, BuiltBrick
 from tuisim.engine.shim.motor import KINDS
 
-PART_OF_KIND = {kind: part for part, kind in MOTOR_PARTS.items()}
+PART_OF_KIND = {kind: part for part, kind in MOTOR_KIND_OF.items()}
 """Classes of motors, by their kinds."""
 
 
@@ -168,7 +169,7 @@ class Plugs:
 
     def _is_there(self, part: str, port: str) -> bool:
         """Return whether a motor of a class is on a port."""
-        kind = MOTOR_PARTS[part]
+        kind = MOTOR_KIND_OF[part]
         return any(
             (motor.port, motor.kind) == (port, kind)
             for motor in self._session.sim.spec.robot.motors

@@ -12,7 +12,8 @@ from tuisim.base.data_class import dataclass
 from tuisim.engine.core.css_colors import Rgb
 from tuisim.engine.core.geometry import Pose, world_point
 from tuisim.engine.core.outline import RobotOutline, build_outline
-from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, BeaconSpec, Obstacle, RobotSpec
+from tuisim.engine.core.remote_spec import BeaconSpec
+from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, Obstacle, RobotSpec
 from tuisim.pictures.scene.floor import (
     draw_grid,
     find_field_pixels,

@@ -8,28 +8,25 @@ from dataclasses import field, replace
 from typing import Any
 
 from tuisim.base.data_class import dataclass
+from tuisim.engine.core.hub_spec import HUB_MOTORS, HUBS
 from tuisim.engine.core.sensor_places import Body
 from tuisim.engine.core.spec import (
-    INPUT_PORTS,
     NO_PORT,
-    OUTPUT_PORTS,
-    ColorSensorSpec,
-    InfraredSpec,
     MotorSpec,
     RobotSpec,
     SensorSpec,
-    TouchSpec,
-    UltrasonicSpec,
 )
 from tuisim.programs.robot.end_stops import Mechanics
 from tuisim.programs.robot.library import PAIRS, DeviceKind
 from tuisim.programs.robot.mechanics import mechanics_in
 from tuisim.programs.robot.mentions import Mention, Mentions, Pair, Where
 from tuisim.programs.robot.places import (
-    SENSOR_SPECS,
+    KINDS,
     NewSensors,
     fields_of,
+    find_path,
     mounted,
+    name_sensor,
     on_port,
     places_for,
     say_other_sides,
@@ -46,9 +43,9 @@ from tuisim.programs.robot.wheels import (
 from tuisim.programs.robot.words import side_of
 from tuisim.settings.robots import RobotChoice
 
-KINDS: Mapping[type, DeviceKind] = {spec: kind for kind, spec in SENSOR_SPECS.items()}
-"""The kind of each sensor, by the class of its spec."""
-MOTOR_KINDS_SHOWN = {"large": DeviceKind.LARGE, "medium": DeviceKind.MEDIUM}
+MOTOR_KINDS_SHOWN = {"large": DeviceKind.LARGE, "medium": DeviceKind.MEDIUM} | dict.fromkeys(
+    HUB_MOTORS, DeviceKind.MOTOR
+)
 _USUAL_PORTS = {
     DeviceKind.TOUCH: "in1",
     DeviceKind.INFRARED: "in1",
@@ -97,12 +94,14 @@ def build_robot(mentions: Mentions, name: str, usual: RobotSpec) -> BuiltRobot |
         RobotError: what the program says is impossible, such as a wheel of 0 mm.
     """
     builder = _Builder(mentions, mechanics_in(mentions), usual)
+    if usual.hub:
+        builder.parts.append(RobotPart(usual.hub, "hub"))
     motors = builder.motors()
     # A wrong size is told as such, not as the wrong place of a sensor beside the wheels.
     replace(usual, **motors)
     changes = builder.with_presses({**motors, **builder.sensors(motors)})
     changes |= builder.said_sizes(motors)
-    if all(getattr(usual, key) == value for key, value in changes.items()):
+    if not usual.hub and all(getattr(usual, key) == value for key, value in changes.items()):
         return None
     shown = "".join(letter if letter.isprintable() else "?" for letter in name)[:_MAX_NAME]
     spec = replace(usual, name=f"Robot of {shown}", **changes)
@@ -124,7 +123,7 @@ def find_shown_ports(mentions: Mentions, robot: RobotSpec) -> tuple[str, ...]:
     kinds |= {sensor.port: KINDS[type(sensor)] for sensor in robot.sensors}
     return tuple(
         port
-        for port in (*INPUT_PORTS, *OUTPUT_PORTS)
+        for port in dict.fromkeys((*robot.input_ports, *robot.output_ports))
         if port in shown or kinds.get(port) in taken_anywhere
     )
 
@@ -154,9 +153,12 @@ class _Builder:
             one.port: one.where for one in (*self.mentions.devices, *self._of_pairs()) if one.port
         }
         wheels = wheels_of(self.mentions, kinds, self.usual, self.mechanics.driven_to_stops)
-        left, right = (kinds.get(port, DeviceKind.LARGE) for port in (wheels.left, wheels.right))
+        left, right = (
+            self._motor_kind(kinds.get(port, DeviceKind.LARGE))
+            for port in (wheels.left, wheels.right)
+        )
         changes: dict[str, Any] = {"left_port": wheels.left, "right_port": wheels.right}
-        changes |= {"left_motor": _motor_kind(left), "right_motor": _motor_kind(right)}
+        changes |= {"left_motor": left, "right_motor": right}
         changes |= self._sizes(wheels.pair)
         further = [port for port in sorted(kinds) if port not in (wheels.left, wheels.right)]
         further_kinds = with_others({port: kinds[port] for port in further}, self.mentions)
@@ -186,7 +188,11 @@ class _Builder:
         """Return a motor that drives no wheel, with the end stops that the program relies on."""
         known = any(one.port == port for one in self.mentions.devices)
         low_deg, high_deg = self.mechanics.range_of(port if known else "")
-        return MotorSpec(port, _motor_kind(kind), low_deg, high_deg)
+        return MotorSpec(port, self._motor_kind(kind), low_deg, high_deg)
+
+    def _motor_kind(self, kind: DeviceKind) -> str:
+        usual = "medium" if kind is DeviceKind.MEDIUM else "large"
+        return HUBS[self.usual.hub].motor if self.usual.hub else usual
 
     def _reversed(self, wheels: WheelMotors) -> dict[str, bool]:
         """Return which wheels the program says to be mounted the other way round."""
@@ -240,7 +246,7 @@ class _Builder:
                 continue
             touches[at] = replace(touches[at], pressed_by=motor.port, pressed_at=end)
             what = f"{DeviceKind.TOUCH} on {touches[at].port} pressed by {motor.port}"
-            path = _path(touches[at])
+            path = find_path(touches[at])
             self.parts[:] = [part for part in self.parts if part.path != path]
             self.parts.append(RobotPart(what, path, press.stop.where))
         return {**changes, "touch_sensors": tuple(touches)}
@@ -324,7 +330,8 @@ class _Builder:
             if wheels.left != NO_PORT
             else "no wheels"
         )
-        self.parts.append(RobotPart(what, "left_port", wheels.where, moved or bool(medium)))
+        is_told = moved or bool(medium or self.usual.hub)
+        self.parts.append(RobotPart(what, "left_port", wheels.where, is_told))
         self._tell_sizes(changes, dict.fromkeys(changes, wheels.where))
 
     def _kinds(self, mentions: Iterable[Mention]) -> dict[str, DeviceKind]:
@@ -422,7 +429,7 @@ class _Builder:
                 if KINDS[type(sensor)] is kind and sensor not in placed.values()
             ]
             for one in needed:
-                ports = [*usual, _USUAL_PORTS[kind], *reversed(INPUT_PORTS)]
+                ports = [*usual, _USUAL_PORTS[kind], *reversed(self.usual.input_ports)]
                 if port := next((port for port in ports if port not in taken), ""):
                     taken.add(port)
                     found.append((port, one))
@@ -439,7 +446,7 @@ class _Builder:
             else:
                 placed[sensor.port] = sensor
         for sensor in moving:
-            if port := next((port for port in INPUT_PORTS if port not in placed), ""):
+            if port := next((port for port in self.usual.input_ports if port not in placed), ""):
                 placed[port] = on_port(sensor, port)
 
     def _tell_sensors(
@@ -461,12 +468,14 @@ class _Builder:
             )
             if where or usual.get(port) != sensor:
                 self.parts.append(
-                    RobotPart(f"{kind} on {port}", _path(sensor), where, usual.get(port) != sensor)
+                    RobotPart(
+                        f"{kind} on {port}", find_path(sensor), where, usual.get(port) != sensor
+                    )
                 )
         names = {sensor.name for sensor in placed.values()}
         for sensor in self.usual.sensors:
             if sensor.name not in names:
-                self.parts.append(RobotPart(f"no {_called(sensor)}", _path(sensor)))
+                self.parts.append(RobotPart(f"no {name_sensor(sensor)}", find_path(sensor)))
 
 
 def _is_there(sensor: SensorSpec, mention: Mention | None, *, by_side: bool) -> bool:
@@ -479,25 +488,3 @@ def _is_there(sensor: SensorSpec, mention: Mention | None, *, by_side: bool) -> 
         return False
     is_moved = by_side and mention.kind is DeviceKind.COLOR
     return not is_moved or side_of(mention.names) == sensor.name
-
-
-def _called(sensor: SensorSpec) -> str:
-    kind = KINDS[type(sensor)]
-    return f"{sensor.name} {kind}" if kind is DeviceKind.COLOR else str(kind)
-
-
-def _path(sensor: SensorSpec) -> str:
-    match sensor:
-        case ColorSensorSpec():
-            return f"color_sensors.{sensor.name}"
-        case TouchSpec():
-            return f"touch_sensors.{sensor.name}"
-        case UltrasonicSpec() if sensor.name != UltrasonicSpec().name:
-            return f"ultrasonics.{sensor.name}"
-        case InfraredSpec() if sensor.name != InfraredSpec().name:
-            return f"infrareds.{sensor.name}"
-    return sensor.name
-
-
-def _motor_kind(kind: DeviceKind) -> str:
-    return "medium" if kind is DeviceKind.MEDIUM else "large"

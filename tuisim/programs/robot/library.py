@@ -5,6 +5,7 @@ To add a device: add its class to `DEVICES`. To add a class that drives two whee
 
 from __future__ import annotations
 
+import ast
 import re
 from collections.abc import Mapping
 from enum import StrEnum
@@ -49,6 +50,7 @@ DEVICES: Mapping[str, DeviceKind] = {
     "GyroSensor": DeviceKind.GYRO,
     "TouchSensor": DeviceKind.TOUCH,
     "InfraredSensor": DeviceKind.INFRARED,
+    "ForceSensor": DeviceKind.TOUCH,
     "Sensor": DeviceKind.SENSOR,
     "RemoteControl": DeviceKind.INFRARED,
     "BeaconSeeker": DeviceKind.INFRARED,
@@ -105,6 +107,7 @@ PAIRS: Mapping[str, PairClass] = {
         *_PORTS, needs=(DeviceKind.GYRO, DeviceKind.TOUCH), usual=("outD", "outA")
     ),
     "DriveBase": PairClass(*_HELPER, rank=3, takes_motors=True),
+    "GyroDriveBase": PairClass(*_HELPER, rank=3, takes_motors=True),
     "Tank": PairClass(*_HELPER, rank=2),
     "LargeMotorPair": PairClass(*_HELPER),
     "MotorPair": PairClass(*_HELPER),
@@ -150,8 +153,12 @@ INVERSED, NORMAL = CONSTANTS["POLARITY_INVERSED"], CONSTANTS["POLARITY_NORMAL"]
 
 MEMBERS: Mapping[str, Mapping[str, str]] = {
     "Port": {
-        (port[-1] if port.startswith("out") else f"S{port[-1]}"): port
-        for port in (*OUTPUT_PORTS, *INPUT_PORTS)
+        **{
+            (port[-1] if port.startswith("out") else f"S{port[-1]}"): port
+            for port in (*OUTPUT_PORTS, *INPUT_PORTS)
+        },
+        "E": "outE",
+        "F": "outF",
     },
     "Direction": {"CLOCKWISE": NORMAL, "COUNTERCLOCKWISE": INVERSED},
 }
@@ -244,7 +251,7 @@ _MODES: Mapping[str, DeviceKind] = {
     "TOUCH": DeviceKind.TOUCH,
     "IR-": DeviceKind.INFRARED,
 }
-_PORT = re.compile(r"(?:ev3-ports:)?(out[A-D]|in[1-4])")
+_PORT = re.compile(r"(?:ev3-ports:)?(out[A-F]|in[1-4])")
 
 
 def port_of(text: object) -> str:
@@ -263,3 +270,14 @@ def kind_of_mode(text: object) -> DeviceKind | None:
     if not isinstance(text, str):
         return None
     return next((kind for prefix, kind in _MODES.items() if text.startswith(prefix)), None)
+
+
+def list_names(node: ast.AST) -> tuple[str, ...]:
+    """Return the names in an expression, such as that of the constant for a port."""
+    found = []
+    for inner in ast.walk(node):
+        match inner:
+            case ast.Name(id=name) | ast.Attribute(attr=name) | ast.Constant(value=str(name)):
+                if name not in CONSTANTS and not port_of(name):
+                    found.append(name)
+    return tuple(found)

@@ -14,7 +14,7 @@ from tuisim.programs.robot.evaluation import Evaluation
 from tuisim.programs.robot.library import DeviceKind, PairClass
 from tuisim.programs.robot.reach import reachable, skipped
 from tuisim.programs.robot.scopes import FUNCTIONS, Function, Parameter, Scope, scope_of
-from tuisim.programs.robot.source import Module, library_of
+from tuisim.programs.robot.source import Module, find_hub, library_of
 from tuisim.programs.robot.values import (
     Instance,
     LibraryClass,
@@ -23,6 +23,7 @@ from tuisim.programs.robot.values import (
     Parent,
     SourceCollection,
     Value,
+    is_number,
 )
 
 _ROUNDS = 3
@@ -110,6 +111,8 @@ class Mentions:
     """What its expressions can be."""
     library: Library = Library.EV3DEV2
     """The library that it uses."""
+    hub: str = ""
+    """The hub that it is for, one of `HUBS`, on whose ports it names motors and sensors; empty for the EV3."""
 
     def motor_on(self, port: str) -> Mention | None:
         """Return the first motor that the program makes on a port."""
@@ -118,14 +121,20 @@ class Mentions:
 
 def mentions_in(modules: dict[str, Module]) -> Mentions:
     """Return what a program, with its own modules, says about its robot."""
-    scopes = {name: scope_of(module) for name, module in modules.items()}
-    found = _Reader(scopes).read()
+    scopes, hub = {name: scope_of(module) for name, module in modules.items()}, find_hub(modules)
+    found = _Reader(scopes, hub).read()
+    if hub:
+        devices = tuple(replace(one, port=one.port[-1:]) for one in found.devices)
+        pairs = tuple(replace(one, left=one.left[-1:], right=one.right[-1:]) for one in found.pairs)
+        found = replace(found, devices=devices, pairs=pairs, hub=hub)
     return replace(found, library=library_of(modules) or found.library)
 
 
 @dataclass(slots=True)
 class _Reader:
     modules: dict[str, Scope]
+    hub: str
+    """As `Mentions.hub`."""
     scopes: list[Scope] = field(init=False)
     evaluation: Evaluation = field(init=False)
     made: list[tuple[str, Call]] = field(init=False, default_factory=list)
@@ -329,7 +338,7 @@ class _Reader:
             # A text that is no port of the brick names something that is not simulated.
             yield replace(made, is_any=self._takes_any(call, word))
         for port, called in dict(ports).items():
-            if port and port.startswith("out") != kind.is_motor:
+            if port and not self.hub and port.startswith("out") != kind.is_motor:
                 continue
             found = replace(made, port=port, names=called, is_any=not port)
             yield self._mounted(found, call) if kind.is_motor else found
@@ -375,7 +384,7 @@ class _Reader:
             given: Iterable[Value] = self.evaluation.find_argument(call, name, at) or ()
             yield from ((port, names) for value in given if (port := library.port_of(value)))
             return
-        own = _names_in(node)
+        own = library.list_names(node)
         parameters = (
             [one for one in call.scope.names.get(node.id, ()) if isinstance(one, Parameter)]
             if isinstance(node, ast.Name)
@@ -396,7 +405,10 @@ class _Reader:
         name = parameter.argument.arg
         at = names.index(name) - (1 if call.is_bound else 0) if name in names else None
         node = argument_node(call, name, at)
-        return (*self.hints.get(call.node, ()), *(_names_in(node) if node is not None else ()))
+        return (
+            *self.hints.get(call.node, ()),
+            *(library.list_names(node) if node is not None else ()),
+        )
 
     def _flat(self, values: Sequence[Value]) -> Iterator[Value]:
         for value in values:
@@ -438,7 +450,7 @@ class _Reader:
                     ]
                     for port in map(library.port_of, ports):
                         if port and kinds:
-                            names = _names_in(key) if key is not None else ()
+                            names = library.list_names(key) if key is not None else ()
                             yield Mention(
                                 kinds[0],
                                 port,
@@ -559,7 +571,7 @@ class _Reader:
                             [
                                 one
                                 for one in self.evaluation.find_argument(call, key, at) or ()
-                                if _is_number(one)
+                                if is_number(one)
                             ]
                             for at, key in enumerate(("diameter_mm", "width_mm"))
                         ]
@@ -602,18 +614,3 @@ def _motor_of(value: Value) -> DeviceKind | None:
     """Return the kind of motor that a class of the library is for."""
     kind = library.DEVICES.get(value.name) if isinstance(value, LibraryClass) else None
     return kind if kind and kind.is_motor else None
-
-
-def _is_number(value: Value) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool)
-
-
-def _names_in(node: ast.AST) -> tuple[str, ...]:
-    """Return the names in an expression, such as that of the constant for a port."""
-    found = []
-    for inner in ast.walk(node):
-        match inner:
-            case ast.Name(id=name) | ast.Attribute(attr=name) | ast.Constant(value=str(name)):
-                if name not in library.CONSTANTS and not library.port_of(name):
-                    found.append(name)
-    return tuple(found)

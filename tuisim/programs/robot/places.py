@@ -160,3 +160,27 @@ def fields_of(placed: Mapping[str, SensorSpec], usual: RobotSpec) -> dict[str, A
         "infrared": infrared,
         "extra_infrareds": tuple(one for one in infrareds if one is not infrared),
     }
+
+
+KINDS: Mapping[type, DeviceKind] = {spec: kind for kind, spec in SENSOR_SPECS.items()}
+"""The kind of each sensor, by the class of its spec."""
+
+
+def name_sensor(sensor: SensorSpec) -> str:
+    """Return what a sensor is called in words."""
+    kind = KINDS[type(sensor)]
+    return f"{sensor.name} {kind}" if kind is DeviceKind.COLOR else str(kind)
+
+
+def find_path(sensor: SensorSpec) -> str:
+    """Return the key of a sensor in a robot file."""
+    match sensor:
+        case ColorSensorSpec():
+            return f"color_sensors.{sensor.name}"
+        case TouchSpec():
+            return f"touch_sensors.{sensor.name}"
+        case UltrasonicSpec() if sensor.name != UltrasonicSpec().name:
+            return f"ultrasonics.{sensor.name}"
+        case InfraredSpec() if sensor.name != InfraredSpec().name:
+            return f"infrareds.{sensor.name}"
+    return sensor.name

@@ -5,20 +5,38 @@ from __future__ import annotations
 import ast
 import tomllib
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import RobotError
+from tuisim.engine.core.hub_spec import HUBS
 from tuisim.engine.core.spec import RobotSpec
 from tuisim.engine.files import Location, save_toml, toml_key, toml_lines
 from tuisim.programs.robot.assembly import BuiltRobot
 from tuisim.programs.robot.library import DEVICES, PAIRS
 from tuisim.programs.robot.mentions import Mentions
-from tuisim.settings.robots import DEFAULT_ROBOT, ROBOTS, robot_from_table, robot_lines, values_in
+from tuisim.settings.robots import (
+    DEFAULT_ROBOT,
+    HUB_ROBOT,
+    ROBOTS,
+    robot_from_table,
+    robot_lines,
+    values_in,
+)
 
 USUAL = ROBOTS[DEFAULT_ROBOT]
-"""The robot that programs change."""
+"""The robot that programs for the EV3 change."""
+
+
+def find_usual(hub: str) -> RobotSpec:
+    """Return the robot that programs for a hub change; empty for the EV3."""
+    if not hub:
+        return USUAL
+    motor = HUBS[hub].motor
+    hub_robot = ROBOTS[HUB_ROBOT]
+    return replace(hub_robot, hub=hub, left_motor=motor, right_motor=motor, left_reversed=False)
 
 
 def hides_parts(mentions: Mentions) -> bool:
@@ -55,12 +73,13 @@ class ProgramRobot:
 
     def list_lines(self) -> list[str]:
         """Return the lines of a robot file with what the program changes in the default robot, and why."""
+        base = HUB_ROBOT if self.spec.hub else DEFAULT_ROBOT
         lines = [
-            f"# The robot that {self.program} describes: {DEFAULT_ROBOT} with these parts changed. "
+            f"# The robot that {self.program} describes: {base} with these parts changed. "
             "-r takes this file.",
             "# Lengths in mm, angles in degrees; x to the right of the midpoint between the wheels, y forward of it.",
         ]
-        top = f'base = "{DEFAULT_ROBOT}"'
+        top = f'base = "{base}"'
         built = self.built
         if built is None:
             return [
@@ -72,8 +91,8 @@ class ProgramRobot:
             ]
         lines += [f"# Another reading is possible: {doubt}." for doubt in built.doubts]
         same = [part for part in built.parts if not part.changes and part.where]
-        lines += [f"# As in {DEFAULT_ROBOT}: {part.what} ({part.where})." for part in same]
-        changed = _difference(_table(built.choice.spec), _table(USUAL))
+        lines += [f"# As in {base}: {part.what} ({part.where})." for part in same]
+        changed = _difference(_table(built.choice.spec), _table(ROBOTS[base]))
         said = {
             part.path: f"{part.where}: {part.what}" if part.where else part.what
             for part in built.parts

@@ -15,9 +15,8 @@ from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ConfigError
 from tuisim.base.repository import find_module_folder
 from tuisim.base.source import (
+    HUB_DEVICES,
     LIBRARIES,
-    OTHER_HUB_DEVICES,
-    OTHER_HUBS,
     PYBRICKS,
     SPIKE_MODULES,
     Program,
@@ -25,6 +24,7 @@ from tuisim.base.source import (
 )
 from tuisim.base.syntax_tree import parse_module
 from tuisim.engine.brick_home import place_folder
+from tuisim.engine.core.hub_spec import HUBS
 from tuisim.engine.core.profile import Library
 from tuisim.engine.files import read_bytes
 from tuisim.programs.robot.search_path import added_folders, first_folders, own_folder
@@ -173,11 +173,22 @@ def _imported(module: Module) -> Iterator[str]:
 
 
 def is_for_other_hub(modules: dict[str, Module]) -> bool:
-    """Return whether a program, or one of its own modules, imports what only hubs other than the EV3 have."""
+    """Return whether a program, or one of its own modules, imports what only LEGO's Python for SPIKE hubs has."""
     names = {name for module in modules.values() for name in _imported(module)} - {*modules}
-    other = {*SPIKE_MODULES, OTHER_HUB_DEVICES, *(f"pybricks.hubs.{hub}" for hub in OTHER_HUBS)}
-    ours = {"pybricks.hubs.EV3Brick", "pybricks.ev3devices", "ev3dev2", "ev3dev"}
-    return bool(names & other) and not names & ours
+    return bool(names & {*SPIKE_MODULES}) and not names & {*OF_EV3, HUB_DEVICES, "pybricks.hubs"}
+
+
+OF_EV3 = frozenset({"pybricks.hubs.EV3Brick", "pybricks.ev3devices", "ev3dev2", "ev3dev"})
+"""What only programs for the EV3 import."""
+
+
+def find_hub(modules: dict[str, Module]) -> str:
+    """Return which of `HUBS` a program, with its own modules, is for; empty for the EV3, or none."""
+    names = {name: None for module in modules.values() for name in _imported(module)}
+    if not names.keys().isdisjoint(OF_EV3):
+        return ""
+    named = [hub for name in names if (hub := name.removeprefix("pybricks.hubs.")) in HUBS]
+    return named[0] if named else "PrimeHub" if HUB_DEVICES in names else ""
 
 
 def library_of(modules: dict[str, Module]) -> Library | None:

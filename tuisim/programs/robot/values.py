@@ -97,3 +97,8 @@ Value: TypeAlias = (
     | Parent
     | SourceCollection
 )
+
+
+def is_number(value: Value) -> bool:
+    """Return whether a value is a number, and not True or False."""
+    return isinstance(value, int | float) and not isinstance(value, bool)

@@ -5,10 +5,12 @@ from __future__ import annotations
 import ast
 import math
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from itertools import combinations
 
 from tuisim.base.data_class import dataclass
+from tuisim.engine.core.hub_spec import HUB_PORTS
 from tuisim.engine.core.profile import Library
-from tuisim.engine.core.spec import NO_PORT, OUTPUT_PORTS, RobotSpec
+from tuisim.engine.core.spec import NO_PORT, RobotSpec
 from tuisim.programs.robot.library import DeviceKind
 from tuisim.programs.robot.mentions import Mention, Mentions, Pair, Where
 from tuisim.programs.robot.scopes import Bound, Parameter, Scope
@@ -31,6 +33,7 @@ _USUAL = (
     ("outC", "outD"),
     ("outA", "outC"),
     ("outB", "outD"),
+    *combinations(HUB_PORTS, 2),
 )
 """Pairs of ports, those that robots have most often first."""
 
@@ -158,7 +161,7 @@ def _left_over(
         for port in ports
         if kinds.get(port, DeviceKind.LARGE) is not DeviceKind.MEDIUM and port not in tools
     ]
-    free = [*stay, *(port for port in OUTPUT_PORTS if port not in kinds and port not in stay)]
+    free = [*stay, *(port for port in usual.output_ports if port not in kinds and port not in stay)]
     if len(free) >= 2:
         left = usual.left_port if usual.left_port in free else _other(free, usual.right_port)
         right = usual.right_port if usual.right_port in free else _other(free, left)
@@ -200,7 +203,7 @@ def _with_medium(
     kinds: Mapping[str, DeviceKind], mentions: Mentions, others: list[str]
 ) -> dict[str, DeviceKind]:
     """Return kinds with one or two other motors than those of the wheels as medium ones, as in LEGO's sets."""
-    if mentions.library is not Library.PYBRICKS or len(others) > _MOST_MEDIUM:
+    if mentions.library is not Library.PYBRICKS or mentions.hub or len(others) > _MOST_MEDIUM:
         return dict(kinds)
     unsaid = [
         port

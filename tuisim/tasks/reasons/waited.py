@@ -20,12 +20,12 @@ from tuisim.base.source import Program
 from tuisim.engine.core.columns import COLOR_NAMES
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.profile import NS_PER_S, Library
+from tuisim.engine.core.remote_spec import REMOTE_BY_HAND
 from tuisim.engine.core.sensors import build_mounted_sensor
 from tuisim.engine.core.sensors.color import find_color_code
 from tuisim.engine.core.spec import (
     BUTTONS,
     INPUT_PORTS,
-    REMOTE_BY_HAND,
     TOUCH,
     ColorSensorSpec,
     InfraredSpec,

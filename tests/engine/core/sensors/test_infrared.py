@@ -5,8 +5,9 @@ from __future__ import annotations
 import pytest
 
 from tuisim.engine.core.geometry import Pose
+from tuisim.engine.core.remote_spec import BeaconSpec, RemotePress
 from tuisim.engine.core.sensors.infrared import compute_remote_bits, proximity, remote, seek
-from tuisim.engine.core.spec import BeaconSpec, InfraredSpec, Obstacle, RemotePress, WorldSpec
+from tuisim.engine.core.spec import InfraredSpec, Obstacle, WorldSpec
 
 EYE = InfraredSpec(x_mm=0, y_mm=50)
 

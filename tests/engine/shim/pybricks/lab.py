@@ -9,13 +9,16 @@ from typing import Any, cast
 from tuisim.engine.core.driver.plant import Axle, PlantSpec
 from tuisim.engine.core.profile import PROFILES, MotorLaw
 from tuisim.engine.core.servo.bases import DriveBases
+from tuisim.engine.core.servo.hub_motors import MOTORS
 from tuisim.engine.core.servo.motor import ServoMotor
 from tuisim.engine.core.servo.settings import BATTERY_V
 from tuisim.engine.core.simulation import CommandHook
+from tuisim.engine.core.spec import RobotSpec
 from tuisim.engine.runs.records import Stream
 from tuisim.engine.shim.display import Screen
 from tuisim.engine.shim.pybricks.brick import Brick, Connected
 from tuisim.engine.shim.sound import Mixer
+from tuisim.settings.robots import ROBOTS
 
 TICK_NS = 10_000_000
 RECORDED_PLANTS = {
@@ -28,12 +31,25 @@ RECORDED_PLANTS = {
 class MotorsOnly:
     """A simulation without a robot: it obeys commands to motors and drive bases."""
 
-    spec = SimpleNamespace(profile=PROFILES["lego-micropython"])
-
-    def __init__(self, motors: list[ServoMotor]) -> None:
+    def __init__(self, motors: list[ServoMotor], hub: str, robot: dict[str, float]) -> None:
+        usual = ROBOTS["Prime_Robot"] if hub else RobotSpec()
+        self.spec = SimpleNamespace(profile=PROFILES["lego-micropython"], robot=usual)
+        self._robot, self.zero_deg = robot, 0.0
         self.motors, self.bases = motors, DriveBases()
         self.find_number = motors.index
         self.on_command: CommandHook = lambda *_: None
+
+    @property
+    def gyro_deg(self) -> float:
+        """The heading that a gyro shows, clockwise, with its errors."""
+        robot, (left, right) = self._robot, self.motors
+        ways = (left.position_deg * left.sign * robot["left"], right.position_deg * robot["right"])
+        turned_deg = (ways[0] - ways[1]) / 2 / robot["track"]
+        return turned_deg * robot["scale"] + self.zero_deg
+
+    def reset_gyro(self, shown_deg: float) -> None:
+        """Let the gyro show another heading: of a robot with motors only, it shows 0."""
+        self.zero_deg += shown_deg - self.gyro_deg if self._robot else 0.0
 
 
 class Lab:
@@ -45,19 +61,28 @@ class Lab:
         stop_deg: Where an end stop blocks every motor, to either side; None for nowhere.
     """
 
-    def __init__(self, law: MotorLaw, kinds: dict[str, str], stop_deg: float | None = None) -> None:
+    def __init__(
+        self,
+        law: MotorLaw,
+        kinds: dict[str, str],
+        stop_deg: float | None = None,
+        hub: str = "",
+        robot: dict[str, float] | None = None,
+    ) -> None:
+        plants = RECORDED_PLANTS | {kind: motor.plant for kind, motor in MOTORS.items()}
         self.motors = {
-            port: ServoMotor(100, law, kind, Axle(RECORDED_PLANTS[kind], BATTERY_V))
+            port: ServoMotor(100, law, kind, Axle(plants[kind], BATTERY_V))
             for port, kind in kinds.items()
         }
         self.now = self.tick = 0
         self.free = 1
         """The recordings have no costs of calls."""
         self.stop_deg, self.held_up = stop_deg, ""
+        self.pressed: frozenset[str] = frozenset()
         self.until_ns = 1 << 62
         self.shown: list[tuple[str, Stream]] = []
         self.looks: list[Callable[[int], None]] = []
-        self.sim = MotorsOnly([*self.motors.values()])
+        self.sim = MotorsOnly([*self.motors.values()], hub, robot or {})
         built: Any = SimpleNamespace(motors=self.motors, sensors={}, lights=None, battery=None)
         plugs: Any = SimpleNamespace(
             add=lambda *_: False,

@@ -90,7 +90,7 @@ def test_tasks_run_side_by_side(base: DriveBase) -> None:
 
     assert run_task(main()) == ("there", None)
     assert [name for name, _ in told] == ["blinked", "driven"]
-    assert [at for _, at in told] == pytest.approx([300, 860], abs=10)
+    assert [at for _, at in told] == pytest.approx([300, 875], abs=10)
     assert not run_task()
 
 

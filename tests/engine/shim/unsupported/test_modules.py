@@ -170,8 +170,6 @@ def test_the_guide_names_each_module(name: str, root: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "profile", "told"),
     [
-        ("from pybricks.hubs import PrimeHub", "lego-micropython", "tuisim simulates the EV3"),
-        ("from pybricks.pupdevices import Motor", "lego-micropython", "tuisim simulates the EV3"),
         (
             "import motor, runloop",
             "ev3",

@@ -17,6 +17,7 @@ class Call(IntEnum):
     RESET_GYRO = 0
     MOVE_PEN = 1
     PLUG = 2
+    SET_GYRO = 3
     # A motor of a brick or of the browser simulator.
     RUN = 10
     RUN_UNTIL = 11
@@ -56,6 +57,8 @@ class Call(IntEnum):
     STOP_BASE = 63
     SET_BASE = 64
     SET_BASE_CONTROL = 65
+    USE_GYRO = 66
+    SET_SLOWING = 67
 
 
 class SimulationCommand(NamedTuple):

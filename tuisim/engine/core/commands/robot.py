@@ -5,32 +5,28 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from tuisim.engine.core.plugged import MOTOR_PARTS, ROLES, SENSOR_PARTS, PluggedPart, plug_parts
-from tuisim.engine.core.spec import INPUT_PORTS, OUTPUT_PORTS
+from tuisim.engine.core.plugged import PART_CODES, PluggedPart, plug_parts
 
 if TYPE_CHECKING:
     from tuisim.engine.core.simulation import Simulation
 
-_PARTS = (*MOTOR_PARTS, *SENSOR_PARTS)
-_PORTS = (*OUTPUT_PORTS, *INPUT_PORTS)
-PART_CODES = len(_PARTS) * len(_PORTS) * len(ROLES)
-"""How many codes of parts there are."""
+_PLACES = {code: place for place, code in PART_CODES.items()}
+"""The role, the port and the class of a part, by their code."""
 
 
 def encode_parts(parts: Iterable[PluggedPart]) -> tuple[float, ...]:
     """Return what `PLUG` takes for parts: a number for each."""
-    return tuple(
-        float(
-            (ROLES.index(part.role) * len(_PORTS) + _PORTS.index(part.port)) * len(_PARTS)
-            + _PARTS.index(part.part)
-        )
-        for part in parts
-    )
+    return tuple(float(PART_CODES[part.role, part.port, part.part]) for part in parts)
 
 
 def reset_gyro(sim: Simulation, _time_ns: int, _part: int, _values: tuple[float, ...]) -> None:
     """Make the current heading the gyro's 0."""
     sim.reset_gyro()
+
+
+def set_gyro(sim: Simulation, _time_ns: int, _part: int, values: tuple[float, ...]) -> None:
+    """Let the gyro show a heading in degrees, clockwise."""
+    sim.reset_gyro(values[0])
 
 
 def move_pen(sim: Simulation, _time_ns: int, _part: int, values: tuple[float, ...]) -> None:
@@ -52,12 +48,10 @@ def decode_parts(values: Iterable[float], tick: int) -> list[PluggedPart]:
     """Return the parts that `PLUG` plugs in at a tick.
 
     Raises:
-        ValueError, IndexError: they are no parts.
+        ValueError: they are no parts.
     """
-    return [_decode_part(int(code), tick) for code in values if code == code]
-
-
-def _decode_part(code: int, tick: int) -> PluggedPart:
-    rest, part = divmod(code, len(_PARTS))
-    role, port = divmod(rest, len(_PORTS))
-    return PluggedPart(_PORTS[port], _PARTS[part], tick, 0, ROLES[role])
+    codes = [int(code) for code in values if code == code]
+    if not _PLACES.keys() >= {*codes}:
+        raise ValueError(f"no parts: {codes!r}")
+    places = map(_PLACES.__getitem__, codes)
+    return [PluggedPart(port, part, tick, 0, role) for role, port, part in places]

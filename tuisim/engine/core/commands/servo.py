@@ -152,7 +152,19 @@ def stop_base(sim: Simulation, time_ns: int, part: int, values: tuple[float, ...
 def set_base(sim: Simulation, _time_ns: int, part: int, values: tuple[float, ...]) -> None:
     """Set how it usually moves."""
     speed, acceleration, turn_rate, turn_acceleration = map(int, values)
-    _find_base(sim, part).usual = speed, acceleration, turn_rate, turn_acceleration
+    _find_base(sim, part).set_usual((speed, acceleration, turn_rate, turn_acceleration))
+
+
+def set_slowing(sim: Simulation, _time_ns: int, part: int, values: tuple[float, ...]) -> None:
+    """Set how a drive base stops, otherwise than it speeds up."""
+    straight, turn = map(int, values)
+    _find_base(sim, part).set_slowing(straight, turn)
+
+
+def use_gyro(sim: Simulation, time_ns: int, part: int, values: tuple[float, ...]) -> None:
+    """Let the gyro tell the heading, or the wheels."""
+    find_heading = (lambda: sim.gyro_deg) if values[0] else None
+    _find_base(sim, part).use_gyro(time_ns // 1000, find_heading)
 
 
 def set_base_control(sim: Simulation, _time_ns: int, part: int, values: tuple[float, ...]) -> None:

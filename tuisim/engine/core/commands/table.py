@@ -10,6 +10,7 @@ from tuisim.base.data_class import dataclass
 from tuisim.engine.core.commands import driver, motors, robot, servo
 from tuisim.engine.core.commands.calls import MAX_NUMBER, MAX_VALUES, Call
 from tuisim.engine.core.motors import MEDIUM_MAX_SPEED_DPS
+from tuisim.engine.core.plugged import PART_CODES
 from tuisim.engine.core.profile import MotorLaw
 from tuisim.engine.core.servo.settings import FULL_ACTUATION
 
@@ -20,6 +21,7 @@ Range = tuple[float, float]
 
 ALL_LAWS = frozenset(MotorLaw)
 DRIVEN_LAWS = frozenset({MotorLaw.BRICK, MotorLaw.NBEV3DEVSIM})
+PYBRICKS_4 = frozenset({MotorLaw.PYBRICKS_4})
 SERVO_LAWS = frozenset({MotorLaw.PYBRICKS, MotorLaw.PYBRICKS_4})
 _ANY: Range = -MAX_NUMBER, MAX_NUMBER
 _POSITIVE: Range = 0.0, MAX_NUMBER
@@ -59,10 +61,11 @@ class CallSpec:
 
 CALLS: Mapping[Call, CallSpec] = {
     Call.RESET_GYRO: CallSpec(robot.reset_gyro, target=Target.ROBOT),
+    Call.SET_GYRO: CallSpec(robot.set_gyro, (_ANY,), PYBRICKS_4, target=Target.ROBOT),
     Call.MOVE_PEN: CallSpec(robot.move_pen, (_FLAG,), target=Target.ROBOT),
     Call.PLUG: CallSpec(
         robot.plug_in,
-        ((0.0, robot.PART_CODES - 1.0),) * MAX_VALUES,
+        ((0.0, float(max(PART_CODES.values()))),) * MAX_VALUES,
         may_be_missing=True,
         target=Target.ROBOT,
     ),
@@ -122,6 +125,10 @@ CALLS: Mapping[Call, CallSpec] = {
         SERVO_LAWS,
         target=Target.BASE,
     ),
+    Call.SET_SLOWING: CallSpec(
+        servo.set_slowing, (_POSITIVE, _POSITIVE), PYBRICKS_4, target=Target.BASE
+    ),
+    Call.USE_GYRO: CallSpec(servo.use_gyro, (_FLAG,), PYBRICKS_4, target=Target.BASE),
 }
 EFFECTS = {call: spec.apply for call, spec in CALLS.items()}
 """What each call does, for a quick look-up."""

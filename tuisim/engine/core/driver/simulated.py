@@ -57,8 +57,14 @@ def load_wheel(plant: PlantSpec, robot: RobotSpec) -> PlantSpec:
 
 def choose_plant(spec: RunSpec, kind: str, *, free: bool) -> PlantSpec:
     """Return the constants of a motor with what it moves: a wheel with its share of the robot, unless it is free."""
-    plant = MODELS[kind].plant
+    plant = MODELS[kind].plant if kind in MODELS else _find_hub_plant(kind)
     return plant if free else load_wheel(plant, spec.robot)
+
+
+def _find_hub_plant(kind: str) -> PlantSpec:
+    from tuisim.engine.core.servo.hub_motors import MOTORS
+
+    return MOTORS[kind].plant
 
 
 def build_motor(spec: RunSpec, kind: str, *, free: bool) -> SimulatedMotor:

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 
 from tuisim.engine.core.columns import Column
 from tuisim.engine.core.geometry import Pose, world_point
+from tuisim.engine.core.remote_spec import REMOTE_BY_HAND, REMOTE_CODES
 from tuisim.engine.core.sensors.ultrasonic import find_first_hit_mm, find_surfaces
-from tuisim.engine.core.spec import REMOTE_BY_HAND, REMOTE_CODES, InfraredSpec, RunSpec, WorldSpec
+from tuisim.engine.core.spec import InfraredSpec, RunSpec, WorldSpec
 
 if TYPE_CHECKING:
     from tuisim.engine.core.field import Field

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from tuisim.engine.core.columns import Column
 from tuisim.engine.core.end_stops import end_flag
 from tuisim.engine.core.geometry import Pose, world_point
+from tuisim.engine.core.hub_spec import HUB_PORTS
 from tuisim.engine.core.spec import (
     FIELD_HEIGHT_MM,
     FIELD_WIDTH_MM,
@@ -23,6 +24,11 @@ if TYPE_CHECKING:
     from tuisim.engine.core.field import Field
     from tuisim.engine.core.state import Instant
 
+_PORTS_OF_FLAG = tuple(
+    frozenset((port, *HUB_PORTS[number :: len(INPUT_PORTS)]))
+    for number, port in enumerate(INPUT_PORTS)
+)
+"""The ports of each flag: of a hub's six, E has that of A, and F that of B."""
 REACH_MM = 2.0
 """The bumper reacts at this distance: it gives way before the robot is stopped."""
 
@@ -57,8 +63,8 @@ def find_hand_flags(pressed: Collection[str]) -> int:
     """
     return sum(
         FLAG_FIRST_HAND << number
-        for number, port in enumerate(INPUT_PORTS)
-        if port in pressed or TOUCH in pressed
+        for number in range(len(INPUT_PORTS))
+        if TOUCH in pressed or not _PORTS_OF_FLAG[number].isdisjoint(pressed)
     )
 
 

@@ -49,6 +49,7 @@ class Controller:
         "_stalled_us",
         "duty_limit",
         "settings",
+        "settles",
         "timed",
         "trajectory",
     )
@@ -59,6 +60,8 @@ class Controller:
         """None while it is passive."""
         self.timed = False
         """Whether it controls the speed, not the position."""
+        self.settles = False
+        """Whether a motion for a time is done only when the motor has come to rest."""
         self.duty_limit: int | None = None
         """Highest power of the current move, in hundredths of a percent; None for that of the settings."""
         self._paused_us = 0
@@ -137,6 +140,7 @@ class Controller:
         acceleration: int,
         *,
         relative: bool = False,
+        deceleration: int | None = None,
     ) -> None:
         """Begin a move to a position.
 
@@ -144,22 +148,21 @@ class Controller:
             measured: Returns where the motion is, from which it begins if this controller is passive.
             target: Where it shall end, in counts.
             rate, acceleration: How.
+            deceleration: How it stops; None for the acceleration.
             relative: Whether `target` counts from where the motion begins.
 
         Raises:
             ValueError: the rate is 0, or the move takes too long.
         """
         settings = self.settings
-        rate, acceleration = (
-            min(abs(rate), settings.speed),
-            min(abs(acceleration), settings.acceleration),
-        )
+        rate, acceleration = min(abs(rate), settings.speed), self._limit(acceleration)
         start, spliced = self._find_start(now_us, measured)
         if relative:
             target += divide(start.milli, MILLI)
-        trajectory = build_angle_move(start, target, rate, acceleration, settings.speed)
+        how = target, rate, acceleration, settings.speed, deceleration
+        trajectory = build_angle_move(start, *how)
         if spliced is not None and trajectory.first.acceleration == start.acceleration:
-            trajectory = build_angle_move(spliced, target, rate, acceleration, settings.speed)
+            trajectory = build_angle_move(spliced, *how)
         self._begin(trajectory, timed=False)
 
     def match_pace(self, other: Controller) -> None:
@@ -188,7 +191,7 @@ class Controller:
         if time_us is None and self._is_running_evenly(now_us, rate):
             return
         settings = self.settings
-        acceleration = min(abs(acceleration), settings.acceleration)
+        acceleration = self._limit(acceleration)
         start, spliced = self._find_start(now_us, measured)
         if time_us is None:
             trajectory = build_endless_move(start, rate, acceleration, settings.speed)
@@ -207,6 +210,12 @@ class Controller:
         )
         self._begin(trajectory, timed=True)
         self._behind_milli = behind_milli
+
+    def _limit(self, acceleration: int) -> int:
+        """Return the size of an acceleration, at most that of the settings where the firmware limits it."""
+        if self.settings.speed_window_ms:
+            return abs(acceleration)
+        return min(abs(acceleration), self.settings.acceleration)
 
     def _is_running_evenly(self, now_us: int, rate: int) -> bool:
         """Return whether a motion at a rate has reached it, so that the same command changes nothing."""
@@ -297,7 +306,20 @@ class Controller:
             return self.trajectory is None
         if now_us < end_us:
             return False
-        if self.timed:
+        window_us = self.settings.speed_window_ms * MS_US
+        if self.timed and not (window_us and self.settles):
             return True
         near = abs(self.milli(now_us) - milli) <= self.settings.position_tolerance * MILLI
+        if near and window_us:
+            rate = self._mean_rate(now_us, milli, window_us)
         return near and abs(rate) < self.settings.speed_tolerance
+
+    def _mean_rate(self, now_us: int, milli: int, window_us: int) -> int:
+        """Return the mean rate over a time until now."""
+        assert self.trajectory is not None
+        begin_us = max(now_us - window_us, self.trajectory.first.start_us + self._paused_us)
+        return (milli - self.milli(begin_us)) * (1_000_000 // window_us) // MILLI
+
+    def lets_go(self, now_us: int, _ending: Ending) -> bool:
+        """Return whether a motor that has arrived stops following; see `motor.Guide`."""
+        return self.done(now_us, self.milli(now_us), 0)

@@ -5,17 +5,28 @@ The sum is how far the robot drives, the difference how far it turns, clockwise 
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import replace
 from math import pi
 from typing import TYPE_CHECKING
 
 from tuisim.engine.core.motors import FOREVER
 from tuisim.engine.core.servo.control import Controller, Ending
 from tuisim.engine.core.servo.motor import ServoMotor
-from tuisim.engine.core.servo.settings import FIRMWARES, ControlSettings, combine_settings
-from tuisim.engine.core.servo.trajectory import Measure, Segment
+from tuisim.engine.core.servo.settings import (
+    COUNTS_PER_DEG,
+    FIRMWARES,
+    ControlSettings,
+    combine_settings,
+)
+from tuisim.engine.core.servo.trajectory import MILLI, Measure, Segment
 
 if TYPE_CHECKING:
     from tuisim.engine.core.profile import MotorLaw
+
+
+COUNTS_PER_STEP = 2 * COUNTS_PER_DEG / 1000
+"""Counts of the sum of two motors per thousandth of a degree of one."""
 
 
 def compute_base_settings(
@@ -38,7 +49,9 @@ def compute_usual_settings(
     def scale(control: ControlSettings, counts: int, fraction: tuple[int, int]) -> int:
         if firmware.divides_units:
             return control.units(counts) * fraction[0] // fraction[1]
-        return round(counts * fraction[0] / fraction[1] / control.counts_per_unit)
+        # As in the firmware, which has whole thousandths of a motor's degree per unit.
+        steps_per_unit = int(control.counts_per_unit / COUNTS_PER_STEP + 1e-3)
+        return int(counts * fraction[0] / fraction[1] / COUNTS_PER_STEP) // steps_per_unit
 
     return (
         scale(distance, distance.speed, firmware.straight_speed),
@@ -49,12 +62,18 @@ def compute_usual_settings(
 
 
 def _move_relative(
-    control: Controller, now_us: int, measured: Measure, way: float, speed: int, acceleration: int
+    control: Controller,
+    now_us: int,
+    measured: Measure,
+    way: float,
+    speed: int,
+    acceleration: int,
+    deceleration: int | None,
 ) -> None:
     counts = control.settings.counts
     target = counts(int(way)) if way == int(way) else round(way * control.settings.counts_per_unit)
     control.move_to_position(
-        now_us, measured, target, counts(speed), counts(acceleration), relative=True
+        now_us, measured, target, speed, acceleration, relative=True, deceleration=deceleration
     )
 
 
@@ -69,7 +88,12 @@ class DriveBase:
     __slots__ = (
         "_at_us",
         "_behind_us",
+        "_ending",
+        "_find_heading",
         "_millis",
+        "_offset",
+        "_pace",
+        "_slowing",
         "distance",
         "heading",
         "left",
@@ -90,6 +114,15 @@ class DriveBase:
         """Controls the difference; its units are degrees."""
         self.usual = compute_usual_settings(left.law, self.distance.settings, self.heading.settings)
         """How it moves, unless the program says something else; in mm and degrees."""
+        self._pace = self._count_usual()
+        """The same in counts; until the program sets it, not rounded to whole units."""
+        self._slowing: tuple[int | None, int | None] = None, None
+        """How it stops straight moves and turns, in counts; None as it speeds up."""
+        self._ending = Ending.HOLD
+        self._find_heading: Callable[[], float] | None = None
+        """Returns the heading that a gyro shows, in degrees, clockwise; None while the wheels tell the heading."""
+        self._offset = 0
+        """How far the difference of the motors is ahead of the gyro, in thousandths of a count."""
         self._at_us, self._behind_us, self._millis = -1, -1, (0, 0)
 
     # What the program sees
@@ -102,7 +135,8 @@ class DriveBase:
     def find_millis(self, now_us: int) -> tuple[int, int]:
         """Return sum and difference, in thousandths of a count."""
         left, right = self.left.find_milli(now_us), self.right.find_milli(now_us)
-        return left + right, left - right
+        self._follow_gyro()
+        return left + right, left - right - self._offset
 
     def find_rates(self, now_us: int) -> tuple[int, int]:
         """Return the rates of sum and difference, in counts per second."""
@@ -111,17 +145,94 @@ class DriveBase:
 
     def done(self, now_us: int) -> bool:
         """Return whether no move is under way."""
+        if self._ends_at_once and (end_us := self.end_us) is not None:
+            return now_us >= end_us
         (total, difference), rates = self.find_millis(now_us), self.find_rates(now_us)
         return self.distance.done(now_us, total, rates[0]) and self.heading.done(
             now_us, difference, rates[1]
         )
 
     @property
+    def _ends_at_once(self) -> bool:
+        """Whether a move ends with its trajectory: the controller that has nothing to do is done then."""
+        windowed = self.distance.settings.speed_window_ms > 0
+        return windowed and self._ending in (Ending.COAST, Ending.BRAKE)
+
+    def lets_go(self, now_us: int, ending: Ending) -> bool:
+        """Return whether a motor that has arrived stops following; see `motor.Guide`."""
+        return self.done(now_us)
+
+    @property
     def stalled(self) -> bool:
         """Whether something has blocked the robot."""
         return self.distance.stalled or self.heading.stalled
 
+    # The gyro
+
+    @property
+    def uses_gyro(self) -> bool:
+        """Whether a gyro tells the heading."""
+        return self._find_heading is not None
+
+    def use_gyro(self, now_us: int, find_heading: Callable[[], float] | None) -> None:
+        """Let a gyro tell the heading from now on, or the wheels again; the motors coast.
+
+        Args:
+            find_heading: Returns the heading in degrees, clockwise; None for the wheels.
+        """
+        self.stop(now_us, None)
+        self._find_heading, self._offset = find_heading, 0
+        window_ms = 0 if find_heading else self.distance.settings.speed_window_ms
+        self.heading.settings = replace(self.heading.settings, speed_window_ms=window_ms)
+
+    def _follow_gyro(self) -> None:
+        """Take note of how far the motors have turned the robot otherwise than the gyro shows."""
+        if self._find_heading is not None:
+            counts = self._find_heading() * self.heading.settings.counts_per_unit
+            self._offset = self.left.milli - self.right.milli - round(counts * MILLI)
+
     # Commands
+
+    def _count_usual(self) -> tuple[int, int, int, int]:
+        """Return how a new base moves, in counts."""
+        firmware, distance, heading = (
+            FIRMWARES[self.left.law],
+            self.distance.settings,
+            self.heading.settings,
+        )
+        if firmware.divides_units:
+            return self._count(self.usual)
+        limits = (distance.speed, distance.acceleration, heading.speed, heading.acceleration)
+        fractions = (
+            firmware.straight_speed,
+            firmware.straight_acceleration,
+            firmware.turn_rate,
+            firmware.turn_acceleration,
+        )
+        speed, acceleration, rate, turn_acceleration = (
+            limit * part // whole for limit, (part, whole) in zip(limits, fractions, strict=True)
+        )
+        return speed, acceleration, rate, turn_acceleration
+
+    def _count(self, usual: tuple[int, int, int, int]) -> tuple[int, int, int, int]:
+        distance, heading = self.distance.settings.counts, self.heading.settings.counts
+        return distance(usual[0]), distance(usual[1]), heading(usual[2]), heading(usual[3])
+
+    def set_usual(self, usual: tuple[int, int, int, int]) -> None:
+        """Set how it usually moves, in mm and degrees; a value that stays is as exact as before."""
+        speed, acceleration, rate, turn_acceleration = (
+            before if value == known else count
+            for value, known, before, count in zip(
+                usual, self.usual, self._pace, self._count(usual), strict=True
+            )
+        )
+        self._slowing = None, None
+        self.usual, self._pace = usual, (speed, acceleration, rate, turn_acceleration)
+
+    def set_slowing(self, straight: int, turn: int) -> None:
+        """Set how it stops straight moves and turns, in mm and degrees per second squared."""
+        counts = self.distance.settings.counts, self.heading.settings.counts
+        self._slowing = counts[0](straight), counts[1](turn)
 
     def move(
         self, now_us: int, distance_mm: float, turn_deg: float, ending: Ending = Ending.HOLD
@@ -135,11 +246,13 @@ class DriveBase:
             ValueError: the usual speed is 0, or the move takes too long.
         """
         self._begin(now_us)
-        speed, acceleration, turn_rate, turn_acceleration = self.usual
-        _move_relative(self.distance, now_us, self._measure_total, distance_mm, speed, acceleration)
+        speed, acceleration, turn_rate, turn_acceleration = self._pace
+        stop, turn_stop = self._slowing
         _move_relative(
-            self.heading, now_us, self._measure_difference, turn_deg, turn_rate, turn_acceleration
+            self.distance, now_us, self._measure_total, distance_mm, speed, acceleration, stop
         )
+        turning = turn_rate, turn_acceleration, turn_stop
+        _move_relative(self.heading, now_us, self._measure_difference, turn_deg, *turning)
         if distance_mm and turn_deg:
             fast, slow = sorted((self.distance, self.heading), key=lambda one: one.end_us or 0)
             fast.match_pace(slow)
@@ -153,10 +266,13 @@ class DriveBase:
         self._begin(now_us)
         distance, heading = self.distance, self.heading
         ours, other = distance.settings, heading.settings
-        distance.run(now_us, self._measure_total, ours.counts(speed_mm_s), ours.acceleration)
-        heading.run(
-            now_us, self._measure_difference, other.counts(turn_rate_dps), other.acceleration
+        accelerations = (
+            (self._pace[1], self._pace[3])
+            if ours.speed_window_ms
+            else (ours.acceleration, other.acceleration)
         )
+        distance.run(now_us, self._measure_total, ours.counts(speed_mm_s), accelerations[0])
+        heading.run(now_us, self._measure_difference, other.counts(turn_rate_dps), accelerations[1])
         self._at_us = -1
         if not runs:
             self._take(Ending.HOLD)
@@ -174,7 +290,8 @@ class DriveBase:
 
     def _measure_difference(self, now_us: int) -> Segment:
         left, right = self.left.measure_start(now_us), self.right.measure_start(now_us)
-        return Segment(now_us, left.milli - right.milli, left.rate - right.rate, 0)
+        self._follow_gyro()
+        return Segment(now_us, left.milli - right.milli - self._offset, left.rate - right.rate, 0)
 
     def _begin(self, now_us: int) -> None:
         """Make the controllers passive unless they move both motors; let go of one that is left."""
@@ -187,6 +304,7 @@ class DriveBase:
 
     def _take(self, ending: Ending) -> None:
         self._at_us = self._behind_us = -1
+        self._ending = ending
         for motor in self.motors:
             motor.follow(self, ending)
 
@@ -201,9 +319,10 @@ class DriveBase:
     def find_target(self, now_us: int, motor: ServoMotor) -> int:
         """Return where a motor is wanted to be."""
         if now_us != self._at_us:
+            self._follow_gyro()
             self._at_us, self._millis = (
                 now_us,
-                (self.distance.milli(now_us), self.heading.milli(now_us)),
+                (self.distance.milli(now_us), self.heading.milli(now_us) + self._offset),
             )
         total, difference = self._millis
         return total + difference if motor is self.left else total - difference
@@ -224,6 +343,9 @@ class DriveBase:
 
     def find_segment_end_us(self, now_us: int) -> int | None:
         """Return when the current segment of either trajectory ends; None if neither does."""
+        if self._find_heading is not None and (self.end_us is None or now_us < self.end_us):
+            # The gyro corrects the motors at every tick.
+            return now_us + 1
         ends = [
             end
             for control in (self.distance, self.heading)
@@ -242,4 +364,5 @@ class DriveBase:
         )
         (left, right), (left_rate, right_rate) = millis, rates
         self.distance.note_lag(now_us, passed_us, left + right, left_rate + right_rate)
-        self.heading.note_lag(now_us, passed_us, left - right, left_rate - right_rate)
+        turned = left - right - self._offset
+        self.heading.note_lag(now_us, passed_us, turned, left_rate - right_rate)

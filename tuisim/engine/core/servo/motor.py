@@ -24,8 +24,8 @@ from tuisim.engine.core.servo.control import Controller, Ending
 from tuisim.engine.core.servo.settings import (
     BATTERY_V,
     COUNTS_PER_DEG,
-    MODELS,
     compute_motor_settings,
+    find_model,
 )
 from tuisim.engine.core.servo.trajectory import MILLI, Segment
 
@@ -59,6 +59,9 @@ class Guide(Protocol):
     def note_lag(self, now_us: int, passed_us: int, milli: int, rate: int) -> None:
         """Take note that a motor is not where it is wanted to be, for a time since the last call."""
 
+    def lets_go(self, now_us: int, ending: Ending) -> bool:
+        """Return whether a motor that has arrived stops following, at an ending other than to hold."""
+
 
 class ServoMotor:
     """One motor with its encoder. It stands at first, and nothing controls it.
@@ -66,7 +69,7 @@ class ServoMotor:
     Args:
         tick_hz: Ticks per second.
         law: Which firmware moves it.
-        kind: One of `settings.MODELS`.
+        kind: One of `MOTOR_KINDS`.
         axle: How it turns while nothing controls it.
     """
 
@@ -99,7 +102,7 @@ class ServoMotor:
 
     def __init__(self, tick_hz: int, law: MotorLaw, kind: str, axle: Axle) -> None:
         self._hz, self._tick_s, self._tick_us = tick_hz, 1.0 / tick_hz, 1_000_000 // tick_hz
-        self.law, self.kind, self.model, self.axle = law, kind, MODELS[kind], axle
+        self.law, self.kind, self.model, self.axle = law, kind, find_model(kind), axle
         self.mode = STOPPED
         self.position_deg = 0.0
         self.speed_dps = 0.0
@@ -188,6 +191,7 @@ class ServoMotor:
         if guide is not None:
             self.control.release()
         self._guide, self._ending = guide or self.control, ending
+        self.control.settles = ending == Ending.HOLD
         timed = guide is None and self.control.timed
         self.mode = FOREVER if self._guide.end_us is None else TIMED if timed else POSITION
         self.blocked_ticks, self.duty, self._jump_deg = 0, None, 0.0
@@ -358,7 +362,7 @@ class ServoMotor:
             if guide is self.control and self.control.has_ended(now_us):
                 # A motion for a time ends where it is.
                 self.control.hold(now_us, self.milli)
-                self._end()
+                self._end(now_us)
                 return 0.0
             guide.note_lag(now_us - self._tick_us, self._tick_us, self.milli, self.counts_per_s)
         halves = guide.find_target(now_us, self)
@@ -368,7 +372,7 @@ class ServoMotor:
                 self._course, self.position_deg = halves, halves * self.sign / HALVES_PER_DEG
                 self.speed_dps = turned * self._hz
                 if turned == 0.0 and (end_us := guide.end_us) is not None and now_us >= end_us:
-                    self._end()
+                    self._end(now_us)
                 return turned
         return self._catch_up(halves, noise_dps)
 
@@ -383,10 +387,13 @@ class ServoMotor:
         self._course = halves if reached else None
         return turned
 
-    def _end(self) -> None:
+    def _end(self, now_us: int) -> None:
         """End the motion: from now on the motor stands."""
+        guide, holds = self._guide, self._ending == Ending.HOLD
+        if not holds and guide is not None and not guide.lets_go(now_us, self._ending):
+            return
         self.mode, self.speed_dps, self.blocked_ticks = STOPPED, 0.0, 0
-        if self._ending != Ending.HOLD and self._guide is not None:
+        if not holds and guide is not None:
             self.control.release()
             self._guide, self._free_dps, self.duty = (
                 None,

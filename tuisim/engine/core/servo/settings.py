@@ -9,10 +9,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 from math import pi
+from typing import TYPE_CHECKING
 
 from tuisim.base.data_class import dataclass
 from tuisim.engine.core.profile import MotorLaw
 from tuisim.engine.core.servo.trajectory import divide
+
+if TYPE_CHECKING:
+    from tuisim.engine.core.servo.hub_motors import HubMotor
 
 COUNTS_PER_DEG = 2
 """Counts of a motor's encoder per degree."""
@@ -49,6 +53,8 @@ class ControlSettings:
     """A motor that is slower than this while its power is used up..."""
     stall_time_ms: int
     """...for this long is stalled."""
+    speed_window_ms: int = 0
+    """The speed that decides whether a move is done is the mean over this time; 0 takes the present one."""
 
     @property
     def counts_per_unit(self) -> float:
@@ -109,20 +115,22 @@ BATTERY_V = 8.0
 
 
 @dataclass(frozen=True, slots=True)
-class _Motor:
+class ServoKind:
     """What differs between kinds of motor; angles in degrees, power in percent."""
 
     speed: int
     acceleration: int
     gains: tuple[int, int, int]
     feed_forward: int
+    position_tolerance_deg: int | None = None
+    """None for that of the firmware."""
 
 
 @dataclass(frozen=True, slots=True)
 class Firmware:
     """One version of the firmware."""
 
-    motors: Mapping[str, _Motor]
+    motors: Mapping[str, ServoKind]
     position_tolerance_deg: int
     stall_speed_dps: int
     straight_speed: tuple[int, int]
@@ -132,17 +140,19 @@ class Firmware:
     turn_acceleration: tuple[int, int]
     divides_units: bool
     """Whether it takes these fractions of limits that are rounded to units of the program."""
+    speed_window_ms: int
+    """As `ControlSettings.speed_window_ms`."""
 
 
 THIRD = (1, 3)
 FIRMWARES: Mapping[MotorLaw, Firmware] = {
     MotorLaw.PYBRICKS: Firmware(
-        {"large": _Motor(800, 1600, (400, 1200, 5), 0), "medium": _Motor(1000, 4000, (300, 400, 3), 20)},
-        5, 15, THIRD, THIRD, THIRD, THIRD, divides_units=True,
+        {"large": ServoKind(800, 1600, (400, 1200, 5), 0), "medium": ServoKind(1000, 4000, (300, 400, 3), 20)},
+        5, 15, THIRD, THIRD, THIRD, THIRD, divides_units=True, speed_window_ms=0,
     ),
     MotorLaw.PYBRICKS_4: Firmware(
-        {"large": _Motor(800, 2000, (400, 1200, 5), 0), "medium": _Motor(1200, 2000, (300, 400, 3), 20)},
-        10, 20, (2, 5), (3, 8), THIRD, (3, 8), divides_units=False,
+        {"large": ServoKind(800, 2000, (400, 1200, 5), 0), "medium": ServoKind(1200, 2000, (300, 400, 3), 20)},
+        10, 20, (2, 5), (3, 8), THIRD, (3, 8), divides_units=False, speed_window_ms=100,
     ),
 }  # fmt: skip
 
@@ -151,11 +161,12 @@ def compute_motor_settings(law: MotorLaw, kind: str, gear_ratio: float = 1.0) ->
     """Return the settings of a new motor.
 
     Args:
-        kind: One of `MODELS`.
+        kind: One of `MOTOR_KINDS`.
         gear_ratio: Turns of the motor per turn of what it drives.
     """
     firmware = FIRMWARES[law]
-    motor = firmware.motors[kind]
+    motor = firmware.motors.get(kind) or _find_hub_motor(kind).servo
+    tolerance_deg = motor.position_tolerance_deg or firmware.position_tolerance_deg
     kp, ki, kd = motor.gains
     return ControlSettings(
         scale=round(COUNTS_PER_DEG * gear_ratio * _ONE),
@@ -168,11 +179,23 @@ def compute_motor_settings(law: MotorLaw, kind: str, gear_ratio: float = 1.0) ->
         integral_range=45,
         integral_rate=10,
         feed_forward=motor.feed_forward * 100,
-        position_tolerance=firmware.position_tolerance_deg * COUNTS_PER_DEG,
+        position_tolerance=tolerance_deg * COUNTS_PER_DEG,
         speed_tolerance=50 * COUNTS_PER_DEG,
         stall_speed=firmware.stall_speed_dps * COUNTS_PER_DEG,
         stall_time_ms=200,
+        speed_window_ms=firmware.speed_window_ms,
     )
+
+
+def find_model(kind: str) -> MotorModel:
+    """Return what a kind of motor can do at most."""
+    return MODELS.get(kind) or _find_hub_motor(kind).model
+
+
+def _find_hub_motor(kind: str) -> HubMotor:
+    from tuisim.engine.core.servo.hub_motors import MOTORS
+
+    return MOTORS[kind]
 
 
 def combine_settings(

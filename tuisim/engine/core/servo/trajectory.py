@@ -126,7 +126,12 @@ def build_rest(time_us: int, milli: int) -> Trajectory:
 
 
 def build_angle_move(
-    start: Segment, target: int, rate: int, acceleration: int, fastest: int
+    start: Segment,
+    target: int,
+    rate: int,
+    acceleration: int,
+    fastest: int,
+    deceleration: int | None = None,
 ) -> Trajectory:
     """Return the move to a position.
 
@@ -134,8 +139,9 @@ def build_angle_move(
         start: Where it begins; its acceleration does not count.
         target: Where it stops, in counts.
         rate: The wanted rate; its sign does not count.
-        acceleration: How it speeds up and stops.
+        acceleration: How it speeds up.
         fastest: The highest rate.
+        deceleration: How it stops; None for the acceleration.
 
     Raises:
         ValueError: the rate is 0, or the move takes longer than half an hour.
@@ -145,40 +151,51 @@ def build_angle_move(
     begin, origin = divide(start.milli, MILLI), start.milli
     if target == begin:
         return build_rest(start.start_us, target * MILLI)
-    sign = 1 if target > begin else -1
+    sign, slowing = 1 if target > begin else -1, deceleration or acceleration
     top_rate, length = min(abs(rate), fastest), abs(target - begin)
     w0 = max(-fastest, min(fastest, start.rate * sign))
-    if w0 > 0 and w0 * w0 // (2 * acceleration) > length:
-        w0 = isqrt(2 * acceleration * length)
+    if w0 > 0 and w0 * w0 // (2 * slowing) > length:
+        w0 = isqrt(2 * slowing * length)
     # Forwards from position 0; a move backwards is its mirror image.
     if w0 < top_rate:
         a0, from_rest = acceleration, -divide(w0 * w0, 2 * acceleration)
-        if length - from_rest >= top_rate * top_rate // acceleration:
-            th1, th2, w1 = (
-                from_rest + top_rate * top_rate // (2 * acceleration),
-                length - top_rate * top_rate // (2 * acceleration),
-                top_rate,
-            )
-        else:
-            th1 = th2 = divide(length + from_rest, 2)
-            w1 = isqrt(2 * acceleration * (th1 - from_rest))
+        th1, th2, w1 = _speed_up(length, from_rest, top_rate, acceleration, slowing)
     else:
         a0, w1 = -acceleration, top_rate
         th1, th2 = (
             divide(w0 * w0 - top_rate * top_rate, 2 * acceleration),
-            length - top_rate * top_rate // (2 * acceleration),
+            length - top_rate * top_rate // (2 * slowing),
         )
     t1 = start.start_us + compute_duration_us(w1 - w0, a0)
     t2 = t1 + (compute_duration_us(th2 - th1, w1) if th2 != th1 else 0)
-    t3 = t2 + compute_duration_us(w1, acceleration)
+    t3 = t2 + compute_duration_us(w1, slowing)
     if t3 - start.start_us > MAX_DURATION_US:
         raise ValueError("the move takes longer than half an hour")
     return Trajectory(
         Segment(start.start_us, origin, sign * w0, sign * a0),
         Segment(t1, (begin + sign * th1) * MILLI, sign * w1, 0),
-        Segment(t2, (begin + sign * th2) * MILLI, sign * w1, -sign * acceleration),
+        Segment(t2, (begin + sign * th2) * MILLI, sign * w1, -sign * slowing),
         Segment(t3, target * MILLI, 0, 0),
     )
+
+
+def _speed_up(
+    length: int, from_rest: int, top_rate: int, acceleration: int, slowing: int
+) -> tuple[int, int, int]:
+    """Return where a move that speeds up runs evenly, from and to, and how fast.
+
+    Args:
+        length: How far it goes.
+        from_rest: Where it would have begun at rest.
+        top_rate: The top_rate rate.
+        acceleration, slowing: How it speeds up, and how it stops.
+    """
+    ramps = top_rate * top_rate * (acceleration + slowing) // (2 * acceleration * slowing)
+    if length - from_rest >= ramps:
+        even = from_rest + top_rate * top_rate // (2 * acceleration)
+        return even, length - top_rate * top_rate // (2 * slowing), top_rate
+    top = divide(slowing * length + acceleration * from_rest, acceleration + slowing)
+    return top, top, isqrt(2 * acceleration * (top - from_rest))
 
 
 def build_endless_move(start: Segment, rate: int, acceleration: int, fastest: int) -> Trajectory:

@@ -12,6 +12,7 @@ from typing import Any, ClassVar, Generic, TypeVar
 from tuisim.base.data_class import dataclass
 from tuisim.engine.core.commands.calls import MAX_NUMBER, Call
 from tuisim.engine.core.commands.table import obey
+from tuisim.engine.core.hub_spec import HUBS
 from tuisim.engine.core.sensors import SENSORS
 from tuisim.engine.core.servo.motor import ServoMotor
 from tuisim.engine.runs.readings import READING_CODES
@@ -20,7 +21,6 @@ from tuisim.engine.shim.display import Screen
 from tuisim.engine.shim.leds import Lights
 from tuisim.engine.shim.plugs import PART_OF_DRIVER, PART_OF_KIND, Plugs
 from tuisim.engine.shim.power import Battery
-from tuisim.engine.shim.pybricks.parameters import Port
 from tuisim.engine.shim.sensors import LegoSensor
 from tuisim.engine.shim.session import DeviceSession
 from tuisim.engine.shim.sound import Mixer
@@ -64,6 +64,8 @@ class Brick:
     """Returns the class of a name in version 4 of the library; None if it has none, or the program runs by it."""
     said: set[str] = field(default_factory=set)
     """What was said that is said once, by subject."""
+    stop_buttons: frozenset[str] = frozenset()
+    """The buttons that stop the program, by their names in the session: those of a hub."""
     in_task: bool = False
     """Whether the program runs a task of version 4, in which nothing blocks."""
 
@@ -80,7 +82,8 @@ class Brick:
     def find_motor(self, port: str) -> ServoMotor | None:
         """Return the motor on a port such as `outA`, which may be plugged in now; None for none."""
         if port not in self.built.motors:
-            self.plugs.add(PART_OF_KIND["large"], port)
+            hub = self.session.sim.spec.robot.hub
+            self.plugs.add(PART_OF_KIND[HUBS[hub].motor if hub else "large"], port)
         self.plugs.take_hold(self.plugs.find_path(port))
         motor = self.built.motors.get(port)
         return motor if isinstance(motor, ServoMotor) else None
@@ -111,12 +114,22 @@ class Brick:
             mode, ports: What is recorded of it, as in `engine.runs.readings.READING_CODES`.
         """
         session = self.session
+        self.check_buttons()
         if not session.free:
             codes = [READING_CODES[port, mode] for port in ports]
             session.spend(session.sim.spec.profile.attribute_read_ns, *codes[:1])
             for code in codes[1:]:
                 session.note_reading(code)
         return session.now // 1000
+
+    def check_buttons(self) -> None:
+        """End the program if a button is pressed that stops it.
+
+        Raises:
+            SystemExit: it is.
+        """
+        if self.stop_buttons and self.stop_buttons & self.session.pressed:
+            raise SystemExit
 
     def tell(self, part: int, call: Call, *values: float | None) -> None:
         """Change a motor or a drive base.
@@ -161,6 +174,7 @@ class Brick:
     def block(self, waiting: Waiting[Result]) -> Result:
         """Block until what waits is over, and return its result."""
         while True:
+            self.check_buttons()
             try:
                 until_us = waiting.send(None)
             except StopIteration as end:
@@ -191,7 +205,7 @@ class Connected:
 
     brick: ClassVar[Brick]
 
-    port: Port | None = None
+    port: Any = None
     """Where it is connected."""
 
     def __repr__(self) -> str:

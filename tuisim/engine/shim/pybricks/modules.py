@@ -121,14 +121,18 @@ def install(
     sys.meta_path.append(HardwareFinder(Library.PYBRICKS))
     micropython.install(session)
     plugs.missing = OSError
-    law = session.sim.spec.profile.motor_law
-    hint = partial(ports_hint, session)
-    brick = Brick(session, built, plugs, screen, mixer, hint)
-    if law != MotorLaw.PYBRICKS_4:
+    brick = Brick(session, built, plugs, screen, mixer, partial(ports_hint, session))
+    if session.sim.spec.profile.motor_law != MotorLaw.PYBRICKS_4:
         brick.find_later_class = _find_later_class
     Connected.brick = brick
-    sys.meta_path.insert(0, OtherHub())
-    names = _version_4() if law == MotorLaw.PYBRICKS_4 else MODULES
+    law, hub = session.sim.spec.profile.motor_law, session.sim.spec.robot.hub
+    if hub:
+        from tuisim.engine.shim.pybricks.hub.modules import find_names
+
+        names = find_names(hub)
+    else:
+        sys.meta_path.insert(0, OtherHub())
+        names = _version_4() if law == MotorLaw.PYBRICKS_4 else MODULES
     speaker.set_volumes(brick.mixer, speaker.START_VOLUMES)
     made = {name: types.ModuleType(name) for name in names}
     made |= {name: HardwareModule(name, hardware) for name, hardware in REFUSED.items()}

@@ -50,9 +50,10 @@ def gear_ratio(gears: Any) -> float:
 
 
 def _port(port: Any) -> str:
-    if not isinstance(port, Port):
+    if type(port).__name__ != "Port":
         raise TypeError(f"a Port is needed, not {type(port).__name__}")
-    return port.device_port
+    name: str = port.device_port
+    return name
 
 
 def ending_of(known: Mapping[Any, Ending], then: Any) -> Ending:
@@ -83,7 +84,7 @@ class DCMotor(Connected):
 
     def _port_name(self, port: Port) -> str:
         name = _port(port)
-        if not name.startswith("out"):
+        if name not in self.brick.session.sim.spec.robot.output_ports:
             raise ValueError("Invalid port")
         self.port_names, self.port = (name,), port
         return name

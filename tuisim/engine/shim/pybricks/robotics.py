@@ -56,6 +56,11 @@ class DriveBase(Connected):
         """Change the drive base or its controllers; None is what is not given."""
         self.brick.tell(self._number, call, *values)
 
+    @property
+    def holds_by_gyro(self) -> bool:
+        """Whether it drives or holds, and a gyro tells it the heading."""
+        return self._base.uses_gyro and self._base.active
+
     # Motions
 
     def straight(self, distance: float) -> None:
@@ -184,19 +189,17 @@ class DriveBase(Connected):
             return base.usual
         if base.active and not self.SETTINGS_WHILE_ACTIVE:
             raise not_permitted()
-        distance, heading = base.distance.settings, base.heading.settings
-        limits = (
-            distance.units(distance.speed),
-            distance.units(distance.acceleration),
-            heading.units(heading.speed),
-            heading.units(heading.acceleration),
-        )
         chosen = [
-            usual if value is None else min(abs(whole(value)), limit)
-            for value, usual, limit in zip(given, base.usual, limits, strict=True)
+            usual if value is None else self._check_setting(abs(whole(value)), at)
+            for at, (value, usual) in enumerate(zip(given, base.usual, strict=True))
         ]
         self.tell(Call.SET_BASE, *chosen)
         return None
+
+    def _check_setting(self, value: int, at: int) -> int:
+        """Return a setting as it counts, by its number: no more than the motors can do."""
+        settings = (self._base.distance if at < 2 else self._base.heading).settings
+        return min(value, settings.units(settings.acceleration if at % 2 else settings.speed))
 
 
 class BaseControl(Control):

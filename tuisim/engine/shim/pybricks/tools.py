@@ -17,6 +17,7 @@ from tuisim.engine.shim.waits import Wait, waits_for
 def wait(time: float) -> None:
     """Wait for a time in milliseconds."""
     brick, time_ms = Connected.brick, whole(time)
+    brick.check_buttons()
     if brick.in_task:
         return brick.finish(_until(brick.now_us + time_ms * 1000))
     if time_ms > 0:

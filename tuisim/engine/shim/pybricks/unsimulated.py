@@ -6,7 +6,8 @@ import types
 from collections.abc import Mapping, Sequence
 from typing import Any, NoReturn
 
-from tuisim.base.source import OTHER_HUB_DEVICES, OTHER_HUBS
+from tuisim.base.source import HUB_DEVICES
+from tuisim.engine.core.hub_spec import HUBS
 from tuisim.engine.core.profile import Library
 from tuisim.engine.shim.unsupported.modules import (
     ON_THE_BRICK,
@@ -78,7 +79,7 @@ class OtherHub:
         Raises:
             NotSimulated: it is one; it is an ImportError, too.
         """
-        if fullname == OTHER_HUB_DEVICES:
+        if fullname == HUB_DEVICES:
             raise _refusal(fullname)
 
 
@@ -89,7 +90,7 @@ def refused_hub(name: str) -> NoReturn:
         NotSimulated: it is that of another hub; it is an ImportError, too.
         AttributeError: it is none.
     """
-    if name in OTHER_HUBS:
+    if name in HUBS:
         raise _refusal(f"pybricks.hubs.{name}")
     raise AttributeError(f"module 'pybricks.hubs' has no attribute {name!r}")
 

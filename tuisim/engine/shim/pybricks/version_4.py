@@ -12,15 +12,20 @@ from typing import Any
 
 from tuisim.engine.core.commands.calls import Call
 from tuisim.engine.core.servo.control import Ending
+from tuisim.engine.core.servo.settings import COUNTS_PER_DEG
 from tuisim.engine.core.servo.trajectory import MILLI
 from tuisim.engine.shim.pybricks import hubs, motor, robotics
-from tuisim.engine.shim.pybricks.brick import Connected, Waiting, invalid_argument, whole
+from tuisim.engine.shim.pybricks.brick import Connected, Waiting, invalid_argument, refused, whole
 from tuisim.engine.shim.pybricks.ev3devices import ColorSensor as EarlierColorSensor
 from tuisim.engine.shim.pybricks.hsv_color import Color as Color
 from tuisim.engine.shim.pybricks.motor import ending_of, gear_ratio
 from tuisim.engine.shim.pybricks.parameters import Button, Direction, Port, shown_by_name
 
 NOMINAL_VOLTAGE_MV = 9000
+MAX_SPEED_DPS = 2000
+"""A setting of a drive base may ask no more of a motor, even if that cannot do it."""
+MIN_ACCELERATION_DPS2, MAX_ACCELERATION_DPS2 = 50, 20_000
+"""Nor less, or more, than these."""
 
 
 @shown_by_name
@@ -59,6 +64,13 @@ class Motor(motor.Motor):
             raise invalid_argument()
         self._set_up(port, positive_direction, gear_ratio(gears), keeps_angle=not reset_angle)
         self.control = Control(self, self._motor.control)
+
+    def _command(self) -> None:
+        """Count a command; a drive base that moves or holds the motor lets go of both of its motors."""
+        self.brick.command()
+        guide = self._motor.guide
+        if guide is not None and not self._motor.follows_itself and DriveBase.current is not None:
+            DriveBase.current.stop()
 
     def _begin(self, then: Any, wait: bool, call: str) -> None:
         control, motor = self._motor.control, self._motor
@@ -124,6 +136,8 @@ class DriveBase(robotics.DriveBase):
     """A robot with two driven wheels. Its settings may be changed while it drives."""
 
     SETTINGS_WHILE_ACTIVE = True
+    _stops: tuple[int, ...] = ()
+    """How it stops, if it was told how."""
 
     def _move(
         self,
@@ -189,14 +203,16 @@ class DriveBase(robotics.DriveBase):
         self, angle: float, then: Stop = Stop.HOLD, wait: bool = True, absolute: bool = False
     ) -> None:
         """Turn by an angle in degrees, clockwise; `absolute`: to an angle."""
-        by = whole(angle) - round(self.angle()) if absolute else whole(angle)
+        by: float = whole(angle)
+        if absolute:
+            by = (by - self.angle() + 180) % 360 - 180
         return self._move(0, by, "turn()", ending_of(ENDINGS, then), wait=wait)
 
     def curve(self, radius: float, angle: float, then: Stop = Stop.HOLD, wait: bool = True) -> None:
         """Drive along an arc by an angle; a negative radius turns the other way."""
         turned = -whole(angle) if radius < 0 else whole(angle)
         return self._move(
-            whole(radius) * radians(whole(angle)),
+            whole(radius) * radians(abs(whole(angle))),
             turned,
             "curve()",
             ending_of(ENDINGS, then),
@@ -224,6 +240,49 @@ class DriveBase(robotics.DriveBase):
             base.find_millis(now_us)[1] / MILLI - self._zeros[1]
         ) / base.heading.settings.counts_per_unit
 
+    def use_gyro(self, use_gyro: bool) -> None:
+        """Let the gyro of the hub tell the heading, or the wheels; a change lets the motors coast."""
+        if not self.brick.session.sim.spec.robot.hub:
+            raise refused("the EV3 has no gyro inside")
+        if bool(use_gyro) != self._base.uses_gyro:
+            self.brick.command()
+            self.tell(Call.USE_GYRO, float(bool(use_gyro)))
+            self._zeros = self._zeros[0], 0
+
+    def settings(
+        self,
+        straight_speed: Any = None,
+        straight_acceleration: Any = None,
+        turn_rate: Any = None,
+        turn_acceleration: Any = None,
+    ) -> tuple[Any, ...] | None:
+        """Return how it moves, or set it; an acceleration may be a pair: that of the start and that of the stop."""
+        given = straight_speed, straight_acceleration, turn_rate, turn_acceleration
+        pairs = [value if isinstance(value, tuple) else (value, value) for value in given]
+        told = super().settings(*(first for first, _ in pairs))
+        if told is not None:
+            stops = [*zip(told[1::2], self._stops or told[1::2], strict=True)]
+            one, other = (pair if pair[0] != pair[1] else pair[0] for pair in stops)
+            return told[0], one, told[2], other
+        usual = self._base.usual
+        self._stops = tuple(
+            usual[at] if pairs[at][1] is None else self._check_setting(abs(whole(pairs[at][1])), at)
+            for at in (1, 3)
+        )
+        if self._stops != usual[1::2]:
+            self.tell(Call.SET_SLOWING, *self._stops)
+        return None
+
+    def _check_setting(self, value: int, at: int) -> int:
+        control = (self._base.distance if at < 2 else self._base.heading).settings
+        motor_units = value * control.counts_per_unit / (2 * COUNTS_PER_DEG)
+        least, most = (
+            (MIN_ACCELERATION_DPS2, MAX_ACCELERATION_DPS2) if at % 2 else (0, MAX_SPEED_DPS)
+        )
+        if not least <= motor_units <= most:
+            raise invalid_argument()
+        return value
+
     def brake(self) -> None:
         """Stop and let the motors brake themselves."""
         self.brick.command()
@@ -245,10 +304,22 @@ class DriveBase(robotics.DriveBase):
 
     def reset(self, distance: float = 0, angle: float = 0) -> None:
         """Make the current distance and angle other ones."""
+        self.stop()
         super().reset()
         total, difference = self._zeros
+        if self._base.uses_gyro:
+            self.brick.tell(0, Call.SET_GYRO, whole(angle))
+            difference = self._base.heading.settings.counts(whole(angle))
         counts = self._base.distance.settings.counts, self._base.heading.settings.counts
         self._zeros = total - counts[0](whole(distance)), difference - counts[1](whole(angle))
+
+
+class GyroDriveBase(DriveBase):
+    """A drive base that the gyro tells the heading, as some beta versions named it."""
+
+    def __init__(self, *given: Any, **named: Any) -> None:
+        super().__init__(*given, **named)
+        self.use_gyro(True)
 
 
 class ColorSensor(EarlierColorSensor):

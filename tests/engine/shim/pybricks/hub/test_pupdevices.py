@@ -1,0 +1,170 @@
+"""Motors and drive bases of hubs move as the firmware's own control code did, within the bands of its recordings.
+
+`reference.jsonl.gz` has what that code recorded with the settings of a SPIKE hub: the reference every 50 ms, when a
+call returned, and where everything ended.
+"""
+
+from __future__ import annotations
+
+import gzip
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.engine.shim.pybricks.lab import TICK_NS, Lab
+from tuisim.engine.core.profile import MotorLaw
+from tuisim.engine.core.servo.trajectory import MILLI
+from tuisim.engine.shim.pybricks import robotics, version_4
+from tuisim.engine.shim.pybricks.hub.parameters import Port
+from tuisim.engine.shim.pybricks.parameters import Direction
+
+with gzip.open(Path(__file__).with_name("reference.jsonl.gz"), "rt", encoding="utf-8") as _file:
+    RECORDED = {one["id"]: one for one in map(json.loads, _file)}
+KINDS = {
+    "L": "large-angular",
+    "M": "medium-angular",
+    "S": "small-angular",
+    "I": "interactive",
+    "TL": "technic",
+}
+EARLIEST_MS, LATEST_MS = -5, 35
+"""A recorded call returned so much later than one here at least, and at most."""
+
+
+class Experiment:
+    """One recording, made again with the classes of the library."""
+
+    def __init__(self, key: str) -> None:
+        self.recorded = recorded = RECORDED[key]
+        self.motor_specs = recorded["motors"]
+        ports = "AB"[: len(self.motor_specs)]
+        kinds = {
+            port: KINDS[motor["kind"]] for port, motor in zip(ports, self.motor_specs, strict=True)
+        }
+        stops = [abs(motor.get("hi", motor.get("lo", 1e9))) for motor in self.motor_specs]
+        self.lab = Lab(
+            MotorLaw.PYBRICKS_4, kinds, min(stops), hub="PrimeHub", robot=recorded.get("true_robot")
+        )
+        self.lab.until_ns = recorded["final"][0] * TICK_NS // 10 + TICK_NS // 2
+        self.returned: list[tuple[str, int | None, Any]] = []
+        self.references: dict[int, list[int]] = {}
+        self.lab.looks.append(self._look)
+        robotics.DriveBase.current = None
+        self.motors = [
+            self._make_motor(port, spec) for port, spec in zip(ports, self.motor_specs, strict=True)
+        ]
+        self.base: Any = None
+        if "sizes" in recorded:
+            self.base = version_4.DriveBase(self.motors[0], self.motors[1], *recorded["sizes"])
+
+    def _make_motor(self, port: str, spec: dict[str, Any]) -> version_4.Motor:
+        direction = Direction.COUNTERCLOCKWISE if spec.get("ccw") else Direction.CLOCKWISE
+        hub_port: Any = Port[port]
+        gears = [12, 36] if "gear" in spec else None
+        motor = version_4.Motor(hub_port, direction, gears, profile=spec.get("profile"))
+        if "start" in spec:
+            motor.reset_angle(spec["start"])
+        return motor
+
+    def _look(self, now_ms: int) -> None:
+        controls = (
+            [self.base._base.distance, self.base._base.heading]
+            if self.base
+            else [self.motors[0].simulated.control]
+        )
+        if now_ms % 50 == 0 and all(control.trajectory is not None for control in controls):
+            now_us = now_ms * 1000
+            self.references[now_ms] = [
+                round(value / control.settings.counts_per_unit)
+                for control in controls
+                for value in (control.milli(now_us) / MILLI, control.rate(now_us))
+            ]
+
+    def run(self) -> Experiment:
+        try:
+            for at_ms, call, _ in self.recorded["commands"]:
+                self.lab.spend(max(0, at_ms * 1_000_000 - self.lab.now))
+                self._call(call)
+            self.lab.spend(self.lab.until_ns - self.lab.now)
+        except TimeoutError:
+            pass
+        return self
+
+    def _call(self, call: str) -> None:
+        if call.startswith("["):
+            # A torque from outside: the simulated motors are not moved by any.
+            return
+        owner = self.base or self.motors[0]
+        names = {"left_motor": self.motors[0], "Stop": version_4.Stop, "self": owner}
+        result = eval(call if call.startswith("left") else f"self.{call}", names)
+        if any(after == call for after, *_ in self.recorded["returned"]):
+            self.returned.append((call, self.lab.now // 1_000_000, self.place, result))  # type: ignore[arg-type]
+
+    @property
+    def place(self) -> list[float]:
+        return [*self.base.state()[::2]] if self.base else [self.motors[0].angle()]
+
+
+def find_misses(key: str) -> list[str]:
+    """Return what of a recording is not met."""
+    experiment = Experiment(key)
+    recorded, misses = experiment.recorded, []
+    if experiment.base:
+        usual = recorded["usual"]
+        if list(experiment.base.settings()) != [usual[at] for at in (0, 1, 3, 4)]:
+            misses.append(f"settings {experiment.base.settings()} {usual}")
+    experiment.run()
+    return misses + find_wrong_ends(experiment) + find_wrong_references(experiment)
+
+
+def find_wrong_ends(experiment: Experiment) -> list[str]:
+    """Return which calls return at another time, and what ends elsewhere."""
+    recorded, misses = experiment.recorded, []
+    places = [3, 2] if experiment.base else [2]
+    returned = [one for one in recorded["returned"] if one[1] is not None]
+    if len(returned) != len(experiment.returned):
+        misses.append(f"{len(returned)} calls return, here {len(experiment.returned)}")
+    for (call, at_ms, place), one in zip(returned, experiment.returned, strict=False):
+        if not EARLIEST_MS <= at_ms - one[1] <= LATEST_MS:
+            misses.append(f"{call} returns at {at_ms}, here {one[1]}")
+        if any(abs(a - b) > band + 2 for a, b, band in zip(place, one[2], places, strict=True)):
+            misses.append(f"{call} ends at {place}, here {one[2]}")
+    for a, b, band in zip(recorded["final"][1:], experiment.place, places, strict=True):
+        if abs(a - b) > band:
+            misses.append(f"ends at {recorded['final'][1:]}, here {experiment.place}")
+    return misses
+
+
+def find_wrong_references(experiment: Experiment) -> list[str]:
+    """Return how far the references differ at most, if they do."""
+    recorded, worst = experiment.recorded, [0.0] * 4
+    for now_ms, *values in recorded["reference"]:
+        if None not in values and now_ms in experiment.references:
+            for at, (a, b) in enumerate(zip(values, experiment.references[now_ms], strict=True)):
+                worst[at] = max(worst[at], abs(a - b))
+    return [f"reference {worst}"] if max(worst) > 3 else []
+
+
+MISSED = {
+    "M_run_angle_500_360_NONE": "it runs on, and the recorded motor is 6 ms behind",
+    "M_coast_chain": "a recorded motor that coasts stops short of its target",
+    "M_battery_6_5V_1000_720": "the battery of the robot is full",
+    "M_load_0.05Nm": "no torque from outside loads a simulated motor",
+    "DB_none_then_stop": "how far it rolls is of the recorded motors and wheels",
+    "DB_motor_command_ends_move": "how far the other wheel rolls is, too",
+    "DB_geo_88_112": "friction held the recorded robot 3 degrees from its target",
+    "DB_small_motors_56_112": "the recorded small motors were 60 ms behind",
+    "DB_reset_500_90": "the recorded robot still rolled when it was reset",
+}
+"""Recordings outside the bands, with the reason."""
+
+
+QUICK: tuple[str, ...] = tuple(RECORDED)[::4]
+
+
+@pytest.mark.parametrize("key", RECORDED)
+@pytest.mark.quick_cases(*QUICK)
+def test_a_recording_is_met(key: str) -> None:
+    assert bool(find_misses(key)) == (key in MISSED)

@@ -1,0 +1,46 @@
+"""The hubs that a robot can have in place of the EV3: their ports and their motors."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+from tuisim.base.errors import require_one_of
+
+
+class HubKind(NamedTuple):
+    """One kind of hub."""
+
+    ports: str
+    """Its ports, for motors and sensors alike."""
+    motor: str
+    """The kind of motor that is usual there, one of `HUB_MOTORS`."""
+
+
+HUB_PORTS = ("A", "B", "C", "D", "E", "F")
+HUB_MOTORS = ("large-angular", "medium-angular", "small-angular", "interactive", "technic")
+HUBS: Mapping[str, HubKind] = {
+    "PrimeHub": HubKind("ABCDEF", "medium-angular"),
+    "InventorHub": HubKind("ABCDEF", "medium-angular"),
+    "EssentialHub": HubKind("AB", "small-angular"),
+    "TechnicHub": HubKind("ABCD", "technic"),
+    "CityHub": HubKind("AB", "technic"),
+    "MoveHub": HubKind("ABCD", "interactive"),
+}
+"""By the name of the class in `pybricks.hubs`."""
+EV3_MOTORS = ("large", "medium")
+INSIDE = "inside"
+"""In place of the port of a gyro that is in the hub."""
+
+
+def check_motor_kinds(hub: str, kinds: Mapping[str, str]) -> None:
+    """Check that motors fit to a hub; to the EV3 if that is empty.
+
+    Args:
+        kinds: Their kinds by the keys in a robot file.
+
+    Raises:
+        RobotError: one does not.
+    """
+    for key, kind in kinds.items():
+        require_one_of(kind, "kind of motor", HUB_MOTORS if hub else EV3_MOTORS, key)

@@ -1,0 +1,129 @@
+"""`hub.imu`: the heading, and what the hub senses of its place in space. The robot stays level."""
+
+from __future__ import annotations
+
+import errno
+from math import cos, radians, sin
+from typing import Any
+
+from tuisim.engine.core.commands.calls import Call
+from tuisim.engine.core.hub_spec import INSIDE
+from tuisim.engine.shim.pybricks.brick import Connected, FirmwareError, invalid_argument
+from tuisim.engine.shim.pybricks.matrix import Axis, Matrix, Side, cross, vector
+from tuisim.engine.shim.pybricks.robotics import DriveBase
+
+GRAVITY_MM_S2 = 9806.65
+STILL_DPS = 2.0
+"""Below this rate a hub is at rest, if nothing moves its motors."""
+
+
+class IMU(Connected):
+    """The gyro and the accelerometer of a hub.
+
+    Args:
+        top, front: Along which axes of the robot the hub's top and its front point; they are perpendicular.
+
+    Raises:
+        ValueError: they are not.
+    """
+
+    def __init__(self, top: Matrix, front: Matrix) -> None:
+        if sum(a * b for a, b in zip(top, front, strict=True)):
+            raise invalid_argument()
+        left = cross(top, front)
+        self._sides = {
+            Side.TOP: top,
+            Side.BOTTOM: -top,
+            Side.FRONT: front,
+            Side.BACK: -front,
+            Side.LEFT: left,
+            Side.RIGHT: -left,
+        }
+        self.brick.tell(0, Call.SET_GYRO, 0.0)
+        self._settings = 2.0, 2500.0
+
+    def _read(self, mode: str = "GYRO-ANG") -> None:
+        self.brick.read(mode, INSIDE)
+
+    @property
+    def _heading(self) -> float:
+        return self.brick.session.sim.gyro_deg
+
+    @property
+    def _rate_dps(self) -> float:
+        """Counter-clockwise."""
+        return self.brick.session.sim.build_instant().turn_rate_dps
+
+    def heading(self) -> float:
+        """Return the heading in degrees, clockwise, not wrapped."""
+        self._read()
+        return self._heading
+
+    def reset_heading(self, angle: float = 0) -> None:
+        """Make the current heading another one.
+
+        Raises:
+            OSError: a drive base drives or holds by the gyro.
+        """
+        base = DriveBase.current
+        if base is not None and base.holds_by_gyro:
+            raise FirmwareError(
+                errno.EPERM, "Can't reset heading while gyro in use. Stop driving first."
+            )
+        self.brick.command()
+        self.brick.tell(0, Call.SET_GYRO, angle)
+
+    def ready(self) -> bool:
+        """Return whether the gyro is calibrated: it was, before the program began."""
+        self._read()
+        return True
+
+    def stationary(self) -> bool:
+        """Return whether the hub is at rest."""
+        self._read("GYRO-RATE")
+        motors = self.brick.session.sim.motors
+        return abs(self._rate_dps) < STILL_DPS and not any(motor.speed_dps for motor in motors)
+
+    def up(self, calibrated: bool = True) -> Side:
+        """Return the side of the hub that is up."""
+        self._read("TILT-ANG")
+        return max(self._sides, key=lambda side: self._sides[side][2])
+
+    def tilt(self, calibrated: bool = True) -> tuple[float, float]:
+        """Return pitch and roll in degrees."""
+        self._read("TILT-ANG")
+        return 0.0, 0.0
+
+    def acceleration(self, axis: Matrix | None = None, calibrated: bool = True) -> Any:
+        """Return the acceleration in mm/s² along an axis, or all three."""
+        self._read("TILT-ANG")
+        return _along(axis, vector(0, 0, GRAVITY_MM_S2))
+
+    def angular_velocity(self, axis: Matrix | None = None, calibrated: bool = True) -> Any:
+        """Return the rate of turn in degrees per second about an axis, or all three."""
+        self._read("GYRO-RATE")
+        return _along(axis, vector(0, 0, self._rate_dps))
+
+    def rotation(self, axis: Matrix, calibrated: bool = True) -> float:
+        """Return the turn in degrees about an axis since the heading was last reset."""
+        self._read()
+        return float(_along(axis, vector(0, 0, -self._heading)))
+
+    def orientation(self) -> Matrix:
+        """Return how the robot is turned: the directions of its axes, as columns."""
+        self._read()
+        angle = -radians(self._heading)
+        return Matrix([[cos(angle), -sin(angle), 0], [sin(angle), cos(angle), 0], [0, 0, 1]])
+
+    def settings(self, *given: Any, **named: Any) -> tuple[float, float] | None:
+        """Return the thresholds of rest, or take other settings, which change nothing."""
+        return None if given or named else self._settings
+
+
+def _along(axis: Matrix | None, values: Matrix) -> Any:
+    if axis is None:
+        return values
+    length = sum(part * part for part in axis) ** 0.5
+    if axis.shape != Axis.X.shape or not length:
+        raise invalid_argument()
+    return sum(a * b for a, b in zip(axis, values, strict=True)) / length

@@ -1,0 +1,70 @@
+"""The names of the library's modules on a hub, in place of those of the EV3."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from tuisim.engine.shim.pybricks import matrix, tools, version_4
+from tuisim.engine.shim.pybricks import parameters as common
+from tuisim.engine.shim.pybricks.hub import hubs, parameters, pupdevices
+from tuisim.engine.shim.unsupported.modules import Hardware, refused_part
+
+_NO_DEVICE = "use Motor, ColorSensor, UltrasonicSensor and ForceSensor"
+REFUSED: Mapping[str, tuple[str, ...]] = {
+    "pybricks.pupdevices": (
+        *("ColorDistanceSensor", "ColorLightMatrix", "DuploTrain", "InfraredSensor", "Light"),
+        *("MarioHub", "PFMotor", "Remote", "TechnicMoveHub", "TiltSensor"),
+    ),
+    "pybricks.iodevices": (
+        *("AnalogSensor", "I2CDevice", "LUMPDevice", "LWP3Device", "PUPDevice", "UARTDevice"),
+        "XboxController",
+    ),
+    "pybricks.messaging": ("BLERadio", "AppData"),
+    "pybricks.robotics": ("Car", "SpikeBase"),
+}
+"""Classes that can be imported but not used, by module."""
+
+
+def find_names(hub: str) -> Mapping[str, Mapping[str, Any]]:
+    """Return the names of each module, for one of `engine.core.spec.HUBS`."""
+    hub_class = hubs.CLASSES[hub]
+    own = {name: known for name, known in hubs.CLASSES.items() if known is hub_class}
+    names: dict[str, dict[str, Any]] = {
+        "pybricks": {"version": (hub.lower(), "4.0.0", "tuisim")},
+        "pybricks.hubs": {**own, "ThisHub": hub_class},
+        "pybricks.pupdevices": {
+            "Motor": version_4.Motor,
+            "DCMotor": version_4.Motor,
+            "ColorSensor": pupdevices.ColorSensor,
+            "UltrasonicSensor": pupdevices.UltrasonicSensor,
+            "ForceSensor": pupdevices.ForceSensor,
+        },
+        "pybricks.parameters": {
+            "Port": parameters.Port,
+            "Button": parameters.Button,
+            "Direction": common.Direction,
+            "Stop": version_4.Stop,
+            "Color": version_4.Color,
+            "Axis": matrix.Axis,
+            "Side": matrix.Side,
+        },
+        "pybricks.robotics": {
+            "DriveBase": version_4.DriveBase,
+            "GyroDriveBase": version_4.GyroDriveBase,
+        },
+        "pybricks.tools": {
+            "wait": tools.wait,
+            "StopWatch": tools.StopWatch,
+            "Matrix": matrix.Matrix,
+            "vector": matrix.vector,
+            "cross": matrix.cross,
+            "run_task": version_4.run_task,
+            "multitask": version_4.multitask,
+        },
+    }
+    for module, classes in REFUSED.items():
+        known = names.setdefault(module, {})
+        for name in classes:
+            known[name] = refused_part(module, name, Hardware(f"the class {name}", _NO_DEVICE))
+    return names

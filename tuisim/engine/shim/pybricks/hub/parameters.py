@@ -1,0 +1,28 @@
+"""What `pybricks.parameters` has on a hub in another way than on the EV3."""
+
+from __future__ import annotations
+
+from enum import Enum
+
+from tuisim.engine.shim.pybricks.parameters import shown_by_name
+
+
+@shown_by_name
+class Port(Enum):
+    """The ports of the hub, for motors and sensors alike."""
+
+    A, B, C, D, E, F = map(ord, "ABCDEF")
+
+    @property
+    def device_port(self) -> str:
+        """The name of the port in a robot."""
+        return self.name
+
+
+@shown_by_name
+class Button(Enum):
+    """Buttons of the hub, of the remote control and of a game controller."""
+
+    (LEFT, RIGHT, CENTER, BLUETOOTH, LEFT_PLUS, LEFT_MINUS, RIGHT_PLUS, RIGHT_MINUS) = range(1, 9)
+    (UP, DOWN, LEFT_UP, LEFT_DOWN, RIGHT_UP, RIGHT_DOWN, BEACON) = range(9, 16)
+    (A, B, X, Y, LB, RB, VIEW, MENU, GUIDE, LJ, RJ, UPLOAD, P1, P2, P3, P4) = range(16, 32)

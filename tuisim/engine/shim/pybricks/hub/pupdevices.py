@@ -1,0 +1,160 @@
+"""The sensors of `pybricks.pupdevices`; its `Motor` stands in `version_4`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, ClassVar, TypeVar
+
+from tuisim.engine.core.sensors import color
+from tuisim.engine.shim.brick import SENSOR_CLASS
+from tuisim.engine.shim.pybricks.brick import Connected, Waiting, no_device
+from tuisim.engine.shim.pybricks.hub.colors import find_nearest, measure_hsv
+from tuisim.engine.shim.pybricks.hub.parameters import Port
+from tuisim.engine.shim.pybricks.version_4 import Color
+from tuisim.engine.shim.sensors import ColorDevice
+
+RAW_WHITE = 1024
+"""Of a channel of the colour sensor."""
+FARTHEST_MM = 2000
+"""What the distance sensor tells if it hears no echo, or a later one."""
+MAX_FORCE_N, MAX_PRESS_MM = 10.0, 6.67
+
+Result = TypeVar("Result")
+
+
+class Sensor(Connected):
+    """A sensor on a port."""
+
+    KIND: ClassVar[str] = ""
+    SWITCH_US: ClassVar[int] = 0
+    """How long the first reading in another mode takes."""
+
+    def __init__(self, port: Port) -> None:
+        if self.brick.in_task:
+            raise RuntimeError("This can only be called before multitasking starts.")
+        if not isinstance(port, Port):
+            raise TypeError(f"a Port is needed, not {type(port).__name__}")
+        sensor = self.brick.find_sensor(port.device_port, self.KIND)
+        if sensor is None:
+            raise no_device(self.brick.hint(SENSOR_CLASS))
+        self.port, self._sensor = port, sensor
+
+    def _read(self, mode: str, convert: Callable[[], Result]) -> Result:
+        """Measure in a mode, and return what the measurement says; in a task, what the task awaits."""
+        return self.brick.finish(self._measure(mode, convert))
+
+    def _measure(self, mode: str, convert: Callable[[], Result]) -> Waiting[Result]:
+        sensor = self._sensor
+        if sensor.mode == mode:
+            sensor.measure(mode)
+        else:
+            sensor.mode = mode
+            yield self.brick.now_us + self.SWITCH_US
+            sensor.measure_switched(mode)
+        return convert()
+
+
+class Lights(Connected):
+    """The lights around the eye of a sensor, which nothing shows."""
+
+    def on(self, brightness: Any = 100) -> None:
+        """Turn them on: one brightness in percent, or one for each."""
+        return self.brick.finish(self._wait())
+
+    def off(self) -> None:
+        """Turn them off."""
+        return self.brick.finish(self._wait())
+
+    def _wait(self) -> Waiting[None]:
+        yield self.brick.now_us + 10_000
+
+
+class ColorSensor(Sensor):
+    """A colour sensor."""
+
+    KIND, SWITCH_US = "color", 30_000
+    DETECTABLE = (Color.RED, Color.YELLOW, Color.GREEN, Color.BLUE, Color.WHITE, Color.NONE)
+
+    def __init__(self, port: Port) -> None:
+        super().__init__(port)
+        self._sensor.mode = ""
+        self._colors: tuple[Any, ...] = self.DETECTABLE
+        self.lights = Lights()
+
+    def _raw(self) -> tuple[int, int, int]:
+        assert isinstance(self._sensor, ColorDevice)
+        red, green, blue = (
+            RAW_WHITE * channel // color.WHITE for channel in self._sensor.channels()
+        )
+        return red, green, blue
+
+    def reflection(self) -> int:
+        """Return the reflected light in percent."""
+        return self._read("RGB-RAW", lambda: sum(self._raw()) * 100 // (3 * RAW_WHITE))
+
+    def ambient(self) -> int:
+        """Return the light around in percent."""
+        return self._read("COL-AMBIENT", lambda: self._sensor.modes["COL-AMBIENT"].measure()[0])
+
+    def hsv(self, surface: bool = True) -> Any:
+        """Return hue, saturation and value."""
+        return self._read("RGB-RAW", lambda: measure_hsv(*self._raw()))
+
+    def color(self, surface: bool = True) -> Any:
+        """Return the nearest of the detectable colours."""
+        return self._read("RGB-RAW", lambda: find_nearest(measure_hsv(*self._raw()), self._colors))
+
+    def detectable_colors(self, colors: Any = None) -> tuple[Any, ...] | None:
+        """Return the colours that `color` tells apart, or set them."""
+        if colors is None:
+            return self._colors
+        self._colors = tuple(colors)
+        return None
+
+
+class UltrasonicSensor(Sensor):
+    """A distance sensor."""
+
+    KIND, SWITCH_US = "ultrasonic", 50_000
+
+    def __init__(self, port: Port) -> None:
+        super().__init__(port)
+        self.lights = Lights()
+
+    def distance(self) -> int:
+        """Return the distance to the next object in mm, 2000 for none."""
+        return self._read(
+            "US-DIST-CM",
+            lambda: min(FARTHEST_MM, self._sensor.modes["US-DIST-CM"].measure()[0]),
+        )
+
+    def presence(self) -> bool:
+        """Return whether another such sensor is heard."""
+        return self._read("US-LISTEN", lambda: bool(self._sensor.modes["US-LISTEN"].measure()[0]))
+
+
+class ForceSensor(Sensor):
+    """A force sensor: nothing or an obstacle presses it, with all its force."""
+
+    KIND = "touch"
+
+    def _push(self, most: Result, least: Result) -> Result:
+        return self._read(
+            "TOUCH", lambda: most if self._sensor.modes["TOUCH"].measure()[0] else least
+        )
+
+    def force(self) -> float:
+        """Return the force in N."""
+        return self._push(MAX_FORCE_N, 0.0)
+
+    def distance(self) -> float:
+        """Return how far the button is pressed, in mm."""
+        return self._push(MAX_PRESS_MM, 0.0)
+
+    def pressed(self, force: float = 3) -> bool:
+        """Return whether it is pressed with a force in N, or more."""
+        return self._push(force <= MAX_FORCE_N, force <= 0)
+
+    def touched(self) -> bool:
+        """Return whether it is touched."""
+        return self._push(True, False)

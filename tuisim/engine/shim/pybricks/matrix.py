@@ -1,0 +1,118 @@
+"""`Matrix` of `pybricks.tools`, vectors, and the axes and sides of `pybricks.parameters`."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Callable, Iterator, Sequence
+from enum import Enum
+from typing import Any
+
+from tuisim.engine.shim.pybricks.brick import invalid_argument
+from tuisim.engine.shim.pybricks.parameters import shown_by_name
+
+Rows = tuple[tuple[float, ...], ...]
+
+
+def _single(value: float) -> float:
+    """Return a number as the hub stores it: with 32 bits."""
+    number: float = struct.unpack("f", struct.pack("f", value))[0]
+    return number
+
+
+class Matrix:
+    """A matrix of numbers, row by row."""
+
+    def __init__(self, rows: Sequence[Sequence[float]]) -> None:
+        self._rows: Rows = tuple(tuple(map(_single, row)) for row in rows)
+        if not self._rows or len({len(row) for row in self._rows}) != 1 or not self._rows[0]:
+            raise invalid_argument()
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """The numbers of rows and columns."""
+        return len(self._rows), len(self._rows[0])
+
+    @property
+    def T(self) -> Matrix:  # noqa: N802 - as the library names it
+        """The transposed matrix."""
+        return Matrix([*zip(*self._rows, strict=True)])
+
+    @property
+    def _numbers(self) -> list[float]:
+        return [value for row in self._rows for value in row]
+
+    def __getitem__(self, index: Any) -> float:
+        if isinstance(index, tuple):
+            row, column = map(int, index)
+            return self._rows[row][column]
+        return self._numbers[int(index)]
+
+    def __iter__(self) -> Iterator[float]:
+        return iter(self._numbers)
+
+    def _each(self, other: Matrix, compute: Callable[[float, float], float]) -> Matrix:
+        if not isinstance(other, Matrix) or other.shape != self.shape:
+            raise invalid_argument()
+        pairs = zip(self._rows, other._rows, strict=True)
+        return Matrix([[*map(compute, row, with_row)] for row, with_row in pairs])
+
+    def __add__(self, other: Matrix) -> Matrix:
+        return self._each(other, lambda a, b: a + b)
+
+    def __sub__(self, other: Matrix) -> Matrix:
+        return self._each(other, lambda a, b: a - b)
+
+    def __neg__(self) -> Matrix:
+        return -1 * self
+
+    def __mul__(self, other: Any) -> Any:
+        if not isinstance(other, Matrix):
+            return Matrix([[value * other for value in row] for row in self._rows])
+        if self.shape[1] != other.shape[0]:
+            raise invalid_argument()
+        columns = other.T._rows
+        product = [
+            [sum(a * b for a, b in zip(row, column, strict=True)) for column in columns]
+            for row in self._rows
+        ]
+        return product[0][0] if len(product) == len(columns) == 1 else Matrix(product)
+
+    def __rmul__(self, factor: float) -> Matrix:
+        return Matrix([[value * factor for value in row] for row in self._rows])
+
+    def __truediv__(self, divisor: float) -> Matrix:
+        return (1 / divisor) * self
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Matrix) and self._rows == other._rows
+
+    def __hash__(self) -> int:
+        return hash(self._rows)
+
+    def __repr__(self) -> str:
+        rows = (", ".join(f"{value:8.3f}" for value in row) for row in self._rows)
+        return "Matrix([\n" + "".join(f"    [{row}],\n" for row in rows) + "])"
+
+
+def vector(x: float, y: float, z: float | None = None) -> Matrix:
+    """Return a column of two or three numbers."""
+    return Matrix([[value] for value in (x, y, z) if value is not None])
+
+
+def cross(a: Matrix, b: Matrix) -> Matrix:
+    """Return the cross product of two vectors of three numbers."""
+    (ax, ay, az), (bx, by, bz) = a, b
+    return vector(ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx)
+
+
+class Axis:
+    """The axes of a robot: forward, to the left, and up."""
+
+    X, Y, Z = vector(1, 0, 0), vector(0, 1, 0), vector(0, 0, 1)
+
+
+@shown_by_name
+class Side(Enum):
+    """The sides of a hub."""
+
+    TOP, BOTTOM, FRONT, BACK, LEFT, RIGHT = range(1, 7)
