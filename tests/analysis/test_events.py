@@ -6,8 +6,8 @@ import pytest
 
 from tests.app.analyser.logs import long_log, model_of, wide_log
 from tests.cases import cases
-from tuisim.analysis.chart import event_marks
-from tuisim.analysis.events import Event, events_of, thresholds_of
+from tuisim.analysis.chart import draw_event_marks
+from tuisim.analysis.events import Event, find_events, parse_events
 from tuisim.app.analyser.panes import PANES, pane_lines
 from tuisim.base.errors import LogError
 
@@ -27,7 +27,7 @@ def test_where_variables_cross_a_value(
     text: str, events: list[tuple[str, bool, float, int]]
 ) -> None:
     log = long_log()
-    found = events_of(log, thresholds_of(text, log))
+    found = find_events(log, parse_events(text, log))
     assert [
         (event.variable, event.crossing.rising, event.crossing.time_s, event.row)
         for event in found
@@ -40,17 +40,17 @@ def test_where_variables_cross_a_value(
 )
 def test_what_is_no_threshold(text: str, said: str) -> None:
     with pytest.raises(LogError, match=said):
-        thresholds_of(text, long_log())
+        parse_events(text, long_log())
 
 
 def test_events_stand_where_they_are_in_the_chart_and_in_the_pane() -> None:
     model = model_of(long_log(runs=2))
-    model.events.thresholds = thresholds_of("Colour < 45", model.log)
+    model.events.thresholds = parse_events("Colour < 45", model.log)
     assert [row[0] for row in PANES["events"].rows(model)] == ["Colour #1", "Colour #2"]
     # The second run takes twice the time, until both are laid over each other at the event.
-    assert event_marks(model, (0.0, 18.0), 19) == "    ▼    ▼         "
+    assert draw_event_marks(model, (0.0, 18.0), 19) == "    ▼    ▼         "
     model.align("Colour < 45")
-    assert event_marks(model, (-9.0, 9.0), 19).strip() == "▼"
+    assert draw_event_marks(model, (-9.0, 9.0), 19).strip() == "▼"
     pane = PANES["events"]
     assert list(pane.rows(model)[0]) == [
         "Colour #1",
@@ -63,7 +63,7 @@ def test_events_stand_where_they_are_in_the_chart_and_in_the_pane() -> None:
     ]
     grown = model_of(long_log(runs=3))
     grown.restore(model)
-    assert len(grown.events.found(grown.log)) == 3
+    assert len(grown.events.list_events(grown.log)) == 3
 
 
 def test_statistics_count_what_is_between_the_cursors() -> None:
@@ -74,7 +74,7 @@ def test_statistics_count_what_is_between_the_cursors() -> None:
         part[0] for line in pane_lines("statistics", model, 0, 99, 9) for part in line
     )
     model.mark_s = None
-    assert model.summary("Colour").count == 10
+    assert model.build_summary("Colour").count == 10
 
 
 def test_columns_that_do_not_fit_are_left_out_whole() -> None:

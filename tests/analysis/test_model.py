@@ -6,7 +6,7 @@ import pyarrow as pa
 import pytest
 
 from tests.app.analyser.logs import long_log, model_of, wide_log
-from tuisim.analysis.chart import View, chart_of
+from tuisim.analysis.chart import View, build_chart
 from tuisim.analysis.model import derive
 from tuisim.base.errors import LogError
 from tuisim.logs.columns import Layout
@@ -17,18 +17,18 @@ from tuisim.logs.plateaus import Plateau
 def test_the_cursor_goes_along_the_selected_variable() -> None:
     model = model_of(long_log())
     model.go_to_time(3.2)
-    assert (model.row, model.time_of(model.row)) == (6, 3.0)
+    assert (model.row, model.find_time_s(model.row)) == (6, 3.0)
     model.select(1)
     model.step(1)
     assert (model.row, model.trace_of_row(model.row).name) == (7, "Left")
     model.step(1)
-    assert (model.row, model.time_of(model.row)) == (9, 4.0)
+    assert (model.row, model.find_time_s(model.row)) == (9, 4.0)
 
 
 def test_a_row_belongs_to_its_own_run() -> None:
     model = model_of(long_log(runs=2))
-    assert (model.trace_of_row(0).name, model.run_of(0)) == ("Colour #1", 0)
-    assert (model.trace_of_row(39).name, model.run_of(39), model.time_of(39)) == (
+    assert (model.trace_of_row(0).name, model.find_run(0)) == ("Colour #1", 0)
+    assert (model.trace_of_row(39).name, model.find_run(39), model.find_time_s(39)) == (
         "Left #2",
         1,
         18.0,
@@ -39,14 +39,14 @@ def test_zoom_keeps_the_cursor_and_pan_stays_inside() -> None:
     model = model_of(wide_log(10_001))
     model.go_to_time(8.0)
     model.zoom(0.5)
-    low, high = model.x_limits()
+    low, high = model.find_x_limits()
     assert (high - low, low <= 8.0 <= high) == (5.0, True)
     for _ in range(20):
         model.pan(0.25)
-    assert model.x_limits() == (5.0, 10.0)
+    assert model.find_x_limits() == (5.0, 10.0)
     model.go_to_time(1.0)
     model.follow_cursor()
-    assert model.x_limits() == (0.0, 5.0)
+    assert model.find_x_limits() == (0.0, 5.0)
     model.zoom(2.0)
     assert model.limits is None
 
@@ -64,7 +64,7 @@ def test_runs_are_laid_over_each_other(way: str, place: float) -> None:
     model.selected = "Colour #2"
     model.go_to_time(place)
     assert model.row == 38
-    assert model.time_of(38) == 18.0
+    assert model.find_time_s(38) == 18.0
 
 
 @pytest.mark.parametrize("way", ["speed", "Colour < -5", "Nothing > 1"])
@@ -75,10 +75,10 @@ def test_what_runs_cannot_be_aligned_by_is_said(way: str) -> None:
 
 def test_a_variable_along_another() -> None:
     model = model_of(long_log())
-    assert model.along("x_mm").tolist() == [100.0 * at for at in range(10)]
-    assert model.along("Left").tolist() == [float(at) for at in range(10)]
+    assert model.sample_variable("x_mm").tolist() == [100.0 * at for at in range(10)]
+    assert model.sample_variable("Left").tolist() == [float(at) for at in range(10)]
     with pytest.raises(LogError, match="no variable 'z_mm'"):
-        model.along("z_mm")
+        model.sample_variable("z_mm")
 
 
 def test_a_log_without_numbers_is_refused() -> None:
@@ -89,11 +89,11 @@ def test_a_log_without_numbers_is_refused() -> None:
 
 def test_bands_are_those_of_the_variables_in_view() -> None:
     model = model_of(long_log())
-    assert (model.unsearched(), list(model.bands())) == (["Colour", "Left"], [])
+    assert (model.list_unsearched(), list(model.bands())) == (["Colour", "Left"], [])
     model.find_bands(["Colour"], lambda _: [Plateau(0, 5, 2.0, 0.0, 0.0)])
-    (report,) = model.reports()
+    (report,) = model.list_reports()
     assert list(model.bands()) == list(report.bands) != []
-    assert (model.unsearched(), len(model.bands_in_words())) == (["Left"], 1)
+    assert (model.list_unsearched(), len(model.describe_bands())) == (["Left"], 1)
 
 
 @pytest.mark.parametrize("time_s, moves", [(4.0, False), (5.0, False), (6.0, False), (1.0, True)])
@@ -121,13 +121,13 @@ def test_the_view_follows_the_cursor(time_s: float, moves: bool) -> None:
 def test_a_chart_shows_what_is_in_view(view: View, xs: list[float], ys: list[float]) -> None:
     model = model_of(long_log())
     model.limits = 2.5, 6.5
-    chart = chart_of(model, view, 400, 100)
+    chart = build_chart(model, view, 400, 100)
     assert (chart.lines[0].xs.tolist(), chart.lines[0].ys.tolist()) == (xs, ys)
     assert chart.path == bool(view.against) != chart.zoomed
     model.limits = 0.2, 0.4
     if view.against:
         with pytest.raises(LogError, match="no sample has both x_mm and Colour"):
-            chart_of(model, view, 400, 100)
+            build_chart(model, view, 400, 100)
 
 
 def test_derived_variables_go_where_the_log_goes() -> None:
@@ -139,7 +139,7 @@ def test_derived_variables_go_where_the_log_goes() -> None:
     )
     assert (model.rows.columns[-1], all(trace.on for trace in model.traces)) == ("Twice", True)
     model.row, model.mark_s, model.limits = 19, 2.0, (1.0, 7.0)
-    model.traces.named("Left").on = False
+    model.traces.find_trace("Left").on = False
     model.rows.view = model.rows.build_sorted_view("Twice", True)
     other.restore(model)
     assert (other.row, other.mark_s, other.limits) == (19, 2.0, (1.0, 7.0))
@@ -155,12 +155,12 @@ def test_derived_variables_go_where_the_log_goes() -> None:
 
 def test_figures_are_those_between_the_cursors() -> None:
     model = model_of(long_log())
-    assert model.unsummed() == ["Colour", "Left"]
-    assert (model.summary("Colour").mean, model.unsummed()) == (45.0, ["Left"])
+    assert model.list_unsummed() == ["Colour", "Left"]
+    assert (model.build_summary("Colour").mean, model.list_unsummed()) == (45.0, ["Left"])
     model.mark_s = 5.0
     model.go_to_time(2.0)
-    assert (model.measured(), model.unsummed()) == ((2.0, 5.0), [])
-    figures = model.summary("Colour")
+    assert (model.find_measured_span(), model.list_unsummed()) == ((2.0, 5.0), [])
+    figures = model.build_summary("Colour")
     assert (figures.count, figures.min, figures.mean, figures.max) == (4, 40.0, 55.0, 70.0)
     model.go_to_moment(7.4)
-    assert (model.row, model.sample, model.printed_line()) == (14, 7, 0)
+    assert (model.row, model.sample, model.find_printed_line()) == (14, 7, 0)

@@ -15,7 +15,7 @@ from tuisim.analysis.remembered import (
     remember_choices,
     request_file,
 )
-from tuisim.analysis.source import LogRequest, opening
+from tuisim.analysis.source import LogRequest, open_pieces
 from tuisim.logs.choices import NO_CHOICES, ReadChoices
 from tuisim.settings.preferences import keep, preferences_file
 
@@ -91,11 +91,11 @@ def test_damaged_memory_is_no_error(text: str, file: Path) -> None:
 
 def test_what_is_remembered_counts_without_choices_and_is_said(file: Path) -> None:
     remember_choices(str(file), CHOICES)
-    *_, opened = opening(request_file(str(file)))
+    *_, opened = open_pieces(request_file(str(file)))
     assert opened.log.series("light").time_s[-1] == pytest.approx(0.16)
     options = "--time boot --unit ms --header 1 --separator semicolon --decimal ,"
     assert opened.log.notes[0].startswith(f"read as chosen in the analyser: {options} (")
-    *_, opened = opening(request_file(str(file), ReadChoices(time="")))
+    *_, opened = open_pieces(request_file(str(file), ReadChoices(time="")))
     assert opened.log.series("light").time_s[-1] == 8
     assert opened.log.notes == ()
 

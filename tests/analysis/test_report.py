@@ -16,8 +16,8 @@ from PIL import Image
 
 from tests.cases import cases
 from tests.conftest import Command
-from tuisim.analysis.report import run_facts
-from tuisim.analysis.source import NOTES_FILE, Note, notes_of_file, write_notes
+from tuisim.analysis.report import list_run_facts
+from tuisim.analysis.source import NOTES_FILE, Note, find_notes_file, write_notes
 from tuisim.cli import run_command
 from tuisim.engine.protocol import End
 from tuisim.engine.runs.run_folder import StoredRun
@@ -132,7 +132,7 @@ def test_a_run_is_told_whole(driven: Driven) -> None:
 def test_an_end_is_said_once(driven: Driven) -> None:
     assert driven.run.end is not None
     stopped = replace(driven.run.end, end=End.STOPPED, summary="stopped")
-    assert ("end", "stopped") in run_facts([replace(driven.run, end=stopped)])
+    assert ("end", "stopped") in list_run_facts([replace(driven.run, end=stopped)])
 
 
 def test_the_program_has_its_line_numbers(driven: Driven) -> None:
@@ -226,7 +226,7 @@ def test_a_file_is_told_without_program_and_world(
     log.write_text(
         "time,<b>\n" + "".join(f"{at},{50 * (at // 20)}\n" for at in range(40)) + "40,oops\n"
     )
-    write_notes(notes_of_file(log), [Note("here", 3.0, 3.0)])
+    write_notes(find_notes_file(log), [Note("here", 3.0, 3.0)])
     assert here("log", "report", "some.csv").stdout == "some-report.html\n"
     page = page_of(tmp_path / "some-report.html")
     assert list(page.section) == ["Facts", "Chart", "Bands", "Statistics", "Notes"]

@@ -12,7 +12,7 @@ from tuisim.analysis.source import (
     LogRequest,
     Note,
     OpenedLog,
-    notes_of_file,
+    find_notes_file,
     read_notes,
     write_notes,
 )
@@ -51,4 +51,4 @@ def test_damaged_notes_are_said_with_their_row(tmp_path: Path) -> None:
 
 def test_notes_of_a_missing_file_are_said(tmp_path: Path) -> None:
     with pytest.raises(LogError, match="cannot be read"):
-        notes_of_file(tmp_path / "none.csv")
+        find_notes_file(tmp_path / "none.csv")

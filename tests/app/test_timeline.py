@@ -128,7 +128,7 @@ async def test_the_pen_has_drawn_no_more_than_then() -> None:
         assert world is not None
         assert world._view.past_trace is not None
         recording = recording_of(app)
-        drawn = [piece.xs_mm for piece in world._view.past_trace.pieces(0)]
+        drawn = [piece.xs_mm for piece in world._view.past_trace.iterate_pieces(0)]
         if drawn:
             ahead = recording.spec.robot.pen.y_mm
             assert max(float(xs[-1]) for xs in drawn) <= recording.telemetry.record(150).x_mm + abs(

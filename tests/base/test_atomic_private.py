@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from tests.conftest import Command
-from tuisim.analysis.source import Note, notes_of_file, write_notes
+from tuisim.analysis.source import Note, find_notes_file, write_notes
 from tuisim.app.editor.text_file import keep_draft
 from tuisim.app.kept_breaks import Kept, keep
 from tuisim.app.setup.poses import save_pose
@@ -34,7 +34,7 @@ def test_home_is_private_and_exports_are_as_the_umask_says(
     keep_draft(str(program), "x")
     keep(str(program), Kept())
     save_pose("here", Pose(1.0, 2.0, 3.0))
-    write_notes(notes_of_file(tmp_path / "a.csv"), [Note("x", 0.0, 0.0)])
+    write_notes(find_notes_file(tmp_path / "a.csv"), [Note("x", 0.0, 0.0)])
     rights = {path: stat.S_IMODE(path.stat().st_mode) for path in (home, *home.rglob("*"))}
     assert len(rights) > 12
     assert not {

@@ -23,10 +23,10 @@ from tuisim.engine.runs.records import HEADER_BYTES, OUTPUT_FILE, TELEMETRY_FILE
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.engine.runs.store import RunStore
 from tuisim.pictures.movies.clip import END_MS, Recorded
-from tuisim.pictures.movies.files import SMALL_BYTES, small_movie
+from tuisim.pictures.movies.files import SMALL_BYTES, make_small_movie
 from tuisim.pictures.movies.painter import FramePainter
-from tuisim.pictures.scene.pen import pen_trace
-from tuisim.pictures.scene.pictures import fitting_view
+from tuisim.pictures.scene.pen import build_pen_trace
+from tuisim.pictures.scene.pictures import fit_view
 from tuisim.pictures.scene.robot import COLORED
 from tuisim.pictures.scene.view import Viewport
 
@@ -71,7 +71,7 @@ def shown_at(frame: Any, color: tuple[int, int, int]) -> tuple[float, float]:
 
 
 def view(width_px: int, height_px: int) -> Viewport:
-    return fitting_view(ROBOT, width_px, height_px)
+    return fit_view(ROBOT, width_px, height_px)
 
 
 def test_a_movie_follows_the_robot(here: Command, run: StoredRun, tmp_path: Path) -> None:
@@ -164,7 +164,7 @@ def test_without_a_file_it_is_named_after_the_program(here: Command, tmp_path: P
 
 @pytest.mark.slow
 def test_a_small_movie_of_a_long_run_is_faster() -> None:
-    made = small_movie(Recorded(record(*[100, -100] * 25)))
+    made = make_small_movie(Recorded(record(*[100, -100] * 25)))
     assert made is not None
     clip, content = made
     assert (clip.speed, len(clip.shots)) == (3, 85)
@@ -177,7 +177,7 @@ def test_a_small_movie_of_a_long_run_is_faster() -> None:
 )
 def test_no_small_movie(monkeypatch: pytest.MonkeyPatch, speed_dps: float, most: int) -> None:
     monkeypatch.setattr("tuisim.pictures.movies.files.SMALL_BYTES", most)
-    assert small_movie(Recorded(record(speed_dps))) is None
+    assert make_small_movie(Recorded(record(speed_dps))) is None
 
 
 # Words after `runs`, and what the line on stderr must say.
@@ -249,7 +249,7 @@ def test_damaged_records_cost_only_their_frames(
     records[field][[0, 50, 100]] = value
     path.write_bytes(content)
     # A line to a point far away takes minutes to draw.
-    piece = pen_trace(SPEC, records)
+    piece = build_pen_trace(SPEC, records)
     assert not (np.abs([piece.xs_mm, piece.ys_mm]) > 10_000).any()
     done = here(
         "runs", "movie", "last", "--out", "a.gif", "--fps", "2", "--panels", "world,chart,arrays"

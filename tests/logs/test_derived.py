@@ -120,7 +120,7 @@ def test_it_is_replaced_taken_away_and_kept_when_the_log_grows() -> None:
     model = model_of(wide_log(100))
     derive(model, "v = wave + 1")
     derive(model, "v = wave + 2")
-    assert model.trace.at(0.0) == pytest.approx(3.0)
+    assert model.trace.find_value(0.0) == pytest.approx(3.0)
     grown = model_of(wide_log(200))
     grown.restore(model)
     assert len(grown.log.series("v").values) == 200

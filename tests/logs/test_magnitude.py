@@ -20,9 +20,9 @@ from tuisim.logs.frames import read_log
 from tuisim.logs.levels import measure_levels
 from tuisim.logs.magnitude import MAX_DRAWN, find_scale, limit_drawn
 from tuisim.logs.signals import compute_summary
-from tuisim.pictures.charts.canvas import xy_lines
+from tuisim.pictures.charts.canvas import draw_xy_chart
 from tuisim.pictures.charts.files import CHART_FORMATS
-from tuisim.pictures.charts.sample_chart import sample_chart
+from tuisim.pictures.charts.sample_chart import build_sample_chart
 from tuisim.pictures.charts.text_chart import ChartPainter, ChartState
 from tuisim.pictures.charts.traces import Pyramid, Traces
 from tuisim.tasks.execute import statistics_of
@@ -82,7 +82,7 @@ def test_every_number_is_drawn(values: Sequence[float], times_s: Sequence[float]
         rows = ChartPainter().paint(traces, state, 60, 12).lines
         assert all(sum(len(text) for text, _ in row) <= 60 for row in rows)
     points = np.array(times_s), np.array(values)
-    assert xy_lines(
+    assert draw_xy_chart(
         limit_drawn(points[0]),
         limit_drawn(points[1]),
         None,
@@ -92,7 +92,7 @@ def test_every_number_is_drawn(values: Sequence[float], times_s: Sequence[float]
         60,
         12,
     )
-    chart = sample_chart(
+    chart = build_sample_chart(
         [Sample("A", *pair[::-1], 0, 0, 0) for pair in zip(*points, strict=True)], 80
     )
     for suffix, size in ((".svg", (200, 150)), (".txt", (40, 8))):
@@ -116,7 +116,7 @@ def test_every_number_is_summed(values: Sequence[float]) -> None:
     samples = np.array(values, np.float64)
     for found in (
         compute_summary(samples),
-        Pyramid(np.arange(len(values), dtype=np.float64), samples).figures(0, 99),
+        Pyramid(np.arange(len(values), dtype=np.float64), samples).compute_summary(0, 99),
     ):
         if found.count:
             assert found.min <= found.mean <= found.max and found.std >= 0.0

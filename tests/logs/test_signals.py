@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from tuisim.analysis.events import crossings
+from tuisim.analysis.events import find_crossings
 from tuisim.base.errors import LogError
 from tuisim.logs.signals import (
     Between,
@@ -135,10 +135,10 @@ class TestOrder:
         assert_allclose(compute_derivative(*BACK), [1, 4, 2, 5])
         assert_allclose(compute_integral(*BACK), [0, 3, 0.5, 9.5])
         assert_allclose(resample(*BACK, 1)[1], [0, 1, 4, 9])
-        assert [(one.at, one.time_s) for one in crossings(*BACK, 2.5)] == [(1, 1.5)]
+        assert [(one.sample, one.time_s) for one in find_crossings(*BACK, 2.5)] == [(1, 1.5)]
 
     def test_very_large_values(self) -> None:
-        found = crossings(column(0, 1), column(-1e308, 1e308), 0)
+        found = find_crossings(column(0, 1), column(-1e308, 1e308), 0)
         assert [one.time_s for one in found] == [0.5]
         assert_allclose(compute_integral(column(0, 1), column(1e308, 1e308)), [0, 1e308])
         assert compute_summary(np.array([3e38, 3e38, 0], np.float32)).mean == pytest.approx(2e38)
@@ -146,28 +146,28 @@ class TestOrder:
 
 class TestCrossings:
     def test_up_and_down(self) -> None:
-        found = crossings(column(0, 1, 2, 3), column(0, 10, 10, 0), 5)
-        assert [(c.at, c.time_s, c.rising) for c in found] == [(1, 0.5, True), (3, 2.5, False)]
+        found = find_crossings(column(0, 1, 2, 3), column(0, 10, 10, 0), 5)
+        assert [(c.sample, c.time_s, c.rising) for c in found] == [(1, 0.5, True), (3, 2.5, False)]
 
     def test_a_touch_from_above_is_none(self) -> None:
-        assert crossings(column(0, 1, 2), column(9, 5, 9), 5) == []
+        assert find_crossings(column(0, 1, 2), column(9, 5, 9), 5) == []
 
     def test_what_stays_within_the_hysteresis_crosses_nothing(self) -> None:
         times_s, values = column(*range(7)), column(0, 10, 4, 10, 0, 6, 0)
-        found = crossings(times_s, values, 5, hysteresis=2)
-        assert [(one.at, one.rising) for one in found] == [(1, True), (4, False)]
+        found = find_crossings(times_s, values, 5, hysteresis=2)
+        assert [(one.sample, one.rising) for one in found] == [(1, True), (4, False)]
 
     def test_hysteresis_passes_over_jitter(self) -> None:
         values = column(0, 4.9, 5.1, 4.9, 5.1, 9, 5.1, 4.9, 0)
         time = np.arange(9.0)
-        assert len(crossings(time, values, 5)) == 4
-        found = crossings(time, values, 5, hysteresis=1)
-        assert [(c.at, c.rising) for c in found] == [(4, True), (7, False)]
+        assert len(find_crossings(time, values, 5)) == 4
+        found = find_crossings(time, values, 5, hysteresis=1)
+        assert [(c.sample, c.rising) for c in found] == [(4, True), (7, False)]
 
     def test_values_that_are_no_numbers_are_passed_over(self) -> None:
-        found = crossings(column(0, 1, 2), column(0, NAN, 10), 5)
-        assert [(c.at, c.time_s) for c in found] == [(2, 1.0)]
+        found = find_crossings(column(0, 1, 2), column(0, NAN, 10), 5)
+        assert [(c.sample, c.time_s) for c in found] == [(2, 1.0)]
 
     def test_refuses_a_negative_hysteresis(self) -> None:
         with pytest.raises(LogError, match="negative"):
-            crossings(column(0), column(0), 5, -1)
+            find_crossings(column(0), column(0), 5, -1)

@@ -11,15 +11,15 @@ import numpy as np
 from tests.cases import cases
 from tests.pictures.charts.test_layout import log_of
 from tuisim.analysis.chart import View
-from tuisim.analysis.chart import chart_of as plotted
+from tuisim.analysis.chart import build_chart as plotted
 from tuisim.engine.runs.samples import Sample
 from tuisim.notebook.display import CHART_SIZE
-from tuisim.pictures.charts.files import svg_of
-from tuisim.pictures.charts.layout import ChartData, Stroke, Words, laid_out
-from tuisim.pictures.charts.sample_chart import sample_chart
+from tuisim.pictures.charts.files import draw_svg
+from tuisim.pictures.charts.layout import ChartData, Stroke, Words, lay_out_chart
+from tuisim.pictures.charts.sample_chart import build_sample_chart
 
 Kind = TypeVar("Kind", Stroke, Words)
-chart_of = partial(sample_chart, columns=CHART_SIZE[0])
+chart_of = partial(build_sample_chart, columns=CHART_SIZE[0])
 
 
 def samples(count: int, peak: float) -> list[Sample]:
@@ -32,7 +32,7 @@ def samples(count: int, peak: float) -> list[Sample]:
 def drawn(chart: ChartData, kind: type[Kind]) -> list[Kind]:
     return [
         shape
-        for shape in laid_out(chart, *CHART_SIZE, titled=False).shapes
+        for shape in lay_out_chart(chart, *CHART_SIZE, titled=False).shapes
         if isinstance(shape, kind)
     ]
 
@@ -50,8 +50,8 @@ def test_samples_are_drawn_as_log_plot_draws_them() -> None:
     here = chart_of([Sample("Gyro", v, t, 0, 0, 1) for t, v in zip(times, values, strict=True)])
     model = log_of({"time": times.tolist(), "Gyro": values.tolist()})
     there = plotted(model, View(), *CHART_SIZE)
-    drawings = [laid_out(chart, *CHART_SIZE, titled=False) for chart in (here, there)]
-    assert svg_of(replace(drawings[0], title="")) == svg_of(replace(drawings[1], title=""))
+    drawings = [lay_out_chart(chart, *CHART_SIZE, titled=False) for chart in (here, there)]
+    assert draw_svg(replace(drawings[0], title="")) == draw_svg(replace(drawings[1], title=""))
 
 
 @cases(

@@ -12,11 +12,11 @@ from tuisim.analysis.traces import DISTANCE, LogTrace, sample_and_hold
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import LogError, printable
 from tuisim.logs.magnitude import limit_drawn
-from tuisim.pictures.charts.axes import Limits, column_of, value_limits
-from tuisim.pictures.charts.bands import band_span
-from tuisim.pictures.charts.canvas import DOTS_X, DOTS_Y, seen_points
-from tuisim.pictures.charts.layout import ChartData, Line, Span, with_unit
-from tuisim.pictures.charts.traces import clip_line, min_max
+from tuisim.pictures.charts.axes import Limits, choose_limits, find_column
+from tuisim.pictures.charts.bands import build_band_span
+from tuisim.pictures.charts.canvas import DOTS_X, DOTS_Y, drop_hidden_points
+from tuisim.pictures.charts.layout import ChartData, Line, Span, add_unit
+from tuisim.pictures.charts.traces import clip_line, reduce_points
 
 if TYPE_CHECKING:
     from tuisim.analysis.model import Model
@@ -37,7 +37,7 @@ class View:
     """Pair of x and y to draw against each other, instead of all variables over time."""
 
 
-def chart_of(model: Model, view: View, columns: int, rows: int) -> ChartData:
+def build_chart(model: Model, view: View, columns: int, rows: int) -> ChartData:
     """Return the chart of a model: its visible variables within its limits.
 
     What a picture of `columns` by `rows` pixels, or parts of characters, could not tell apart is left out.
@@ -45,13 +45,13 @@ def chart_of(model: Model, view: View, columns: int, rows: int) -> ChartData:
     Raises:
         LogError: no such variable to draw against.
     """
-    x_limits = model.x_limits()
+    x_limits = model.find_x_limits()
     if view.against:
-        return _path(model, view.against, view.marks, columns, rows)
+        return _build_path_chart(model, view.against, view.marks, columns, rows)
     lines = []
-    for number, trace in enumerate(model.traces.ticked()):
+    for number, trace in enumerate(model.traces.list_ticked()):
         trace.prepare(x_limits, columns, False)
-        lines.append(_line(trace, number, view.hold, x_limits, columns))
+        lines.append(_build_line(trace, number, view.hold, x_limits, columns))
     x_label = "time (s)" if model.log.layout.time else "row"
     if model.alignment == DISTANCE:
         x_label = "distance driven (mm)"
@@ -66,14 +66,16 @@ def chart_of(model: Model, view: View, columns: int, rows: int) -> ChartData:
     )
 
 
-def _line(trace: LogTrace, number: int, hold: bool, x_limits: Limits, columns: int) -> Line:
-    xs, ys = min_max(trace.times_s, trace.values, x_limits, columns)
+def _build_line(trace: LogTrace, number: int, hold: bool, x_limits: Limits, columns: int) -> Line:
+    xs, ys = reduce_points(trace.times_s, trace.values, x_limits, columns)
     xs, ys = clip_line(*(sample_and_hold(xs, ys) if hold else (xs, ys)), x_limits)
     return Line(trace.name, xs, ys, number, trace.scale)
 
 
-def _path(model: Model, names: tuple[str, str], marks: bool, columns: int, rows: int) -> ChartData:
-    xs, ys = (model.along(name) for name in names)
+def _build_path_chart(
+    model: Model, names: tuple[str, str], marks: bool, columns: int, rows: int
+) -> ChartData:
+    xs, ys = (model.sample_variable(name) for name in names)
     places = model.trace.places
     good = np.isfinite(xs) & np.isfinite(ys)
     if model.limits:
@@ -81,36 +83,36 @@ def _path(model: Model, names: tuple[str, str], marks: bool, columns: int, rows:
     if not good.any():
         raise LogError(f"no sample has both {names[0]} and {names[1]}", file=model.log.title)
     xs, ys = (limit_drawn(values[good]) for values in (xs, ys))
-    limits = [value_limits(float(values.min()), float(values.max())) for values in (xs, ys)]
+    limits = [choose_limits(float(values.min()), float(values.max())) for values in (xs, ys)]
     cells = max(columns // DOTS_X, 1), max(rows // DOTS_Y, 1)
-    xs, ys = seen_points(xs, ys, limits, *cells)
-    title, x_label = printable(model.log.title), with_unit(names[0])
+    xs, ys = drop_hidden_points(xs, ys, limits, *cells)
+    title, x_label = printable(model.log.title), add_unit(names[0])
     return ChartData(
         title, (Line(names[1], xs, ys, 0),), limits[0], x_label, marks=marks, path=True
     )
 
 
-def spans_of_bands(bands: Iterable[Band]) -> tuple[Span, ...]:
+def build_spans(bands: Iterable[Band]) -> tuple[Span, ...]:
     """Return bands as spans of a chart over time."""
     return tuple(
-        band_span(band.variable, band.start_s, band.stop_s, band.true_level, band.grey)
+        build_band_span(band.variable, band.start_s, band.stop_s, band.true_level, band.grey)
         for band in bands
     )
 
 
-def event_marks(model: Model, limits: Limits, columns: int) -> str:
+def draw_event_marks(model: Model, limits: Limits, columns: int) -> str:
     """Return a line of text with a mark in each column of the chart that has events."""
     line = [" "] * columns
-    for event in model.events.found(model.log):
+    for event in model.events.list_events(model.log):
         if isinstance(event, CommandRow):
             place, mark = model.find_place(event.row, event.time_s), "╷"
         else:
-            trace, crossing = model.traces.named(event.variable), event.crossing
+            trace, crossing = model.traces.find_trace(event.variable), event.crossing
             place = crossing.time_s + float(
-                trace.places[crossing.at] - trace.series.time_s[crossing.at]
+                trace.places[crossing.sample] - trace.series.time_s[crossing.sample]
             )
             mark = "▲" if crossing.rising else "▼"
         if limits[0] <= place <= limits[1]:
-            column = min(max(column_of(place, limits, columns), 0), columns - 1)
+            column = min(max(find_column(place, limits, columns), 0), columns - 1)
             line[column] = mark if line[column] in (" ", mark) else "◆"
     return "".join(line)

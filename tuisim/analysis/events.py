@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 class Crossing:
     """One crossing."""
 
-    at: int
+    sample: int
     """Index of the first sample beyond the threshold."""
     time_s: float
     """Time at which the line between the samples on either side meets the threshold."""
@@ -40,7 +40,7 @@ class Crossing:
     rising: bool
 
 
-def crossings(
+def find_crossings(
     time_s: FloatArray, values: FloatArray, threshold: float, hysteresis: float = 0.0
 ) -> list[Crossing]:
     """Return where a signal crosses a threshold, in order of time.
@@ -68,33 +68,38 @@ def crossings(
     decided = np.flatnonzero(side)
     turns = side[decided[1:]] != side[decided[:-1]]
     before, changes = decided[:-1][turns], decided[1:][turns]
-    found = []
+    results = []
     for start, end in zip(before.tolist(), changes.tolist(), strict=True):
         rising = bool(side[end] > 0)
         beyond = above[start + 1 : end + 1] == rising
         # The last crossing, not the sample beyond the hysteresis.
-        at = start + 1 + (0 if beyond.all() else int(np.flatnonzero(~beyond)[-1]) + 1)
-        first, last = int(known[at - 1]), int(known[at])
-        found.append(
+        index = start + 1 + (0 if beyond.all() else int(np.flatnonzero(~beyond)[-1]) + 1)
+        first, last = int(known[index - 1]), int(known[index])
+        results.append(
             Crossing(
-                last, _meets(time_s, values, first, last, threshold), float(values[last]), rising
+                last,
+                _compute_crossing_s(time_s, values, first, last, threshold),
+                float(values[last]),
+                rising,
             )
         )
-    return found
+    return results
 
 
-def _changes(time_s: FloatArray, values: FloatArray) -> list[Crossing]:
+def _find_changes(time_s: FloatArray, values: FloatArray) -> list[Crossing]:
     """Return where a signal has another value than before, in order of time."""
     known = np.arange(len(values))[sort_known(time_s, values)]
     turns = np.flatnonzero(np.diff(values[known]))
     pairs = zip(known[turns].tolist(), known[turns + 1].tolist(), strict=True)
     return [
-        Crossing(at, float(time_s[at]), float(values[at]), bool(values[at] > values[was]))
-        for was, at in pairs
+        Crossing(
+            after, float(time_s[after]), float(values[after]), bool(values[after] > values[before])
+        )
+        for before, after in pairs
     ]
 
 
-def _meets(
+def _compute_crossing_s(
     time_s: FloatArray, values: FloatArray, first: int, last: int, threshold: float
 ) -> float:
     # Halved, so that the difference is finite.
@@ -125,19 +130,23 @@ class Threshold(ValueCondition):
         """The value as it is shown; empty for a change."""
         return f"{float(self.value):g}" if self.value else ""
 
-    def among(self, series: Sequence[Series]) -> list[Series]:
+    def select_series(self, series: Sequence[Series]) -> list[Series]:
         """Return the series of its variable: of all runs, unless it names one."""
-        return [one for one in series if self.name in (one.name, one.name.partition(" #")[0])]
+        return [
+            candidate
+            for candidate in series
+            if self.name in (candidate.name, candidate.name.partition(" #")[0])
+        ]
 
-    def crossings(self, series: Series) -> list[Crossing]:
+    def find_crossings(self, series: Series) -> list[Crossing]:
         """Return where a series crosses it, in order of time."""
         if self.operator is Operator.CHANGES:
-            return _changes(series.time_s, series.values)
-        found = crossings(series.time_s, series.values, float(self.value), self.hysteresis)
+            return _find_changes(series.time_s, series.values)
+        results = find_crossings(series.time_s, series.values, float(self.value), self.hysteresis)
         ways = {Operator.GREATER: (True,), Operator.LESS: (False,)}.get(
             self.operator, (True, False)
         )
-        return [one for one in found if one.rising in ways]
+        return [crossing for crossing in results if crossing.rising in ways]
 
 
 @dataclass(frozen=True, slots=True)
@@ -190,28 +199,28 @@ class CommandRow:
         return self.index.event(self.number)
 
 
-def threshold_of(text: str) -> Threshold | None:
+def parse_threshold(text: str) -> Threshold | None:
     """Return the threshold in a text such as `Colour < 50`, None if it is none."""
     match = _WIDTH.fullmatch(text)
-    found = parse_condition(match["comparison"], value=NUMBER) if match else None
-    width = float(match["width"]) if match and found else 0.0
-    found = found or parse_condition(text, value=NUMBER)
-    if found is None or found.operator not in (*_OPERATORS, Operator.CHANGES):
+    condition = parse_condition(match["comparison"], value=NUMBER) if match else None
+    width = float(match["width"]) if match and condition else 0.0
+    condition = condition or parse_condition(text, value=NUMBER)
+    if condition is None or condition.operator not in (*_OPERATORS, Operator.CHANGES):
         return None
-    return Threshold(found.name, found.operator, found.value, hysteresis=width)
+    return Threshold(condition.name, condition.operator, condition.value, hysteresis=width)
 
 
-def thresholds_of(text: str, log: Log) -> tuple[EventChoice, ...]:
+def parse_events(text: str, log: Log) -> tuple[EventChoice, ...]:
     """Return the events that a text chooses, see `FORM`; none in an empty one.
 
     Raises:
         LogError: one is not a threshold, or there is no such variable.
     """
-    found: list[EventChoice] = []
+    choices: list[EventChoice] = []
     for part in text.split(",") if text.strip() else ():
-        threshold = threshold_of(part)
+        threshold = parse_threshold(part)
         if threshold is None and (words := parse_command_search(part)) is not None:
-            found.append(CommandChoice(words))
+            choices.append(CommandChoice(words))
             continue
         if threshold is None:
             raise LogError(f"no threshold: {part.strip()!r}", FORM)
@@ -220,11 +229,11 @@ def thresholds_of(text: str, log: Log) -> tuple[EventChoice, ...]:
             raise LogError(
                 f"no variable {threshold.name!r}", among(threshold.name, names), file=log.title
             )
-        found.append(threshold)
-    return tuple(found)
+        choices.append(threshold)
+    return tuple(choices)
 
 
-def events_of(
+def find_events(
     log: Log, choices: Sequence[EventChoice], runs: Sequence[StoredRun] = ()
 ) -> list[Event | CommandRow]:
     """Return where variables cross thresholds, and what programs asked, in the order of the rows.
@@ -234,21 +243,23 @@ def events_of(
         choices: Which events are wanted.
         runs: The runs of the log; none for a file.
     """
-    found: list[Event | CommandRow] = []
+    events: list[Event | CommandRow] = []
     series = [log.series(name) for name in log.names] if choices else []
     for threshold in choices:
         if isinstance(threshold, CommandChoice):
             for number, run in enumerate(runs, 1):
-                of_run = [each for each in series if each.run in (0, number)]
-                found += _find_commands(run, threshold, of_run, number if len(runs) > 1 else 0)
+                run_series = [each for each in series if each.run in (0, number)]
+                events += _find_commands(run, threshold, run_series, number if len(runs) > 1 else 0)
             continue
-        for one in threshold.among(series):
+        for variable in threshold.select_series(series):
             before_s = float("nan")
-            for crossing in threshold.crossings(one):
-                row = int(one.rows[crossing.at])
-                found.append(Event(one.name, threshold, crossing, row, crossing.time_s - before_s))
+            for crossing in threshold.find_crossings(variable):
+                row = int(variable.rows[crossing.sample])
+                events.append(
+                    Event(variable.name, threshold, crossing, row, crossing.time_s - before_s)
+                )
                 before_s = crossing.time_s
-    return sorted(found, key=lambda event: event.row)
+    return sorted(events, key=lambda event: event.row)
 
 
 def _find_commands(
@@ -280,23 +291,23 @@ class Events:
     """The current events; they are searched again when the log changes.
 
     Args:
-        runs: As of `events_of`.
+        runs: As of `find_events`.
     """
 
     def __init__(self, runs: Sequence[StoredRun] = ()) -> None:
         self.runs = runs
         self.thresholds: tuple[EventChoice, ...] = ()
         self._of: tuple[Log | None, tuple[EventChoice, ...]] = (None, ())
-        self._found: list[Event | CommandRow] = []
+        self._events: list[Event | CommandRow] = []
 
     def set(
-        self, log: Log, thresholds: tuple[EventChoice, ...], found: list[Event | CommandRow]
+        self, log: Log, thresholds: tuple[EventChoice, ...], events: list[Event | CommandRow]
     ) -> None:
         """Set the events."""
-        self.thresholds, self._of, self._found = thresholds, (log, thresholds), found
+        self.thresholds, self._of, self._events = thresholds, (log, thresholds), events
 
-    def found(self, log: Log) -> list[Event | CommandRow]:
+    def list_events(self, log: Log) -> list[Event | CommandRow]:
         """Return the events of a log, in the order of its rows."""
         if self._of[0] is not log or self._of[1] != self.thresholds:
-            self.set(log, self.thresholds, events_of(log, self.thresholds, self.runs))
-        return self._found
+            self.set(log, self.thresholds, find_events(log, self.thresholds, self.runs))
+        return self._events

@@ -13,7 +13,7 @@ import numpy as np
 
 from tuisim.analysis.events import Events
 from tuisim.analysis.source import Note, OpenedLog, read_notes, write_notes
-from tuisim.analysis.traces import TIME, LogTrace, LogTraces, aligned
+from tuisim.analysis.traces import TIME, LogTrace, LogTraces, align_series
 from tuisim.base.errors import LogError, among
 from tuisim.engine.runs.arrays import FloatArray
 from tuisim.logs.bands import Band, BandReport, build_band_report, describe_levels
@@ -33,7 +33,7 @@ from tuisim.pictures.charts.axes import Limits
 if TYPE_CHECKING:
     from tuisim.logs.log import Log
 
-_LEAST_SPAN = 1e-9
+_MIN_SHOWN_SHARE = 1e-9
 """Smallest visible fraction of the whole time."""
 _SORTED_AT_ONCE = 200_000
 """Up to this number of values, quantiles take only some hundredths of a second."""
@@ -51,7 +51,7 @@ class Model:
         self.log = opened.log
         self.rows = Rows(opened.log)
         self.traces = LogTraces(opened.log)
-        ticked = self.traces.ticked()
+        ticked = self.traces.list_ticked()
         if self.log.rows and not ticked:
             raise LogError("no numeric column", "there is nothing to draw", file=self.log.title)
         self.selected: str = ticked[0].name if ticked else ""
@@ -73,7 +73,7 @@ class Model:
         """Definitions of derived variables as typed, by name."""
         self._words: dict[str, str] = {}
         self._summaries: dict[str, Summary] = {}
-        self._places = opened.notes_places()
+        self._places = opened.find_notes_files()
         self._notes: list[list[Note]] = [list(read_notes(place)) for place in self._places]
         if ticked and len(self.trace.series.rows):
             self.row = int(self.trace.series.rows[0])
@@ -83,7 +83,7 @@ class Model:
     @property
     def trace(self) -> LogTrace:
         """The selected variable."""
-        return self.traces.named(self.selected)
+        return self.traces.find_trace(self.selected)
 
     def trace_of_row(self, row: int) -> LogTrace:
         """Return the trace that a row belongs to."""
@@ -98,7 +98,7 @@ class Model:
         ):
             name = key
         # A row may have no name or no run.
-        return self.traces.named(name if name in self.traces else self.selected)
+        return self.traces.find_trace(name if name in self.traces else self.selected)
 
     @property
     def cursor_s(self) -> float:
@@ -114,7 +114,7 @@ class Model:
         sample = self._sample(trace, row)
         return time_s + float(trace.places[sample] - trace.series.time_s[sample])
 
-    def time_of(self, row: int) -> float:
+    def find_time_s(self, row: int) -> float:
         """Return the time of a row in its run."""
         trace = self.trace_of_row(row)
         return float(trace.series.time_s[self._sample(trace, row)])
@@ -130,7 +130,7 @@ class Model:
         """The index of the selected variable's sample in the current row, or of the next one."""
         return self._sample(self.trace, self.row)
 
-    def along(self, name: str) -> FloatArray:
+    def sample_variable(self, name: str) -> FloatArray:
         """Return the values of a variable or column at each sample of the selected variable, shape (n,).
 
         Raises:
@@ -138,7 +138,7 @@ class Model:
         """
         series = self.trace.series
         if name in self.traces:
-            other = self.traces.named(name).series
+            other = self.traces.find_trace(name).series
             if other is series:
                 return other.values
             return sample_unsorted_signal(other.time_s, other.values, series.time_s)
@@ -147,11 +147,11 @@ class Model:
             raise LogError(f"no variable {name!r}", among(name, known), file=self.log.title)
         return self.log.numbers(name)[series.rows]
 
-    def run_of(self, row: int) -> int:
+    def find_run(self, row: int) -> int:
         """Return the index of a row's run, from 0."""
         return max(0, self.trace_of_row(row).series.run - 1)
 
-    def printed_line(self) -> int:
+    def find_printed_line(self) -> int:
         """Return the line of the program that printed the row, 0 if the log does not say."""
         if "line" not in self.log.table.column_names:
             return 0
@@ -160,7 +160,7 @@ class Model:
     def go_to_time(self, time_s: float) -> None:
         """Move the cursor to the selected variable's sample nearest to an x position."""
         if len(self.trace.pyramid.times_s):
-            self.row = int(self.trace.series.rows[self.trace.pyramid.nearest(time_s)])
+            self.row = int(self.trace.series.rows[self.trace.pyramid.find_nearest(time_s)])
 
     def go_to_moment(self, time_s: float) -> None:
         """Move the cursor to the selected variable's sample nearest to a time of its run."""
@@ -173,12 +173,12 @@ class Model:
         rows = self.trace.series.rows
         if len(rows):
             # The row may be one of another variable, between two samples.
-            at = (
+            index = (
                 int(np.searchsorted(rows, self.row, "right" if samples > 0 else "left"))
                 + samples
                 - (samples > 0)
             )
-            self.row = int(rows[min(max(at, 0), len(rows) - 1)])
+            self.row = int(rows[min(max(index, 0), len(rows) - 1)])
 
     def restore(self, other: Model) -> None:
         """Restore the state of another model of the same log, which has grown since."""
@@ -186,10 +186,10 @@ class Model:
         if other.row == other.log.rows - 1:
             # The cursor stays at the end of a growing log.
             self.row = self.log.rows - 1
-        self.define_as(other)
+        self.copy_definitions(other)
         for trace in other.traces:
             if trace.name in self.traces:
-                self.traces.named(trace.name).on = trace.on
+                self.traces.find_trace(trace.name).on = trace.on
         if other.selected in self.traces:
             self.selected = other.selected
         self.events.thresholds = other.events.thresholds
@@ -197,7 +197,7 @@ class Model:
         if other.alignment != TIME:
             self._align_again(other.alignment)
 
-    def define_as(self, other: Model) -> None:
+    def copy_definitions(self, other: Model) -> None:
         """Compute the derived variables of another model of the same log. Slow for a long log: call it in a thread."""
         for name, text in other.definitions.items():
             if name not in self.definitions:
@@ -212,7 +212,7 @@ class Model:
         self.traces.set_log(log)
         self.rows.set_log(log)
         for name, trace in before.items():
-            if name not in self.traces or self.traces.named(name) is not trace:
+            if name not in self.traces or self.traces.find_trace(name) is not trace:
                 self._reports.pop(name, None)
                 self._summaries.pop(name, None)
         if self.selected not in self.traces:
@@ -247,35 +247,35 @@ class Model:
             LogError: the log does not say how far the robot drove, or no run has such an event.
         """
         self.add_named_columns(way)
-        places_of_all = aligned(self.log, [trace.series for trace in self.traces], way)
+        places_of_all = align_series(self.log, [trace.series for trace in self.traces], way)
         for trace, places in zip(self.traces, places_of_all, strict=True):
             trace.align(places)
         self.alignment, self.limits, self.mark_s = way, None, None
 
     # The part of the time that the chart shows
 
-    def x_limits(self) -> Limits:
+    def find_x_limits(self) -> Limits:
         """Return the visible range of the x axis."""
-        return self.limits or self.traces.span_s()
+        return self.limits or self.traces.find_span_s()
 
     def zoom(self, factor: float) -> None:
         """Zoom around the cursor."""
-        (low, high), (first, last) = self.x_limits(), self.traces.span_s()
-        width = max((high - low) * factor, (last - first) * _LEAST_SPAN)
+        (low, high), (first, last) = self.find_x_limits(), self.traces.find_span_s()
+        width = max((high - low) * factor, (last - first) * _MIN_SHOWN_SHARE)
         if width >= last - first:
             self.limits = None
             return
         share = (min(max(self.cursor_s, low), high) - low) / (high - low)
-        self._show_from(self.cursor_s - share * width, width)
+        self._move_limits(self.cursor_s - share * width, width)
 
     def pan(self, share: float) -> None:
         """Scroll by a fraction of the visible width."""
-        low, high = self.x_limits()
+        low, high = self.find_x_limits()
         if self.limits:
-            self._show_from(low + share * (high - low), high - low)
+            self._move_limits(low + share * (high - low), high - low)
 
-    def _show_from(self, low: float, width: float) -> None:
-        first, last = self.traces.span_s()
+    def _move_limits(self, low: float, width: float) -> None:
+        first, last = self.traces.find_span_s()
         low = min(max(low, first), last - width)
         self.limits = low, low + width
 
@@ -283,13 +283,15 @@ class Model:
         """Move the cursor into the visible range."""
         if self.limits and not self.limits[0] <= self.cursor_s <= self.limits[1]:
             width = self.limits[1] - self.limits[0]
-            self._show_from(self.cursor_s - width / 2, width)
+            self._move_limits(self.cursor_s - width / 2, width)
 
     # Bands
 
-    def unsearched(self) -> list[str]:
+    def list_unsearched(self) -> list[str]:
         """Return the visible variables whose bands have not been searched yet."""
-        return [trace.name for trace in self.traces.ticked() if trace.name not in self._reports]
+        return [
+            trace.name for trace in self.traces.list_ticked() if trace.name not in self._reports
+        ]
 
     def find_bands(self, names: Sequence[str], search: Search = find_plateaus) -> None:
         """Search variables for bands. Slow for a long log: call it in a thread, with a search in another process."""
@@ -301,21 +303,21 @@ class Model:
                 report,
             )
 
-    def reports(self) -> list[BandReport]:
+    def list_reports(self) -> list[BandReport]:
         """Return the band reports of the visible variables."""
         return [
             self._reports[trace.name]
-            for trace in self.traces.ticked()
+            for trace in self.traces.list_ticked()
             if trace.name in self._reports
         ]
 
-    def bands_in_words(self) -> list[str]:
+    def describe_bands(self) -> list[str]:
         """Return the band reports of the visible variables in words, one sentence each."""
-        return [self._words[report.variable] for report in self.reports()]
+        return [self._words[report.variable] for report in self.list_reports()]
 
     def bands(self) -> Sequence[Band]:
         """Return the bands of the visible variables that have been searched."""
-        reports = self.reports()
+        reports = self.list_reports()
         if reports != self._reported[0]:
             self._reported = (
                 reports,
@@ -323,34 +325,36 @@ class Model:
             )
         return self._reported[1]
 
-    def measured(self) -> Limits | None:
+    def find_measured_span(self) -> Limits | None:
         """Return the range between the two cursors, None if A is not set."""
         if self.mark_s is None or not self.log.rows:
             return None
         return min(self.mark_s, self.cursor_s), max(self.mark_s, self.cursor_s)
 
-    def unsummed(self) -> list[str]:
+    def list_unsummed(self) -> list[str]:
         """Return the visible variables whose statistics have not been computed yet."""
-        if self.measured() is not None:
+        if self.find_measured_span() is not None:
             return []
-        return [trace.name for trace in self.traces.ticked() if trace.name not in self._summaries]
+        return [
+            trace.name for trace in self.traces.list_ticked() if trace.name not in self._summaries
+        ]
 
     def sum_up(self, names: Sequence[str]) -> None:
         """Compute the statistics of variables. Slow for a long log: call it in a thread."""
         for name in names:
-            self._summaries[name] = compute_summary(self.traces.named(name).series.values)
+            self._summaries[name] = compute_summary(self.traces.find_trace(name).series.values)
 
-    def summary(self, name: str) -> Summary:
+    def build_summary(self, name: str) -> Summary:
         """Return the statistics of a variable, between the two cursors or of all samples; cached."""
-        span = self.measured()
+        span = self.find_measured_span()
         if span is not None:
-            pyramid = self.traces.named(name).pyramid
-            values = pyramid.between(*span)[1]
+            pyramid = self.traces.find_trace(name).pyramid
+            values = pyramid.select_range(*span)[1]
             # Quantiles of many values would slow down the cursor.
             return (
                 compute_summary(values)
                 if len(values) <= _SORTED_AT_ONCE
-                else pyramid.figures(*span)
+                else pyramid.compute_summary(*span)
             )
         if name not in self._summaries:
             self.sum_up([name])
@@ -400,9 +404,9 @@ def derive(model: Model, text: str) -> None:
     """Derive a variable; blocks until it is computed.
 
     Raises:
-        LogError: as for `with_definition`.
+        LogError: as for `compute_definition`.
     """
-    apply_definition(model, *with_definition(model, text))
+    apply_definition(model, *compute_definition(model, text))
 
 
 def apply_definition(model: Model, text: str, log: Log) -> None:
@@ -412,13 +416,14 @@ def apply_definition(model: Model, text: str, log: Log) -> None:
     if text == RECKONING or parse_definition(text).expression:
         model.definitions[name] = text
     model.set_log(log)
-    shown = RECKONED_COLUMNS[-1] if name == RECKONING else name
+    derived_name = RECKONED_COLUMNS[-1] if name == RECKONING else name
     model.selected = next(
-        (one for one in log.derived if one.partition(" #")[0] == shown), model.selected
+        (variable for variable in log.derived if variable.partition(" #")[0] == derived_name),
+        model.selected,
     )
 
 
-def with_definition(model: Model, text: str) -> tuple[str, Log]:
+def compute_definition(model: Model, text: str) -> tuple[str, Log]:
     """Return a definition as typed, and the log with the derived variable.
 
     Raises:
@@ -439,8 +444,8 @@ def with_definition(model: Model, text: str) -> tuple[str, Log]:
             definition.name, compute_derived(bare, definition, model.selected)
         )
     if bare is log:
-        made = dict.fromkeys(name.partition(" #")[0] for name in log.derived)
+        names = dict.fromkeys(name.partition(" #")[0] for name in log.derived)
         raise LogError(
-            f"no derived variable {definition.name!r}", f"there are {', '.join(made) or 'none'}"
+            f"no derived variable {definition.name!r}", f"there are {', '.join(names) or 'none'}"
         )
     return text, bare

@@ -112,7 +112,11 @@ def place_pins(pins: Sequence[Pin], view: Viewport) -> tuple[Ring, ...]:
     for pin in pins:
         x, y = view.to_px(pin.x_mm, pin.y_mm)
         near = next(
-            (one for one in places if abs(one[0] - x) < _NEAR_PX and abs(one[1] - y) < _NEAR_PX),
+            (
+                place
+                for place in places
+                if abs(place[0] - x) < _NEAR_PX and abs(place[1] - y) < _NEAR_PX
+            ),
             None,
         )
         if near is None:
@@ -125,7 +129,9 @@ def place_pins(pins: Sequence[Pin], view: Viewport) -> tuple[Ring, ...]:
             _place_label(x, y + side * _RING_PX, pins_here, view.width_px) for side in (-1, 2.5)
         ]
         # Above its ring, unless another label is there.
-        free = (label for label in labels if not any(_overlap(label, ring.label) for ring in rings))
+        free = (
+            label for label in labels if not any(_do_overlap(label, ring.label) for ring in rings)
+        )
         rings.append(Ring(x, y, tuple(pins_here), next(free, labels[0])))
     return tuple(rings)
 
@@ -139,7 +145,7 @@ def _place_label(x_px: float, baseline_px: float, pins: Sequence[Pin], width_px:
     return Label(left_px, left_px + length_px, baseline_px, is_at_end)
 
 
-def _overlap(label: Label, other: Label) -> bool:
+def _do_overlap(label: Label, other: Label) -> bool:
     return (
         label.left_px < other.right_px
         and other.left_px < label.right_px

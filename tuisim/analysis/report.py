@@ -10,10 +10,10 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tuisim.analysis.chart import View, chart_of, spans_of_bands
+from tuisim.analysis.chart import View, build_chart, build_spans
 from tuisim.analysis.model import Model
 from tuisim.analysis.pins import Picture, Pin, encode_data, encode_picture, place_pins
-from tuisim.analysis.source import LogRequest, OpenedLog, opening
+from tuisim.analysis.source import LogRequest, OpenedLog, open_pieces
 from tuisim.base.errors import ExportError, LogError, listed
 from tuisim.base.source import source_lines
 from tuisim.engine.core.geometry import pose_in_words
@@ -27,24 +27,24 @@ from tuisim.logs.export import check_place
 from tuisim.logs.log import Log
 from tuisim.logs.plateaus import Search, find_plateaus
 from tuisim.logs.signals import QUANTILES
-from tuisim.pictures.charts.files import FACET_PX, svg_of, write_whole
-from tuisim.pictures.charts.layout import laid_out
+from tuisim.pictures.charts.files import FACET_PX, draw_svg, write_whole
+from tuisim.pictures.charts.layout import lay_out_chart
 from tuisim.pictures.html.render import Table, render_page
 from tuisim.pictures.movies.clip import Recorded
-from tuisim.pictures.movies.files import small_movie
-from tuisim.pictures.scene.pictures import find_area, find_view, world_at_end
+from tuisim.pictures.movies.files import make_small_movie
+from tuisim.pictures.scene.pictures import draw_end, find_area, find_view
 
 if TYPE_CHECKING:
     from PIL.Image import Image
 
 SUFFIXES = (".html", ".htm")
-MOST_BANDS = 300
+MAX_BANDS = 300
 """Maximum number of rows of the table of bands."""
 _WIDTH_PX = 960
 _WAY, _HALO = (230, 90, 0), (255, 255, 255)
 
 
-def default_name(opened: OpenedLog) -> str:
+def build_default_name(opened: OpenedLog) -> str:
     """Return the default file name of a report."""
     name = opened.runs[0].program.name if opened.runs else opened.request.file
     return f"{name_of(Path(name)).strip('-.') or 'log'}-report.html"
@@ -78,10 +78,10 @@ def write_report(
     """
     check_report(path)
     # A program may contain lone surrogates, which the page has replaced.
-    write_whole(path, report_of(opened, names, search, movie=len(opened.runs) == 1).encode())
+    write_whole(path, build_report(opened, names, search, movie=len(opened.runs) == 1).encode())
 
 
-def report_of(
+def build_report(
     opened: OpenedLog,
     names: Sequence[str] = (),
     search: Search = find_plateaus,
@@ -99,29 +99,29 @@ def report_of(
         pins: Places that are marked on the pictures.
         goals: What the run has met and missed.
     """
-    opened, remark = _with_rows(opened)
+    opened, remark = _choose_rows(opened)
     if title:
         opened = replace(opened, log=replace(opened.log, title=title))
     model = _find_bands(opened, names, search)
     log = opened.log
     runs = opened.runs
-    known = [row for row in run_facts(runs) if not title or row[0] not in _OF_ONE_RUN]
-    pictures = [_world(run, pins, many=len(runs) > 1) for run in runs]
-    movies = [_movie(run, pins) for run in runs if movie]
+    known = [row for row in list_run_facts(runs) if not title or row[0] not in _CHANGING_FACTS]
+    pictures = [_draw_world(run, pins, many=len(runs) > 1) for run in runs]
+    movies = [_draw_movie(run, pins) for run in runs if movie]
     programs = {run.program.sha256: run.program for run in runs}.values()
     return render_page(
         "report.html",
         title=log.title,
         remark=remark,
-        facts=known if runs else log_facts(log),
+        facts=known if runs else list_log_facts(log),
         errors=[run.end.error.rstrip() for run in runs if run.end and run.end.error],
         goals=goals,
         pictures=pictures,
-        movies=[one for one in movies if one is not None],
-        chart=_chart(model),
-        bands=_bands(model),
-        statistics=_statistics(model),
-        notes=_notes(model),
+        movies=[picture for picture in movies if picture is not None],
+        chart=_draw_chart(model),
+        bands=_build_band_table(model),
+        statistics=_build_statistics(model),
+        notes=_build_note_table(model),
         reading_notes=log.notes,
         programs=[(program.name, source_lines(program.text)) for program in programs],
     )
@@ -131,26 +131,29 @@ def _find_bands(opened: OpenedLog, names: Sequence[str], search: Search) -> Mode
     model = Model(opened)
     for trace in model.traces:
         trace.on = trace.name in names if names else trace.on
-    model.find_bands(model.unsearched(), search)
+    model.find_bands(model.list_unsearched(), search)
     return model
 
 
-def _with_rows(opened: OpenedLog) -> tuple[OpenedLog, str]:
+def _choose_rows(opened: OpenedLog) -> tuple[OpenedLog, str]:
     """The log of a report, and the facts about it."""
     if opened.log.rows:
         return opened, ""
     if not opened.runs:
         raise LogError("no rows", "a report needs a log or a run", file=opened.log.title)
-    *_, found = opening(LogRequest(runs=(opened.runs[0].id,), telemetry=True))
+    *_, telemetry = open_pieces(LogRequest(runs=(opened.runs[0].id,), telemetry=True))
     # As given: they may be described in another way than they are stored.
-    found = replace(found, runs=opened.runs[:1])
-    return found, "The program printed no samples: chart, bands and statistics use the telemetry."
+    telemetry = replace(telemetry, runs=opened.runs[:1])
+    return (
+        telemetry,
+        "The program printed no samples: chart, bands and statistics use the telemetry.",
+    )
 
 
-def _world(run: StoredRun, pins: Sequence[Pin], *, many: bool) -> Picture:
-    mat = _mat(run)
+def _draw_world(run: StoredRun, pins: Sequence[Pin], *, many: bool) -> Picture:
+    mat = _find_mat_name(run)
     try:
-        picture = _way_picture(run)
+        picture = _draw_way(run)
     except LogError as error:
         why = str(error).replace(run.spec.world.background, mat)
         return Picture(f"No picture: {why}")
@@ -161,16 +164,16 @@ def _world(run: StoredRun, pins: Sequence[Pin], *, many: bool) -> Picture:
     return Picture(text, encode_picture(picture), picture.size, view, place_pins(pins, view))
 
 
-def _mat(run: StoredRun) -> str:
+def _find_mat_name(run: StoredRun) -> str:
     """Return the name of the mat: a page may be given away, and a path says something about its maker's machine."""
     return run.spec.world.background.rpartition(os.sep)[2]
 
 
-def _way_picture(run: StoredRun) -> Image:
+def _draw_way(run: StoredRun) -> Image:
     """Draw mat, obstacles, pen trace, robot, and the path of the axle's midpoint; a ring marks the start."""
     from PIL import ImageDraw
 
-    picture = world_at_end(run)
+    picture = draw_end(run)
     records: Any = run.telemetry.array()
     view = find_view(run.spec, find_area(run.spec, records))
     path: Any = view.to_px(records["x_mm"], records["y_mm"])
@@ -186,16 +189,16 @@ def _way_picture(run: StoredRun) -> Image:
     return picture
 
 
-def _movie(run: StoredRun, pins: Sequence[Pin]) -> Picture | None:
+def _draw_movie(run: StoredRun, pins: Sequence[Pin]) -> Picture | None:
     """Return a small movie of a run with places that are marked on it; None if nothing moves."""
     try:
-        made = small_movie(Recorded(run))
+        movie = make_small_movie(Recorded(run))
     except LogError:
         # Where there is no picture either, it says why.
         return None
-    if made is None:
+    if movie is None:
         return None
-    clip, content = made
+    clip, content = movie
     speed = f"{clip.speed:g} times real time" if clip.speed > 1 else "real time"
     text = f"Movie of the run: {clip.recorded.end_s:.1f} s in {speed}, {len(content) / 1000:.0f} kB"
     return Picture(
@@ -203,29 +206,29 @@ def _movie(run: StoredRun, pins: Sequence[Pin]) -> Picture | None:
     )
 
 
-def _chart(model: Model) -> Mapping[str, Any]:
-    lines = len(model.traces.ticked())
+def _draw_chart(model: Model) -> Mapping[str, Any]:
+    lines = len(model.traces.list_ticked())
     height = 2 * FACET_PX if lines < 2 else 80 + FACET_PX * lines
-    chart = chart_of(model, View(facets=True), _WIDTH_PX, height)
+    chart = build_chart(model, View(facets=True), _WIDTH_PX, height)
     spans = tuple(
-        span for report in model.reports() for span in spans_of_bands(report.bands[:MOST_BANDS])
+        span for report in model.list_reports() for span in build_spans(report.bands[:MAX_BANDS])
     )
     chart = replace(chart, spans=spans)
     hidden = [trace.name for trace in model.traces if not trace.on]
     return {
-        "svg": svg_of(laid_out(chart, _WIDTH_PX, height, titled=False), inside=True),
+        "svg": draw_svg(lay_out_chart(chart, _WIDTH_PX, height, titled=False), inside=True),
         "is_shaded": bool(spans),
         "not_drawn": listed(hidden) if hidden else "",
     }
 
 
-def _number(value: float, how: str) -> str:
-    return "" if math.isnan(value) else format(value, how)
+def _format_number(value: float, format_spec: str) -> str:
+    return "" if math.isnan(value) else format(value, format_spec)
 
 
-def _bands(model: Model) -> Mapping[str, Any]:
+def _build_band_table(model: Model) -> Mapping[str, Any]:
     heads = ["variable", "name", "band", "from s", "to s", "samples", "level", "spread", "width mm"]
-    pairs = zip(model.reports(), model.bands_in_words(), strict=True)
+    pairs = zip(model.list_reports(), model.describe_bands(), strict=True)
     bands = model.bands()
     rows = [
         [
@@ -243,11 +246,11 @@ def _bands(model: Model) -> Mapping[str, Any]:
                 describe_width(band),
             ),
         ]
-        for band in bands[:MOST_BANDS]
+        for band in bands[:MAX_BANDS]
     ]
-    if any(band.true_level != band.level for band in bands[:MOST_BANDS]):
+    if any(band.true_level != band.level for band in bands[:MAX_BANDS]):
         heads.append("without noise")
-        for row, band in zip(rows, bands[:MOST_BANDS], strict=True):
+        for row, band in zip(rows, bands[:MAX_BANDS], strict=True):
             row.append(f"{band.true_level:.2f}")
     return {
         "words": [words for report, words in pairs if report.bands],
@@ -256,7 +259,7 @@ def _bands(model: Model) -> Mapping[str, Any]:
     }
 
 
-def _statistics(model: Model) -> Table:
+def _build_statistics(model: Model) -> Table:
     heads = [
         "variable",
         "count",
@@ -268,15 +271,19 @@ def _statistics(model: Model) -> Table:
     ]
     rows = []
     for trace in model.traces:
-        found = model.summary(trace.name)
-        figures = (found.min, found.mean, found.max, found.std, *found.quantiles)
+        summary = model.build_summary(trace.name)
+        figures = (summary.min, summary.mean, summary.max, summary.std, *summary.quantiles)
         rows.append(
-            (trace.name, f"{found.count:,}", *(_number(figure, ".5g") for figure in figures))
+            (
+                trace.name,
+                f"{summary.count:,}",
+                *(_format_number(figure, ".5g") for figure in figures),
+            )
         )
     return Table(heads, rows, numbers=1)
 
 
-def _notes(model: Model) -> Table:
+def _build_note_table(model: Model) -> Table:
     rows = []
     for run, note in model.notes:
         span = f"{note.start_s:.2f}" + (
@@ -292,13 +299,13 @@ Fact = tuple[str, ...]
 """A label, and its text for each run."""
 
 
-def run_facts(runs: Sequence[StoredRun]) -> list[Fact]:
+def list_run_facts(runs: Sequence[StoredRun]) -> list[Fact]:
     """Return the facts of stored runs; facts that apply to no run are omitted."""
     rows = [(name, *(fact(run) for run in runs)) for name, fact in _FACTS.items()]
     return [row for row in rows if any(row[1:])]
 
 
-def log_facts(log: Log) -> list[Fact]:
+def list_log_facts(log: Log) -> list[Fact]:
     """Return the facts of a log file, and of its runs if it is an export."""
     rows: list[Fact] = [
         ("file", log.title),
@@ -317,9 +324,9 @@ def log_facts(log: Log) -> list[Fact]:
         else []
     )
     for name, path in _TRAVELLED.items():
-        found = [_at(run, path) for run in runs]
-        if any(found):
-            rows.append((name, ", ".join(dict.fromkeys(found))))
+        texts = [_read_path(run, path) for run in runs]
+        if any(texts):
+            rows.append((name, ", ".join(dict.fromkeys(texts))))
     return rows
 
 
@@ -336,15 +343,15 @@ _TRAVELLED: Mapping[str, tuple[str, ...]] = {
 """Paths of facts in the metadata of an export."""
 
 
-def _at(entry: Mapping[str, Any], path: Sequence[str]) -> str:
+def _read_path(entry: Mapping[str, Any], path: Sequence[str]) -> str:
     """Return the value at a path as text; empty if there is none."""
-    found: Any = entry
+    node: Any = entry
     for key in path:
-        found = found.get(key, "") if isinstance(found, Mapping) else ""
-    return str(found)
+        node = node.get(key, "") if isinstance(node, Mapping) else ""
+    return str(node)
 
 
-def _end(run: StoredRun) -> str:
+def _describe_end(run: StoredRun) -> str:
     state = run.state.replace("_", " ")
     summary = run.end.summary if run.end else ""
     return f"{state}: {summary}" if summary not in ("", state) else state
@@ -357,7 +364,7 @@ def _time_s(run: StoredRun) -> str:
     return f"{last.tick / run.spec.profile.tick_hz:.3f} s, tick {last.tick}" if last else ""
 
 
-def _noise(run: StoredRun) -> str:
+def _describe_noise(run: StoredRun) -> str:
     noise = run.spec.world.noise
     changed = any(isinstance(action.command, SetNoise) for action in run.actions)
     return f"light {noise.light}, motor {noise.motor}" + (
@@ -374,19 +381,19 @@ _FACTS: Mapping[str, Callable[[StoredRun], str]] = {
     "arguments": lambda run: shlex.join(run.program.arguments),
     "SHA-256": lambda run: run.program.sha256,
     "predefined names": lambda run: _PREDEFINED.get(run.program.prelude, run.program.prelude),
-    "mat": _mat,
+    "mat": _find_mat_name,
     "obstacles": lambda run: f"{len(run.spec.world.obstacles)}" if run.spec.world.obstacles else "",
     "profile": lambda run: run.spec.profile.name,
     "robot": lambda run: run.spec.robot.name,
     "seed": lambda run: str(run.spec.seed),
-    "noise": _noise,
+    "noise": _describe_noise,
     "start": lambda run: pose_in_words(run.spec.world.start),
-    "end": _end,
+    "end": _describe_end,
     "end pose": lambda run: pose_in_words(last.pose) if (last := run.telemetry.last()) else "",
     "simulated time": _time_s,
     "user actions": lambda run: str(len(run.actions)) if run.actions else "",
     "tags": lambda run: ", ".join(run.tags),
 }
 """To add a fact: a line here."""
-_OF_ONE_RUN = frozenset({"run", "made"})
+_CHANGING_FACTS = frozenset({"run", "made"})
 """Facts that differ between identical runs."""

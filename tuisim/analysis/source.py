@@ -60,7 +60,7 @@ class OpenedLog:
     """Fraction that has been read, 0 to 1; NaN if unknown."""
     done: bool = True
 
-    def notes_places(self) -> tuple[Path, ...]:
+    def find_notes_files(self) -> tuple[Path, ...]:
         """Return the files with the notes: one per run, one for a file, none for the standard input.
 
         Raises:
@@ -69,7 +69,7 @@ class OpenedLog:
         if self.runs:
             return tuple(run.folder / NOTES_FILE for run in self.runs)
         file = Path(self.request.file)
-        return (notes_of_file(file),) if file.is_file() else ()
+        return (find_notes_file(file),) if file.is_file() else ()
 
     def stamp(self) -> object:
         """Return a token that changes when the source grows."""
@@ -84,7 +84,7 @@ class OpenedLog:
             return None
 
 
-def opening(request: LogRequest) -> Iterator[OpenedLog]:
+def open_pieces(request: LogRequest) -> Iterator[OpenedLog]:
     """Open a log; yield what has been read, soon after the start and then repeatedly.
 
     Slow for a large file: call it in a thread.
@@ -110,7 +110,7 @@ NOTES_FILE = "notes.jsonl"
 """In the folder of a run."""
 _HASHED_BYTES = 1 << 16
 """Bytes at the beginning of a file that identify it, also if it grows."""
-_MOST_NOTES_BYTES = 64 << 20
+_MAX_NOTES_BYTES = 64 << 20
 
 
 @dataclass(frozen=True, slots=True)
@@ -126,7 +126,7 @@ class Note:
     """The variable; empty for none in particular."""
 
 
-def notes_of_file(path: Path) -> Path:
+def find_notes_file(path: Path) -> Path:
     """Return the file with the notes of a log file, which depends on its path and its beginning.
 
     Raises:
@@ -148,22 +148,22 @@ def read_notes(place: Path) -> tuple[Note, ...]:
         LogError: it cannot be read, or a row is not a note.
     """
     try:
-        lines = [line for line in read_regular(place, _MOST_NOTES_BYTES).split(b"\n") if line]
+        lines = [line for line in read_regular(place, _MAX_NOTES_BYTES).split(b"\n") if line]
     except FileNotFoundError:
         return ()
     except OSError as error:
         raise LogError(f"cannot be read: {error.strerror or error}", file=str(place)) from error
-    found = []
+    notes = []
     for row, line in enumerate(lines, 1):
         try:
             fields = json.loads(line)
             start_s, stop_s = float(fields["start_s"]), float(fields["stop_s"])
-            found.append(
+            notes.append(
                 Note(str(fields["text"]), start_s, stop_s, str(fields.get("variable", "")))
             )
         except (ValueError, TypeError, KeyError, AttributeError, RecursionError) as error:
             raise LogError("not a note", file=str(place), row=row) from error
-    return tuple(found)
+    return tuple(notes)
 
 
 def write_notes(place: Path, notes: Sequence[Note]) -> None:

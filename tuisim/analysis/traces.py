@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tuisim.analysis.events import THRESHOLD_FORM, threshold_of
+from tuisim.analysis.events import THRESHOLD_FORM, parse_threshold
 from tuisim.base.errors import LogError
 from tuisim.engine.runs.arrays import FloatArray
 from tuisim.logs.bands import compute_driven_mm
@@ -19,11 +19,11 @@ from tuisim.pictures.charts.traces import Pyramid, Trace, Traces
 if TYPE_CHECKING:
     from tuisim.logs.log import Log, Series
 
-MOST_ON = 4
+MAX_VISIBLE = 4
 """Number of variables that are visible at first."""
 _LIGHT = "_red"
 """Suffix of the red light columns of colour sensors."""
-_SEEN = 5.0
+_MAX_SPAN_RATIO = 5.0
 """A variable that spans less than 1 / this of a scale is drawn on its own one."""
 
 
@@ -33,7 +33,7 @@ class LogTrace(Trace):
     def __init__(self, log: Log, name: str, number: int) -> None:
         super().__init__(name, number)
         self.number = number
-        self.on = number < MOST_ON
+        self.on = number < MAX_VISIBLE
         self._places: FloatArray | None = None
         self._log = log
         self._pyramid: Pyramid | None = None
@@ -60,18 +60,18 @@ class LogTrace(Trace):
         """Whether a log has another derived variable of this name."""
         return self.name in log.derived and log.derived[self.name] is not self.series
 
-    def is_like(self, others: Sequence[LogTrace]) -> bool:
+    def is_legible(self, others: Sequence[LogTrace]) -> bool:
         """Return whether its values are legible on the common scale, which others use."""
-        own = self._least_and_greatest()
-        left = [other._least_and_greatest() for other in others if not other.scale]
+        own = self._find_extremes()
+        left = [other._find_extremes() for other in others if not other.scale]
         low, high = (
-            min((at[0] for at in left), default=0.0),
-            max((at[1] for at in left), default=0.0),
+            min((extremes[0] for extremes in left), default=0.0),
+            max((extremes[1] for extremes in left), default=0.0),
         )
-        least, greatest = min(low, own[0]), max(high, own[1])
-        return min(high - low, own[1] - own[0]) * _SEEN >= greatest - least
+        lowest, highest = min(low, own[0]), max(high, own[1])
+        return min(high - low, own[1] - own[0]) * _MAX_SPAN_RATIO >= highest - lowest
 
-    def _least_and_greatest(self) -> Limits:
+    def _find_extremes(self) -> Limits:
         values = self.pyramid.values
         return (float(values.min()), float(values.max())) if len(values) else (0.0, 0.0)
 
@@ -81,7 +81,7 @@ class LogTrace(Trace):
 
     def prepare(self, x_limits: Limits, columns: int, hold: bool) -> None:
         """Select the points to draw at this chart width."""
-        times_s, values = self.pyramid.points(x_limits, columns)
+        times_s, values = self.pyramid.select_points(x_limits, columns)
         self._shown = sample_and_hold(times_s, values) if hold else (times_s, values)
 
     @property
@@ -94,12 +94,12 @@ class LogTrace(Trace):
         """Values of the points to be drawn."""
         return self._shown[1]
 
-    def at(self, time_s: float) -> float | None:
+    def find_value(self, time_s: float) -> float | None:
         """Return the last value at or before a time, None before the first."""
-        found = self.pyramid
-        if not len(found.times_s) or time_s < found.times_s[0]:
+        pyramid = self.pyramid
+        if not len(pyramid.times_s) or time_s < pyramid.times_s[0]:
             return None
-        return float(sample_signal(found.times_s, found.values, np.array([time_s]))[0])
+        return float(sample_signal(pyramid.times_s, pyramid.values, np.array([time_s]))[0])
 
 
 def sample_and_hold(times_s: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -123,27 +123,27 @@ class LogTraces(Traces):
 
     def set_log(self, log: Log) -> None:
         """Switch to the same log with other derived variables; new ones become visible."""
-        kept = [
+        remaining = [
             trace
             for trace in self
             if trace.name in log.names and not trace.is_derived_otherwise(log)
         ]
-        known = {trace.name for trace in kept}
-        number = max((trace.number for trace in kept), default=-1)
+        known = {trace.name for trace in remaining}
+        number = max((trace.number for trace in remaining), default=-1)
         added = [name for name in log.derived if name not in known]
-        new = [LogTrace(log, name, number + at) for at, name in enumerate(added, 1)]
-        shown = [trace for trace in kept if trace.on]
+        new = [LogTrace(log, name, number + offset) for offset, name in enumerate(added, 1)]
+        visible = [trace for trace in remaining if trace.on]
         for trace in new:
             trace.on = True
-            if not trace.scale and shown and not trace.is_like(shown):
+            if not trace.scale and visible and not trace.is_legible(visible):
                 trace.scale = trace.name
-        self._by_log_name = {trace.name: trace for trace in (*kept, *new)}
+        self._by_log_name = {trace.name: trace for trace in (*remaining, *new)}
 
     def _show_light_columns(self) -> None:
         """Make only the red light columns of colour sensors visible, of the many columns of telemetry."""
         light = [trace for trace in self if trace.name.endswith(_LIGHT)]
         for trace in self:
-            trace.on = trace in light[:MOST_ON] if light else trace.on
+            trace.on = trace in light[:MAX_VISIBLE] if light else trace.on
 
     def __iter__(self) -> Iterator[LogTrace]:
         return iter(self._by_log_name.values())
@@ -154,7 +154,7 @@ class LogTraces(Traces):
     def __contains__(self, name: object) -> bool:
         return name in self._by_log_name
 
-    def named(self, name: str) -> LogTrace:
+    def find_trace(self, name: str) -> LogTrace:
         """Return the trace of a variable.
 
         Raises:
@@ -162,14 +162,16 @@ class LogTraces(Traces):
         """
         return self._by_log_name[name]
 
-    def ticked(self) -> list[LogTrace]:
+    def list_ticked(self) -> list[LogTrace]:
         """Return the traces that are drawn if they have points."""
         return [trace for trace in self if trace.on]
 
-    def span_s(self) -> Limits:
+    def find_span_s(self) -> Limits:
         """Return the first and the last time of the visible traces, widened if they are equal."""
         ends = [
-            trace.pyramid.times_s[[0, -1]] for trace in self.ticked() if len(trace.pyramid.times_s)
+            trace.pyramid.times_s[[0, -1]]
+            for trace in self.list_ticked()
+            if len(trace.pyramid.times_s)
         ]
         if not ends:
             return 0.0, 1.0
@@ -181,7 +183,7 @@ TIME, DISTANCE = "time", "distance"
 FORM = f"time, distance, or an event: {THRESHOLD_FORM}"
 
 
-def aligned(log: Log, series: Sequence[Series], way: str) -> list[FloatArray | None]:
+def align_series(log: Log, series: Sequence[Series], way: str) -> list[FloatArray | None]:
     """Return the x positions of the samples of each series, None for their times; for `way`, see `FORM`.
 
     Raises:
@@ -190,17 +192,22 @@ def aligned(log: Log, series: Sequence[Series], way: str) -> list[FloatArray | N
     if way == TIME:
         return [None] * len(series)
     if way == DISTANCE:
-        driven = [compute_driven_mm(log, one) for one in series]
+        driven = [compute_driven_mm(log, variable) for variable in series]
         if any(places is None for places in driven):
             raise LogError("no distances: the log has no x_mm and y_mm in each row", FORM)
         return driven
-    event = threshold_of(way)
+    event = parse_threshold(way)
     if event is None:
         raise LogError(f"cannot align by {way!r}", FORM)
-    found = {
-        one.run: there[0].time_s for one in event.among(series) if (there := event.crossings(one))
+    start_by_run = {
+        variable.run: there[0].time_s
+        for variable in event.select_series(series)
+        if (there := event.find_crossings(variable))
     }
-    if not found:
+    if not start_by_run:
         raise LogError(f"no run reaches {way}", FORM)
     # A run without the event is aligned like the earliest one.
-    return [one.time_s - found.get(one.run, min(found.values())) for one in series]
+    return [
+        variable.time_s - start_by_run.get(variable.run, min(start_by_run.values()))
+        for variable in series
+    ]

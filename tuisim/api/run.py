@@ -113,9 +113,9 @@ class Run:
 
     def picture(self) -> Image:
         """Return the world at the end of the run, with the pen's trace, as a Pillow image."""
-        from tuisim.pictures.scene.pictures import world_at_end
+        from tuisim.pictures.scene.pictures import draw_end
 
-        return world_at_end(self.stored)
+        return draw_end(self.stored)
 
 
 def load_run(name: int | str | Path) -> Run:

@@ -18,7 +18,7 @@ from tuisim.engine.core.tick_record import FLAG_PEN_DOWN
 from tuisim.engine.runs.frames import column_values
 from tuisim.engine.runs.records import OutputRow
 from tuisim.engine.runs.samples import samples_of
-from tuisim.pictures.scene.pen import drawn_points_mm
+from tuisim.pictures.scene.pen import place_drawn_mm
 
 if TYPE_CHECKING:
     from tuisim.app.panel_area import PanelArea
@@ -121,7 +121,7 @@ class Feed:
             return [], []
         kept_at = _thinned(0, len(records), TRACE_POINTS_A_FEED)
         records, jumps = records[kept_at], jumps[kept_at]
-        xs, ys, lifted = drawn_points_mm(self.recording.spec.robot, records)
+        xs, ys, lifted = place_drawn_mm(self.recording.spec.robot, records)
         # One gap is enough for a stretch with the pen up.
         kept = ~(lifted & np.concatenate(([self._lifted], lifted[:-1])))
         self._lifted = bool(lifted[-1])
@@ -137,7 +137,7 @@ def trace_until(run: Recording, tick: int) -> Points:
         return [], []
     kept_at = np.append(np.arange(0, tick, stride), tick)
     jumps = _jumps(records, None)[kept_at]
-    xs, ys, lifted = drawn_points_mm(run.spec.robot, records[kept_at])
+    xs, ys, lifted = place_drawn_mm(run.spec.robot, records[kept_at])
     kept = ~(lifted & np.concatenate(([False], lifted[:-1])))
     return _with_gaps(xs[kept], ys[kept], jumps[kept])
 

@@ -76,7 +76,7 @@ def movie(
     shown, sides = _panels_of(panels), _size_of(size)
     with Progress(f"drawing {path.name}"):
         recorded = _recorded(run)
-        span_s = recorded.span_s(start_s, stop_s)
+        span_s = recorded.clip_span_s(start_s, stop_s)
         speed = speed or max(1, math.ceil((span_s[1] - span_s[0]) / _FAST_S))
         clip = Clip(recorded, shown or _useful(recorded, sides), span_s, speed, fps, sides)
         size_bytes = save_movie(clip, path, partial(tell, f"drawing {path.name}"))
@@ -162,13 +162,13 @@ def _panels_of(text: str | None) -> tuple[ClipPanel, ...]:
 
 
 def _size_of(text: str) -> Size | None:
-    from tuisim.pictures.charts.files import limits_in_words, parse_size
+    from tuisim.pictures.charts.files import describe_limits, parse_size
     from tuisim.pictures.movies.painter import LEAST, MOST
 
     if not text:
         return None
     size = parse_size(text, LEAST, MOST)
     if size is None:
-        allowed = f"width and height in pixels, {limits_in_words(LEAST, MOST)}"
+        allowed = f"width and height in pixels, {describe_limits(LEAST, MOST)}"
         raise ConfigError(f"no such size {text!r}", allowed, key="--size")
     return size

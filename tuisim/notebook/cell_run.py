@@ -32,7 +32,7 @@ from tuisim.notebook.cell_output import CellOutput
 from tuisim.notebook.display import Scene, Stage, start_record
 from tuisim.notebook.image_log import SENT_DATA, ArrayReader, ImageLog, asked_side
 from tuisim.notebook.old_formats import sent_text
-from tuisim.pictures.scene.pen import Piece, pen_trace
+from tuisim.pictures.scene.pen import Piece, build_pen_trace
 from tuisim.programs.plugged_words import list_parts
 
 if TYPE_CHECKING:
@@ -363,7 +363,7 @@ class _Screen:
                 self._samples += samples_of((row,))
                 self._position = after
         last = run.telemetry.last() or start_record(cell.spec)
-        traces = (*cell.traces, pen_trace(cell.spec, run.telemetry.array()))
+        traces = (*cell.traces, build_pen_trace(cell.spec, run.telemetry.array()))
         self._stage.show(
             Scene(cell.spec, cell.files, cell.program, last, traces, self._samples), status
         )

@@ -23,13 +23,13 @@ from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.mat_cache import FieldFiles, mat_pixels, open_field
 from tuisim.engine.runs.samples import Sample
 from tuisim.engine.runs.views import TickRecord, instant_of
-from tuisim.pictures.charts.files import image_of, png_of
-from tuisim.pictures.charts.layout import laid_out
-from tuisim.pictures.charts.sample_chart import sample_chart
-from tuisim.pictures.movies.arrays import FACE_PX, arrays_drawing
-from tuisim.pictures.scene.discs import disc_faces
+from tuisim.pictures.charts.files import draw_image, encode_png
+from tuisim.pictures.charts.layout import lay_out_chart
+from tuisim.pictures.charts.sample_chart import build_sample_chart
+from tuisim.pictures.movies.arrays import FACE_PX, draw_arrays
+from tuisim.pictures.scene.discs import list_disc_faces
 from tuisim.pictures.scene.pen import Piece
-from tuisim.pictures.scene.pictures import world_picture
+from tuisim.pictures.scene.pictures import draw_world
 from tuisim.settings.options import Settings
 
 if TYPE_CHECKING:
@@ -46,7 +46,7 @@ Row = tuple[str, str]
 def picture_bundle(picture: Any, name: str) -> dict[str, Any]:
     """Return a Pillow image as a displayable object."""
     return {
-        "image/png": png_of(picture),
+        "image/png": encode_png(picture),
         "text/plain": f"<{name}, {picture.width} × {picture.height} pixels>",
     }
 
@@ -176,8 +176,8 @@ CHART_SIZE = (760, 300)
 
 def _draw_arrays(scene: Scene) -> Image:
     instant = instant_of(scene.last, scene.spec, scene.spec.world.noise)
-    faces = disc_faces(scene.spec, instant, scene.open_field(), scene.program)
-    return image_of(arrays_drawing(faces, FACE_PX[0] * max(len(faces), 1), FACE_PX[1]))
+    faces = list_disc_faces(scene.spec, instant, scene.open_field(), scene.program)
+    return draw_image(draw_arrays(faces, FACE_PX[0] * max(len(faces), 1), FACE_PX[1]))
 
 
 class Stage:
@@ -217,7 +217,7 @@ class Stage:
         on, off = self._settings["panels_on"], self._settings["panels_off"]
         if "world" not in off:
             mat, pose, rays = mat_pixels(scene.files), scene.last.pose, self._settings["rays"]
-            picture = world_picture(scene.spec, mat, pose, scene.traces, rays=rays)
+            picture = draw_world(scene.spec, mat, pose, scene.traces, rays=rays)
             self._put("world", picture_bundle(picture, "world"))
         for name, caption in self._captions.items():
             if name not in self._handles:
@@ -225,10 +225,10 @@ class Stage:
         if "arrays" in on:
             self._put("arrays", picture_bundle(_draw_arrays(scene), "sensor arrays"))
         if "chart" in on:
-            drawing = laid_out(
-                sample_chart(scene.samples, CHART_SIZE[0]), *CHART_SIZE, titled=False
+            drawing = lay_out_chart(
+                build_sample_chart(scene.samples, CHART_SIZE[0]), *CHART_SIZE, titled=False
             )
-            self._put("chart", picture_bundle(image_of(drawing), "chart"))
+            self._put("chart", picture_bundle(draw_image(drawing), "chart"))
         if "output" in on and scene.printed is not None:
             self._put("output", {"text/plain": "\n".join(scene.printed) or "nothing was printed"})
         for panel, rows in _TABLES.items():

@@ -381,7 +381,7 @@ class Lab:
         view: AppView | None,
     ) -> None:
         from tuisim.notebook.cell_run import CellRun, run_cell
-        from tuisim.pictures.scene.pen import pen_trace
+        from tuisim.pictures.scene.pen import build_pen_trace
 
         assert plan.program is not None
         cell = CellRun(
@@ -413,7 +413,7 @@ class Lab:
             if self._last is not None:
                 self._traces = (
                     *self._traces,
-                    pen_trace(self._last.spec, self._last.telemetry.array()),
+                    build_pen_trace(self._last.spec, self._last.telemetry.array()),
                 )
 
     def _scene(self, plan: _CellPlan) -> tuple[Scene, str]:

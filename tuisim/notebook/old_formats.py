@@ -115,7 +115,7 @@ class ImagePair(NamedTuple):
     def _repr_png_(self) -> bytes:
         from PIL import Image, ImageDraw
 
-        from tuisim.pictures.charts.files import png_of
+        from tuisim.pictures.charts.files import encode_png
 
         scale = 10
         width, height = self.left.width * scale, self.left.height * scale
@@ -128,7 +128,7 @@ class ImagePair(NamedTuple):
             ImageDraw.Draw(both).text(
                 (x, _TITLE_PX // 2), side, fill="white", anchor="lm", font_size=_TITLE_PX - 8
             )
-        return png_of(both)
+        return encode_png(both)
 
 
 def image_pair(arrays: Iterable[Sequence[LoggedArray]], index: int = -1) -> ImagePair:

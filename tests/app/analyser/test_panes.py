@@ -28,7 +28,7 @@ def stepped(rows: int, band_samples: int) -> pa.Table:
 def test_of_many_bands_those_around_the_chosen_one_are_shown() -> None:
     table = stepped(12_000, 8)
     model = model_of(Log("test", table, guess_columns(table)))
-    model.find_bands(model.unsearched())
+    model.find_bands(model.list_unsearched())
     assert len(model.bands()) == 1500
     shown = ["".join(part for part, _ in line) for line in pane_lines("bands", model, 1250, 80, 20)]
     numbers = [int(line.split()[1]) for line in shown[1:12]]
@@ -47,7 +47,7 @@ def test_few_bands_are_all_in_sight_with_their_statistics_in_a_small_terminal() 
     model = model_of(Log("test", table, guess_columns(table)))
     for trace in model.traces:
         trace.on = trace.name == "Colour"
-    model.find_bands(model.unsearched())
+    model.find_bands(model.list_unsearched())
 
     head, *shown = text_of(model, "bands", 48, 9).splitlines()
 
@@ -78,7 +78,7 @@ def test_figures_that_do_not_fit_beside_the_others_are_below_them(
 def test_a_summary_that_does_not_fit_leaves_its_line_to_the_rows(bands: int, rows: int) -> None:
     table = stepped(10 * bands, 10)
     model = model_of(Log("test", table, guess_columns(table)))
-    model.find_bands(model.unsearched())
+    model.find_bands(model.list_unsearched())
     _, *shown = text_of(model, "bands", 48, 9).splitlines()
     assert [line.split()[0] for line in shown] == [str(number) for number in range(1, rows + 1)]
 
@@ -92,7 +92,7 @@ def text_of(model: Model, pane: str = "table", width: int = 100, height: int = 3
 def test_a_pane_narrower_than_its_first_column_shows_that(width: int) -> None:
     table = stepped(80, 10)
     model = model_of(Log("test", table, guess_columns(table)))
-    model.find_bands(model.unsearched())
+    model.find_bands(model.list_unsearched())
     for pane in ("bands", "statistics"):
         assert text_of(model, pane, width, 9)
 
@@ -126,7 +126,7 @@ def test_a_narrow_table_shows_the_chosen_column() -> None:
 @pytest.mark.parametrize("size", [(20, 1), (48, 9), (130, 40)], ids=str)
 def test_every_pane_fits_its_size(pane: str, words: str, size: tuple[int, int]) -> None:
     model = model_of(long_log())
-    model.find_bands(model.unsearched())
+    model.find_bands(model.list_unsearched())
     text = text_of(model, pane, *size)
     assert len(text.splitlines()) <= max(size[1], 3)
     if size[0] == 130:
@@ -149,7 +149,7 @@ def test_the_column_run_does_not_look_like_the_number_of_a_stored_run(run: Store
 def test_a_sentence_below_the_rows_is_not_cut_within_its_only_line(height: int) -> None:
     table = stepped(60, 20)
     model = model_of(Log("test", table, guess_columns(table)))
-    model.find_bands(model.unsearched())
+    model.find_bands(model.list_unsearched())
     lines = text_of(model, "bands", 48, height).splitlines()
     assert not lines[-1].endswith("…") or lines[-2].startswith("Colour:")
     assert "pal …" not in lines[-1]

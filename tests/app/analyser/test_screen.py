@@ -86,7 +86,7 @@ async def test_the_bands_are_found_and_noted_by_keys(run: StoredRun) -> None:
         assert "white" in text_of(pilot)
         (note,) = read_notes(run.folder / NOTES_FILE)
         assert (note.variable, note.text) == ("Colour", "white")
-        assert note.start_s < model.time_of(model.row) < note.stop_s
+        assert note.start_s < model.find_time_s(model.row) < note.stop_s
         await pilot.press("home", "delete")
         assert not read_notes(run.folder / NOTES_FILE)
         assert screen.model is model
@@ -196,7 +196,7 @@ async def test_one_cursor_moves_all(run: StoredRun) -> None:
         await pilot.press("left")
         assert model.row == model.log.rows - 2
         await typed(pilot, "g", "=2s", "enter")
-        assert model.time_of(model.row) == pytest.approx(2.0, abs=0.06)
+        assert model.find_time_s(model.row) == pytest.approx(2.0, abs=0.06)
         await pilot.press("a", "shift+right")
         assert "Δt" in text_of(pilot)
 
@@ -229,7 +229,7 @@ STEPS: list[tuple[list[str], Callable[[Analyser, Model], bool]]] = [
         ["U", "slash", "=82.7", "enter"],
         lambda _, model: model.rows.text(model.row, "value").startswith("82.7"),
     ),
-    (["space"], lambda _, model: not model.traces.ticked()),
+    (["space"], lambda _, model: not model.traces.list_ticked()),
     (
         ["space", "x", "X", "H"],
         lambda screen, _: screen.chart.options.facets and screen.chart.options.hold,

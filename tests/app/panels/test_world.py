@@ -21,7 +21,7 @@ from tuisim.app.render.world_text import legend
 from tuisim.app.snapshot import RunPhase, Snapshot
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.spec import FIELD_WIDTH_MM
-from tuisim.pictures.scene.pictures import scene_of
+from tuisim.pictures.scene.pictures import build_scene
 
 POSE = Pose(1000.0, 500.0, 0.0)
 
@@ -263,4 +263,4 @@ async def test_a_file_would_show_what_the_panel_shows() -> None:
 
         shown = replace(view._scene, rays=(), rays_from=None)
 
-        assert shown == scene_of(recording.spec, last.pose)
+        assert shown == build_scene(recording.spec, last.pose)

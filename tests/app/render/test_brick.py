@@ -16,7 +16,7 @@ from tuisim.engine.runs.brick_state import (
     BrickState,
     TextScreen,
 )
-from tuisim.pictures.scene.discs import shrunk
+from tuisim.pictures.scene.discs import shrink_pixels
 
 SIZES = [(178, 70), (118, 37), (78, 20), (44, 12), (26, 6), (12, 3), (1, 1)]
 
@@ -70,7 +70,7 @@ def test_shrinking_averages() -> None:
     ink = np.zeros((4, 4), np.uint8)
     ink[:2, :2] = 1
     ink[3, 3] = 1
-    assert shrunk(ink, 2, 2).tolist() == [[1.0, 0.0], [0.0, 0.25]]
+    assert shrink_pixels(ink, 2, 2).tolist() == [[1.0, 0.0], [0.0, 0.25]]
 
 
 def test_text_screen_is_text() -> None:

@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 from tests.tasks.goals.recorded import goals_of
-from tuisim.analysis.events import events_of, thresholds_of
+from tuisim.analysis.events import find_events, parse_events
 from tuisim.analysis.model import Model, derive
-from tuisim.analysis.source import LogRequest, opening
+from tuisim.analysis.source import LogRequest, open_pieces
 from tuisim.cli import run_command
 from tuisim.engine.core.columns import find_column_name
 from tuisim.engine.core.sensors import list_columns
@@ -81,10 +81,10 @@ def test_the_name_of_a_trace_is_a_breakpoint_a_watch_and_an_event(
 def test_the_name_of_a_trace_is_an_event_a_filter_and_a_variable_of_the_analyser(
     name: str, run: StoredRun
 ) -> None:
-    *_, opened = opening(LogRequest(runs=("1",), telemetry=True))
+    *_, opened = open_pieces(LogRequest(runs=("1",), telemetry=True))
     model = Model(opened)
     model.add_named_columns(f"{name} changes")
-    assert len(events_of(model.log, thresholds_of(f"{name} changes", model.log))) > 5
+    assert len(find_events(model.log, parse_events(f"{name} changes", model.log))) > 5
     conditions = parse_conditions(
         f"{name} == {value_of(run, name)!r}", model.log.table.column_names
     )

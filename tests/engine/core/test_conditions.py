@@ -10,7 +10,7 @@ import numpy as np
 import pyarrow as pa
 import pytest
 
-from tuisim.analysis.events import FORM, Threshold, threshold_of, thresholds_of
+from tuisim.analysis.events import FORM, Threshold, parse_events, parse_threshold
 from tuisim.app.timeline import find
 from tuisim.base.errors import ConfigError, LogError
 from tuisim.engine.breakpoints import parse_break
@@ -150,14 +150,14 @@ def test_an_event_is_a_comparison_with_a_direction(
     text: str, rising: tuple[bool, ...] | None
 ) -> None:
     log = Log("test", pa.table({"Colour": [60.0, 40.0, 60.0]}), Layout(values=("Colour",)))
-    (threshold,) = thresholds_of(text, log)
+    (threshold,) = parse_events(text, log)
     assert isinstance(threshold, Threshold)
     if rising is None:
         # A negative width is read, and refused where it is used.
         assert threshold.hysteresis == -0.2
     else:
         assert (
-            tuple(crossing.rising for crossing in threshold.crossings(log.series("Colour")))
+            tuple(crossing.rising for crossing in threshold.find_crossings(log.series("Colour")))
             == rising
         )
 
@@ -172,13 +172,13 @@ def test_an_event_is_a_comparison_with_a_direction(
     ],
 )
 def test_names_of_variables_may_hold_operators(text: str, name: str) -> None:
-    threshold = threshold_of(text)
+    threshold = parse_threshold(text)
     assert threshold is not None
     assert threshold.name == name
 
 
 def by_event(condition: str) -> None:
-    thresholds_of(condition, Log("test", pa.table({"Colour": VALUES}), Layout(values=("Colour",))))
+    parse_events(condition, Log("test", pa.table({"Colour": VALUES}), Layout(values=("Colour",))))
 
 
 ALL = "< <= > >= = !="

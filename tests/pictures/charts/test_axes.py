@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from tests.cases import cases, for_each
 from tuisim.pictures.charts import axes
-from tuisim.pictures.charts.traces import min_max
+from tuisim.pictures.charts.traces import reduce_points
 
 
 @cases(
@@ -23,12 +23,12 @@ from tuisim.pictures.charts.traces import min_max
     },
 )
 def test_value_limits(low: float, high: float, limits: tuple[float, float]) -> None:
-    assert axes.value_limits(low, high) == pytest.approx(limits)
+    assert axes.choose_limits(low, high) == pytest.approx(limits)
 
 
 @given(st.floats(-1e6, 1e6), st.floats(0, 1e6))
 def test_value_limits_hold_the_values(low: float, span: float) -> None:
-    bottom, top = axes.value_limits(low, low + span)
+    bottom, top = axes.choose_limits(low, low + span)
 
     slack = 1e-6 * max(abs(low), span, 1)
     assert bottom <= low + slack
@@ -38,7 +38,7 @@ def test_value_limits_hold_the_values(low: float, span: float) -> None:
 
 @pytest.mark.parametrize("value", [1e16, -1e17, 1e149, 5e-324])
 def test_one_value_of_any_size_has_limits_around_it(value: float) -> None:
-    bottom, top = axes.value_limits(value, value)
+    bottom, top = axes.choose_limits(value, value)
     assert bottom < value < top
 
 
@@ -51,7 +51,7 @@ def test_time_limits(end_s: float, upper_s: float) -> None:
 
 @given(st.integers(4, 300), st.floats(0.1, 5000))
 def test_time_axis_has_the_width_and_a_unit(columns: int, end_s: float) -> None:
-    line, below = axes.time_axis(axes.time_limits(end_s), columns)
+    line, below = axes.draw_time_axis(axes.time_limits(end_s), columns)
 
     assert len(line) == len(below) == columns
 
@@ -61,7 +61,7 @@ def test_columns_and_times_agree(columns: int) -> None:
     limits = (0.0, 30.0)
 
     back = [
-        axes.column_of(axes.at_column(column, limits, columns), limits, columns)
+        axes.find_column(axes.find_column_value(column, limits, columns), limits, columns)
         for column in range(columns)
     ]
 
@@ -94,7 +94,7 @@ def test_labels(value: float, step: float, text: str) -> None:
     },
 )
 def test_row_labels(limits: tuple[float, float], rows: int, labels: dict[int, str]) -> None:
-    assert axes.row_labels(limits, rows) == labels
+    assert axes.label_rows(limits, rows) == labels
 
 
 @for_each(
@@ -103,10 +103,10 @@ def test_row_labels(limits: tuple[float, float], rows: int, labels: dict[int, st
 def test_extended_limits_have_ticks_at_equal_distances_in_the_middle_of_rows(
     limits: tuple[float, float], rows: int
 ) -> None:
-    extended = axes.on_rows(limits, rows)
+    extended = axes.extend_limits(limits, rows)
 
-    positions = axes.row_ticks(extended, rows)
-    at = [axes.row_of(position, extended, rows) - 0.5 for position in positions]
+    positions = axes.find_row_ticks(extended, rows)
+    at = [axes.measure_row(position, extended, rows) - 0.5 for position in positions]
 
     assert at == pytest.approx([round(one) for one in at], abs=1e-6)
     assert len({round(one) for one in np.diff(at)}) == 1
@@ -114,20 +114,20 @@ def test_extended_limits_have_ticks_at_equal_distances_in_the_middle_of_rows(
     assert extended[0] <= limits[0] + 1e-9
     assert limits[1] <= extended[1] + 1e-9
     assert extended[1] - extended[0] < 1.7 * (limits[1] - limits[0])
-    assert [*axes.row_labels(extended, rows)] == [round(one) for one in at]
+    assert [*axes.label_rows(extended, rows)] == [round(one) for one in at]
 
 
 def test_limits_are_extended_as_little_as_possible() -> None:
-    assert axes.on_rows((50.0, 100.0), 15) == (50.0, 100.0)
-    assert axes.on_rows((86.0, 91.0), 7) == (86.0, 92.0)
+    assert axes.extend_limits((50.0, 100.0), 15) == (50.0, 100.0)
+    assert axes.extend_limits((86.0, 91.0), 7) == (86.0, 92.0)
 
 
 @for_each(rows=range(7, 40))
 def test_extended_limits_do_not_depend_on_the_unit(rows: int) -> None:
     for low, high in ((0.0, 60.0), (-2.0, 1.0), (85.0, 97.0)):
-        extended = axes.on_rows((low, high), rows)
+        extended = axes.extend_limits((low, high), rows)
         for unit in (0.001, 1000.0):
-            limits = axes.on_rows((low * unit, high * unit), rows)
+            limits = axes.extend_limits((low * unit, high * unit), rows)
             assert [end / unit for end in limits] == pytest.approx(extended)
 
 
@@ -137,7 +137,7 @@ def test_reduction_keeps_extremes_and_order() -> None:
     values[54_321] = 9.0
     values[12_345] = -7.0
 
-    when, reduced = min_max(times, values, (0.0, 60.0), 100)
+    when, reduced = reduce_points(times, values, (0.0, 60.0), 100)
 
     assert len(when) <= 202
     assert (np.diff(when) >= 0).all()
@@ -147,13 +147,13 @@ def test_reduction_keeps_extremes_and_order() -> None:
 def test_reduction_leaves_few_points_alone_and_keeps_neighbours_of_the_window() -> None:
     times = np.arange(10.0)
 
-    when, _ = min_max(times, times, (3.5, 6.5), 50)
+    when, _ = reduce_points(times, times, (3.5, 6.5), 50)
 
     assert when.tolist() == [3.0, 4.0, 5.0, 6.0, 7.0]
 
 
 def test_reduction_of_nothing() -> None:
-    when, values = min_max(np.empty(0), np.empty(0), (0.0, 1.0), 10)
+    when, values = reduce_points(np.empty(0), np.empty(0), (0.0, 1.0), 10)
 
     assert len(when) == len(values) == 0
 

@@ -7,8 +7,8 @@ import pytest
 
 from tests.cases import for_each
 from tuisim.logs.levels import PLAIN_LIGHT
-from tuisim.pictures.charts.bands import MOST_SAMPLES, SHADES, placed_names, spans_of
-from tuisim.pictures.charts.plot_image import PlotInks, plot_image
+from tuisim.pictures.charts.bands import MAX_SAMPLES, SHADES, find_spans, place_names
+from tuisim.pictures.charts.plot_image import PlotInks, draw_plot
 from tuisim.pictures.charts.text_chart import ChartPainter, ChartState
 from tuisim.pictures.charts.traces import Traces
 
@@ -24,7 +24,7 @@ GROUND, AXIS, WHITE, SHADED = (
 def chart(values: list[float]) -> tuple[Traces, ChartState]:
     traces = Traces()
     traces.append("Colour", (np.arange(len(values)) / 10).tolist(), values)
-    return traces, ChartState(spans=spans_of(next(iter(traces)), PLAIN_LIGHT))
+    return traces, ChartState(spans=find_spans(next(iter(traces)), PLAIN_LIGHT))
 
 
 def test_each_band_is_named_by_its_level_and_grey() -> None:
@@ -39,28 +39,28 @@ def test_each_band_is_named_by_its_level_and_grey() -> None:
 
 
 def test_names_are_all_long_or_all_short_and_never_touch() -> None:
-    spans = spans_of(next(iter(chart([86.2745] * 9 + [82.745] * 9 + [0.0])[0])), PLAIN_LIGHT)
+    spans = find_spans(next(iter(chart([86.2745] * 9 + [82.745] * 9 + [0.0])[0])), PLAIN_LIGHT)
 
-    wide = placed_names(spans, [range(20), range(20, 40), range(40, 41)], 4, 41, lambda *_: True)
-    narrow = placed_names(spans, [range(3), range(3, 6), range(6, 7)], 4, 7, lambda *_: True)
+    wide = place_names(spans, [range(20), range(20, 40), range(40, 41)], 4, 41, lambda *_: True)
+    narrow = place_names(spans, [range(3), range(3, 6), range(6, 7)], 4, 7, lambda *_: True)
 
     assert [text for _, _, text in wide] == ["86.27 pale grey", "82.75 light grey"]
     assert narrow == [(3, 0, "86.27"), (2, 2, "82.75")]
 
 
 def test_names_with_room_between_them_are_in_the_lowest_row() -> None:
-    spans = spans_of(next(iter(chart(LEVELS)[0])), PLAIN_LIGHT)
+    spans = find_spans(next(iter(chart(LEVELS)[0])), PLAIN_LIGHT)
     places = [range(20), range(20, 40), range(40, 60)]
-    assert [row for row, _, _ in placed_names(spans, places, 4, 60, lambda *_: True)] == [3, 3, 3]
+    assert [row for row, _, _ in place_names(spans, places, 4, 60, lambda *_: True)] == [3, 3, 3]
 
 
 @pytest.mark.parametrize("values", [LEVELS, LEVELS[::-1]], ids=["white first", "white last"])
 def test_a_name_stands_beside_a_cursor_and_within_the_chart(values: list[float]) -> None:
-    spans = spans_of(next(iter(chart(values)[0])), PLAIN_LIGHT)
+    spans = find_spans(next(iter(chart(values)[0])), PLAIN_LIGHT)
     places = [range(5), range(5, 10), range(10, 15)]
 
     def put(cursors: list[int]) -> list[tuple[int, int, str]]:
-        return placed_names(spans, places, 4, 15, lambda *_: True, cursors)
+        return place_names(spans, places, 4, 15, lambda *_: True, cursors)
 
     for cursor in range(15):
         names = put([cursor])
@@ -70,15 +70,15 @@ def test_a_name_stands_beside_a_cursor_and_within_the_chart(values: list[float])
 
 @for_each(columns=range(16, 40))
 def test_a_name_at_the_edge_stands_within_the_chart(columns: int) -> None:
-    spans = spans_of(next(iter(chart(LEVELS)[0])), PLAIN_LIGHT)
+    spans = find_spans(next(iter(chart(LEVELS)[0])), PLAIN_LIGHT)
     places = [range(4), range(4, columns - 4), range(columns - 4, columns)]
-    names = placed_names(spans, places, 4, columns, lambda *_: True)
+    names = place_names(spans, places, 4, columns, lambda *_: True)
     assert len(names) == 3
     assert all(0 <= at <= columns - len(text) for _, at, text in names)
 
 
 def test_too_many_samples_are_left_to_the_analyser() -> None:
-    assert not chart([1.0] * (MOST_SAMPLES + 1))[1].spans
+    assert not chart([1.0] * (MAX_SAMPLES + 1))[1].spans
 
 
 @pytest.mark.parametrize("width, name", [(80, "100 white"), (30, "100"), (12, "")])
@@ -100,7 +100,7 @@ def test_a_band_in_pixels_is_shaded_and_named_where_nothing_is_drawn() -> None:
     traces, state = chart(LEVELS)
     plot = ChartPainter().paint(traces, state, 80, 12, is_blank=True).plot
     assert plot is not None
-    image = plot_image(plot, (8, 16), PlotInks(GROUND, AXIS, WHITE, SHADED))
+    image = draw_plot(plot, (8, 16), PlotInks(GROUND, AXIS, WHITE, SHADED))
 
     first, second, third = np.array_split(image[:, 8 : 8 + plot.columns * 8], 3, axis=1)
     assert [

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tuisim.pictures.charts.canvas import Curve, canvas, seen_points, xy_lines
+from tuisim.pictures.charts.canvas import Curve, draw_canvas, draw_xy_chart, drop_hidden_points
 
 RED, BLUE = (255, 0, 0), (0, 0, 255)
 
@@ -19,56 +19,56 @@ def text(rows: list[list[tuple[str, tuple[int, int, int] | None]]]) -> list[str]
 
 
 def test_rows_have_the_width_and_values_their_heights() -> None:
-    rows = text(canvas([curve([0.0, 5.0, 10.0])], 9, 3, (0.0, 2.0), (0.0, 10.0)))
+    rows = text(draw_canvas([curve([0.0, 5.0, 10.0])], 9, 3, (0.0, 2.0), (0.0, 10.0)))
     assert rows == ["        o", "    o    ", "o        "]
 
 
 def test_the_topmost_curve_is_the_last() -> None:
     level = [5.0] * 4
-    (row,) = canvas([curve(level), curve(level, BLUE)], 4, 1, (0.0, 3.0), (0.0, 10.0))
+    (row,) = draw_canvas([curve(level), curve(level, BLUE)], 4, 1, (0.0, 3.0), (0.0, 10.0))
     assert {rgb for part, rgb in row if part.strip()} == {BLUE}
 
 
 def test_without_points_the_canvas_is_empty() -> None:
-    assert text(canvas([curve([])], 5, 2, (0.0, 1.0), (0.0, 1.0))) == [" " * 5] * 2
+    assert text(draw_canvas([curve([])], 5, 2, (0.0, 1.0), (0.0, 1.0))) == [" " * 5] * 2
 
 
 def test_braille_joins_its_dots() -> None:
-    rows = text(canvas([curve([0.0, 10.0], marker="braille")], 10, 4, (0.0, 1.0), (0.0, 10.0)))
+    rows = text(draw_canvas([curve([0.0, 10.0], marker="braille")], 10, 4, (0.0, 1.0), (0.0, 10.0)))
     assert all(any(char not in " ⠀" for char in row) for row in rows)
 
 
 def test_of_neighbours_at_one_dot_the_first_is_kept() -> None:
     xs, ys = np.array([0.0, 0.001, 10.0, 10.0]), np.array([0.0, 0.001, 10.0, 10.0])
-    found = seen_points(xs, ys, ((0.0, 10.0), (0.0, 10.0)), 10, 5)
+    found = drop_hidden_points(xs, ys, ((0.0, 10.0), (0.0, 10.0)), 10, 5)
     assert [one.tolist() for one in found] == [[0.0, 10.0], [0.0, 10.0]]
 
 
 def test_a_dot_is_as_high_as_a_quarter_of_a_row() -> None:
     ys = np.linspace(0.0, 10.0, 1001)
-    _, found = seen_points(np.zeros(1001), ys, ((0.0, 10.0), (0.0, 10.0)), 10, 5)
+    _, found = drop_hidden_points(np.zeros(1001), ys, ((0.0, 10.0), (0.0, 10.0)), 10, 5)
     assert len(found) == 20
 
 
 def test_which_points_are_seen_depends_on_neither_unit_nor_origin() -> None:
     turns = np.linspace(0.0, 9.0, 2000)
     x, y = np.sin(turns), np.cos(3 * turns)
-    first, _ = seen_points(x, y, ((-1.0, 1.0), (-1.0, 1.0)), 20, 10)
+    first, _ = drop_hidden_points(x, y, ((-1.0, 1.0), (-1.0, 1.0)), 20, 10)
     for scale, off in ((64.0, 0.0), (1.0, 512.3), (0.5, -4.0)):
         limits = (off - scale, off + scale)
-        found, _ = seen_points(off + scale * x, off + scale * y, (limits, limits), 20, 10)
+        found, _ = drop_hidden_points(off + scale * x, off + scale * y, (limits, limits), 20, 10)
         assert found == pytest.approx(off + scale * first)
 
 
 def test_a_path_to_and_fro_gives_each_dot_once() -> None:
     xs = np.tile([0.0, 10.0], 50)
-    found, _ = seen_points(xs, np.zeros(100), ((0.0, 10.0), (-1.0, 1.0)), 4, 4)
+    found, _ = drop_hidden_points(xs, np.zeros(100), ((0.0, 10.0), (-1.0, 1.0)), 4, 4)
     assert sorted(found.tolist()) == [0.0, 10.0]
 
 
 def test_one_variable_against_another_has_a_title_and_marks_the_point() -> None:
     values = np.array([0.0, 1.0, 2.0, np.nan])
-    lines = xy_lines(values, values, 1, ("x", "y"), RED, "o", 20, 10)
+    lines = draw_xy_chart(values, values, 1, ("x", "y"), RED, "o", 20, 10)
     assert lines[0][0][0] == "y against x"
     here = [
         part for line in lines for part, style in line if style.bgcolor is not None and style.bold
@@ -76,7 +76,7 @@ def test_one_variable_against_another_has_a_title_and_marks_the_point() -> None:
     assert len(here) == 1
     assert not any(
         style.bgcolor
-        for line in xy_lines(values, values, None, ("x", "y"), RED, "o", 20, 10)
+        for line in draw_xy_chart(values, values, None, ("x", "y"), RED, "o", 20, 10)
         for _, style in line
     )
 
@@ -85,21 +85,23 @@ def test_one_variable_against_another_has_a_title_and_marks_the_point() -> None:
     "ys", [np.full(3, np.nan), np.array([np.nan, 1.0, np.nan])], ids=["none", "not together"]
 )
 def test_samples_that_have_not_both_are_told(ys: np.ndarray) -> None:
-    lines = xy_lines(np.array([1.0, np.nan, 2.0]), ys, None, ("x", "y"), RED, "o", 20, 10)
+    lines = draw_xy_chart(np.array([1.0, np.nan, 2.0]), ys, None, ("x", "y"), RED, "o", 20, 10)
     assert lines[1][0][0] == "no sample has both"
 
 
 @pytest.mark.parametrize("value", [0.0, 1.0, 10.0, 50.0, 50.3, 99.0, 100.0])
 def test_a_line_over_time_is_two_dots_thick(value: float) -> None:
     curve = Curve(np.array([0.0, 10.0]), np.full(2, value), (255, 255, 0))
-    rows = canvas([curve], 20, 10, (0.0, 10.0), (0.0, 100.0))
+    rows = draw_canvas([curve], 20, 10, (0.0, 10.0), (0.0, 100.0))
     middle = ["".join(text for text, _ in row)[8] for row in rows]
     assert sum((ord(sign) - 0x2800).bit_count() for sign in middle if sign != " ") == 4
 
 
 def test_a_line_is_drawn_around_its_place() -> None:
     def dots(value: float) -> list[int]:
-        rows = canvas([curve([value, value], marker="braille")], 9, 11, (0.0, 1.0), (0.0, 100.0))
+        rows = draw_canvas(
+            [curve([value, value], marker="braille")], 9, 11, (0.0, 1.0), (0.0, 100.0)
+        )
         cells = [ord("".join(part for part, _ in row)[4]) for row in rows]
         return [
             4 * row + dot
@@ -117,7 +119,7 @@ def test_a_line_is_drawn_around_its_place() -> None:
 
 def test_equal_lines_are_seen_in_turns() -> None:
     level = [5.0] * 4
-    (row,) = canvas(
+    (row,) = draw_canvas(
         [curve(level, marker="braille"), curve(level, BLUE, "braille")],
         12,
         1,

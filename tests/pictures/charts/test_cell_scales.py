@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tests.cases import cases
-from tuisim.pictures.charts.canvas import AXIS, styled
+from tuisim.pictures.charts.canvas import AXIS, build_style
 from tuisim.pictures.charts.cell_scales import CellScales
 from tuisim.pictures.charts.text_chart import ChartPainter, ChartPicture, ChartState
 from tuisim.pictures.charts.traces import Traces
@@ -73,8 +73,8 @@ def test_percent_millimetres_and_degrees_have_a_scale_each() -> None:
 )
 def test_a_scale_of_one_variable_beside_others_has_its_colour(names: str, own: str) -> None:
     made = traces({name: [0.0, 100.0] for name in names.split()})
-    styles = CellScales.of([*made], 80, 12, (0.0, 1.0), zoomed=False).styles
-    colors = {trace.name: styled(trace.rgb) for trace in made}
+    styles = CellScales.build([*made], 80, 12, (0.0, 1.0), zoomed=False).styles
+    colors = {trace.name: build_style(trace.rgb) for trace in made}
     assert styles == (tuple(colors[name] for name in own.split()) or (AXIS,))
 
 

@@ -11,12 +11,12 @@ import numpy as np
 import pytest
 
 from tests.app.analyser.logs import long_log, model_of
-from tuisim.analysis.chart import View, chart_of
-from tuisim.analysis.report import default_name, report_of, write_report
+from tuisim.analysis.chart import View, build_chart
+from tuisim.analysis.report import build_default_name, build_report, write_report
 from tuisim.analysis.source import LogRequest, OpenedLog
 from tuisim.base.errors import ExportError, LogError
 from tuisim.logs.log import Log
-from tuisim.pictures.charts.files import CHART_FORMATS, image_of, parse_size, save_chart
+from tuisim.pictures.charts.files import CHART_FORMATS, draw_image, parse_size, save_chart
 from tuisim.pictures.charts.layout import Drawing, Raster, Shade, Stroke
 
 each_format = pytest.mark.parametrize("suffix", CHART_FORMATS)
@@ -28,12 +28,12 @@ def test_every_format_has_a_size_of_its_own(tmp_path: Path, suffix: str, facets:
     kind = CHART_FORMATS[suffix]
     assert all(
         low <= side <= high
-        for low, side, high in zip(kind.least, kind.size, kind.most, strict=True)
+        for low, side, high in zip(kind.smallest, kind.size, kind.largest, strict=True)
     )
     written = []
-    for name, size in (("own", None), ("least", kind.least), ("least_again", kind.least)):
+    for name, size in (("own", None), ("least", kind.smallest), ("least_again", kind.smallest)):
         target = tmp_path / f"{name}{suffix.upper()}"
-        save_chart(partial(chart_of, model_of(long_log()), View(facets=facets)), target, size)
+        save_chart(partial(build_chart, model_of(long_log()), View(facets=facets)), target, size)
         written.append(target.read_bytes())
     assert len(written[0]) > len(written[1]) > 50
     assert written[1] == written[2]
@@ -51,7 +51,7 @@ def test_a_failed_chart_leaves_what_was_there(
     target.write_text("old")
     monkeypatch.setattr(os, "fsync", full)
     with pytest.raises(ExportError, match=f"cannot write .*x{suffix}: No space left on device"):
-        save_chart(partial(chart_of, model_of(long_log()), View()), target)
+        save_chart(partial(build_chart, model_of(long_log()), View()), target)
     assert (target.read_text(), list(tmp_path.iterdir())) == ("old", [target])
 
 
@@ -71,7 +71,7 @@ def test_a_failed_report_leaves_what_was_there(
     [("a/greys.csv", "greys-report.html"), ("-", "log-report.html"), (".csv", "csv-report.html")],
 )
 def test_a_report_is_called_after_its_log(file: str, name: str) -> None:
-    assert default_name(OpenedLog(LogRequest(file=file), long_log())) == name
+    assert build_default_name(OpenedLog(LogRequest(file=file), long_log())) == name
 
 
 def test_what_an_export_says_of_its_runs_may_be_anything() -> None:
@@ -83,7 +83,7 @@ def test_what_an_export_says_of_its_runs_may_be_anything() -> None:
             None,
         ]
     }
-    page = report_of(OpenedLog(LogRequest(), replace(log, metadata=odd)))
+    page = build_report(OpenedLog(LogRequest(), replace(log, metadata=odd)))
     assert (
         "<td>&lt;p&gt;</td>" in page
         and "<p>" not in page.split("<h2>Facts</h2>")[1].split("</section>")[0]
@@ -93,7 +93,7 @@ def test_what_an_export_says_of_its_runs_may_be_anything() -> None:
 def test_nothing_is_nothing_to_report_on() -> None:
     empty = Log("test", long_log().table.slice(0, 0), long_log().layout)
     with pytest.raises(LogError, match="no rows"):
-        report_of(OpenedLog(LogRequest(), empty))
+        build_report(OpenedLog(LogRequest(), empty))
 
 
 def test_what_is_drawn_has_its_size_in_the_picture() -> None:
@@ -104,7 +104,7 @@ def test_what_is_drawn_has_its_size_in_the_picture() -> None:
         Shade(10, 45, 20, 10),
         Raster(10, 65, 20, 10, np.zeros((2, 2, 3), np.uint8)),
     )
-    image = np.asarray(image_of(Drawing("", 40, 80, shapes))).astype(int)
+    image = np.asarray(draw_image(Drawing("", 40, 80, shapes))).astype(int)
     is_inked = (image < 250).any(axis=2).reshape(4, 20, 40)
     sizes = [[int(np.ptp(places)) + 1 for places in part.nonzero()] for part in is_inked]
     assert sizes == [[7, 27], [3, 24], [11, 21], [12, 22]]

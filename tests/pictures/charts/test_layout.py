@@ -14,12 +14,12 @@ from rich.cells import cell_len
 
 from tests.app.analyser.logs import long_log, model_of
 from tests.cases import cases, for_each
-from tuisim.analysis.chart import View, chart_of
+from tuisim.analysis.chart import View, build_chart
 from tuisim.analysis.model import Model
 from tuisim.logs.columns import guess_columns
 from tuisim.logs.log import Log
 from tuisim.pictures.charts import axes
-from tuisim.pictures.charts.files import image_of, svg_of
+from tuisim.pictures.charts.files import draw_image, draw_svg
 from tuisim.pictures.charts.layout import (
     COLORS,
     LETTER_PX,
@@ -33,11 +33,11 @@ from tuisim.pictures.charts.layout import (
     Span,
     Stroke,
     Words,
-    drawn_until,
-    laid_out,
-    moved,
+    cut_drawing,
+    lay_out_chart,
+    move_shapes,
 )
-from tuisim.pictures.charts.text_chart import ChartPainter, ChartState, text_of
+from tuisim.pictures.charts.text_chart import ChartPainter, ChartState, draw_text
 
 RAMP = np.arange(50.0)
 COLUMNS: dict[str, dict[str, object]] = {
@@ -76,8 +76,8 @@ def log_of(columns: dict[str, object]) -> Model:
 def test_every_format_is_whole(columns: dict[str, object], view: View) -> None:
     model = log_of(columns)
     for width, height in ((200, 150), (960, 420)):
-        drawing = laid_out(chart_of(model, view, width, height), width, height)
-        text = svg_of(drawing)
+        drawing = lay_out_chart(build_chart(model, view, width, height), width, height)
+        text = draw_svg(drawing)
         assert ElementTree.fromstring(text).attrib["width"] == str(width)
         assert not re.search(r'="[^"]*(nan|inf)', text)
         # One pixel for rounding.
@@ -85,11 +85,11 @@ def test_every_format_is_whole(columns: dict[str, object], view: View) -> None:
         assert all(
             (-1 <= points).all() and (points <= (width + 1, height + 1)).all() for points in strokes
         )
-    assert image_of(drawing).size == (960, 420)
+    assert draw_image(drawing).size == (960, 420)
     for width, height in ((20, 8), (80, 24)):
-        lines = text_of(chart_of(model, view, 2 * width, 4 * height), width, height).plain.split(
-            "\n"
-        )
+        lines = draw_text(
+            build_chart(model, view, 2 * width, 4 * height), width, height
+        ).plain.split("\n")
         assert max(map(cell_len, lines)) <= width
         assert not re.search(r"[\x00-\x1f\x7f]", "".join(lines))
 
@@ -97,19 +97,21 @@ def test_every_format_is_whole(columns: dict[str, object], view: View) -> None:
 @cases("columns", COLUMNS)
 def test_a_screen_and_a_file_have_the_same_scales(columns: dict[str, object]) -> None:
     model = log_of(columns)
-    drawing = laid_out(chart_of(model, View(), 960, 420), 960, 420)
-    for trace in model.traces.ticked():
-        trace.prepare(model.x_limits(), 960, False)
+    drawing = lay_out_chart(build_chart(model, View(), 960, 420), 960, 420)
+    for trace in model.traces.list_ticked():
+        trace.prepare(model.find_x_limits(), 960, False)
 
-    picture = ChartPainter().paint(model.traces, ChartState(x_limits=model.x_limits()), 400, 24)
+    picture = ChartPainter().paint(
+        model.traces, ChartState(x_limits=model.find_x_limits()), 400, 24
+    )
 
     if picture.plot is None:
-        assert not model.traces.drawn()
+        assert not model.traces.list_drawn()
         return
     (frame,) = drawing.plots
     assert (picture.plot.x_limits, picture.plot.y_limits) == (
         frame.x,
-        axes.on_rows(frame.y, picture.rows),
+        axes.extend_limits(frame.y, picture.rows),
     )
     drawn = sum(
         isinstance(shape, Stroke) and len(shape.points) and shape.points[0, 1] >= frame.top - 1
@@ -121,12 +123,12 @@ def test_a_screen_and_a_file_have_the_same_scales(columns: dict[str, object]) ->
 def test_a_chart_is_cut_off_at_its_limits() -> None:
     model = log_of({"time": [0.0, 10.0], "a": [0.0, 100.0]})
     model.limits = 2.0, 4.0
-    (line,) = chart_of(model, View(), 800, 400).lines
+    (line,) = build_chart(model, View(), 800, 400).lines
     assert (line.xs.tolist(), line.ys.tolist()) == ([2.0, 4.0], [20.0, 40.0])
 
 
 def test_held_values_have_corners() -> None:
-    (line,) = chart_of(
+    (line,) = build_chart(
         log_of({"time": [0.0, 1.0], "a": [3.0, 5.0]}), View(hold=True), 800, 400
     ).lines
     assert (line.xs.tolist(), line.ys.tolist()) == ([0.0, 1.0, 1.0], [3.0, 3.0, 5.0])
@@ -136,22 +138,24 @@ def test_held_values_have_corners() -> None:
 def test_points_that_nobody_could_see_are_left_out(rows: int) -> None:
     time_s = np.arange(rows) / 1000.0
     model = log_of({"time": time_s, "a": np.sin(time_s) + 9.0 * (np.arange(rows) == rows // 3)})
-    (line,) = chart_of(model, View(), 800, 400).lines
+    (line,) = build_chart(model, View(), 800, 400).lines
     assert len(line.xs) == min(rows, len(line.xs)) <= 1602
     assert line.ys.max() > 8.0
 
 
 def test_aligned_runs_say_what_they_lie_along() -> None:
     model = model_of(long_log(runs=2))
-    assert chart_of(model, View(), 800, 400).x_label == "time (s)"
+    assert build_chart(model, View(), 800, 400).x_label == "time (s)"
     model.align("distance")
-    chart = chart_of(model, View(), 800, 400)
+    chart = build_chart(model, View(), 800, 400)
     assert chart.x_label == "distance driven (mm)"
     assert [line.name for line in chart.lines] == ["Colour #1", "Left #1", "Colour #2", "Left #2"]
 
 
 def test_facets_stand_below_each_other() -> None:
-    drawing = laid_out(chart_of(model_of(long_log()), View(facets=True), 800, 400), 800, 400)
+    drawing = lay_out_chart(
+        build_chart(model_of(long_log()), View(facets=True), 800, 400), 800, 400
+    )
     first, second = (shape.points[:, 1] for shape in drawing.shapes if isinstance(shape, Stroke))
     assert first.max() < second.min()
     assert any(isinstance(shape, Rule) and shape.faint for shape in drawing.shapes)
@@ -165,7 +169,7 @@ def test_facets_stand_below_each_other() -> None:
     "view", [View(), View(facets=True), View(against=("x_mm", "Colour"))], ids=str
 )
 def test_only_data_have_colours_for_any_ground(view: View) -> None:
-    text = text_of(chart_of(model_of(long_log()), view, 160, 96), 80, 24, colors=True)
+    text = draw_text(build_chart(model_of(long_log()), view, 160, 96), 80, 24, colors=True)
     styles = {str(span.style) for span in text.spans}
     assert {f"#{bytes(rgb).hex()}" for rgb in COLORS[: 1 if view.against else 2]} <= styles
     assert styles <= {"none", "bold", *(f"#{bytes(rgb).hex()}" for rgb in COLORS)}
@@ -175,7 +179,7 @@ def test_a_path_on_the_field_has_equal_scales() -> None:
     path = Line("y_mm", np.array([200.0, 1200.0]), np.array([100.0, 400.0]), 0)
     chart = ChartData("", (path,), (200.0, 1200.0), "x_mm (mm)", path=True)
     for width, height in ((960, 420), (400, 900), (2000, 300)):
-        (frame,) = laid_out(chart, width, height).plots
+        (frame,) = lay_out_chart(chart, width, height).plots
         mm_per_px = (frame.x[1] - frame.x[0]) / (frame.right - frame.left)
         assert mm_per_px == pytest.approx((frame.y[1] - frame.y[0]) / (frame.bottom - frame.top))
         assert [sum(frame.x), sum(frame.y)] == pytest.approx([1400, 500])
@@ -191,7 +195,7 @@ def test_a_variable_that_would_be_flat_has_a_scale_of_its_own(
     variables = [
         (name, np.array([-0.3 * most, most]), "") for name, most in (("a", 100.0), ("b", greatest))
     ]
-    scales = Scales.of(variables, zoomed=False)
+    scales = Scales.group(variables, zoomed=False)
     assert [scale.names for scale in scales.right] == ([("b",)] if is_flat else [])
     for scale in (scales.left, *scales.right):
         ends = scales.on_left(np.array(scale.limits), scale)
@@ -202,7 +206,7 @@ def test_a_variable_that_would_be_flat_has_a_scale_of_its_own(
 def test_names_of_lines_stand_within_a_chart(width: int) -> None:
     names = ["short", "a name that is longer", *("x" * size for size in range(20, 40, 3))]
     lines = tuple(Line(name, RAMP, RAMP, at) for at, name in enumerate(names))
-    drawing = laid_out(ChartData("", lines, (0.0, 49.0), "time (s)"), width, 400)
+    drawing = lay_out_chart(ChartData("", lines, (0.0, 49.0), "time (s)"), width, 400)
     words = [
         one
         for one in drawing.shapes
@@ -216,12 +220,12 @@ def test_facets_without_room_are_not_upside_down() -> None:
     lines = tuple(Line(name, RAMP, RAMP, at) for at, name in enumerate("abcdef"))
     chart = ChartData("", lines, (0.0, 49.0), "time (s)", facets=True)
     for height in (40, 100, 200):
-        assert all(plot.top < plot.bottom for plot in laid_out(chart, 60, height).plots)
+        assert all(plot.top < plot.bottom for plot in lay_out_chart(chart, 60, height).plots)
 
 
 def test_a_chart_without_samples_says_so_in_its_middle() -> None:
     line = Line("a", RAMP[:0], RAMP[:0], 0)
-    drawing = laid_out(ChartData("", (line,), (0.0, 49.0), "time (s)"), 400, 300)
+    drawing = lay_out_chart(ChartData("", (line,), (0.0, 49.0), "time (s)"), 400, 300)
     (frame,), (words,) = (
         drawing.plots,
         [one for one in drawing.shapes if isinstance(one, Words) and one.text == "no samples here"],
@@ -233,26 +237,26 @@ def test_a_chart_without_samples_says_so_in_its_middle() -> None:
 
 def two_facets() -> Drawing:
     lines = tuple(Line(name, RAMP, RAMP * 2, at) for at, name in enumerate("ab"))
-    return laid_out(ChartData("", lines, (0.0, 49.0), "time (s)", facets=True), 400, 300)
+    return lay_out_chart(ChartData("", lines, (0.0, 49.0), "time (s)", facets=True), 400, 300)
 
 
 def test_a_chart_is_drawn_until_an_instant() -> None:
     whole = two_facets()
     for time_s, count in ((20.0, 21), (0.0, 1), (49.0, 50)):
-        part = drawn_until(whole, time_s)
+        part = cut_drawing(whole, time_s)
         strokes = [shape for shape in part.shapes if isinstance(shape, Stroke)]
         assert [(len(stroke.points), stroke.dots) for stroke in strokes] == [
             (count, count == 1)
         ] * 2
         rules = [shape for shape in part.shapes[-2:] if isinstance(shape, Rule)]
         assert [(rule.x1, rule.y1, rule.x2, rule.y2) for rule in rules] == [
-            (x := float(plot.xs(time_s)), plot.top, x, plot.bottom) for plot in whole.plots
+            (x := float(plot.find_xs(time_s)), plot.top, x, plot.bottom) for plot in whole.plots
         ]
 
 
 def test_a_picture_is_drawn_at_another_place() -> None:
     whole = two_facets()
-    for before, after in zip(whole.shapes, moved(whole, 10.0, -5.0), strict=True):
+    for before, after in zip(whole.shapes, move_shapes(whole, 10.0, -5.0), strict=True):
         match before, after:
             case Stroke(), Stroke():
                 assert np.allclose(after.points - before.points, (10.0, -5.0))
@@ -264,8 +268,8 @@ def test_a_picture_is_drawn_at_another_place() -> None:
 
 
 def test_a_span_is_shaded_as_far_as_it_goes() -> None:
-    chart = chart_of(log_of({"time": [0.0, 10.0], "a": [1.0, 2.0]}), View(), 800, 400)
+    chart = build_chart(log_of({"time": [0.0, 10.0], "a": [1.0, 2.0]}), View(), 800, 400)
     whole, part = Span(0.0, 10.0, ("all",), "a"), Span(2.0, 4.0, ("part",), "a")
-    drawing = laid_out(replace(chart, spans=(whole, part)), 800, 400)
+    drawing = lay_out_chart(replace(chart, spans=(whole, part)), 800, 400)
     wide, narrow = (shape.width for shape in drawing.shapes if isinstance(shape, Shade))
     assert narrow == pytest.approx(wide / 5, rel=0.05)

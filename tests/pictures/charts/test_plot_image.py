@@ -10,7 +10,7 @@ from tests.cases import cases
 from tuisim.engine.core.css_colors import Rgb
 from tuisim.pictures.charts import axes
 from tuisim.pictures.charts.canvas import Curve
-from tuisim.pictures.charts.plot_image import Plot, PlotInks, plot_image
+from tuisim.pictures.charts.plot_image import Plot, PlotInks, draw_plot
 
 CELL = WIDTH, HEIGHT = 8, 16
 COLUMNS, ROWS = 30, 10
@@ -20,7 +20,7 @@ EMPTY = Plot((), COLUMNS, ROWS, (0.0, 10.0), (0.0, 100.0), (), (), True, ())
 
 def cells_with(plot: Plot, rgb: Rgb) -> set[tuple[int, int]]:
     """Row and column on the canvas, whose axis is column -1, of the cells that show a colour."""
-    at = (plot_image(plot, CELL, PlotInks(GROUND, AXIS, CURSOR)) == rgb).all(axis=2)
+    at = (draw_plot(plot, CELL, PlotInks(GROUND, AXIS, CURSOR)) == rgb).all(axis=2)
     rows, cols = plot.size
     assert at.shape == (rows * HEIGHT, cols * WIDTH)
     found = at.reshape(rows, HEIGHT, cols, WIDTH).any(axis=(1, 3))
@@ -62,12 +62,12 @@ def test_the_grid_is_at_the_labels() -> None:
     grid = 48, 56, 64
     plot = replace(
         EMPTY,
-        y_ticks=tuple(axes.row_ticks(limits, ROWS)),
+        y_ticks=tuple(axes.find_row_ticks(limits, ROWS)),
         x_ticks=tuple(axes.time_ticks((0.0, 10.0), 30)),
     )
     found = cells_with(plot, grid)
     rows = {row for row in range(ROWS) if all((row, col) in found for col in range(COLUMNS))}
     cols = {col for col in range(COLUMNS) if all((row, col) in found for row in range(ROWS))}
-    assert rows == set(axes.row_labels(limits, ROWS))
-    line, _ = axes.time_axis((0.0, 10.0), COLUMNS)
+    assert rows == set(axes.label_rows(limits, ROWS))
+    line, _ = axes.draw_time_axis((0.0, 10.0), COLUMNS)
     assert cols == {col for col, char in enumerate(line) if char == "┬"}

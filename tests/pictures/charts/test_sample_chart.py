@@ -7,8 +7,8 @@ import pytest
 
 from tuisim.engine.runs.samples import Sample
 from tuisim.pictures.charts.axes import Limits
-from tuisim.pictures.charts.layout import Stroke, laid_out
-from tuisim.pictures.charts.sample_chart import sample_chart
+from tuisim.pictures.charts.layout import Stroke, lay_out_chart
+from tuisim.pictures.charts.sample_chart import build_sample_chart
 
 
 @pytest.mark.parametrize(
@@ -17,23 +17,23 @@ from tuisim.pictures.charts.sample_chart import sample_chart
 )
 def test_samples_are_seen_from_the_first_to_the_last(times_s: list[float], limits: Limits) -> None:
     samples = [Sample("a", 5.0, time_s, 0, 0, 1) for time_s in times_s]
-    chart = sample_chart(samples, 100)
+    chart = build_sample_chart(samples, 100)
     assert chart.x_limits == limits
     assert [list(line.xs) for line in chart.lines] == [times_s] * bool(times_s)
-    assert sample_chart(samples, 100, (0.0, 9.0)).x_limits == (0.0, 9.0)
+    assert build_sample_chart(samples, 100, (0.0, 9.0)).x_limits == (0.0, 9.0)
 
 
 @pytest.mark.parametrize("limits", [(2.5, 7.5), (3.2, 3.4), (-2.0, 0.5), (9.5, 12.0), (20.0, 30.0)])
 @pytest.mark.parametrize("samples", [1, 10, 1000])
 def test_the_line_stays_between_its_axes(limits: Limits, samples: int) -> None:
     times_s = np.linspace(0.0, 10.0, samples)
-    chart = sample_chart(
+    chart = build_sample_chart(
         [Sample("a", 5.0 * time_s, time_s, 0, 0, 1) for time_s in times_s.tolist()], 100, limits
     )
     (line,) = chart.lines
     assert np.all((line.xs >= limits[0]) & (line.xs <= limits[1]))
     assert line.ys == pytest.approx(5.0 * line.xs)
-    drawing = laid_out(chart, 600, 190)
+    drawing = lay_out_chart(chart, 600, 190)
     (plot,) = drawing.plots
     for stroke in drawing.shapes:
         if isinstance(stroke, Stroke) and stroke.points[0, 1] >= plot.top:

@@ -10,9 +10,9 @@ import pytest
 
 from tests.cases import cases
 from tuisim.pictures.charts import axes
-from tuisim.pictures.charts.bands import band_span
-from tuisim.pictures.charts.canvas import TextRun, canvas, styled
-from tuisim.pictures.charts.text_chart import ChartPainter, ChartPicture, ChartState, values_at
+from tuisim.pictures.charts.bands import build_band_span
+from tuisim.pictures.charts.canvas import TextRun, build_style, draw_canvas
+from tuisim.pictures.charts.text_chart import ChartPainter, ChartPicture, ChartState, format_values
 from tuisim.pictures.charts.traces import Traces
 
 TELEMETRY = ("left_red_pc", "gyro_deg")
@@ -206,17 +206,17 @@ def test_what_is_drawn_is_named(ticked: tuple[str, ...]) -> None:
 @pytest.mark.parametrize("other", ["way_mm", ""])
 def test_names_of_bands_have_the_colour_of_their_curve_beside_others(other: str) -> None:
     made = traces(*filter(None, ("Colour", other)))
-    spans = (band_span("Colour", 1.5, 3.0, 50.0, ""),)
+    spans = (build_band_span("Colour", 1.5, 3.0, 50.0, ""),)
     lines = ChartPainter().paint(made, ChartState(spans=spans), 80, 16).lines
     (color,) = {
         style.color for line in lines for part, style in line if part == "50" and style.bgcolor
     }
-    assert (color == styled(next(iter(made)).rgb).color) is bool(other)
+    assert (color == build_style(next(iter(made)).rgb).color) is bool(other)
 
 
 def test_values_at_the_cursor() -> None:
     assert (
-        values_at(list(traces("Colour", "way_mm")), 1.25, "s", 80)
+        format_values(list(traces("Colour", "way_mm")), 1.25, "s", 80)
         == "1.25 s  Colour 100  way_mm 101mm"
     )
 
@@ -224,7 +224,7 @@ def test_values_at_the_cursor() -> None:
 def test_values_that_do_not_fit_are_counted() -> None:
     drawn = list(traces("Colour", "Light_left", "Light_right"))
 
-    assert values_at(drawn, 1.0, "s", 24) == "1.00 s  Colour 100 +2"
+    assert format_values(drawn, 1.0, "s", 24) == "1.00 s  Colour 100 +2"
 
 
 def test_a_chart_of_twelve_rows_has_ten_for_its_lines() -> None:
@@ -239,9 +239,9 @@ def test_the_canvas_is_kept_while_only_the_cursor_moves(monkeypatch: pytest.Monk
 
     def counted(*words: Any) -> list[list[TextRun]]:
         calls.append(words)
-        return canvas(*words)
+        return draw_canvas(*words)
 
-    monkeypatch.setattr("tuisim.pictures.charts.text_chart.canvas", counted)
+    monkeypatch.setattr("tuisim.pictures.charts.text_chart.draw_canvas", counted)
     painter, made, state = ChartPainter(), traces("Colour"), ChartState(cursor_s=1.0)
 
     painter.paint(made, state, 80, 16)
@@ -271,7 +271,7 @@ def test_points_out_of_order_and_numbers_that_are_none() -> None:
     (trace,) = made
 
     assert trace.times_s.tolist() == [1.0, 2.0, 3.0]
-    assert [trace.at(time_s) for time_s in (0.5, 1.0, 2.9)] == [None, 10.0, 20.0]
+    assert [trace.find_value(time_s) for time_s in (0.5, 1.0, 2.9)] == [None, 10.0, 20.0]
 
 
 def test_a_faint_grid_stands_at_the_labels_and_gives_way_to_curves_and_cursors() -> None:
@@ -286,6 +286,6 @@ def test_a_faint_grid_stands_at_the_labels_and_gives_way_to_curves_and_cursors()
     for row in rows:
         assert ("┈" in row) is ("┤" in row)
     assert all(
-        row[picture.left + axes.column_of(2.5, picture.x_limits, picture.columns)] != "┈"
+        row[picture.left + axes.find_column(2.5, picture.x_limits, picture.columns)] != "┈"
         for row in rows
     )

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from tuisim.logs.signals import compute_summary
-from tuisim.pictures.charts.canvas import seen_points, xy_lines
-from tuisim.pictures.charts.traces import MOST_POINTS, TRACE_COLORS, Pyramid, Trace, Traces
+from tuisim.pictures.charts.canvas import draw_xy_chart, drop_hidden_points
+from tuisim.pictures.charts.traces import MAX_POINTS, TRACE_COLORS, Pyramid, Trace, Traces
 
 TIMES = np.arange(200_000) / 1000.0
 
@@ -18,7 +18,7 @@ TIMES = np.arange(200_000) / 1000.0
 def test_few_points_reach_as_far_as_all(limits: tuple[float, float]) -> None:
     values = np.sin(TIMES)
     values[123_456] = 9.0
-    times_s, drawn = Pyramid(TIMES, values).points(limits, 100)
+    times_s, drawn = Pyramid(TIMES, values).select_points(limits, 100)
     inside = (limits[0] <= TIMES) & (limits[1] >= TIMES)
     assert len(times_s) <= 2 * 16 * 4 * 100 + 4
     assert drawn.max() >= values[inside].max()
@@ -28,15 +28,21 @@ def test_few_points_reach_as_far_as_all(limits: tuple[float, float]) -> None:
 
 @pytest.mark.parametrize("sign", [1, -1])
 def test_a_ramp_of_many_points_is_drawn_as_a_ramp(sign: int) -> None:
-    _, drawn = Pyramid(TIMES, sign * TIMES).points((0.0, 200.0), 100)
+    _, drawn = Pyramid(TIMES, sign * TIMES).select_points((0.0, 200.0), 100)
     assert (sign * np.diff(drawn) >= 0).all()
 
 
 def test_what_is_not_finite_or_not_in_order_is_put_right() -> None:
     pyramid = Pyramid(np.array([3.0, 1.0, 2.0, 5.0]), np.array([30.0, 10.0, np.nan, 50.0]))
     assert pyramid.times_s.tolist() == [1.0, 3.0, 5.0]
-    assert [pyramid.nearest(time_s) for time_s in (-9.0, 1.9, 2.1, 4.1, 99.0)] == [1, 1, 0, 3, 3]
-    assert pyramid.between(1.0, 3.0)[1].tolist() == [10.0, 30.0]
+    assert [pyramid.find_nearest(time_s) for time_s in (-9.0, 1.9, 2.1, 4.1, 99.0)] == [
+        1,
+        1,
+        0,
+        3,
+        3,
+    ]
+    assert pyramid.select_range(1.0, 3.0)[1].tolist() == [10.0, 30.0]
 
 
 @pytest.mark.parametrize(
@@ -45,12 +51,15 @@ def test_what_is_not_finite_or_not_in_order_is_put_right() -> None:
 def test_figures_of_a_span_are_those_of_its_points(span: tuple[float, float]) -> None:
     values = 1e6 + np.sin(TIMES) * np.random.default_rng(1).random(len(TIMES))
     inside = values[(span[0] <= TIMES) & (span[1] >= TIMES)]
-    found, expected = Pyramid(TIMES, values).figures(*span), compute_summary(inside, quantiles=())
+    found, expected = (
+        Pyramid(TIMES, values).compute_summary(*span),
+        compute_summary(inside, quantiles=()),
+    )
     assert astuple(found)[:6] == pytest.approx(astuple(expected)[:6], rel=1e-9, nan_ok=True)
 
 
 def test_equal_values_have_no_spread() -> None:
-    found = Pyramid(TIMES, np.full(len(TIMES), 0.1)).figures(0.0, 150.0)
+    found = Pyramid(TIMES, np.full(len(TIMES), 0.1)).compute_summary(0.0, 150.0)
     assert (found.mean, found.std) == (0.1, 0.0)
 
 
@@ -63,12 +72,12 @@ def test_traces_end_where_the_longest_ends() -> None:
 
 
 def test_no_points_at_all() -> None:
-    assert not len(Pyramid(np.array([np.nan]), np.array([1.0])).points((0.0, 1.0), 10)[0])
+    assert not len(Pyramid(np.array([np.nan]), np.array([1.0])).select_points((0.0, 1.0), 10)[0])
 
 
 def test_the_place_that_is_looked_at_is_marked() -> None:
     xs, ys = np.array([0.0, 5.0, 10.0]), np.array([0.0, 5.0, 10.0])
-    lines = xy_lines(xs, ys, 2, ("x", "y"), (255, 0, 0), "braille", 40, 12)
+    lines = draw_xy_chart(xs, ys, 2, ("x", "y"), (255, 0, 0), "braille", 40, 12)
     text = ["".join(part for part, _ in line) for line in lines]
     assert len(text) == 12
     assert "●" in text[1]
@@ -80,8 +89,8 @@ def test_a_trace_without_end_keeps_its_extremes_in_bounded_memory() -> None:
     values[[1_234, 150_001]] = 9.0, -9.0
     for at in range(0, len(TIMES), 100):
         trace.add(TIMES[at : at + 100].tolist(), values[at : at + 100].tolist())
-    assert len(trace.times_s) == len(trace.values) <= MOST_POINTS < len(TIMES)
-    assert (trace.at(TIMES[1_234]), trace.at(TIMES[150_001])) == (9.0, -9.0)
+    assert len(trace.times_s) == len(trace.values) <= MAX_POINTS < len(TIMES)
+    assert (trace.find_value(TIMES[1_234]), trace.find_value(TIMES[150_001])) == (9.0, -9.0)
     assert (trace.times_s[0], trace.times_s[-1]) == (TIMES[0], TIMES[-1])
     assert (np.diff(trace.times_s) >= 0).all()
     # What came last is there as it came.
@@ -123,5 +132,5 @@ def test_each_trace_keeps_its_colour() -> None:
 
 def test_a_path_is_seen_between_its_limits() -> None:
     xs, ys = np.array([10.0, 10.1, 12.0, 14.0]), np.array([100.0, 100.1, 108.0, 100.0])
-    seen = seen_points(xs, ys, [(10.0, 14.0), (100.0, 108.0)], 2, 2)
+    seen = drop_hidden_points(xs, ys, [(10.0, 14.0), (100.0, 108.0)], 2, 2)
     assert np.array(seen).tolist() == [[10.0, 12.0, 14.0], [100.0, 108.0, 100.0]]

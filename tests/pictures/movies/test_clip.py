@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tuisim.pictures.movies.clip import END_MS, shots_of
+from tuisim.pictures.movies.clip import END_MS, plan_shots
 
 # Start, end, speed and frames per second; expected times, and durations without the time added at the end.
 SHOTS = {
@@ -25,6 +25,6 @@ SHOTS = {
 @pytest.mark.parametrize("name", SHOTS)
 def test_shots(name: str) -> None:
     (start_s, stop_s, speed, fps), times_s, durations_ms = SHOTS[name]
-    shots = shots_of(start_s, stop_s, speed, fps)
+    shots = plan_shots(start_s, stop_s, speed, fps)
     assert [shot.time_s for shot in shots] == pytest.approx(times_s)
     assert [shot.duration_ms for shot in shots] == [*durations_ms[:-1], durations_ms[-1] + END_MS]

@@ -12,7 +12,13 @@ from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 from tuisim.pictures.charts.files import check_format
 from tuisim.pictures.movies import files
 from tuisim.pictures.movies.clip import ClipPanel, Recorded
-from tuisim.pictures.movies.files import MOVIE_SUFFIXES, Clip, save_movie, save_picture, small_movie
+from tuisim.pictures.movies.files import (
+    MOVIE_SUFFIXES,
+    Clip,
+    make_small_movie,
+    save_movie,
+    save_picture,
+)
 from tuisim.pictures.scene.pictures import RIM_RGB
 
 
@@ -52,7 +58,7 @@ def test_too_many_frames_are_refused(
 ) -> None:
     path = tmp_path / "a.gif"
     path.write_bytes(b"before")
-    for name, most in (("MOST_BYTES", 2 * 160 * 160), ("MOST_FRAMES", 2)):
+    for name, most in (("MAX_BYTES", 2 * 160 * 160), ("MAX_FRAMES", 2)):
         with monkeypatch.context() as patch:
             patch.setattr(files, name, most)
             with pytest.raises(ConfigError, match="3 frames of 160x160, at most 2"):
@@ -63,7 +69,7 @@ def test_too_many_frames_are_refused(
 def test_the_view_of_a_clip_lies_on_the_world_in_its_frames(
     recorded: Recorded, tmp_path: Path
 ) -> None:
-    clip = Clip(recorded, (ClipPanel.WORLD,), recorded.span_s(None, None), size=(400, 500))
+    clip = Clip(recorded, (ClipPanel.WORLD,), recorded.clip_span_s(None, None), size=(400, 500))
     save_picture(recorded, clip.panels, 0.0, tmp_path / "a.png", clip.size)
     picture = Image.open(tmp_path / "a.png").convert("RGB")
     assert (clip.view.width_px, clip.view.height_px) == picture.size
@@ -85,10 +91,10 @@ def test_the_view_of_a_clip_lies_on_the_world_in_its_frames(
 def test_a_small_movie_has_fewer_frames_or_is_none_where_it_would_be_large(
     recorded: Recorded, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    movie = small_movie(recorded)
+    movie = make_small_movie(recorded)
     assert movie is not None and movie[0].fps == 10 and movie[1].startswith(b"GIF8")
     monkeypatch.setattr(files, "SMALL_BYTES", len(movie[1]) - 1)
-    fewer = small_movie(recorded)
+    fewer = make_small_movie(recorded)
     assert fewer is not None and fewer[0].fps == 5 and len(fewer[1]) < len(movie[1])
     monkeypatch.setattr(files, "SMALL_BYTES", 100)
-    assert small_movie(recorded) is None
+    assert make_small_movie(recorded) is None

@@ -11,7 +11,7 @@ from tests.cases import for_each
 from tuisim.base.errors import ConfigError
 from tuisim.pictures.charts.layout import Words
 from tuisim.pictures.movies.clip import ClipPanel, Recorded
-from tuisim.pictures.movies.painter import WIDTH_PX, FramePainter, PictureBox, _boxes
+from tuisim.pictures.movies.painter import WIDTH_PX, FramePainter, PictureBox, _place_boxes
 
 ALL = tuple(ClipPanel)
 SETS = [panels for count in (1, 2, 3) for panels in combinations(ALL, count)]
@@ -30,7 +30,7 @@ def overlap(one: PictureBox, other: PictureBox) -> bool:
 def test_panels_lie_inside_the_picture_without_overlap(
     panels: tuple[ClipPanel, ...], size: tuple[int, int]
 ) -> None:
-    boxes = _boxes(panels, size, 2)
+    boxes = _place_boxes(panels, size, 2)
     assert boxes.keys() == set(panels)
     assert not any(overlap(one, other) for one, other in combinations(boxes.values(), 2))
     for box in boxes.values():
@@ -40,11 +40,11 @@ def test_panels_lie_inside_the_picture_without_overlap(
 
 def test_a_size_without_room_for_a_panel_is_refused() -> None:
     with pytest.raises(ConfigError, match="160x120 is too small"):
-        _boxes(ALL, (160, 120), 2)
+        _place_boxes(ALL, (160, 120), 2)
 
 
 def test_a_chosen_size_is_that_of_the_image_and_else_it_fits_the_panels(recorded: Recorded) -> None:
-    moment = recorded.moment(0.1)
+    moment = recorded.read_moment(0.1)
     assert FramePainter(recorded, (ClipPanel.WORLD,), (0, 0.5), (320, 240)).image(moment).size == (
         320,
         240,
@@ -60,7 +60,7 @@ def test_the_caption_has_as_many_values_as_fit(recorded: Recorded) -> None:
         painter = FramePainter(recorded, (ClipPanel.WORLD,), (0, 0.5), size)
         return [
             shape.text
-            for shape in painter.drawing(recorded.moment(0.3)).shapes
+            for shape in painter.draw(recorded.read_moment(0.3)).shapes
             if isinstance(shape, Words)
         ]
 
@@ -70,6 +70,6 @@ def test_the_caption_has_as_many_values_as_fit(recorded: Recorded) -> None:
 
 def test_the_world_moves_between_two_frames(recorded: Recorded) -> None:
     painter = FramePainter(recorded, (ClipPanel.WORLD,), (0, 0.5), (320, 240))
-    first, last = (np.asarray(painter.image(recorded.moment(time_s))) for time_s in (0.0, 0.5))
+    first, last = (np.asarray(painter.image(recorded.read_moment(time_s))) for time_s in (0.0, 0.5))
     # Below the caption.
     assert (first[40:] != last[40:]).any()

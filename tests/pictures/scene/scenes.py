@@ -11,14 +11,14 @@ from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, RobotSpec, RunSpec
 from tuisim.pictures.scene.painter import ScenePainter
 from tuisim.pictures.scene.pen import PenTrace
-from tuisim.pictures.scene.pictures import world_view
-from tuisim.pictures.scene.view import Viewport, whole_field
+from tuisim.pictures.scene.pictures import build_world_view
+from tuisim.pictures.scene.view import Viewport, fit_field
 from tuisim.settings.build import build_run_spec
 from tuisim.settings.options import Settings
 from tuisim.terminal.pixels import Pixels
 
 WHITE: Pixels = np.full((FIELD_HEIGHT_MM, FIELD_WIDTH_MM, 3), 255, np.uint8)
-VIEW = whole_field(160, 78)
+VIEW = fit_field(160, 78)
 ROBOT = RobotSpec()
 MIDDLE = Pose(1200, 570, 30)
 CORNERS = [(x_mm, y_mm) for x_mm in (0, FIELD_WIDTH_MM) for y_mm in (0, FIELD_HEIGHT_MM)]
@@ -39,5 +39,5 @@ def spec_of(robot: str = "Default_Robot") -> RunSpec:
 
 def pixel(picture: Image.Image, robot: RobotSpec, place: tuple[float, float]) -> Any:
     """The colour at a point of the world."""
-    x_px, y_px = world_view(robot).to_px(*place)
+    x_px, y_px = build_world_view(robot).to_px(*place)
     return picture.getpixel((int(x_px), int(y_px)))

@@ -9,7 +9,7 @@ import pytest
 
 from tests.cases import cases
 from tuisim.engine.core.sensors.color import ColorReading, LightRead
-from tuisim.pictures.scene.discs import RIM_RGB, RINGS, DiscFace, draw_disc, shrunk
+from tuisim.pictures.scene.discs import RIM_RGB, RINGS, DiscFace, draw_disc, shrink_pixels
 from tuisim.programs.robot.thresholds import AIM, ProgramThreshold
 
 GROUND = (1, 2, 3)
@@ -126,5 +126,5 @@ def test_thresholds_say_what_they_give_now() -> None:
 
 def test_shrinking_gives_the_mean_of_each_cell() -> None:
     pixels = np.arange(24, dtype=np.uint8).reshape(4, 6)
-    assert shrunk(pixels, 2, 3).tolist() == [[3.5, 5.5, 7.5], [15.5, 17.5, 19.5]]
-    assert shrunk(pixels, 4, 1).tolist() == [[2.5], [8.5], [14.5], [20.5]]
+    assert shrink_pixels(pixels, 2, 3).tolist() == [[3.5, 5.5, 7.5], [15.5, 17.5, 19.5]]
+    assert shrink_pixels(pixels, 4, 1).tolist() == [[2.5], [8.5], [14.5], [20.5]]

@@ -8,7 +8,7 @@ import pytest
 from tests.cases import for_each
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM
 from tuisim.pictures.scene.mat import MatPictures, shrink
-from tuisim.pictures.scene.view import Viewport, whole_field
+from tuisim.pictures.scene.view import Viewport, fit_field
 from tuisim.terminal.glyphs import glyph_set
 from tuisim.terminal.picture_options import CellSet
 from tuisim.terminal.pixels import CellPoints, Pixels
@@ -21,7 +21,7 @@ def mat(ground: int = 255) -> Pixels:
 
 
 def test_a_plain_mat_stays_plain_and_what_is_off_it_is_outside() -> None:
-    picture = shrink(mat(211), whole_field(76, 54), OUTSIDE)
+    picture = shrink(mat(211), fit_field(76, 54), OUTSIDE)
 
     assert set(map(tuple, picture.reshape(-1, 3).tolist())) == {(211, 211, 211), OUTSIDE}
     assert tuple(picture[0, 0]) == OUTSIDE
@@ -31,7 +31,7 @@ def test_a_plain_mat_stays_plain_and_what_is_off_it_is_outside() -> None:
 def test_a_mat_of_dots_or_signs_ends_where_a_cell_ends(size: tuple[int, int]) -> None:
     cols, rows = size
     picture = shrink(
-        mat(), whole_field(2 * cols, 4 * rows, CellPoints(2, 4)), OUTSIDE, whole_cells=True
+        mat(), fit_field(2 * cols, 4 * rows, CellPoints(2, 4)), OUTSIDE, whole_cells=True
     )
 
     cells = picture.reshape(rows, 4, cols, 2, 3)
@@ -48,7 +48,7 @@ def test_light_lines_on_dark_are_as_clear_as_dark_lines_on_light() -> None:
     for row, col, thick in ((100, 90, 6), (400, 700, 14), (801, 1501, 40)):
         pixels[row : row + thick] = 30
         pixels[:, col : col + thick] = 90
-    light, dark = (shrink(one, whole_field(96, 50), OUTSIDE) for one in (pixels, 255 - pixels))
+    light, dark = (shrink(one, fit_field(96, 50), OUTSIDE) for one in (pixels, 255 - pixels))
     on_mat = (light != OUTSIDE).any(axis=2)
     assert on_mat.mean() > 0.8
     assert np.abs(light[on_mat] + dark[on_mat].astype(int) - 255).max() <= 1
@@ -67,7 +67,7 @@ def test_a_thin_line_has_no_gaps(
         pixels[row, round(col - thick / 2) : round(col + thick / 2)] = 0
 
     glyphs = glyph_set(cells)
-    view = whole_field(
+    view = fit_field(
         size[0] * glyphs.cols, size[1] * glyphs.rows, CellPoints(glyphs.cols, glyphs.rows)
     )
     picture = shrink(pixels, view, OUTSIDE)[..., 0].astype(int)
@@ -102,6 +102,6 @@ def test_a_view_finer_than_the_mat_repeats_pixels() -> None:
 
 def test_pictures_are_remembered() -> None:
     pictures = MatPictures(mat(), OUTSIDE)
-    view = whole_field(40, 20)
+    view = fit_field(40, 20)
 
     assert pictures.picture(view) is pictures.picture(view)

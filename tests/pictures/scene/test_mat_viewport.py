@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from tests.cases import cases
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
-from tuisim.pictures.scene.view import following, whole_field
+from tuisim.pictures.scene.view import fit_field, follow_robot
 
 
 @cases(
@@ -21,7 +21,7 @@ from tuisim.pictures.scene.view import following, whole_field
     },
 )
 def test_whole_field_is_inside(width: int, height: int) -> None:
-    view = whole_field(width, height)
+    view = fit_field(width, height)
 
     left, bottom = view.to_px(0, 0)
     right, top = view.to_px(FIELD_WIDTH_MM, FIELD_HEIGHT_MM)
@@ -38,27 +38,27 @@ def test_whole_field_is_inside(width: int, height: int) -> None:
     st.integers(1, 80),
 )
 def test_to_px_and_back(x_mm: float, y_mm: float, width: int, rows: int) -> None:
-    view = whole_field(width, 2 * rows)
+    view = fit_field(width, 2 * rows)
 
     assert view.to_mm(*view.to_px(x_mm, y_mm)) == pytest.approx((x_mm, y_mm), abs=1e-6)
 
 
 @given(st.floats(0, FIELD_WIDTH_MM), st.floats(0, FIELD_HEIGHT_MM), st.sampled_from([2, 4]))
 def test_following_shows_the_robot(x_mm: float, y_mm: float, zoom: int) -> None:
-    col, row = following(80, 50, zoom, Pose(x_mm, y_mm, 0), None).to_px(x_mm, y_mm)
+    col, row = follow_robot(80, 50, zoom, Pose(x_mm, y_mm, 0), None).to_px(x_mm, y_mm)
 
     assert -1 <= col <= 81
     assert -1 <= row <= 51
 
 
 def test_following_stands_still_until_the_robot_nears_an_edge() -> None:
-    start = following(80, 50, 4, Pose(1000, 500, 0), None)
+    start = follow_robot(80, 50, 4, Pose(1000, 500, 0), None)
 
-    assert following(80, 50, 4, Pose(1050, 520, 0), start) is start
-    assert following(80, 50, 4, Pose(1250, 500, 0), start) != start
+    assert follow_robot(80, 50, 4, Pose(1050, 520, 0), start) is start
+    assert follow_robot(80, 50, 4, Pose(1250, 500, 0), start) != start
 
 
 def test_following_at_the_end_of_the_field_stands_still() -> None:
-    start = following(80, 50, 4, Pose(0, 0, 0), None)
+    start = follow_robot(80, 50, 4, Pose(0, 0, 0), None)
 
-    assert following(80, 50, 4, Pose(-40, -30, 0), start) is start
+    assert follow_robot(80, 50, 4, Pose(-40, -30, 0), start) is start

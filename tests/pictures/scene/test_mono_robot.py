@@ -9,9 +9,9 @@ from tests.cases import cases, for_each
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.outline import build_outline
 from tuisim.engine.core.spec import RobotSpec
-from tuisim.pictures.scene.mono_robot import body, pointer
-from tuisim.pictures.scene.pen import visible_on
-from tuisim.pictures.scene.view import whole_field
+from tuisim.pictures.scene.mono_robot import draw_body, draw_pointer
+from tuisim.pictures.scene.pen import choose_pen_rgb
+from tuisim.pictures.scene.view import fit_field
 from tuisim.terminal.glyphs import GLYPHS, SIGNS
 from tuisim.terminal.pixels import CellPoints
 
@@ -20,8 +20,8 @@ ROWS, COLS = 20, 50
 
 @for_each(heading=range(0, 360, 45))
 def test_the_robot_in_signs_has_a_sign_of_its_own(heading: int) -> None:
-    view = whole_field(2 * COLS, 4 * ROWS, CellPoints(2, 4))
-    signs = body(view, Pose(1181, 571, heading), build_outline(RobotSpec()))
+    view = fit_field(2 * COLS, 4 * ROWS, CellPoints(2, 4))
+    signs = draw_body(view, Pose(1181, 571, heading), build_outline(RobotSpec()))
 
     assert {GLYPHS[cell >> 48] for cell in signs.values()} == {"&"}
     assert 8 <= len(signs) <= 22
@@ -37,7 +37,7 @@ def test_the_robot_in_signs_has_a_sign_of_its_own(heading: int) -> None:
 def test_a_line_shows_on_any_ground(ground: tuple[int, int, int], grey: bool) -> None:
     below = np.array([ground], np.uint8)
 
-    shown = visible_on(below, (255, 0, 0), grey).astype(float)
+    shown = choose_pen_rgb(below, (255, 0, 0), grey).astype(float)
 
     light = np.array([0.299, 0.587, 0.114])
     away = abs((shown - below) @ light)[0] if grey else np.sqrt(np.square(shown - below).sum())
@@ -57,9 +57,9 @@ def test_a_line_shows_on_any_ground(ground: tuple[int, int, int], grey: bool) ->
     },
 )
 def test_a_pointer_of_signs_shows_the_heading(heading: float, shown: list[str]) -> None:
-    view = whole_field(2 * COLS, 4 * ROWS, CellPoints(2, 4))
+    view = fit_field(2 * COLS, 4 * ROWS, CellPoints(2, 4))
 
-    signs = pointer(view, Pose(1181.0, 571.0, heading), 3.2 * 2 * view.mm_per_px, "O")
+    signs = draw_pointer(view, Pose(1181.0, 571.0, heading), 3.2 * 2 * view.mm_per_px, "O")
 
     top, left = (min(at[axis] for at in signs) for axis in (0, 1))
     bottom, right = (max(at[axis] for at in signs) for axis in (0, 1))

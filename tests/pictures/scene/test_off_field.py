@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from tuisim.engine.core.geometry import Pose
-from tuisim.pictures.scene.off_field import draw_arrow_to, off_field_words
-from tuisim.pictures.scene.view import whole_field
+from tuisim.pictures.scene.off_field import describe_off_field, draw_arrow
+from tuisim.pictures.scene.view import fit_field
 
 
 @pytest.mark.parametrize(
@@ -19,7 +19,7 @@ from tuisim.pictures.scene.view import whole_field
     ],
 )
 def test_words(pose: Pose, words: str) -> None:
-    assert off_field_words(pose) == words
+    assert describe_off_field(pose) == words
 
 
 @pytest.mark.parametrize(
@@ -31,16 +31,16 @@ def test_words(pose: Pose, words: str) -> None:
     ],
 )
 def test_the_side_is_told_in_a_narrow_panel_too(pose: Pose, width: int, words: str) -> None:
-    assert off_field_words(pose, width) == words
+    assert describe_off_field(pose, width) == words
 
 
 @pytest.mark.parametrize(
     "pose", [Pose(-2000.0, 500.0, 0.0), Pose(500.0, 9000.0, 0.0), Pose(9000.0, -9000.0, 0.0)]
 )
 def test_the_arrow_is_at_the_edge_towards_the_robot(pose: Pose) -> None:
-    view = whole_field(80, 40)
+    view = fit_field(80, 40)
     picture = np.zeros((40, 80, 3), np.uint8)
-    draw_arrow_to(picture, view, pose, 5.0, (255, 255, 255))
+    draw_arrow(picture, view, pose, 5.0, (255, 255, 255))
     rows, cols = np.nonzero(picture[..., 0])
     assert 0 < len(rows) < 40
     touched = (cols.min() == 0, cols.max() == 79, rows.min() == 0, rows.max() == 39)
@@ -49,5 +49,5 @@ def test_the_arrow_is_at_the_edge_towards_the_robot(pose: Pose) -> None:
 
 def test_a_robot_that_is_seen_has_no_arrow() -> None:
     picture = np.zeros((40, 80, 3), np.uint8)
-    draw_arrow_to(picture, whole_field(80, 40), Pose(-60.0, 500.0, 0.0), 5.0, (255, 255, 255))
+    draw_arrow(picture, fit_field(80, 40), Pose(-60.0, 500.0, 0.0), 5.0, (255, 255, 255))
     assert not picture.any()

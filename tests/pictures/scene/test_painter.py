@@ -28,7 +28,7 @@ from tuisim.pictures.scene.painter import (
 )
 from tuisim.pictures.scene.pen import PenTrace, Piece
 from tuisim.pictures.scene.robot import COLORED
-from tuisim.pictures.scene.view import Viewport, whole_field
+from tuisim.pictures.scene.view import Viewport, fit_field
 from tuisim.terminal.pixels import CellPoints, Pixels
 
 HERE = Pose(1000.0, 500.0, 0.0)
@@ -93,9 +93,7 @@ def test_an_infrared_sensor_is_drawn_where_it_is() -> None:
     assert at(painter().paint(CLOSE, SceneState(TOUCHES, HERE)), 1030, 450, CLOSE) == COLORED.spot
 
 
-@pytest.mark.parametrize(
-    "view", [whole_field(38, 19), VIEW, CLOSE], ids=["small", "middle", "close"]
-)
+@pytest.mark.parametrize("view", [fit_field(38, 19), VIEW, CLOSE], ids=["small", "middle", "close"])
 def test_a_beacon_is_drawn_also_at_the_edge(view: Viewport) -> None:
     scene = SceneState(ROBOT, Pose(2000, 1000, 0), beacon=BeaconSpec(1000.0, 500.0))
     picture = painter().paint(view, scene)
@@ -138,10 +136,10 @@ EVERYTHING = SceneState(
     [
         (VIEW, {}, 69861790),
         (VIEW, {"for_file": True}, 2026224127),
-        (whole_field(240, 120, CellPoints(2, 4)), {}, 1009201567),
-        (whole_field(100, 80, CellPoints(2, 4)), {"coarse": True}, 3802317320),
-        (whole_field(38, 19), {"grey": True}, 772926774),
-        (whole_field(76, 60, CellPoints(2, 3)), {"mono": True}, 3007351795),
+        (fit_field(240, 120, CellPoints(2, 4)), {}, 1009201567),
+        (fit_field(100, 80, CellPoints(2, 4)), {"coarse": True}, 3802317320),
+        (fit_field(38, 19), {"grey": True}, 772926774),
+        (fit_field(76, 60, CellPoints(2, 3)), {"mono": True}, 3007351795),
         (Viewport(140, 78, 4.0, 1003 - 280.0, 507 + 156.0), {"whole_cells": True}, 3678989251),
     ],
     ids=["middle", "for a file", "octants", "coarse", "small and grey", "mono", "close"],

@@ -10,39 +10,39 @@ from tests.running import Run
 from tuisim.engine.core.geometry import Pose, world_point
 from tuisim.engine.core.spec import PenSpec, RobotSpec
 from tuisim.pictures.scene.painter import SceneState
-from tuisim.pictures.scene.pen import Piece, pen_points_mm, pen_rgb, pen_trace
-from tuisim.pictures.scene.view import whole_field
+from tuisim.pictures.scene.pen import Piece, build_pen_trace, parse_pen_color, place_pen_mm
+from tuisim.pictures.scene.view import fit_field
 
 
 def test_the_trace_is_drawn_and_goes_on() -> None:
     made = painter()
     scene = SceneState(ROBOT, Pose(2000, 1000, 0))
-    made.trace.add(Piece.of(np.array([200.0, 300.0]), np.array([300.0, 300.0]), ROBOT.pen))
+    made.trace.add(Piece.from_points(np.array([200.0, 300.0]), np.array([300.0, 300.0]), ROBOT.pen))
     made.paint(VIEW, scene)
-    made.trace.add(Piece.of(np.array([400.0]), np.array([300.0]), ROBOT.pen))
+    made.trace.add(Piece.from_points(np.array([400.0]), np.array([300.0]), ROBOT.pen))
 
     picture = made.paint(VIEW, scene)
 
-    assert [at(picture, x, 300) for x in (205, 250, 350, 395)] == [pen_rgb("red")] * 4
+    assert [at(picture, x, 300) for x in (205, 250, 350, 395)] == [parse_pen_color("red")] * 4
     assert at(picture, 450, 300) == (255, 255, 255)
 
 
 def test_a_lifted_pen_leaves_a_gap() -> None:
     made = painter()
     xs, ys = np.array([200.0, np.nan, 400.0, 500.0]), np.array([300.0, np.nan, 300.0, 300.0])
-    made.trace.add(Piece.of(xs, ys, ROBOT.pen))
+    made.trace.add(Piece.from_points(xs, ys, ROBOT.pen))
 
     picture = made.paint(VIEW, SceneState(ROBOT, Pose(2000, 1000, 0)))
 
     assert at(picture, 300, 300) == (255, 255, 255)
-    assert at(picture, 450, 300) == pen_rgb("red")
+    assert at(picture, 450, 300) == parse_pen_color("red")
 
 
 def test_each_stretch_keeps_its_pen_and_a_wiped_trace_is_gone() -> None:
     made, scene = painter(), SceneState(ROBOT, Pose(2000, 1000, 0))
-    made.trace.add(Piece.of(np.array([200.0, 300.0]), np.array([300.0, 300.0]), ROBOT.pen))
+    made.trace.add(Piece.from_points(np.array([200.0, 300.0]), np.array([300.0, 300.0]), ROBOT.pen))
     made.trace.add(
-        Piece.of(
+        Piece.from_points(
             np.array([np.nan, 200.0, 300.0]),
             np.array([np.nan, 600.0, 600.0]),
             PenSpec(color="teal", width_mm=90),
@@ -50,17 +50,17 @@ def test_each_stretch_keeps_its_pen_and_a_wiped_trace_is_gone() -> None:
     )
 
     drawn = made.paint(VIEW, scene)
-    again = made.paint(whole_field(80, 38), scene)
+    again = made.paint(fit_field(80, 38), scene)
     made.trace.clear()
     gone = made.paint(VIEW, scene)
 
     assert [at(drawn, 250, y) for y in (300, 340, 600, 640)] == [
-        pen_rgb("red"),
+        parse_pen_color("red"),
         (255, 255, 255),
-        pen_rgb("teal"),
-        pen_rgb("teal"),
+        parse_pen_color("teal"),
+        parse_pen_color("teal"),
     ]
-    assert at(again, 250, 600, whole_field(80, 38)) == pen_rgb("teal")
+    assert at(again, 250, 600, fit_field(80, 38)) == parse_pen_color("teal")
     assert at(gone, 250, 300) == at(gone, 250, 600) == (255, 255, 255)
 
 
@@ -69,14 +69,14 @@ def test_each_stretch_keeps_its_pen_and_a_wiped_trace_is_gone() -> None:
     [("orange", (255, 165, 0)), ("#0a0b0c", (10, 11, 12)), ("#zzzzzz", (255, 0, 0))],
 )
 def test_pen_colours(name: str, rgb: tuple[int, int, int]) -> None:
-    assert pen_rgb(name) == rgb
+    assert parse_pen_color(name) == rgb
 
 
 def test_a_trace_is_as_long_as_the_pen_is_down(run: Run) -> None:
     program = "tank_drive.on_for_seconds(SpeedPercent(50), SpeedPercent(50), 1)"
     for down, parts in ((False, 0), (True, 1)):
         done = run(program, pen=PenSpec(down=down), background="Empty_Map")
-        trace = pen_trace(done.run.spec, done.run.telemetry.array())
+        trace = build_pen_trace(done.run.spec, done.run.telemetry.array())
         drawn = np.isfinite(trace.xs_mm)
         assert np.count_nonzero(np.diff(drawn, prepend=False) & drawn) == parts
     start, end = done.run.telemetry.record(0), done.run.telemetry.last()
@@ -92,4 +92,4 @@ def test_the_pen_is_where_the_simulation_has_it() -> None:
     )
     records = np.array(poses, dtype=[("x_mm", float), ("y_mm", float), ("heading_deg", float)])
     expected = [world_point(Pose(*pose), 15.0, -70.0) for pose in poses]
-    assert np.transpose(pen_points_mm(robot, records)) == pytest.approx(np.array(expected))
+    assert np.transpose(place_pen_mm(robot, records)) == pytest.approx(np.array(expected))

@@ -28,18 +28,18 @@ from tuisim.engine.runs.views import TickRecord
 from tuisim.pictures.scene.painter import ScenePainter
 from tuisim.pictures.scene.pen import PenTrace, Piece
 from tuisim.pictures.scene.pictures import (
+    build_painter,
+    build_scene,
+    build_world_view,
+    draw_path,
+    draw_world,
     find_area,
     find_view,
-    fitting_view,
-    path_picture,
-    scene_of,
-    sound_pose,
-    world_painter,
-    world_picture,
-    world_view,
+    fit_view,
+    read_pose,
 )
 from tuisim.pictures.scene.robot import COLORED
-from tuisim.pictures.scene.view import FIELD, Area, whole_field
+from tuisim.pictures.scene.view import FIELD, Area, fit_field
 from tuisim.terminal.pixels import Pixels
 
 WHITE: Pixels = np.full((FIELD_HEIGHT_MM, FIELD_WIDTH_MM, 3), 255, np.uint8)
@@ -56,16 +56,16 @@ SPEC = RunSpec(
     ),
     ROBOLAB,
 )
-TRACE = Piece.of(np.array([700.0, 900.0]), np.array([900.0, 700.0]), SPEC.robot.pen)
+TRACE = Piece.from_points(np.array([700.0, 900.0]), np.array([900.0, 700.0]), SPEC.robot.pen)
 
 
 def test_it_is_what_a_screen_shows_in_a_frame() -> None:
-    view = world_view(SPEC.robot)
+    view = build_world_view(SPEC.robot)
     trace = PenTrace()
     trace.add(TRACE)
-    screen = ScenePainter(WHITE, (0, 0, 0), trace).paint(view, scene_of(SPEC, HERE))
+    screen = ScenePainter(WHITE, (0, 0, 0), trace).paint(view, build_scene(SPEC, HERE))
 
-    picture = np.asarray(world_picture(SPEC, WHITE, HERE, (TRACE,)))
+    picture = np.asarray(draw_world(SPEC, WHITE, HERE, (TRACE,)))
 
     differs = np.argwhere((picture != screen).any(axis=2))
     places = np.array([view.to_mm(col + 0.5, row + 0.5) for row, col in differs.tolist()])
@@ -79,15 +79,15 @@ def test_it_is_what_a_screen_shows_in_a_frame() -> None:
 def test_rays_are_those_of_a_robot_that_is_there(
     pose: Pose | None, rays: bool, is_seen: bool
 ) -> None:
-    assert bool(scene_of(SPEC, pose, rays=rays).rays) == is_seen
+    assert bool(build_scene(SPEC, pose, rays=rays).rays) == is_seen
 
 
 def test_runs_whose_pens_have_not_touched_are_not_joined() -> None:
     other = replace(TRACE, xs_mm=TRACE.xs_mm + 100, ys_mm=TRACE.ys_mm + 100)
-    view = fitting_view(SPEC.robot, 600, 400)
-    scene = scene_of(SPEC, None)
+    view = fit_view(SPEC.robot, 600, 400)
+    scene = build_scene(SPEC, None)
 
-    picture = world_painter(WHITE, (TRACE, other)).paint(view, scene)
+    picture = build_painter(WHITE, (TRACE, other)).paint(view, scene)
 
     col, row = view.to_px(850, 850)
     assert tuple(picture[int(row), int(col)]) == (255, 255, 255)
@@ -97,7 +97,7 @@ def test_runs_whose_pens_have_not_touched_are_not_joined() -> None:
 @pytest.mark.parametrize("corner", CORNERS, ids=str)
 def test_a_white_mat_has_a_frame(corner: tuple[float, float]) -> None:
     spec = spec_of()
-    picture, (x_mm, y_mm) = world_picture(spec, WHITE, MIDDLE), corner
+    picture, (x_mm, y_mm) = draw_world(spec, WHITE, MIDDLE), corner
     inward, outward = (-3, 3) if x_mm else (3, -3)
     edge = pixel(picture, spec.robot, (x_mm + outward / 2, 570))
     assert pixel(picture, spec.robot, (x_mm + inward, y_mm + (-3 if y_mm else 3))) == (
@@ -111,7 +111,7 @@ def test_a_white_mat_has_a_frame(corner: tuple[float, float]) -> None:
 
 @pytest.mark.parametrize("size_px", [(300, 150), (300, 400), (900, 500), (1200, 401)])
 def test_a_world_fills_a_size_that_it_fits_into(size_px: tuple[int, int]) -> None:
-    view = fitting_view(SPEC.robot, *size_px)
+    view = fit_view(SPEC.robot, *size_px)
     room_px = size_px[0] - view.width_px, size_px[1] - view.height_px
     assert 0 <= min(room_px) <= 3
 
@@ -120,7 +120,7 @@ def test_a_robot_on_the_edge_is_not_cut_off() -> None:
     spec = spec_of("Small_Robot")
     for x_mm, y_mm in CORNERS:
         outward = degrees(atan2(y_mm - FIELD_HEIGHT_MM / 2, x_mm - FIELD_WIDTH_MM / 2))
-        picture = np.asarray(world_picture(spec, WHITE, Pose(x_mm, y_mm, outward)))
+        picture = np.asarray(draw_world(spec, WHITE, Pose(x_mm, y_mm, outward)))
         border = np.concatenate([picture[0], picture[-1], picture[:, 0], picture[:, -1]])
         assert len(np.unique(border, axis=0)) == 1
 
@@ -129,7 +129,7 @@ def test_the_way_of_a_run_is_drawn_small(run: Run) -> None:
     done = run(
         "tank_drive.on_for_seconds(50, 50, 2)\n", background="Empty_Map", pose=(500.0, 500.0, 0.0)
     )
-    picture = path_picture(done.run.stored(), whole_field(50, 26), (0, 0, 0))
+    picture = draw_path(done.run.stored(), fit_field(50, 26), (0, 0, 0))
     reddish = (picture[..., 0] > 200) & (picture[..., 1] < 150)
     rows, columns = np.nonzero(reddish)
     assert len({*rows}) <= 2
@@ -148,9 +148,9 @@ def test_a_picture_shows_how_far_a_robot_has_left_the_field() -> None:
     area = find_area(on_floor, records)
     assert area == Area(0.0, -700.0, 5362.0, FIELD_HEIGHT_MM)
     away, view = Pose(5362.0, -700.0, 0.0), find_view(on_floor, area)
-    picture = world_picture(on_floor, WHITE, away, area=area)
+    picture = draw_world(on_floor, WHITE, away, area=area)
     assert picture.size == (view.width_px, view.height_px)
-    field = world_picture(on_floor, WHITE, HERE).size
+    field = draw_world(on_floor, WHITE, HERE).size
     assert abs(picture.size[0] - field[0]) < 100
     col, row = (int(at) for at in view.to_px(away.x_mm, away.y_mm))
     assert (np.asarray(picture)[row - 3 : row + 4, col - 9 : col] == COLORED.body).all(2).any()
@@ -162,5 +162,5 @@ def test_without_a_floor_a_picture_shows_the_field() -> None:
 
 def test_a_damaged_record_has_no_pose() -> None:
     record = TickRecord(12, 3, 1.0, 2.0, 30.0, 4.0, 5.0, 100.0, 200.0, 8.0, 0, 0)
-    poses = [sound_pose(one) for one in (None, replace(record, x_mm=nan), record)]
+    poses = [read_pose(one) for one in (None, replace(record, x_mm=nan), record)]
     assert poses == [None, None, record.pose]

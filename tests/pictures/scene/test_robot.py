@@ -13,9 +13,9 @@ from tests.pictures.scene.scenes import MIDDLE, ROBOT, WHITE, pixel, spec_of
 from tuisim.engine.core.geometry import Pose, world_point
 from tuisim.engine.core.outline import build_outline
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, NO_PORT
-from tuisim.pictures.scene.pictures import world_picture
+from tuisim.pictures.scene.pictures import draw_world
 from tuisim.pictures.scene.robot import COLORED, draw_robot
-from tuisim.pictures.scene.view import whole_field
+from tuisim.pictures.scene.view import fit_field
 from tuisim.settings.robots import ROBOTS
 
 
@@ -26,7 +26,7 @@ def near(x_mm: float, y_mm: float, places: Sequence[tuple[float, float]]) -> boo
 def test_a_robot_off_the_picture_is_left_out() -> None:
     picture = np.zeros((20, 40, 3), np.uint8)
 
-    draw_robot(picture, whole_field(40, 20), Pose(9000, -9000, 0), build_outline(ROBOT), COLORED)
+    draw_robot(picture, fit_field(40, 20), Pose(9000, -9000, 0), build_outline(ROBOT), COLORED)
 
     assert not picture.any()
 
@@ -34,7 +34,7 @@ def test_a_robot_off_the_picture_is_left_out() -> None:
 @pytest.mark.parametrize("robot", ROBOTS)
 def test_a_robot_is_filled_and_has_all_its_parts(robot: str) -> None:
     spec = spec_of(robot)
-    outline, picture = build_outline(spec.robot), world_picture(spec, WHITE, MIDDLE)
+    outline, picture = build_outline(spec.robot), draw_world(spec, WHITE, MIDDLE)
     wheel_mm = outline.half_width_mm - outline.wheel_width_mm / 2
     parts = {
         COLORED.body: [
@@ -60,7 +60,7 @@ def test_a_robot_without_wheels_is_drawn_without_them() -> None:
     standing = replace(spec, robot=replace(spec.robot, left_port=NO_PORT, right_port=NO_PORT))
     outline = build_outline(spec.robot)
     place = world_point(MIDDLE, outline.half_width_mm - outline.wheel_width_mm / 2, 0.0)
-    drawn = [pixel(world_picture(one, WHITE, MIDDLE), one.robot, place) for one in (spec, standing)]
+    drawn = [pixel(draw_world(one, WHITE, MIDDLE), one.robot, place) for one in (spec, standing)]
     assert [bool(np.abs(np.subtract(color, COLORED.wheel)).max() < 60) for color in drawn] == [
         True,
         False,
@@ -71,7 +71,7 @@ def test_a_robot_without_wheels_is_drawn_without_them() -> None:
 def test_the_robot_is_drawn_as_large_as_what_collides(heading: int) -> None:
     # Bumpers are pressed before anything collides.
     outline = build_outline(replace(spec_of("Small_Robot").robot, touch_sensors=()))
-    view, picture = whole_field(FIELD_WIDTH_MM, FIELD_HEIGHT_MM), np.zeros_like(WHITE)
+    view, picture = fit_field(FIELD_WIDTH_MM, FIELD_HEIGHT_MM), np.zeros_like(WHITE)
     pose = replace(MIDDLE, heading_deg=float(heading))
 
     draw_robot(picture, view, pose, outline, COLORED)

@@ -10,18 +10,18 @@ import pytest
 from tests.cases import for_each
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
-from tuisim.pictures.scene.view import ZOOMS, Area, Viewport, following, whole_field
+from tuisim.pictures.scene.view import ZOOMS, Area, Viewport, fit_field, follow_robot
 from tuisim.terminal.pixels import SQUARE, CellPoints
 
 SIZE = (76, 38)
-WHOLE = whole_field(*SIZE)
+WHOLE = fit_field(*SIZE)
 
 
 def follow(*places: tuple[float, float], zoom: int = 1) -> Viewport:
     """Return the view of a floor after a robot was at some places in turn."""
     view = None
     for x_mm, y_mm in places:
-        view = following(*SIZE, zoom, Pose(x_mm, y_mm, 0.0), view, on_floor=True)
+        view = follow_robot(*SIZE, zoom, Pose(x_mm, y_mm, 0.0), view, on_floor=True)
     assert view is not None
     return view
 
@@ -41,7 +41,7 @@ def test_the_view_follows_a_robot_off_the_field(place: tuple[float, float], zoom
     view = follow((1181, 571), place, zoom=zoom)
     assert is_seen(view, *place)
     assert (view.width_px, view.height_px, view.mm_per_px) == (*SIZE, WHOLE.mm_per_px / zoom)
-    assert not is_seen(following(*SIZE, zoom, Pose(*place, 0.0), None), *place)
+    assert not is_seen(follow_robot(*SIZE, zoom, Pose(*place, 0.0), None), *place)
 
 
 def test_a_square_from_the_middle_stays_in_view() -> None:
@@ -65,7 +65,7 @@ def test_a_square_from_the_middle_stays_in_view() -> None:
 def test_a_closer_view_shows_nothing_beside_the_field(
     x_mm: float, y_mm: float, zoom: int, cell: CellPoints
 ) -> None:
-    view = following(160, 80, zoom, Pose(x_mm, y_mm, 0), None, cell)
+    view = follow_robot(160, 80, zoom, Pose(x_mm, y_mm, 0), None, cell)
     right_mm, lower_mm = view.to_mm(160, 80)
     for low_mm, high_mm, place_mm, field_mm in (
         (view.left_mm, right_mm, x_mm, FIELD_WIDTH_MM),
@@ -82,7 +82,7 @@ def test_a_damaged_pose_leaves_the_view_as_it_is() -> None:
 
 
 def test_a_larger_area_is_shown_smaller() -> None:
-    view = whole_field(*SIZE, area=Area(0.0, 0.0, 5000.0, 1143.0))
+    view = fit_field(*SIZE, area=Area(0.0, 0.0, 5000.0, 1143.0))
     assert view.mm_per_px == 5000 / SIZE[0]
     assert is_seen(view, 0.0, 571.0)
     assert is_seen(view, 5000.0, 571.0)

@@ -10,19 +10,19 @@ from rich.style import Style
 from textual import events
 from textual.message import Message
 
-from tuisim.analysis.chart import event_marks, spans_of_bands
+from tuisim.analysis.chart import build_spans, draw_event_marks
 from tuisim.analysis.traces import DISTANCE, TIME
 from tuisim.app.plot_view import PlotView
 from tuisim.base import palette
 from tuisim.base.data_class import dataclass
 from tuisim.logs.magnitude import limit_drawn
-from tuisim.pictures.charts.canvas import BRAILLE, xy_lines
+from tuisim.pictures.charts.canvas import BRAILLE, draw_xy_chart
 from tuisim.pictures.charts.text_chart import (
     ChartPainter,
     ChartPicture,
     ChartState,
-    margins_of,
-    values_at,
+    format_values,
+    measure_margins,
 )
 from tuisim.pictures.charts.traces import Traces
 from tuisim.terminal.cell_view import LinesPanel
@@ -112,21 +112,21 @@ class LogChart(LinesPanel):
         self, model: Model, is_blank: bool
     ) -> tuple[list[list[Run]], list[tuple[int, ChartPicture]]]:
         width, height = self._text.size
-        for trace in model.traces.ticked():
+        for trace in model.traces.list_ticked():
             trace.prepare(
-                model.x_limits(), width * (MOST_POINTS if is_blank else 1), self.options.hold
+                model.find_x_limits(), width * (MOST_POINTS if is_blank else 1), self.options.hold
             )
         unit = "mm" if model.alignment == DISTANCE else "s"
         measured = _measured(model, unit, width)
         marked = 1 if model.events.thresholds and model.log.rows else 0
         height -= len(measured) + marked
-        ticked = model.traces.ticked()
+        ticked = model.traces.list_ticked()
         facets = ticked if self.options.facets and len(ticked) > 1 and height >= FACETS_ROWS else []
         facets = _around_selected(facets, model.selected, height // _LEAST_FACET_ROWS)
         state = ChartState(
             model.selected,
             model.cursor_s if model.log.rows else None,
-            model.x_limits(),
+            model.find_x_limits(),
             bool(self.app.no_color),
             shows_ascii(self.app),
             model.mark_s,
@@ -136,15 +136,17 @@ class LogChart(LinesPanel):
             zoomed=model.limits is not None,
         )
         spans = {
-            report.variable: spans_of_bands(report.bands)
-            for report in model.reports()
+            report.variable: build_spans(report.bands)
+            for report in model.list_reports()
             if model.alignment == TIME and report.count <= _MOST_BANDS
         }
         self._pictures = []
         lines: list[list[Run]] = []
         parts: list[Traces] = [Traces({trace.name: trace}) for trace in facets] or [model.traces]
         if facets:
-            state = replace(state, margins=margins_of(parts, state, width, height // len(parts)))
+            state = replace(
+                state, margins=measure_margins(parts, state, width, height // len(parts))
+            )
         for at, part in enumerate(parts):
             rows = height // len(parts) + (at < height % len(parts))
             painter = self._painters.setdefault(facets[at].name if facets else "", ChartPainter())
@@ -162,20 +164,25 @@ class LogChart(LinesPanel):
         if not picture.columns:
             return [[]]
         return [
-            [(" " * picture.left + event_marks(model, picture.x_limits, picture.columns), _EVENTS)]
+            [
+                (
+                    " " * picture.left + draw_event_marks(model, picture.x_limits, picture.columns),
+                    _EVENTS,
+                )
+            ]
         ]
 
     def _against(
         self, model: Model, names: tuple[str, str], width: int, height: int
     ) -> list[list[Run]]:
         trace = model.trace
-        xs, ys = (limit_drawn(model.along(name)) for name in names)
+        xs, ys = (limit_drawn(model.sample_variable(name)) for name in names)
         marker = (
             trace.mark
             if (self.app.no_color and shows_ascii(self.app)) or self.options.marks
             else BRAILLE
         )
-        return xy_lines(xs, ys, model.sample, names, trace.rgb, marker, width, height)
+        return draw_xy_chart(xs, ys, model.sample, names, trace.rgb, marker, width, height)
 
     def columns(self) -> int:
         """Return the width of the canvas in characters, 1 if there is none."""
@@ -183,7 +190,7 @@ class LogChart(LinesPanel):
 
     def time_beside(self, time_s: float, columns: int) -> float:
         """Return the time that is a number of columns to the right of another one."""
-        low, high = self._model.x_limits() if self._model else (0.0, 1.0)
+        low, high = self._model.find_x_limits() if self._model else (0.0, 1.0)
         return time_s + columns * (high - low) / self.columns()
 
     def _redraw(self) -> None:
@@ -197,13 +204,13 @@ class LogChart(LinesPanel):
                 if box.row == row - first and box.first <= column < box.end:
                     self.post_message(self.Ticked(box.name))
                     return
-            time_s = picture.time_at(column, row - first)
+            time_s = picture.find_time_s(column, row - first)
             if time_s is not None:
                 self.post_message(self.Pointed(time_s))
 
     def on_mouse_move(self, event: events.MouseMove) -> None:
         column, row = self.cell_at(event)
-        times_s = (picture.time_at(column, row - first) for first, picture in self._pictures)
+        times_s = (picture.find_time_s(column, row - first) for first, picture in self._pictures)
         self._read(next((time_s for time_s in times_s if time_s is not None), None))
 
     def on_leave(self) -> None:
@@ -213,7 +220,7 @@ class LogChart(LinesPanel):
         """Show the values below the pointer, or without it those at the cursor."""
         self._pointed_s, model = time_s, self._model
         drawn = (
-            model.traces.drawn()
+            model.traces.list_drawn()
             if model is not None and model.log.rows and not self.options.against
             else []
         )
@@ -221,7 +228,7 @@ class LogChart(LinesPanel):
         if model is not None and drawn:
             unit = "mm" if model.alignment == DISTANCE else "s"
             time_s = model.cursor_s if time_s is None else time_s
-            said = as_markup(values_at(drawn, time_s, unit, self.size.width - 4))
+            said = as_markup(format_values(drawn, time_s, unit, self.size.width - 4))
         # Each assignment draws the panel again.
         if said != self.border_subtitle:
             self.border_subtitle = said
@@ -241,7 +248,7 @@ def _measured(model: Model, unit: str, width: int) -> list[list[Run]]:
     plain, strong = Style(color=palette.SOFT), Style(color=palette.WHITE, bold=True)
     start_s, stop_s = sorted((model.mark_s, model.cursor_s))
     trace = model.trace
-    before, after = trace.at(model.mark_s), trace.at(model.cursor_s)
+    before, after = trace.find_value(model.mark_s), trace.find_value(model.cursor_s)
     step = "Δt" if unit == "s" else "Δ"
     line: list[Run] = [
         (f"A {model.mark_s:.2f} {unit}  {step} ", plain),
@@ -252,7 +259,7 @@ def _measured(model: Model, unit: str, width: int) -> list[list[Run]]:
         if stop_s > start_s:
             slope = (after - before) / (model.cursor_s - model.mark_s)
             line += [("  slope ", plain), (f"{slope:.4g}/{unit}", strong)]
-    figures = trace.pyramid.figures(start_s, stop_s)
+    figures = trace.pyramid.compute_summary(start_s, stop_s)
     for word, value in (
         ("n", figures.count),
         ("mean", figures.mean),

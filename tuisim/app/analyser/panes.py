@@ -135,12 +135,12 @@ def _event(event: Event | CommandRow) -> Cells:
 def _statistics(model: Model) -> list[Cells]:
     rows = []
     # A short log is processed faster than it is drawn.
-    missing = model.unsummed() if model.log.rows > FAST_ROWS else []
-    for trace in model.traces.ticked():
+    missing = model.list_unsummed() if model.log.rows > FAST_ROWS else []
+    for trace in model.traces.list_ticked():
         if trace.name in missing:
             rows.append((trace.name, "…", *[""] * (4 + len(QUANTILES))))
             continue
-        found = model.summary(trace.name)
+        found = model.build_summary(trace.name)
         figures = (
             found.min,
             found.mean,
@@ -153,7 +153,7 @@ def _statistics(model: Model) -> list[Cells]:
 
 
 def _between(model: Model) -> list[str]:
-    span = model.measured()
+    span = model.find_measured_span()
     if span is None:
         return []
     return [
@@ -196,7 +196,7 @@ PANES: Mapping[str, Pane] = {
         "Bands",
         lambda model: _LazyRows(model.bands(), _band),
         ("variable", "#", "level", "name", "from s", "to s", "n", "mm", "std"),
-        Model.bands_in_words,
+        Model.describe_bands,
         "No bands: no variable shown stays at a level",
     ),
     "statistics": Pane(
@@ -216,7 +216,7 @@ PANES: Mapping[str, Pane] = {
     ),
     "events": Pane(
         "Events",
-        lambda model: _LazyRows(model.events.found(model.log), _event),
+        lambda model: _LazyRows(model.events.list_events(model.log), _event),
         ("variable", "comes", "at s", "after s", "value", "row", "event"),
         empty="No events: c asks for a threshold, such as Colour < 50, or for commands",
         wraps=True,
@@ -272,7 +272,7 @@ def pane_lines(name: str, model: Model, chosen: int, width: int, height: int) ->
     pane = PANES[name]
     rows = pane.rows(model)
     if not rows:
-        searching = name == "bands" and model.unsearched()
+        searching = name == "bands" and model.list_unsearched()
         text = "Searching for bands …" if searching else pane.empty
         return [[(line, DIM)] for line in _wrapped([text], width, height)]
     below, room = _below(pane, model, width, height)
@@ -477,7 +477,9 @@ class PaneView(LinesPanel):
 
     def _compute(self, model: Model, pane: str) -> None:
         """Compute the missing content of a pane, once at a time; that of a small log at once."""
-        names = {"bands": model.unsearched, "statistics": model.unsummed}.get(pane, list)()
+        names = {"bands": model.list_unsearched, "statistics": model.list_unsummed}.get(
+            pane, list
+        )()
         if not names or self._busy.get(pane) is model:
             return
         at_once, do = (

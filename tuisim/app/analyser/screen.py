@@ -18,7 +18,7 @@ from textual.widget import Widget
 from tuisim.analysis.events import CommandRow
 from tuisim.analysis.model import RECKONING, Model
 from tuisim.analysis.remembered import is_readable_again, read_doubtful, remember_choices
-from tuisim.analysis.source import LogRequest, opening
+from tuisim.analysis.source import LogRequest, open_pieces
 from tuisim.app import background
 from tuisim.app.action import ActionHost, KeyFooter
 from tuisim.app.analyser.chart import LogChart
@@ -179,14 +179,14 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         if asks and (log := read_doubtful(request)) is not None:
             background.call(self.app, self._ask_choices, request, log)
             return
-        for opened in opening(request):
+        for opened in open_pieces(request):
             if request is not self.request or not self.is_running:
                 return
             model, before = Model(opened), self._model
             if before is not None and before.opened.request is request:
-                model.define_as(before)
+                model.copy_definitions(before)
             # Data for the first chart of a long log is computed here, in the background.
-            model.traces.span_s()
+            model.traces.find_span_s()
             background.call(self.app, self.set_model, model)
 
     def _failed(self, request: LogRequest, error: TuisimError) -> None:
@@ -302,9 +302,7 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         model, position = self._model, ""
         title = model.log.title if model else " ".join((self.request.file, *self.request.runs))
         if model is not None and model.log.rows:
-            position = (
-                f"row {model.row + 1:,} of {model.log.rows:,} · {model.time_of(model.row):.2f} s"
-            )
+            position = f"row {model.row + 1:,} of {model.log.rows:,} · {model.find_time_s(model.row):.2f} s"
         kind = " · telemetry" if self.request.telemetry else ""
         words = "   ".join(word for word in (position, progress, str(self.job or "")) if word)
         self.title_line.set_lines(
@@ -336,7 +334,7 @@ class LogScreen(ActionHost, ClosesOnce[None]):
     def go_to_event(self, number: int) -> None:
         """Put the cursor on an event."""
         model = self.model
-        event = model.events.found(model.log)[number]
+        event = model.events.list_events(model.log)[number]
         if not isinstance(event, CommandRow):
             model.selected = event.variable
         model.go_to_row(event.row)

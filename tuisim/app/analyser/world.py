@@ -201,7 +201,7 @@ class WorldPane(Vertical):
         self._model = model
         if not model.log.rows or not self.display:
             return
-        run = model.run_of(model.row)
+        run = model.find_run(model.row)
         if run not in self._requested:
             self._requested.add(run)
             work = partial(world_at, model.opened, run)
@@ -211,14 +211,14 @@ class WorldPane(Vertical):
             note = NO_POSES if run in self._worlds else "Preparing the mat …"
             self._source.set_lines([[(note, _DIM)]])
             return
-        snapshot = world.at(model.time_of(model.row), model.row)
+        snapshot = world.at(model.find_time_s(model.row), model.row)
         if world is not self._shown:
             self._shown = world
             self._world.set_mat(world.mat.pixels)
         self._world.show(snapshot)
         if self._arrays.display:
             self._arrays.show(snapshot)
-        self._source.set_lines(self._lines(world, model.printed_line() or snapshot.line))
+        self._source.set_lines(self._lines(world, model.find_printed_line() or snapshot.line))
 
     def _prepared(self, model: Model, run: int, world: WorldAt | None) -> None:
         if model is self._model:

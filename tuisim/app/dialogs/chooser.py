@@ -33,7 +33,7 @@ from tuisim.engine.mats import find_mat, spec_name
 from tuisim.engine.obstacles import OBSTACLES, load_obstacles
 from tuisim.logs.export import is_companion
 from tuisim.pictures.scene.mat import shrink
-from tuisim.pictures.scene.view import Viewport, whole_field
+from tuisim.pictures.scene.view import Viewport, fit_field
 from tuisim.programs.program_file import LOG_SUFFIXES
 from tuisim.settings.profiles import load_profile
 from tuisim.terminal.cell_view import PixelView
@@ -539,4 +539,4 @@ class _MatPicture(PixelView):
 def find_field_view(view: PixelView) -> Viewport:
     """Return the view of the whole field in the finest points of a widget."""
     cell = view.cell_for(view.graphics)
-    return whole_field(cell.cols * view.size.width, cell.rows * view.size.height, cell)
+    return fit_field(cell.cols * view.size.width, cell.rows * view.size.height, cell)

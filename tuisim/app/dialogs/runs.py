@@ -252,9 +252,9 @@ class RunChooser(ListDialog):
 
 
 def _draw_path(run_id: str, port: Viewport, outside_rgb: Rgb) -> Pixels:
-    from tuisim.pictures.scene.pictures import path_picture
+    from tuisim.pictures.scene.pictures import draw_path
 
-    return path_picture(RunStore().load_run(run_id), port, outside_rgb)
+    return draw_path(RunStore().load_run(run_id), port, outside_rgb)
 
 
 def _load_runs() -> list[RunInfo]:

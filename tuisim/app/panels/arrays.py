@@ -9,7 +9,7 @@ from textual.widget import Widget
 
 from tuisim.app.panels.titles import name_sensors
 from tuisim.app.render.arrays import Arrangement, arranged, face_lines, names_in_border
-from tuisim.pictures.scene.discs import RIM_16_RGB, RIM_RGB, DiscFace, disc_faces, draw_disc
+from tuisim.pictures.scene.discs import RIM_16_RGB, RIM_RGB, DiscFace, draw_disc, list_disc_faces
 from tuisim.terminal.cell_view import LinesView, PixelView
 from tuisim.terminal.text_runs import Line
 
@@ -125,7 +125,7 @@ class Arrays(Widget):
         if drawn == self._drawn:
             return
         self._drawn = drawn
-        faces = disc_faces(now.spec, now.instant, now.field, now.program)
+        faces = list_disc_faces(now.spec, now.instant, now.field, now.program)
         has_limits = any(face.thresholds for face in faces)
         self._arrange(faces)
         names = [face.name for face in faces]

@@ -18,9 +18,9 @@ from tuisim.app.snapshot import AT_REST, CHART_PERIOD_S, RunPhase, Snapshot
 from tuisim.base.data_class import dataclass
 from tuisim.logs.levels import PLAIN_LIGHT, find_light
 from tuisim.pictures.charts import axes
-from tuisim.pictures.charts.bands import spans_of
+from tuisim.pictures.charts.bands import find_spans
 from tuisim.pictures.charts.layout import Span
-from tuisim.pictures.charts.text_chart import ChartPainter, ChartPicture, ChartState, values_at
+from tuisim.pictures.charts.text_chart import ChartPainter, ChartPicture, ChartState, format_values
 from tuisim.pictures.charts.traces import Trace, Traces
 from tuisim.terminal.cell_view import LinesPanel
 from tuisim.terminal.pacer import Throttle
@@ -137,7 +137,7 @@ class Chart(LinesPanel, can_focus=True):
 
     def _chosen(self) -> Trace | None:
         """Return the selected trace, or the first one that is shown; None if none is."""
-        drawn = self._traces.drawn()
+        drawn = self._traces.list_drawn()
         return next(
             (trace for trace in drawn if trace.name == self._state.selected),
             drawn[0] if drawn else None,
@@ -150,14 +150,17 @@ class Chart(LinesPanel, can_focus=True):
             self._spanned = None
             spans: tuple[Span, ...] = ()
         else:
-            traces = [chosen, *(trace for trace in self._traces.drawn() if trace is not chosen)]
+            traces = [
+                chosen,
+                *(trace for trace in self._traces.list_drawn() if trace is not chosen),
+            ]
             key = [(trace.name, len(trace.times_s)) for trace in traces], self._light
             if key == self._spanned:
                 return
             self._spanned = key
-            found = (spans_of(trace, self._light) for trace in traces)
+            found = (find_spans(trace, self._light) for trace in traces)
             spans = next(
-                (spans for spans in found if len(spans) > 1), spans_of(chosen, self._light)
+                (spans for spans in found if len(spans) > 1), find_spans(chosen, self._light)
             )
         self._state = replace(self._state, spans=spans)
 
@@ -221,8 +224,8 @@ class Chart(LinesPanel, can_focus=True):
         if picture is None or not picture.columns:
             return
         now = self._traces.end_s() if self._state.cursor_s is None else self._state.cursor_s
-        column = axes.column_of(now, picture.x_limits, picture.columns) + columns
-        self._put_cursor(axes.at_column(column, picture.x_limits, picture.columns))
+        column = axes.find_column(now, picture.x_limits, picture.columns) + columns
+        self._put_cursor(axes.find_column_value(column, picture.x_limits, picture.columns))
 
     def action_drop_cursor(self) -> None:
         if self._state.cursor_s is not None:
@@ -248,7 +251,7 @@ class Chart(LinesPanel, can_focus=True):
             if box.row == row and box.first <= column < box.end:
                 self._switch(next(trace for trace in self._traces if trace.name == box.name))
                 return
-        if picture.time_at(column, row) is not None:
+        if picture.find_time_s(column, row) is not None:
             self._dragging = True
             self.capture_mouse()
             self._put_cursor(*self._clicked(self._time_of(column, picture), picture))
@@ -261,7 +264,7 @@ class Chart(LinesPanel, can_focus=True):
         if self._dragging:
             self._put_cursor(self._time_of(column, picture))
         else:
-            self._read(picture.time_at(column, row))
+            self._read(picture.find_time_s(column, row))
 
     def on_leave(self) -> None:
         self._read(None)
@@ -270,11 +273,11 @@ class Chart(LinesPanel, can_focus=True):
         """Show the values below the pointer, or without it those at the cursor."""
         self._pointed_s = time_s
         time_s = self._state.cursor_s if time_s is None else time_s
-        drawn = self._traces.drawn()
+        drawn = self._traces.list_drawn()
         if time_s is None or not drawn:
             said = self.FROZEN if self._state.x_limits else ""
         else:
-            said = as_markup(values_at(drawn, time_s, self._state.unit, self.size.width - 4))
+            said = as_markup(format_values(drawn, time_s, self._state.unit, self.size.width - 4))
         # Each assignment draws the panel again.
         if said != self.border_subtitle:
             self.border_subtitle = said
@@ -282,11 +285,11 @@ class Chart(LinesPanel, can_focus=True):
     def copy_text(self) -> Copied | None:
         """Return the values of all traces at the pointer, or at the cursor; without both, None."""
         time_s = self._state.cursor_s if self._pointed_s is None else self._pointed_s
-        drawn = self._traces.drawn()
+        drawn = self._traces.list_drawn()
         if time_s is None or not drawn:
             return None
         width = sum(len(trace.name) + _VALUE_COLS for trace in drawn) + _VALUE_COLS
-        return Copied("Values of the chart", values_at(drawn, time_s, self._state.unit, width))
+        return Copied("Values of the chart", format_values(drawn, time_s, self._state.unit, width))
 
     def on_mouse_up(self, event: events.MouseUp) -> None:
         if self._dragging:
@@ -301,16 +304,18 @@ class Chart(LinesPanel, can_focus=True):
         """Return the time and the name of the sample at a time, or nearest to it in its band; else the time only."""
         span = next((span for span in self._state.spans if span.start <= time_s <= span.stop), None)
         of_span = (
-            trace for trace in self._traces.drawn() if span is not None and trace.name == span.name
+            trace
+            for trace in self._traces.list_drawn()
+            if span is not None and trace.name == span.name
         )
         trace = next(of_span, self._chosen())
         if trace is None or not trace.logged:
             return time_s, ""
         low, high = picture.x_limits
-        found_s = trace.nearest_s(time_s)
+        found_s = trace.find_nearest_s(time_s)
         is_here = abs(found_s - time_s) * picture.columns <= high - low
         return (found_s, trace.name) if is_here or span is not None else (time_s, "")
 
     @staticmethod
     def _time_of(column: int, picture: ChartPicture) -> float:
-        return axes.at_column(column - picture.left, picture.x_limits, picture.columns)
+        return axes.find_column_value(column - picture.left, picture.x_limits, picture.columns)

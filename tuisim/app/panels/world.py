@@ -24,11 +24,11 @@ from tuisim.base.data_class import dataclass
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.outline import build_outline
 from tuisim.engine.core.spec import Obstacle, PenSpec
-from tuisim.pictures.scene.off_field import off_field_words
+from tuisim.pictures.scene.off_field import describe_off_field
 from tuisim.pictures.scene.painter import Faint, ScenePainter, SceneState
 from tuisim.pictures.scene.pen import PenTrace, Piece
-from tuisim.pictures.scene.robot import drawn_scale
-from tuisim.pictures.scene.view import ZOOMS, Viewport, following
+from tuisim.pictures.scene.robot import choose_scale
+from tuisim.pictures.scene.view import ZOOMS, Viewport, follow_robot
 from tuisim.terminal.cell_view import PixelView
 from tuisim.terminal.cells import MONO
 from tuisim.terminal.picture_mode import BLOCKS
@@ -145,7 +145,7 @@ class World(Widget, can_focus=True):
         words = "drag to draw or move an obstacle" if self._edits_boxes else ""
         if (now := self._snapshot) is not None and not words:
             room = self.size.width - _FRAME
-            words = off_field_words(now.instant.pose, room) or legend(now, room)
+            words = describe_off_field(now.instant.pose, room) or legend(now, room)
         if self.border_subtitle != words:
             self.border_subtitle = words
 
@@ -169,7 +169,7 @@ class World(Widget, can_focus=True):
         self, xs_mm: Sequence[float], ys_mm: Sequence[float], pen: PenSpec = _ANY_PEN
     ) -> None:
         """Add points that a pen drew, joined to the previous ones; NaN lifts the pen."""
-        self._view.trace.add(Piece.of(np.array(xs_mm), np.array(ys_mm), pen))
+        self._view.trace.add(Piece.from_points(np.array(xs_mm), np.array(ys_mm), pen))
 
     def clear_trace(self) -> list[Piece]:
         """Clear the trace; return its pieces."""
@@ -189,7 +189,7 @@ class World(Widget, can_focus=True):
         past = None
         if points_mm is not None:
             past = PenTrace()
-            past.add(Piece.of(np.array(points_mm[0]), np.array(points_mm[1]), pen))
+            past.add(Piece.from_points(np.array(points_mm[0]), np.array(points_mm[1]), pen))
         self._view.past_trace = past
         self._view.repaint_scene()
 
@@ -272,7 +272,7 @@ class WorldView(PixelView):
             pose = self._grip.pose
         elif on_floor and zoom == 1 and not now.instant.tick:
             previous = None
-        return following(width_px, height_px, zoom, pose, previous, cell, on_floor=on_floor)
+        return follow_robot(width_px, height_px, zoom, pose, previous, cell, on_floor=on_floor)
 
     def repaint_scene(self) -> None:
         """Redraw unconditionally."""
@@ -421,7 +421,7 @@ class WorldView(PixelView):
         x_mm, y_mm = self._at(event)
         robot = self._snapshot.spec.robot
         half_mm = robot.wheel_spacing_mm / 2
-        reach_mm = half_mm * drawn_scale(build_outline(robot), self._port) + 1.5 * self._cell_mm
+        reach_mm = half_mm * choose_scale(build_outline(robot), self._port) + 1.5 * self._cell_mm
         return math.hypot(x_mm - pose.x_mm, y_mm - pose.y_mm) <= max(
             reach_mm, half_mm - robot.back_mm / 2
         )

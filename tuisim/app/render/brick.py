@@ -21,7 +21,7 @@ from tuisim.engine.runs.brick_state import (
     BrickState,
     TextScreen,
 )
-from tuisim.pictures.scene.discs import shrunk
+from tuisim.pictures.scene.discs import shrink_pixels
 from tuisim.terminal.text_runs import Run
 
 _PAPER_RGB, _INK_RGB = (172, 186, 158), (22, 28, 20)
@@ -158,7 +158,7 @@ def _display(picture: bytes, width: int, rows: int) -> list[list[Run]]:
     per_row = 4 if dots else 2
     high = max(per_row, round(fine * DISPLAY_HEIGHT) // per_row * per_row)
     across = max(2, round(fine * DISPLAY_WIDTH) // 2 * 2)
-    shares = shrunk(ink, min(high, DISPLAY_HEIGHT), min(across, DISPLAY_WIDTH))
+    shares = shrink_pixels(ink, min(high, DISPLAY_HEIGHT), min(across, DISPLAY_WIDTH))
     drawn = _in_dots(shares, min(_DOT_SHARE, _LINE_PX * fine)) if dots else _in_half_blocks(shares)
     left = (width - sum(len(text) for text, _ in drawn[0])) // 2
     lines: list[list[Run]] = [[(" " * left, _PLAIN), *line] for line in drawn]

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from tuisim.app.snapshot import Snapshot
 from tuisim.engine.core.outline import build_outline
-from tuisim.pictures.scene.mono_robot import body, pointer
-from tuisim.pictures.scene.off_field import off_field_words
+from tuisim.pictures.scene.mono_robot import draw_body, draw_pointer
+from tuisim.pictures.scene.off_field import describe_off_field
 from tuisim.pictures.scene.painter import Faint, ScenePainter, SceneState
 from tuisim.pictures.scene.pen import PenTrace
-from tuisim.pictures.scene.robot import drawn_scale
-from tuisim.pictures.scene.view import Viewport, following
+from tuisim.pictures.scene.robot import choose_scale
+from tuisim.pictures.scene.view import Viewport, follow_robot
 from tuisim.terminal.cells import draw_mono_rows, find_cell_points
 from tuisim.terminal.picture_options import CellSet
 from tuisim.terminal.pixels import Pixels
@@ -43,7 +43,7 @@ def draw_world_text(
     dots = CellSet.ASCII if cell_set is CellSet.ASCII else CellSet.BRAILLE
     cell = find_cell_points(dots)
     width_px, height_px = cell.cols * size[0], cell.rows * size[1]
-    view = following(width_px, height_px, zoom, scene.pose, None, cell, on_floor=has_floor)
+    view = follow_robot(width_px, height_px, zoom, scene.pose, None, cell, on_floor=has_floor)
     painter = ScenePainter(
         mat,
         _PAPER,
@@ -60,7 +60,7 @@ def draw_world_text(
 def legend(now: Snapshot, width: int) -> str:
     """Return what the robots are that are drawn beside the one in view, in words that fit."""
     drawn = (
-        now.now_pose is not None and not off_field_words(now.now_pose),
+        now.now_pose is not None and not describe_off_field(now.now_pose),
         now.earlier_pose is not None,
     )
     match drawn:
@@ -82,7 +82,11 @@ def legend(now: Snapshot, width: int) -> str:
 def draw_signs(port: Viewport, scene: SceneState) -> dict[tuple[int, int], int]:
     """Return the signs that show the robots where there are no colours: cells by row and column."""
     outline = build_outline(scene.robot)
-    reach_mm = outline.front_mm * drawn_scale(outline, port)
+    reach_mm = outline.front_mm * choose_scale(outline, port)
     now = dict(scene.faint).get(Faint.NOW)
-    ghost = pointer(port, now, reach_mm, _GHOST_PIVOT) if now else {}
-    return ghost | body(port, scene.pose, outline) | pointer(port, scene.pose, reach_mm, _PIVOT)
+    ghost = draw_pointer(port, now, reach_mm, _GHOST_PIVOT) if now else {}
+    return (
+        ghost
+        | draw_body(port, scene.pose, outline)
+        | draw_pointer(port, scene.pose, reach_mm, _PIVOT)
+    )

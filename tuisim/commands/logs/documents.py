@@ -8,9 +8,9 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-from tuisim.analysis.chart import View, chart_of
+from tuisim.analysis.chart import View, build_chart
 from tuisim.analysis.model import Model
-from tuisim.analysis.source import LogRequest, OpenedLog, opening
+from tuisim.analysis.source import LogRequest, OpenedLog, open_pieces
 from tuisim.base.errors import ConfigError, LogError, listed
 from tuisim.commands.echo import echo, echo_drawn, echo_error, echo_written
 from tuisim.commands.logs.sources import asked, names_of, the_source
@@ -19,8 +19,8 @@ from tuisim.logs.log import Log
 from tuisim.pictures.charts.files import (
     CHART_FORMATS,
     Size,
-    format_of,
-    limits_in_words,
+    describe_limits,
+    find_format,
     parse_size,
     save_chart,
 )
@@ -39,14 +39,14 @@ def plot(arguments: Arguments) -> int:
         ExportError: the file cannot be written.
     """
     target = Path(arguments.out) if arguments.out else None
-    kind = format_of(target) if target else CHART_FORMATS[".txt"]
-    size = _size(arguments.size, kind.least, kind.most) if arguments.size else None
+    kind = find_format(target) if target else CHART_FORMATS[".txt"]
+    size = _size(arguments.size, kind.smallest, kind.largest) if arguments.size else None
     log = the_source(arguments)
     model = _model(log, arguments)
     view = View(arguments.facets, arguments.marks, against=_against(log, model, arguments))
     _check_visible(model)
     if target:
-        save_chart(partial(chart_of, model, view), target, size)
+        save_chart(partial(build_chart, model, view), target, size)
         echo_written(target)
     else:
         _show(model, view, size)
@@ -57,13 +57,13 @@ def plot(arguments: Arguments) -> int:
 
 
 def _check_visible(model: Model) -> None:
-    ticked = model.traces.ticked()
+    ticked = model.traces.list_ticked()
     if not any(len(trace.pyramid.times_s) for trace in ticked):
         raise LogError(
             f"no numbers in {listed(trace.name for trace in ticked)}", file=model.log.title
         )
-    if not any(len(trace.pyramid.between(*model.x_limits())[0]) for trace in ticked):
-        low, high = model.traces.span_s()
+    if not any(len(trace.pyramid.select_range(*model.find_x_limits())[0]) for trace in ticked):
+        low, high = model.traces.find_span_s()
         raise LogError(
             "no samples in this range",
             f"they are between {low:g} s and {high:g} s",
@@ -74,7 +74,7 @@ def _check_visible(model: Model) -> None:
 def _size(text: str, least: Size, most: Size) -> Size:
     size = parse_size(text, least, most)
     if size is None:
-        allowed = f"width and height, {limits_in_words(least, most)}"
+        allowed = f"width and height, {describe_limits(least, most)}"
         raise ConfigError(f"cannot draw a chart of {text!r}", allowed, key="--size")
     return size
 
@@ -89,7 +89,7 @@ def _model(log: Log, arguments: Arguments) -> Model:
     start, stop = getattr(arguments, "from"), arguments.to
     if start is None and stop is None:
         return model
-    low, high = model.traces.span_s()
+    low, high = model.traces.find_span_s()
     low, high = low if start is None else start, high if stop is None else stop
     if not (math.isfinite(low) and math.isfinite(high) and low < high):
         raise ConfigError(
@@ -118,7 +118,7 @@ def _against(log: Log, model: Model, arguments: Arguments) -> tuple[str, str] | 
 
 def _show(model: Model, view: View, size: Size | None) -> None:
     """Print the chart, in colour if the terminal supports it."""
-    from tuisim.pictures.charts.text_chart import text_of
+    from tuisim.pictures.charts.text_chart import draw_text
 
     terminal = shutil.get_terminal_size()
     width, height = size or (
@@ -126,8 +126,8 @@ def _show(model: Model, view: View, size: Size | None) -> None:
         min(max(terminal.lines - 2, _ROWS[0]), _ROWS[1]),
     )
     finer = CHART_FORMATS[".txt"].finer
-    chart = chart_of(model, view, width * finer[0], height * finer[1])
-    echo_drawn(lambda colors: text_of(chart, width, height, colors=colors), width)
+    chart = build_chart(model, view, width * finer[0], height * finer[1])
+    echo_drawn(lambda colors: draw_text(chart, width, height, colors=colors), width)
 
 
 def report(arguments: Arguments) -> int:
@@ -139,7 +139,7 @@ def report(arguments: Arguments) -> int:
         ExportError: the file cannot be written.
     """
     # Imported on demand: a chart needs no pictures and movies.
-    from tuisim.analysis.report import check_report, default_name, write_report
+    from tuisim.analysis.report import build_default_name, check_report, write_report
 
     if not arguments.words:
         raise ConfigError(
@@ -154,10 +154,10 @@ def report(arguments: Arguments) -> int:
         raise ConfigError(
             "are for files only", "the columns of a run are fixed", key="--time and --value"
         )
-    *_, source = opening(request)
+    *_, source = open_pieces(request)
     source = replace(source, log=add_named_columns(source.log, " ".join(arguments.variable)))
     names = names_of(source.log, arguments) if arguments.variable else ()
-    target = Path(arguments.out or default_name(source))
+    target = Path(arguments.out or build_default_name(source))
     write_report(source, target, names)
     echo(str(target))
     return 0

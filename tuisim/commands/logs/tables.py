@@ -15,7 +15,7 @@ from tuisim.analysis.events import (
     CommandChoice,
     EventChoice,
     Threshold,
-    threshold_of,
+    parse_threshold,
 )
 from tuisim.base.errors import ConfigError, LogError, counted
 from tuisim.commands.echo import (
@@ -143,9 +143,9 @@ def events(arguments: Arguments) -> int:
     for log in open_sources(arguments):
         for name in names_of(log, arguments):
             series = log.series(name)
-            for found in threshold.crossings(series):
+            for found in threshold.find_crossings(series):
                 direction = "rises" if found.rising else "falls"
-                row = int(series.rows[found.at])
+                row = int(series.rows[found.sample])
                 rows.append(
                     {
                         "log": log.title,
@@ -193,15 +193,17 @@ def _threshold_of(arguments: Arguments) -> EventChoice:
     Raises:
         ConfigError: none is given, or two are.
     """
-    if bool(arguments.when) is (arguments.at is not None):
+    if bool(arguments.when) is (arguments.sample is not None):
         raise ConfigError(
             "takes one threshold", "such as --at 50, or --when 'Colour < 50'", key="events"
         )
     if not arguments.when:
-        return Threshold("", Operator.EQUAL, repr(arguments.at), hysteresis=arguments.hysteresis)
+        return Threshold(
+            "", Operator.EQUAL, repr(arguments.sample), hysteresis=arguments.hysteresis
+        )
     if arguments.variable:
         raise ConfigError("names the variable already", "leave --variable out", key="--when")
-    threshold = threshold_of(arguments.when)
+    threshold = parse_threshold(arguments.when)
     if threshold is None and (words := parse_command_search(arguments.when)) is not None:
         return CommandChoice(words)
     if threshold is None:

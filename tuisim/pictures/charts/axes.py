@@ -13,7 +13,7 @@ _STEPS = (1.0, 2.0, 2.5, 5.0, 10.0)
 Limits = tuple[float, float]
 
 
-def nice_step(span: float, count: int) -> float:
+def choose_step(span: float, count: int) -> float:
     """Return a round distance that divides `span` (above 0) into about `count` parts, at most."""
     # A part of the smallest numbers would be 0.
     rough = max(span / max(count, 1), 1e-300)
@@ -21,7 +21,7 @@ def nice_step(span: float, count: int) -> float:
     return next(step * magnitude for step in _STEPS if step * magnitude >= rough * 0.999)
 
 
-def value_limits(low: float, high: float, from_zero: bool = False) -> Limits:
+def choose_limits(low: float, high: float, from_zero: bool = False) -> Limits:
     """Return round limits around values, and 0 if `from_zero`, so that they seldom change while values come in."""
     if from_zero:
         low = min(low, 0.0)
@@ -30,7 +30,7 @@ def value_limits(low: float, high: float, from_zero: bool = False) -> Limits:
         # Adding 1 does not change a number with more than sixteen digits; labels with a power of ten show few.
         room = max(1.0, (1e-6 if size < 1e15 else 1e-3) * size)
         low, high = low - room, high + room
-    step = nice_step(high - low, 4)
+    step = choose_step(high - low, 4)
     return math.floor(low / step + 1e-9) * step, math.ceil(high / step - 1e-9) * step
 
 
@@ -38,20 +38,20 @@ _MORE_PARTS = 4
 """A step of a part so much smaller is at most half of the span, so that two positions are inside."""
 
 
-def ticks(limits: Limits, count: int) -> list[float]:
+def find_ticks(limits: Limits, count: int) -> list[float]:
     """Return at most about `count` round positions inside limits, but two at least: one tells no distance."""
     low, high = limits
     positions: list[float] = []
     for parts in range(count, count + _MORE_PARTS):
-        step = nice_step(high - low, parts)
+        step = choose_step(high - low, parts)
         first, last = math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9)
-        positions = [at * step for at in range(first, last + 1)]
+        positions = [multiple * step for multiple in range(first, last + 1)]
         if len(positions) > 1:
             break
     return positions
 
 
-_MOST_DIGITS = 300
+_MAX_DIGITS = 300
 _MAX_CHARACTERS = 20
 """Longer labels are written with a power of ten."""
 
@@ -61,10 +61,10 @@ def label(value: float, step: float) -> str:
     # The distance may come from two positions far from 0.
     exact = (
         count
-        for count in range(_MOST_DIGITS)
+        for count in range(_MAX_DIGITS)
         if math.isclose(round(step, count), step, rel_tol=1e-3)
     )
-    digits = next(exact, _MOST_DIGITS)
+    digits = next(exact, _MAX_DIGITS)
     text = f"{value:.{digits}f}"
     if len(text) > _MAX_CHARACTERS:
         return _label_shortly(value, step)
@@ -81,22 +81,22 @@ _MAX_LABEL = 9
 """Labels with more characters than that are written with a power of ten."""
 
 
-def labelled(limits: Limits, count: int) -> list[tuple[float, str]]:
+def label_ticks(limits: Limits, count: int) -> list[tuple[float, str]]:
     """Return round positions between limits, with their labels."""
-    positions = ticks(limits, max(count, 1))
+    positions = find_ticks(limits, max(count, 1))
     step = positions[1] - positions[0] if len(positions) > 1 else limits[1] - limits[0]
-    texts = [label(at, step) for at in positions]
+    texts = [label(position, step) for position in positions]
     if max(map(len, texts), default=0) > _MAX_LABEL:
-        texts = [_label_shortly(at, step) for at in positions]
+        texts = [_label_shortly(position, step) for position in positions]
     return list(zip(positions, texts, strict=True))
 
 
 _SPANS_S = (5.0, 10.0, 20.0, 30.0, 60.0)
 
 
-def growing_limits(end_s: float) -> Limits:
+def grow_limits(end_s: float) -> Limits:
     """Return limits from 0 to shortly after `end_s`; they grow in steps, so that a new point rarely rescales curves."""
-    step = nice_step(max(end_s, 1.0), 8)
+    step = choose_step(max(end_s, 1.0), 8)
     return 0.0, max(math.ceil(end_s / step - 1e-9) * step, 1.0)
 
 
@@ -111,94 +111,94 @@ def time_limits(end_s: float) -> Limits:
     return 0.0, math.ceil(end_s / step) * step
 
 
-_LEAST_OF_TIMES, _LEAST_S = 1e-14, 1e-100
+_MIN_TIME_SHARE, _MIN_SPAN_S = 1e-14, 1e-100
 """Relative and absolute tolerance below which two times are equal."""
 
 
 def widen_times(low_s: float, high_s: float) -> Limits:
     """Return the first and the last time as limits, which are apart also if the times are equal."""
     size_s = max(abs(low_s), abs(high_s))
-    if high_s - low_s > max(_LEAST_OF_TIMES * size_s, _LEAST_S):
+    if high_s - low_s > max(_MIN_TIME_SHARE * size_s, _MIN_SPAN_S):
         return low_s, high_s
-    room_s = max(0.5, _LEAST_OF_TIMES * size_s)
+    room_s = max(0.5, _MIN_TIME_SHARE * size_s)
     return low_s - room_s, high_s + room_s
 
 
-def column_of(x: float, limits: Limits, columns: int) -> int:
+def find_column(x: float, limits: Limits, columns: int) -> int:
     """Return the character column of a value, 0 … columns - 1 for values inside the limits."""
     low, high = limits
     return math.floor((x - low) / (high - low) * (columns - 0.5))
 
 
-def at_column(column: int, limits: Limits, columns: int) -> float:
+def find_column_value(column: int, limits: Limits, columns: int) -> float:
     """Return the value in the middle of a character column."""
     low, high = limits
     return low + (high - low) * min(max((column + 0.25) / (columns - 0.5), 0.0), 1.0)
 
 
-_LEAST_CELLS = 2
+_MIN_CELLS = 2
 """Rows from a tick to the next one at least."""
 _NEAR = 1e-6
 """Tolerance for whole numbers."""
-_FEW_ROWS = 7
+_MIN_ROUND_ROWS = 7
 """Limits are round numbers: on fewer rows, labels at both ends are more useful than one tick between them."""
 
 
-_MOST_PARTS = 6
+_MAX_PARTS = 6
 """More ticks are crowded."""
 _SPARSE = {2: 0.15, 3: 0.05}
 """How much of the height few parts between ticks may save, to be better than more parts."""
 
 
-def on_rows(limits: Limits, rows: int) -> Limits:
+def extend_limits(limits: Limits, rows: int) -> Limits:
     """Return limits, extended as little as possible, that have round ticks in the middle of rows, at equal distances.
 
     Args:
         limits: Of the values.
         rows: Height of the canvas in characters, at least 1; few rows need no ticks between the limits.
     """
-    if rows < _FEW_ROWS:
+    if rows < _MIN_ROUND_ROWS:
         return limits
     low, high = limits
-    found = []
-    for count in range(2, _MOST_PARTS + 1):
-        step = nice_step(high - low, count)
+    candidates = []
+    for count in range(2, _MAX_PARTS + 1):
+        step = choose_step(high - low, count)
         first = math.floor(low / step + 1e-9) * step
         parts = math.ceil((high - first) / step - 1e-9)
         if cells := max((rows - 1) // parts, 0):
             end = first + step * (rows - 1) / cells
-            found.append(
+            candidates.append(
                 (
-                    (end - first) / (high - low) + _SPARSE.get(parts, 0.0) + (cells < _LEAST_CELLS),
+                    (end - first) / (high - low) + _SPARSE.get(parts, 0.0) + (cells < _MIN_CELLS),
                     first,
                     end,
                 )
             )
-    _, *extended = min(found)
+    _, *extended = min(candidates)
     return extended[0], extended[1]
 
 
-def row_ticks(limits: Limits, rows: int) -> list[float]:
+def find_row_ticks(limits: Limits, rows: int) -> list[float]:
     """Return the positions that a vertical axis has a label for."""
-    if rows < _FEW_ROWS:
+    if rows < _MIN_ROUND_ROWS:
         return list(limits)
     low, high = limits
-    for cells in range(_LEAST_CELLS, (rows - 1) // 2 + 1):
+    for cells in range(_MIN_CELLS, (rows - 1) // 2 + 1):
         distance, parts = (high - low) / (rows - 1) * cells, (rows - 1) // cells
-        step = nice_step(distance, 1)
+        step = choose_step(distance, 1)
         if (
-            parts <= _MOST_PARTS
+            parts <= _MAX_PARTS
             and math.isclose(step, distance)
             and abs(low / step - round(low / step)) < _NEAR
         ):
-            return [(round(low / step) + at) * step for at in range(parts + 1)]
-    return ticks(limits, min(_MOST_PARTS, (rows - 1) // 2))
+            return [(round(low / step) + part) * step for part in range(parts + 1)]
+    return find_ticks(limits, min(_MAX_PARTS, (rows - 1) // 2))
 
 
 Places = TypeVar("Places", float, "FloatArray")
 
 
-def row_of(values: Places, limits: Limits, rows: int) -> Places:
+def measure_row(values: Places, limits: Limits, rows: int) -> Places:
     """Return how far from the top of a canvas values are, in rows: limits are in the middle of the outermost ones."""
     low, high = limits
     return 0.5 + (high - values) / (high - low) * (rows - 1)
@@ -206,29 +206,29 @@ def row_of(values: Places, limits: Limits, rows: int) -> Places:
 
 def time_ticks(limits: Limits, columns: int) -> list[float]:
     """Return the ticks of a horizontal axis."""
-    return ticks(limits, max(1, columns // 10))
+    return find_ticks(limits, max(1, columns // 10))
 
 
-def row_labels(limits: Limits, rows: int) -> dict[int, str]:
+def label_rows(limits: Limits, rows: int) -> dict[int, str]:
     """Return labels of a vertical axis by row, 0 at the top."""
     low, high = limits
-    if rows < _FEW_ROWS:
-        step = nice_step(high - low, 4)
+    if rows < _MIN_ROUND_ROWS:
+        step = choose_step(high - low, 4)
         return {rows - 1: label(low, step), 0: label(high, step)}
-    positions = row_ticks(limits, rows)
+    positions = find_row_ticks(limits, rows)
     step = positions[1] - positions[0] if len(positions) > 1 else high - low
-    return {math.floor(row_of(y, limits, rows) + _NEAR): label(y, step) for y in positions}
+    return {math.floor(measure_row(y, limits, rows) + _NEAR): label(y, step) for y in positions}
 
 
-def time_axis(limits: Limits, columns: int, unit: str = "s") -> tuple[str, str]:
+def draw_time_axis(limits: Limits, columns: int, unit: str = "s") -> tuple[str, str]:
     """Return a horizontal axis: the line with its ticks, and the labels below, each `columns` long."""
     positions = time_ticks(limits, columns)
     step = positions[1] - positions[0] if len(positions) > 1 else limits[1] - limits[0]
     line, below = ["─"] * columns, [" "] * columns
     free_from = 0
-    for at in positions:
-        column = column_of(at, limits, columns)
-        text = label(at, step) + (f" {unit}" if at == positions[-1] else "")
+    for position in positions:
+        column = find_column(position, limits, columns)
+        text = label(position, step) + (f" {unit}" if position == positions[-1] else "")
         start = min(max(column - len(text) // 2, 0), columns - len(text))
         line[column] = "┬"
         if start >= free_from:

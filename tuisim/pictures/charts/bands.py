@@ -11,16 +11,16 @@ from tuisim.logs.levels import Light, measure_levels
 from tuisim.logs.units import can_be_light
 from tuisim.pictures.charts import axes
 from tuisim.pictures.charts.axes import Limits
-from tuisim.pictures.charts.layout import Span, names_of
+from tuisim.pictures.charts.layout import Span, fit_names
 from tuisim.pictures.charts.traces import Trace
 from tuisim.terminal.text_runs import Run
 
-MOST_SAMPLES = 4000
+MAX_SAMPLES = 4000
 """Bands of more samples take too long to find for a chart that is on the screen: the analyser finds them."""
 SHADES = Style(bgcolor=palette.HERE), Style(bgcolor=palette.FIELD)
 """In turns, so that bands without an edge between them stay apart."""
 NAME = Style(color=palette.SOFT)
-_LEAST_COLUMNS = 3
+_MIN_COLUMNS = 3
 """Narrower bands have no name."""
 _OVERHANG = 2
 """Columns that a level may be wider than its band: names beside each other are in different rows."""
@@ -30,37 +30,38 @@ FREE = " ┈"
 """What a name may be written over."""
 
 
-def band_span(name: str, start: float, stop: float, level: float, grey: str) -> Span:
+def build_band_span(name: str, start: float, stop: float, level: float, grey: str) -> Span:
     """Return the span of a band, named by its level and its grey."""
     text = f"{level:.4g}"
     return Span(start, stop, (f"{text} {grey}".rstrip(), text), name)
 
 
-def spans_of(trace: Trace, light: Light) -> tuple[Span, ...]:
-    """Return the bands of a trace, none if it has more than `MOST_SAMPLES`.
+def find_spans(trace: Trace, light: Light) -> tuple[Span, ...]:
+    """Return the bands of a trace, none if it has more than `MAX_SAMPLES`.
 
     Args:
         trace: A variable over time.
         light: What stands between it and the greys of the mat.
     """
-    if len(trace.times_s) > MOST_SAMPLES:
+    if len(trace.times_s) > MAX_SAMPLES:
         return ()
-    found = measure_levels(trace.values, light if can_be_light(trace.name) else None)
-    ends = trace.times_s[found.start].tolist(), trace.times_s[found.stop - 1].tolist()
-    names = [grey.name if grey and not trace.scale else "" for grey in found.greys]
-    rows = zip(*ends, found.true_level.tolist(), names, strict=True)
+    levels = measure_levels(trace.values, light if can_be_light(trace.name) else None)
+    ends = trace.times_s[levels.start].tolist(), trace.times_s[levels.stop - 1].tolist()
+    names = [grey.name if grey and not trace.scale else "" for grey in levels.greys]
+    rows = zip(*ends, levels.true_level.tolist(), names, strict=True)
     return tuple(
-        band_span(trace.name, start_s, stop_s, level, name) for start_s, stop_s, level, name in rows
+        build_band_span(trace.name, start_s, stop_s, level, name)
+        for start_s, stop_s, level, name in rows
     )
 
 
-def columns_of(span: Span, x_limits: Limits, columns: int) -> range:
+def find_columns(span: Span, x_limits: Limits, columns: int) -> range:
     """Return the columns of a canvas that a span covers."""
-    first, last = (axes.column_of(x, x_limits, columns) for x in (span.start, span.stop))
+    first, last = (axes.find_column(x, x_limits, columns) for x in (span.start, span.stop))
     return range(max(first, 0), min(last + 1, columns))
 
 
-def placed_names(
+def place_names(
     spans: Sequence[Span],
     places: Sequence[range],
     rows: int,
@@ -77,27 +78,32 @@ def placed_names(
         is_free: Returns whether nothing is drawn in a row between two columns.
         avoided: Columns, such as that of a cursor, beside which a name stands rather than in them.
     """
-    found: list[tuple[int, int, str]] = []
-    letters = [len(place) if len(place) >= _LEAST_COLUMNS else 0 for place in places]
-    for place, name in zip(places, names_of(spans, letters, _OVERHANG), strict=True):
+    names: list[tuple[int, int, str]] = []
+    letters = [len(place) if len(place) >= _MIN_COLUMNS else 0 for place in places]
+    for place, name in zip(places, fit_names(spans, letters, _OVERHANG), strict=True):
         middle = min(max(place.start + (len(place) - len(name) + 1) // 2, 0), columns - len(name))
         near = (middle + by for by in _SHIFTS if 0 <= middle + by <= columns - len(name))
         first = next(
-            (at for at in near if not any(at <= column < at + len(name) for column in avoided)),
+            (
+                column_at
+                for column_at in near
+                if not any(column_at <= column < column_at + len(name) for column in avoided)
+            ),
             middle,
         )
         stop = first + len(name)
         for row in reversed(range(rows)) if name else ():
-            beside = (at for at in found if at[0] == row)
+            beside = (column_at for column_at in names if column_at[0] == row)
             if is_free(row, first, stop) and not any(
-                at <= stop and first <= at + len(text) for _, at, text in beside
+                column_at <= stop and first <= column_at + len(text)
+                for _, column_at, text in beside
             ):
-                found.append((row, first, name))
+                names.append((row, first, name))
                 break
-    return found
+    return names
 
 
-def shaded(
+def shade_rows(
     rows: Sequence[list[Run]],
     spans: Sequence[Span],
     x_limits: Limits,
@@ -116,44 +122,44 @@ def shaded(
         style: Of the names.
     """
     texts = ["".join(text for text, _ in row) for row in rows]
-    places = [columns_of(span, x_limits, columns) for span in spans]
-    made = list(rows)
-    for at, first, name in placed_names(
+    places = [find_columns(span, x_limits, columns) for span in spans]
+    shaded = list(rows)
+    for row_number, first, name in place_names(
         spans,
         places,
         len(rows),
         columns,
-        lambda at, first, stop: not texts[at][first:stop].strip(FREE),
+        lambda row_number, first, stop: not texts[row_number][first:stop].strip(FREE),
         cursors,
     ):
-        made[at] = [
-            *_cut(made[at], 0, first),
+        shaded[row_number] = [
+            *_cut(shaded[row_number], 0, first),
             (name, style),
-            *_cut(made[at], first + len(name), columns),
+            *_cut(shaded[row_number], first + len(name), columns),
         ]
-    return [_shaded(row, places, columns) for row in made]
+    return [_shade_row(row, places, columns) for row in shaded]
 
 
 def _cut(row: list[Run], start: int, stop: int) -> list[Run]:
     """Return the pieces of a row between two columns."""
-    made, at = [], 0
+    piece, column = [], 0
     for text, style in row:
-        part = text[max(start - at, 0) : max(stop - at, 0)]
+        part = text[max(start - column, 0) : max(stop - column, 0)]
         if part:
-            made.append((part, style))
-        at += len(text)
-    return made
+            piece.append((part, style))
+        column += len(text)
+    return piece
 
 
-def _shaded(row: list[Run], places: Sequence[range], columns: int) -> list[Run]:
-    made: list[Run] = []
+def _shade_row(row: list[Run], places: Sequence[range], columns: int) -> list[Run]:
+    shaded: list[Run] = []
     done = 0
     for number, place in enumerate(places):
         start = max(place.start, done)
-        made += _cut(row, done, start)
-        made += [
+        shaded += _cut(row, done, start)
+        shaded += [
             (text, style + SHADES[number % len(SHADES)])
             for text, style in _cut(row, start, max(place.stop, start))
         ]
         done = max(place.stop, start)
-    return made + _cut(row, done, columns)
+    return shaded + _cut(row, done, columns)

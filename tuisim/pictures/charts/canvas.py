@@ -19,7 +19,7 @@ from tuisim.engine.core.css_colors import Rgb
 from tuisim.engine.runs.arrays import FloatArray, IntArray
 from tuisim.pictures.charts import axes
 from tuisim.pictures.charts.axes import Limits
-from tuisim.pictures.charts.traces import clip_line, min_max
+from tuisim.pictures.charts.traces import clip_line, reduce_points
 from tuisim.terminal.text_runs import Run
 
 if TYPE_CHECKING:
@@ -54,7 +54,7 @@ class Curve:
 
 
 @lru_cache(maxsize=1)
-def _plotext() -> Any:
+def _load_plotext() -> Any:
     # Most of its import is spent on its manual, which nobody opens here.
     manual = ModuleType("plotext._doc.doc")
     vars(manual)["docs"] = None
@@ -67,7 +67,7 @@ def _plotext() -> Any:
     return plotext
 
 
-def canvas(
+def draw_canvas(
     curves: Sequence[Curve], columns: int, rows: int, x_limits: Limits, y_limits: Limits
 ) -> list[list[TextRun]]:
     """Return curves as rows of text, without axes.
@@ -91,31 +91,31 @@ def canvas(
         if not len(curve.times_s):
             continue
         if curve.marker == BRAILLE:
-            cells = _braille(curve, columns, rows, x_limits, y_limits)
+            cells = _draw_braille(curve, columns, rows, x_limits, y_limits)
             inked[number] = cells > 0
             dots |= cells
         else:
-            across, down = _inside(
-                *_points(curve, columns, rows, x_limits, y_limits), columns, rows
+            across, down = _clip_places(
+                *_place_points(curve, columns, rows, x_limits, y_limits), columns, rows
             )
             inked[number, down, across] = True
             signs[number] = ord(curve.marker)
-    shown = in_turns(inked, _TURN if all(curve.joined for curve in curves) else columns)
+    visible = choose_owners(inked, _TURN if all(curve.joined for curve in curves) else columns)
     for number, curve in enumerate(curves):
         if curve.marker == BRAILLE:
             signs[number] = _NO_DOTS + dots
     owners = (
-        np.where(shown.any(axis=0), shown.argmax(axis=0), -1)
+        np.where(visible.any(axis=0), visible.argmax(axis=0), -1)
         if len(curves)
         else np.full((rows, columns), -1)
     )
-    drawn = np.where(shown, signs, 0).max(axis=0, initial=0)
+    drawn = np.where(visible, signs, 0).max(axis=0, initial=0)
     drawn[owners < 0] = _BLANK
     colors = [*(curve.rgb for curve in curves), None]
-    return [_runs(text, owner, colors) for text, owner in zip(drawn, owners, strict=True)]
+    return [_split_runs(text, owner, colors) for text, owner in zip(drawn, owners, strict=True)]
 
 
-def in_turns(covered: npt.NDArray[np.bool_], width: int) -> npt.NDArray[np.bool_]:
+def choose_owners(covered: npt.NDArray[np.bool_], width: int) -> npt.NDArray[np.bool_]:
     """Return which curve is seen at each place: the only one there, or each in turns along a row.
 
     Args:
@@ -129,7 +129,7 @@ def in_turns(covered: npt.NDArray[np.bool_], width: int) -> npt.NDArray[np.bool_
     return seen
 
 
-def _points(
+def _place_points(
     curve: Curve,
     columns: int,
     rows: int,
@@ -140,29 +140,29 @@ def _points(
     """Return the places of the points of a curve from the left and the top, in parts of cells."""
     times_s, values = curve.times_s, curve.values
     if curve.rising:
-        times_s, values = min_max(times_s, values, x_limits, columns)
+        times_s, values = reduce_points(times_s, values, x_limits, columns)
         if curve.joined and curve.marker == BRAILLE:
             times_s, values = clip_line(times_s, values, x_limits)
     across = (times_s - x_limits[0]) / (x_limits[1] - x_limits[0]) * (columns - 0.5) * parts[0]
-    down = axes.row_of(values, y_limits, rows) * parts[1]
+    down = axes.measure_row(values, y_limits, rows) * parts[1]
     # A place far outside is not drawn; a line to it needs no dots there.
     return across.clip(-columns, 4 * columns), down.clip(-4 * rows, 8 * rows)
 
 
-def _inside(
+def _clip_places(
     across: FloatArray, down: FloatArray, columns: int, rows: int
 ) -> tuple[IntArray, IntArray]:
     """Return places as whole numbers; those outside a canvas of so many are left out."""
-    at = np.floor(across).astype(np.int64), np.floor(down).astype(np.int64)
-    good = (at[0] >= 0) & (at[0] < columns) & (at[1] >= 0) & (at[1] < rows)
-    return at[0][good], at[1][good]
+    indices = np.floor(across).astype(np.int64), np.floor(down).astype(np.int64)
+    good = (indices[0] >= 0) & (indices[0] < columns) & (indices[1] >= 0) & (indices[1] < rows)
+    return indices[0][good], indices[1][good]
 
 
-def _braille(
+def _draw_braille(
     curve: Curve, columns: int, rows: int, x_limits: Limits, y_limits: Limits
 ) -> npt.NDArray[np.uint32]:
     """Return the dots of a curve, shape (rows, columns): as bits of a braille character."""
-    across, down = _points(curve, columns, rows, x_limits, y_limits, (DOTS_X, DOTS_Y))
+    across, down = _place_points(curve, columns, rows, x_limits, y_limits, (DOTS_X, DOTS_Y))
     is_thick = curve.joined and curve.rising
     # A line over time is two dots thick: those above and below its place.
     # A margin of one character: plotext places limits in the middle of the outermost ones.
@@ -175,10 +175,12 @@ def _braille(
         # What lies outside is at the edge of the margin: lines lead there.
         across, down = across.clip(0, width - 1), down.clip(0, height - 1)
     else:
-        across, down = (at.astype(np.float64) for at in _inside(across, down, width, height))
+        across, down = (
+            indices.astype(np.float64) for indices in _clip_places(across, down, width, height)
+        )
     if not len(across):
         return np.zeros((rows, columns), np.uint32)
-    bits = _plotted(across, down, columns + 2, rows + 2, curve.joined)
+    bits = _plot_braille(across, down, columns + 2, rows + 2, curve.joined)
     dots = (bits[:, None, :, None] & _BITS[None, :, None, :] > 0).reshape(height, width)
     if is_thick:
         dots[:, 1:] |= dots[:, :-1].copy()
@@ -190,7 +192,7 @@ def _braille(
     return cells
 
 
-def _plotted(
+def _plot_braille(
     across: FloatArray, down: FloatArray, columns: int, rows: int, joined: bool
 ) -> npt.NDArray[np.uint32]:
     """Return the braille characters that plotext draws, shape (rows, columns): as bits.
@@ -202,7 +204,7 @@ def _plotted(
         columns, rows: Size in characters.
         joined: Whether the dots are joined by lines.
     """
-    plotext = _plotext()
+    plotext = _load_plotext()
     figure = plotext.figure
     figure.clear()
     figure.axes(False)
@@ -224,7 +226,7 @@ def _plotted(
     return bits
 
 
-def _runs(
+def _split_runs(
     text: npt.NDArray[np.uint32], owners: npt.NDArray[np.int64], colors: Sequence[Rgb | None]
 ) -> list[TextRun]:
     """Return a row as pieces of one colour: that of the owner of each cell, the last one for nobody's."""
@@ -240,12 +242,12 @@ AXIS, PLAIN = Style(color=palette.LABEL), Style(color=palette.INK)
 _HERE = Style(color=palette.BLACK, bgcolor=palette.WHITE, bold=True)
 
 
-def styled(rgb: Rgb | None) -> Style:
+def build_style(rgb: Rgb | None) -> Style:
     """Return the style of a text in a colour, `PLAIN` without one."""
     return Style(color=Color.from_rgb(*rgb)) if rgb else PLAIN
 
 
-def seen_points(
+def drop_hidden_points(
     xs: FloatArray, ys: FloatArray, limits: Sequence[axes.Limits], columns: int, rows: int
 ) -> tuple[FloatArray, FloatArray]:
     """Return the points of a path that a canvas can distinguish: only the first of neighbours at the same dot.
@@ -266,7 +268,7 @@ def seen_points(
     return xs[moved], ys[moved]
 
 
-def xy_lines(
+def draw_xy_chart(
     xs: FloatArray,
     ys: FloatArray,
     here: int | None,
@@ -290,39 +292,39 @@ def xy_lines(
     if not good.any():
         return [title, [("no sample has both", AXIS)]]
     x_limits, y_limits = (
-        axes.value_limits(float(a[good].min()), float(a[good].max())) for a in (xs, ys)
+        axes.choose_limits(float(a[good].min()), float(a[good].max())) for a in (xs, ys)
     )
     rows = max(height - 3, 1)
-    y_limits = axes.on_rows(y_limits, rows)
-    labels = axes.row_labels(y_limits, rows)
+    y_limits = axes.extend_limits(y_limits, rows)
+    labels = axes.label_rows(y_limits, rows)
     left = max(map(len, labels.values())) + 1
     columns = max(width - left, 2)
-    points = seen_points(xs[good], ys[good], (x_limits, y_limits), columns, rows)
+    points = drop_hidden_points(xs[good], ys[good], (x_limits, y_limits), columns, rows)
     curve = Curve(*points, rgb, marker, rising=False)
-    drawn = canvas([curve], columns, rows, x_limits, y_limits)
+    drawn = draw_canvas([curve], columns, rows, x_limits, y_limits)
     lines = [title]
     for row in range(rows):
         text = labels.get(row, "")
-        inside = [(part, styled(color)) for part, color in drawn[row]]
+        inside = [(part, build_style(color)) for part, color in drawn[row]]
         lines.append([(text.rjust(left - 1) + ("┤" if text else "│"), AXIS), *inside])
     if here is not None and good[here]:
         title.append((f"   {names[0]} {xs[here]:.5g}  {names[1]} {ys[here]:.5g}", Style(bold=True)))
-        column = axes.column_of(float(xs[here]), x_limits, columns)
-        row = int(axes.row_of(float(ys[here]), y_limits, rows))
+        column = axes.find_column(float(xs[here]), x_limits, columns)
+        row = int(axes.measure_row(float(ys[here]), y_limits, rows))
         _put(lines[1 + row], left + column)
-    line, below = axes.time_axis(x_limits, columns, "")
+    line, below = axes.draw_time_axis(x_limits, columns, "")
     return [*lines, [(" " * (left - 1) + "└" + line, AXIS)], [(" " * left + below, AXIS)]]
 
 
 def _put(line: list[Run], column: int) -> None:
-    at = 0
+    start = 0
     for number, (text, style) in enumerate(line):
-        if at <= column < at + len(text):
-            inside = column - at
+        if start <= column < start + len(text):
+            inside = column - start
             line[number : number + 1] = [
                 (text[:inside], style),
                 ("●", _HERE),
                 (text[inside + 1 :], style),
             ]
             return
-        at += len(text)
+        start += len(text)

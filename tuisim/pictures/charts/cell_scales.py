@@ -12,14 +12,14 @@ from tuisim.base.data_class import dataclass
 from tuisim.logs.magnitude import limit_drawn
 from tuisim.pictures.charts import axes
 from tuisim.pictures.charts.axes import Limits
-from tuisim.pictures.charts.canvas import AXIS, BRAILLE, Curve, styled
+from tuisim.pictures.charts.canvas import AXIS, BRAILLE, Curve, build_style
 from tuisim.pictures.charts.layout import Scale, Scales
 from tuisim.pictures.charts.traces import Trace
 from tuisim.terminal.text_runs import Run
 
-_LEAST_WIDTH = 36
+_MIN_WIDTH = 36
 """Narrower charts have no room on the right of the canvas."""
-_LEAST_COLUMNS = 22
+_MIN_COLUMNS = 22
 """What stands on the right does not make the canvas narrower: further scales come first, then the last values."""
 _LONG = 9
 """Values with more characters than that are written with a power of ten."""
@@ -43,7 +43,7 @@ class CellScales:
     """Columns on the left and the right of the canvas at least, so that charts below each other are in line."""
 
     @classmethod
-    def of(
+    def build(
         cls,
         drawn: Sequence[Trace],
         width: int,
@@ -53,27 +53,27 @@ class CellScales:
         margins: tuple[int, int] = (0, 0),
     ) -> CellScales:
         """Return the scales of traces for a chart of a width, whose canvas has so many rows."""
-        scales = Scales.of([(trace.name, trace.values, trace.scale) for trace in drawn], zoomed)
+        scales = Scales.group([(trace.name, trace.values, trace.scale) for trace in drawn], zoomed)
         scales = Scales(
             _on_rows(scales.left, rows), tuple(_on_rows(scale, rows) for scale in scales.right)
         )
-        labels = [_labels(scales.left, rows)]
-        left = width - _width_of(labels[0])
+        labels = [_label_scale(scales.left, rows)]
+        left = width - _measure_width(labels[0])
         for scale in scales.right:
-            more = _labels(scale, rows)
-            if left - _width_of(more) < _LEAST_COLUMNS:
+            more = _label_scale(scale, rows)
+            if left - _measure_width(more) < _MIN_COLUMNS:
                 break
-            left -= _width_of(more)
+            left -= _measure_width(more)
             labels.append(more)
-        ends, ends_width = _ends(drawn, scales, rows, x_limits)
-        if width < _LEAST_WIDTH or left - ends_width < _LEAST_COLUMNS:
+        ends, ends_width = _place_end_values(drawn, scales, rows, x_limits)
+        if width < _MIN_WIDTH or left - ends_width < _MIN_COLUMNS:
             ends, ends_width = {}, 0
-        colors = {trace.name: styled(trace.rgb) for trace in drawn}
+        colors = {trace.name: build_style(trace.rgb) for trace in drawn}
         is_one_of_several = [
             bool(scales.right) and len(scale.names) == 1 for scale in (scales.left, *scales.right)
         ]
-        shown = zip((scales.left, *scales.right), is_one_of_several, labels, strict=False)
-        styles = tuple(colors[scale.names[0]] if is_one else AXIS for scale, is_one, _ in shown)
+        visible = zip((scales.left, *scales.right), is_one_of_several, labels, strict=False)
+        styles = tuple(colors[scale.names[0]] if is_one else AXIS for scale, is_one, _ in visible)
         return cls(scales, tuple(labels), styles, ends, ends_width, margins)
 
     @property
@@ -84,7 +84,7 @@ class CellScales:
     @property
     def left_width(self) -> int:
         """Columns on the left of the canvas."""
-        return max(_width_of(self.labels[0]), self.margins[0])
+        return max(_measure_width(self.labels[0]), self.margins[0])
 
     @property
     def right_width(self) -> int:
@@ -93,14 +93,14 @@ class CellScales:
 
     @property
     def _right_used(self) -> int:
-        return self.ends_width + sum(map(_width_of, self.labels[1:]))
+        return self.ends_width + sum(map(_measure_width, self.labels[1:]))
 
     def curve(self, trace: Trace, marks: bool) -> Curve:
         """Return a trace on the left scale."""
-        values = self.scales.on_left(trace.values, self.scales.of_variable(trace.name))
+        values = self.scales.on_left(trace.values, self.scales.find_scale(trace.name))
         return Curve(trace.times_s, values, trace.rgb, trace.mark if marks else BRAILLE)
 
-    def framed(self, row: int, inside: list[Run]) -> list[Run]:
+    def frame_row(self, row: int, inside: list[Run]) -> list[Run]:
         """Return a row of the canvas with what stands beside it."""
         text = self.labels[0].get(row, "")
         line = [
@@ -113,74 +113,80 @@ class CellScales:
             line.append((text.ljust(self.ends_width), style))
         for labels, style in zip(self.labels[1:], self.styles[1:], strict=True):
             text = labels.get(row, "")
-            line += [("├" if text else "│", AXIS), (text.ljust(_width_of(labels) - 1), style)]
+            line += [("├" if text else "│", AXIS), (text.ljust(_measure_width(labels) - 1), style)]
         if more := self.right_width - self._right_used:
             line.append((" " * more, AXIS))
         return line
 
 
 def _on_rows(scale: Scale, rows: int) -> Scale:
-    return replace(scale, limits=axes.on_rows(scale.limits, rows))
+    return replace(scale, limits=axes.extend_limits(scale.limits, rows))
 
 
-def _labels(scale: Scale, rows: int) -> dict[int, str]:
+def _label_scale(scale: Scale, rows: int) -> dict[int, str]:
     """Return the labels of a scale by row, the uppermost with the unit."""
-    labels = axes.row_labels(scale.limits, rows)
+    labels = axes.label_rows(scale.limits, rows)
     top = min(labels)
     return {**labels, top: labels[top] + scale.unit}
 
 
-def _width_of(labels: dict[int, str]) -> int:
+def _measure_width(labels: dict[int, str]) -> int:
     return max(map(len, labels.values())) + 1
 
 
-def _ends(
+def _place_end_values(
     drawn: Sequence[Trace], scales: Scales, rows: int, x_limits: Limits
 ) -> tuple[dict[int, Run], int]:
     """Return the last values in view, each in the row where its line ends or next to it, and the columns for them."""
-    found: list[tuple[int, Run]] = []
+    ends: list[tuple[int, Run]] = []
     width = 0
     for trace in drawn:
-        scale, value = scales.of_variable(trace.name), trace.at(x_limits[1])
+        scale, value = scales.find_scale(trace.name), trace.find_value(x_limits[1])
         if value is None:
             continue
-        texts = [_rounded(end, scale) for end in (value, *scale.limits)]
+        texts = [_round_value(end, scale) for end in (value, *scale.limits)]
         place = scales.on_left(limit_drawn(np.array([value])), scale)
-        row = int(axes.row_of(float(place[0]), scales.left.limits, rows))
-        found.append(
+        row = int(axes.measure_row(float(place[0]), scales.left.limits, rows))
+        ends.append(
             (
                 row,
                 (
                     texts[0].rstrip("0").rstrip(".") + scale.unit
                     if "." in texts[0]
                     else texts[0] + scale.unit,
-                    styled(trace.rgb),
+                    build_style(trace.rgb),
                 ),
             )
         )
         # Of the limits, so that the canvas keeps its size while values come in.
         width = max(width, *(len(text + scale.unit) for text in texts))
-    return _apart(found, rows), width
+    return _separate_rows(ends, rows), width
 
 
-def _rounded(value: float, scale: Scale) -> str:
+def _round_value(value: float, scale: Scale) -> str:
     low, high = scale.limits
-    text = axes.label(value, axes.nice_step(high - low, _PARTS))
+    text = axes.label(value, axes.choose_step(high - low, _PARTS))
     return text if len(text) <= _LONG else f"{value:.4g}"
 
 
-def _apart(found: Sequence[tuple[int, Run]], rows: int) -> dict[int, Run]:
+def _separate_rows(ends: Sequence[tuple[int, Run]], rows: int) -> dict[int, Run]:
     """Return texts by row: an equal one once, others next to the row that they want, in a row of their own."""
     taken: dict[int, Run] = {}
-    wanted: dict[int, int] = {}
-    for row, run in found:
-        near = [at for at in (row, row + 1, row - 1) if 0 <= at < rows]
+    row_of: dict[int, int] = {}
+    for row, run in ends:
+        near = [candidate for candidate in (row, row + 1, row - 1) if 0 <= candidate < rows]
         same = next(
-            (at for at in near if at in taken and wanted[at] == row and taken[at][0] == run[0]),
+            (
+                candidate
+                for candidate in near
+                if candidate in taken and row_of[candidate] == row and taken[candidate][0] == run[0]
+            ),
             None,
         )
         if same is not None:
             taken[same] = run[0], AXIS
-        elif (free := next((at for at in near if at not in taken), None)) is not None:
-            taken[free], wanted[free] = run, row
+        elif (
+            free := next((candidate for candidate in near if candidate not in taken), None)
+        ) is not None:
+            taken[free], row_of[free] = run, row
     return taken

@@ -25,7 +25,7 @@ from tuisim.pictures.charts.layout import (
     Shape,
     Stroke,
     Words,
-    laid_out,
+    lay_out_chart,
 )
 
 if TYPE_CHECKING:
@@ -40,17 +40,19 @@ Size = tuple[int, int]
 _SIZE = re.compile(r"(\d{1,6})[x×](\d{1,6})")
 
 
-def parse_size(text: str, least: Size, most: Size) -> Size | None:
+def parse_size(text: str, smallest: Size, largest: Size) -> Size | None:
     """Return a size such as `800x600`; None if it is none, or not within the limits."""
     match = _SIZE.fullmatch(text)
     size = (int(match[1]), int(match[2])) if match else (0, 0)
-    is_allowed = all(low <= side <= high for low, side, high in zip(least, size, most, strict=True))
+    is_allowed = all(
+        low <= side <= high for low, side, high in zip(smallest, size, largest, strict=True)
+    )
     return size if is_allowed else None
 
 
-def limits_in_words(least: Size, most: Size) -> str:
+def describe_limits(smallest: Size, largest: Size) -> str:
     """Return the limits of a size, such as `200x150 to 6000x6000`."""
-    return " to ".join(f"{width}x{height}" for width, height in (least, most))
+    return " to ".join(f"{width}x{height}" for width, height in (smallest, largest))
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,38 +62,38 @@ class ChartFormat:
     write: Callable[[ChartData, Size], bytes]
     size: Size
     """Default width and height."""
-    least: Size
-    most: Size
+    smallest: Size
+    largest: Size
     unit: str
     finer: Size = (1, 1)
     """Resolution: subdivisions of a unit."""
 
 
-def _svg(chart: ChartData, size: Size) -> bytes:
-    return svg_of(laid_out(chart, *size)).encode()
+def _encode_svg(chart: ChartData, size: Size) -> bytes:
+    return draw_svg(lay_out_chart(chart, *size)).encode()
 
 
-def _png(chart: ChartData, size: Size) -> bytes:
-    return png_of(image_of(laid_out(chart, *size)))
+def _encode_png_chart(chart: ChartData, size: Size) -> bytes:
+    return encode_png(draw_image(lay_out_chart(chart, *size)))
 
 
-def png_of(image: Image) -> bytes:
+def encode_png(image: Image) -> bytes:
     """Return an image as the content of a PNG file."""
     content = io.BytesIO()
     image.save(content, "png")
     return content.getvalue()
 
 
-def _text(chart: ChartData, size: Size) -> bytes:
-    from tuisim.pictures.charts.text_chart import text_of
+def _encode_text(chart: ChartData, size: Size) -> bytes:
+    from tuisim.pictures.charts.text_chart import draw_text
 
-    return f"{text_of(chart, *size).plain}\n".encode()
+    return f"{draw_text(chart, *size).plain}\n".encode()
 
 
 CHART_FORMATS: Mapping[str, ChartFormat] = {
-    ".svg": ChartFormat(_svg, (960, 420), (200, 150), (10_000, 10_000), "pixels"),
-    ".png": ChartFormat(_png, (960, 420), (200, 150), (6_000, 6_000), "pixels"),
-    ".txt": ChartFormat(_text, (80, 24), (20, 8), (1_000, 500), "characters", (2, 4)),
+    ".svg": ChartFormat(_encode_svg, (960, 420), (200, 150), (10_000, 10_000), "pixels"),
+    ".png": ChartFormat(_encode_png_chart, (960, 420), (200, 150), (6_000, 6_000), "pixels"),
+    ".txt": ChartFormat(_encode_text, (80, 24), (20, 8), (1_000, 500), "characters", (2, 4)),
 }
 """Every format of a chart by the suffix of its files. To add one: write its function and a line here."""
 
@@ -99,7 +101,7 @@ FACET_PX = 200
 """Default height of a facet in an image."""
 
 
-def format_of(path: Path) -> ChartFormat:
+def find_format(path: Path) -> ChartFormat:
     """Return the format for a file's suffix; check that the file can be written.
 
     Raises:
@@ -141,7 +143,7 @@ def save_chart(
         ExportError: the file cannot be written; an existing one is unchanged.
         LogError: no such variable to draw against.
     """
-    kind = format_of(path)
+    kind = find_format(path)
     width, height = size or kind.size
     chart = chart_of(width * kind.finer[0], height * kind.finer[1])
     if chart.facets and size is None and kind.unit == "pixels":
@@ -167,18 +169,18 @@ _INVALID = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufdd0-\
 """Control characters, lone surrogates and noncharacters."""
 
 
-def svg_of(drawing: Drawing, *, inside: bool = False) -> str:
+def draw_svg(drawing: Drawing, *, inside: bool = False) -> str:
     """Return a picture as SVG: a file, or `inside` a page, whose colours it then uses."""
     size = f'viewBox="0 0 {drawing.width} {drawing.height}" width="{drawing.width}" height="{drawing.height}"'
     look = f'font-family="{_FONT}" font-size="{FONT_PX}" role="img"'
-    ink = "" if inside else f' color="{_hex(_INK)}"'
+    ink = "" if inside else f' color="{_format_hex(_INK)}"'
     parts = [
         f'<svg xmlns="http://www.w3.org/2000/svg" {size} {look}{ink}>',
         f"<title>{_clean(drawing.title)}</title>",
     ]
     if not inside:
         parts.append('<rect width="100%" height="100%" fill="white"/>')
-    parts += [_svg_shape(shape) for shape in drawing.shapes]
+    parts += [_draw_svg_shape(shape) for shape in drawing.shapes]
     return "\n".join([*parts, "</svg>", ""])
 
 
@@ -191,11 +193,11 @@ def _clean(text: str) -> str:
     return escape(replace_invalid(text))
 
 
-def _hex(rgb: Rgb) -> str:
+def _format_hex(rgb: Rgb) -> str:
     return f"#{bytes(rgb).hex()}"
 
 
-def _svg_shape(shape: Shape) -> str:
+def _draw_svg_shape(shape: Shape) -> str:
     match shape:
         case Rule():
             ends = (
@@ -205,14 +207,14 @@ def _svg_shape(shape: Shape) -> str:
             return f'<line {ends} stroke="currentColor"{faint}/>'
         case Words():
             place = f'x="{shape.x:.1f}" y="{shape.y:.1f}" dy="0.35em" text-anchor="{shape.anchor}"'
-            color = _hex(shape.rgb) if shape.rgb else "currentColor"
+            color = _format_hex(shape.rgb) if shape.rgb else "currentColor"
             strong = ' font-weight="bold"' if shape.strong else ""
             return f'<text {place} fill="{color}"{strong}>{_clean(shape.text)}</text>'
         case Shade():
             return f'<rect {_place(shape)} fill="currentColor" fill-opacity="0.08"/>'
         case Stroke():
             points = [f"{x:.1f} {y:.1f}" for x, y in shape.points.tolist()]
-            color = _hex(shape.rgb)
+            color = _format_hex(shape.rgb)
             if shape.dots:
                 # A line of length 0 with round ends is a point, and short to write.
                 path = "".join(f"M{point}h0" for point in points)
@@ -220,7 +222,7 @@ def _svg_shape(shape: Shape) -> str:
             path = "M" + "L".join(points)
             return f'<path d="{path}" fill="none" stroke="{color}" stroke-width="1.8" stroke-linejoin="round"/>'
         case Raster():
-            data = base64.b64encode(png_of(_image(shape))).decode()
+            data = base64.b64encode(encode_png(_load_image(shape))).decode()
             return f'<image {_place(shape)} preserveAspectRatio="none" href="data:image/png;base64,{data}"/>'
 
 
@@ -230,7 +232,7 @@ def _place(shape: Shade | Raster) -> str:
     )
 
 
-def _image(shape: Raster) -> Image:
+def _load_image(shape: Raster) -> Image:
     from PIL import Image
 
     return Image.fromarray(shape.pixels)
@@ -242,7 +244,7 @@ _FINE = 2
 _ANCHORS = {"start": "lm", "middle": "mm", "end": "rm"}
 
 
-def image_of(drawing: Drawing) -> Image:
+def draw_image(drawing: Drawing) -> Image:
     """Return a picture as a Pillow image, on white."""
     from PIL import Image, ImageDraw, ImageFont
 
@@ -253,7 +255,7 @@ def image_of(drawing: Drawing) -> Image:
         if isinstance(shape, Raster):
             sides = round(shape.width * _FINE), round(shape.height * _FINE)
             image.paste(
-                _image(shape).resize(sides), (round(shape.x * _FINE), round(shape.y * _FINE))
+                _load_image(shape).resize(sides), (round(shape.x * _FINE), round(shape.y * _FINE))
             )
         else:
             _paint(draw, shape, font)

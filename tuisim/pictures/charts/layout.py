@@ -14,7 +14,7 @@ from tuisim.base.errors import printable
 from tuisim.engine.core.css_colors import Rgb
 from tuisim.engine.runs.arrays import FloatArray
 from tuisim.logs import units
-from tuisim.pictures.charts.axes import Limits, labelled, value_limits
+from tuisim.pictures.charts.axes import Limits, choose_limits, label_ticks
 
 COLORS: tuple[Rgb, ...] = (
     (31, 119, 180),
@@ -57,7 +57,7 @@ class Line:
     @property
     def label(self) -> str:
         """Its name, with the unit if the name has one."""
-        return with_unit(self.name)
+        return add_unit(self.name)
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,13 +89,13 @@ class ChartData:
     """Whether the time range is zoomed: the vertical axis then fits the visible data."""
 
 
-def with_unit(name: str) -> str:
+def add_unit(name: str) -> str:
     """Return a variable's name as it is written beside a chart."""
-    unit = unit_of(name)
+    unit = find_unit(name)
     return printable(f"{name} ({unit})" if unit else name)
 
 
-def unit_of(name: str) -> str:
+def find_unit(name: str) -> str:
     """Return the unit of a variable from its name, empty if there is none."""
     return units.parse_unit(name.partition(" #")[0]).sign
 
@@ -184,80 +184,82 @@ class Frame:
     x: Limits
     y: Limits
 
-    def xs(self, values: FloatArray | float) -> FloatArray:
+    def find_xs(self, values: FloatArray | float) -> FloatArray:
         """Return the pixel columns of values."""
         return np.asarray(
             self.left
             + (np.asarray(values) - self.x[0]) / (self.x[1] - self.x[0]) * (self.right - self.left)
         )
 
-    def ys(self, values: FloatArray | float) -> FloatArray:
+    def find_ys(self, values: FloatArray | float) -> FloatArray:
         """Return the pixel rows of values."""
         return np.asarray(
             self.bottom
             - (np.asarray(values) - self.y[0]) / (self.y[1] - self.y[0]) * (self.bottom - self.top)
         )
 
-    def with_y(self, limits: Limits) -> Frame:
+    def replace_y(self, limits: Limits) -> Frame:
         """Return the frame with other limits of y."""
         return Frame(self.left, self.top, self.right, self.bottom, self.x, limits)
 
 
-def laid_out(chart: ChartData, width: int, height: int, *, titled: bool = True) -> Drawing:
+def lay_out_chart(chart: ChartData, width: int, height: int, *, titled: bool = True) -> Drawing:
     """Return the picture of a chart in a size in pixels, with or without the title above it."""
     shapes: list[Shape] = []
     top: float = PAD
     if titled:
         shapes.append(
-            Words(PAD, top + LINE_PX / 2, shortened(chart.title, width - 2 * PAD), strong=True)
+            Words(PAD, top + LINE_PX / 2, shorten(chart.title, width - 2 * PAD), strong=True)
         )
         top += LINE_PX + 4
     groups = [(line,) for line in chart.lines] if chart.facets else [chart.lines]
-    scales = [_scales_of(group, chart.zoomed or chart.path) for group in groups]
+    scales = [_group_lines(group, chart.zoomed or chart.path) for group in groups]
     if not chart.facets:
-        legend, lines = _legend(chart.lines, scales[0], width, top)
+        legend, lines = _draw_legend(chart.lines, scales[0], width, top)
         shapes += legend
         top += lines * LINE_PX + 4
     plots: list[Frame] = []
-    left = PAD + max(_widest(one.left.limits) for one in scales)
-    right_px = max([3 * LETTER_PX, *(_width_on_right(one) for one in scales)])
+    left = PAD + max(_measure_widest(each_scales.left.limits) for each_scales in scales)
+    right_px = max([3 * LETTER_PX, *(_measure_right_width(each_scales) for each_scales in scales)])
     right = max(width - PAD - right_px, left + 1)
     bottom = height - PAD - 2 * LINE_PX
     each = (bottom - top) / len(groups)
-    for at, (group, scale) in enumerate(zip(groups, scales, strict=True)):
-        upper, lower = top + at * each, top + (at + 1) * each
+    for number, (group, scale) in enumerate(zip(groups, scales, strict=True)):
+        upper, lower = top + number * each, top + (number + 1) * each
         if chart.facets:
             shapes.append(
                 Words(
-                    left, upper + LINE_PX / 2, group[0].label, rgb=color_of(group[0]), strong=True
+                    left, upper + LINE_PX / 2, group[0].label, rgb=find_color(group[0]), strong=True
                 )
             )
             upper += LINE_PX + 4
-        last = at == len(groups) - 1
+        last = number == len(groups) - 1
         lower = max(lower if last else lower - _FACET_GAP_PX, upper + 1)
-        frame = _squared(chart, Frame(left, upper, right, lower, chart.x_limits, scale.left.limits))
+        frame = _match_scales(
+            chart, Frame(left, upper, right, lower, chart.x_limits, scale.left.limits)
+        )
         plots.append(frame)
-        shapes += _spans(chart, group, frame)
-        shapes += _axes(frame, scale, group, with_x=last)
-        shapes += _strokes(chart, group, scale, frame)
+        shapes += _draw_spans(chart, group, frame)
+        shapes += _draw_axes(frame, scale, group, with_x=last)
+        shapes += _draw_strokes(chart, group, scale, frame)
     shapes.append(Words((left + right) / 2, bottom + 1.7 * LINE_PX, chart.x_label, "middle"))
     return Drawing(chart.title, width, height, tuple(shapes), tuple(plots))
 
 
-def drawn_until(drawing: Drawing, x: float) -> Drawing:
+def cut_drawing(drawing: Drawing, x: float) -> Drawing:
     """Return the picture of a chart without its data after an x of its axis, with a line there."""
     shapes: list[Shape] = []
     for shape in drawing.shapes:
         plot = next((plot for plot in drawing.plots if _is_inside(shape, plot)), None)
         if isinstance(shape, Stroke) and plot is not None:
-            points = shape.points[shape.points[:, 0] <= float(plot.xs(x)) + _EDGE_PX]
+            points = shape.points[shape.points[:, 0] <= float(plot.find_xs(x)) + _EDGE_PX]
             if len(points):
                 shapes.append(replace(shape, points=points, dots=shape.dots or len(points) == 1))
         else:
             shapes.append(shape)
     for plot in drawing.plots:
-        at = float(plot.xs(x))
-        shapes.append(Rule(at, plot.top, at, plot.bottom))
+        end_px = float(plot.find_xs(x))
+        shapes.append(Rule(end_px, plot.top, end_px, plot.bottom))
     return replace(drawing, shapes=tuple(shapes))
 
 
@@ -272,7 +274,7 @@ def _is_inside(shape: Shape, plot: Frame) -> bool:
     return bool(rows.min() >= plot.top - _EDGE_PX and rows.max() <= plot.bottom + _EDGE_PX)
 
 
-def moved(drawing: Drawing, right_px: float, down_px: float) -> list[Shape]:
+def move_shapes(drawing: Drawing, right_px: float, down_px: float) -> list[Shape]:
     """Return the shapes of a picture at another place."""
     shapes: list[Shape] = []
     for shape in drawing.shapes:
@@ -292,35 +294,35 @@ def moved(drawing: Drawing, right_px: float, down_px: float) -> list[Shape]:
     return shapes
 
 
-def color_of(line: Line) -> Rgb:
+def find_color(line: Line) -> Rgb:
     """Return the colour of a line."""
     return COLORS[line.number % len(COLORS)]
 
 
-def shortened(text: str, width_px: float) -> str:
+def shorten(text: str, width_px: float) -> str:
     """Return a text that fits into a width; a truncated one ends in an ellipsis."""
-    most = max(int(width_px / LETTER_PX), 1)
-    return text if len(text) <= most else text[: most - 1] + "…"
+    max_letters = max(int(width_px / LETTER_PX), 1)
+    return text if len(text) <= max_letters else text[: max_letters - 1] + "…"
 
 
-def _width_on_right(scales: Scales) -> float:
-    return sum(_widest(scale.limits) + _SCALE_GAP_PX for scale in scales.right)
+def _measure_right_width(scales: Scales) -> float:
+    return sum(_measure_widest(scale.limits) + _SCALE_GAP_PX for scale in scales.right)
 
 
-def _legend(
+def _draw_legend(
     lines: Sequence[Line], scales: Scales, width: int, top: float
 ) -> tuple[list[Shape], int]:
     """Return the legend and its number of text lines: a stroke and a name per line, and which use a right scale."""
     shapes: list[Shape] = []
     x, row = float(PAD), 0
     for line in lines:
-        is_right = scales.of_variable(line.name) is not scales.left
-        text = shortened(line.label + (", right scale" if is_right else ""), width - 2 * PAD - 30)
+        is_right = scales.find_scale(line.name) is not scales.left
+        text = shorten(line.label + (", right scale" if is_right else ""), width - 2 * PAD - 30)
         width_px = 30 + len(text) * LETTER_PX
         if x > PAD and x + width_px > width - PAD:
             x, row = float(PAD), row + 1
         y = top + (row + 0.5) * LINE_PX
-        shapes.append(Stroke(np.array([[x, y], [x + 22, y]]), color_of(line)))
+        shapes.append(Stroke(np.array([[x, y], [x + 22, y]]), find_color(line)))
         shapes.append(Words(x + 28, y, text))
         x += width_px + 14
     return shapes, row + 1 if lines else 0
@@ -352,7 +354,7 @@ class Scales:
     right: tuple[Scale, ...]
 
     @classmethod
-    def of(cls, variables: Sequence[Variable], zoomed: bool) -> Scales:
+    def group(cls, variables: Sequence[Variable], zoomed: bool) -> Scales:
         """Return the scales of variables: that of light and of unknown units is on the left, if there is one."""
         groups: dict[str, list[Variable]] = {}
         common = next((values for _, values, scale in variables if not scale and len(values)), None)
@@ -360,13 +362,13 @@ class Scales:
             name, values, scale = variable
             own = not scale and common is not None and _is_flat(values, common)
             groups.setdefault(name if own else scale, []).append(variable)
-        made = {scale: _scale(group, zoomed) for scale, group in groups.items()} or {
-            "": _scale([], zoomed)
+        scales = {scale: _build_scale(group, zoomed) for scale, group in groups.items()} or {
+            "": _build_scale([], zoomed)
         }
-        left = made.pop("" if "" in made else next(iter(made)))
-        return cls(left, tuple(made.values()))
+        left = scales.pop("" if "" in scales else next(iter(scales)))
+        return cls(left, tuple(scales.values()))
 
-    def of_variable(self, name: str) -> Scale:
+    def find_scale(self, name: str) -> Scale:
         """Return the scale of a variable."""
         return next((scale for scale in self.right if name in scale.names), self.left)
 
@@ -381,21 +383,23 @@ class Scales:
 
 def _is_flat(values: FloatArray, others: FloatArray) -> bool:
     """Return whether values would be a flat line on the scale of others, or the others on theirs."""
-    least, greatest = sorted(float(np.abs(one).max(initial=0.0)) for one in (values, others))
-    return 0.0 < least * _SEEN < greatest
+    smaller, larger = sorted(float(np.abs(series).max(initial=0.0)) for series in (values, others))
+    return 0.0 < smaller * _SEEN < larger
 
 
-def _scale(variables: Sequence[Variable], zoomed: bool) -> Scale:
-    found = {unit_of(name) for name, _, _ in variables}
+def _build_scale(variables: Sequence[Variable], zoomed: bool) -> Scale:
+    units_seen = {find_unit(name) for name, _, _ in variables}
     names = tuple(name for name, _, _ in variables)
-    return Scale(_limits(variables, zoomed), found.pop() if len(found) == 1 else "", names)
+    return Scale(
+        _find_limits(variables, zoomed), units_seen.pop() if len(units_seen) == 1 else "", names
+    )
 
 
-def _scales_of(lines: Sequence[Line], zoomed: bool) -> Scales:
-    return Scales.of([(line.name, line.ys, line.scale) for line in lines], zoomed)
+def _group_lines(lines: Sequence[Line], zoomed: bool) -> Scales:
+    return Scales.group([(line.name, line.ys, line.scale) for line in lines], zoomed)
 
 
-def _limits(variables: Sequence[Variable], zoomed: bool) -> Limits:
+def _find_limits(variables: Sequence[Variable], zoomed: bool) -> Limits:
     ends = [
         (name, float(values.min()), float(values.max()))
         for name, values, _ in variables
@@ -403,19 +407,21 @@ def _limits(variables: Sequence[Variable], zoomed: bool) -> Limits:
     ]
     if not ends:
         return 0.0, 1.0
-    from_zero = not zoomed and any(units.begins_at_zero(*one) for one in ends)
-    return value_limits(min(low for _, low, _ in ends), max(high for _, _, high in ends), from_zero)
+    from_zero = not zoomed and any(units.begins_at_zero(*end) for end in ends)
+    return choose_limits(
+        min(low for _, low, _ in ends), max(high for _, _, high in ends), from_zero
+    )
 
 
-def _widest(limits: Limits) -> float:
+def _measure_widest(limits: Limits) -> float:
     # The number of ticks depends on the height; with twenty, labels are longest.
-    return max((len(text) for _, text in labelled(limits, 20)), default=1) * LETTER_PX + 8
+    return max((len(text) for _, text in label_ticks(limits, 20)), default=1) * LETTER_PX + 8
 
 
-def _squared(chart: ChartData, frame: Frame) -> Frame:
+def _match_scales(chart: ChartData, frame: Frame) -> Frame:
     """Use equal scales on both axes, for a path on the field."""
     names = [chart.x_label.partition(" (")[0], *(line.name for line in chart.lines)]
-    if not chart.path or {unit_of(name) for name in names} != {"mm"}:
+    if not chart.path or {find_unit(name) for name in names} != {"mm"}:
         return frame
     width_px, height_px = frame.right - frame.left, frame.bottom - frame.top
     scale = max((frame.x[1] - frame.x[0]) / width_px, (frame.y[1] - frame.y[0]) / height_px)
@@ -426,28 +432,28 @@ def _squared(chart: ChartData, frame: Frame) -> Frame:
     return Frame(frame.left, frame.top, frame.right, frame.bottom, limits[0], limits[1])
 
 
-def grid_of(frame: Frame, *, with_x: bool = True) -> list[Shape]:
+def draw_grid(frame: Frame, *, with_x: bool = True) -> list[Shape]:
     """Return the grid behind the data with the labels of the left scale, and of the lower one if `with_x`."""
     shapes: list[Shape] = []
-    for value, text in labelled(frame.y, _labels_above(frame)):
-        y = float(frame.ys(value))
+    for value, text in label_ticks(frame.y, _count_labels(frame)):
+        y = float(frame.find_ys(value))
         shapes += [
             Rule(frame.left, y, frame.right, y, faint=True),
             Words(frame.left - 6, y, text, "end"),
         ]
-    for value, text in labelled(frame.x, max(int((frame.right - frame.left) / 90), 2)):
-        x = float(frame.xs(value))
+    for value, text in label_ticks(frame.x, max(int((frame.right - frame.left) / 90), 2)):
+        x = float(frame.find_xs(value))
         shapes.append(Rule(x, frame.top, x, frame.bottom, faint=True))
         if with_x:
             shapes.append(Words(x, frame.bottom + 0.7 * LINE_PX, text, "middle"))
     return shapes
 
 
-def _labels_above(frame: Frame) -> int:
+def _count_labels(frame: Frame) -> int:
     return max(int((frame.bottom - frame.top) / 40), 2)
 
 
-def borders_of(frame: Frame) -> list[Shape]:
+def draw_borders(frame: Frame) -> list[Shape]:
     """Return the left and the lower axis."""
     return [
         Rule(frame.left, frame.top, frame.left, frame.bottom),
@@ -455,31 +461,33 @@ def borders_of(frame: Frame) -> list[Shape]:
     ]
 
 
-def _axes(frame: Frame, scales: Scales, lines: Sequence[Line], *, with_x: bool) -> list[Shape]:
-    shapes = grid_of(frame, with_x=with_x)
+def _draw_axes(frame: Frame, scales: Scales, lines: Sequence[Line], *, with_x: bool) -> list[Shape]:
+    shapes = draw_grid(frame, with_x=with_x)
     x = frame.right
     for scale in scales.right:
-        other = frame.with_y(scale.limits)
+        other = frame.replace_y(scale.limits)
         rgb = (
-            next(color_of(line) for line in lines if line.name == scale.names[0])
+            next(find_color(line) for line in lines if line.name == scale.names[0])
             if len(scale.names) == 1
             else None
         )
-        for value, text in labelled(scale.limits, _labels_above(frame)):
-            y = float(other.ys(value))
+        for value, text in label_ticks(scale.limits, _count_labels(frame)):
+            y = float(other.find_ys(value))
             shapes += [Rule(x, y, x + 4, y), Words(x + 7, y, text, rgb=rgb)]
         shapes.append(Rule(x, frame.top, x, frame.bottom))
-        x += _widest(scale.limits) + _SCALE_GAP_PX
-    return shapes + borders_of(frame)
+        x += _measure_widest(scale.limits) + _SCALE_GAP_PX
+    return shapes + draw_borders(frame)
 
 
-def _strokes(chart: ChartData, lines: Sequence[Line], scales: Scales, frame: Frame) -> list[Shape]:
+def _draw_strokes(
+    chart: ChartData, lines: Sequence[Line], scales: Scales, frame: Frame
+) -> list[Shape]:
     shapes: list[Shape] = []
     for line in lines:
-        own = frame.with_y(scales.of_variable(line.name).limits)
+        own = frame.replace_y(scales.find_scale(line.name).limits)
         if len(line.xs):
-            points = np.column_stack((own.xs(line.xs), own.ys(line.ys)))
-            shapes.append(Stroke(points, color_of(line), dots=chart.marks or len(points) == 1))
+            points = np.column_stack((own.find_xs(line.xs), own.find_ys(line.ys)))
+            shapes.append(Stroke(points, find_color(line), dots=chart.marks or len(points) == 1))
     if not shapes:
         shapes.append(
             Words(
@@ -492,7 +500,7 @@ def _strokes(chart: ChartData, lines: Sequence[Line], scales: Scales, frame: Fra
     return shapes
 
 
-def _spans(chart: ChartData, lines: Sequence[Line], frame: Frame) -> list[Shape]:
+def _draw_spans(chart: ChartData, lines: Sequence[Line], frame: Frame) -> list[Shape]:
     names = {line.name for line in lines}
     seen = [
         span
@@ -502,10 +510,11 @@ def _spans(chart: ChartData, lines: Sequence[Line], frame: Frame) -> list[Shape]
     shades: list[Shade] = []
     for span in seen:
         x1, x2 = (
-            float(frame.xs(min(max(x, frame.x[0]), frame.x[1]))) for x in (span.start, span.stop)
+            float(frame.find_xs(min(max(x, frame.x[0]), frame.x[1])))
+            for x in (span.start, span.stop)
         )
         shades.append(Shade(x1, frame.top, x2 - x1, frame.bottom - frame.top))
-    texts = names_of(seen, [shade.width / LETTER_PX for shade in shades])
+    texts = fit_names(seen, [shade.width / LETTER_PX for shade in shades])
     words = (
         Words(shade.x + shade.width / 2, frame.bottom - LINE_PX / 2, name, "middle")
         for shade, name in zip(shades, texts, strict=True)
@@ -518,7 +527,7 @@ _NARROW = 8
 """Spans of fewer letters do not keep others from their long names."""
 
 
-def names_of(spans: Sequence[Span], letters: Sequence[float], overhang: int = 0) -> list[str]:
+def fit_names(spans: Sequence[Span], letters: Sequence[float], overhang: int = 0) -> list[str]:
     """Return the names of spans: the long forms, if all but those of very narrow spans fit; empty without room.
 
     Args:

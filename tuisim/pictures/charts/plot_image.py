@@ -11,9 +11,9 @@ import numpy as np
 
 from tuisim.base.data_class import dataclass
 from tuisim.pictures.charts import axes
-from tuisim.pictures.charts.bands import columns_of, placed_names
-from tuisim.pictures.charts.canvas import BRAILLE, Curve, in_turns
-from tuisim.pictures.charts.traces import clip_line, min_max
+from tuisim.pictures.charts.bands import find_columns, place_names
+from tuisim.pictures.charts.canvas import BRAILLE, Curve, choose_owners
+from tuisim.pictures.charts.traces import clip_line, reduce_points
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -53,7 +53,7 @@ class Plot:
         """Its rows and columns in cells, with the axes."""
         return self.rows + self.has_time_line, 1 + self.columns
 
-    def across(self, times_s: FloatArray, width: int) -> _Points:
+    def measure_across(self, times_s: FloatArray, width: int) -> _Points:
         """Return how far from the left edge of the canvas times are, for cells of that width."""
         # As `axes.column_of`, so that a label is below its tick.
         low, high = self.x_limits
@@ -61,7 +61,7 @@ class Plot:
 
     def down(self, values: FloatArray, height: int) -> _Points:
         """Return how far from the top of the canvas values are, for cells of that height."""
-        return axes.row_of(values, self.y_limits, self.rows) * height
+        return axes.measure_row(values, self.y_limits, self.rows) * height
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,7 +89,7 @@ _LINE_SHARE, _MARK_SHARE = 1 / 9, 1 / 5
 """Width of a line and radius of a mark, of the height of a cell."""
 
 
-def plot_image(plot: Plot, cell: tuple[int, int], inks: PlotInks) -> Pixels:
+def draw_plot(plot: Plot, cell: tuple[int, int], inks: PlotInks) -> Pixels:
     """Return a plot as an image of the size of its cells.
 
     Args:
@@ -102,23 +102,23 @@ def plot_image(plot: Plot, cell: tuple[int, int], inks: PlotInks) -> Pixels:
     image: Pixels = np.full((rows * height, cols * width, 3), inks.ground, np.uint8)
     inside = image[: plot.rows * height, width : (1 + plot.columns) * width]
     for number, span in enumerate(plot.spans):
-        start, stop = _cells_of(span, plot, width)
+        start, stop = _find_cells(span, plot, width)
         inside[:, start:stop] = inks.shades[number % len(inks.shades)]
     _draw_axes(image, inside, plot, cell, inks)
-    covered = [_coverage(plot, curve, cell) for curve in plot.curves]
+    covered = [_measure_coverage(plot, curve, cell) for curve in plot.curves]
     _draw_names(inside, covered, plot, cell, inks)
-    seen = in_turns(np.array(covered, np.bool_), _TURN * width) if covered else ()
+    seen = choose_owners(np.array(covered, np.bool_), _TURN * width) if covered else ()
     for curve, coverage, is_seen in zip(plot.curves, covered, seen, strict=True):
         _lay(inside, coverage * is_seen, curve.rgb)
-    for at in _places(plot.across(np.array(plot.cursors), width), inside.shape[1]):
-        inside[:, at] = inks.cursor
+    for column in _clip_places(plot.measure_across(np.array(plot.cursors), width), inside.shape[1]):
+        inside[:, column] = inks.cursor
     return image
 
 
-def _cells_of(span: Span, plot: Plot, width: int) -> tuple[int, int]:
+def _find_cells(span: Span, plot: Plot, width: int) -> tuple[int, int]:
     """Return the first column of points of a span, and the one behind it."""
     start, stop = np.clip(
-        plot.across(np.array([span.start, span.stop]), width), 0, plot.columns * width
+        plot.measure_across(np.array([span.start, span.stop]), width), 0, plot.columns * width
     ).astype(int)
     return int(start), int(stop) + 1
 
@@ -135,20 +135,20 @@ def _draw_names(
     from PIL import Image, ImageDraw
 
     width, height = cell
-    places = [columns_of(span, plot.x_limits, plot.columns) for span in plot.spans]
+    places = [find_columns(span, plot.x_limits, plot.columns) for span in plot.spans]
 
     def is_free(row: int, first: int, stop: int) -> bool:
         return not any(
-            one[row * height : (row + 1) * height, first * width : stop * width].any()
-            for one in covered
+            cover[row * height : (row + 1) * height, first * width : stop * width].any()
+            for cover in covered
         )
 
-    cursors = [axes.column_of(x, plot.x_limits, plot.columns) for x in plot.cursors]
-    for row, first, text in placed_names(
+    cursors = [axes.find_column(x, plot.x_limits, plot.columns) for x in plot.cursors]
+    for row, first, text in place_names(
         plot.spans, places, plot.rows, plot.columns, is_free, cursors
     ):
         mask = Image.new("L", (len(text) * width, height))
-        ImageDraw.Draw(mask).text((0, height // 2), text, 255, _font(width), anchor="lm")
+        ImageDraw.Draw(mask).text((0, height // 2), text, 255, _load_font(width), anchor="lm")
         place = inside[
             row * height : (row + 1) * height, first * width : (first + len(text)) * width
         ]
@@ -156,7 +156,7 @@ def _draw_names(
 
 
 @cache
-def _font(width: int) -> FreeTypeFont:
+def _load_font(width: int) -> FreeTypeFont:
     """Return the font whose letters have a width in points."""
     from PIL import ImageFont
 
@@ -168,9 +168,9 @@ def _draw_axes(
     image: Pixels, inside: Pixels, plot: Plot, cell: tuple[int, int], inks: PlotInks
 ) -> None:
     width, height = cell
-    grid = _mixed(inks.ground, inks.axis, _GRID_SHARE)
-    across = _places(plot.across(np.array(plot.x_ticks), width), inside.shape[1])
-    down = _places(plot.down(np.array(plot.y_ticks), height), len(inside))
+    grid = _mix_colors(inks.ground, inks.axis, _GRID_SHARE)
+    across = _clip_places(plot.measure_across(np.array(plot.x_ticks), width), inside.shape[1])
+    down = _clip_places(plot.down(np.array(plot.y_ticks), height), len(inside))
     inside[:, across] = grid
     inside[down] = grid
     bottom = len(inside)
@@ -181,20 +181,20 @@ def _draw_axes(
         image[bottom : bottom + 1 + height // 4, width + across] = inks.axis
 
 
-def _places(points: _Points, length: int) -> npt.NDArray[np.intp]:
+def _clip_places(points: _Points, length: int) -> npt.NDArray[np.intp]:
     """Return the points of an image at places on it; others are left out."""
     places = np.floor(points).astype(np.intp)
     return places[(places >= 0) & (places < length)]
 
 
-def _mixed(ground: Rgb, rgb: Rgb, share: float) -> Rgb:
+def _mix_colors(ground: Rgb, rgb: Rgb, share: float) -> Rgb:
     red, green, blue = (
         round(below + (above - below) * share) for below, above in zip(ground, rgb, strict=True)
     )
     return red, green, blue
 
 
-def _coverage(plot: Plot, curve: Curve, cell: tuple[int, int]) -> npt.NDArray[np.uint8]:
+def _measure_coverage(plot: Plot, curve: Curve, cell: tuple[int, int]) -> npt.NDArray[np.uint8]:
     """Return how much of each point of the canvas a curve covers, from 0 to `_LEVELS`."""
     # Imported on demand: few terminals need it.
     from PIL import Image, ImageDraw
@@ -204,9 +204,11 @@ def _coverage(plot: Plot, curve: Curve, cell: tuple[int, int]) -> npt.NDArray[np
     mask = Image.new("L", (size[0] * _FINE, size[1] * _FINE))
     draw = ImageDraw.Draw(mask)
     times_s, values = clip_line(
-        *min_max(curve.times_s, curve.values, plot.x_limits, size[0]), plot.x_limits
+        *reduce_points(curve.times_s, curve.values, plot.x_limits, size[0]), plot.x_limits
     )
-    points = np.stack((plot.across(times_s, width), plot.down(values, height)), axis=1) * _FINE
+    points = (
+        np.stack((plot.measure_across(times_s, width), plot.down(values, height)), axis=1) * _FINE
+    )
     if curve.marker != BRAILLE or len(points) == 1:
         radius = max(height * _MARK_SHARE, 1.5) * _FINE
         for x, y in points.tolist():
@@ -222,7 +224,7 @@ def _coverage(plot: Plot, curve: Curve, cell: tuple[int, int]) -> npt.NDArray[np
 
 
 def _lay(image: Pixels, covered: npt.NDArray[np.uint8], rgb: Rgb) -> None:
-    at = np.nonzero(covered)
-    below = image[at].astype(np.float32)
-    share = covered[at][:, np.newaxis] / _LEVELS
-    image[at] = np.rint(below + (np.array(rgb) - below) * share).astype(np.uint8)
+    cells = np.nonzero(covered)
+    below = image[cells].astype(np.float32)
+    share = covered[cells][:, np.newaxis] / _LEVELS
+    image[cells] = np.rint(below + (np.array(rgb) - below) * share).astype(np.uint8)

@@ -10,10 +10,10 @@ from tuisim.engine.runs.samples import Sample
 from tuisim.logs.magnitude import limit_drawn
 from tuisim.pictures.charts.axes import Limits, widen_times
 from tuisim.pictures.charts.layout import ChartData, Line
-from tuisim.pictures.charts.traces import Pyramid, clip_line, min_max, scale_of
+from tuisim.pictures.charts.traces import Pyramid, clip_line, find_scale_name, reduce_points
 
 
-def sample_chart(
+def build_sample_chart(
     samples: Iterable[Sample], columns: int, limits: Limits | None = None
 ) -> ChartData:
     """Return the samples over simulated time as `tuisim log plot` draws them, one line per name.
@@ -26,16 +26,18 @@ def sample_chart(
     for sample in samples:
         points.setdefault(sample.name, []).append((sample.time_s, sample.value))
     series = {name: Pyramid(*np.array(rows).T) for name, rows in points.items()}
-    ends = [found.times_s[[0, -1]] for found in series.values() if len(found.times_s)]
+    ends = [trace.times_s[[0, -1]] for trace in series.values() if len(trace.times_s)]
     low, high = (min(end[0] for end in ends), max(end[1] for end in ends)) if ends else (0.0, 1.0)
     limits = limits or widen_times(float(low), float(high))
     lines = tuple(
         Line(
             name,
-            *clip_line(*min_max(found.times_s, limit_drawn(found.values), limits, columns), limits),
+            *clip_line(
+                *reduce_points(trace.times_s, limit_drawn(trace.values), limits, columns), limits
+            ),
             number,
-            scale_of(name),
+            find_scale_name(name),
         )
-        for number, (name, found) in enumerate(series.items())
+        for number, (name, trace) in enumerate(series.items())
     )
     return ChartData("", lines, limits, "time (s)")

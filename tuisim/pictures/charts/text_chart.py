@@ -13,19 +13,19 @@ from tuisim.base.data_class import dataclass
 from tuisim.base.errors import printable
 from tuisim.pictures.charts import axes
 from tuisim.pictures.charts.axes import Limits
-from tuisim.pictures.charts.bands import FREE, NAME, shaded
+from tuisim.pictures.charts.bands import FREE, NAME, shade_rows
 from tuisim.pictures.charts.canvas import (
     AXIS,
     BRAILLE,
     PLAIN,
     Curve,
     TextRun,
-    canvas,
-    styled,
-    xy_lines,
+    build_style,
+    draw_canvas,
+    draw_xy_chart,
 )
 from tuisim.pictures.charts.cell_scales import CellScales
-from tuisim.pictures.charts.layout import COLORS, ChartData, Line, Span, color_of, unit_of
+from tuisim.pictures.charts.layout import COLORS, ChartData, Line, Span, find_color, find_unit
 from tuisim.pictures.charts.plot_image import Plot
 from tuisim.pictures.charts.traces import Trace, Traces
 from tuisim.terminal.text_runs import Run, cut
@@ -103,10 +103,10 @@ class ChartPicture:
     plot: Plot | None = None
     """What is on the canvas, for an image in place of it; None if there is none, or no room for it."""
 
-    def time_at(self, column: int, row: int) -> float | None:
+    def find_time_s(self, column: int, row: int) -> float | None:
         """Return the time at a place, None beside the canvas."""
         if 0 <= column - self.left < self.columns and 0 <= row - self.top < self.rows:
-            return axes.at_column(column - self.left, self.x_limits, self.columns)
+            return axes.find_column_value(column - self.left, self.x_limits, self.columns)
         return None
 
 
@@ -121,9 +121,9 @@ class ChartPainter:
         self, traces: Traces, state: ChartState, width: int, height: int, *, is_blank: bool = False
     ) -> ChartPicture:
         """Return the chart in a panel of that inner size, each at least 1; `is_blank` for an image on the canvas."""
-        drawn = traces.drawn()
+        drawn = traces.list_drawn()
         by_mark = state.grey and (len(drawn) > 1 or state.is_ascii)
-        lines, boxes = _tick_boxes(traces, state.selected, by_mark, width)
+        lines, boxes = _draw_tick_boxes(traces, state.selected, by_mark, width)
         if not drawn:
             return ChartPicture(
                 (lines + _empty(traces, width, height - len(lines), state.selected))[:height], boxes
@@ -131,7 +131,7 @@ class ChartPainter:
         with_line = height >= _LINE_ROWS
         rows = max(height - len(lines) - 1 - with_line, 1)
         x_limits = state.x_limits or _time_limits(traces.end_s(), state.grows)
-        scales = CellScales.of(drawn, width, rows, x_limits, state.zoomed, state.margins)
+        scales = CellScales.build(drawn, width, rows, x_limits, state.zoomed, state.margins)
         columns = max(width - scales.left_width - scales.right_width, 2)
         left, top = scales.left_width, len(lines)
         cursors = [time_s for time_s in (state.cursor_s, state.other_s) if time_s is not None]
@@ -143,7 +143,7 @@ class ChartPainter:
         if has_room:
             ticks = (
                 tuple(axes.time_ticks(x_limits, columns)),
-                tuple(axes.row_ticks(scales.y_limits, rows)),
+                tuple(axes.find_row_ticks(scales.y_limits, rows)),
             )
             plot = Plot(
                 curves,
@@ -156,21 +156,23 @@ class ChartPainter:
                 tuple(cursors),
                 state.spans,
             )
-        line, below = axes.time_axis(x_limits, columns, state.unit)
+        line, below = axes.draw_time_axis(x_limits, columns, state.unit)
         if is_blank and plot:
-            lines += [scales.framed(row, [(" " * columns, AXIS)]) for row in range(rows)] + [
+            lines += [scales.frame_row(row, [(" " * columns, AXIS)]) for row in range(rows)] + [
                 []
             ] * with_line
         else:
             self._draw(drawn, scales, columns, rows, x_limits, curves)
-            at = sorted({axes.column_of(time_s, x_limits, columns) for time_s in cursors})
+            xs = sorted({axes.find_column(time_s, x_limits, columns) for time_s in cursors})
             on_grid = scales.labels[0] if state.grid and not state.is_ascii else {}
-            inside = [_styled(self._canvas[row], is_on_grid=row in on_grid) for row in range(rows)]
+            inside = [
+                _style_runs(self._canvas[row], is_on_grid=row in on_grid) for row in range(rows)
+            ]
             if state.spans:
-                inside = shaded(
-                    inside, state.spans, x_limits, columns, at, _style_of_names(drawn, state.spans)
+                inside = shade_rows(
+                    inside, state.spans, x_limits, columns, xs, _style_of_names(drawn, state.spans)
                 )
-            lines += [scales.framed(row, _with_cursors(inside[row], at)) for row in range(rows)]
+            lines += [scales.frame_row(row, _draw_cursors(inside[row], xs)) for row in range(rows)]
             if with_line:
                 lines.append([(" " * (left - 1) + "└" + line, AXIS)])
         lines.append([(" " * left + below, AXIS)])
@@ -190,7 +192,7 @@ class ChartPainter:
         if key == self._key:
             return
         self._key = key
-        self._canvas = canvas(curves, columns, rows, x_limits, scales.y_limits)
+        self._canvas = draw_canvas(curves, columns, rows, x_limits, scales.y_limits)
 
 
 _MIN_SPAN_S = 1e-9
@@ -199,16 +201,16 @@ _MIN_SPAN_S = 1e-9
 
 def _time_limits(end_s: float, grows: bool) -> Limits:
     if grows:
-        return axes.growing_limits(end_s)
+        return axes.grow_limits(end_s)
     return 0.0, end_s if end_s > _MIN_SPAN_S else 1.0
 
 
-def _styled(runs: list[TextRun], is_on_grid: bool) -> list[Run]:
+def _style_runs(runs: list[TextRun], is_on_grid: bool) -> list[Run]:
     """Return a row of the canvas, with the line of the grid where nothing is drawn."""
     if not is_on_grid:
-        return [(text, styled(rgb)) for text, rgb in runs]
+        return [(text, build_style(rgb)) for text, rgb in runs]
     return [
-        (text.replace(" ", _GRID), _FAINT) if rgb is None else (text, styled(rgb))
+        (text.replace(" ", _GRID), _FAINT) if rgb is None else (text, build_style(rgb))
         for text, rgb in runs
     ]
 
@@ -217,27 +219,27 @@ def _style_of_names(drawn: Sequence[Trace], spans: Sequence[Span]) -> Style:
     """Return the style of the names of bands: the colour of their curve, where there are others."""
     names = {span.name for span in spans}
     of_bands = [trace for trace in drawn if {trace.name} == names]
-    return styled(of_bands[0].rgb) if of_bands and len(drawn) > 1 else NAME
+    return build_style(of_bands[0].rgb) if of_bands and len(drawn) > 1 else NAME
 
 
-def _with_cursors(runs: list[Run], columns: Sequence[int]) -> list[Run]:
+def _draw_cursors(runs: list[Run], columns: Sequence[int]) -> list[Run]:
     """Return a row of the canvas with lines at rising columns; a column outside it draws none."""
     line: list[Run] = []
-    at = 0
+    column_at = 0
     for text, style in runs:
         done = 0
-        for inside in (column - at for column in columns):
+        for inside in (column - column_at for column in columns):
             if 0 <= inside < len(text):
                 mark = text[inside]
                 line.append((text[done:inside], style))
                 line.append(("│", _CURSOR) if mark in FREE else (mark, style + _CURSOR))
                 done = inside + 1
         line.append((text[done:], style))
-        at += len(text)
+        column_at += len(text)
     return [run for run in line if run[0]]
 
 
-def _tick_boxes(
+def _draw_tick_boxes(
     traces: Traces, selected: str | None, by_mark: bool, width: int
 ) -> tuple[list[list[Run]], tuple[Box, ...]]:
     """Return the row of tick boxes, none without a trace, and where they are; what does not fit is counted."""
@@ -249,71 +251,72 @@ def _tick_boxes(
         (cut(f"[{'x' if trace.on else ' '}] {trace.name}", max(widest, 1)), trace)
         for trace in every
     ]
-    shown = _boxes_in_sight(texts, selected, width)
+    numbers = _choose_boxes(texts, selected, width)
     runs: list[Run] = []
     boxes, column = [], 0
-    for text, trace in (texts[at] for at in shown):
+    for text, trace in (texts[number] for number in numbers):
         if column:
             runs.append((_BETWEEN_BOXES, PLAIN))
             column += len(_BETWEEN_BOXES)
         boxes.append(Box(0, column, column + len(text), trace.name))
-        runs += _box_runs(text, trace, trace.name == selected, by_mark)
+        runs += _draw_box(text, trace, trace.name == selected, by_mark)
         column += len(text)
-    if more := len(texts) - len(shown):
+    if more := len(texts) - len(numbers):
         runs.append((f"+{more}".rjust(width - column), AXIS))
     return [runs], tuple(boxes)
 
 
-def _boxes_in_sight(
+def _choose_boxes(
     texts: Sequence[tuple[str, Trace]], selected: str | None, width: int
 ) -> list[int]:
     """Return the numbers of the boxes that fit into a row, in order: the selected one, what is drawn, then others."""
     gap = len(_BETWEEN_BOXES)
     if sum(len(text) + gap for text, _ in texts) - gap <= width:
         return [*range(len(texts))]
-    shown: list[int] = []
+    chosen: list[int] = []
     room = width - len(f"+{len(texts)}") - 1
-    for at in sorted(
-        range(len(texts)), key=lambda at: (texts[at][1].name != selected, not texts[at][1].on)
+    for number in sorted(
+        range(len(texts)),
+        key=lambda number: (texts[number][1].name != selected, not texts[number][1].on),
     ):
-        room -= len(texts[at][0]) + gap * bool(shown)
-        if room < 0 and shown:
+        room -= len(texts[number][0]) + gap * bool(chosen)
+        if room < 0 and chosen:
             break
-        shown.append(at)
-    return sorted(shown)
+        chosen.append(number)
+    return sorted(chosen)
 
 
-def _box_runs(text: str, trace: Trace, selected: bool, by_mark: bool) -> list[Run]:
-    color = styled(trace.rgb) if trace.on else AXIS
+def _draw_box(text: str, trace: Trace, selected: bool, by_mark: bool) -> list[Run]:
+    color = build_style(trace.rgb) if trace.on else AXIS
     if by_mark and trace.on:
         text = text.replace("[x]", f"[{trace.mark}]", 1)
     return [(text, color + Style(reverse=True) if selected else color)]
 
 
-def margins_of(
+def measure_margins(
     parts: Sequence[Traces], state: ChartState, width: int, rows: int
 ) -> tuple[int, int]:
     """Return the columns beside the canvases of charts below each other, of so many rows, that are in line."""
-    drawn = [part.drawn() for part in parts if part.drawn()]
+    drawn = [part.list_drawn() for part in parts if part.list_drawn()]
     limits = state.x_limits or (0.0, 1.0)
     rows = max(rows - 2 - (rows >= _LINE_ROWS), 1)
-    scales = [CellScales.of(traces, width, rows, limits, state.zoomed) for traces in drawn]
-    return max((one.left_width for one in scales), default=0), max(
-        (one.right_width for one in scales), default=0
+    scales = [CellScales.build(traces, width, rows, limits, state.zoomed) for traces in drawn]
+    return max((cell_scales.left_width for cell_scales in scales), default=0), max(
+        (cell_scales.right_width for cell_scales in scales), default=0
     )
 
 
-def values_at(drawn: Sequence[Trace], cursor_s: float, unit: str, width: int) -> str:
+def format_values(drawn: Sequence[Trace], cursor_s: float, unit: str, width: int) -> str:
     """Return the value of each trace at a time, as many as fit."""
     line = f"{cursor_s:.2f} {unit}"
-    for at, trace in enumerate(drawn):
-        value = trace.at(cursor_s)
+    for number, trace in enumerate(drawn):
+        value = trace.find_value(cursor_s)
         read = (
-            f"  {trace.name} {value:.5g}{unit_of(trace.name)}"
+            f"  {trace.name} {value:.5g}{find_unit(trace.name)}"
             if value is not None
             else f"  {trace.name} –"
         )
-        more = len(drawn) - at - 1
+        more = len(drawn) - number - 1
         if len(line) + len(read) + (4 if more else 0) > width:
             return f"{line} +{more + 1}"[:width]
         line += read
@@ -341,52 +344,52 @@ def _empty(traces: Traces, width: int, height: int, selected: str | None) -> lis
     ]
 
 
-LEAST_ROWS = 8
+MIN_ROWS = 8
 """Minimum height of a chart of one variable."""
 
 
-def text_of(chart: ChartData, width: int, height: int, *, colors: bool = False) -> Text:
+def draw_text(chart: ChartData, width: int, height: int, *, colors: bool = False) -> Text:
     """Return a chart as text of a given size in characters.
 
     Args:
         width, height: Size in characters; facets use more lines if necessary.
         colors: Whether colours distinguish the lines; otherwise marks do.
     """
-    shown: list[list[Run]] = []
+    drawn_lines: list[list[Run]] = []
     if chart.path:
         (line,) = chart.lines
         trace = _trace(line)
         marker = trace.mark if chart.marks else BRAILLE
         names = chart.x_label.partition(" (")[0], printable(line.name)
-        shown = xy_lines(line.xs, line.ys, None, names, trace.rgb, marker, width, height)
+        drawn_lines = draw_xy_chart(line.xs, line.ys, None, names, trace.rgb, marker, width, height)
     else:
         groups = [(line,) for line in chart.lines] if chart.facets else [chart.lines]
-        rows = max(height // len(groups), LEAST_ROWS)
+        rows = max(height // len(groups), MIN_ROWS)
         parts = [Traces({line.name: _trace(line) for line in group}) for group in groups]
         grey = not colors and not chart.facets and len(chart.lines) > 1
         state = ChartState(
             x_limits=chart.x_limits,
             grey=grey,
             marks=chart.marks,
-            unit=_unit(chart),
+            unit=_find_common_unit(chart),
             zoomed=chart.zoomed,
         )
-        state = replace(state, margins=margins_of(parts, state, width, rows))
+        state = replace(state, margins=measure_margins(parts, state, width, rows))
         for part in parts:
-            shown += ChartPainter().paint(part, state, width, rows).lines
+            drawn_lines += ChartPainter().paint(part, state, width, rows).lines
     lines = [
         Text(chart.title, "bold"),
-        *(Text.assemble(*map(_on_any_ground, line)) for line in shown),
+        *(Text.assemble(*map(_on_any_ground, line)) for line in drawn_lines),
     ]
-    for at in lines:
-        at.rstrip()
-        at.truncate(width)
+    for row in lines:
+        row.rstrip()
+        row.truncate(width)
     return Text("\n").join(lines)
 
 
 def _trace(line: Line) -> Trace:
     trace = Trace(printable(line.name), line.number)
-    trace.rgb, trace.scale = color_of(line), line.scale
+    trace.rgb, trace.scale = find_color(line), line.scale
     trace.add(line.xs.tolist(), line.ys.tolist())
     return trace
 
@@ -397,5 +400,5 @@ def _on_any_ground(run: Run) -> Run:
     return run if style.color and style.color.triplet in COLORS else (text, Style())
 
 
-def _unit(chart: ChartData) -> str:
+def _find_common_unit(chart: ChartData) -> str:
     return chart.x_label.rpartition("(")[2].rstrip(")") if "(" in chart.x_label else ""

@@ -31,13 +31,13 @@ MARKS = "o+x*#%=~&@"
 _OTHER_READINGS = ("ultrasonic", "gyro", "wheel")
 """Names that begin so are distances and angles, whose unit a program may choose."""
 
-MOST_POINTS = 1 << 16
+MAX_POINTS = 1 << 16
 """A trace with more points keeps the least and the greatest of each few, so that a run without end needs a bounded
 memory: what was recorded long ago is drawn as before, unless one zooms in."""
 _THINNED = 4
 
 
-def scale_of(name: str) -> str:
+def find_scale_name(name: str) -> str:
     """Return the scale of a variable: its unit or reading; empty for light, in percent or not, and what is unknown."""
     name = name.partition(" #")[0]
     sign = parse_unit(name).sign
@@ -60,7 +60,7 @@ class Trace:
         self.on = self.logged = logged
         self.rgb = TRACE_COLORS[number % len(TRACE_COLORS)]
         self.mark = MARKS[number % len(MARKS)]
-        self.scale = scale_of(name)
+        self.scale = find_scale_name(name)
         """Which scale it is drawn on; traces of one scale have the same text."""
         self._times_s = np.empty(256)
         self._values = np.empty(256)
@@ -93,29 +93,33 @@ class Trace:
             # A program may log its own times; lookups need them sorted.
             order = np.argsort(self.times_s, kind="stable")
             self._times_s[:end], self._values[:end] = self.times_s[order], self._values[order]
-        if end > MOST_POINTS:
-            self._thin()
+        if end > MAX_POINTS:
+            self._drop_points()
 
-    def _thin(self) -> None:
+    def _drop_points(self) -> None:
         """Keep two of every four points: the least and the greatest, in their order."""
         whole = self._count // _THINNED * _THINNED
         values = self._values[:whole].reshape(-1, _THINNED)
-        kept = np.sort(
+        offsets = np.sort(
             np.stack(
                 (values.argmin(axis=1), _THINNED - 1 - values[:, ::-1].argmax(axis=1)), axis=1
             ),
             axis=1,
         )
-        at = (kept + np.arange(0, whole, _THINNED)[:, np.newaxis]).ravel()
-        at = np.concatenate((at, np.arange(whole, self._count)))
-        self._times_s, self._values, self._count = self._times_s[at], self._values[at], len(at)
+        indices = (offsets + np.arange(0, whole, _THINNED)[:, np.newaxis]).ravel()
+        indices = np.concatenate((indices, np.arange(whole, self._count)))
+        self._times_s, self._values, self._count = (
+            self._times_s[indices],
+            self._values[indices],
+            len(indices),
+        )
 
-    def at(self, time_s: float) -> float | None:
+    def find_value(self, time_s: float) -> float | None:
         """Return the last value at or before a time, None before the first."""
         index = int(np.searchsorted(self.times_s, time_s, "right")) - 1
         return float(self._values[index]) if index >= 0 else None
 
-    def nearest_s(self, time_s: float) -> float:
+    def find_nearest_s(self, time_s: float) -> float:
         """Return the time of the point nearest to a time; there must be one."""
         return float(self.times_s[np.abs(self.times_s - time_s).argmin()])
 
@@ -170,7 +174,7 @@ class Traces:
         self._cleared.update(self._by_name)
         self._by_name.clear()
 
-    def drawn(self) -> list[Trace]:
+    def list_drawn(self) -> list[Trace]:
         """Return the ticked traces that have points."""
         return [trace for trace in self if trace.on and len(trace.times_s)]
 
@@ -179,7 +183,7 @@ class Traces:
         return max((float(trace.times_s[-1]) for trace in self if len(trace.times_s)), default=0.0)
 
 
-def min_max(
+def reduce_points(
     times_s: FloatArray, values: FloatArray, x_limits: tuple[float, float], columns: int
 ) -> tuple[FloatArray, FloatArray]:
     """Return the points of a trace that a chart of this width can distinguish.
@@ -194,7 +198,7 @@ def min_max(
         Times and values, each shape (m,), m at most 2 * columns + 2; all points if there are no more.
     """
     low, high = x_limits
-    first, last = _visible(times_s, x_limits)
+    first, last = _find_visible(times_s, x_limits)
     times_s, values = times_s[first:last], values[first:last]
     if len(times_s) <= 2 * columns:
         return times_s, values
@@ -202,9 +206,9 @@ def min_max(
     starts = np.unique(np.concatenate(([0], edges)))
     starts = starts[starts < len(times_s)]
     ends = np.concatenate((starts[1:], [len(times_s)])) - 1
-    least, greatest = np.minimum.reduceat(values, starts), np.maximum.reduceat(values, starts)
-    return _in_pairs(times_s[starts], times_s[ends]), _extremes(
-        values[starts] <= values[ends], least, greatest
+    lowest, highest = np.minimum.reduceat(values, starts), np.maximum.reduceat(values, starts)
+    return _join_pairs(times_s[starts], times_s[ends]), _order_extremes(
+        values[starts] <= values[ends], lowest, highest
     )
 
 
@@ -222,21 +226,25 @@ def clip_line(
     if inside.all():
         return xs, ys
     crossed = [edge for edge in limits if xs[0] < edge < xs[-1]]
-    at = np.searchsorted(xs[inside], crossed)
-    return np.insert(xs[inside], at, crossed), np.insert(ys[inside], at, np.interp(crossed, xs, ys))
+    indices = np.searchsorted(xs[inside], crossed)
+    return np.insert(xs[inside], indices, crossed), np.insert(
+        ys[inside], indices, np.interp(crossed, xs, ys)
+    )
 
 
-def _visible(times_s: FloatArray, x_limits: tuple[float, float]) -> tuple[int, int]:
+def _find_visible(times_s: FloatArray, x_limits: tuple[float, float]) -> tuple[int, int]:
     first = max(int(np.searchsorted(times_s, x_limits[0], "left")) - 1, 0)
     return first, min(int(np.searchsorted(times_s, x_limits[1], "right")) + 1, len(times_s))
 
 
-def _in_pairs(firsts: FloatArray, seconds: FloatArray) -> FloatArray:
+def _join_pairs(firsts: FloatArray, seconds: FloatArray) -> FloatArray:
     return np.stack((firsts, seconds), axis=1).ravel().astype(np.float64, copy=False)
 
 
-def _extremes(rising: npt.NDArray[np.bool_], least: FloatArray, greatest: FloatArray) -> FloatArray:
-    return _in_pairs(np.where(rising, least, greatest), np.where(rising, greatest, least))
+def _order_extremes(
+    rising: npt.NDArray[np.bool_], lowest: FloatArray, highest: FloatArray
+) -> FloatArray:
+    return _join_pairs(np.where(rising, lowest, highest), np.where(rising, highest, lowest))
 
 
 _BLOCK = 16
@@ -259,7 +267,7 @@ class Pyramid:
     def __init__(self, times_s: FloatArray, values: FloatArray) -> None:
         self._index: npt.NDArray[np.intp] | None = None
         """Index of each point in the input; None if the order is unchanged."""
-        if not (_are_within(values, np.inf) and _are_within(times_s, MAX_DRAWN)):
+        if not (_is_below(values, np.inf) and _is_below(times_s, MAX_DRAWN)):
             good = (np.abs(values) < np.inf) & (np.abs(times_s) < MAX_DRAWN)
             self._index = np.flatnonzero(good)
             times_s, values = times_s[good], values[good]
@@ -273,57 +281,59 @@ class Pyramid:
         while len(self._levels[-1][0] if self._levels else values) > _BLOCK:
             self._add_level()
 
-    def points(self, x_limits: tuple[float, float], columns: int) -> tuple[FloatArray, FloatArray]:
+    def select_points(
+        self, x_limits: tuple[float, float], columns: int
+    ) -> tuple[FloatArray, FloatArray]:
         """Return times and values as they are drawn: at most a few thousand points that give the drawing of all.
 
         Args:
             x_limits: First and last time shown; one point beyond each is kept.
             columns: Width of the chart, at least 1.
         """
-        first, last = _visible(self.times_s, x_limits)
+        first, last = _find_visible(self.times_s, x_limits)
         level, size = -1, 1
         while (last - first) // (size * _BLOCK) >= _ENOUGH * columns:
             level, size = level + 1, size * _BLOCK
         if level < 0:
             return self.times_s[first:last], limit_drawn(self.values[first:last])
-        least, greatest = self._levels[level]
+        lowest, highest = self._levels[level]
         blocks = np.arange(first // size, (last - 1) // size + 1)
         starts, ends = blocks * size, np.minimum((blocks + 1) * size, len(self.times_s)) - 1
         rising = self.values[starts] <= self.values[ends]
-        values = _extremes(rising, least[blocks], greatest[blocks])
-        return _in_pairs(self.times_s[starts], self.times_s[ends]), limit_drawn(values)
+        values = _order_extremes(rising, lowest[blocks], highest[blocks])
+        return _join_pairs(self.times_s[starts], self.times_s[ends]), limit_drawn(values)
 
     def _add_level(self) -> None:
-        least, greatest = self._levels[-1] if self._levels else (self.values, self.values)
-        starts = np.arange(0, len(least), _BLOCK)
+        lowest, highest = self._levels[-1] if self._levels else (self.values, self.values)
+        starts = np.arange(0, len(lowest), _BLOCK)
         self._levels.append(
-            (np.minimum.reduceat(least, starts), np.maximum.reduceat(greatest, starts))
+            (np.minimum.reduceat(lowest, starts), np.maximum.reduceat(highest, starts))
         )
 
-    def nearest(self, time_s: float) -> int:
+    def find_nearest(self, time_s: float) -> int:
         """Return the index of the input point nearest to a time; there must be a finite one."""
-        at = int(np.searchsorted(self.times_s, time_s))
-        if at == len(self.times_s) or (
-            at and time_s - self.times_s[at - 1] <= self.times_s[at] - time_s
+        index = int(np.searchsorted(self.times_s, time_s))
+        if index == len(self.times_s) or (
+            index and time_s - self.times_s[index - 1] <= self.times_s[index] - time_s
         ):
-            at -= 1
-        return at if self._index is None else int(self._index[at])
+            index -= 1
+        return index if self._index is None else int(self._index[index])
 
-    def between(self, start_s: float, stop_s: float) -> tuple[FloatArray, FloatArray]:
+    def select_range(self, start_s: float, stop_s: float) -> tuple[FloatArray, FloatArray]:
         """Return the points in a time range, both ends included."""
-        first, last = self._span(start_s, stop_s)
+        first, last = self._find_range(start_s, stop_s)
         return self.times_s[first:last], self.values[first:last]
 
-    def _span(self, start_s: float, stop_s: float) -> tuple[int, int]:
+    def _find_range(self, start_s: float, stop_s: float) -> tuple[int, int]:
         first, last = (
             np.searchsorted(self.times_s, start_s, "left"),
             np.searchsorted(self.times_s, stop_s, "right"),
         )
         return int(first), int(last)
 
-    def figures(self, start_s: float, stop_s: float) -> Summary:
+    def compute_summary(self, start_s: float, stop_s: float) -> Summary:
         """Return the statistics of a time range, both ends included, without quantiles."""
-        first, last = self._span(start_s, stop_s)
+        first, last = self._find_range(start_s, stop_s)
         if last - first <= _SUMMED_AT_ONCE or find_scale(*self._find_ends()) != 1.0:
             return compute_summary(self.values[first:last], quantiles=())
         # Whole blocks are cached; only the partial blocks at both ends are computed.
@@ -331,10 +341,10 @@ class Pyramid:
         ends = np.concatenate(
             (self.values[first : begin * _BLOCK], self.values[end * _BLOCK : last])
         )
-        means, squares = (part[begin:end] for part in self._moments())
-        least, greatest = (part[begin:end] for part in self._levels[0])
-        low = float(np.minimum.reduce(ends, initial=float(least.min())))
-        high = float(np.maximum.reduce(ends, initial=float(greatest.max())))
+        means, squares = (part[begin:end] for part in self._compute_moments())
+        lowest, highest = (part[begin:end] for part in self._levels[0])
+        low = float(np.minimum.reduce(ends, initial=float(lowest.min())))
+        high = float(np.maximum.reduce(ends, initial=float(highest.max())))
         count = last - first
         mean = low if low == high else float(means.sum() * _BLOCK + ends.sum()) / count
         off = squares.sum() + _BLOCK * np.square(means - mean).sum() + np.square(ends - mean).sum()
@@ -343,24 +353,24 @@ class Pyramid:
         )
 
     def _find_ends(self) -> tuple[float, float]:
-        least, greatest = self._levels[-1]
-        return float(least.min()), float(greatest.max())
+        lowest, highest = self._levels[-1]
+        return float(lowest.min()), float(highest.max())
 
-    def _moments(self) -> tuple[FloatArray, FloatArray]:
+    def _compute_moments(self) -> tuple[FloatArray, FloatArray]:
         """Mean and sum of squared deviations of each whole block; cached."""
         if self._sums is None:
             whole = self.values[: len(self.values) // _BLOCK * _BLOCK].reshape(-1, _BLOCK)
             means, squares = np.empty(len(whole)), np.empty(len(whole))
             # In parts, so that a long log is not copied as a whole.
-            for at in range(0, len(whole), _SUMMED_AT_ONCE):
-                part = slice(at, at + _SUMMED_AT_ONCE)
+            for start in range(0, len(whole), _SUMMED_AT_ONCE):
+                part = slice(start, start + _SUMMED_AT_ONCE)
                 means[part] = whole[part].mean(axis=1)
                 squares[part] = np.square(whole[part] - means[part, np.newaxis]).sum(axis=1)
             self._sums = means, squares
         return self._sums
 
 
-def _are_within(numbers: FloatArray, limit: float) -> bool:
+def _is_below(numbers: FloatArray, limit: float) -> bool:
     """Return whether all numbers are below a limit, without a copy."""
     # One NaN makes minimum and maximum NaN, and all comparisons false.
     return not len(numbers) or bool(numbers.min() > -limit and numbers.max() < limit)

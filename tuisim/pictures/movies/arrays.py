@@ -15,8 +15,8 @@ from tuisim.pictures.charts.layout import (
     Raster,
     Shape,
     Words,
-    moved,
-    shortened,
+    move_shapes,
+    shorten,
 )
 from tuisim.pictures.scene.discs import RIM_RGB, DiscFace, draw_disc
 
@@ -30,11 +30,11 @@ _FILLED_RGB: Rgb = (0, 95, 215)
 _REST_RGB: Rgb = (216, 220, 226)
 _LIMIT_RGB: Rgb = (215, 95, 0)
 _SCALE_PX = 4
-_LEAST_DISC_PX = 60
+_MIN_DISC_PX = 60
 """Words are left out before a disc is smaller."""
 
 
-def face_drawing(face: DiscFace, width: int, height: int, *, has_limits: bool) -> Drawing:
+def draw_face(face: DiscFace, width: int, height: int, *, has_limits: bool) -> Drawing:
     """Return a disc with its words: below it what the program gets, a scale, thresholds, rings.
 
     Args:
@@ -49,22 +49,22 @@ def face_drawing(face: DiscFace, width: int, height: int, *, has_limits: bool) -
         *([limits] if has_limits else []),
         f"rings {' '.join(face.ring_words)} %",
     ]
-    lines = max(min(len(below), (height - _LEAST_DISC_PX - _SCALE_PX) // LINE_PX - 1), 0)
+    lines = max(min(len(below), (height - _MIN_DISC_PX - _SCALE_PX) // LINE_PX - 1), 0)
     side = max(min(width - PAD, height - _SCALE_PX - (1 + lines) * LINE_PX), 1)
     disc = draw_disc(face.box, side, side, _PAPER_RGB, RIM_RGB)
     shapes: list[Shape] = [
-        Words(width / 2, LINE_PX / 2, shortened(face.name, width), "middle", strong=True),
+        Words(width / 2, LINE_PX / 2, shorten(face.name, width), "middle", strong=True),
         Raster((width - side) / 2, LINE_PX, side, side, disc),
     ]
     y = LINE_PX + side
     if lines:
         shapes.append(Raster((width - side) / 2, y + 1, side, _SCALE_PX, _scale(face, side)))
     y += _SCALE_PX
-    for at, text in enumerate(below[:lines]):
-        rgb = _LIMIT_RGB if has_limits and at == 1 else None
+    for row, text in enumerate(below[:lines]):
+        rgb = _LIMIT_RGB if has_limits and row == 1 else None
         shapes.append(
             Words(
-                width / 2, y + (at + 0.5) * LINE_PX, shortened(text, width), "middle", rgb, not at
+                width / 2, y + (row + 0.5) * LINE_PX, shorten(text, width), "middle", rgb, not row
             )
         )
     return Drawing(face.name, width, height, tuple(shapes))
@@ -81,11 +81,13 @@ def _scale(face: DiscFace, width: int) -> np.ndarray[tuple[int, int, int], np.dt
     return picture
 
 
-def arrays_drawing(faces: Sequence[DiscFace], width: int, height: int) -> Drawing:
+def draw_arrays(faces: Sequence[DiscFace], width: int, height: int) -> Drawing:
     """Return discs side by side, each with its words."""
     each = width // max(len(faces), 1)
     has_limits = any(face.thresholds for face in faces)
     shapes: list[Shape] = []
-    for at, face in enumerate(faces):
-        shapes += moved(face_drawing(face, each, height, has_limits=has_limits), at * each, 0)
+    for number, face in enumerate(faces):
+        shapes += move_shapes(
+            draw_face(face, each, height, has_limits=has_limits), number * each, 0
+        )
     return Drawing("sensor arrays", width, height, tuple(shapes))

@@ -40,7 +40,7 @@ class Shot:
     """How long it is shown."""
 
 
-def shots_of(start_s: float, stop_s: float, speed: float, fps: float) -> tuple[Shot, ...]:
+def plan_shots(start_s: float, stop_s: float, speed: float, fps: float) -> tuple[Shot, ...]:
     """Return the frames of a movie, the first at the start and the last at the end of a range.
 
     Args:
@@ -48,18 +48,21 @@ def shots_of(start_s: float, stop_s: float, speed: float, fps: float) -> tuple[S
         speed: Simulated seconds per second of the movie.
         fps: Frames per second of the movie.
     """
-    count = shot_count(start_s, stop_s, speed, fps)
+    count = count_shots(start_s, stop_s, speed, fps)
     # Rounded from the start, so that the errors do not add up.
-    begins_ms = [round(at * 1000 / fps / _STEP_MS) * _STEP_MS for at in range(count + 1)]
+    begins_ms = [round(number * 1000 / fps / _STEP_MS) * _STEP_MS for number in range(count + 1)]
     begins_ms[-1] += END_MS
-    times_s = [min(start_s + at * speed / fps, stop_s) for at in range(count - 1)] + [stop_s]
+    times_s = [min(start_s + number * speed / fps, stop_s) for number in range(count - 1)] + [
+        stop_s
+    ]
     return tuple(
-        Shot(time_s, begins_ms[at + 1] - begins_ms[at]) for at, time_s in enumerate(times_s)
+        Shot(time_s, begins_ms[number + 1] - begins_ms[number])
+        for number, time_s in enumerate(times_s)
     )
 
 
-def shot_count(start_s: float, stop_s: float, speed: float, fps: float) -> int:
-    """Return the number of frames that `shots_of` returns."""
+def count_shots(start_s: float, stop_s: float, speed: float, fps: float) -> int:
+    """Return the number of frames that `plan_shots` returns."""
     return math.ceil((stop_s - start_s) * fps / speed - 1e-9) + 1
 
 
@@ -113,7 +116,7 @@ class Recorded:
         """Simulated time of the newest tick."""
         return (len(self.telemetry) - 1) / self._hz
 
-    def span_s(self, start_s: float | None, stop_s: float | None) -> tuple[float, float]:
+    def clip_span_s(self, start_s: float | None, stop_s: float | None) -> tuple[float, float]:
         """Return the part of the run between two times, each None for the run's own.
 
         Raises:
@@ -124,13 +127,15 @@ class Recorded:
         known = f"run {self.run.number} lasts from 0 s to {self.end_s:g} s"
         # Also true for NaN.
         if not 0 <= low <= high or (low == high and (start_s, stop_s) != (None, None)):
-            asked = low, self.end_s if stop_s is None else stop_s
+            requested = low, self.end_s if stop_s is None else stop_s
             raise ConfigError(
-                f"nothing to show from {asked[0]:g} s to {asked[1]:g} s", known, key="--from, --to"
+                f"nothing to show from {requested[0]:g} s to {requested[1]:g} s",
+                known,
+                key="--from, --to",
             )
         return low, high
 
-    def moment(self, time_s: float) -> ClipMoment:
+    def read_moment(self, time_s: float) -> ClipMoment:
         """Return the run at a simulated time within it."""
         # A time such as 0.29 s is slightly less than 29 hundredths.
         tick = min(math.floor(time_s * self._hz + 1e-6), len(self.telemetry) - 1)

@@ -11,10 +11,10 @@ import numpy as np
 
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ConfigError
-from tuisim.pictures.charts.files import check_format, png_of, svg_of, write_whole
-from tuisim.pictures.movies.clip import ClipPanel, Recorded, Shot, shot_count, shots_of
+from tuisim.pictures.charts.files import check_format, draw_svg, encode_png, write_whole
+from tuisim.pictures.movies.clip import ClipPanel, Recorded, Shot, count_shots, plan_shots
 from tuisim.pictures.movies.image_files import PALETTE_FRAMES, encode_gif
-from tuisim.pictures.movies.painter import FramePainter, Size, view_of_frame
+from tuisim.pictures.movies.painter import FramePainter, Size, find_frame_view
 from tuisim.pictures.scene.view import Viewport
 
 if TYPE_CHECKING:
@@ -25,9 +25,9 @@ MOVIE_SUFFIXES = (".gif",)
 Watch = Callable[[int, int], None]
 """Called with the number of frames drawn and of all frames."""
 
-MOST_BYTES = 400_000_000
+MAX_BYTES = 400_000_000
 """Frames of a movie in memory."""
-MOST_FRAMES = 20_000
+MAX_FRAMES = 20_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,12 +47,12 @@ class Clip:
     @property
     def shots(self) -> tuple[Shot, ...]:
         """Its frames."""
-        return shots_of(*self.span_s, self.speed, self.fps)
+        return plan_shots(*self.span_s, self.speed, self.fps)
 
     @property
     def view(self) -> Viewport:
         """Which part of the field its frames would show if the world filled them; it has the panel of the world."""
-        return view_of_frame(self.recorded, self.panels, self.size)
+        return find_frame_view(self.recorded, self.panels, self.size)
 
 
 def _encode_gif(clip: Clip, watch: Watch) -> bytes:
@@ -61,7 +61,7 @@ def _encode_gif(clip: Clip, watch: Watch) -> bytes:
     def draw(numbers: Iterable[int]) -> Iterator[Image]:
         painter = FramePainter(clip.recorded, clip.panels, clip.span_s, clip.size)
         for number in numbers:
-            yield painter.image(clip.recorded.moment(shots[number].time_s))
+            yield painter.image(clip.recorded.read_moment(shots[number].time_s))
 
     def report_numbers() -> Iterator[int]:
         for number in range(len(shots)):
@@ -75,17 +75,17 @@ def _encode_gif(clip: Clip, watch: Watch) -> bytes:
     )
 
 
-def _png(painter: FramePainter, recorded: Recorded, time_s: float) -> bytes:
-    return png_of(painter.image(recorded.moment(time_s)))
+def _encode_png(painter: FramePainter, recorded: Recorded, time_s: float) -> bytes:
+    return encode_png(painter.image(recorded.read_moment(time_s)))
 
 
-def _svg(painter: FramePainter, recorded: Recorded, time_s: float) -> bytes:
-    return svg_of(painter.drawing(recorded.moment(time_s))).encode()
+def _encode_svg(painter: FramePainter, recorded: Recorded, time_s: float) -> bytes:
+    return draw_svg(painter.draw(recorded.read_moment(time_s))).encode()
 
 
 PICTURE_FORMATS: Mapping[str, Callable[[FramePainter, Recorded, float], bytes]] = {
-    ".png": _png,
-    ".svg": _svg,
+    ".png": _encode_png,
+    ".svg": _encode_svg,
 }
 """Every format of a picture by the suffix of its files. To add one: write its function and a line here."""
 
@@ -108,11 +108,11 @@ def save_movie(clip: Clip, path: Path, watch: Watch = lambda done, total: None) 
 def _check_size(clip: Clip) -> None:
     width, height = FramePainter(clip.recorded, clip.panels, clip.span_s, clip.size).size
     # A frame takes a byte a pixel.
-    most = min(MOST_BYTES // (width * height), MOST_FRAMES)
-    count = shot_count(*clip.span_s, clip.speed, clip.fps)
-    if count > most:
+    max_frames = min(MAX_BYTES // (width * height), MAX_FRAMES)
+    count = count_shots(*clip.span_s, clip.speed, clip.fps)
+    if count > max_frames:
         raise ConfigError(
-            f"too large: {count:,} frames of {width}x{height}, at most {most:,}",
+            f"too large: {count:,} frames of {width}x{height}, at most {max_frames:,}",
             "a higher --speed, a lower --fps, a smaller --size, or a shorter range between --from and --to",
         )
 
@@ -123,7 +123,7 @@ _SMALL_S, _SMALL_FPS = 10, (10, 5)
 """Its longest duration, and its frames per second: fewer of them where it would be too large."""
 
 
-def small_movie(recorded: Recorded) -> tuple[Clip, bytes] | None:
+def make_small_movie(recorded: Recorded) -> tuple[Clip, bytes] | None:
     """Return a movie of the world as GIF, small enough for a page; a long run is shown faster.
 
     Returns:
@@ -137,7 +137,7 @@ def small_movie(recorded: Recorded) -> tuple[Clip, bytes] | None:
         return None
     speed = max(1, math.ceil(recorded.end_s / _SMALL_S))
     for fps in _SMALL_FPS:
-        clip = Clip(recorded, (ClipPanel.WORLD,), recorded.span_s(None, None), speed, fps)
+        clip = Clip(recorded, (ClipPanel.WORLD,), recorded.clip_span_s(None, None), speed, fps)
         content = _encode_gif(clip, lambda done, total: None)
         if len(content) <= SMALL_BYTES:
             return clip, content
@@ -159,5 +159,5 @@ def save_picture(
         LogError: the mat no longer exists.
     """
     check_format(path, "picture", PICTURE_FORMATS)
-    painter = FramePainter(recorded, panels, recorded.span_s(None, None), size)
+    painter = FramePainter(recorded, panels, recorded.clip_span_s(None, None), size)
     write_whole(path, PICTURE_FORMATS[path.suffix.lower()](painter, recorded, time_s))

@@ -27,7 +27,7 @@ def encode_gif(
         durations_ms: How long each frame is shown; multiples of 10.
     """
     palette, content = _Palette(samples), io.BytesIO()
-    reduced = map(palette.reduced, frames)
+    reduced = map(palette.reduce, frames)
     next(reduced).save(
         content,
         "GIF",
@@ -50,7 +50,7 @@ class _Palette:
 
     def __init__(self, frames: Sequence[Image]) -> None:
         pixels = np.concatenate([np.asarray(frame).reshape(-1, 3) for frame in frames])
-        packed = _packed(pixels)
+        packed = _pack_pixels(pixels)
         colors, counts = np.unique(packed, return_counts=True)
         self._frequent = np.sort(colors[np.argsort(-counts, kind="stable")[:_EXACT]])
         content = b"".join(int(color).to_bytes(3, "big") for color in self._frequent)
@@ -62,11 +62,11 @@ class _Palette:
         self._image = new("P", (1, 1))
         self._image.putpalette(content)
 
-    def reduced(self, frame: Image) -> Image:
+    def reduce(self, frame: Image) -> Image:
         """Return a frame in these colours."""
         reduced = frame.quantize(palette=self._image, dither=Dither.NONE)
         # Pillow takes colours that differ little for the same, also where one of them is in the palette.
-        packed = _packed(np.asarray(frame))
+        packed = _pack_pixels(np.asarray(frame))
         nearest = np.minimum(np.searchsorted(self._frequent, packed), len(self._frequent) - 1)
         numbers = np.where(self._frequent[nearest] == packed, nearest, np.asarray(reduced)).astype(
             np.uint8
@@ -76,6 +76,6 @@ class _Palette:
         return exact
 
 
-def _packed(pixels: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint32]:
+def _pack_pixels(pixels: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint32]:
     """Return each red, green and blue as one number."""
     return pixels.astype(np.uint32) @ np.array([1 << 16, 1 << 8, 1], np.uint32)

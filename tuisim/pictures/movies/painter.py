@@ -14,7 +14,7 @@ from tuisim.engine.mat_cache import mat_pixels
 from tuisim.engine.runs.recorded_run import Recording
 from tuisim.engine.runs.run_folder import mat_files, open_mat
 from tuisim.engine.runs.views import instant_of
-from tuisim.pictures.charts.files import image_of
+from tuisim.pictures.charts.files import draw_image
 from tuisim.pictures.charts.layout import (
     LETTER_PX,
     LINE_PX,
@@ -24,21 +24,21 @@ from tuisim.pictures.charts.layout import (
     Raster,
     Shape,
     Words,
-    drawn_until,
-    laid_out,
-    moved,
+    cut_drawing,
+    lay_out_chart,
+    move_shapes,
 )
-from tuisim.pictures.charts.sample_chart import sample_chart
-from tuisim.pictures.movies.arrays import arrays_drawing
+from tuisim.pictures.charts.sample_chart import build_sample_chart
+from tuisim.pictures.movies.arrays import draw_arrays
 from tuisim.pictures.movies.clip import ClipMoment, ClipPanel, Recorded
-from tuisim.pictures.scene.discs import DiscFace, disc_faces
-from tuisim.pictures.scene.pen import pen_trace
+from tuisim.pictures.scene.discs import DiscFace, list_disc_faces
+from tuisim.pictures.scene.pen import build_pen_trace
 from tuisim.pictures.scene.pictures import (
+    build_painter,
+    build_scene,
     find_area,
-    fitting_view,
-    scene_of,
-    sound_pose,
-    world_painter,
+    fit_view,
+    read_pose,
 )
 from tuisim.pictures.scene.view import Area, Viewport
 
@@ -74,16 +74,16 @@ class PictureBox:
     height: int
 
 
-def _fitting_size(panels: Sequence[ClipPanel], robot: RobotSpec, area: Area) -> Size:
+def _fit_size(panels: Sequence[ClipPanel], robot: RobotSpec, area: Area) -> Size:
     height_px = _CAPTION_PX
     if ClipPanel.WORLD in panels:
-        height_px += fitting_view(robot, WIDTH_PX - 2 * PAD, MOST[1], area).height_px
+        height_px += fit_view(robot, WIDTH_PX - 2 * PAD, MOST[1], area).height_px
     if ClipPanel.CHART in panels or ClipPanel.ARRAYS in panels:
         height_px += _STRIP_PX
     return WIDTH_PX, height_px + PAD
 
 
-def view_of_frame(
+def find_frame_view(
     recorded: Recorded, panels: Sequence[ClipPanel], size: Size | None = None
 ) -> Viewport:
     """Return which part of the world a whole frame would show if its world, which it has, filled it.
@@ -96,12 +96,12 @@ def view_of_frame(
         size: Width and height in pixels; None for the size that fits the panels.
     """
     robot, area = recorded.run.spec.robot, find_area(recorded.run.spec, recorded.telemetry)
-    size = size or _fitting_size(panels, robot, area)
-    room = _boxes(panels, size, len(robot.color_sensors))[ClipPanel.WORLD]
-    shown = fitting_view(robot, room.width, room.height, area)
-    box = _centred(room, (shown.width_px, shown.height_px))
-    left_mm, top_mm = shown.to_mm(-box.left, -box.top)
-    return Viewport(*size, shown.mm_per_px, left_mm, top_mm)
+    size = size or _fit_size(panels, robot, area)
+    room = _place_boxes(panels, size, len(robot.color_sensors))[ClipPanel.WORLD]
+    fitted = fit_view(robot, room.width, room.height, area)
+    box = _center_box(room, (fitted.width_px, fitted.height_px))
+    left_mm, top_mm = fitted.to_mm(-box.left, -box.top)
+    return Viewport(*size, fitted.mm_per_px, left_mm, top_mm)
 
 
 class FramePainter:
@@ -128,16 +128,16 @@ class FramePainter:
         run = recorded.run
         self._recorded, self._panels = recorded, panels
         area = find_area(run.spec, recorded.telemetry)
-        self.size = size or _fitting_size(panels, run.spec.robot, area)
-        boxes = self._boxes = _boxes(panels, self.size, len(run.spec.robot.color_sensors))
+        self.size = size or _fit_size(panels, run.spec.robot, area)
+        boxes = self._boxes = _place_boxes(panels, self.size, len(run.spec.robot.color_sensors))
         if ClipPanel.WORLD in boxes:
             box = boxes[ClipPanel.WORLD]
-            view = fitting_view(run.spec.robot, box.width, box.height, area)
+            view = fit_view(run.spec.robot, box.width, box.height, area)
             self._world = MovingWorld(recorded, view)
         if ClipPanel.CHART in boxes:
             box = boxes[ClipPanel.CHART]
-            self._chart = laid_out(
-                _chart(recorded, box.width, span_s), box.width, box.height, titled=False
+            self._chart = lay_out_chart(
+                _build_chart(recorded, box.width, span_s), box.width, box.height, titled=False
             )
         if ClipPanel.ARRAYS in boxes:
             self._arrays = SensorArrays(recorded)
@@ -147,34 +147,38 @@ class FramePainter:
         from PIL import Image
 
         image = Image.new("RGB", self.size, "white")
-        for box, part in self._parts(moment):
-            image.paste(image_of(part) if isinstance(part, Drawing) else part, (box.left, box.top))
+        for box, part in self._iterate_parts(moment):
+            image.paste(
+                draw_image(part) if isinstance(part, Drawing) else part, (box.left, box.top)
+            )
         return image
 
-    def drawing(self, moment: ClipMoment) -> Drawing:
+    def draw(self, moment: ClipMoment) -> Drawing:
         """Return the frame as a drawing, with text and curves as shapes."""
         shapes: list[Shape] = []
-        for box, part in self._parts(moment):
+        for box, part in self._iterate_parts(moment):
             if isinstance(part, Drawing):
-                shapes += moved(part, box.left, box.top)
+                shapes += move_shapes(part, box.left, box.top)
             else:
                 shapes.append(Raster(box.left, box.top, part.width, part.height, np.asarray(part)))
         return Drawing(printable(self._recorded.run.program.name), *self.size, tuple(shapes))
 
-    def _parts(self, moment: ClipMoment) -> Iterable[tuple[PictureBox, Drawing | Image]]:
+    def _iterate_parts(self, moment: ClipMoment) -> Iterable[tuple[PictureBox, Drawing | Image]]:
         """Yield everything that is drawn, with its place."""
         caption = PictureBox(0, 0, self.size[0], _CAPTION_PX)
-        yield caption, _caption(moment, caption)
+        yield caption, _draw_caption(moment, caption)
         if box := self._boxes.get(ClipPanel.WORLD):
-            picture = self._world.at(moment)
-            yield _centred(box, picture.size), picture
+            picture = self._world.draw_moment(moment)
+            yield _center_box(box, picture.size), picture
         if box := self._boxes.get(ClipPanel.ARRAYS):
-            yield box, arrays_drawing(self._arrays.at(moment), box.width, box.height)
+            yield box, draw_arrays(self._arrays.list_faces(moment), box.width, box.height)
         if box := self._boxes.get(ClipPanel.CHART):
-            yield box, drawn_until(self._chart, moment.time_s)
+            yield box, cut_drawing(self._chart, moment.time_s)
 
 
-def _boxes(panels: Sequence[ClipPanel], size: Size, sensors: int) -> dict[ClipPanel, PictureBox]:
+def _place_boxes(
+    panels: Sequence[ClipPanel], size: Size, sensors: int
+) -> dict[ClipPanel, PictureBox]:
     """Return the place of each panel: the world above, arrays and chart below.
 
     Raises:
@@ -195,8 +199,10 @@ def _boxes(panels: Sequence[ClipPanel], size: Size, sensors: int) -> dict[ClipPa
         boxes[ClipPanel.WORLD] = PictureBox(PAD, _CAPTION_PX, width, height - strip)
     left, top = PAD, size[1] - PAD - strip
     if ClipPanel.ARRAYS in below:
-        wanted = sensors * max(strip - _LABELS_PX + PAD, _FACE_PX)
-        taken = min(wanted, round(width * _ARRAYS_SHARE)) if ClipPanel.CHART in below else width
+        arrays_width = sensors * max(strip - _LABELS_PX + PAD, _FACE_PX)
+        taken = (
+            min(arrays_width, round(width * _ARRAYS_SHARE)) if ClipPanel.CHART in below else width
+        )
         boxes[ClipPanel.ARRAYS] = PictureBox(left, top, taken, strip)
         left, width = left + taken, width - taken
     if ClipPanel.CHART in below:
@@ -209,29 +215,31 @@ def _boxes(panels: Sequence[ClipPanel], size: Size, sensors: int) -> dict[ClipPa
     return boxes
 
 
-def _centred(box: PictureBox, size: Size) -> PictureBox:
+def _center_box(box: PictureBox, size: Size) -> PictureBox:
     return PictureBox(
         box.left + (box.width - size[0]) // 2, box.top + (box.height - size[1]) // 2, *size
     )
 
 
-def _chart(recorded: Recorded, columns: int, span_s: tuple[float, float]) -> ChartData:
+def _build_chart(recorded: Recorded, columns: int, span_s: tuple[float, float]) -> ChartData:
     """Return the chart of the printed samples, at the times at which they were printed."""
     low, high = span_s
-    return sample_chart(recorded.samples, columns, span_s if high > low else (low - 0.5, low + 0.5))
+    return build_sample_chart(
+        recorded.samples, columns, span_s if high > low else (low - 0.5, low + 0.5)
+    )
 
 
-def _caption(moment: ClipMoment, box: PictureBox) -> Drawing:
+def _draw_caption(moment: ClipMoment, box: PictureBox) -> Drawing:
     """Return a line with the time and as many values as fit."""
     words: list[Shape] = []
     x = float(PAD)
-    for at, text in enumerate(
+    for number, text in enumerate(
         [f"{moment.time_s:.2f} s", *(f"{name}: {value:.5g}" for name, value in moment.values)]
     ):
         text = printable(text)
-        if at and x + len(text) * LETTER_PX > box.width - PAD:
+        if number and x + len(text) * LETTER_PX > box.width - PAD:
             break
-        words.append(Words(x, box.height / 2, text, strong=not at))
+        words.append(Words(x, box.height / 2, text, strong=not number))
         x += len(text) * LETTER_PX + 2 * PAD
     return Drawing("", box.width, box.height, tuple(words))
 
@@ -250,20 +258,20 @@ class MovingWorld:
     def __init__(self, recorded: Recorded, view: Viewport) -> None:
         self._recorded, self._spec, self._view = recorded, recorded.run.spec, view
         mat = mat_pixels(mat_files(recorded.run))
-        self._painter = world_painter(mat, has_floor=self._spec.world.is_open)
+        self._painter = build_painter(mat, has_floor=self._spec.world.is_open)
         self._traced = 0
         """Records whose pen traces are drawn."""
 
-    def at(self, moment: ClipMoment) -> Image:
+    def draw_moment(self, moment: ClipMoment) -> Image:
         """Return the picture. The instants of successive calls must not decrease."""
         from PIL import Image
 
         self._painter.trace.add(
-            pen_trace(self._spec, self._recorded.telemetry[self._traced : moment.tick + 1])
+            build_pen_trace(self._spec, self._recorded.telemetry[self._traced : moment.tick + 1])
         )
         self._traced = moment.tick + 1
         return Image.fromarray(
-            self._painter.paint(self._view, scene_of(self._spec, sound_pose(moment.record)))
+            self._painter.paint(self._view, build_scene(self._spec, read_pose(moment.record)))
         )
 
 
@@ -281,12 +289,12 @@ class SensorArrays:
         self._run = recorded.run
         self._mat, self._recording = open_mat(recorded.run), Recording(recorded.run)
 
-    def at(self, moment: ClipMoment) -> list[DiscFace]:
+    def list_faces(self, moment: ClipMoment) -> list[DiscFace]:
         """Return what is shown of each sensor; nothing for a damaged record."""
-        if sound_pose(moment.record) is None:
+        if read_pose(moment.record) is None:
             return []
         run = self._run
         instant = instant_of(moment.record, run.spec, run.noise_at(moment.record))
-        return disc_faces(
+        return list_disc_faces(
             run.spec, instant, self._recording.field_at(moment.tick, self._mat), run.program
         )

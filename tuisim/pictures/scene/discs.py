@@ -77,9 +77,9 @@ class DiscFace:
     def limit_shares(self) -> tuple[float, ...]:
         """The thresholds on the same scale, those on it."""
         shares = [
-            one.value / one.read.find_white(self.reflected_max)
-            for one in self.thresholds
-            if not one.read.is_color
+            threshold.value / threshold.read.find_white(self.reflected_max)
+            for threshold in self.thresholds
+            if not threshold.read.is_color
         ]
         return tuple(share for share in dict.fromkeys(shares) if 0 <= share <= 1)
 
@@ -89,18 +89,19 @@ class DiscFace:
         Args:
             width: Letters; to fit, `asks` is left out, then the lines, then all but the first comparison.
         """
-        said = []
-        for one in self.thresholds:
-            holds = one.holds(one.read.compute_value(self.seen, self.reflected_max))
-            said.append(one.words + ("" if holds is None else ": yes" if holds else ": no"))
+        texts = []
+        for threshold in self.thresholds:
+            holds = threshold.holds(threshold.read.compute_value(self.seen, self.reflected_max))
+            texts.append(threshold.words + ("" if holds is None else ": yes" if holds else ": no"))
         asking = (
-            f"line {one.line}{':' if one.is_aim else ' asks'} {words}"
-            for words, one in zip(said, self.thresholds, strict=True)
+            f"line {threshold.line}{':' if threshold.is_aim else ' asks'} {words}"
+            for words, threshold in zip(texts, self.thresholds, strict=True)
         )
         short = [
-            f"line {one.line} {words}" for words, one in zip(said, self.thresholds, strict=True)
+            f"line {threshold.line} {words}"
+            for words, threshold in zip(texts, self.thresholds, strict=True)
         ]
-        variants = ("; ".join(asking), "; ".join(short), "; ".join(said), *short[:1], *said[:1])
+        variants = ("; ".join(asking), "; ".join(short), "; ".join(texts), *short[:1], *texts[:1])
         return next((words for words in variants if len(words) <= width), variants[-1])
 
     @property
@@ -108,11 +109,11 @@ class DiscFace:
         """The mean red of each of `RINGS`, in percent: red is what programs read as light."""
         red = np.frombuffer(self.box, np.uint8)[::3]
         side = round(len(red) ** 0.5)
-        at = np.arange(side) - side / 2
-        ring = np.hypot(at[:, None], at[None, :]).ravel() / (side / 2) * len(RINGS)
-        found = [red[(ring >= first) & (ring < first + 1)] for first in range(len(RINGS))]
+        offsets = np.arange(side) - side / 2
+        ring = np.hypot(offsets[:, None], offsets[None, :]).ravel() / (side / 2) * len(RINGS)
+        rings = [red[(ring >= first) & (ring < first + 1)] for first in range(len(RINGS))]
         # The disc of a sensor of 2 mm has no middle.
-        return tuple(float(part.mean()) / 255 * 100 if len(part) else math.nan for part in found)
+        return tuple(float(part.mean()) / 255 * 100 if len(part) else math.nan for part in rings)
 
     @property
     def ring_words(self) -> list[str]:
@@ -120,7 +121,7 @@ class DiscFace:
         return ["–" if math.isnan(value) else f"{value:.0f}" for value in self.rings]
 
 
-def disc_faces(
+def list_disc_faces(
     spec: RunSpec, instant: Instant, field: Field, program: Program | None
 ) -> list[DiscFace]:
     """Return what is shown of each colour sensor of a run at an instant.
@@ -137,7 +138,7 @@ def disc_faces(
     faces = []
     for sensor in spec.robot.color_sensors:
         limits = thresholds.get(sensor.name, ())
-        read = next((one.read for one in limits if not one.read.is_color), first)
+        read = next((threshold.read for threshold in limits if not threshold.read.is_color), first)
         box, seen = read_pixel_array(sensor, instant, field), measure_color(sensor, instant, field)
         faces.append(DiscFace(sensor.name, box, seen, read, spec.profile.reflected_max, limits))
     return faces
@@ -165,10 +166,10 @@ def draw_disc(
     fine = max(1, min(6, math.ceil(_FINEST / side_px)))
     rim_mm = _RIM_SHARE * diameter
     mm_per_px = (diameter + 2 * rim_mm) / side_px
-    east = _from_middle(width_px, fine) * mm_per_px
-    north = _from_middle(height_px, fine) * mm_per_px * tall
+    east = _place_samples(width_px, fine) * mm_per_px
+    north = _place_samples(height_px, fine) * mm_per_px * tall
     # A disc lies around the middle of a pixel of its box, see `build_disc_mask`.
-    cols, rows = (np.floor(at + diameter / 2 + 0.5).astype(np.intp) for at in (east, north))
+    cols, rows = (np.floor(px + diameter / 2 + 0.5).astype(np.intp) for px in (east, north))
     inside = np.zeros((diameter + 2, diameter + 2), bool)
     inside[1:-1, 1:-1] = build_disc_mask(diameter)
     cols, rows = cols.clip(-1, diameter), rows.clip(-1, diameter)
@@ -179,8 +180,8 @@ def draw_disc(
     picture = np.empty((height_px, width_px, 3), np.uint8)
     picture[:] = ground_rgb
     picture[rim_share >= 0.5] = rim_rgb
-    at = rows.clip(0, diameter - 1)[:, None] * diameter + cols.clip(0, diameter - 1)[None, :]
-    seen = _means(pixels[at] * within[..., None], fine) / np.maximum(inside_share, 1e-9)[..., None]
+    px = rows.clip(0, diameter - 1)[:, None] * diameter + cols.clip(0, diameter - 1)[None, :]
+    seen = _means(pixels[px] * within[..., None], fine) / np.maximum(inside_share, 1e-9)[..., None]
     is_disc = inside_share >= 0.5
     picture[is_disc] = np.rint(seen[is_disc])
     return picture
@@ -195,12 +196,14 @@ def _means(samples: npt.NDArray[np.generic], fine: int) -> npt.NDArray[np.float6
     return means
 
 
-def _from_middle(size_px: int, fine: int) -> npt.NDArray[np.float64]:
+def _place_samples(size_px: int, fine: int) -> npt.NDArray[np.float64]:
     """Return the places of samples in pixels from the middle; the middle of an odd size is that of a pixel."""
     return (np.arange(size_px * fine) + 0.5) / fine - size_px / 2
 
 
-def shrunk(pixels: npt.NDArray[np.uint8], rows: int, columns: int) -> npt.NDArray[np.float64]:
+def shrink_pixels(
+    pixels: npt.NDArray[np.uint8], rows: int, columns: int
+) -> npt.NDArray[np.float64]:
     """Return the mean of the pixels in each cell of a coarser grid.
 
     Args:

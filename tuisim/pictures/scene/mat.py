@@ -54,31 +54,33 @@ def shrink(
     picture = np.empty((view.height_px, view.width_px, 3), np.uint8)
     picture[:] = outside_rgb
     height_mm, width_mm = mat.shape[:2]
-    cols, col_edges = _edges(view.left_mm, view.mm_per_px, view.width_px, width_mm)
-    rows, row_edges = _edges(height_mm - view.top_mm, view.mm_per_row, view.height_px, height_mm)
+    cols, col_edges = _find_edges(view.left_mm, view.mm_per_px, view.width_px, width_mm)
+    rows, row_edges = _find_edges(
+        height_mm - view.top_mm, view.mm_per_row, view.height_px, height_mm
+    )
     if len(col_edges) < 2 or len(row_edges) < 2:
         return picture
-    picture[rows, cols] = _reduced(
+    picture[rows, cols] = _reduce_mat(
         mat, row_edges, col_edges, keep_detail=view.cell.cols <= _FINE_COLS and not exact
     )
     if whole_cells:
-        _end_with_a_cell(picture, rows, view.cell.rows, outside_rgb)
-        _end_with_a_cell(picture.swapaxes(0, 1), cols, view.cell.cols, outside_rgb)
+        _end_at_cells(picture, rows, view.cell.rows, outside_rgb)
+        _end_at_cells(picture.swapaxes(0, 1), cols, view.cell.cols, outside_rgb)
     return picture
 
 
-def _end_with_a_cell(
+def _end_at_cells(
     lines: Pixels, inside: slice, step: int, outside_rgb: tuple[int, int, int]
 ) -> None:
     """Move both ends of the lines inside the mat to the nearest ends of cells of `step` lines; modified in place."""
-    first, end = (step * math.floor(at / step + 0.5) for at in (inside.start, inside.stop))
+    first, end = (step * math.floor(edge / step + 0.5) for edge in (inside.start, inside.stop))
     lines[first : inside.start] = lines[inside.start]
     lines[inside.start : first] = outside_rgb
     lines[inside.stop : end] = lines[inside.stop - 1]
     lines[end : inside.stop] = outside_rgb
 
 
-def _edges(
+def _find_edges(
     start_mm: float, mm_per_px: float, count: int, size_mm: int
 ) -> tuple[slice, npt.NDArray[np.intp]]:
     """Return which picture pixels have their middle on the mat, and the mat edges between them, in mm."""
@@ -95,14 +97,14 @@ def _edges(
     return slice(first, last), edges
 
 
-def _reduced(
+def _reduce_mat(
     mat: Pixels, row_edges: npt.NDArray[np.intp], col_edges: npt.NDArray[np.intp], keep_detail: bool
 ) -> Pixels:
     part = mat[row_edges[0] : row_edges[-1], col_edges[0] : col_edges[-1]]
     rows, cols = row_edges[:-1] - row_edges[0], col_edges[:-1] - col_edges[0]
     # The sum over the rows of a pixel stays below 2^16 as long as it covers at most 257 mm.
     narrow = np.uint16 if int(np.diff(row_edges).max()) <= 257 else np.uint32
-    sums = np.add.reduceat(_reduced_rows(np.add, part, rows, narrow), cols, axis=1, dtype=np.uint32)
+    sums = np.add.reduceat(_reduce_rows(np.add, part, rows, narrow), cols, axis=1, dtype=np.uint32)
     areas = (
         np.maximum(np.diff(row_edges), 1)[:, None, None]
         * np.maximum(np.diff(col_edges), 1)[None, :, None]
@@ -111,12 +113,12 @@ def _reduced(
     if not keep_detail:
         plain: Pixels = np.rint(mean).astype(np.uint8)
         return plain
-    low = np.minimum.reduceat(_reduced_rows(np.minimum, part, rows, np.uint8), cols, axis=1).astype(
+    low = np.minimum.reduceat(_reduce_rows(np.minimum, part, rows, np.uint8), cols, axis=1).astype(
         np.float32
     )
-    high = np.maximum.reduceat(
-        _reduced_rows(np.maximum, part, rows, np.uint8), cols, axis=1
-    ).astype(np.float32)
+    high = np.maximum.reduceat(_reduce_rows(np.maximum, part, rows, np.uint8), cols, axis=1).astype(
+        np.float32
+    )
     picture = _keep_detail(mean, low, high)
     rows_mm, cols_mm = (max(int(np.median(np.diff(edges))), 1) for edges in (row_edges, col_edges))
     sharpen_edges(
@@ -128,7 +130,7 @@ def _reduced(
     return picture
 
 
-def _reduced_rows(
+def _reduce_rows(
     operation: np.ufunc, part: Pixels, starts: npt.NDArray[np.intp], dtype: npt.DTypeLike
 ) -> npt.NDArray[Any]:
     """Return `operation.reduceat(part, starts, axis=0, dtype=dtype)`, in a tenth of its time."""
@@ -178,10 +180,10 @@ class MatPictures:
         exact: bool = False,
     ) -> None:
         @lru_cache(maxsize=_REMEMBERED)
-        def picture(view: Viewport) -> Pixels:
-            made = shrink(mat, view, outside_rgb, whole_cells, exact)
-            made.flags.writeable = False
-            return made
+        def draw_picture(view: Viewport) -> Pixels:
+            shrunk = shrink(mat, view, outside_rgb, whole_cells, exact)
+            shrunk.flags.writeable = False
+            return shrunk
 
-        self.picture: Callable[[Viewport], Pixels] = picture
+        self.picture: Callable[[Viewport], Pixels] = draw_picture
         """Returns the picture for a viewport. It is shared: do not write into it."""

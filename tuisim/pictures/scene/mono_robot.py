@@ -17,7 +17,7 @@ _BODY = "&"
 """The sign of a robot's cells: neither a mat has it, see `terminal.glyphs.SIGNS`, nor a frame."""
 
 
-def body(view: Viewport, pose: Pose, outline: RobotOutline) -> dict[tuple[int, int], int]:
+def draw_body(view: Viewport, pose: Pose, outline: RobotOutline) -> dict[tuple[int, int], int]:
     """Return signs for the cells that a robot covers, at least half of each, as cells by row and column."""
     empty = np.zeros((view.height_px, view.width_px, 3), np.uint8)
     draw_robot(empty, view, pose, outline, CLEARED)
@@ -25,8 +25,8 @@ def body(view: Viewport, pose: Pose, outline: RobotOutline) -> dict[tuple[int, i
     covered = (
         empty[..., 0].reshape(rows, view.cell.rows, cols, view.cell.cols).mean(axis=(1, 3)) >= 128
     )
-    found = np.argwhere(covered).tolist()
-    return {(row, col): sign_cell(_BODY) for row, col in found}
+    cells = np.argwhere(covered).tolist()
+    return {(row, col): sign_cell(_BODY) for row, col in cells}
 
 
 _LINES, _TIPS = "-/|\\", {0: ">", 2: "^", 4: "<", 6: "v"}
@@ -35,7 +35,9 @@ _STEPS_PER_CELL = 4
 _AHEAD_CELLS = 2.0
 
 
-def pointer(view: Viewport, pose: Pose, reach_mm: float, pivot: str) -> dict[tuple[int, int], int]:
+def draw_pointer(
+    view: Viewport, pose: Pose, reach_mm: float, pivot: str
+) -> dict[tuple[int, int], int]:
     """Return signs for the place and the heading of a robot, as cells by row and column.
 
     Args:
@@ -63,7 +65,7 @@ def pointer(view: Viewport, pose: Pose, reach_mm: float, pivot: str) -> dict[tup
     signs = dict.fromkeys(path, _LINES[direction % 4])
     signs[path[-1]] = _TIPS.get(direction, _LINES[direction % 4])
     signs[math.floor(row), math.floor(col)] = pivot
-    return {at: sign_cell(sign) for at, sign in signs.items()}
+    return {cell: sign_cell(sign) for cell, sign in signs.items()}
 
 
 def draw_mono_robot(
@@ -88,7 +90,7 @@ def draw_mono_robot(
     # Where nothing covers the canvas, one is as white and the other as black as before.
     covered = white - black <= 128
     around = np.pad(covered, 1)
-    rim = np.logical_or.reduce([np.roll(around, at, (0, 1)) for at in _BESIDE])[1:-1, 1:-1]
+    rim = np.logical_or.reduce([np.roll(around, shift, (0, 1)) for shift in _BESIDE])[1:-1, 1:-1]
     picture[rim | covered] = 255
     picture[covered & (white <= 128)] = 0
 

@@ -16,7 +16,7 @@ _ARROW_CELLS = 4.0
 """Length of the arrow, in widths of a cell."""
 
 
-def off_field_words(pose: Pose, width: int = 80) -> str:
+def describe_off_field(pose: Pose, width: int = 80) -> str:
     """Return how far the middle of a robot is off the field, and on which side; empty if it is on it.
 
     Args:
@@ -42,7 +42,7 @@ def off_field_words(pose: Pose, width: int = 80) -> str:
     return next((telling for telling in tellings if len(telling) <= width), brief)
 
 
-def draw_arrow_to(picture: Pixels, view: Viewport, pose: Pose, reach_px: float, rgb: Rgb) -> None:
+def draw_arrow(picture: Pixels, view: Viewport, pose: Pose, reach_px: float, rgb: Rgb) -> None:
     """Paint an arrow at the edge of a picture that points to a robot, if nothing of that is in the picture.
 
     Args:

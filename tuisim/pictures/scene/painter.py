@@ -22,8 +22,8 @@ from tuisim.pictures.scene.floor import (
 )
 from tuisim.pictures.scene.mat import MatPictures
 from tuisim.pictures.scene.mono_robot import draw_mono_robot
-from tuisim.pictures.scene.off_field import draw_arrow_to
-from tuisim.pictures.scene.pen import PenTrace, trace_pixels, visible_on
+from tuisim.pictures.scene.off_field import draw_arrow
+from tuisim.pictures.scene.pen import PenTrace, choose_pen_rgb, trace_pixels
 from tuisim.pictures.scene.robot import (
     CLEARED,
     COLORED,
@@ -32,9 +32,9 @@ from tuisim.pictures.scene.robot import (
     GREY,
     GREY_GHOST,
     MONO,
+    choose_scale,
     draw_robot,
-    drawn_reach_mm,
-    drawn_scale,
+    measure_reach_mm,
 )
 from tuisim.pictures.scene.view import Viewport
 from tuisim.terminal.pixels import Pixels
@@ -127,7 +127,7 @@ class ScenePainter:
 
     def paint(self, view: Viewport, scene: SceneState) -> Pixels:
         """Return the picture, shape (view.height_px, view.width_px, 3)."""
-        picture = self._ground_picture(view, scene).copy()
+        picture = self._draw_ground(view, scene).copy()
         if self._outline is None or scene.robot is not self._robot:
             self._robot, self._outline = scene.robot, build_outline(scene.robot)
         outline = self._outline
@@ -151,8 +151,8 @@ class ScenePainter:
                 pressed=scene.pressed,
                 detail_cols=self._detail_cols,
             )
-            reach_px = drawn_reach_mm(outline) * drawn_scale(outline, view) / view.mm_per_px
-            draw_arrow_to(
+            reach_px = measure_reach_mm(outline) * choose_scale(outline, view) / view.mm_per_px
+            draw_arrow(
                 picture,
                 view,
                 scene.pose,
@@ -161,7 +161,7 @@ class ScenePainter:
             )
         return picture
 
-    def _ground_picture(self, view: Viewport, scene: SceneState) -> Pixels:
+    def _draw_ground(self, view: Viewport, scene: SceneState) -> Pixels:
         key = (view, scene.obstacles, scene.marked, scene.beacon, self.trace, self.trace.clears)
         if self._ground is None or self._ground_key != key:
             self._ground = self._mat.picture(view).copy()
@@ -178,15 +178,15 @@ class ScenePainter:
             self._ground_key = key
             self._pieces_drawn = 0
             self.trace.join()
-        for piece in self.trace.pieces(self._pieces_drawn):
+        for piece in self.trace.iterate_pieces(self._pieces_drawn):
             rows, cols = trace_pixels(view, piece.xs_mm, piece.ys_mm, piece.width_mm)
-            self._ground[rows, cols] = visible_on(
-                self._ground_below(view)[rows, cols], piece.rgb, self._grey
+            self._ground[rows, cols] = choose_pen_rgb(
+                self._find_pen_ground(view)[rows, cols], piece.rgb, self._grey
             )
         self._pieces_drawn = len(self.trace)
         return self._ground
 
-    def _ground_below(self, view: Viewport) -> Pixels:
+    def _find_pen_ground(self, view: Viewport) -> Pixels:
         """Return what the pen draws on: not what it has drawn, which may be drawn again."""
         return self._mat.picture(view)
 
@@ -271,7 +271,7 @@ def draw_rays(
     pixels = picture.reshape(-1, 3)
     below = pixels[covered_at]
     opacity = 1.0 if grey or is_solid else _RAY_OPACITY
-    mixed = below * (1 - opacity) + visible_on(below, RAY_RGB, grey) * opacity
+    mixed = below * (1 - opacity) + choose_pen_rgb(below, RAY_RGB, grey) * opacity
     pixels[covered_at] = np.rint(mixed).astype(np.uint8)
 
 
@@ -289,8 +289,8 @@ def draw_obstacles(
     for index, box in enumerate(obstacles):
         left, bottom = view.to_px(box.x_mm, box.y_mm)
         right, top = view.to_px(box.x_mm + box.width_mm, box.y_mm + box.height_mm)
-        rows = _span(top, bottom, view.height_px)
-        cols = _span(left, right, view.width_px)
+        rows = _find_span(top, bottom, view.height_px)
+        cols = _find_span(left, right, view.width_px)
         picture[rows, cols] = MARKED_RGB if index == marked else OBSTACLE_EDGE_RGB
         if rows.stop - rows.start > 2 and cols.stop - cols.start > 2:
             picture[rows.start + 1 : rows.stop - 1, cols.start + 1 : cols.stop - 1] = OBSTACLE_RGB
@@ -305,7 +305,7 @@ def draw_beacon(picture: Pixels, view: Viewport, x_mm: float, y_mm: float) -> No
         x_mm: World x of its centre.
         y_mm: World y of its centre.
     """
-    col, row = (math.floor(at) for at in view.to_px(x_mm, y_mm))
+    col, row = (math.floor(position) for position in view.to_px(x_mm, y_mm))
     radius = max(1, round(_BEACON_MM / view.mm_per_px))
     tall = view.mm_per_row / view.mm_per_px
     aside = np.arange(-radius, radius + 1)
@@ -320,6 +320,6 @@ def draw_beacon(picture: Pixels, view: Viewport, x_mm: float, y_mm: float) -> No
     picture[rows[inside], cols[inside]] = shades[inside]
 
 
-def _span(low: float, high: float, size_px: int) -> slice:
+def _find_span(low: float, high: float, size_px: int) -> slice:
     first = round(low)
     return slice(min(max(first, 0), size_px), min(max(round(high), first + 1, 0), size_px))

@@ -23,7 +23,7 @@ _APART, _GREY_APART = 130.0, 90.0
 """Least difference of a line from the ground: as a distance of colours, and of their brightness."""
 
 
-def visible_on(ground: Pixels, rgb: Rgb, grey: bool = False) -> Pixels:
+def choose_pen_rgb(ground: Pixels, rgb: Rgb, grey: bool = False) -> Pixels:
     """Return a colour for each pixel below a line: that of the line, or a darker or lighter one where it would vanish.
 
     Args:
@@ -36,10 +36,10 @@ def visible_on(ground: Pixels, rgb: Rgb, grey: bool = False) -> Pixels:
         vanishes = np.abs(ground @ _LUMA - line @ _LUMA) < _GREY_APART
     else:
         vanishes = np.square(ground - line).sum(axis=1) < _APART**2
-    shown = np.repeat(line[None], len(ground), axis=0)
+    visible = np.repeat(line[None], len(ground), axis=0)
     is_light = (ground @ _LUMA > 127)[:, None]
-    shown[vanishes] = np.where(is_light, line * 0.3, line * 0.3 + 178)[vanishes]
-    pixels: Pixels = np.rint(shown).astype(np.uint8)
+    visible[vanishes] = np.where(is_light, line * 0.3, line * 0.3 + 178)[vanishes]
+    pixels: Pixels = np.rint(visible).astype(np.uint8)
     return pixels
 
 
@@ -61,7 +61,7 @@ def trace_pixels(
     Returns:
         Rows and columns, each shape (m,), whole numbers inside the picture, possibly repeated.
     """
-    xs, ys = _joined(xs_mm, ys_mm, view.mm_per_px / 2)
+    xs, ys = _join_points(xs_mm, ys_mm, view.mm_per_px / 2)
     cols = (xs - view.left_mm) / view.mm_per_px
     rows = (view.top_mm - ys) / view.mm_per_row
     across, down = _spread(width_mm / view.mm_per_px), _spread(width_mm / view.mm_per_row)
@@ -77,7 +77,7 @@ def _spread(width_px: float) -> FloatArray:
     return np.arange(count, dtype=np.float64) - (count - 1) / 2
 
 
-def _joined(xs: FloatArray, ys: FloatArray, step_mm: float) -> tuple[FloatArray, FloatArray]:
+def _join_points(xs: FloatArray, ys: FloatArray, step_mm: float) -> tuple[FloatArray, FloatArray]:
     """Return points no further apart than a step along the trace, NaN dropped."""
     good = np.isfinite(xs) & np.isfinite(ys)
     if len(xs) < 2:
@@ -99,11 +99,11 @@ def _joined(xs: FloatArray, ys: FloatArray, step_mm: float) -> tuple[FloatArray,
 _FALLBACK = "red"
 
 
-def pen_rgb(color: str) -> Rgb:
+def parse_pen_color(color: str) -> Rgb:
     """Return the colour of a pen: a CSS name or `#rrggbb`; red for anything else."""
-    found = parse_css_rgb(color) or parse_css_rgb(_FALLBACK)
-    assert found is not None
-    return found
+    rgb = parse_css_rgb(color) or parse_css_rgb(_FALLBACK)
+    assert rgb is not None
+    return rgb
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,11 +117,11 @@ class Piece:
     width_mm: float
 
     @classmethod
-    def of(cls, xs_mm: FloatArray, ys_mm: FloatArray, pen: PenSpec) -> Piece:
+    def from_points(cls, xs_mm: FloatArray, ys_mm: FloatArray, pen: PenSpec) -> Piece:
         """Return what a pen has drawn."""
-        return cls(xs_mm, ys_mm, pen_rgb(pen.color), pen.width_mm)
+        return cls(xs_mm, ys_mm, parse_pen_color(pen.color), pen.width_mm)
 
-    def apart(self) -> Piece:
+    def lift(self) -> Piece:
         """Return the same after the pen was lifted."""
         return replace(
             self, xs_mm=np.insert(self.xs_mm, 0, np.nan), ys_mm=np.insert(self.ys_mm, 0, np.nan)
@@ -167,7 +167,7 @@ class PenTrace:
         self._pieces[:0] = pieces
         self.clears += 1
 
-    def pieces(self, first: int) -> Iterator[Piece]:
+    def iterate_pieces(self, first: int) -> Iterator[Piece]:
         """Return the pieces from index `first` on."""
         return iter(self._pieces[first:])
 
@@ -187,16 +187,16 @@ class PenTrace:
         self._pieces = joined
 
 
-def pen_points_mm(robot: RobotSpec, telemetry: npt.NDArray[Any]) -> tuple[FloatArray, FloatArray]:
+def place_pen_mm(robot: RobotSpec, telemetry: npt.NDArray[Any]) -> tuple[FloatArray, FloatArray]:
     """Return x and y of the pen in the world at each record of telemetry, up or down, each of shape (n,)."""
     return world_points_mm(telemetry, robot.pen.x_mm, robot.pen.y_mm)
 
 
-def drawn_points_mm(
+def place_drawn_mm(
     robot: RobotSpec, telemetry: npt.NDArray[Any]
 ) -> tuple[FloatArray, FloatArray, npt.NDArray[np.bool_]]:
     """Return x and y of the pen at each record of telemetry, NaN where it was up, and whether it was; shape (n,)."""
-    xs_mm, ys_mm = pen_points_mm(robot, telemetry)
+    xs_mm, ys_mm = place_pen_mm(robot, telemetry)
     lifted = (telemetry["flags"] & FLAG_PEN_DOWN) == 0
     xs_mm[lifted] = ys_mm[lifted] = np.nan
     return xs_mm, ys_mm, lifted
@@ -208,14 +208,14 @@ _FINE_MM = 1.0
 """In most ticks the pen moves less."""
 
 
-def pen_trace(spec: RunSpec, telemetry: npt.NDArray[Any]) -> Piece:
+def build_pen_trace(spec: RunSpec, telemetry: npt.NDArray[Any]) -> Piece:
     """Return the pen trace of a run, from the records of `engine.runs.views.TelemetryView.array`."""
-    xs_mm, ys_mm, _ = drawn_points_mm(spec.robot, telemetry)
+    xs_mm, ys_mm, _ = place_drawn_mm(spec.robot, telemetry)
     # Damaged records may have no valid pose.
     far = (np.abs(xs_mm) >= FAR_MM) | (np.abs(ys_mm) >= FAR_MM)
     xs_mm[far] = ys_mm[far] = np.nan
     places = np.nan_to_num(np.round(np.stack((xs_mm, ys_mm)) / _FINE_MM), nan=FAR_MM)
     moved = np.any(np.diff(places, axis=1, prepend=np.nan) != 0, axis=0)
     # The end of a line is where the next one begins, or the pen is lifted.
-    kept = moved | np.append(moved[1:], True)
-    return Piece.of(xs_mm[kept], ys_mm[kept], spec.robot.pen)
+    needed = moved | np.append(moved[1:], True)
+    return Piece.from_points(xs_mm[needed], ys_mm[needed], spec.robot.pen)

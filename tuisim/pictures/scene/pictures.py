@@ -15,9 +15,9 @@ from tuisim.engine.core.sensors.touch import pressed
 from tuisim.engine.core.sensors.ultrasonic import measure_rays_mm
 from tuisim.engine.core.spec import PenSpec, RobotSpec, RunSpec
 from tuisim.pictures.scene.painter import FRAME_PX, ScenePainter, SceneState
-from tuisim.pictures.scene.pen import FAR_MM, PenTrace, Piece, pen_trace
-from tuisim.pictures.scene.robot import drawn_reach_mm
-from tuisim.pictures.scene.view import FIELD, Area, Viewport, whole_field
+from tuisim.pictures.scene.pen import FAR_MM, PenTrace, Piece, build_pen_trace
+from tuisim.pictures.scene.robot import measure_reach_mm
+from tuisim.pictures.scene.view import FIELD, Area, Viewport, fit_field
 from tuisim.terminal.pixels import Pixels
 
 if TYPE_CHECKING:
@@ -53,68 +53,70 @@ def find_area(spec: RunSpec, records: NDArray[Any]) -> Area:
     )
 
 
-def world_view(robot: RobotSpec, mm_per_px: float = MM_PER_PX, area: Area = FIELD) -> Viewport:
+def build_world_view(
+    robot: RobotSpec, mm_per_px: float = MM_PER_PX, area: Area = FIELD
+) -> Viewport:
     """Return a view in which a robot is completely visible while its axle is in an area."""
     # The field is no multiple of three mm wide: the rest of the last column is left out.
     width_px, height_px = (max(int(side_mm / mm_per_px), 1) for side_mm in area.size_mm)
-    rim_px = math.ceil(drawn_reach_mm(build_outline(robot)) / mm_per_px) + FRAME_PX
+    rim_px = math.ceil(measure_reach_mm(build_outline(robot)) / mm_per_px) + FRAME_PX
     left_mm, top_mm = area.left - rim_px * mm_per_px, area.upper + rim_px * mm_per_px
     return Viewport(width_px + 2 * rim_px, height_px + 2 * rim_px, mm_per_px, left_mm, top_mm)
 
 
 def find_view(spec: RunSpec, area: Area = FIELD) -> Viewport:
-    """Return the view of `world_picture`: a larger area is shown in a picture that is about as large."""
+    """Return the view of `draw_world`: a larger area is shown in a picture that is about as large."""
     larger = max(
         side_mm / field_mm for side_mm, field_mm in zip(area.size_mm, FIELD.size_mm, strict=True)
     )
-    return world_view(spec.robot, MM_PER_PX * larger, area)
+    return build_world_view(spec.robot, MM_PER_PX * larger, area)
 
 
-def fitting_view(robot: RobotSpec, width_px: int, height_px: int, area: Area = FIELD) -> Viewport:
-    """Return the view of `world_view` in the largest scale that fits a size."""
-    reach_mm = drawn_reach_mm(build_outline(robot))
+def fit_view(robot: RobotSpec, width_px: int, height_px: int, area: Area = FIELD) -> Viewport:
+    """Return the view of `build_world_view` in the largest scale that fits a size."""
+    reach_mm = measure_reach_mm(build_outline(robot))
     # The rim is rounded up to whole pixels on both sides.
     sides = zip(area.size_mm, (width_px, height_px), strict=True)
     mm_per_px = max(
         (side_mm + 2 * reach_mm) / max(side_px - 2 * (FRAME_PX + 1), 1)
         for side_mm, side_px in sides
     )
-    return world_view(robot, mm_per_px, area)
+    return build_world_view(robot, mm_per_px, area)
 
 
-def scene_of(spec: RunSpec, pose: Pose | None, *, rays: bool = False) -> SceneState:
+def build_scene(spec: RunSpec, pose: Pose | None, *, rays: bool = False) -> SceneState:
     """Return what is on the field of a run.
 
     Args:
         pose: Where the robot is; None for no robot.
         rays: Whether the rays of the ultrasonic sensor are seen.
     """
-    robot, world, at = spec.robot, spec.world, pose or spec.world.start
+    robot, world, start = spec.robot, spec.world, pose or spec.world.start
     sensor = robot.ultrasonic if rays and pose else None
     return SceneState(
         robot,
-        at,
+        start,
         world.obstacles,
-        tuple(measure_rays_mm(at, sensor, world)) if sensor else (),
+        tuple(measure_rays_mm(start, sensor, world)) if sensor else (),
         pressed=tuple(
-            not touch.pressed_by and pressed(at, touch, world) for touch in robot.touch_sensors
+            not touch.pressed_by and pressed(start, touch, world) for touch in robot.touch_sensors
         ),
         beacon=world.beacon,
         has_robot=pose is not None,
     )
 
 
-def world_painter(
+def build_painter(
     mat: Pixels, traces: Sequence[Piece] = (), *, has_floor: bool = False
 ) -> ScenePainter:
     """Return what draws a field for files, with pen traces on it."""
     trace = PenTrace()
     for piece in traces:
-        trace.add(piece.apart())
+        trace.add(piece.lift())
     return ScenePainter(mat, RIM_RGB, trace, for_file=True, has_floor=has_floor)
 
 
-def world_picture(
+def draw_world(
     spec: RunSpec,
     mat: Pixels,
     pose: Pose | None = None,
@@ -136,18 +138,18 @@ def world_picture(
     """
     from PIL import Image
 
-    scene = scene_of(spec, pose or spec.world.start, rays=rays)
-    painter = world_painter(mat, traces, has_floor=spec.world.is_open)
+    scene = build_scene(spec, pose or spec.world.start, rays=rays)
+    painter = build_painter(mat, traces, has_floor=spec.world.is_open)
     return Image.fromarray(painter.paint(find_view(spec, area), scene))
 
 
-def sound_pose(record: TickRecord | None) -> Pose | None:
+def read_pose(record: TickRecord | None) -> Pose | None:
     """Return the pose of a record; None without one, and for a damaged record, which may have no valid pose."""
     valid = record is not None and math.isfinite(record.x_mm + record.y_mm + record.heading_deg)
     return record.pose if record is not None and valid else None
 
 
-def world_at_end(run: StoredRun) -> Image:
+def draw_end(run: StoredRun) -> Image:
     """Return the world at the end of a run, or at the latest tick of a running one, as a Pillow image.
 
     Raises:
@@ -157,17 +159,15 @@ def world_at_end(run: StoredRun) -> Image:
     from tuisim.engine.runs.run_folder import mat_files
 
     last, records = run.telemetry.last(), run.telemetry.array()
-    mat, trace = mat_pixels(mat_files(run)), pen_trace(run.spec, records)
-    return world_picture(
-        run.spec, mat, sound_pose(last), (trace,), area=find_area(run.spec, records)
-    )
+    mat, trace = mat_pixels(mat_files(run)), build_pen_trace(run.spec, records)
+    return draw_world(run.spec, mat, read_pose(last), (trace,), area=find_area(run.spec, records))
 
 
 _PATH = PenSpec(color="red", width_mm=12.0)
-_MOST_PATH_POINTS = 2000
+_MAX_PATH_POINTS = 2000
 
 
-def path_picture(run: StoredRun, port: Viewport, outside_rgb: Rgb) -> Pixels:
+def draw_path(run: StoredRun, port: Viewport, outside_rgb: Rgb) -> Pixels:
     """Return a small picture of the way of a run on its mat, in the size of a view.
 
     Raises:
@@ -177,12 +177,12 @@ def path_picture(run: StoredRun, port: Viewport, outside_rgb: Rgb) -> Pixels:
     from tuisim.engine.runs.run_folder import mat_files
 
     records = run.telemetry.array()
-    some = records[:: max(1, len(records) // _MOST_PATH_POINTS)]
+    some = records[:: max(1, len(records) // _MAX_PATH_POINTS)]
     trace = PenTrace()
-    trace.add(Piece.of(some["x_mm"].astype(float), some["y_mm"].astype(float), _PATH))
+    trace.add(Piece.from_points(some["x_mm"].astype(float), some["y_mm"].astype(float), _PATH))
     mat, has_floor = mat_pixels(mat_files(run)), run.spec.world.is_open
     painter = ScenePainter(mat, outside_rgb, trace, has_floor=has_floor)
-    shown = find_area(run.spec, records)
-    if shown != FIELD:
-        port = whole_field(port.width_px, port.height_px, port.cell, shown)
-    return painter.paint(port, scene_of(run.spec, None))
+    area = find_area(run.spec, records)
+    if area != FIELD:
+        port = fit_field(port.width_px, port.height_px, port.cell, area)
+    return painter.paint(port, build_scene(run.spec, None))

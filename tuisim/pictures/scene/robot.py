@@ -22,7 +22,7 @@ _SAMPLES = (4, 8)
 _MIN_CELLS = 7.0
 """A robot narrower than this many cells is drawn enlarged, to be recognisable."""
 
-_FEW_PX = {1: 8.0, 2: 18.0}
+_MIN_PX = {1: 8.0, 2: 18.0}
 """By the pixels across a cell: in a robot narrower than this many pixels the heading marker needs to project beyond
 the body."""
 _NOSE_PX = {1: 1.2, 2: 2.5}
@@ -110,7 +110,7 @@ EARLIER = RobotColors(
 """For the robot of an earlier run."""
 
 
-def drawn_reach_mm(outline: RobotOutline) -> float:
+def measure_reach_mm(outline: RobotOutline) -> float:
     """Return the radius about a robot's pose of a circle that holds everything that is drawn of it."""
     wheels_mm = math.hypot(outline.half_width_mm, outline.wheel_radius_mm)
     bars_mm = (math.hypot(abs(x) + half, abs(y) + _BUMPER_MM) for x, y, half in outline.bumpers_mm)
@@ -118,7 +118,7 @@ def drawn_reach_mm(outline: RobotOutline) -> float:
     return max((outline.reach_mm, wheels_mm, *spots_mm, *bars_mm))
 
 
-def drawn_scale(outline: RobotOutline, view: Viewport) -> float:
+def choose_scale(outline: RobotOutline, view: Viewport) -> float:
     """Return the factor by which a robot is drawn enlarged, at least 1."""
     return max(1.0, _MIN_CELLS * view.cell.cols * view.mm_per_px / (2 * outline.half_width_mm))
 
@@ -142,22 +142,22 @@ def draw_robot(
         detail_cols: Details are drawn for so many pixels across a cell, 1 or 2; None: for those of the view.
     """
     detail_cols = detail_cols or min(view.cell.cols, 2)
-    scale = drawn_scale(outline, view)
+    scale = choose_scale(outline, view)
     col, row = view.to_px(pose.x_mm, pose.y_mm)
     is_crisp = 2 * outline.half_width_mm * scale < _CRISP_PX * view.mm_per_px
     if is_crisp:
         col, row = math.floor(col) + 0.5, math.floor(row) + 0.5
     step_mm, row_mm = view.mm_per_px / scale, view.mm_per_row / scale
-    reach_mm = drawn_reach_mm(outline)
-    left, right = _around(col, reach_mm / step_mm + 2, view.width_px)
-    top, bottom = _around(row, reach_mm / row_mm + 2, view.height_px)
+    reach_mm = measure_reach_mm(outline)
+    left, right = _find_range(col, reach_mm / step_mm + 2, view.width_px)
+    top, bottom = _find_range(row, reach_mm / row_mm + 2, view.height_px)
     if left >= right or top >= bottom:
         return
     across, down = (
         -(-samples // points) for samples, points in zip(_SAMPLES, view.cell[:2], strict=True)
     )
-    east = (_sampled(left, right, across) - col)[None, :] * step_mm
-    north = (row - _sampled(top, bottom, down))[:, None] * row_mm
+    east = (_sample_places(left, right, across) - col)[None, :] * step_mm
+    north = (row - _sample_places(top, bottom, down))[:, None] * row_mm
     heading = math.radians(pose.heading_deg)
     cos, sin = math.cos(heading), math.sin(heading)
     side, ahead = east * sin - north * cos, east * cos + north * sin
@@ -166,7 +166,7 @@ def draw_robot(
     edge_mm = min(colors.edge_cells * detail_cols * detail_mm, colors.edge_mm)
     if is_crisp and not colors.has_small_edge:
         edge_mm = 0.0
-    parts = _parts(
+    parts = _classify_samples(
         outline, side, ahead, detail_mm, detail_cols, edge_mm, has_marker=colors.has_marker
     )
     if colors.is_outline:
@@ -175,20 +175,20 @@ def draw_robot(
         _mount(parts, outline, side, ahead, detail_mm, pressed)
     blocks = parts.reshape(bottom - top, down, right - left, across)
     _blend(
-        picture[top:bottom, left:right], _strongest(blocks) if is_crisp else blocks, colors, opacity
+        picture[top:bottom, left:right], _pick_part(blocks) if is_crisp else blocks, colors, opacity
     )
 
 
-def _around(middle_px: float, reach_px: float, size_px: int) -> tuple[int, int]:
+def _find_range(middle_px: float, reach_px: float, size_px: int) -> tuple[int, int]:
     return max(math.floor(middle_px - reach_px), 0), min(math.ceil(middle_px + reach_px), size_px)
 
 
-def _sampled(first_px: int, end_px: int, samples: int) -> FloatArray:
+def _sample_places(first_px: int, end_px: int, samples: int) -> FloatArray:
     fine = (np.arange(samples) + 0.5) / samples
     return (np.arange(first_px, end_px)[:, None] + fine).ravel()
 
 
-def _parts(
+def _classify_samples(
     outline: RobotOutline,
     side: FloatArray,
     ahead: FloatArray,
@@ -212,7 +212,7 @@ def _parts(
     if outline.has_wheels:
         parts[beside & (np.abs(ahead) <= outline.wheel_radius_mm)] = _WHEEL
     # In few pixels the nose sticks out by one, and it is never thinner than that, so that the heading can be seen.
-    is_small = 2 * outline.half_width_mm < _FEW_PX[cell_cols] * px_mm
+    is_small = 2 * outline.half_width_mm < _MIN_PX[cell_cols] * px_mm
     nose_mm = _NOSE_PX[cell_cols] * px_mm if is_small else 0.0
     tip = front_mm + nose_mm
     base = back_mm * 0.55
@@ -239,16 +239,16 @@ def _mount(
 ) -> None:
     """Add bumpers and other sensors; the heading marker stays on top."""
     free = parts != _MARKER
-    for at, (x_mm, y_mm, half) in enumerate(outline.bumpers_mm):
+    for number, (x_mm, y_mm, half) in enumerate(outline.bumpers_mm):
         # A bar is at least half a pixel thick and long, to stay visible.
         bar = np.abs(ahead - y_mm) <= max(_BUMPER_MM / 2, 0.5 * px_mm)
         bar = bar & (np.abs(side - x_mm) <= max(half, 0.5 * px_mm))
-        parts[bar & free] = _PRESSED if at < len(pressed) and pressed[at] else _BUMPER
+        parts[bar & free] = _PRESSED if number < len(pressed) and pressed[number] else _BUMPER
     for x_mm, y_mm in outline.other_sensors_mm if 2 * _SPOT_MM >= 1.5 * px_mm else ():
         parts[np.hypot(side - x_mm, ahead - y_mm) <= _SPOT_MM] = _SPOT
 
 
-def _strongest(blocks: npt.NDArray[np.intp]) -> npt.NDArray[np.intp]:
+def _pick_part(blocks: npt.NDArray[np.intp]) -> npt.NDArray[np.intp]:
     """Return the part that weighs most in each pixel, as blocks of one sample."""
     weights = np.stack(
         [(blocks == part).sum(axis=(1, 3)) * weight for part, weight in enumerate(_WEIGHTS)]

@@ -38,74 +38,85 @@ def sharpen_edges(picture: Pixels, mean: _Numbers, span: _Numbers, area: tuple[i
         span: Of the colours there, likewise.
         area: Rows and columns of one colour that are an area, and no line.
     """
-    is_area = _areas(mean, span, area)
-    light = _nine(np.where(is_area, mean @ _LIGHT, np.nan))
-    at = np.nonzero((span > _EVEN).any(axis=2) & ~np.isnan(np.array(light)).all(axis=0))
-    near = np.array([one[at] for one in light])
-    around = np.array([[one[at] for one in _nine(channel)] for channel in np.moveaxis(mean, 2, 0)])
-    here = np.arange(len(at[0]))
+    is_area = _find_areas(mean, span, area)
+    light = _list_neighbors(np.where(is_area, mean @ _LIGHT, np.nan))
+    edge_places = np.nonzero((span > _EVEN).any(axis=2) & ~np.isnan(np.array(light)).all(axis=0))
+    near = np.array([channel_values[edge_places] for channel_values in light])
+    around = np.array(
+        [
+            [channel_values[edge_places] for channel_values in _list_neighbors(channel)]
+            for channel in np.moveaxis(mean, 2, 0)
+        ]
+    )
+    here = np.arange(len(edge_places[0]))
     dark, bright = (around[:, find(near, axis=0), here].T for find in (np.nanargmin, np.nanargmax))
     way = bright - dark
-    share = ((mean[at] - dark) * way).sum(axis=1) / np.maximum(np.square(way).sum(axis=1), 1)
-    is_mixed = (np.abs(dark + share[:, None] * way - mean[at]) <= _EVEN).all(axis=1) & (
+    share = ((mean[edge_places] - dark) * way).sum(axis=1) / np.maximum(
+        np.square(way).sum(axis=1), 1
+    )
+    is_mixed = (np.abs(dark + share[:, None] * way - mean[edge_places]) <= _EVEN).all(axis=1) & (
         np.abs(way) > _EVEN
     ).any(axis=1)
     shares = np.full(is_area.shape, np.nan, np.float32)
-    shares[at] = np.where(is_mixed, share, np.nan)
-    is_bright, is_dark = _sides(shares)
-    for is_so, color in ((is_bright[at], bright), (is_dark[at], dark)):
-        picture[at[0][is_so], at[1][is_so]] = np.rint(color[is_so]).astype(np.uint8)
+    shares[edge_places] = np.where(is_mixed, share, np.nan)
+    is_bright, is_dark = _split_sides(shares)
+    for is_so, color in ((is_bright[edge_places], bright), (is_dark[edge_places], dark)):
+        picture[edge_places[0][is_so], edge_places[1][is_so]] = np.rint(color[is_so]).astype(
+            np.uint8
+        )
     # Where three areas meet, of whichever is nearest.
     colors = np.where(np.isnan(near)[..., None], np.nan, around.transpose(1, 2, 0))
     others = [np.abs(colors - color).max(axis=2) > _EVEN for color in (dark, bright)]
-    third = np.logical_and(*others).any(axis=0) & ~(is_bright | is_dark)[at]
-    _close_gaps(picture, mean, is_area | is_bright | is_dark, (at[0][third], at[1][third]))
+    third = np.logical_and(*others).any(axis=0) & ~(is_bright | is_dark)[edge_places]
+    _close_gaps(
+        picture, mean, is_area | is_bright | is_dark, (edge_places[0][third], edge_places[1][third])
+    )
 
 
-def _close_gaps(picture: Pixels, mean: _Numbers, is_sharp: _Flags, at: _Places) -> None:
+def _close_gaps(picture: Pixels, mean: _Numbers, is_sharp: _Flags, edge_places: _Places) -> None:
     """Give pixels where three areas meet a colour of the edge that goes on at both sides of them, the nearer one."""
     for axis in (0, 1):
-        inside = (at[axis] > 0) & (at[axis] < picture.shape[axis] - 1)
-        here = at[0][inside], at[1][inside]
+        inside = (edge_places[axis] > 0) & (edge_places[axis] < picture.shape[axis] - 1)
+        here = edge_places[0][inside], edge_places[1][inside]
         sides = [(here[0] + by * (axis == 0), here[1] + by * (axis == 1)) for by in (-1, 1)]
         goes_on = is_sharp[sides[0]] & is_sharp[sides[1]]
-        found = np.array([picture[side][goes_on] for side in sides])
+        neighbors = np.array([picture[side][goes_on] for side in sides])
         place = here[0][goes_on], here[1][goes_on]
-        nearer = np.square(found - mean[place]).sum(axis=2).argmin(axis=0)
-        picture[place] = found[nearer, np.arange(len(nearer))]
+        nearer = np.square(neighbors - mean[place]).sum(axis=2).argmin(axis=0)
+        picture[place] = neighbors[nearer, np.arange(len(nearer))]
 
 
-def _areas(mean: _Numbers, span: _Numbers, area: tuple[int, int]) -> _Flags:
+def _find_areas(mean: _Numbers, span: _Numbers, area: tuple[int, int]) -> _Flags:
     """Return which pixels belong to a rectangle of one colour that is as large as an area."""
     rows, cols = area
     if any(size > length for size, length in zip(area, mean.shape, strict=False)):
         return np.zeros(mean.shape[:2], bool)
     is_even = span.max(axis=2) <= _EVEN
     as_below, as_beside = (np.abs(np.diff(mean, axis=axis)).max(axis=2) <= _EVEN for axis in (0, 1))
-    upright = _along(np.logical_and, is_even, 0, rows) & _along(
+    upright = _reduce_along(np.logical_and, is_even, 0, rows) & _reduce_along(
         np.logical_and, as_below, 0, rows - 1
     )
-    beside = _along(np.logical_and, as_beside, 0, rows)
-    found: _Flags = _along(np.logical_and, upright, 1, cols) & _along(
+    beside = _reduce_along(np.logical_and, as_beside, 0, rows)
+    inside: _Flags = _reduce_along(np.logical_and, upright, 1, cols) & _reduce_along(
         np.logical_and, beside, 1, cols - 1
     )
     for axis, size in enumerate(area):
-        found = _spread(found, axis, size)
-    return found
+        inside = _spread(inside, axis, size)
+    return inside
 
 
-def _sides(shares: _Numbers) -> tuple[_Flags, _Flags]:
+def _split_sides(shares: _Numbers) -> tuple[_Flags, _Flags]:
     """Return which pixels are of the brighter side of an edge, and which of the darker one.
 
     Args:
         shares: How much of each pixel the brighter side covers; NaN where there is no edge.
     """
-    upright, level = (np.where(_runs(shares, axis), shares, np.nan) for axis in (0, 1))
+    upright, level = (np.where(_find_runs(shares, axis), shares, np.nan) for axis in (0, 1))
     is_bright = (upright >= 0.5) | (level >= 0.5)
     is_dark = (upright < 0.5) | (level < 0.5)
     (_, up, _, _, _, _, _, down, _), (_, _, _, left, _, right, _, _, _) = (
-        _nine(upright),
-        _nine(level),
+        _list_neighbors(upright),
+        _list_neighbors(level),
     )
     for first in (up, down):
         for second in (left, right):
@@ -117,7 +128,7 @@ def _sides(shares: _Numbers) -> tuple[_Flags, _Flags]:
     is_dark &= ~is_bright
     for _ in range(_ENDS):
         is_bright, is_dark = (
-            so | (mixed & (np.any(_nine(so)[1::2], axis=0)))
+            so | (mixed & (np.any(_list_neighbors(so)[1::2], axis=0)))
             for so, mixed in (
                 (is_bright, (shares >= 0.5) & ~is_dark),
                 (is_dark, (shares < 0.5) & ~is_bright),
@@ -126,31 +137,35 @@ def _sides(shares: _Numbers) -> tuple[_Flags, _Flags]:
     return is_bright & ~np.isnan(shares), is_dark & ~np.isnan(shares)
 
 
-def _runs(shares: _Numbers, axis: int) -> _Flags:
+def _find_runs(shares: _Numbers, axis: int) -> _Flags:
     """Return which pixels belong to a run of nearly equal shares along an axis."""
     if shares.shape[axis] < _RUN:
         return np.zeros(shares.shape, bool)
-    span = _along(np.maximum, shares, axis, _RUN) - _along(np.minimum, shares, axis, _RUN)
+    span = _reduce_along(np.maximum, shares, axis, _RUN) - _reduce_along(
+        np.minimum, shares, axis, _RUN
+    )
     return _spread(span <= _STRAIGHT, axis, _RUN)
 
 
-def _along(operation: np.ufunc, values: npt.NDArray[Any], axis: int, size: int) -> npt.NDArray[Any]:
+def _reduce_along(
+    operation: np.ufunc, values: npt.NDArray[Any], axis: int, size: int
+) -> npt.NDArray[Any]:
     """Return an operation on so many values that follow each other along an axis, for each of their places."""
     lines = values.swapaxes(0, axis)
     count = len(lines) - size + 1
-    made: npt.NDArray[Any] = operation.reduce(
+    reduced: npt.NDArray[Any] = operation.reduce(
         [lines[first : first + count] for first in range(size)]
     )
-    return made.swapaxes(0, axis)
+    return reduced.swapaxes(0, axis)
 
 
-def _spread(found: _Flags, axis: int, size: int) -> _Flags:
-    """Return all values of the places that `_along` has found."""
-    beyond = [(size - 1, size - 1) if at == axis else (0, 0) for at in range(2)]
-    return _along(np.logical_or, np.pad(found, beyond), axis, size)
+def _spread(flags: _Flags, axis: int, size: int) -> _Flags:
+    """Return all values of the places that `_reduce_along` has found."""
+    beyond = [(size - 1, size - 1) if each == axis else (0, 0) for each in range(2)]
+    return _reduce_along(np.logical_or, np.pad(flags, beyond), axis, size)
 
 
-def _nine(values: npt.NDArray[Any]) -> list[npt.NDArray[Any]]:
+def _list_neighbors(values: npt.NDArray[Any]) -> list[npt.NDArray[Any]]:
     """Return the values of each pixel and of those around it."""
     rows, cols = values.shape
     around = np.pad(values, 1, mode="edge")

@@ -64,16 +64,16 @@ class Viewport:
         return self.left_mm + col_px * self.mm_per_px, self.top_mm - row_px * self.mm_per_row
 
 
-def whole_field(
+def fit_field(
     width_px: int, height_px: int, cell: CellPoints = SQUARE, area: Area = FIELD
 ) -> Viewport:
     """Return the viewport that shows an area, centred, in a picture of that size (each at least 1)."""
     mm_per_px = _fit_mm_per_px(width_px, height_px, cell, area)
     middle = (area.left + area.right) / 2, (area.lower + area.upper) / 2
-    return _around(width_px, height_px, mm_per_px, *middle, cell)
+    return _center_view(width_px, height_px, mm_per_px, *middle, cell)
 
 
-def following(
+def follow_robot(
     width_px: int,
     height_px: int,
     zoom: int,
@@ -98,27 +98,27 @@ def following(
         on_floor: Whether the robot may leave the field: then the view follows it there, by thirds of its size.
     """
     if zoom == 1 and not on_floor:
-        return whole_field(width_px, height_px, cell)
+        return fit_field(width_px, height_px, cell)
     mm_per_px = _fit_mm_per_px(width_px, height_px, cell) / zoom
     same_scale = (
         previous is not None
         and (previous.width_px, previous.height_px, previous.cell) == (width_px, height_px, cell)
         and math.isclose(previous.mm_per_px, mm_per_px)
     )
-    kept = previous if same_scale else None
+    basis = previous if same_scale else None
     if on_floor:
         at_mm = (pose.x_mm, pose.y_mm) if zoom > 1 else (FIELD_WIDTH_MM / 2, FIELD_HEIGHT_MM / 2)
-        kept = kept or _around(width_px, height_px, mm_per_px, *at_mm, cell)
-        return _shifted(kept, zoom, pose)
-    if kept is not None and _well_inside(kept, pose):
-        return kept
-    x_mm = _clamped(pose.x_mm, width_px * mm_per_px, FIELD_WIDTH_MM)
-    y_mm = _clamped(pose.y_mm, height_px * mm_per_px * cell.tall, FIELD_HEIGHT_MM)
-    moved = _around(width_px, height_px, mm_per_px, x_mm, y_mm, cell)
+        basis = basis or _center_view(width_px, height_px, mm_per_px, *at_mm, cell)
+        return _shift_view(basis, zoom, pose)
+    if basis is not None and _is_well_inside(basis, pose):
+        return basis
+    x_mm = _clamp_center(pose.x_mm, width_px * mm_per_px, FIELD_WIDTH_MM)
+    y_mm = _clamp_center(pose.y_mm, height_px * mm_per_px * cell.tall, FIELD_HEIGHT_MM)
+    moved = _center_view(width_px, height_px, mm_per_px, x_mm, y_mm, cell)
     return previous if previous is not None and moved == previous else moved
 
 
-def _shifted(view: Viewport, zoom: int, pose: Pose) -> Viewport:
+def _shift_view(view: Viewport, zoom: int, pose: Pose) -> Viewport:
     """Return a view moved by thirds of its size until the robot is not near its edges."""
     share = _KEEP_ON_FLOOR if zoom == 1 else _KEEP_INSIDE
     col, row = view.to_px(pose.x_mm, pose.y_mm)
@@ -144,7 +144,7 @@ def _fit_mm_per_px(width_px: int, height_px: int, cell: CellPoints, area: Area =
     return max(wide_mm / width_px, high_mm / (height_px * cell.tall))
 
 
-def _around(
+def _center_view(
     width_px: int, height_px: int, mm_per_px: float, x_mm: float, y_mm: float, cell: CellPoints
 ) -> Viewport:
     # Whole-pixel margins: a field edge that falls between pixels would be a blurred line.
@@ -155,14 +155,14 @@ def _around(
     return Viewport(width_px, height_px, mm_per_px, left_mm, top_mm, cell)
 
 
-def _clamped(centre_mm: float, shown_mm: float, field_mm: float) -> float:
+def _clamp_center(centre_mm: float, shown_mm: float, field_mm: float) -> float:
     """Return the centre of a view, clamped so that as little as possible off the field is shown."""
     if shown_mm >= field_mm:
         return field_mm / 2
     return min(max(centre_mm, shown_mm / 2), field_mm - shown_mm / 2)
 
 
-def _well_inside(view: Viewport, pose: Pose) -> bool:
+def _is_well_inside(view: Viewport, pose: Pose) -> bool:
     col, row = view.to_px(pose.x_mm, pose.y_mm)
     margin_col, margin_row = view.width_px * _KEEP_INSIDE, view.height_px * _KEEP_INSIDE
     # At the edge of the field there is nothing more to show.

@@ -10,7 +10,7 @@ from tuisim.base.data_class import dataclass
 from tuisim.base.errors import LogError, listed
 from tuisim.engine.mat_cache import mat_pixels
 from tuisim.engine.runs.run_folder import StoredRun, mat_files
-from tuisim.pictures.scene.pictures import world_picture, world_view
+from tuisim.pictures.scene.pictures import build_world_view, draw_world
 from tuisim.pictures.scene.view import Viewport
 
 _DOT_PX = 5.0
@@ -61,11 +61,11 @@ def build_class_maps(found: Sequence[MissesOfRun]) -> list[Picture]:
 def _build_map(found: Sequence[MissesOfRun]) -> Picture | None:
     first, misses = found[0].run, [miss for one in found for miss in one.misses]
     try:
-        picture = world_picture(first.spec, mat_pixels(mat_files(first)))
+        picture = draw_world(first.spec, mat_pixels(mat_files(first)))
     except LogError:
         return None
     students = {miss.student for miss in misses}
-    view = world_view(first.spec.robot)
+    view = build_world_view(first.spec.robot)
     return Picture(
         f"Where goals were missed: {len(misses)} places of {len(students)} students; each dot says whose it is",
         encode_picture(picture),

@@ -11,8 +11,8 @@ from dataclasses import replace
 from pathlib import Path
 
 from tuisim.analysis.pins import Pin
-from tuisim.analysis.report import report_of
-from tuisim.analysis.source import LogRequest, opening
+from tuisim.analysis.report import build_report
+from tuisim.analysis.source import LogRequest, open_pieces
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ExportError, LogError
 from tuisim.base.faults import describe_fault
@@ -108,11 +108,11 @@ _Judged = tuple[Sequence[Goal], Mapping[str, Change]]
 def _build_report(
     student: str, goals: _Judged, outcome: Outcome, run: StoredRun, *, movie: bool
 ) -> str:
-    *_, opened = opening(LogRequest(runs=(run.id,)))
+    *_, opened = open_pieces(LogRequest(runs=(run.id,)))
     opened = replace(opened, runs=tuple(map(_portable, opened.runs)))
     shown, pins = _verdicts(*goals, outcome)
     title = ", ".join(filter(None, (student, outcome.world, f"seed {outcome.seed}")))
-    return report_of(opened, title=title, movie=movie, pins=pins, goals=shown)
+    return build_report(opened, title=title, movie=movie, pins=pins, goals=shown)
 
 
 def _write(path: Path, content: str) -> None:

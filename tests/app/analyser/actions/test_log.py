@@ -8,7 +8,7 @@ import pytest
 
 from tests.app.analyser.test_screen import open_analyser, text_of, typed
 from tests.app.app_help import LOGS, program, until
-from tuisim.analysis.chart import event_marks
+from tuisim.analysis.chart import draw_event_marks
 from tuisim.analysis.events import CommandRow
 from tuisim.app.dialogs.runs import Differences
 from tuisim.engine.core.spec import NoiseSpec
@@ -29,7 +29,7 @@ def noisy(run: StoredRun) -> StoredRun:
 async def test_commands_are_events(run: StoredRun) -> None:
     async with open_analyser(runs=(run.id, run.id)) as (pilot, screen, model):
         await typed(pilot, "c", "=command right, Colour < 60", "enter")
-        events = model.events.found(model.log)
+        events = model.events.list_events(model.log)
         asked = [event for event in events if isinstance(event, CommandRow)]
         assert 2 * len(asked) > len(events) > len(asked)
         assert {event.event.part for event in asked} == {"right motor C"}
@@ -39,14 +39,14 @@ async def test_commands_are_events(run: StoredRun) -> None:
         screen.choose(events.index(asked[-1]))
         assert (model.row, model.selected) == (asked[-1].row, selected)
         model.align("distance")
-        assert event_marks(model, model.x_limits(), 40).count("╷") >= 1
+        assert draw_event_marks(model, model.find_x_limits(), 40).count("╷") >= 1
 
 
 @pytest.mark.slow
 async def test_events_and_differences_by_keys(run: StoredRun, noisy: StoredRun) -> None:
     async with open_analyser(runs=(run.id,)) as (pilot, screen, model):
         await typed(pilot, "c", "=Colour < 60", "enter")
-        events = model.events.found(model.log)
+        events = model.events.list_events(model.log)
         assert model.row == events[0].row and "▼" in text_of(pilot) and "[Events]" in text_of(pilot)
         await pilot.press("j")
         assert (model.row, screen.pane.chosen) == (events[1].row, 1)

@@ -48,7 +48,7 @@ def facets(screen: LogScreen) -> None:
     """Switch between one chart per variable and one for all."""
     switch(screen, "facets")
     if screen.chart.options.facets:
-        if len(screen.model.traces.ticked()) < 2:
+        if len(screen.model.traces.list_ticked()) < 2:
             screen.say("Only one variable is shown: v selects another, space shows it")
         elif screen.chart.display and screen.chart.size.height < FACETS_ROWS:
             screen.say("Too little height for several charts: + enlarges the chart")
@@ -87,7 +87,7 @@ def against(screen: LogScreen) -> None:
                 )
             y, x = names if len(names) == 2 else (model.selected, names[0])
             for name in (x, y):
-                model.along(name)
+                model.sample_variable(name)
             options.against = x, y
         screen.redraw_chart()
 

@@ -100,8 +100,8 @@ def _write_rows(model: Model, frame: pd.DataFrame | None, target: Path) -> None:
 
 def chart(screen: LogScreen) -> None:
     """Ask for the file to save the chart to: with the time range and the variables as shown."""
-    from tuisim.analysis.chart import View, chart_of
-    from tuisim.pictures.charts.files import CHART_FORMATS, format_of, save_chart
+    from tuisim.analysis.chart import View, build_chart
+    from tuisim.pictures.charts.files import CHART_FORMATS, find_format, save_chart
 
     options = screen.chart.options
 
@@ -112,21 +112,21 @@ def chart(screen: LogScreen) -> None:
         )
         size = (shown.width, shown.height) if shown else None
         view = View(options.facets, options.marks, options.hold, options.against)
-        save_chart(partial(chart_of, screen.model, view), target, size)
+        save_chart(partial(build_chart, screen.model, view), target, size)
         offer(screen.app, target)
         screen.redraw_chart()
 
     screen.app.push_screen(
-        SaveDialog("chart", "chart.svg", save, ", ".join(CHART_FORMATS), format_of, _CHARTS)
+        SaveDialog("chart", "chart.svg", save, ", ".join(CHART_FORMATS), find_format, _CHARTS)
     )
 
 
 def report(screen: LogScreen) -> None:
     """Ask for the file to write the report to."""
-    from tuisim.analysis.report import check_report, default_name
+    from tuisim.analysis.report import build_default_name, check_report
 
     opened = screen.model.opened
-    names = [trace.name for trace in screen.model.traces.ticked()]
+    names = [trace.name for trace in screen.model.traces.list_ticked()]
 
     def save(target: Path) -> None:
         work = partial(_write_report, opened, target, names)
@@ -134,7 +134,9 @@ def report(screen: LogScreen) -> None:
         background.run(screen, work, saved, screen.complain, group="report")
 
     screen.app.push_screen(
-        SaveDialog("report", default_name(opened), save, ".html", check_report, _REPORT, False)
+        SaveDialog(
+            "report", build_default_name(opened), save, ".html", check_report, _REPORT, False
+        )
     )
 
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
-from tuisim.analysis.model import RECKONING, Model, apply_definition, derive, with_definition
+from tuisim.analysis.model import RECKONING, Model, apply_definition, compute_definition, derive
 from tuisim.analysis.source import LogRequest
 from tuisim.app.dialogs.question import Form
 from tuisim.base.errors import LogError
@@ -62,7 +62,7 @@ def derived(screen: LogScreen) -> None:
         screen.work(
             "computing …",
             model.log.rows,
-            lambda _: (model, *with_definition(model, text)),
+            lambda _: (model, *compute_definition(model, text)),
             computed,
         )
 
@@ -89,8 +89,8 @@ def note(screen: LogScreen) -> None:
     model = screen.model
     trace = model.trace_of_row(model.row)
     name, value = trace.name, ""
-    start_s = stop_s = model.time_of(model.row)
-    run = model.run_of(model.row)
+    start_s = stop_s = model.find_time_s(model.row)
+    run = model.find_run(model.row)
     title = f"Note on {name} at {start_s:.2f} s"
     bands = model.bands()
     if screen.pane.name_shown == "bands" and bands:
@@ -117,8 +117,8 @@ def _mark_time_s(model: Model) -> float:
     """Return the time, in its run, of the sample at the second cursor."""
     trace = model.trace_of_row(model.row)
     if model.mark_s is None or not len(trace.pyramid.times_s):
-        return model.time_of(model.row)
-    return float(trace.series.time_s[trace.pyramid.nearest(model.mark_s)])
+        return model.find_time_s(model.row)
+    return float(trace.series.time_s[trace.pyramid.find_nearest(model.mark_s)])
 
 
 def delete_note(screen: LogScreen) -> None:

@@ -6,7 +6,7 @@ import re
 from functools import partial
 from typing import TYPE_CHECKING
 
-from tuisim.analysis.events import CommandRow, Event, EventChoice, events_of, thresholds_of
+from tuisim.analysis.events import CommandRow, Event, EventChoice, find_events, parse_events
 from tuisim.app.analyser.world import NO_POSES, has_poses
 from tuisim.base.errors import LogError
 from tuisim.engine.core.conditions import list_operators
@@ -42,7 +42,7 @@ def events(screen: LogScreen) -> None:
 def _search(screen: LogScreen, text: str) -> None:
     screen.model.add_named_columns(text)
     log = screen.model.log
-    thresholds = thresholds_of(text, log)
+    thresholds = parse_events(text, log)
 
     def found(result: tuple[Log, tuple[EventChoice, ...], list[Event | CommandRow]]) -> None:
         # The log may have grown during the search: search again.
@@ -53,7 +53,7 @@ def _search(screen: LogScreen, text: str) -> None:
     screen.work(
         "searching for events …",
         log.rows,
-        lambda _: (log, thresholds, events_of(log, thresholds, runs)),
+        lambda _: (log, thresholds, find_events(log, thresholds, runs)),
         found,
     )
 
@@ -245,7 +245,7 @@ def go_to(screen: LogScreen) -> None:
 def event(screen: LogScreen, step: int) -> None:
     """Go to the next event, or the previous one."""
     model = screen.model
-    events = model.events.found(model.log)
+    events = model.events.list_events(model.log)
     if not events:
         screen.say("No events: c asks for a threshold, such as Colour < 50, or for commands")
         return
