@@ -127,7 +127,7 @@ def test_turns(name: str, sign: int) -> None:
 
 
 def test_fastest_turn() -> None:
-    instant = spin(1, RobotSpec(wheel_spacing_mm=60.0), DriftSpec()).instant()
+    instant = spin(1, RobotSpec(wheel_spacing_mm=60.0), DriftSpec()).build_instant()
     assert is_in_table("highest rate of turn", f"{instant.gyro_rate_dps}°/s")
 
 

@@ -153,7 +153,7 @@ class Lab:
             return {"x_mm": drive.x_mm, "y_mm": drive.y_mm, "heading_deg": drive.heading_deg}
         if not self.columns:
             return {}
-        instant = self._sim.instant()
+        instant = self._sim.build_instant()
         return {
             name: read(instant, self._spec, self._field) for name, read in self._readers.items()
         }

@@ -78,10 +78,7 @@ def message_lines(size: Size) -> list[str]:
 def _message_codes(size: Size) -> str:
     lines = message_lines(size)
     top = (size.height - len(lines)) // 2
-    rows = (
-        Control.move_to_position(0, top + at).find_segment.text + line
-        for at, line in enumerate(lines)
-    )
+    rows = (Control.move_to(0, top + at).segment.text + line for at, line in enumerate(lines))
     return "\x1b[0m\x1b[2J" + "".join(rows)
 
 

@@ -76,7 +76,7 @@ class Name(Value):
 
     def parse_data(self, data: object) -> str:
         if not isinstance(data, str):
-            raise self.wrong(data)
+            raise self.build_error(data)
         if not data.strip():
             raise WrongValue("a name is missing")
         return data
