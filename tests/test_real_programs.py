@@ -20,7 +20,7 @@ from tuisim.engine.core.spec import RobotSpec
 from tuisim.engine.runs.store import RunStore
 from tuisim.programs.program_file import read_program
 from tuisim.programs.program_settings import facts_of
-from tuisim.settings.robots import ROBOTS, ports_of
+from tuisim.settings.robots import ROBOTS, list_ports
 
 USUAL = ROBOTS["Default_Robot"]
 FOLDER = ROOT / "tests" / "real_programs"
@@ -305,7 +305,7 @@ def file_of(name: str) -> Path:
 
 
 def ports_in(robot: RobotSpec) -> str:
-    now, usual = dict(ports_of(robot)), dict(ports_of(USUAL))
+    now, usual = dict(list_ports(robot)), dict(list_ports(USUAL))
     changed = [port for port in sorted({*now, *usual}) if now.get(port) != usual.get(port)]
     return ", ".join(f"{port[-1]} {now.get(port, '-')}" for port in changed)
 

@@ -88,11 +88,11 @@ def _fail(where: Sequence[Any]) -> Callable[..., Any]:
 @pytest.mark.parametrize(
     "where",
     [
-        (runs, "digest_of"),
-        (runs, "copy_of"),
+        (runs, "compute_digest"),
+        (runs, "copy_files"),
         (execute, "RunHandle"),
-        (execute, "_result"),
-        (runs, "outcome_of"),
+        (execute, "_build_result"),
+        (runs, "build_outcome"),
     ],
     ids=lambda where: str(where[1]),
 )

@@ -82,7 +82,7 @@ PLANTED: tuple[Planted, ...] = (
     Planted(
         "a link that leads out of a student's folder is no reason to refuse it",
         "tasks/marks/students.py",
-        "if not _real(path).is_relative_to(own):",
+        "if not _resolve_links(path).is_relative_to(own):",
         "if False:",
         "class",
         ("links:1",),

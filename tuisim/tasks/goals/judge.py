@@ -131,7 +131,7 @@ class _Judge:
         if name not in self._goals:
             raise ConfigError(f"there is no goal {name!r}")
         if name not in self._outcomes:
-            self._outcomes[name] = self._judged(self._goals[name])
+            self._outcomes[name] = self._judge(self._goals[name])
         outcome = self._outcomes[name]
         return (
             replace(outcome, reason=if_missed)
@@ -139,7 +139,7 @@ class _Judge:
             else outcome
         )
 
-    def _judged(self, goal: Goal) -> _Outcome:
+    def _judge(self, goal: Goal) -> _Outcome:
         if self._evidence.falsified:
             # What is recorded may not have happened.
             return _Outcome(

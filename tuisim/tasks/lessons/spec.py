@@ -1,6 +1,6 @@
 """Lessons and their steps as frozen data.
 
-To add a kind of check: its class and a line in `CHECKS` here, and a case in `is_met` and `event_of`, `events.py`.
+To add a kind of check: its class and a line in `CHECKS` here, and a case in `is_met` and `parse_event`, `events.py`.
 """
 
 from __future__ import annotations
@@ -286,7 +286,7 @@ class LessonStep:
     answer: str = ""
     """The model answer, a program, if the check is about runs."""
     model: str = ""
-    """What passes another check: an answer, a breakpoint, an expression; see `event_of`."""
+    """What passes another check: an answer, a breakpoint, an expression; see `parse_event`."""
     wrong: tuple[str, ...] = ()
     """The same, but does not pass."""
     wrong_programs: tuple[WrongProgram, ...] = ()
