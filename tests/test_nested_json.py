@@ -25,7 +25,7 @@ from tuisim.engine.runs.side_files import (
 from tuisim.logs.arrow import METADATA_KEY, read_metadata
 from tuisim.logs.export import find_companion
 from tuisim.logs.reader import read_companion
-from tuisim.settings.preferences import preference, preferences_file
+from tuisim.settings.preferences import find_preferences_file, get_preference
 from tuisim.tasks.marks.journal import Journal
 
 DEEP = b"[" * 100_000 + b"\n"
@@ -45,8 +45,8 @@ def deep(file: Path) -> Path:
 
 
 def of_preferences(_folder: Path) -> object:
-    deep(preferences_file())
-    return preference("theme")
+    deep(find_preferences_file())
+    return get_preference("theme")
 
 
 def of_draft(_folder: Path) -> object:

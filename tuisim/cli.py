@@ -141,7 +141,7 @@ def _check_open_files() -> None:
 class _Root(Group):
     """The command `tuisim`: a word that is no command is for `open`."""
 
-    def with_command(self, ctx: click.Context, args: list[str]) -> list[str]:
+    def insert_command(self, ctx: click.Context, args: list[str]) -> list[str]:
         """Return the words with `open` first, unless they begin with a command or an option of `tuisim` itself."""
         if args and (args[0] in COMMANDS or args[0] in ("-h", "--help", "--version")):
             return args

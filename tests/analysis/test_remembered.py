@@ -17,7 +17,7 @@ from tuisim.analysis.remembered import (
 )
 from tuisim.analysis.source import LogRequest, open_pieces
 from tuisim.logs.choices import NO_CHOICES, ReadChoices
-from tuisim.settings.preferences import keep, preferences_file
+from tuisim.settings.preferences import find_preferences_file, keep
 
 CHOICES = ReadChoices(time="boot", unit="ms", header=1, separator="semicolon", decimal=",")
 
@@ -83,7 +83,7 @@ def test_damaged_memory_is_no_error(text: str, file: Path) -> None:
     keep("logs", [])
     status = file.stat()
     text = text.replace("FILE", str(file)).replace("SIZE", str(status.st_size))
-    preferences_file().write_text(text.replace("DATE", str(status.st_mtime_ns)))
+    find_preferences_file().write_text(text.replace("DATE", str(status.st_mtime_ns)))
     assert request_file(str(file)) == LogRequest(str(file))
     remember_choices(str(file), CHOICES)
     assert find_choices(str(file)) == CHOICES

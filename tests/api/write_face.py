@@ -12,7 +12,7 @@ from tuisim.api.descriptions import OPTIONS_BY_NAME
 from tuisim.engine.core.values import Choice, Color, Flag, NamedPart, Number, Part, Value, Whole
 from tuisim.engine.presses import Presses
 from tuisim.settings.options import WORLD, Name
-from tuisim.settings.robots import values_in
+from tuisim.settings.robots import list_table_values
 
 FACE = ROOT / "tuisim" / "api" / "face.py"
 
@@ -222,7 +222,7 @@ def fill(template: str, names: Iterable[str], *, may_vary: bool = False) -> str:
 
 def list_robot_keys() -> Iterator[tuple[str, Value]]:
     """Yield the values of a robot file that are no tables."""
-    for key, value in values_in("").items():
+    for key, value in list_table_values("").items():
         if key != "name" and not isinstance(value, Part):
             yield key, value
 

@@ -14,7 +14,7 @@ from tuisim.app.dialogs.question import LinePrompt
 from tuisim.app.snapshot import RunPhase
 from tuisim.programs.program_file import read_program
 from tuisim.settings.build import build_run_spec
-from tuisim.settings.options import settings_of
+from tuisim.settings.options import merge_settings
 from tuisim.tasks.lessons.files import load_lesson
 from tuisim.tasks.lessons.progress import load_progress, prepare_program
 
@@ -72,7 +72,7 @@ def opened(tmp_path: Path, check: str = "show = 'chart'") -> AppSettings:
     path.write_text(LESSON % check)
     lesson = load_lesson(path)
     made = settings(lesson=lesson, goals=lesson.task, lessons_folder=str(folder), speed=0.0)
-    spec = build_run_spec(settings_of(lesson.settings))
+    spec = build_run_spec(merge_settings(lesson.settings))
     return replace(made, spec=spec, program=read_program(prepare_program(lesson)).program)
 
 

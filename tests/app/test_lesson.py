@@ -25,7 +25,7 @@ from tuisim.app.analyser.app import Analyser
 from tuisim.app.app import LabApp
 from tuisim.app.panels.lesson import LessonPanel
 from tuisim.tasks.lessons.files import load_lesson
-from tuisim.tasks.lessons.progress import load_progress, program_path
+from tuisim.tasks.lessons.progress import build_program_path, load_progress
 
 
 async def wheel_up(pilot: Pilot[Any], panel: LessonPanel) -> None:
@@ -126,7 +126,7 @@ async def test_program_is_tried_from_another_start(tmp_path: Path) -> None:
         assert "drive" not in states()
         program = "tank_drive.on(30, 30)\nwhile ultrasonic.distance_centimeters > 156:\n    pass\ntank_drive.off()\n"
         assert app.lesson.lesson is not None
-        program_path(app.lesson.lesson).write_text(program)
+        build_program_path(app.lesson.lesson).write_text(program)
         app.check_files()
         await run_over(pilot, app)
         await until(pilot, lambda: states().get("drive") == "done")
@@ -182,7 +182,7 @@ async def test_a_lesson_that_is_opened_again_shows_the_last_run_of_its_program(
         await run_over(pilot, app)
         await until(pilot, lambda: states().get("drive") == "done")
         run_id = app.run_controller.run_id
-    path = program_path(load_lesson(tmp_path / "lessons/try.md"))
+    path = build_program_path(load_lesson(tmp_path / "lessons/try.md"))
     async with open_lab(lesson, size=SMALL) as (pilot, app):
         await until(pilot, lambda: app.run_controller.run_id == run_id)
         assert program_of(app).path == str(path)

@@ -29,7 +29,7 @@ from tuisim.base.source import Program
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.spec import NoiseSpec
 from tuisim.settings.build import build_run_spec
-from tuisim.settings.options import Settings, settings_of
+from tuisim.settings.options import Settings, merge_settings
 from tuisim.settings.worlds import load_world
 
 LAB = """\
@@ -172,7 +172,7 @@ async def test_a_world_is_saved_and_an_old_file_only_after_a_question(folder: Pa
         await pilot.press("enter")
         await until(pilot, lambda: len(app.screen_stack) == 1)
         saved = load_world("lab.toml")
-        assert build_run_spec(settings_of(saved.settings)) == spec
+        assert build_run_spec(merge_settings(saved.settings)) == spec
         assert saved.program == "mine.py"
         assert app.loader.world_file == Path("lab.toml")
         look(app)

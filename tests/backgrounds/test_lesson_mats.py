@@ -7,14 +7,14 @@ import pytest
 from lesson_mats import BANDS, FOLDER, draw
 from PIL import Image
 
-from tuisim.tasks.lessons.catalogue import shipped_paths
+from tuisim.tasks.lessons.catalogue import find_shipped_paths
 
 
 @pytest.mark.parametrize("name", BANDS)
 def test_lesson_mat_is_current_and_used(name: str) -> None:
     with Image.open(FOLDER / f"{name}.png") as image:
         assert np.array_equal(np.asarray(image), np.asarray(draw(name)))
-    assert any(f"../mats/{name}.png" in path.read_text() for path in shipped_paths().values())
+    assert any(f"../mats/{name}.png" in path.read_text() for path in find_shipped_paths().values())
 
 
 def test_no_other_lesson_mats() -> None:

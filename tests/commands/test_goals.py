@@ -14,9 +14,9 @@ from tests.tasks.goals.recorded import Run, ahead, says, wait, world
 from tuisim.engine.runs.records import HEADER_BYTES, TELEMETRY_FILE
 from tuisim.engine.runs.store import RunStore
 from tuisim.settings.build import build_run_spec
-from tuisim.settings.options import settings_of
+from tuisim.settings.options import merge_settings
 from tuisim.settings.worlds import load_world, save_world
-from tuisim.tasks.goals.files import example_names, load_goals
+from tuisim.tasks.goals.files import list_example_names, load_goals
 from tuisim.tasks.goals.judge import judge
 
 GOALS = """\
@@ -234,7 +234,7 @@ def test_rows_of_a_flood_are_limited(task: Path, monkeypatch: pytest.MonkeyPatch
 
 def test_examples_are_found_by_name(here: Command, home: Path) -> None:
     record().end()
-    for name in example_names():
+    for name in list_example_names():
         assert here("goals", "check", name).returncode == 1
         assert here("goals", "check", f"{name}_goals.toml").returncode == 1
 
@@ -245,7 +245,7 @@ def test_a_drawn_mat_is_a_world_of_a_task(task: Path, here: Command) -> None:
     task.write_text(GOALS + done.stdout)
     (other,) = load_goals(task).worlds[1:]
     assert other.hidden and (task.parent / "bands-7.png").read_bytes().startswith(b"\x89PNG")
-    build_run_spec(settings_of(other.settings))
+    build_run_spec(merge_settings(other.settings))
 
 
 WRONG_MATS = {
@@ -269,7 +269,7 @@ def test_a_mat_that_cannot_be_drawn(case: str, here: Command) -> None:
 def test_saving_a_world_keeps_its_goals(task: Path) -> None:
     (task.parent / "base.toml").write_text("seed = 3\nbackground = 'Loop'\n")
     task.write_text(f"world = 'base.toml'\n{GOALS}")
-    spec = build_run_spec(settings_of(load_world(task).settings))
+    spec = build_run_spec(merge_settings(load_world(task).settings))
     save_world(spec, task)
-    assert build_run_spec(settings_of(load_world(task).settings)) == spec
+    assert build_run_spec(merge_settings(load_world(task).settings)) == spec
     assert [goal.name for goal in load_goals(task).goals] == ["there", "said"]

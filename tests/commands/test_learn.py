@@ -11,7 +11,12 @@ from tests.cases import cases
 from tests.conftest import Command
 from tuisim.app.app import AppSettings
 from tuisim.engine.core.geometry import Pose
-from tuisim.tasks.lessons.progress import LessonProgress, StepState, program_path, save_progress
+from tuisim.tasks.lessons.progress import (
+    LessonProgress,
+    StepState,
+    build_program_path,
+    save_progress,
+)
 from tuisim.tasks.lessons.skeleton import SKELETON
 
 FAULTY = {
@@ -63,7 +68,7 @@ def test_without_a_terminal_a_lesson_is_plain_text(here: Command, own: Path) -> 
 def test_model_answer_appears_when_every_step_is_done(here: Command, own: Path) -> None:
     done = LessonProgress()
     for name in ("turns", "drive"):
-        done = done.with_step(name, state=StepState.DONE, at="2026-01-01T00:00:00+00:00")
+        done = done.update_step(name, state=StepState.DONE, at="2026-01-01T00:00:00+00:00")
     save_progress("half", done)
     assert "500 / (3.14159 * 56)" in here("learn", "half", "--folder", own).stdout
 
@@ -72,7 +77,7 @@ def test_status_for_a_tutor(here: Command, own: Path) -> None:
     at = "2026-01-01T00:00:00+00:00"
     save_progress(
         "half",
-        LessonProgress(opened_at=at).with_step("turns", state=StepState.SKIPPED, at=at, hints=2),
+        LessonProgress(opened_at=at).update_step("turns", state=StepState.SKIPPED, at=at, hints=2),
     )
     found = json.loads(here("learn", "status", "--json", "--folder", own).stdout)
     assert found[-1] == {
@@ -145,7 +150,7 @@ def test_in_a_terminal_the_app_opens_the_lesson(
     assert (settings.lesson.name, settings.lessons_folder) == ("half", str(own))
     assert settings.spec.world.start == Pose(500, 500, 0)
     assert settings.program is not None
-    assert settings.program.path == str(program_path(settings.lesson))
+    assert settings.program.path == str(build_program_path(settings.lesson))
     assert settings.panels_on >= {"lesson", "code"}
 
 
@@ -153,7 +158,9 @@ def opened_at(second: int, done: bool = False) -> LessonProgress:
     """Progress on `half`, which was last opened at a second."""
     progress = LessonProgress(opened_at=f"2026-01-01T00:00:0{second}+00:00")
     return (
-        progress.with_step("turns", state=StepState.DONE).with_step("drive", state=StepState.DONE)
+        progress.update_step("turns", state=StepState.DONE).update_step(
+            "drive", state=StepState.DONE
+        )
         if done
         else progress
     )

@@ -374,7 +374,7 @@ def test_a_signal_ends_a_marking_in_good_order(
 
     write_class(tmp_path / "class", _few("ada.py"))
     # Where the command does not handle it, the signal must not end the tests.
-    monkeypatch.setattr(marking, "outcomes_of", interrupted)
+    monkeypatch.setattr(marking, "run_entries", interrupted)
     before = signal.signal(number, lambda *_: None)
     try:
         assert run_command(["mark", str(GOALS), str(tmp_path / "class")]) == code

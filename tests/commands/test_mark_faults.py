@@ -116,7 +116,7 @@ def test_a_fault_is_a_row(
 def test_a_class_of_which_nobody_could_be_judged_has_every_export(
     mark: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(runs, "copy_of", MagicMock(side_effect=MemoryError))
+    monkeypatch.setattr(runs, "copy_files", MagicMock(side_effect=MemoryError))
     files = {**HONEST, "zoltan.py": "print('Done: 2')\n"}
     code, rows = mark(files)
     assert code == 1 and [rows[name.removesuffix(".py")][2] for name in files] == ["", "", ""]

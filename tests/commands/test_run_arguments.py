@@ -25,7 +25,7 @@ from tuisim.engine.runs.handle import RunHandle
 from tuisim.engine.runs.recorded_run import Recording
 from tuisim.engine.runs.store import RunStore
 from tuisim.settings.build import build_run_spec
-from tuisim.settings.options import Settings, settings_of
+from tuisim.settings.options import Settings, merge_settings
 from tuisim.settings.worlds import load_world, save_world
 
 SHOWS = "# %%sim_magic\nimport sys\nprint(sys.argv)\n"
@@ -107,7 +107,7 @@ def test_wrong_arguments_in_a_world_file(
 
 def test_a_world_is_saved_with_the_arguments(folder: Path) -> None:
     save_world(build_run_spec(Settings()), folder / "new.toml", "log_greys", ("A", "B 'C"))
-    assert settings_of(load_world(folder / "new.toml").settings)["arguments"] == ("A", "B 'C")
+    assert merge_settings(load_world(folder / "new.toml").settings)["arguments"] == ("A", "B 'C")
 
 
 def test_arguments_are_shown_with_the_run(folder: Path, here: Command) -> None:

@@ -33,7 +33,7 @@ from tuisim.engine.core.values import list_values
 from tuisim.engine.obstacles import OBSTACLES, load_obstacles, save_obstacles
 from tuisim.guide.catalogue import load_pages as guide_pages
 from tuisim.settings.build import build_run_spec
-from tuisim.settings.options import Settings, settings_of
+from tuisim.settings.options import Settings, merge_settings
 from tuisim.settings.profiles import load_profile
 from tuisim.settings.robots import ROBOTS, RobotChoice, choose_robot, load_robot, save_robot
 from tuisim.settings.shared_options import parse_words
@@ -112,7 +112,7 @@ def test_a_world_makes_the_same_run_again(
     (tmp_path / "lab.toml").unlink(missing_ok=True)
     save_world(spec, tmp_path / "lab.toml", program)
     world = load_world(tmp_path / "lab.toml")
-    assert build_run_spec(settings_of(world.settings)) == spec
+    assert build_run_spec(merge_settings(world.settings)) == spec
     assert world.program == program
 
 
@@ -333,7 +333,7 @@ def test_wheel_noise_of_the_file_is_the_runs_unless_a_switch_says_another(
     words: str, noise: int, write: Write
 ) -> None:
     robot = write("old.json", json.dumps(COURSE_ROBOT))
-    spec = build_run_spec(settings_of({"robot": robot}, parse_words(words.split())))
+    spec = build_run_spec(merge_settings({"robot": robot}, parse_words(words.split())))
     assert spec.world.noise.motor == noise
 
 
@@ -421,7 +421,7 @@ def test_paths_in_a_world_are_relative_to_its_folder(
     )
     monkeypatch.chdir(tmp_path)
     world = load_world("lab/lab.toml")
-    asked = settings_of(world.settings)
+    asked = merge_settings(world.settings)
     spec = build_run_spec(asked)
     assert (spec.robot.name, spec.world.obstacles, spec.profile.tick_hz) == (
         "small",
@@ -454,9 +454,9 @@ def test_an_image_is_written_as_seen_from_the_worlds_folder(
     assert spec.world.background == str(tmp_path / "lab" / name)
     save_world(spec, "lab/lab.toml")
     assert str(tmp_path) not in (tmp_path / "lab" / "lab.toml").read_text()
-    assert build_run_spec(settings_of(load_world("lab/lab.toml").settings)) == spec
+    assert build_run_spec(merge_settings(load_world("lab/lab.toml").settings)) == spec
     (tmp_path / "lab").rename(tmp_path / "moved")
-    moved = build_run_spec(settings_of(load_world("moved/lab.toml").settings))
+    moved = build_run_spec(merge_settings(load_world("moved/lab.toml").settings))
     assert moved.world.background == str(tmp_path / "moved" / name)
 
 
@@ -464,12 +464,12 @@ def test_layers_of_settings_are_laid_key_by_key_also_those_of_the_start(write: W
     write("base.toml", "background = 'Square'\n[start]\nx_mm = 300\n")
     magic = parse_words(["-b", "Loop", "-x", "700", "-N", "5", "-P", "green"])
     world = load_world(write("lab.toml", "background = 'Square'\n[pen]\ncolor = 'blue'")).settings
-    asked = settings_of(magic, world, parse_words(["-N", "9"]))
+    asked = merge_settings(magic, world, parse_words(["-N", "9"]))
     spec = build_run_spec(asked)
     assert (spec.world.background, spec.world.start.x_mm) == ("Square", 700)
     assert (spec.world.noise.light, spec.robot.pen.color) == (9, "blue")
     based = load_world(write("based.toml", "world = 'base.toml'\nbackground = 'Loop'\n")).settings
-    assert build_run_spec(settings_of(based)).world.start.x_mm == 300
+    assert build_run_spec(merge_settings(based)).world.start.x_mm == 300
 
 
 @pytest.mark.parametrize(
@@ -478,7 +478,7 @@ def test_layers_of_settings_are_laid_key_by_key_also_those_of_the_start(write: W
     ids=["default", "switch", "profile", "switch against the profile"],
 )
 def test_things_are_solid_as_the_profile_says_unless_a_switch_does(words: str, solid: bool) -> None:
-    assert build_run_spec(settings_of(parse_words(words.split()))).world.solid is solid
+    assert build_run_spec(merge_settings(parse_words(words.split()))).world.solid is solid
 
 
 def run_like(**changes: Any) -> RunSpec:
@@ -534,7 +534,7 @@ def test_the_files_of_the_guide_work_together(tmp_path: Path) -> None:
     for block in blocks:
         name, _, text = block.partition("```")[0].partition("\n")
         (tmp_path / name).write_text(text)
-    spec = build_run_spec(settings_of(load_world(tmp_path / "lab.toml").settings))
+    spec = build_run_spec(merge_settings(load_world(tmp_path / "lab.toml").settings))
     assert [sensor.name for sensor in spec.robot.color_sensors] == ["left", "right"]
     assert (spec.profile.name, spec.profile.color_read_ns) == ("profile", 5_000_000)
     assert load_obstacles(str(tmp_path / "obstacles.toml")) == (Obstacle(900, 500, 200, 100),)

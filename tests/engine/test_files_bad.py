@@ -14,7 +14,7 @@ from tuisim.base.errors import ConfigError, ObstacleError, ProfileError, RobotEr
 from tuisim.engine.core.profile import PROFILES
 from tuisim.engine.files import MAX_FILE_BYTES, Location, convert
 from tuisim.settings.build import build_run_spec
-from tuisim.settings.options import settings_of
+from tuisim.settings.options import merge_settings
 from tuisim.settings.shared_options import parse_words
 from tuisim.settings.worlds import load_world
 
@@ -367,9 +367,9 @@ def put(content: Content, path: Path) -> None:
 def build(switch: str, file: Path) -> None:
     """Do with a file what the command does before it runs anything."""
     if switch == "--world":
-        build_run_spec(settings_of(load_world(file).settings))
+        build_run_spec(merge_settings(load_world(file).settings))
     else:
-        build_run_spec(settings_of(parse_words([switch, str(file)])))
+        build_run_spec(merge_settings(parse_words([switch, str(file)])))
 
 
 def state(root: Path) -> list[tuple[str, float, int]]:

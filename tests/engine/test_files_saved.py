@@ -17,7 +17,7 @@ from tuisim.engine import files
 from tuisim.engine.core.spec import Obstacle, RobotSpec, RunSpec
 from tuisim.engine.obstacles import load_obstacles, save_obstacles
 from tuisim.settings.build import build_run_spec
-from tuisim.settings.options import Settings, settings_of
+from tuisim.settings.options import Settings, merge_settings
 from tuisim.settings.robots import ROBOTS, load_robot, save_robot
 from tuisim.settings.worlds import load_world, save_world
 
@@ -33,7 +33,7 @@ def saved(kind: str, old: str, thing: Any, folder: Path) -> str:
 
 
 def load_run(file: str) -> RunSpec:
-    return build_run_spec(settings_of(load_world(file).settings))
+    return build_run_spec(merge_settings(load_world(file).settings))
 
 
 KINDS: dict[str, tuple[Callable[..., None], Callable[[str], object]]] = {
@@ -156,7 +156,7 @@ def test_a_world_keeps_what_is_not_in_a_run(
     changes: dict[str, Any], expected: str, tmp_path: Path
 ) -> None:
     assert in_order(expected, saved("world", WORLD, build_run_spec(Settings(changes)), tmp_path))
-    asked = settings_of(load_world(tmp_path / "mine.toml").settings)
+    asked = merge_settings(load_world(tmp_path / "mine.toml").settings)
     assert (asked["rays"], asked["autorun"], asked["panels_on"]) == (True, True, ("chart",))
 
 

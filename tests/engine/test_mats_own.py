@@ -12,8 +12,8 @@ from tests.cases import cases
 from tests.conftest import Command
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.mats import find_mat, mats
-from tuisim.settings.build import build_run_spec, settings_from
-from tuisim.settings.options import Settings, settings_of
+from tuisim.settings.build import build_run_spec, extract_settings
+from tuisim.settings.options import Settings, merge_settings
 from tuisim.settings.worlds import load_world, save_world
 
 FIELD = (2362, 1143)
@@ -110,11 +110,11 @@ def test_a_world_file_keeps_names_and_names_a_folder(own: Path, tmp_path: Path) 
     spec = build_run_spec(Settings({"background": "FLL_2018_Into_Orbit"}))
     save_world(spec, tmp_path / "lab.toml")
     assert 'background = "FLL_2018_Into_Orbit"' in (tmp_path / "lab.toml").read_text()
-    assert build_run_spec(settings_of(load_world(tmp_path / "lab.toml").settings)) == spec
+    assert build_run_spec(merge_settings(load_world(tmp_path / "lab.toml").settings)) == spec
     maze = paint(tmp_path / "pics" / "maze.png")
     (tmp_path / "maze.toml").write_text('background = "maze"\nmats = "pics"\n')
     assert build_run_spec(
-        settings_of(load_world(tmp_path / "maze.toml").settings)
+        merge_settings(load_world(tmp_path / "maze.toml").settings)
     ).world.background == str(maze)
     (tmp_path / "maze.toml").write_text('background = "maze"\n')
     assert (
@@ -125,7 +125,7 @@ def test_a_world_file_keeps_names_and_names_a_folder(own: Path, tmp_path: Path) 
 def test_a_run_on_our_mat_stays_on_it_when_the_user_brings_another(own: Path) -> None:
     spec = build_run_spec(Settings({"background": "Radial_grey"}))
     paint(own / "_radial_grey.png")
-    assert build_run_spec(settings_of(settings_from(spec))) == spec
+    assert build_run_spec(merge_settings(extract_settings(spec))) == spec
 
 
 @pytest.mark.slow

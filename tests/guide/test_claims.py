@@ -22,11 +22,11 @@ import pytest
 from tests.conftest import ROOT, Command
 from tests.guide.documents import DOCUMENTS, blocks
 from tuisim.guide.catalogue import load_pages
-from tuisim.tasks.lessons.catalogue import shipped_paths
+from tuisim.tasks.lessons.catalogue import find_shipped_paths
 from tuisim.tasks.lessons.files import load_lesson
 from tuisim.tasks.lessons.spec import Lesson
 
-LESSONS = {name: load_lesson(path) for name, path in shipped_paths().items()}
+LESSONS = {name: load_lesson(path) for name, path in find_shipped_paths().items()}
 TEXTS = {"README": DOCUMENTS["README"]} | {name: page.source for name, page in load_pages().items()}
 """README and the pages as they are written: tables made from the code are true by their making."""
 KEYS = {

@@ -25,7 +25,7 @@ from tuisim.pictures.charts.files import CHART_FORMATS
 from tuisim.pictures.charts.sample_chart import build_sample_chart
 from tuisim.pictures.charts.text_chart import ChartPainter, ChartState
 from tuisim.pictures.charts.traces import Pyramid, Traces
-from tuisim.tasks.execute import statistics_of
+from tuisim.tasks.execute import compute_statistics
 
 HUGE = sys.float_info.max
 EVERY = st.lists(
@@ -51,7 +51,7 @@ def test_mean_and_spread_of_two_are_exact(low: float, high: float) -> None:
     assert _are_equal(one.mean, mean)
     # Of the sample: it may be more than the largest number.
     assert one.std == pytest.approx(half * math.sqrt(2), rel=1e-9, abs=5e-324)
-    found = statistics_of(_printed([low, high]))["A"]
+    found = compute_statistics(_printed([low, high]))["A"]
     assert _are_equal(found.mean, mean) and _are_equal(found.std, half)
 
 
@@ -101,7 +101,7 @@ def test_every_number_is_drawn(values: Sequence[float], times_s: Sequence[float]
 
 @pytest.mark.parametrize("suffix", EXPORTERS)
 def test_every_number_is_exported(tmp_path: Path, suffix: str) -> None:
-    of = statistics_of(_printed([HUGE, -HUGE, 5e-324, 1e155]))["A"]
+    of = compute_statistics(_printed([HUGE, -HUGE, 5e-324, 1e155]))["A"]
     columns = {"values": [math.nan, math.inf, -math.inf, HUGE, -HUGE, 5e-324, of.mean, of.std]}
     path = tmp_path / f"every{suffix}"
     export_frame(pd.DataFrame(columns), path, {})
@@ -123,5 +123,5 @@ def test_every_number_is_summed(values: Sequence[float]) -> None:
             assert list(found.quantiles) == sorted(found.quantiles)
     levels = measure_levels(samples)
     assert np.isfinite(levels.level).all()
-    for of in statistics_of(_printed(values)).values():
+    for of in compute_statistics(_printed(values)).values():
         assert of.min <= of.mean <= of.max and 0.0 <= of.std < math.inf

@@ -14,7 +14,7 @@ import pytest
 from PIL import Image
 
 from tests.notebook.conftest import Cell, Shown
-from tuisim.settings.magic_line import _command
+from tuisim.settings.magic_line import _build_command
 
 DRIVE = "tank_drive.on_for_rotations(SpeedPercent(50), SpeedPercent(50), 2)"
 PROGRAM = (
@@ -218,7 +218,7 @@ def test_without_it_that_is_not_so(case: Case, cell: Cell) -> None:
 
 
 def test_every_switch_is_here() -> None:
-    known = {flag for param in _command("sim_magic").params for flag in param.opts}
+    known = {flag for param in _build_command("sim_magic").params for flag in param.opts}
     assert known == {flag for case in CASES for flag in case.flags} | OF_TERMINALS
 
 

@@ -8,10 +8,10 @@ import pytest
 
 from tests.cases import cases
 from tuisim.programs.code_rows import code_rows
-from tuisim.tasks.lessons.catalogue import shipped_paths
+from tuisim.tasks.lessons.catalogue import find_shipped_paths
 from tuisim.tasks.lessons.files import load_lesson
 
-ANSWERS = {name: load_lesson(path).model_answer for name, path in shipped_paths().items()}
+ANSWERS = {name: load_lesson(path).model_answer for name, path in find_shipped_paths().items()}
 PROGRAMS = {
     "brackets": (
         "tank_drive.on_for_rotations(SpeedPercent(30), SpeedPercent(30), 5.7)\n",

@@ -20,9 +20,9 @@ from tuisim.programs.program_file import ProgramSource, read_program
 from tuisim.programs.program_settings import free_paths, program_settings
 from tuisim.settings.build import build_run_spec
 from tuisim.settings.magic_line import parse_line
-from tuisim.settings.options import settings_of
+from tuisim.settings.options import merge_settings
 from tuisim.tasks.goals.files import load_goals
-from tuisim.tasks.marks.entries import entries_of
+from tuisim.tasks.marks.entries import build_entries
 from tuisim.tasks.marks.students import find_students
 
 PROGRAMS = {
@@ -189,14 +189,14 @@ def runs_of(folder: Path, program: str, option: Option) -> dict[str, RunSpec]:
     runs["simulate"] = outside.of_choices("p.py", option.choices).specs[0]
     students = find_students(["class"]).students
     for door, goals, above in (("mark", "g.toml", given), ("mark in a world", "t.toml", {})):
-        (entry,), _ = entries_of(students, load_goals(folder / goals), above)
+        (entry,), _ = build_entries(students, load_goals(folder / goals), above)
         runs[door] = entry.specs[0]
     return runs | runs_in_app(read_program(folder / "p.py"), option)
 
 
 def runs_in_app(source: ProgramSource, option: Option) -> dict[str, RunSpec]:
     """Return the run of a program in the app, if the option comes after it, and before."""
-    plain, before = program_settings(source), settings_of(read_options(option.choices))
+    plain, before = program_settings(source), merge_settings(read_options(option.choices))
     opened = plans.first_plan(
         build_run_spec(plain.settings), plain.settings, plain.decided, source.program
     )

@@ -39,12 +39,12 @@ from tuisim.engine.runs.side_files import (
 from tuisim.programs.notebook_file import notebook_programs
 from tuisim.settings.build import build_run_spec
 from tuisim.settings.options import Settings
-from tuisim.settings.preferences import preference, preferences_file
-from tuisim.settings.profiles import profile_lines
-from tuisim.settings.user_config import config_file, load_config
+from tuisim.settings.preferences import find_preferences_file, get_preference
+from tuisim.settings.profiles import format_profile
+from tuisim.settings.user_config import find_config_file, load_config
 from tuisim.settings.worlds import load_world, save_world
-from tuisim.tasks.goals.files import examples, load_task
-from tuisim.tasks.lessons.catalogue import shipped_paths
+from tuisim.tasks.goals.files import list_examples, load_task
+from tuisim.tasks.lessons.catalogue import find_shipped_paths
 from tuisim.tasks.lessons.files import load_lesson
 from tuisim.tasks.lessons.progress import load_progress
 from tuisim.tasks.marks.journal import Journal
@@ -116,7 +116,7 @@ def samples() -> Path:
     for kind, name in (("robots", "Explorer"), ("obstacles", "Square_posts")):
         (folder / f"{kind}.toml").write_text(_done([kind, name]))
     (folder / "profile.toml").write_text(
-        "\n".join(profile_lines(replace(PROFILES["ev3"], name="own")))
+        "\n".join(format_profile(replace(PROFILES["ev3"], name="own")))
     )
     save_world(
         build_run_spec(
@@ -125,8 +125,8 @@ def samples() -> Path:
         folder / "world.toml",
     )
     for source, name in (
-        (examples()[0], "goals.toml"),
-        (shipped_paths()["line-edge"], "lesson.md"),
+        (list_examples()[0], "goals.toml"),
+        (find_shipped_paths()["line-edge"], "lesson.md"),
     ):
         shutil.copy(source, folder / name)
     for name, text in _TEXTS.items():
@@ -254,7 +254,7 @@ FORMATS: Mapping[str, Format] = {
     "world": Format("world.toml", _reads(_world)),
     "batch": Format("batch.toml", _reads(lambda path: load_batch(Path(path)))),
     "goals": Format("goals.toml", _reads(lambda path: load_task(Path(path)))),
-    "config": Format("config.toml", _home(load_config, config_file)),
+    "config": Format("config.toml", _home(load_config, find_config_file)),
     "lesson": Format("lesson.md", _reads(load_lesson), Syntax.FRONT),
     "notebook": Format(
         "notebook.ipynb", _reads(lambda path: notebook_programs(Path(path))), Syntax.JSON
@@ -265,9 +265,11 @@ FORMATS: Mapping[str, Format] = {
         Syntax.JSON,
     ),
     "preferences": Format(
-        "preferences.json", _home(lambda: preference("theme"), preferences_file), Syntax.JSON
+        "preferences.json",
+        _home(lambda: get_preference("theme"), find_preferences_file),
+        Syntax.JSON,
     ),
-    "layout": Format("preferences.json", _home(_layout, preferences_file), Syntax.JSON),
+    "layout": Format("preferences.json", _home(_layout, find_preferences_file), Syntax.JSON),
     "breaks": Format(
         "breaks.json", _home(lambda: kept_breaks.load_kept("program.py"), _breaks), Syntax.JSON
     ),

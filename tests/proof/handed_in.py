@@ -224,10 +224,10 @@ REFUSED = ("links", "devices", "zips")
 BROKEN = {
     "tuisim.tasks.marks.students._read_student": True,
     "tuisim.tasks.marks.entries._build_entry": True,
-    "tuisim.tasks.marks.runs.digest_of": True,
-    "tuisim.tasks.marks.runs.copy_of": True,
-    "tuisim.tasks.marks.runs.outcome_of": True,
-    "tuisim.tasks.marks.feedback._feedback_of": False,
+    "tuisim.tasks.marks.runs.compute_digest": True,
+    "tuisim.tasks.marks.runs.copy_files": True,
+    "tuisim.tasks.marks.runs.build_outcome": True,
+    "tuisim.tasks.marks.feedback._build_feedback": False,
 }
 """What fails, and whether the student cannot be judged then."""
 ERRORS = (

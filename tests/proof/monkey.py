@@ -22,7 +22,7 @@ from tests.running import PATIENCE_S
 from tuisim.app.action import Action
 from tuisim.app.actions.keys import ACTIONS as LAB_ACTIONS
 from tuisim.app.analyser.actions.keys import ACTIONS as LOG_ACTIONS
-from tuisim.tasks.lessons.catalogue import shipped_paths
+from tuisim.tasks.lessons.catalogue import find_shipped_paths
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 ARROWS = [
@@ -134,7 +134,7 @@ def _analyser(random: Random) -> Sequence[str]:
 
 
 def _lesson(random: Random) -> Sequence[str]:
-    return ["learn", random.choice(sorted(shipped_paths()))]
+    return ["learn", random.choice(sorted(find_shipped_paths()))]
 
 
 SCREENS: Mapping[str, Callable[[Random], Sequence[str]]] = {

@@ -19,7 +19,7 @@ from tests.proof.injection import Call, Ended, calls_of, run, temporary_folder
 from tests.proof.kind import FaultError, home, temporary_sample
 from tuisim.cli import EXIT_OUR_MISTAKE
 from tuisim.engine.runs.run_folder import read_run_file
-from tuisim.tasks.goals.files import examples
+from tuisim.tasks.goals.files import list_examples
 
 _PROGRAM = """\
 tank_drive.on(20, 20)
@@ -167,7 +167,7 @@ def _sample() -> Path:
     (folder / "class").mkdir()
     (folder / "class" / "anna.py").write_text(_PROGRAM)
     shutil.copy(
-        next(path for path in examples() if path.name.startswith("log_greys")),
+        next(path for path in list_examples() if path.name.startswith("log_greys")),
         folder / "goals.toml",
     )
     with home(folder / "home"):

@@ -10,7 +10,7 @@ from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, Obstacle, R
 from tuisim.engine.mats import catalogue
 from tuisim.engine.obstacles import OBSTACLES
 from tuisim.settings.build import build_run_spec
-from tuisim.settings.options import Settings, settings_of
+from tuisim.settings.options import Settings, merge_settings
 from tuisim.settings.robots import ROBOTS
 from tuisim.settings.shared_options import parse_words
 
@@ -71,7 +71,7 @@ def test_obstacles(name: str, boxes: set[Obstacle]) -> None:
     ids=lambda value: value or "nothing" if isinstance(value, str) else "",
 )
 def test_start_pose_is_the_mats_unless_given(words: str, start: Pose) -> None:
-    assert build_run_spec(settings_of(parse_words(words.split()))).world.start == start
+    assert build_run_spec(merge_settings(parse_words(words.split()))).world.start == start
 
 
 def test_sensors_are_moved_on_the_mat_that_wants_it_and_nowhere_else() -> None:

@@ -166,7 +166,7 @@ def test_options_may_stand_before_the_command(words: str, found: str) -> None:
     group = COMMANDS["log"].load()
     assert isinstance(group, Group)
     context = click.Context(group, **group.context_settings)
-    assert group.with_command(context, words.split()) == found.split()
+    assert group.insert_command(context, words.split()) == found.split()
 
 
 def test_words_of_the_command_without_some_options() -> None:
@@ -174,5 +174,5 @@ def test_words_of_the_command_without_some_options() -> None:
     options = [click.Option(["--resume"], is_flag=True), click.Option(["--jobs"])]
     with click.Context(click.Command("mark")) as context:
         context.meta[command_line._WORDS] = words
-        left = command_line.words_without([*options, click.Option(["--keep"])])
+        left = command_line.drop_options([*options, click.Option(["--keep"])])
     assert left == ["mark", "a.py", "--seeds", "0"]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from tests.cases import cases
-from tuisim.settings.magic_line import parse_line, persistent_after
+from tuisim.settings.magic_line import parse_line, update_persistent
 
 CELLS: dict[str, tuple[list[str], dict[str, Any]]] = {
     "all that a mat brings goes with it": (
@@ -31,5 +31,5 @@ def test_settings_persist_but_for_those_of_the_mat_before(
 ) -> None:
     persistent: dict[str, Any] = {}
     for line in lines:
-        persistent = persistent_after(persistent, parse_line(line, "sim_magic").settings)
+        persistent = update_persistent(persistent, parse_line(line, "sim_magic").settings)
     assert persistent == settings

@@ -13,15 +13,15 @@ from tuisim.base.errors import ConfigError
 from tuisim.engine.core.drift_spec import DriftSpec
 from tuisim.engine.core.spec import RunSpec
 from tuisim.settings.build import build_run_spec
-from tuisim.settings.options import Settings, settings_of
-from tuisim.settings.overrides import settings_of_keys
+from tuisim.settings.options import Settings, merge_settings
+from tuisim.settings.overrides import resolve_keys
 from tuisim.settings.robots import choose_robot
 
 HERE = Path("set")
 
 
 def spec_with(values: dict[str, Any], **chosen: Any) -> RunSpec:
-    return build_run_spec(settings_of(chosen, settings_of_keys(values, Settings(chosen), HERE)))
+    return build_run_spec(merge_settings(chosen, resolve_keys(values, Settings(chosen), HERE)))
 
 
 @cases(
@@ -86,7 +86,7 @@ def test_sensors_stay_where_the_mat_puts_them() -> None:
 
 @pytest.mark.parametrize("value, expected", [(5, ("5",)), ("5 'two words'", ("5", "two words"))])
 def test_arguments_are_split_as_in_a_shell(value: object, expected: tuple[str, ...]) -> None:
-    assert settings_of_keys({"arguments": value}, Settings(), HERE)["arguments"] == expected
+    assert resolve_keys({"arguments": value}, Settings(), HERE)["arguments"] == expected
 
 
 @cases(
@@ -112,4 +112,4 @@ def test_arguments_are_split_as_in_a_shell(value: object, expected: tuple[str, .
 )
 def test_wrong_keys_are_explained(values: dict[str, Any], words: str) -> None:
     with pytest.raises(ConfigError, match=words):
-        settings_of_keys(values, Settings(), HERE)
+        resolve_keys(values, Settings(), HERE)

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from tuisim.app.editor.text_file import keep_draft, list_drafts
-from tuisim.settings.preferences import keep, preference, preferences_file
+from tuisim.settings.preferences import find_preferences_file, get_preference, keep
 
 
 @pytest.fixture(autouse=True)
@@ -20,7 +20,7 @@ def test_what_is_kept_is_found_and_leaves_the_rest() -> None:
     keep("theme", "light")
     keep("cells", None)
 
-    assert (preference("cells"), preference("theme")) == (None, "light")
+    assert (get_preference("cells"), get_preference("theme")) == (None, "light")
 
 
 def test_an_app_that_begins_afresh_finds_nothing_of_other_ones_and_leaves_them_nothing(
@@ -29,20 +29,20 @@ def test_an_app_that_begins_afresh_finds_nothing_of_other_ones_and_leaves_them_n
     keep("theme", "light")
     keep_draft("", "of another app")
     monkeypatch.setenv("TUISIM_SESSION", str(tmp_path / "session"))
-    assert (preference("theme"), list_drafts()) == (None, [])
+    assert (get_preference("theme"), list_drafts()) == (None, [])
     keep("theme", "dark")
     keep_draft("", "of this one")
     monkeypatch.delenv("TUISIM_SESSION")
-    assert (preference("theme"), list_drafts()[0].text) == ("light", "of another app")
+    assert (get_preference("theme"), list_drafts()[0].text) == ("light", "of another app")
 
 
 @pytest.mark.parametrize(
     "text", ["", "{", "[1]", "\udc80"], ids=["empty", "cut off", "a list", "no UTF-8"]
 )
 def test_a_damaged_file_is_an_empty_one(text: str) -> None:
-    preferences_file().parent.mkdir()
-    preferences_file().write_bytes(text.encode("utf-8", "surrogateescape"))
+    find_preferences_file().parent.mkdir()
+    find_preferences_file().write_bytes(text.encode("utf-8", "surrogateescape"))
 
-    assert preference("cells") is None
+    assert get_preference("cells") is None
     keep("cells", "half")
-    assert preference("cells") == "half"
+    assert get_preference("cells") == "half"

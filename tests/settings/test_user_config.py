@@ -11,8 +11,14 @@ import pytest
 from tests.cases import cases
 from tests.conftest import ROOT
 from tuisim.base.errors import ConfigError
-from tuisim.settings.user_config import SETTINGS, Section, config_file, config_of_text, load_config
-from tuisim.settings.user_config_file import save_setting, template, write_template
+from tuisim.settings.user_config import (
+    SETTINGS,
+    Section,
+    find_config_file,
+    load_config,
+    parse_config,
+)
+from tuisim.settings.user_config_file import build_template, save_setting, write_template
 
 PATH = Path("config.toml")
 
@@ -55,7 +61,7 @@ def _home(home: Path) -> None:
     },
 )
 def test_what_is_wrong_is_named_and_counts_as_missing(text: str, problem: str) -> None:
-    found = config_of_text(f"{text}\n", PATH)
+    found = parse_config(f"{text}\n", PATH)
 
     (error,) = map(str, found.problems)
     assert error.startswith("config.toml: ")
@@ -71,32 +77,32 @@ def test_what_is_wrong_is_named_and_counts_as_missing(text: str, problem: str) -
     ids=["cut off", "no UTF-8", "twice"],
 )
 def test_a_damaged_file_is_told_and_never_overwritten(content: bytes) -> None:
-    config_file().parent.mkdir(parents=True, exist_ok=True)
-    config_file().write_bytes(content)
+    find_config_file().parent.mkdir(parents=True, exist_ok=True)
+    find_config_file().write_bytes(content)
 
     assert len(load_config().problems) == 1
-    with pytest.raises(ConfigError, match=re.escape(str(config_file()))):
+    with pytest.raises(ConfigError, match=re.escape(str(find_config_file()))):
         save_setting(SETTINGS["app.theme"], "light")
-    assert config_file().read_bytes() == content
+    assert find_config_file().read_bytes() == content
 
 
 def test_the_template_has_every_setting_and_sets_nothing() -> None:
-    assert dict(config_of_text(template(), PATH).written) == {}
+    assert dict(parse_config(build_template(), PATH).written) == {}
     # Every comment of a setting, taken out, sets what is usual.
-    active = re.sub(r"^#(\w+ = (?!\"\"))", r"\1", template(), flags=re.MULTILINE)
-    found = config_of_text(active, PATH)
+    active = re.sub(r"^#(\w+ = (?!\"\"))", r"\1", build_template(), flags=re.MULTILINE)
+    found = parse_config(active, PATH)
     assert found.problems == ()
     usual = {path: one.default for path, one in SETTINGS.items() if one.default != ""}
     assert dict(found.written) == usual
 
 
 def test_a_file_that_exists_is_never_replaced() -> None:
-    config_file().parent.mkdir(parents=True, exist_ok=True)
-    config_file().write_text("# mine\n")
+    find_config_file().parent.mkdir(parents=True, exist_ok=True)
+    find_config_file().write_text("# mine\n")
 
     with pytest.raises(ConfigError, match="exists already"):
         write_template()
-    assert config_file().read_text() == "# mine\n"
+    assert find_config_file().read_text() == "# mine\n"
 
 
 @pytest.mark.parametrize("path", SETTINGS)
@@ -110,7 +116,7 @@ def test_a_setting_is_written_in_place_of_its_comment_and_removed_again(path: st
     before = write_template().read_text()
 
     save_setting(one, value)
-    after = config_file().read_text()
+    after = find_config_file().read_text()
     assert dict(load_config().written) == {path: value}
     assert len(after.splitlines()) == len(before.splitlines())
     assert (
@@ -123,13 +129,13 @@ def test_a_setting_is_written_in_place_of_its_comment_and_removed_again(path: st
 
 
 def test_a_change_keeps_comments_and_what_else_is_in_the_file() -> None:
-    config_file().parent.mkdir(parents=True, exist_ok=True)
-    config_file().write_text("# mine\n[app]\nfps = 30 # slow link\nwrong = 1\n")
+    find_config_file().parent.mkdir(parents=True, exist_ok=True)
+    find_config_file().write_text("# mine\n[app]\nfps = 30 # slow link\nwrong = 1\n")
 
     save_setting(SETTINGS["app.fps"], 10)
     save_setting(SETTINGS["simulation.robot"], "Small_Robot")
 
-    text = config_file().read_text()
+    text = find_config_file().read_text()
     assert text.startswith("# mine\n[app]\nfps = 10 # slow link\nwrong = 1\n")
     assert tomllib.loads(text)["simulation"] == {"robot": "Small_Robot"}
 
@@ -137,22 +143,22 @@ def test_a_change_keeps_comments_and_what_else_is_in_the_file() -> None:
 def test_a_wrong_value_is_not_written() -> None:
     with pytest.raises(ConfigError, match=r"app\.fps: must be a whole number"):
         save_setting(SETTINGS["app.fps"], 100)
-    assert not config_file().exists()
+    assert not find_config_file().exists()
 
 
 def test_a_path_is_relative_to_the_folder_of_the_file() -> None:
-    config_file().parent.mkdir(parents=True, exist_ok=True)
-    (config_file().parent / "mats").mkdir()
-    config_file().write_text("[simulation]\nmats = 'mats'\n")
+    find_config_file().parent.mkdir(parents=True, exist_ok=True)
+    (find_config_file().parent / "mats").mkdir()
+    find_config_file().write_text("[simulation]\nmats = 'mats'\n")
 
-    assert load_config().values["simulation.mats"] == str(config_file().parent / "mats")
+    assert load_config().values["simulation.mats"] == str(find_config_file().parent / "mats")
 
 
 def test_the_example_of_the_guide_is_right() -> None:
     page = (ROOT / "tuisim" / "guide" / "pages" / "settings.md").read_text(encoding="utf-8")
     (example,) = re.findall(r"```toml\n(.*?)```", page, re.DOTALL)
 
-    found = config_of_text(example, PATH).checked()
+    found = parse_config(example, PATH).checked()
     assert found.keys == {"run": ("x", "f5")}
 
 

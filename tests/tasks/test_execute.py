@@ -20,7 +20,7 @@ from tuisim.engine.runs import temporary
 from tuisim.engine.runs.handle import RunOptions, start_run
 from tuisim.engine.runs.store import RunStore
 from tuisim.tasks import execute as execute_module
-from tuisim.tasks.execute import _prepared, _to_the_end, execute
+from tuisim.tasks.execute import _prepare_field, _run_to_end, execute
 from tuisim.tasks.goals.judgement import GoalState
 from tuisim.tasks.goals.spec import FinishCondition, Goal, ReachCondition
 from tuisim.tasks.pool import _take_results
@@ -50,7 +50,7 @@ def test_a_task_gives_what_a_single_run_gives(tmp_path: Path) -> None:
 def test_a_prepared_mat_that_was_deleted_is_prepared_again(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    _prepared.cache_clear()
+    _prepare_field.cache_clear()
     for home in ("first", "second"):
         monkeypatch.setenv("TUISIM_HOME", str(tmp_path / home))
         assert execute(task("x = 1"), tmp_path).end == "finished"
@@ -79,8 +79,8 @@ def test_failed_runs_are_kept(text: str, kept: bool, tmp_path: Path) -> None:
 def test_a_failed_run_that_printed_much_is_not_kept(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    assert execute_module.MOST_OUTPUT_BYTES == 16 << 20
-    monkeypatch.setattr(execute_module, "MOST_OUTPUT_BYTES", 100)
+    assert execute_module.MAX_OUTPUT_BYTES == 16 << 20
+    monkeypatch.setattr(execute_module, "MAX_OUTPUT_BYTES", 100)
     for keep, kept in ((Keep.FAILED, False), (Keep.ALL, True)):
         assert bool(execute(task("print('x' * 100)\n1 / 0", keep=keep), tmp_path).run_id) is kept
 
@@ -140,7 +140,7 @@ def test_a_run_without_a_folder_is_told(tmp_path: Path) -> None:
 def test_a_fault_of_tuisim_is_a_result_with_a_report(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, error: Exception
 ) -> None:
-    monkeypatch.setattr(execute_module, "_judged", MagicMock(side_effect=error))
+    monkeypatch.setattr(execute_module, "_judge", MagicMock(side_effect=error))
     result = execute(task("print(1)"), tmp_path)
     why = error.strerror if isinstance(error, OSError) else error
     assert (result.end, result.summary) == (
@@ -199,7 +199,7 @@ def test_a_run_is_stopped_when_it_has_used_its_time() -> None:
         return "ended" if "stop" in done else None
 
     handle.wait, handle.stop = wait, lambda: done.append("stop")
-    assert str(_to_the_end(handle, 5.0)) == "ended"
+    assert str(_run_to_end(handle, 5.0)) == "ended"
     assert done == [5.0, 2.0, "stop", None]
 
 

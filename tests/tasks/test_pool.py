@@ -22,7 +22,7 @@ from tuisim.engine.runs.store import RunStore
 from tuisim.settings.build import build_run_spec
 from tuisim.settings.options import Settings
 from tuisim.tasks import pool
-from tuisim.tasks.execute import execute, nothing_known_of
+from tuisim.tasks.execute import build_unknown_result, execute
 from tuisim.tasks.pool import run_many
 from tuisim.tasks.task import Keep, Result, Task
 
@@ -98,7 +98,7 @@ def test_a_result_that_cannot_be_sent_costs_no_other_one(
         if any(one.index == 2 for one in chunk):
             future.set_exception(MemoryError())
         else:
-            future.set_result([nothing_known_of(one, End.KILLED, "") for one in chunk])
+            future.set_result([build_unknown_result(one, End.KILLED, "") for one in chunk])
         running._pending[future] = chunk
 
     monkeypatch.setattr(pool._Pool, "_start", lambda _: None)

@@ -17,7 +17,7 @@ from tuisim.base.errors import LogError
 from tuisim.logs.choices import NO_CHOICES, ReadChoices
 from tuisim.logs.log import Log
 from tuisim.logs.reader import STDIN, read_beginning
-from tuisim.settings.preferences import keep, preference
+from tuisim.settings.preferences import get_preference, keep
 
 MAX_FILES = 200
 _NAME = "logs"
@@ -91,7 +91,7 @@ def _look_up(file: str) -> _Reading | None:
 
 def _load() -> list[_Reading]:
     """Return what was kept, the newest last; what is damaged is left out."""
-    entries = preference(_NAME)
+    entries = get_preference(_NAME)
     readings = []
     for entry in entries if isinstance(entries, list) else ():
         with suppress(msgspec.ValidationError, LogError):

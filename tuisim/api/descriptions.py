@@ -9,8 +9,8 @@ from typing import Any
 
 from tuisim.base.errors import ConfigError
 from tuisim.programs.program_file import find_program
-from tuisim.settings.options import APP, OF_THE_APP, OPTIONS, Option, Settings
-from tuisim.settings.overrides import settings_of_keys
+from tuisim.settings.options import APP, APP_PATHS, OPTIONS, Option, Settings
+from tuisim.settings.overrides import resolve_keys
 from tuisim.settings.robots import DEFAULT_ROBOT
 from tuisim.settings.worlds import load_world
 
@@ -19,7 +19,7 @@ OPTIONS_BY_NAME: Mapping[str, Option] = {
     for option in OPTIONS
     if not option.panel
     and option.group != APP
-    and option.path not in OF_THE_APP
+    and option.path not in APP_PATHS
     and option.constant is not False
 }
 """Every option that affects a run, by the name that it has in Python."""
@@ -80,7 +80,7 @@ class RobotDescription(Description):
         values = {**self._values}
         base, parts = values.pop("base", DEFAULT_ROBOT), values.pop("parts", {})
         keys = {f"robot.{key}": value for key, value in {**values, **parts}.items()}
-        return settings_of_keys({"robot": base, **keys}, Settings(), Path("robot"))
+        return resolve_keys({"robot": base, **keys}, Settings(), Path("robot"))
 
 
 def plain(value: Any) -> Any:

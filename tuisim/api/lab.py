@@ -24,7 +24,7 @@ from tuisim.engine.mat_cache import open_field
 from tuisim.engine.runs.replay import give_command
 from tuisim.engine.runs.run_folder import field_files
 from tuisim.settings.build import build_run_spec
-from tuisim.settings.options import settings_of
+from tuisim.settings.options import merge_settings
 
 if TYPE_CHECKING:
     from tuisim.api.run import Run
@@ -62,7 +62,7 @@ class Lab:
         columns: Sequence[str] = MOTION,
     ) -> None:
         chosen = read_options({"robot": robot, "seed": seed, "profile": profile})
-        self._open(build_run_spec(settings_of(read_world(world, None), chosen)), columns)
+        self._open(build_run_spec(merge_settings(read_world(world, None), chosen)), columns)
 
     @classmethod
     def of_run(cls, run: Run, columns: Sequence[str] = MOTION) -> Lab:

@@ -13,7 +13,7 @@ from tuisim.batch.parameters import checked_seeds
 from tuisim.engine.runs.child.isolation import check_isolation
 from tuisim.tasks.goals.files import load_goals
 from tuisim.tasks.marks.marking import MarkRequest, open_marking
-from tuisim.tasks.marks.sheet import frame_of
+from tuisim.tasks.marks.sheet import build_frame
 from tuisim.tasks.task import TIME_LIMIT_S
 
 if TYPE_CHECKING:
@@ -76,4 +76,4 @@ def mark(
                 f"this machine could not run {name} with seed {outcome.seed}: {outcome.failure}"
             )
             raise HostError(message, "resume=True runs what is missing")
-        return frame_of(marking.build_sheet())
+        return build_frame(marking.build_sheet())

@@ -12,7 +12,7 @@ from tuisim.app import background
 from tuisim.app.snapshot import RunPhase
 from tuisim.engine.protocol import Unended
 from tuisim.engine.runs.store import load_run
-from tuisim.settings.worlds import means_world
+from tuisim.settings.worlds import is_world_name
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -68,7 +68,7 @@ class GoalsController:
     @property
     def path(self) -> Path | None:
         """The goals file that is open; None if there is none, or the goals are those of a lesson."""
-        return self.file.path if self.file and means_world(self.file.path.name) else None
+        return self.file.path if self.file and is_world_name(self.file.path.name) else None
 
     @property
     def judged(self) -> tuple[Recording | None, tuple[Judgement, ...]]:

@@ -12,7 +12,7 @@ from tuisim.app.panels import PANELS, PanelPlace
 from tuisim.app.snapshot import RunPhase
 from tuisim.base.errors import ConfigError, TuisimError
 from tuisim.engine.protocol import End, PauseReason
-from tuisim.tasks.lessons.catalogue import find_lesson, lesson_paths
+from tuisim.tasks.lessons.catalogue import find_lesson, find_lesson_paths
 from tuisim.tasks.lessons.files import load_lesson
 from tuisim.tasks.lessons.progress import prepare_program
 from tuisim.tasks.lessons.session import Change, LessonSession, Sight
@@ -159,7 +159,7 @@ class LessonController:
     def lessons(self) -> list[Lesson]:
         """Return all lessons that can be read, in their order."""
         found = []
-        for path in lesson_paths(self.folder).values():
+        for path in find_lesson_paths(self.folder).values():
             try:
                 found.append(load_lesson(path))
             except ConfigError as error:
@@ -169,7 +169,7 @@ class LessonController:
     @property
     def next_name(self) -> str:
         """The name of the lesson after this one; empty if there is none."""
-        names = list(lesson_paths(self.folder))
+        names = list(find_lesson_paths(self.folder))
         if self.lesson is None or self.lesson.name not in names:
             return ""
         return next(iter(names[names.index(self.lesson.name) + 1 :]), "")

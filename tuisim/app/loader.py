@@ -24,7 +24,7 @@ from tuisim.engine.runs.standstill import standstill_words
 from tuisim.engine.runs.store import RunStore
 from tuisim.programs.magic_mat import without_wrong_mat
 from tuisim.programs.program_settings import Decided, free_paths
-from tuisim.settings.options import START, Settings, settings_of
+from tuisim.settings.options import START, Settings, merge_settings
 
 if TYPE_CHECKING:
     from tuisim.app.goals import GoalsController
@@ -192,9 +192,9 @@ class Loader:
             path: The file, or the name of an example program.
         """
         from tuisim.programs.program_file import find_program
-        from tuisim.settings.worlds import means_world
+        from tuisim.settings.worlds import is_world_name
 
-        opened = self._open_world if means_world(path) else self._open_program
+        opened = self._open_world if is_world_name(path) else self._open_program
         try:
             opened(str(find_program(str(user_path(path)))))
         except TuisimError as error:
@@ -527,7 +527,7 @@ def _in_world(
     source: ProgramSource | None, magic: Mapping[str, Any], world: Mapping[str, Any]
 ) -> tuple[NextRun, Decided]:
     """Return the plan of a program in a world, which replaces all earlier choices, and what the program decides."""
-    free = free_paths(settings_of(magic, world))
+    free = free_paths(merge_settings(magic, world))
     plan = plans.with_choices(plans.with_choices(plans.plan_of(Settings(), free), magic), world)
     return plans.following(plan, source) if source else (plan, Decided())
 

@@ -17,7 +17,7 @@ from tuisim.batch.parameters import SEED, Choice, checked_seeds, parse_seeds, pa
 from tuisim.engine import files
 from tuisim.engine.core.values import quote
 from tuisim.engine.files import Location
-from tuisim.settings.worlds import BATCH_KEY, WORLD_SUFFIX, WorldFile, load_world, world_from_table
+from tuisim.settings.worlds import BATCH_KEY, WORLD_SUFFIX, WorldFile, load_world, parse_world
 from tuisim.tasks.task import MAX_JOBS, Keep, Value
 
 MAX_PROGRAMS = 10_000
@@ -94,7 +94,7 @@ def load_batch(path: Path, mats: str | None = None) -> BatchFile:
         with files.errors_at(at.file, at.at("world").key):
             world = load_world(folder / table.world, mats)
     elif data:
-        world = world_from_table(data, path, mats)
+        world = parse_world(data, path, mats)
     programs = (
         []
         if table.program is UNSET

@@ -21,7 +21,7 @@ from tuisim.engine.runs.handle import RunOptions, in_surroundings
 from tuisim.programs.program_settings import require_library
 from tuisim.settings.build import build_run_spec
 from tuisim.settings.options import Settings
-from tuisim.settings.overrides import settings_of_keys
+from tuisim.settings.overrides import resolve_keys
 from tuisim.tasks.goals.spec import Goal
 from tuisim.tasks.task import Keep, Task, Value
 
@@ -73,9 +73,9 @@ class Plan:
 
         def is_whole(name: str, inside: float) -> bool:
             try:
-                settings_of_keys({name: inside}, first.settings, self.path)
+                resolve_keys({name: inside}, first.settings, self.path)
             except ConfigError:
-                settings_of_keys({name: math.ceil(inside)}, first.settings, self.path)
+                resolve_keys({name: math.ceil(inside)}, first.settings, self.path)
                 return True
             return False
 
@@ -139,7 +139,7 @@ class Plan:
         return replace(spec, seed=seed) if isinstance(seed, int) else spec
 
     def _settings(self, subject: Subject, values: Mapping[str, Value]) -> Settings:
-        changes = settings_of_keys(values, subject.settings, self.path)
+        changes = resolve_keys(values, subject.settings, self.path)
         # A mat comes with its own start pose, unless it was chosen for all runs.
         kept = {
             key: value

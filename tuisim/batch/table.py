@@ -14,7 +14,7 @@ from tuisim.logs.export import build_table_metadata
 from tuisim.logs.expressions import evaluate, find_names
 from tuisim.logs.signals import Summary, compute_summary
 from tuisim.logs.units import parse_unit
-from tuisim.tasks.goals.judgement import GoalState, points
+from tuisim.tasks.goals.judgement import GoalState, compute_points
 from tuisim.tasks.task import Result, Value, VariableStatistics
 
 if TYPE_CHECKING:
@@ -59,7 +59,7 @@ def row_of(result: Result, program: str, seed: int) -> Row:
             for one in result.judgements
             if one.state is not GoalState.UNKNOWN
         }
-        row[POINTS] = points(result.judgements)
+        row[POINTS] = compute_points(result.judgements)
     if result.run_id:
         row[RUN_ID] = result.run_id
     for name, statistics in result.variables.items():

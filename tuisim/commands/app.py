@@ -16,7 +16,7 @@ from tuisim.base.errors import ConfigError
 from tuisim.commands.listings import WORLD, names_of
 from tuisim.commands.log import COLUMNS, TELEMETRY
 from tuisim.settings.command_line import Arguments, WordType, argument, command, option
-from tuisim.settings.shared_options import shared_options
+from tuisim.settings.shared_options import build_shared_options
 
 if TYPE_CHECKING:
     from tuisim.commands.resolve import Prepared
@@ -41,7 +41,7 @@ OPENED: Sequence[click.Parameter] = (
         help="Judge the runs by a goals file, which may also precede the program.",
     ),
     option("--run", metavar="RUN", help="Open a stored run, see `tuisim runs`."),
-    *shared_options(names=names_of),
+    *build_shared_options(names=names_of),
 )
 """What the app opens, and how."""
 
@@ -214,10 +214,10 @@ def _goals_in(world: WorldFile | None, mats: str | None) -> GoalsFile | None:
 
 def _words(arguments: Arguments, goals: GoalsFile | None) -> tuple[str, ...]:
     """Return the words of the command line; unless another world is named, with the goals file as the world."""
-    from tuisim.settings.worlds import means_world
+    from tuisim.settings.worlds import is_world_name
 
     words: tuple[str, ...] = arguments.words
-    if goals is None or arguments.world or any(map(means_world, words)):
+    if goals is None or arguments.world or any(map(is_world_name, words)):
         return words
     return (str(goals.path), *words)
 

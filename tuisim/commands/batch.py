@@ -34,13 +34,13 @@ from tuisim.engine.protocol import End
 from tuisim.logs.signals import QUANTILES
 from tuisim.settings.command_line import Arguments, command
 from tuisim.settings.options import APP, PANEL
-from tuisim.settings.shared_options import shared_options
+from tuisim.settings.shared_options import build_shared_options
 
 if TYPE_CHECKING:
     import pandas as pd
 
 _SHARED = [
-    one for one in shared_options(hidden=(APP, PANEL), names=names_of) if one.name != "speed"
+    one for one in build_shared_options(hidden=(APP, PANEL), names=names_of) if one.name != "speed"
 ]
 """A batch runs as fast as possible."""
 MOST_LINES = 100

@@ -27,7 +27,7 @@ from tuisim.engine.runs.presses import press_actions
 from tuisim.logs.export import LISTED, check_target
 from tuisim.settings.command_line import Arguments, WordType, argument, option
 from tuisim.settings.options import Settings
-from tuisim.settings.worlds import WorldFile, means_world
+from tuisim.settings.worlds import WorldFile, is_world_name
 from tuisim.tasks.goals.files import GoalsFile, load_goals
 from tuisim.tasks.task import Keep
 
@@ -154,7 +154,10 @@ def _workers(arguments: Arguments, file: BatchFile) -> Workers:
 
 def _world_with_goals(arguments: Arguments) -> str | None:
     """Return the world file that is named, if it has goals."""
-    words: list[str] = [*filter(means_world, arguments.programs), *filter(None, [arguments.world])]
+    words: list[str] = [
+        *filter(is_world_name, arguments.programs),
+        *filter(None, [arguments.world]),
+    ]
     for word in words:
         with suppress(ConfigError):
             if "goal" in read_file(user_path(word), ConfigError):
@@ -171,7 +174,7 @@ def _batch_file(arguments: Arguments) -> BatchFile:
         return BatchFile(Path())
     arguments.programs = tuple(word for word in arguments.programs if word not in named)
     file = load_batch(Path(named[0]), arguments.settings.get("mats"))
-    if not any(not means_world(word) for word in arguments.programs):
+    if not any(not is_world_name(word) for word in arguments.programs):
         arguments.programs = (*arguments.programs, *file.programs)
     return file
 

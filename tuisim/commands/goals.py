@@ -27,13 +27,19 @@ from tuisim.engine.core.values import MAX_SEED
 from tuisim.engine.runs.presses import press_actions
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.engine.runs.store import RunStore
-from tuisim.settings.build import build_run_spec, settings_from
+from tuisim.settings.build import build_run_spec, extract_settings
 from tuisim.settings.command_line import AS_JSON, Group, WordType, argument, command, option
-from tuisim.settings.options import START, settings_of
-from tuisim.tasks.goals.drawn_mats import DRAWN_MATS, drawn_mat, world_lines
-from tuisim.tasks.goals.files import GoalsFile, example_names, load_goals
+from tuisim.settings.options import START, merge_settings
+from tuisim.tasks.goals.drawn_mats import DRAWN_MATS, format_world_lines, generate_mat
+from tuisim.tasks.goals.files import GoalsFile, list_example_names, load_goals
 from tuisim.tasks.goals.judge import judge
-from tuisim.tasks.goals.judgement import GoalState, Judgement, in_words, most_points, points
+from tuisim.tasks.goals.judgement import (
+    GoalState,
+    Judgement,
+    compute_max_points,
+    compute_points,
+    format_points,
+)
 from tuisim.tasks.task import TIME_LIMIT_S
 
 _RANGE = re.compile(r"(\d{1,9})\.\.(\d{1,9})")
@@ -50,7 +56,7 @@ _MARKS = {
 
 
 @command(
-    argument("goals_path", "GOALS", example_names),
+    argument("goals_path", "GOALS", list_example_names),
     argument("words", "RUN…", lambda: ("last",), nargs=-1),
     AS_JSON,
     help="""Check whether stored runs meet the goals in a file.
@@ -104,15 +110,15 @@ def _names(word: str, store: RunStore) -> Iterator[str]:
 
 def _differences(file: GoalsFile, run: StoredRun) -> Iterator[str]:
     """Yield notes if a run is not one of the program alone, from the start that a goals file names."""
-    presses = press_actions(settings_of(file.settings)["press"], run.spec.profile.tick_hz)
+    presses = press_actions(merge_settings(file.settings)["press"], run.spec.profile.tick_hz)
     if run.actions and run.actions != presses:
         yield f"run {run.number} was changed while it ran: {counted(len(run.actions), 'action')} of the user"
     try:
-        found = settings_from(run.spec)
+        found = extract_settings(run.spec)
         # A mat of one's own is known by its path: the file may name it in another way. All else that moves the mat's
         # start is as it was in the run.
         elsewhere = {path: value for path, value in found.items() if path not in _WHERE}
-        of_file = settings_from(build_run_spec(settings_of(elsewhere, file.settings)))
+        of_file = extract_settings(build_run_spec(merge_settings(elsewhere, file.settings)))
     except ConfigError:
         # A mat no longer exists.
         return
@@ -134,8 +140,8 @@ def _plain(run: StoredRun, judgements: Sequence[Judgement]) -> dict[str, Any]:
         "run": run.number,
         "id": run.id,
         "program": run.program.name,
-        "points": None if math.isnan(earned := points(judgements)) else earned,
-        "of": most_points(each.goal for each in judgements),
+        "points": None if math.isnan(earned := compute_points(judgements)) else earned,
+        "of": compute_max_points(each.goal for each in judgements),
         "goals": [
             {
                 "name": each.goal.name,
@@ -154,11 +160,11 @@ def _plain(run: StoredRun, judgements: Sequence[Judgement]) -> dict[str, Any]:
 
 def _show(file: GoalsFile, run: StoredRun, judgements: Sequence[Judgement]) -> None:
     met = sum(each.is_good for each in judgements)
-    most = most_points(each.goal for each in judgements)
+    most = compute_max_points(each.goal for each in judgements)
     title = f" · {file.title}" if file.title else ""
     echo(
         f"run {run.number}, {run.program.name}{title}: {met} of {counted(len(judgements), 'goal')}, "
-        f"{in_words(points(judgements))} of {most:g} points"
+        f"{format_points(compute_points(judgements))} of {most:g} points"
     )
     for each in judgements:
         goal = each.goal
@@ -197,7 +203,7 @@ def _details(judgement: Judgement) -> Iterator[str]:
 
 
 @command(
-    argument("goals_path", "TASK", example_names),
+    argument("goals_path", "TASK", list_example_names),
     argument("wrong", "[PROGRAM…]", nargs=-1),
     option(
         "--seeds",
@@ -220,12 +226,12 @@ def _details(judgement: Judgement) -> Iterator[str]:
 )
 def try_task(goals_path: str, wrong: Sequence[str], seeds: str, timeout: float, jobs: int) -> int:
     """Try a task out."""
-    from tuisim.tasks.marks.trial import trial_of
+    from tuisim.tasks.marks.trial import run_trial
 
     task = load_goals(goals_path)
     every_seed = parse_seeds(seeds, "--seeds")
     with Progress("goals try"):
-        trial = trial_of(task, wrong, every_seed, time_limit_s=timeout, jobs=jobs)
+        trial = run_trial(task, wrong, every_seed, time_limit_s=timeout, jobs=jobs)
     echo_lines(table(("PROGRAM", "POINTS", "MEETS"), trial.rows))
     for fault in trial.faults:
         echo_wrapped(f"{task.path.name}: {fault}")
@@ -259,9 +265,9 @@ def draw_mat(kind: str, seed: int, out: str | None) -> int:
         raise ConfigError(f"must be from 0 to {MAX_SEED:,}, got {seed:,}", key="--seed")
     path = Path(out or f"{kind}-{seed}.png")
     check_format(path, "mat", (".png",))
-    mat = drawn_mat(kind, seed)
+    mat = generate_mat(kind, seed)
     write_whole(path, mat.png)
-    echo_lines("\n".join(world_lines(mat, path.name)))
+    echo_lines("\n".join(format_world_lines(mat, path.name)))
     return 0
 
 

@@ -14,14 +14,14 @@ from tuisim.engine.core.profile import Library
 from tuisim.settings.command_line import AS_JSON, Group, WordType, argument, choice, command, option
 from tuisim.tasks.lessons.catalogue import (
     find_lesson,
-    lesson_paths,
+    find_lesson_paths,
+    find_shipped_paths,
+    find_telling,
     load_all,
-    shipped_paths,
-    telling_of,
 )
 from tuisim.tasks.lessons.files import load_lesson
-from tuisim.tasks.lessons.markdown import plain_text
-from tuisim.tasks.lessons.progress import LessonProgress, StepState, last_opened, load_progress
+from tuisim.tasks.lessons.markdown import render_plain_text
+from tuisim.tasks.lessons.progress import LessonProgress, StepState, find_last_opened, load_progress
 from tuisim.tasks.lessons.spec import Lesson, LessonStep, QuestionCheck
 
 _COLUMNS = 80
@@ -33,7 +33,7 @@ FOLDER = option(
 
 def _names() -> Sequence[str]:
     try:
-        return list(lesson_paths())
+        return list(find_lesson_paths())
     except ConfigError:
         return []
 
@@ -68,7 +68,7 @@ def open_lesson(word: str | None, folder: str | None, library: str | None, as_te
         lesson = _next_lesson(load_all(folder), progress)
     else:
         path = find_lesson(word, folder, learn.listing)
-        lesson = load_lesson(telling_of(path, Library(library), folder) if library else path)
+        lesson = load_lesson(find_telling(path, Library(library), folder) if library else path)
     if not in_app:
         echo_lines(text_of(lesson, progress.get(lesson.name, LessonProgress())))
         return 0
@@ -81,7 +81,7 @@ def _next_lesson(lessons: Sequence[Lesson], progress: dict[str, LessonProgress])
     def is_open(lesson: Lesson) -> bool:
         return progress.get(lesson.name, LessonProgress()).current(lesson) is not None
 
-    last = last_opened(progress)
+    last = find_last_opened(progress)
     again = [lesson for lesson in lessons if lesson.name == last and is_open(lesson)]
     return next(iter([*again, *filter(is_open, lessons)]), lessons[0])
 
@@ -90,14 +90,18 @@ def text_of(lesson: Lesson, progress: LessonProgress) -> str:
     """Return a lesson as plain text; the model answer only once every step is done."""
     parts = [
         f"{lesson.title}\n{'=' * len(lesson.title)}",
-        plain_text(lesson.intro, _COLUMNS),
-        plain_text(f"On a real robot: {lesson.why}", _COLUMNS),
+        render_plain_text(lesson.intro, _COLUMNS),
+        render_plain_text(f"On a real robot: {lesson.why}", _COLUMNS),
     ]
     if lesson.program:
         parts.append(f"The program:\n\n{_indented(lesson.program)}")
     for number, step in enumerate(lesson.steps, start=1):
         title = f"{_MARKS[progress.of(step.name).state]} {number}. {step.title}"
-        parts += [f"{title}\n{'-' * len(title)}", plain_text(step.text, _COLUMNS), *_question(step)]
+        parts += [
+            f"{title}\n{'-' * len(title)}",
+            render_plain_text(step.text, _COLUMNS),
+            *_question(step),
+        ]
     if lesson.model_answer and progress.done(lesson) == len(lesson.steps):
         parts.append(f"A model answer:\n\n{_indented(lesson.model_answer)}")
     parts.append(f"`tuisim learn {lesson.name}` in a terminal checks each step while you work.")
@@ -108,7 +112,7 @@ def _question(step: LessonStep) -> list[str]:
     if not isinstance(step.check, QuestionCheck):
         return []
     choices = [f"  {number} {choice}" for number, choice in enumerate(step.check.choices, start=1)]
-    return ["\n".join([plain_text(f"Question: {step.check.ask}", _COLUMNS), *choices])]
+    return ["\n".join([render_plain_text(f"Question: {step.check.ask}", _COLUMNS), *choices])]
 
 
 def _indented(program: str) -> str:
@@ -224,15 +228,15 @@ def check(paths: Sequence[str], no_runs: bool, strict: bool) -> int:
 
     Exit code: 0 if all is well, 1 if a model answer does not pass or a wrong program does, 2 if a file is wrong.
     """
-    from tuisim.tasks.lessons.trial import faults, warnings
+    from tuisim.tasks.lessons.trial import find_faults, find_warnings
 
-    files = [find_lesson(path) for path in paths] or list(shipped_paths().values())
+    files = [find_lesson(path) for path in paths] or list(find_shipped_paths().values())
     lessons = [load_lesson(path) for path in files]
     is_bad = False
     with Progress("learn check"):
         for number, lesson in enumerate(lessons):
             tell(f"checking {lesson.name}", number, len(lessons))
-            wrong, warned = [] if no_runs else faults(lesson), warnings(lesson)
+            wrong, warned = [] if no_runs else find_faults(lesson), find_warnings(lesson)
             for line in (*wrong, *(f"warning: {one}" for one in warned)):
                 echo(line)
             if not wrong:
@@ -270,7 +274,7 @@ def new(path: str) -> int:
 class _Learn(Group):
     """The command `learn`: a word that is no subcommand is a lesson."""
 
-    def with_command(self, ctx: click.Context, args: list[str]) -> list[str]:
+    def insert_command(self, ctx: click.Context, args: list[str]) -> list[str]:
         """Return the words with `open` first, unless they begin with another subcommand or ask for help."""
         if args and (args[0] in self.listing or args[0] in ctx.help_option_names):
             return args

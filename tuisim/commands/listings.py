@@ -47,9 +47,9 @@ def names_of(field: str) -> Iterable[str]:
 
             return list_column_names(RunSpec(RobotSpec(), WorldSpec(), PROFILES["ev3"]))
         case "goals":
-            from tuisim.tasks.goals.files import example_names
+            from tuisim.tasks.goals.files import list_example_names
 
-            return example_names()
+            return list_example_names()
     return ()
 
 
@@ -170,7 +170,7 @@ def robots(robot: str | None, program: str | None, out: str | None, as_json: boo
     Raises:
         ConfigError: there is no such robot or program, or the file cannot be written.
     """
-    from tuisim.settings.robots import ROBOTS, load_robot, robot_file
+    from tuisim.settings.robots import ROBOTS, format_robot_file, load_robot
 
     if program is not None:
         if robot is not None:
@@ -182,7 +182,7 @@ def robots(robot: str | None, program: str | None, out: str | None, as_json: boo
     if as_json:
         echo_json([asdict(one) for one in ([chosen] if chosen else ROBOTS.values())])
     elif chosen:
-        echo_lines("\n".join(robot_file(chosen)))
+        echo_lines("\n".join(format_robot_file(chosen)))
     else:
         heads = ("NAME", "WHEELS", "WEIGHT", "COLOUR SENSORS x, y, diameter", "PORTS")
         echo_lines(table(heads, list(map(_robot_row, ROBOTS.values()))))
@@ -211,7 +211,7 @@ def _print_robot_of_run(word: str, out: str | None, *, as_json: bool) -> int:
     """Print or write the robot of a run."""
     from tuisim.engine.runs.store import load_run
     from tuisim.programs.plugged_words import list_parts
-    from tuisim.settings.robots import robot_file, save_robot
+    from tuisim.settings.robots import format_robot_file, save_robot
 
     run = load_run(word)
     robot, parts = run.spec.robot, list_parts(run.plugged)
@@ -222,16 +222,16 @@ def _print_robot_of_run(word: str, out: str | None, *, as_json: bool) -> int:
         echo_error(f"{out}: the robot of run {run.number}; -r {out} takes it")
     else:
         said = [f"# Plugged in while {run.program.name} ran: {parts}."] if parts else []
-        echo_lines("\n".join([*said, *robot_file(robot)]))
+        echo_lines("\n".join([*said, *format_robot_file(robot)]))
     return 0
 
 
 def _robot_row(robot: RobotSpec) -> tuple[str, ...]:
-    from tuisim.settings.robots import ports_of
+    from tuisim.settings.robots import list_ports
 
     wheels = f"{robot.wheel_diameter_mm:g} mm, {robot.wheel_spacing_mm:g} mm apart"
     sensors = [f"{s.name} {s.x_mm:g}, {s.y_mm:g}, {s.diameter_mm}" for s in robot.color_sensors]
-    on_ports = ", ".join(f"{port} {name}" for port, name in ports_of(robot))
+    on_ports = ", ".join(f"{port} {name}" for port, name in list_ports(robot))
     return robot.name, wheels, f"{robot.weight:g}", "; ".join(sensors), on_ports
 
 

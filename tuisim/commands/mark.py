@@ -41,7 +41,7 @@ from tuisim.engine.runs.child.isolation import MOST_BYTES, check_isolation
 from tuisim.logs.export import ALLOWED, EXPORTERS, check_place, check_target
 from tuisim.settings.command_line import Arguments, WordType, argument, command, option
 from tuisim.settings.options import APP, PANEL, parse
-from tuisim.settings.shared_options import shared_options
+from tuisim.settings.shared_options import build_shared_options
 from tuisim.tasks.goals.files import GoalsFile, load_goals
 from tuisim.tasks.marks.marking import GRADEBOOKS, Marking, MarkRequest, open_marking
 from tuisim.tasks.marks.sheet import Sheet
@@ -161,7 +161,7 @@ _OPTIONS = (
     *_OPTIONS,
     *(
         one
-        for one in shared_options(hidden=(APP, PANEL), names=names_of)
+        for one in build_shared_options(hidden=(APP, PANEL), names=names_of)
         if one.name not in _LEFT_OUT
     ),
     help="""Mark the programs of a class.

@@ -28,10 +28,10 @@ from tuisim.programs.program_file import ProgramSource, find_program, read_progr
 from tuisim.programs.program_settings import Decided, free_paths, program_settings
 from tuisim.settings.build import build_run_spec
 from tuisim.settings.command_line import ARGUMENTS_FOLLOW, Arguments
-from tuisim.settings.options import OF_THE_APP, Settings, settings_of
+from tuisim.settings.options import APP_PATHS, Settings, merge_settings
 from tuisim.settings.robots import RobotChoice, choose_robot
 from tuisim.settings.user_config import Section, UserConfig
-from tuisim.settings.worlds import WorldFile, load_world, means_world
+from tuisim.settings.worlds import WorldFile, is_world_name, load_world
 
 NO_CONFIG = UserConfig(Path())
 """No defaults of the user."""
@@ -61,7 +61,7 @@ def check_arguments(words: Sequence[str], arguments: Arguments) -> None:
     """
     if "arguments" not in arguments.settings:
         return
-    programs = [word for word in words if not means_world(word)]
+    programs = [word for word in words if not is_world_name(word)]
     if getattr(arguments, "run", None) is not None:
         raise ConfigError(
             "a stored run has its own arguments", "leave them out", key=ARGUMENTS_FOLLOW
@@ -70,7 +70,7 @@ def check_arguments(words: Sequence[str], arguments: Arguments) -> None:
         raise ConfigError(
             "arguments go to one program", f"got {len(programs)}", key=ARGUMENTS_FOLLOW
         )
-    if not programs and not any(map(means_world, words)) and not arguments.world:
+    if not programs and not any(map(is_world_name, words)) and not arguments.world:
         raise ConfigError(
             "arguments need a program", "tuisim PROGRAM -- ARGUMENTS", key=ARGUMENTS_FOLLOW
         )
@@ -86,7 +86,7 @@ def check_arguments(words: Sequence[str], arguments: Arguments) -> None:
 
 def _world(words: Sequence[str], arguments: Arguments) -> WorldFile | None:
     """Load the world that is named as a word or with `--world`, if any."""
-    named = [word for word in words if means_world(word)]
+    named = [word for word in words if is_world_name(word)]
     named += [] if arguments.world is None else [arguments.world]
     if len(named) > 1:
         raise ConfigError(f"two worlds: {named[0]} and {named[1]}", "name one", key="--world")
@@ -103,9 +103,9 @@ def _prepared(
             raise ConfigError(
                 f"{named} names no program to pass arguments to", key=ARGUMENTS_FOLLOW
             )
-        settings = settings_of(_defaults(world, config), in_world, arguments.settings)
+        settings = merge_settings(_defaults(world, config), in_world, arguments.settings)
         spec = _spec(settings)
-        plain = settings_of(arguments.settings)
+        plain = merge_settings(arguments.settings)
         said = _from_config(spec, world, config, plain, arguments.settings)
         decided = Decided(free=free_paths(settings))
         return Prepared(None, settings, spec, world, from_config=said, decided=decided)
@@ -124,7 +124,7 @@ def _from_config(
     *above: Mapping[str, Any],
 ) -> tuple[str, ...]:
     """Return the user's defaults that make the run another one than with the plain settings, in words."""
-    said = () if world else tuple(config.in_effect(*above))
+    said = () if world else tuple(config.list_effective(*above))
     try:
         return said if said and build_run_spec(plain) != spec else ()
     except ConfigError:
@@ -182,7 +182,7 @@ def prepare_app(words: Sequence[str], arguments: Arguments, config: UserConfig) 
         ConfigError: program, magic line, world or options are wrong, or there are two programs.
     """
     world = _world(words, arguments)
-    programs = [word for word in words if not means_world(word)]
+    programs = [word for word in words if not is_world_name(word)]
     if len(programs) > 1:
         raise ConfigError(
             f"two programs: {programs[0]} and {programs[1]}", "the app opens only one"
@@ -193,7 +193,7 @@ def prepare_app(words: Sequence[str], arguments: Arguments, config: UserConfig) 
     if word is None:
         return _prepared(word, world, arguments, config)
     source = read_program(find_program(word))
-    mats = settings_of(_defaults(world, config), source.options, arguments.settings)["mats"]
+    mats = merge_settings(_defaults(world, config), source.options, arguments.settings)["mats"]
     return _of_source(without_wrong_mat(source, mats), world, arguments, config)
 
 
@@ -212,14 +212,14 @@ def prepare_replay(
         LogError: there is no such run, or it is damaged.
     """
     chosen = arguments.settings
-    if words or arguments.world or (wrong := sorted(chosen.keys() - OF_THE_APP)):
+    if words or arguments.world or (wrong := sorted(chosen.keys() - APP_PATHS)):
         what = words[0] if words else arguments.world or wrong[0].replace("_", " ")
         raise ConfigError(
             f"a stored run has its own program and world: remove {what}", "name one", key="--run"
         )
     stored = RunStore().load_run(run)
     opened = replace(stored.program, python_path=(), working_directory="")
-    return stored, Prepared(opened, settings_of(config.layer(Section.APP), chosen), stored.spec)
+    return stored, Prepared(opened, merge_settings(config.layer(Section.APP), chosen), stored.spec)
 
 
 def prepare_runs(
@@ -242,7 +242,7 @@ def prepare_runs(
         ConfigError: a program, magic line, world or option is wrong, or there is no program.
     """
     world = _world(words, arguments) or usual_world
-    programs = [word for word in words if not means_world(word)]
+    programs = [word for word in words if not is_world_name(word)]
     if not programs and world and world.program is not None:
         programs = [world.program]
     if not programs:
@@ -266,7 +266,7 @@ def _of_folder(
     word: str, world: WorldFile | None, arguments: Arguments, config: UserConfig
 ) -> list[Prepared | NotRun]:
     # Errors of the command line are raised once, not for each cell.
-    build_run_spec(settings_of(world.settings if world else {}, arguments.settings))
+    build_run_spec(merge_settings(world.settings if world else {}, arguments.settings))
     found: list[Prepared | NotRun] = []
     for path in check_folder(word, run_all=arguments.all):
         label = os.path.relpath(path, word)

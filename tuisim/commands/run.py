@@ -35,7 +35,7 @@ from tuisim.engine.runs.store import RunStore
 from tuisim.logs.export import EXPORTERS, check_targets, export_samples, export_telemetry
 from tuisim.settings.command_line import Arguments, WordType, argument, choice, command, option
 from tuisim.settings.options import APP, PANEL
-from tuisim.settings.shared_options import shared_options
+from tuisim.settings.shared_options import build_shared_options
 from tuisim.settings.user_config import FILE, Section, load_config
 
 MOST_CHARACTERS = 200
@@ -111,7 +111,7 @@ _OPTIONS = (
 
 @command(
     *_OPTIONS,
-    *shared_options(hidden=(APP, PANEL), names=names_of),
+    *build_shared_options(hidden=(APP, PANEL), names=names_of),
     passes_arguments=True,
     help="""Run programs without the app.
 
@@ -141,7 +141,9 @@ def run(**given: Any) -> int:
         return 0
     # All input is checked before the first program runs.
     prepared = prepare_runs(
-        arguments.programs, arguments, config=load_config().checked().only(Section.SIMULATION)
+        arguments.programs,
+        arguments,
+        config=load_config().checked().keep_section(Section.SIMULATION),
     )
     for said in dict.fromkeys(
         one.from_config for one in prepared if isinstance(one, Prepared) and one.from_config

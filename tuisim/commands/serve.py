@@ -10,7 +10,7 @@ from tuisim.base.errors import ConfigError
 from tuisim.commands.app import OPENED, read_opened
 from tuisim.commands.echo import echo, echo_error_lines
 from tuisim.engine.core.values import Number, Whole
-from tuisim.settings.command_line import Arguments, WordType, command, option, words_without
+from tuisim.settings.command_line import Arguments, WordType, command, drop_options, option
 from tuisim.settings.options import parse
 
 if TYPE_CHECKING:
@@ -104,7 +104,7 @@ def serve(**given: Any) -> int:
     idle_s = float("inf") if arguments.idle is None else 60 * arguments.idle
     limits = server.ServerLimits(arguments.max_visitors, VisitLimits(idle_s, 60 * arguments.keep))
     gate = Gate(arguments.host)
-    visitors = server.Server(app_command(words_without(_SERVER)), gate, limits, echo_error_lines)
+    visitors = server.Server(app_command(drop_options(_SERVER)), gate, limits, echo_error_lines)
     return server.serve(
         visitors, arguments.host, arguments.port, lambda port: _announce(gate, port)
     )

@@ -9,7 +9,7 @@ from textwrap import dedent, wrap
 
 from tuisim.guide.catalogue import LINK
 from tuisim.guide.search import SET_IN, SearchResult
-from tuisim.tasks.lessons.markdown import CODE, PLAIN, markdown_lines, plain_text
+from tuisim.tasks.lessons.markdown import CODE, PLAIN, render_markdown, render_plain_text
 from tuisim.terminal.text_runs import Line
 
 _CLEAR_COLUMNS = 2
@@ -101,7 +101,7 @@ def _draw_shortened(markdown: str, width: int, max_lines: int) -> list[Line]:
 @lru_cache(_CACHED_TEXTS)
 def _draw_markdown(markdown: str, width: int) -> list[Line]:
     """Return Markdown as lines, which nobody changes: answers are drawn again until they fit."""
-    return markdown_lines(markdown, width)
+    return render_markdown(markdown, width)
 
 
 def _draw_item(item: str, width: int) -> list[Line]:
@@ -157,7 +157,7 @@ def _add_heads(passage: str, head: str) -> str:
 
 def flatten_passage(markdown: str) -> str:
     """Return a passage of a page as one line of plain text."""
-    return " ".join(plain_text(_strip_marks(markdown)).split())
+    return " ".join(render_plain_text(_strip_marks(markdown)).split())
 
 
 def _strip_marks(markdown: str) -> str:

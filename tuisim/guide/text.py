@@ -11,7 +11,7 @@ from tuisim.guide.catalogue import CONTENTS, LINK, Page, load_pages
 from tuisim.guide.excerpt import draw_excerpt, flatten_passage, split_cells
 from tuisim.guide.search import SearchResult
 from tuisim.guide.tables import build_markdown
-from tuisim.tasks.lessons.markdown import PLAIN, markdown_lines
+from tuisim.tasks.lessons.markdown import PLAIN, render_markdown
 from tuisim.terminal.text_runs import Line
 
 _HEADING = re.compile(r"^## (.+)$", re.MULTILINE)
@@ -35,7 +35,7 @@ def list_headings(page: Page) -> list[str]:
 
 def draw_page(page: Page, width: int) -> list[Line]:
     """Return a page as lines of at most a number of columns; a link shows the name of its page."""
-    return markdown_lines(LINK.sub(_format_link, build_markdown(page)), width)
+    return render_markdown(LINK.sub(_format_link, build_markdown(page)), width)
 
 
 def _format_link(link: re.Match[str]) -> str:
@@ -55,7 +55,7 @@ def draw_contents(width: int) -> list[Line]:
             f"## {part}",
             "\n".join(f"- `{name}` {load_pages()[name].title}" for name in names),
         ]
-    return markdown_lines("\n\n".join(text), width)
+    return render_markdown("\n\n".join(text), width)
 
 
 def draw_results(results: list[SearchResult], width: int) -> list[Line]:
@@ -64,7 +64,7 @@ def draw_results(results: list[SearchResult], width: int) -> list[Line]:
     for hit in results:
         title = f"- `{hit.name}` **{load_pages()[hit.name].title}**{f': {hit.heading}' if hit.heading else ''}"
         passage = draw_excerpt(hit, max(20, width - 3), _PASSAGE_LINES)
-        lines += [*markdown_lines(title, width), *([("   ", PLAIN), *line] for line in passage)]
+        lines += [*render_markdown(title, width), *([("   ", PLAIN), *line] for line in passage)]
     return lines
 
 

@@ -193,9 +193,9 @@ class Lab:
     def spec(self) -> RunSpec:
         """Robot, world, profile and seed as the cells have set them."""
         from tuisim.settings.build import build_run_spec
-        from tuisim.settings.options import settings_of
+        from tuisim.settings.options import merge_settings
 
-        return self._spec or build_run_spec(settings_of(self._persistent))
+        return self._spec or build_run_spec(merge_settings(self._persistent))
 
     @property
     def state(self) -> dict[str, Any]:
@@ -305,21 +305,21 @@ class Lab:
         from tuisim.programs.program_file import ProgramSource
         from tuisim.programs.program_settings import program_settings
         from tuisim.settings.build import build_run_spec
-        from tuisim.settings.magic_line import persistent_after
-        from tuisim.settings.options import settings_of
+        from tuisim.settings.magic_line import update_persistent
+        from tuisim.settings.options import merge_settings
         from tuisim.settings.robots import choose_robot
 
         if isinstance(robot := words.settings.get("robot"), str):
             for note in choose_robot(robot, "-r").notes:
                 print(f"tuisim: note: {note}", file=sys.stderr)
-        persistent = persistent_after(self._persistent, words.settings)
+        persistent = update_persistent(self._persistent, words.settings)
         program = self._program
         if text is not None:
             # The first line is that of the magic, so that line numbers are those of the cell.
             preload = str(words.settings.get("preload", prelude))
             program = Program("cell", "\n" + text, preload)
         layers = persistent, {"press": self._presses if text is None else ()}, words.settings
-        settings = settings_of(*layers)
+        settings = merge_settings(*layers)
         if program is not None:
             source = ProgramSource(program, has_magic=True)
             # A line says what holds for the cells below it: the program above it has run already.
@@ -442,10 +442,10 @@ class Lab:
 
 def _choose_said(plan: _CellPlan, words: Arguments) -> Mapping[str, Any]:
     """Return what the cells have set, by path, as the app gets it."""
-    from tuisim.settings.options import settings_of
+    from tuisim.settings.options import merge_settings
 
     presses = {"press": plan.settings["press"]}
-    said = settings_of(plan.persistent, words.settings, presses).given
+    said = merge_settings(plan.persistent, words.settings, presses).given
     return {path: value for path, value in said.items() if path not in ("autorun", "speed")}
 
 

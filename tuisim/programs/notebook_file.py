@@ -14,7 +14,7 @@ from tuisim.base.errors import ConfigError, nearest
 from tuisim.base.source import PRELUDES, Program, source_lines
 from tuisim.engine.files import read_bytes
 from tuisim.programs.program_file import ProgramSource, beside
-from tuisim.settings.magic_line import parse_line, persistent_after
+from tuisim.settings.magic_line import parse_line, update_persistent
 
 MAX_NOTEBOOK_BYTES = 64 << 20
 SUFFIX = ".ipynb"
@@ -114,7 +114,7 @@ def notebook_programs(path: Path) -> list[NotebookProgram]:
         where = f"{path}, cell {place}"
         for words in _magics(text, where):
             said = beside(path.parent, words.settings)
-            persistent = persistent_after(persistent, said)
+            persistent = update_persistent(persistent, said)
             if words.magic["cell"]:
                 number = len(found) + 1
                 # The magic's line is left empty, so that line numbers are those of the cell.

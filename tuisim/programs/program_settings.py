@@ -27,7 +27,7 @@ from tuisim.programs.robot.source import (
     missing_module,
     read_modules,
 )
-from tuisim.settings.options import Settings, settings_of
+from tuisim.settings.options import Settings, merge_settings
 from tuisim.settings.profiles import DEFAULT_PROFILE, load_profile
 from tuisim.settings.robots import RobotChoice
 
@@ -224,13 +224,13 @@ def program_settings(
         ProfileError: the chosen profile is not, or the prelude is not.
     """
     layers = (below or {}, source.options, *above)
-    settings = settings_of(*layers)
+    settings = merge_settings(*layers)
     if insists and (settings["preload"] or source.program.prelude) != _NO_PRELUDE:
         _check_prelude(source.program)
     # A default of the user is no choice for this program.
     is_chosen = any(layer.get("profile") is not None for layer in (source.options, *above))
     decided = decide(source, settings, free_paths(settings), insists=insists and is_chosen)
-    return ProgramSettings(settings_of(*layers, decided.layer), decided)
+    return ProgramSettings(merge_settings(*layers, decided.layer), decided)
 
 
 def free_paths(settings: Settings) -> frozenset[str]:

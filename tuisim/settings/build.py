@@ -29,7 +29,7 @@ from tuisim.settings.profiles import load_profile
 from tuisim.settings.robots import ROBOTS, RobotChoice, choose_robot
 
 
-def robot_on_mat(choice: RobotChoice, mat: Background) -> RobotSpec:
+def place_robot(choice: RobotChoice, mat: Background) -> RobotSpec:
     """Return the robot with its colour sensors at the mat's positions, unless its file sets their positions."""
     if choice.own_places:
         return choice.spec
@@ -47,20 +47,20 @@ def _start(settings: Settings, mat: Background, robot: RobotSpec, walled: bool) 
         margin_mm = build_outline(robot).reach_mm
         start = replace(
             start,
-            x_mm=_inside(start.x_mm, margin_mm, FIELD_WIDTH_MM),
-            y_mm=_inside(start.y_mm, margin_mm, FIELD_HEIGHT_MM),
+            x_mm=_clamp_inside(start.x_mm, margin_mm, FIELD_WIDTH_MM),
+            y_mm=_clamp_inside(start.y_mm, margin_mm, FIELD_HEIGHT_MM),
         )
     chosen = {path: value for path in START if (value := settings[path]) is not None}
     return replace(start, **{path.removeprefix("start."): value for path, value in chosen.items()})
 
 
-def _inside(at_mm: float, margin_mm: float, size_mm: float) -> float:
+def _clamp_inside(at_mm: float, margin_mm: float, size_mm: float) -> float:
     """Clamp a coordinate to whole mm inside the margins of a side of the field; the middle if the margins overlap."""
-    least, most = math.ceil(margin_mm), math.floor(size_mm - margin_mm)
-    return min(max(at_mm, least), most) if least <= most else size_mm / 2
+    low, high = math.ceil(margin_mm), math.floor(size_mm - margin_mm)
+    return min(max(at_mm, low), high) if low <= high else size_mm / 2
 
 
-def _obstacles(settings: Settings, mat: Background) -> tuple[Obstacle, ...]:
+def _place_obstacles(settings: Settings, mat: Background) -> tuple[Obstacle, ...]:
     chosen: str | tuple[Obstacle, ...] | None = settings["obstacles"]
     match chosen:
         case None:
@@ -86,26 +86,26 @@ def build_run_spec(settings: Settings) -> RunSpec:
     profile = named if isinstance(named, ProfileSpec) else load_profile(named, "--profile")
     world = WorldSpec(
         background=spec_name(mat),
-        obstacles=_obstacles(settings, mat),
+        obstacles=_place_obstacles(settings, mat),
         solid=profile.solid,
         background_fit=mat.fit or BACKGROUND_FITS[0],
         noise=NoiseSpec(light=choice.light_noise or 0, motor=choice.motor_noise or 0),
         beacon=settings["beacon"],
         remote=settings["remote"],
     )
-    given = {
-        one.spec_path: value
-        for path, one in RUN_VALUES.items()
+    spec_values = {
+        option.spec_path: value
+        for path, option in RUN_VALUES.items()
         if (value := settings[path]) is not None
     }
-    spec = tree.put_all(RunSpec(robot_on_mat(choice, mat), world, profile), given)
+    spec = tree.put_all(RunSpec(place_robot(choice, mat), world, profile), spec_values)
     world = spec.world
     return tree.put(
         spec, "world.start", _start(settings, mat, spec.robot, walled=world.solid and world.walls)
     )
 
 
-def settings_from(spec: RunSpec) -> dict[str, Any]:
+def extract_settings(spec: RunSpec) -> dict[str, Any]:
     """Return the settings that give this run, by path; presets are given by name.
 
     `solid` is None where it equals the profile's default.
@@ -115,10 +115,10 @@ def settings_from(spec: RunSpec) -> dict[str, Any]:
     """
     world = spec.world
     word, mat = mat_of_spec(world.background)
-    found = {path: tree.get_value(spec, one.spec_path) for path, one in RUN_VALUES.items()}
-    return found | {
+    settings = {path: tree.get_value(spec, option.spec_path) for path, option in RUN_VALUES.items()}
+    return settings | {
         "background": word,
-        "robot": _robot(spec.robot, mat),
+        "robot": _name_robot(spec.robot, mat),
         "obstacles": next(
             (name for name, boxes in OBSTACLES.items() if boxes == world.obstacles), world.obstacles
         ),
@@ -132,10 +132,10 @@ def settings_from(spec: RunSpec) -> dict[str, Any]:
     }
 
 
-def _robot(robot: RobotSpec, mat: Background) -> str | RobotChoice:
+def _name_robot(robot: RobotSpec, mat: Background) -> str | RobotChoice:
     """Return the name of the preset that equals the robot except for its pen, else the robot itself."""
     for preset in ROBOTS.values():
-        on_mat = robot_on_mat(RobotChoice(preset, own_places=False), mat)
+        on_mat = place_robot(RobotChoice(preset, own_places=False), mat)
         place = replace(robot.pen, x_mm=on_mat.pen.x_mm, y_mm=on_mat.pen.y_mm)
         if replace(on_mat, pen=place) == robot:
             return preset.name

@@ -57,22 +57,22 @@ class WordType(click.ParamType):  # type: ignore[type-arg]
     ) -> list[CompletionItem]:
         """Return the matching names and files."""
         names = self._names() if self._names else ()
-        found = [CompletionItem(name) for name in names if name.startswith(incomplete)]
+        completions = [CompletionItem(name) for name in names if name.startswith(incomplete)]
         return (
-            _with_files(found, incomplete)
+            _add_files(completions, incomplete)
             if param.metavar in _FILES or param.nargs == -1
-            else found
+            else completions
         )
 
 
-def _with_files(found: list[CompletionItem], incomplete: str) -> list[CompletionItem]:
+def _add_files(completions: list[CompletionItem], incomplete: str) -> list[CompletionItem]:
     """Add the matching files; if there is nothing else, leave them to the shell, which quotes them."""
-    if not found:
+    if not completions:
         return [CompletionItem(incomplete, type="file")]
     return (
-        found + [CompletionItem(path) for path in sorted(glob(escape(incomplete) + "*"))]
+        completions + [CompletionItem(path) for path in sorted(glob(escape(incomplete) + "*"))]
         if incomplete
-        else found
+        else completions
     )
 
 
@@ -161,7 +161,7 @@ def _close_names(typed: str, names: Iterable[str]) -> list[str]:
     return list(dict.fromkeys(same or like))[:2]
 
 
-def _wrong_use(error: click.UsageError, ctx: click.Context) -> ConfigError:
+def _convert_error(error: click.UsageError, ctx: click.Context) -> ConfigError:
     """Return what Click says as a ConfigError: what was wrong, and what is allowed."""
     see = f"see `{ctx.command_path} --help`" if ctx.command.add_help_option else ""
     if isinstance(error, click.NoSuchOption):
@@ -196,7 +196,9 @@ class Command(click.Command):
         super().__init__(name, context_settings={"help_option_names": ["-h", "--help"]}, **how)
         self._passes_arguments, self.instead = passes_arguments, instead
         self._shared = {
-            one.name: one for one in self.params if isinstance(one, GroupedOption) and one.sets
+            option.name: option
+            for option in self.params
+            if isinstance(option, GroupedOption) and option.sets
         }
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
@@ -204,30 +206,32 @@ class Command(click.Command):
         ctx.meta[_WORDS] = tuple(args)
         ours, program = args, None
         if self._passes_arguments and ARGUMENTS_FOLLOW in args:
-            at = args.index(ARGUMENTS_FOLLOW)
-            ours, program = args[:at], tuple(args[at + 1 :])
+            index = args.index(ARGUMENTS_FOLLOW)
+            ours, program = args[:index], tuple(args[index + 1 :])
         ours = [_ATTACHED.sub(r"\1", word) for word in ours]
         try:
             if not ctx.resilient_parsing:
                 self._check_values(ctx, ours)
             rest = super().parse_args(ctx, ours)
         except click.UsageError as error:
-            raise _wrong_use(error, ctx) from None
+            raise _convert_error(error, ctx) from None
         if self._shared:
-            ctx.params["settings"] = self._settings(ctx) | (
+            ctx.params["settings"] = self._collect_settings(ctx) | (
                 {} if program is None else {"arguments": program}
             )
         return rest
 
-    def _settings(self, ctx: click.Context) -> dict[str, Any]:
+    def _collect_settings(self, ctx: click.Context) -> dict[str, Any]:
         """Move the shared options from the parameters to a dictionary of those that were given."""
-        found: dict[str, Any] = {}
+        settings: dict[str, Any] = {}
         for name in [name for name in ctx.params if name in self._shared]:
-            value, one = ctx.params.pop(name), self._shared[name]
+            value, option = ctx.params.pop(name), self._shared[name]
             if ctx.get_parameter_source(name) is ParameterSource.COMMANDLINE:
-                value = tuple(chain(*value)) if one.multiple else value
-                found[one.sets] = (*found.get(one.sets, ()), one.adds) if one.adds else value
-        return found
+                value = tuple(chain(*value)) if option.multiple else value
+                settings[option.sets] = (
+                    (*settings.get(option.sets, ()), option.adds) if option.adds else value
+                )
+        return settings
 
     def _check_values(self, ctx: click.Context, words: Sequence[str]) -> None:
         known = {
@@ -255,8 +259,8 @@ def command(*params: click.Parameter, **how: Any) -> Callable[[Callable[..., int
     """Return a decorator that makes a function a command: its docstring is the help, its result the exit code."""
 
     def make(work: Callable[..., int]) -> Command:
-        given = {"name": work.__name__, "help": inspect.getdoc(work)} | how
-        return Command(callback=work, params=list(params), **given)
+        attributes = {"name": work.__name__, "help": inspect.getdoc(work)} | how
+        return Command(callback=work, params=list(params), **attributes)
 
     return make
 
@@ -291,8 +295,11 @@ class Group(click.Group):
     @classmethod
     def of(cls, name: str, commands: Sequence[click.Command], **how: Any) -> Self:
         """Return a group of commands that are already loaded."""
-        by_name = {one.name or "": one for one in commands}
-        firsts = {called: (one.help or "").partition("\n")[0] for called, one in by_name.items()}
+        by_name = {subcommand.name or "": subcommand for subcommand in commands}
+        firsts = {
+            called: (subcommand.help or "").partition("\n")[0]
+            for called, subcommand in by_name.items()
+        }
         listing = {called: first.partition(". ")[0].rstrip(".") for called, first in firsts.items()}
         return cls(name, listing, by_name.__getitem__, **how)
 
@@ -312,13 +319,13 @@ class Group(click.Group):
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         """Parse words that may begin with the subcommand's options, or leave out the default subcommand."""
         if args or not ctx.resilient_parsing:
-            args = self.with_command(ctx, args)
+            args = self.insert_command(ctx, args)
         try:
             return super().parse_args(ctx, args)
         except click.UsageError as error:
-            raise _wrong_use(error, ctx) from None
+            raise _convert_error(error, ctx) from None
 
-    def with_command(self, ctx: click.Context, args: list[str]) -> list[str]:
+    def insert_command(self, ctx: click.Context, args: list[str]) -> list[str]:
         """Return the words with the name of the subcommand first."""
         if args and (not args[0].startswith("-") or args[0] in ctx.help_option_names):
             return args
@@ -332,8 +339,8 @@ class Group(click.Group):
         reader = click.Command(
             None, params=unique, context_settings={"allow_interspersed_args": False}
         )
-        with reader.make_context("", list(args), resilient_parsing=True) as found:
-            rest = found.args
+        with reader.make_context("", list(args), resilient_parsing=True) as context:
+            rest = context.args
         if rest:
             return [rest[0], *args[: len(args) - len(rest)], *rest[1:]]
         return [self.default, *args] if self.default else args
@@ -366,13 +373,13 @@ class Group(click.Group):
 
     def shell_complete(self, ctx: click.Context, incomplete: str) -> list[CompletionItem]:
         """Return the matching subcommands, and what else the default subcommand may begin with."""
-        found = [
+        completions = [
             CompletionItem(name, help=text)
             for name, text in self.listing.items()
             if name.startswith(incomplete)
         ]
         if not (self.default and incomplete):
-            return found
+            return completions
         default = self.load(self.default)
         if incomplete.startswith("-"):
             return default.shell_complete(ctx, incomplete)
@@ -383,28 +390,34 @@ class Group(click.Group):
             for item in param.shell_complete(ctx, incomplete)
         ]
         plain = [item for item in more if item.type == "plain"]
-        return found + plain if plain else _with_files(found, incomplete) if more else found
+        return (
+            completions + plain
+            if plain
+            else _add_files(completions, incomplete)
+            if more
+            else completions
+        )
 
 
-def words_without(options: Sequence[click.Option]) -> list[str]:
+def drop_options(options: Sequence[click.Option]) -> list[str]:
     """Return the words of the command that is running, without the given options and their values.
 
     Args:
         options: Options without a short name.
     """
-    flags = {flag for one in options for flag in one.opts}
-    alone = {flag for one in options if one.is_flag for flag in one.opts}
-    kept: list[str] = []
+    flags = {flag for option in options for flag in option.opts}
+    alone = {flag for option in options if option.is_flag for flag in option.opts}
+    remaining: list[str] = []
     words = iter(click.get_current_context().meta[_WORDS])
     for word in words:
         if word == ARGUMENTS_FOLLOW:
-            return [*kept, word, *words]
+            return [*remaining, word, *words]
         if word in flags:
             if word not in alone:
                 next(words)
         elif word.partition("=")[0] not in flags:
-            kept.append(word)
-    return kept
+            remaining.append(word)
+    return remaining
 
 
 def parse(command: Command, words: Sequence[str]) -> Arguments:
@@ -417,7 +430,7 @@ def parse(command: Command, words: Sequence[str]) -> Arguments:
         return Arguments(**ctx.params)
 
 
-def help_of(command: Command) -> str:
+def build_help(command: Command) -> str:
     """Return the help of a command."""
     with command.make_context(command.name, [], resilient_parsing=True) as ctx:
         return command.get_help(ctx) + "\n"

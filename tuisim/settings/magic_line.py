@@ -16,13 +16,13 @@ from tuisim.settings.command_line import (
     Command,
     GroupedOption,
     WordType,
-    help_of,
+    build_help,
     option,
     parse,
 )
-from tuisim.settings.options import OF_THE_MAT, RUN_VALUES
+from tuisim.settings.options import RESET_BY_MAT, RUN_VALUES
 from tuisim.settings.options import parse as parse_value
-from tuisim.settings.shared_options import shared_options
+from tuisim.settings.shared_options import build_shared_options
 
 MIN_HEIGHT_PX, MAX_HEIGHT_PX, DEFAULT_HEIGHT_PX = 200, 4000, 560
 MAX_INDEX = 1_000_000
@@ -46,7 +46,7 @@ class AppWords:
     """Whether cells show pictures only from now on."""
 
 
-def _of_every_magic(**how: str) -> list[GroupedOption]:
+def _build_common_options(**how: str) -> list[GroupedOption]:
     return [
         option(
             "-s",
@@ -59,12 +59,12 @@ def _of_every_magic(**how: str) -> list[GroupedOption]:
     ]
 
 
-def _command(magic: str) -> Command:
+def _build_command(magic: str) -> Command:
     refresh = Number(MIN_REFRESH_S, MAX_REFRESH_S)
     group = "Notebook"
     params = [
-        *shared_options(magic=True),
-        *_of_every_magic(group=group),
+        *build_shared_options(magic=True),
+        *_build_common_options(group=group),
         option(
             "-v",
             "--preview",
@@ -115,7 +115,7 @@ def _command(magic: str) -> Command:
             help="`roboSim.pyresponder` or `.responder` answers the program.",
         ),
     ]
-    of_app = _options_of_app()
+    of_app = _build_app_options()
     if magic == APP_MAGIC:
         return Command(f"%{magic}", params=[*params, *of_app], add_help_option=False)
     instead = {flag: f"%{APP_MAGIC} {flag}" for param in of_app for flag in param.opts}
@@ -123,7 +123,7 @@ def _command(magic: str) -> Command:
     return Command(f"%{magic}", params=params, add_help_option=False, instead=instead)
 
 
-def _options_of_app() -> list[GroupedOption]:
+def _build_app_options() -> list[GroupedOption]:
     group = "App"
     return [
         option(
@@ -146,7 +146,7 @@ def _options_of_app() -> list[GroupedOption]:
             "origins",
             multiple=True,
             metavar="URL",
-            type=WordType(_origin),
+            type=WordType(_parse_origin),
             group=group,
             help="The address of this notebook, if it is another one, such as http://lab:8888.",
         ),
@@ -161,19 +161,19 @@ def parse_line(line: str, magic: str) -> Arguments:
     Raises:
         ConfigError: a word is no option, or a value is wrong.
     """
-    command = _command(magic)
+    command = _build_command(magic)
     words = _split(line, magic)
     try:
-        found = parse(command, words)
+        parsed = parse(command, words)
     except ConfigError as error:
         raise ConfigError(
             error.message, f"see %{magic} -h" if not error.hint else error.hint
         ) from None
-    found.help = help_of(command) if found.help else ""
-    found.app = None
+    parsed.help = build_help(command) if parsed.help else ""
+    parsed.app = None
     if magic == APP_MAGIC:
-        found.app = AppWords(found.height_px, found.origins, found.off)
-    return found
+        parsed.app = AppWords(parsed.height_px, parsed.origins, parsed.off)
+    return parsed
 
 
 def _split(line: str, magic: str) -> list[str]:
@@ -191,7 +191,7 @@ def _type(value: Number, flag: str) -> WordType:
 _ORIGIN = re.compile(r"https?://(?:[\w.-]+|\[[\da-fA-F:.]+\])(?::\d+)?", re.ASCII)
 
 
-def _origin(text: str) -> str:
+def _parse_origin(text: str) -> str:
     if not _ORIGIN.fullmatch(origin := text.rstrip("/")):
         raise ConfigError(
             f"must be the beginning of an address, got {text!r}", "http://lab:8888", key="--origin"
@@ -199,7 +199,7 @@ def _origin(text: str) -> str:
     return origin
 
 
-def _corners(text: str) -> tuple[int, ...]:
+def _parse_corners(text: str) -> tuple[int, ...]:
     corners = tuple(int(part) for part in text.split(",") if part.strip().isdecimal())
     if len(corners) != 4 or not (corners[0] < corners[2] and corners[1] < corners[3]):
         raise ConfigError(f"must be LEFT,TOP,RIGHT,BOTTOM in pixels, got {text!r}", key="--crop")
@@ -207,7 +207,7 @@ def _corners(text: str) -> tuple[int, ...]:
 
 
 def _log_command(magic: str) -> Command:
-    params = _of_every_magic()
+    params = _build_common_options()
     index = {"type": _type(Whole(-MAX_INDEX, MAX_INDEX), "--index"), "default": -1, "metavar": "N"}
     if magic == "sim_data":
         params.append(option("-c", "--clear", is_flag=True, help="Discard the logged data."))
@@ -231,7 +231,7 @@ def _log_command(magic: str) -> Command:
             option(
                 "-c",
                 "--crop",
-                type=WordType(_corners),
+                type=WordType(_parse_corners),
                 metavar="L,T,R,B",
                 help="Part of the image, in pixels (3,3,17,17).",
             ),
@@ -250,14 +250,19 @@ def parse_log_line(line: str, magic: str) -> Arguments:
         ConfigError: a word is no option, or a value is wrong.
     """
     command = _log_command(magic)
-    found = parse(command, _split(line, magic))
-    found.help = help_of(command) if found.help else ""
-    return found
+    parsed = parse(command, _split(line, magic))
+    parsed.help = build_help(command) if parsed.help else ""
+    return parsed
 
 
-def persistent_after(before: Mapping[str, Any], said: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the persistent settings after a cell that has said these settings; another mat drops `OF_THE_MAT`."""
-    kept = dict(before)
-    if "background" in said:
-        kept = {field: value for field, value in kept.items() if field not in OF_THE_MAT}
-    return {**kept, **{field: value for field, value in said.items() if field in PERSISTENT}}
+def update_persistent(before: Mapping[str, Any], settings: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the persistent settings after a cell that has said these settings; another mat drops `RESET_BY_MAT`."""
+    persistent = dict(before)
+    if "background" in settings:
+        persistent = {
+            field: value for field, value in persistent.items() if field not in RESET_BY_MAT
+        }
+    return {
+        **persistent,
+        **{field: value for field, value in settings.items() if field in PERSISTENT},
+    }

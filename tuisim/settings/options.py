@@ -91,7 +91,7 @@ class RunValue(NamedTuple):
     default: Any
 
 
-def _default(path: str) -> Any:
+def _find_default(path: str) -> Any:
     """Return the default of a value of the world or the pen, by its path in the specification."""
     *outer, name = path.split(".")
     kind: Any = RunSpec
@@ -109,7 +109,7 @@ def _run_values() -> Iterator[tuple[str, RunValue]]:
                 value.flags or (table == "world." and path != "world.background")
             ):
                 inside = path.removeprefix("world.").removeprefix("robot.")
-                yield inside, RunValue(path, value, _default(path))
+                yield inside, RunValue(path, value, _find_default(path))
 
 
 RUN_VALUES: Mapping[str, RunValue] = dict(_run_values())
@@ -118,10 +118,10 @@ RUN_VALUES: Mapping[str, RunValue] = dict(_run_values())
 START = tuple(path for path in RUN_VALUES if path.startswith("start."))
 """The paths of the start pose."""
 
-OF_THE_MAT = ("obstacles", "background_fit", "floor", *START)
+RESET_BY_MAT = ("obstacles", "background_fit", "floor", *START)
 """The paths of what a mat brings with it, so that another mat replaces it."""
 
-OF_THE_PROFILE = ("solid",)
+RESET_BY_PROFILE = ("solid",)
 """The paths of what a profile brings with it, so that another profile replaces it."""
 
 
@@ -182,7 +182,7 @@ class Option:
 WORLD, RUN, APP, PANEL = "World", "Run", "App", "Panels of the app"
 
 
-def _word(
+def _build_word(
     path: str, flags: tuple[str, ...], metavar: str, allowed: str, about: str, default: str = ""
 ) -> Option:
     return Option(
@@ -194,14 +194,16 @@ def _word(
     )
 
 
-def _of_values(*tables: str) -> Iterator[Option]:
+def _build_value_options(*tables: str) -> Iterator[Option]:
     """Yield the options of the values in some tables of the specification."""
     for path, (spec_path, value, default) in RUN_VALUES.items():
         if value.flags and spec_path.startswith(tables):
             takes_no_value = isinstance(value, Flag) and not default
             group = RUN if path == spec_path else WORLD
             decided = (
-                "" if path in (*OF_THE_MAT, *OF_THE_PROFILE) or path.startswith("pen.") else default
+                ""
+                if path in (*RESET_BY_MAT, *RESET_BY_PROFILE) or path.startswith("pen.")
+                else default
             )
             yield Option(
                 group, path, value, decided, value.flags, constant=True if takes_no_value else None
@@ -210,12 +212,14 @@ def _of_values(*tables: str) -> Iterator[Option]:
                 yield Option(group, path, value, decided, (value.off_flag,), constant=False)
 
 
-def _of_app(path: str, value: Value, default: Any, **about: Any) -> Option:
+def _build_app_option(path: str, value: Value, default: Any, **about: Any) -> Option:
     constant = True if isinstance(value, Flag) else None
     return Option(APP, path, value, default, value.flags, constant, **about)
 
 
-def _panel(panel: str, *flags: str, hide: bool = False, magic: tuple[str, ...] = ()) -> Option:
+def _build_panel_option(
+    panel: str, *flags: str, hide: bool = False, magic: tuple[str, ...] = ()
+) -> Option:
     words = {
         "noise": "the noise controls",
         "arrays": "the sensor arrays",
@@ -245,7 +249,7 @@ _SPEED = NamedNumber(
 )
 
 OPTIONS: tuple[Option, ...] = (
-    _word(
+    _build_word(
         "background",
         ("-b", "--background"),
         "MAT",
@@ -253,8 +257,10 @@ OPTIONS: tuple[Option, ...] = (
         "a mat from `tuisim backgrounds`, or an image file",
         EMPTY_MAT,
     ),
-    _word("mats", ("--mats",), "FOLDER", "a folder", "folder of images that `-b` finds by name"),
-    _word(
+    _build_word(
+        "mats", ("--mats",), "FOLDER", "a folder", "folder of images that `-b` finds by name"
+    ),
+    _build_word(
         "robot",
         ("-r", "--robot", "--robotSetup"),
         "ROBOT",
@@ -262,15 +268,15 @@ OPTIONS: tuple[Option, ...] = (
         "a robot from `tuisim robots`, or a file",
         "Default_Robot",
     ),
-    _word(
+    _build_word(
         "obstacles",
         ("-o", "--obstacles"),
         "NAME",
         "the name of a set, or a file",
         "a set from `tuisim obstacles`, or a file",
     ),
-    *_of_values("world.", "robot."),
-    _word(
+    *_build_value_options("world.", "robot."),
+    _build_word(
         "profile",
         ("--profile",),
         "NAME",
@@ -278,7 +284,7 @@ OPTIONS: tuple[Option, ...] = (
         "a profile from `tuisim profiles`, or a file",
         "robolab",
     ),
-    *_of_values("seed"),
+    *_build_value_options("seed"),
     Option(RUN, "press", PRESSES, (), PRESSES.flags, repeats=True),
     Option(RUN, "speed", _SPEED, 1, _SPEED.flags),
     Option(
@@ -287,21 +293,27 @@ OPTIONS: tuple[Option, ...] = (
         Choice(tuple(PRELUDE_TEXTS), help="names predefined for the program", in_config=False),
         flags=("--preload",),
     ),
-    _of_app("autorun", Flag(flags=("-R", "--autorun"), help="run at once", in_config=False), False),
-    _of_app(
+    _build_app_option(
+        "autorun", Flag(flags=("-R", "--autorun"), help="run at once", in_config=False), False
+    ),
+    _build_app_option(
         "clear_trace",
         Flag(flags=("-C", "--clear"), help="clear the trace at the start", in_config=False),
         False,
     ),
-    _of_app("rays", Flag(flags=("-u", "--ultrasound"), help="show the ultrasonic rays"), False),
-    _of_app("quiet", Flag(flags=("-q", "--quiet"), help="make no sound"), False, is_live=False),
-    _of_app(
+    _build_app_option(
+        "rays", Flag(flags=("-u", "--ultrasound"), help="show the ultrasonic rays"), False
+    ),
+    _build_app_option(
+        "quiet", Flag(flags=("-q", "--quiet"), help="make no sound"), False, is_live=False
+    ),
+    _build_app_option(
         "fps",
         Whole(1, 60, flags=("--fps",), help="maximum frames per second, 1 … 60"),
         DEFAULT_FPS,
         is_live=False,
     ),
-    _of_app(
+    _build_app_option(
         "colors",
         Choice(
             COLOR_DEPTHS,
@@ -312,7 +324,7 @@ OPTIONS: tuple[Option, ...] = (
         AUTO,
         is_live=False,
     ),
-    _of_app(
+    _build_app_option(
         "cells",
         Choice(
             CELLS,
@@ -322,7 +334,7 @@ OPTIONS: tuple[Option, ...] = (
         ),
         AUTO,
     ),
-    _of_app(
+    _build_app_option(
         "pixels",
         Choice(
             PIXELS,
@@ -332,20 +344,20 @@ OPTIONS: tuple[Option, ...] = (
         ),
         AUTO,
     ),
-    _panel("output", "-O", "--output"),
-    _panel("arrays", "-A", "--array"),
-    _panel("chart", "-c", "--chart"),
-    _panel("instrumentation", "-i", "--instrumentation"),
-    _panel("noise", "-z", "--noisecontrols"),
-    _panel("settings", "-Z", "--settings"),
-    _panel("positioning", "-X", "--positioning"),
-    _panel("code", "-D", "--code"),
-    _panel("world", "-W", "--hideworld", hide=True, magic=("--world",)),
-    _panel("controls", "-H", "--hidecontrols", "--hide", hide=True),
+    _build_panel_option("output", "-O", "--output"),
+    _build_panel_option("arrays", "-A", "--array"),
+    _build_panel_option("chart", "-c", "--chart"),
+    _build_panel_option("instrumentation", "-i", "--instrumentation"),
+    _build_panel_option("noise", "-z", "--noisecontrols"),
+    _build_panel_option("settings", "-Z", "--settings"),
+    _build_panel_option("positioning", "-X", "--positioning"),
+    _build_panel_option("code", "-D", "--code"),
+    _build_panel_option("world", "-W", "--hideworld", hide=True, magic=("--world",)),
+    _build_panel_option("controls", "-H", "--hidecontrols", "--hide", hide=True),
 )
 """Every shared option, in the order of the help."""
 
-OF_THE_APP = frozenset(
+APP_PATHS = frozenset(
     {"speed", *(option.path for option in OPTIONS if option.group in (APP, PANEL))}
 ) - {
     "autorun",
@@ -396,19 +408,19 @@ class Settings:
         return Settings({**self.given, **values})
 
 
-def names_world(given: Mapping[str, Any]) -> bool:
+def has_world_values(settings: Mapping[str, Any]) -> bool:
     """Return whether settings say something of a world, and not only what a hand presses in it."""
-    return bool(given.keys() - {"press"})
+    return bool(settings.keys() - {"press"})
 
 
-def settings_of(*layers: Mapping[str, Any]) -> Settings:
+def merge_settings(*layers: Mapping[str, Any]) -> Settings:
     """Merge layers of given values: a later layer takes precedence, panels accumulate."""
-    found: dict[str, Any] = {}
+    merged: dict[str, Any] = {}
     for layer in layers:
         panels = {
-            path: tuple(dict.fromkeys((*found.get(path, ()), *layer[path])))
+            path: tuple(dict.fromkeys((*merged.get(path, ()), *layer[path])))
             for path in _PANEL_LISTS
             if path in layer
         }
-        found |= {**layer, **panels}
-    return Settings(found)
+        merged |= {**layer, **panels}
+    return Settings(merged)

@@ -13,9 +13,9 @@ from tuisim.engine.core.profile import ProfileSpec
 from tuisim.engine.core.values import NamedPart
 from tuisim.engine.files import Location, read_part
 from tuisim.settings.options import RUN_VALUES, Settings
-from tuisim.settings.profiles import load_profile, profile_from_table
-from tuisim.settings.robots import RobotChoice, choose_robot, robot_from_table
-from tuisim.settings.worlds import world_from_table
+from tuisim.settings.profiles import load_profile, parse_profile
+from tuisim.settings.robots import RobotChoice, choose_robot, parse_robot
+from tuisim.settings.worlds import parse_world
 
 _NOT_VARIED = (
     "world",
@@ -36,7 +36,7 @@ _PARTS = {path: one.default for path, one in RUN_VALUES.items() if isinstance(on
 """The default of each value that has others inside it: a key of one leaves the others as they are."""
 
 
-def settings_of_keys(values: Mapping[str, Any], chosen: Settings, path: Path) -> dict[str, Any]:
+def resolve_keys(values: Mapping[str, Any], chosen: Settings, path: Path) -> dict[str, Any]:
     """Return the settings that some keys of a world file set, by path.
 
     Args:
@@ -47,13 +47,13 @@ def settings_of_keys(values: Mapping[str, Any], chosen: Settings, path: Path) ->
     Raises:
         ConfigError: a key is unknown, or a value is wrong.
     """
-    at = Location(str(path))
-    table = _nested(values, at)
+    location = Location(str(path))
+    table = _nest(values, location)
     for key in _NOT_VARIED:
         if key in table:
-            raise at.at(key).wrong("cannot be varied", "any other key of a world file can")
+            raise location.at(key).wrong("cannot be varied", "any other key of a world file can")
     if "arguments" in table:
-        table["arguments"] = _words(table["arguments"], at.at("arguments"))
+        table["arguments"] = _split_words(table["arguments"], location.at("arguments"))
     changed = {
         key: table.pop(key) for key in ("robot", "profile") if isinstance(table.get(key), dict)
     }
@@ -61,22 +61,22 @@ def settings_of_keys(values: Mapping[str, Any], chosen: Settings, path: Path) ->
     parts = {
         key: table.pop(key) for key, base in _PARTS.items() if isinstance(table.get(key), dict)
     }
-    world = world_from_table(table | named, path, chosen["mats"], changes=True)
-    found = dict(world.settings)
+    world = parse_world(table | named, path, chosen["mats"], changes=True)
+    settings = dict(world.settings)
     for key, inside in parts.items():
-        found[key] = read_part(inside, chosen[key] or _PARTS[key], at.at(key))
+        settings[key] = read_part(inside, chosen[key] or _PARTS[key], location.at(key))
     if "robot" in changed:
-        word = found.get("robot", chosen["robot"])
-        found["robot"] = _changed_robot(changed["robot"], word, at.at("robot", RobotError))
+        word = settings.get("robot", chosen["robot"])
+        settings["robot"] = _change_robot(changed["robot"], word, location.at("robot", RobotError))
     if "profile" in changed:
-        word = found.get("profile", chosen["profile"])
-        found["profile"] = _changed_profile(
-            changed["profile"], word, at.at("profile", ProfileError)
+        word = settings.get("profile", chosen["profile"])
+        settings["profile"] = _change_profile(
+            changed["profile"], word, location.at("profile", ProfileError)
         )
-    return found
+    return settings
 
 
-def _nested(values: Mapping[str, Any], at: Location) -> dict[str, Any]:
+def _nest(values: Mapping[str, Any], location: Location) -> dict[str, Any]:
     """Return keys with dots as nested tables; a robot or profile that is also named has its name under `robot=`."""
     table: dict[str, Any] = {}
     for key, value in values.items():
@@ -87,28 +87,28 @@ def _nested(values: Mapping[str, Any], at: Location) -> dict[str, Any]:
         for part in outer:
             inside = inside.setdefault(part, {})
             if not isinstance(inside, dict):
-                raise at.at(key).wrong(f"is inside {part}, which has a value")
+                raise location.at(key).wrong(f"is inside {part}, which has a value")
         if last in inside:
-            raise at.at(key).wrong(
+            raise location.at(key).wrong(
                 "cannot be combined with keys inside it", "give only one of them"
             )
         inside[last] = value
     return table
 
 
-def _words(value: object, at: Location) -> list[str]:
+def _split_words(value: object, location: Location) -> list[str]:
     try:
         return shlex.split(value if isinstance(value, str) else str(value))
     except ValueError as error:
-        raise at.wrong(f"cannot be split into words: {error}") from None
+        raise location.wrong(f"cannot be split into words: {error}") from None
 
 
-def _changed_robot(table: object, chosen: str | RobotChoice, at: Location) -> RobotChoice:
+def _change_robot(table: object, chosen: str | RobotChoice, location: Location) -> RobotChoice:
     base = chosen if isinstance(chosen, RobotChoice) else choose_robot(chosen, "-r")
-    found = robot_from_table(table, base.spec.name, at, base.spec)
-    return replace(base, spec=found.spec, own_places=base.own_places or found.own_places)
+    robot = parse_robot(table, base.spec.name, location, base.spec)
+    return replace(base, spec=robot.spec, own_places=base.own_places or robot.own_places)
 
 
-def _changed_profile(table: object, chosen: str | ProfileSpec, at: Location) -> ProfileSpec:
+def _change_profile(table: object, chosen: str | ProfileSpec, location: Location) -> ProfileSpec:
     base = chosen if isinstance(chosen, ProfileSpec) else load_profile(chosen, "--profile")
-    return profile_from_table(table, f"{base.name}, changed", at, base)
+    return parse_profile(table, f"{base.name}, changed", location, base)

@@ -31,11 +31,11 @@ def load_profile(word: str, key: str = "") -> ProfileSpec:
     """
     if word in PROFILES:
         return PROFILES[word]
-    return profile_from_table(*read_named(word, "profile", PROFILES, ProfileError, key, (".toml",)))
+    return parse_profile(*read_named(word, "profile", PROFILES, ProfileError, key, (".toml",)))
 
 
-def profile_from_table(
-    data: object, name: str, at: Location, changes_to: ProfileSpec | None = None
+def parse_profile(
+    data: object, name: str, location: Location, changes_to: ProfileSpec | None = None
 ) -> ProfileSpec:
     """Return the profile in a table, called `name` unless the table says otherwise; costs are in ms or ns.
 
@@ -46,40 +46,40 @@ def profile_from_table(
         ProfileError: a key or a value is wrong.
     """
     values = list_values(ProfileSpec)
-    in_ms = {_in_ms(key): key for key in values if key.endswith(_NS)}
+    in_ms = {_build_ms_key(key): key for key in values if key.endswith(_NS)}
     listed = ("base", *(key for key in values if not key.endswith(_NS)), *in_ms)
-    given = table(data, at, listed, unlisted=frozenset(in_ms.values()))
-    named = PROFILES[one_of(given.get("base", DEFAULT_PROFILE), at.at("base"), PROFILES)]
-    base = named if changes_to is None or "base" in given else changes_to
-    found: dict[str, Any] = {"name": name}
-    for key, value in given.items():
+    entries = table(data, location, listed, unlisted=frozenset(in_ms.values()))
+    named = PROFILES[one_of(entries.get("base", DEFAULT_PROFILE), location.at("base"), PROFILES)]
+    base = named if changes_to is None or "base" in entries else changes_to
+    changes: dict[str, Any] = {"name": name}
+    for key, value in entries.items():
         if key in in_ms:
-            if in_ms[key] in given:
-                raise at.at(key).wrong(
+            if in_ms[key] in entries:
+                raise location.at(key).wrong(
                     f"cannot be combined with {in_ms[key]}", "give only one of them"
                 )
-            found[in_ms[key]] = round(read_value(value, _COST_MS, at.at(key)) * MS)
+            changes[in_ms[key]] = round(read_value(value, _COST_MS, location.at(key)) * MS)
         elif key in values:
-            found[key] = read_value(value, values[key], at.at(key))
-    if found["name"] in PROFILES:
-        raise at.at("name").wrong(
-            f"{found['name']!r} is the name of a built-in profile", "choose another name"
+            changes[key] = read_value(value, values[key], location.at(key))
+    if changes["name"] in PROFILES:
+        raise location.at("name").wrong(
+            f"{changes['name']!r} is the name of a built-in profile", "choose another name"
         )
-    return with_values(base, found, at)
+    return with_values(base, changes, location)
 
 
-def _in_ms(key: str) -> str:
+def _build_ms_key(key: str) -> str:
     return key.removesuffix(_NS) + _MS
 
 
-def profile_lines(spec: ProfileSpec, parent: str = "") -> list[str]:
+def format_profile(spec: ProfileSpec, parent: str = "") -> list[str]:
     """Return a profile as TOML lines, with every value: the table `parent`, or a file of its own."""
     values = {}
     for key in list_values(ProfileSpec):
         value = getattr(spec, key)
         cost_ms = value / MS if key.endswith(_NS) else 0.0
         if cost_ms and round(cost_ms * MS) == value:
-            values[_in_ms(key)] = cost_ms
+            values[_build_ms_key(key)] = cost_ms
         else:
             values[key] = value
     return [*([f"[{parent}]"] if parent else []), *toml_lines(values)]

@@ -52,7 +52,7 @@ class RobotChoice:
     """Warnings about the file, to be shown to the user."""
 
 
-def _sensor_pair(
+def _build_sensor_pair(
     x_mm: float, y_mm: float, left_diameter_mm: int, right_diameter_mm: int
 ) -> tuple[ColorSensorSpec, ...]:
     """Return two colour sensors, symmetric about the robot's axis."""
@@ -68,7 +68,7 @@ _SMALL = RobotSpec(
     wheel_spacing_mm=90.0,
     back_mm=-60.0,
     weight=ROBOT_WEIGHTS["weightless"],
-    color_sensors=_sensor_pair(10.0, 15.0, 10, 10),
+    color_sensors=_build_sensor_pair(10.0, 15.0, 10, 10),
     ultrasonic=UltrasonicSpec(y_mm=10.0),
 )
 
@@ -78,9 +78,13 @@ ROBOTS: Mapping[str, RobotSpec] = {
         RobotSpec(),
         _SMALL,
         replace(
-            _SMALL, name="Small_Robot_Wide_Eyes", color_sensors=_sensor_pair(30.0, 15.0, 10, 10)
+            _SMALL,
+            name="Small_Robot_Wide_Eyes",
+            color_sensors=_build_sensor_pair(30.0, 15.0, 10, 10),
         ),
-        RobotSpec(name="Sensor_Diameter_Config", color_sensors=_sensor_pair(20.0, 30.0, 30, 10)),
+        RobotSpec(
+            name="Sensor_Diameter_Config", color_sensors=_build_sensor_pair(20.0, 30.0, 30, 10)
+        ),
         RobotSpec(
             name="Explorer",
             color_sensors=(ColorSensorSpec("left", "in2", 0.0, 30.0),),
@@ -128,7 +132,7 @@ _TABLES: Mapping[str, type] = {
 }
 
 
-def values_in(table: str) -> Mapping[str, Value]:
+def list_table_values(table: str) -> Mapping[str, Value]:
     """Return the values that stand in a table of a robot file, by key."""
     return list_values(_TABLES[table.partition(".")[0]])
 
@@ -156,12 +160,14 @@ def choose_robot(word: str, key: str = "") -> RobotChoice:
     """
     if word in ROBOTS:
         return RobotChoice(ROBOTS[word], own_places=False)
-    data, name, at = files.read_named(word, "robot", ROBOTS, RobotError, key)
-    return (robot_from_json if word.lower().endswith(".json") else robot_from_table)(data, name, at)
+    data, name, location = files.read_named(word, "robot", ROBOTS, RobotError, key)
+    return (parse_json_robot if word.lower().endswith(".json") else parse_robot)(
+        data, name, location
+    )
 
 
-def robot_from_table(
-    data: object, name: str, at: Location, changes_to: RobotSpec | None = None
+def parse_robot(
+    data: object, name: str, location: Location, changes_to: RobotSpec | None = None
 ) -> RobotChoice:
     """Return the robot in a table, called `name` unless the table says otherwise.
 
@@ -171,96 +177,100 @@ def robot_from_table(
     Raises:
         RobotError: a key or a value is wrong.
     """
-    found = files.table(data, at, _TOP_KEYS)
-    named = ROBOTS[files.one_of(found.get("base", DEFAULT_ROBOT), at.at("base"), ROBOTS)]
-    base = named if changes_to is None or "base" in found else changes_to
+    table = files.table(data, location, _TOP_KEYS)
+    named = ROBOTS[files.one_of(table.get("base", DEFAULT_ROBOT), location.at("base"), ROBOTS)]
+    base = named if changes_to is None or "base" in table else changes_to
     changes: dict[str, Any] = {"name": name}
     changes |= {
-        key: files.read_value(found[key], _VALUES[key], at.at(key))
+        key: files.read_value(table[key], _VALUES[key], location.at(key))
         for key in _BODY_KEYS
-        if key in found
+        if key in table
     }
-    if "pen" in found:
-        changes["pen"] = files.read_part(found["pen"], base.pen, at.at("pen"))
-    if "motors" in found:
-        changes |= _motors(found, base, at)
+    if "pen" in table:
+        changes["pen"] = files.read_part(table["pen"], base.pen, location.at("pen"))
+    if "motors" in table:
+        changes |= _parse_motors(table, base, location)
     for mount in MOUNTS:
-        if mount.key in found:
-            read = _named if mount.many else _single
-            changes[mount.field] = read(found[mount.key], mount, base, at.at(mount.key))
-    sensors = found.get("color_sensors", {}).values()
+        if mount.key in table:
+            read = _parse_named if mount.many else _parse_single
+            changes[mount.field] = read(table[mount.key], mount, base, location.at(mount.key))
+    sensors = table.get("color_sensors", {}).values()
     own_places = any(isinstance(sensor, dict) and "x_mm" in sensor for sensor in sensors)
-    return RobotChoice(files.with_values(base, changes, at), own_places=own_places)
+    return RobotChoice(files.with_values(base, changes, location), own_places=own_places)
 
 
-def _motors(robot: Mapping[str, Any], base: RobotSpec, at: Location) -> dict[str, Any]:
+def _parse_motors(robot: Mapping[str, Any], base: RobotSpec, location: Location) -> dict[str, Any]:
     """Return motors by port, as fields of `RobotSpec`; `false` removes a motor of the base."""
     wheels = {robot.get(key, getattr(base, key)): key for key in ("left_port", "right_port")}
     motors = {motor.port: motor for motor in base.extra_motors}
-    found: dict[str, Any] = {}
-    at = at.at("motors")
-    for port, data in files.table(robot["motors"], at, (*OUTPUT_PORTS, *HUB_PORTS)).items():
+    fields: dict[str, Any] = {}
+    location = location.at("motors")
+    for port, data in files.table(robot["motors"], location, (*OUTPUT_PORTS, *HUB_PORTS)).items():
         wheel = wheels.get(port)
         if wheel and data is False:
-            raise at.at(port).wrong(
+            raise location.at(port).wrong(
                 "drives a wheel", f"it cannot be removed; {wheel} sets its port"
             )
         if wheel:
             key = wheel.replace("port", "motor")
-            motor = _motor(data, MotorSpec(port, getattr(base, key)), at.at(port))
+            motor = _parse_motor(data, MotorSpec(port, getattr(base, key)), location.at(port))
             if (motor.low_deg, motor.high_deg) != (None, None):
-                raise at.at(port).wrong(
+                raise location.at(port).wrong(
                     "drives a wheel, which has no end stops", "only its kind can be set here"
                 )
-            found[key] = motor.kind
+            fields[key] = motor.kind
         elif data is False:
             motors.pop(port, None)
         else:
-            motors[port] = _motor(data, motors.get(port, MotorSpec(port)), at.at(port))
-    return {**found, "extra_motors": tuple(motors.values())}
+            motors[port] = _parse_motor(data, motors.get(port, MotorSpec(port)), location.at(port))
+    return {**fields, "extra_motors": tuple(motors.values())}
 
 
-def _motor(data: object, base: MotorSpec, at: Location) -> MotorSpec:
+def _parse_motor(data: object, base: MotorSpec, location: Location) -> MotorSpec:
     """Return a motor with the values in a table, or of the kind that a text names."""
     if not isinstance(data, dict):
-        return replace(base, kind=files.one_of(data, at, MOTOR_KINDS))
-    return files.read_part(data, base, at, port=base.port)
+        return replace(base, kind=files.one_of(data, location, MOTOR_KINDS))
+    return files.read_part(data, base, location, port=base.port)
 
 
-def _single(data: object, mount: Mount, base: RobotSpec, at: Location) -> SensorSpec | None:
+def _parse_single(
+    data: object, mount: Mount, base: RobotSpec, location: Location
+) -> SensorSpec | None:
     """Return the only sensor of its kind; None for `false`, which removes it."""
     return (
         None
         if data is False
-        else files.read_part(data, getattr(base, mount.field) or mount.spec(), at)
+        else files.read_part(data, getattr(base, mount.field) or mount.spec(), location)
     )
 
 
-def _named(data: object, mount: Mount, base: RobotSpec, at: Location) -> tuple[SensorSpec, ...]:
+def _parse_named(
+    data: object, mount: Mount, base: RobotSpec, location: Location
+) -> tuple[SensorSpec, ...]:
     """Return the base's sensors with the table's changes, and those that the table adds; `false` removes one."""
-    found = {sensor.name: sensor for sensor in base.list_sensors(mount)}
-    names = files.table(data, at)
+    sensors = {sensor.name: sensor for sensor in base.list_sensors(mount)}
+    names = files.table(data, location)
     for name, sensor in names.items():
-        place = at.at(name)
+        place = location.at(name)
         if sensor is False:
-            found.pop(name, None)
+            sensors.pop(name, None)
         elif not SENSOR_NAME.fullmatch(name):
-            wrong = at.at(quote(name)[1:-1]).wrong
+            wrong = location.at(quote(name)[1:-1]).wrong
             raise wrong(
                 "is not a valid sensor name", "letters, digits and _, a letter first, at most 31"
             )
-        elif name in found:
-            found[name] = files.read_part(sensor, found[name], place)
+        elif name in sensors:
+            sensors[name] = files.read_part(sensor, sensors[name], place)
         else:
             if isinstance(sensor, dict):
                 # No port is free by itself.
                 files.required(
                     files.table(sensor, place, [*list_values(mount.spec)][1:]), "port", place
                 )
-            found[name] = files.read_part(sensor, mount.spec, place, name=name)
+            sensors[name] = files.read_part(sensor, mount.spec, place, name=name)
     # A file that names all of them also sets their order.
-    order = [name for name in names if name in found]
-    return tuple(found[name] for name in (order if len(order) == len(found) else found))
+    order = [name for name in names if name in sensors]
+    return tuple(sensors[name] for name in (order if len(order) == len(sensors) else sensors))
 
 
 _COLOR_SENSOR = {"x": "x_mm", "y": "y_mm", "diameter": "diameter_mm"}
@@ -292,7 +302,7 @@ _WITHOUT_EFFECT = ("baseWeight", "width", "height")
 """Keys of saved files that do not affect a run."""
 
 
-def robot_from_json(data: object, name: str, at: Location) -> RobotChoice:
+def parse_json_robot(data: object, name: str, location: Location) -> RobotChoice:
     """Return the robot saved by the course's browser simulator.
 
     Missing keys are as in Default_Robot; its noise settings become those of the run. A key that the simulator did not
@@ -302,11 +312,11 @@ def robot_from_json(data: object, name: str, at: Location) -> RobotChoice:
     Raises:
         RobotError: a key or a value is wrong.
     """
-    found = files.table(data, at)
+    table = files.table(data, location)
     ours: dict[str, Any] = {"color_sensors": {}}
     theirs: dict[str, str] = {}
     unknown: list[str] = []
-    for key, value in found.items():
+    for key, value in table.items():
         if key in _JSON_KEYS:
             if key == "weight" and value in (None, ""):
                 # Medium, as without the key.
@@ -319,18 +329,18 @@ def robot_from_json(data: object, name: str, at: Location) -> RobotChoice:
                 f"{place}.{to}": f"{key}.{of}" for of, to in keys.items()
             }
             outer, _, inner = place.rpartition(".")
-            part = files.table(value, at.at(key))
-            (ours[outer] if outer else ours)[inner] = _json_part(part, keys, at.at(key))
+            part = files.table(value, location.at(key))
+            (ours[outer] if outer else ours)[inner] = _parse_json_part(part, keys, location.at(key))
             unknown += [f"{key}.{name}" for name in part if name not in ("enabled", *keys)]
         elif key not in (_WHEEL_NOISE, _SENSOR_NOISE, *_WITHOUT_EFFECT):
             unknown.append(key)
-    motor = _json_noise(found, _WHEEL_NOISE, "motor", at)
-    light = _json_noise(found, _SENSOR_NOISE, "light", at)
+    motor = _parse_json_noise(table, _WHEEL_NOISE, "motor", location)
+    light = _parse_json_noise(table, _SENSOR_NOISE, "light", location)
     try:
-        choice = robot_from_table(ours, name, at)
+        choice = parse_robot(ours, name, location)
     except ConfigError as error:
-        raise files.with_location(error, at.file, theirs.get(error.key, error.key)) from None
-    notes = (f"{at.file}: ignored unknown keys: {shown_keys(unknown)}",) if unknown else ()
+        raise files.with_location(error, location.file, theirs.get(error.key, error.key)) from None
+    notes = (f"{location.file}: ignored unknown keys: {shorten_keys(unknown)}",) if unknown else ()
     return replace(
         choice,
         motor_noise=_DEFAULT_NOISE if motor is None else motor,
@@ -339,26 +349,32 @@ def robot_from_json(data: object, name: str, at: Location) -> RobotChoice:
     )
 
 
-def _json_noise(robot: Mapping[str, object], key: str, kind: str, at: Location) -> int | None:
+def _parse_json_noise(
+    robot: Mapping[str, object], key: str, kind: str, location: Location
+) -> int | None:
     value = robot.get(key)
     return (
-        None if value is None else files.read_value(value, list_values(NoiseSpec)[kind], at.at(key))
+        None
+        if value is None
+        else files.read_value(value, list_values(NoiseSpec)[kind], location.at(key))
     )
 
 
-def _json_part(
-    part: Mapping[str, object], keys: Mapping[str, str], at: Location
+def _parse_json_part(
+    part: Mapping[str, object], keys: Mapping[str, str], location: Location
 ) -> dict[str, object] | bool:
     """Return a sensor or the pen with the keys of a TOML table; False if it is not enabled."""
-    if at.key != "pen" and not files.convert(part.get("enabled", True), bool, at.at("enabled")):
+    if location.key != "pen" and not files.convert(
+        part.get("enabled", True), bool, location.at("enabled")
+    ):
         return False
-    found = {keys[key]: value for key, value in part.items() if key in keys}
-    if "noise" in keys and found.get("noise_mm") is None:
-        found["noise_mm"] = _DEFAULT_NOISE
-    return found
+    values = {keys[key]: value for key, value in part.items() if key in keys}
+    if "noise" in keys and values.get("noise_mm") is None:
+        values["noise_mm"] = _DEFAULT_NOISE
+    return values
 
 
-def shown_keys(keys: Sequence[str]) -> str:
+def shorten_keys(keys: Sequence[str]) -> str:
     """Return a short list of keys for a message, whatever their number and length."""
     names = [quote(key)[1:-1] for key in keys[:_KEYS_SHOWN]]
     return ", ".join(names) + (
@@ -366,16 +382,16 @@ def shown_keys(keys: Sequence[str]) -> str:
     )
 
 
-def ports_of(robot: RobotSpec) -> list[tuple[str, str]]:
+def list_ports(robot: RobotSpec) -> list[tuple[str, str]]:
     """Return what is on each port of a robot, by port."""
-    found = [
+    ports = [
         (motor.port, wheel if motor.kind == "large" else f"{wheel} ({motor.kind} motor)")
         for motor, wheel in zip(robot.wheel_motors, ("left wheel", "right wheel"), strict=True)
         if robot.has_wheels
     ]
-    found += [(motor.port, f"{motor.kind} motor") for motor in robot.extra_motors]
-    found += [(sensor.port, sensor.name) for sensor in robot.sensors]
-    return sorted(found)
+    ports += [(motor.port, f"{motor.kind} motor") for motor in robot.extra_motors]
+    ports += [(sensor.port, sensor.name) for sensor in robot.sensors]
+    return sorted(ports)
 
 
 def save_robot(spec: RobotSpec, path: Path | str) -> None:
@@ -385,22 +401,22 @@ def save_robot(spec: RobotSpec, path: Path | str) -> None:
         RobotError: the file cannot be written, or cannot represent the robot, such as a name of two lines.
     """
     path = Path(path)
-    at = Location(str(path), RobotError)
+    location = Location(str(path), RobotError)
     files.save_toml(
         path,
-        robot_file(spec),
-        at,
-        lambda data: robot_from_table(data, files.name_of(path), at).spec,
+        format_robot_file(spec),
+        location,
+        lambda data: parse_robot(data, files.name_of(path), location).spec,
         spec,
     )
 
 
-def robot_file(spec: RobotSpec) -> list[str]:
+def format_robot_file(spec: RobotSpec) -> list[str]:
     """Return the lines of a robot file."""
-    return [*_HEAD, "", *robot_lines(spec)]
+    return [*_HEAD, "", *format_robot(spec)]
 
 
-def robot_lines(
+def format_robot(
     spec: RobotSpec, parent: str = "", pen_keys: Iterable[str] = _PEN_KEYS
 ) -> list[str]:
     """Return a robot as TOML lines, with every value: the table `parent`, or a file of its own."""
@@ -429,7 +445,7 @@ def robot_lines(
                 if key != "name" and not _is_no_presser(sensor, key)
             ]
             lines += ["", f"[{under}{place}]", *files.value_lines(sensor, keys)]
-    lines += _motor_lines(spec, f"{under}motors")
+    lines += _format_motors(spec, f"{under}motors")
     return [*lines, "", f"[{under}pen]", *files.value_lines(spec.pen, pen_keys)]
 
 
@@ -442,7 +458,7 @@ def _is_no_presser(sensor: SensorSpec, key: str) -> bool:
     return isinstance(sensor, TouchSpec) and not sensor.pressed_by and key.startswith("pressed_")
 
 
-def _motor_lines(spec: RobotSpec, table: str) -> list[str]:
+def _format_motors(spec: RobotSpec, table: str) -> list[str]:
     """Return the motors that differ from a large one on each wheel: by kind, or as tables with their end stops."""
     motors = (*(motor for motor in spec.wheel_motors if motor.kind != "large"), *spec.extra_motors)
     # In a file all tables follow the keys, and the order of the motors counts.

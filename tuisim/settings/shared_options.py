@@ -14,7 +14,7 @@ from tuisim.settings.options import parse as parse_value
 Names = Callable[[str], Iterable[str]]
 
 
-def _parameter(shared: Option, *, magic: bool, hidden: bool, names: Names) -> GroupedOption:
+def _build_parameter(shared: Option, *, magic: bool, hidden: bool, names: Names) -> GroupedOption:
     flags = [*shared.flags, *(shared.magic_flags if magic else ())]
     how: dict[str, Any] = {
         "group": shared.group,
@@ -38,7 +38,7 @@ def _parameter(shared: Option, *, magic: bool, hidden: bool, names: Names) -> Gr
     )
 
 
-def shared_options(
+def build_shared_options(
     *, magic: bool = False, hidden: Iterable[str] = (), names: Names = lambda _: ()
 ) -> list[click.Parameter]:
     """Return the Click options of `OPTIONS`.
@@ -49,7 +49,8 @@ def shared_options(
         names: Return the names that completion offers for a path.
     """
     return [
-        _parameter(one, magic=magic, hidden=one.group in hidden, names=names) for one in OPTIONS
+        _build_parameter(option, magic=magic, hidden=option.group in hidden, names=names)
+        for option in OPTIONS
     ]
 
 
@@ -61,6 +62,6 @@ def parse_words(words: Sequence[str]) -> dict[str, Any]:
     """
     return dict(
         parse(
-            Command("tuisim", params=shared_options(magic=True), add_help_option=False), words
+            Command("tuisim", params=build_shared_options(magic=True), add_help_option=False), words
         ).settings
     )

@@ -27,7 +27,7 @@ from tuisim.engine.files import (
     table,
     toml_form,
 )
-from tuisim.settings.options import OF_THE_APP, OPTIONS, Name, Settings
+from tuisim.settings.options import APP_PATHS, OPTIONS, Name, Settings
 
 FILE = "config.toml"
 PAGE = "settings"
@@ -82,10 +82,10 @@ class Setting:
         return self.section is not Section.SIMULATION and self.at_once
 
 
-def _of_options() -> Iterator[Setting]:
+def _build_option_settings() -> Iterator[Setting]:
     for option in OPTIONS:
         if option.value.in_config and option.constant is not False:
-            section = Section.APP if option.path in OF_THE_APP else Section.SIMULATION
+            section = Section.APP if option.path in APP_PATHS else Section.SIMULATION
             default = toml_form(option.value, option.default)
             yield Setting(section, option.name, option.value, default, option.path, option.is_live)
 
@@ -93,7 +93,7 @@ def _of_options() -> Iterator[Setting]:
 THEME, CELL_SET = f"{Section.APP}.theme", f"{Section.APP}.cells"
 """Paths of settings that are read by themselves."""
 _THEME = Name("the name of a theme", "THEME", help="colours of the app; F10 lists the themes")
-_EVERY = (*_of_options(), Setting(Section.APP, "theme", _THEME, "textual-dark"))
+_EVERY = (*_build_option_settings(), Setting(Section.APP, "theme", _THEME, "textual-dark"))
 SETTINGS: Mapping[str, Setting] = {
     one.path: one for section in Section for one in _EVERY if one.section is section
 }
@@ -131,12 +131,15 @@ class UserConfig:
     def layer(self, section: Section) -> dict[str, Any]:
         """Return the settings of a table, by path, without the glyphs: the terminal has to show them."""
         return {
-            one.sets: self.values[path]
-            for path, one in SETTINGS.items()
-            if one.section is section and one.sets and path in self.values and path != CELL_SET
+            setting.sets: self.values[path]
+            for path, setting in SETTINGS.items()
+            if setting.section is section
+            and setting.sets
+            and path in self.values
+            and path != CELL_SET
         }
 
-    def only(self, section: Section) -> UserConfig:
+    def keep_section(self, section: Section) -> UserConfig:
         """Return it without the settings of other tables."""
         return replace(
             self,
@@ -152,25 +155,25 @@ class UserConfig:
             },
         )
 
-    def in_effect(self, *above: Mapping[str, Any]) -> list[str]:
+    def list_effective(self, *above: Mapping[str, Any]) -> list[str]:
         """Return the simulation's settings that no layer above overrides, each with its value."""
         return [
-            f"{one.name} = {quote(self.written[path])}"
-            for path, one in SETTINGS.items()
-            if one.section is Section.SIMULATION
+            f"{setting.name} = {quote(self.written[path])}"
+            for path, setting in SETTINGS.items()
+            if setting.section is Section.SIMULATION
             and path in self.written
-            and not any(one.sets in layer for layer in above)
+            and not any(setting.sets in layer for layer in above)
         ]
 
 
-def config_file() -> Path:
+def find_config_file() -> Path:
     """Return the path of the file; it may not exist."""
     return config_folder() / FILE
 
 
 def load_config() -> UserConfig:
     """Read the file; what is wrong is among the problems. Without it, or empty, everything is as usual."""
-    path = config_file()
+    path = find_config_file()
     try:
         stamp = path.stat()
     except OSError:
@@ -182,12 +185,12 @@ def load_config() -> UserConfig:
 def _load(path: Path, _changed_ns: int, _size: int) -> UserConfig:
     # The app asks for it several times while it starts.
     try:
-        return config_of_text(config_text(path), path)
+        return parse_config(read_config_text(path), path)
     except ConfigError as error:
         return UserConfig(path, problems=(error,))
 
 
-def config_text(path: Path) -> str:
+def read_config_text(path: Path) -> str:
     """Return the text of the file, empty if there is none.
 
     Raises:
@@ -203,73 +206,77 @@ def config_text(path: Path) -> str:
         raise ConfigError(f"cannot be read: {error.strerror or error}", file=str(path)) from None
 
 
-def config_of_text(text: str, path: Path) -> UserConfig:
+def parse_config(text: str, path: Path) -> UserConfig:
     """Return what a text of the file says.
 
     Raises:
         ConfigError: it is not TOML.
     """
     data = parse_toml(text, str(path), ConfigError)
-    at = Location(str(path))
+    location = Location(str(path))
     problems: list[ConfigError] = []
     written: dict[str, Scalar] = {}
     values: dict[str, Any] = {}
     keys: dict[str, tuple[str, ...]] = {}
-    for name, value, here in _entries(data, at, problems):
+    for name, value, here in _parse_entries(data, location, problems):
         try:
             if here.key.startswith(f"{Section.KEYS}."):
-                keys[name] = _keys(value, here)
+                keys[name] = _parse_keys(value, here)
             else:
-                one = SETTINGS[here.key]
+                setting = SETTINGS[here.key]
                 written[here.key], values[here.key] = (
                     value,
-                    _resolved(one, read_value(value, one.value, here), path),
+                    _resolve(setting, read_value(value, setting.value, here), path),
                 )
         except ConfigError as error:
             problems.append(error)
     if Section.SIMULATION in data:
-        problems += list(_without_wrong_names(written, values, at))
+        problems += list(_drop_wrong_names(written, values, location))
     return UserConfig(path, written, values, keys, tuple(problems))
 
 
-def _entries(
-    data: Any, at: Location, problems: list[ConfigError]
+def _parse_entries(
+    data: Any, location: Location, problems: list[ConfigError]
 ) -> Iterator[tuple[str, Any, Location]]:
     """Yield name, value and location of the entries that exist; add an error for each of the others."""
     names = {
-        section: [one.name for one in SETTINGS.values() if one.section is section]
+        section: [setting.name for setting in SETTINGS.values() if setting.section is section]
         for section in Section
     }
     for section, content in data.items():
-        here = at.at(section)
+        here = location.at(section)
         try:
             if section not in names:
-                raise here.wrong("no such table", f"{_hint(section, names)}; {see_page(PAGE)}")
+                raise here.wrong(
+                    "no such table", f"{_build_hint(section, names)}; {see_page(PAGE)}"
+                )
             table(content, here)
         except ConfigError as error:
             problems.append(error)
             continue
         for name, value in content.items():
             if section != Section.KEYS and name not in names[section]:
-                problems.append(here.at(name).wrong("no such setting", _hint(name, names[section])))
+                problems.append(
+                    here.at(name).wrong("no such setting", _build_hint(name, names[section]))
+                )
             else:
                 yield name, value, here.at(name)
 
 
-def _hint(name: str, known: Any) -> str:
+def _build_hint(name: str, known: Any) -> str:
     """Return the hint for an unknown name, and the table that has it if another one does."""
-    elsewhere = [one.section for one in SETTINGS.values() if one.name == name]
+    elsewhere = [setting.section for setting in SETTINGS.values() if setting.name == name]
     return f"it belongs into [{elsewhere[0]}]" if elsewhere else nearest(name, known)
 
 
-def _keys(value: object, at: Location) -> tuple[str, ...]:
+def _parse_keys(value: object, location: Location) -> tuple[str, ...]:
     listed = value if isinstance(value, list) else [value]
     if (
         not listed
         or len(listed) > MAX_KEYS
         or not all(isinstance(key, str) and key for key in listed)
     ):
-        raise at.wrong(
+        raise location.wrong(
             f"must be a key or a list of keys, got {quote(value)}",
             'such as "x" or ["ctrl+x", "f5"]',
         )
@@ -280,19 +287,21 @@ _NAMES = ("mats", "background", "robot", "obstacles", "profile")
 """Settings that are names or paths; `mats` first, since the mat may be in there."""
 
 
-def _resolved(one: Setting, value: Any, path: Path) -> Any:
+def _resolve(setting: Setting, value: Any, path: Path) -> Any:
     """Return a value with the path in it relative to the folder of the file."""
-    if one.name not in _NAMES:
+    if setting.name not in _NAMES:
         return value
     word = user_path(value)
     is_path = (
-        one.name == "mats" or means_file(value) or (one.name == "background" and bool(word.suffix))
+        setting.name == "mats"
+        or means_file(value)
+        or (setting.name == "background" and bool(word.suffix))
     )
     return str(path.parent / word) if is_path else value
 
 
-def _without_wrong_names(
-    written: dict[str, Scalar], values: dict[str, Any], at: Location
+def _drop_wrong_names(
+    written: dict[str, Scalar], values: dict[str, Any], location: Location
 ) -> Iterator[ConfigError]:
     """Remove names of mats, robots, obstacles and profiles that do not exist; yield an error for each."""
     from tuisim.settings.build import build_run_spec
@@ -308,4 +317,4 @@ def _without_wrong_names(
         except ConfigError as error:
             del written[path], values[path]
             where = "" if error.file else f"{error.key}: "
-            yield at.at(path).wrong(error.message.removeprefix(where), error.hint)
+            yield location.at(path).wrong(error.message.removeprefix(where), error.hint)

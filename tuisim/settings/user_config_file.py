@@ -16,9 +16,9 @@ from tuisim.settings.user_config import (
     SETTINGS,
     Section,
     Setting,
-    config_file,
-    config_of_text,
-    config_text,
+    find_config_file,
+    parse_config,
+    read_config_text,
 )
 
 _WIDTH = 100
@@ -26,23 +26,23 @@ _KEYS = ('run = ["x", "f5"]', 'theme = "ctrl+y"')
 """Examples of remapped keys."""
 
 
-def template() -> str:
+def build_template() -> str:
     """Return a file with every setting as it is without the file, in comments."""
     lines = [
         f"# Your defaults for tuisim: {see_page(PAGE)}. Remove a # to make a setting your own."
     ]
     for section in Section:
-        lines += ["", *_comment(ABOUT[section]), f"[{section}]"]
-        for one in SETTINGS.values():
-            if one.section is section:
-                lines += _comment(one.help)
-                lines.append(f"#{one.name} = {toml_value(one.default)}")
+        lines += ["", *_format_comment(ABOUT[section]), f"[{section}]"]
+        for setting in SETTINGS.values():
+            if setting.section is section:
+                lines += _format_comment(setting.help)
+                lines.append(f"#{setting.name} = {toml_value(setting.default)}")
         if section is Section.KEYS:
             lines += [f"#{example}" for example in _KEYS]
     return "\n".join(lines) + "\n"
 
 
-def _comment(text: str) -> list[str]:
+def _format_comment(text: str) -> list[str]:
     return [f"# {line}" for line in wrap(text, _WIDTH)]
 
 
@@ -52,14 +52,14 @@ def write_template() -> Path:
     Raises:
         ConfigError: it exists, or cannot be written.
     """
-    path = config_file()
+    path = find_config_file()
     if path.exists() or path.is_symlink():
         raise ConfigError("exists already", "to start again, delete it first", file=str(path))
-    _write(path, template())
+    _write(path, build_template())
     return path
 
 
-def save_setting(one: Setting, value: Scalar | None) -> None:
+def save_setting(setting: Setting, value: Scalar | None) -> None:
     """Set a setting in the file, which is made if it does not exist; comments and everything else in it stay.
 
     Args:
@@ -69,38 +69,38 @@ def save_setting(one: Setting, value: Scalar | None) -> None:
     Raises:
         ConfigError: the value is wrong, or the file is no TOML or cannot be read or written. It is unchanged.
     """
-    path = config_file()
-    text = config_text(path)
+    path = find_config_file()
+    text = read_config_text(path)
     # Not TOML: what is in it would be lost.
-    config_of_text(text, path)
-    changed = _changed(text, one, value)
-    wrong = [error for error in config_of_text(changed, path).problems if error.key == one.path]
+    parse_config(text, path)
+    changed = _change(text, setting, value)
+    wrong = [error for error in parse_config(changed, path).problems if error.key == setting.path]
     if wrong:
         raise ConfigError(wrong[0].message.removeprefix(f"{path}: "), wrong[0].hint)
     _write(path, changed)
 
 
-def _changed(text: str, one: Setting, value: Scalar | None) -> str:
+def _change(text: str, setting: Setting, value: Scalar | None) -> str:
     import tomlkit
 
-    document: Any = tomlkit.parse(_uncommented(text, one, value) if value is not None else text)
+    document: Any = tomlkit.parse(_uncomment(text, setting, value) if value is not None else text)
     if value is not None:
-        if one.section not in document:
-            document[one.section.value] = tomlkit.table()
-        document[one.section.value][one.name] = value
-    elif one.name in document.get(one.section.value, {}):
-        del document[one.section.value][one.name]
+        if setting.section not in document:
+            document[setting.section.value] = tomlkit.table()
+        document[setting.section.value][setting.name] = value
+    elif setting.name in document.get(setting.section.value, {}):
+        del document[setting.section.value][setting.name]
     return tomlkit.dumps(document)
 
 
-def _uncommented(text: str, one: Setting, value: Scalar) -> str:
-    """Return the text with the setting in place of its comment as `template` writes it, if it has only that."""
-    head, header, rest = text.partition(f"[{one.section}]\n")
+def _uncomment(text: str, setting: Setting, value: Scalar) -> str:
+    """Return the text with the setting in place of its comment as `build_template` writes it, if it has only that."""
+    head, header, rest = text.partition(f"[{setting.section}]\n")
     body, next_header, after = rest.partition("\n[")
-    if re.search(rf"^{one.name}\b", body, re.MULTILINE):
+    if re.search(rf"^{setting.name}\b", body, re.MULTILINE):
         return text
-    line = f"{one.name} = {toml_value(value)}"
-    body = re.sub(rf"^#{one.name} = .*$", lambda _: line, body, count=1, flags=re.MULTILINE)
+    line = f"{setting.name} = {toml_value(value)}"
+    body = re.sub(rf"^#{setting.name} = .*$", lambda _: line, body, count=1, flags=re.MULTILINE)
     return head + header + body + next_header + after
 
 

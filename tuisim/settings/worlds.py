@@ -24,10 +24,16 @@ from tuisim.engine.files import Location, Scalar
 from tuisim.engine.mats import find_mat, spec_name
 from tuisim.engine.obstacles import load_obstacles, obstacle_lines, obstacles_from_list
 from tuisim.engine.presses import MAX_PRESSES
-from tuisim.settings.build import build_run_spec, settings_from
-from tuisim.settings.options import OPTION_PANELS, PRESSES, RUN_VALUES, names_world, settings_of
-from tuisim.settings.profiles import load_profile, profile_from_table, profile_lines
-from tuisim.settings.robots import RobotChoice, load_robot, robot_from_table, robot_lines
+from tuisim.settings.build import build_run_spec, extract_settings
+from tuisim.settings.options import (
+    OPTION_PANELS,
+    PRESSES,
+    RUN_VALUES,
+    has_world_values,
+    merge_settings,
+)
+from tuisim.settings.profiles import format_profile, load_profile, parse_profile
+from tuisim.settings.robots import RobotChoice, format_robot, load_robot, parse_robot
 
 WORLD_SUFFIX = ".toml"
 BATCH_KEY = "batch"
@@ -75,8 +81,8 @@ _DEFAULTS = {
     for path, one in RUN_VALUES.items()
     if one.value.later
 }
-_OF_TASKS = ("title", "press", "inputs", "goal", "also")
-_NOT_IN_A_RUN = ("world", "mats", "rays", "autorun", "panels", "hidden_panels", *_OF_TASKS)
+_TASK_KEYS = ("title", "press", "inputs", "goal", "also")
+_NOT_IN_A_RUN = ("world", "mats", "rays", "autorun", "panels", "hidden_panels", *_TASK_KEYS)
 """Keys that stay as they are when a run is saved into a file that has them."""
 _PANEL_FIELDS = {"panels": "panels_on", "hidden_panels": "panels_off"}
 
@@ -100,7 +106,7 @@ class WorldFile:
     """The answers to `input()` in a run."""
 
 
-def means_world(word: str) -> bool:
+def is_world_name(word: str) -> bool:
     """Return whether a word of the command line names a world file, not a program."""
     return Path(word).suffix.lower() == WORLD_SUFFIX
 
@@ -115,15 +121,15 @@ def load_world(path: Path | str, mats: str | None = None) -> WorldFile:
 
 
 def _load_world(path: Path, mats: str | None, above: tuple[Path, ...]) -> WorldFile:
-    if not means_world(path.name):
+    if not is_world_name(path.name):
         raise ConfigError(f"is not a {WORLD_SUFFIX} file", "a world file is TOML", file=str(path))
     data = files.read_file(path, ConfigError)
     if BATCH_KEY in data:
         raise ConfigError("is a batch", f"tuisim batch {path}", file=str(path))
-    return world_from_table(data, path, mats, above)
+    return parse_world(data, path, mats, above)
 
 
-def world_from_table(
+def parse_world(
     data: object,
     path: Path,
     mats: str | None = None,
@@ -142,124 +148,125 @@ def world_from_table(
     Raises:
         ConfigError: a key or a value is wrong.
     """
-    at = Location(str(path))
-    found, world = _parted(data, at)
+    location = Location(str(path))
+    values, world = _split_table(data, location)
     referred: list[Path] = []
-    resolve = partial(_resolved, path.parent, referred)
-    found |= {key: world[key] for key in ("rays", "autorun") if key in world} | _mat(
-        world, at, resolve, mats
+    resolve = partial(_resolve, path.parent, referred)
+    values |= {key: world[key] for key in ("rays", "autorun") if key in world} | _parse_mat(
+        world, location, resolve, mats
     )
     for key, load, read, error in (
-        ("robot", load_robot, robot_from_table, RobotError),
+        ("robot", load_robot, parse_robot, RobotError),
         ("obstacles", load_obstacles, None, ObstacleError),
-        ("profile", load_profile, profile_from_table, ProfileError),
+        ("profile", load_profile, parse_profile, ProfileError),
     ):
         match world.get(key):
             case str(word):
-                found[key] = _named(word, at.at(key), resolve, load)
+                values[key] = _resolve_name(word, location.at(key), resolve, load)
             case dict(inside) if read:
-                found[key] = read(inside, files.name_of(path), at.at(key, error))
+                values[key] = read(inside, files.name_of(path), location.at(key, error))
     if "obstacle" in world:
         if "obstacles" in world:
-            raise at.at("obstacle").wrong(
+            raise location.at("obstacle").wrong(
                 "cannot be combined with obstacles", "give only one of them"
             )
-        found["obstacles"] = obstacles_from_list(
-            world["obstacle"], at.at("obstacle", ObstacleError)
+        values["obstacles"] = obstacles_from_list(
+            world["obstacle"], location.at("obstacle", ObstacleError)
         )
-    found |= _infrared(world, at)
+    values |= _parse_infrared(world, location)
     for key, field in _PANEL_FIELDS.items():
         if key in world:
-            listed = files.entries(world[key], at.at(key), len(OPTION_PANELS), "panels")
-            found[field] = tuple(
+            listed = files.entries(world[key], location.at(key), len(OPTION_PANELS), "panels")
+            values[field] = tuple(
                 files.one_of(panel, place, OPTION_PANELS) for panel, place in listed
             )
     if "arguments" in world:
         words = enumerate(world["arguments"], start=1)
-        found["arguments"] = tuple(
-            _argument(word, at.at(f"arguments[{number}]")) for number, word in words
+        values["arguments"] = tuple(
+            _parse_argument(word, location.at(f"arguments[{number}]")) for number, word in words
         )
-    program = _program(world["program"], path.parent, resolve) if "program" in world else None
+    program = _find_program(world["program"], path.parent, resolve) if "program" in world else None
     if "press" in world:
-        found["press"] = files.read_value(world["press"], PRESSES, at.at("press"))
-    inputs = _inputs(world, at)
+        values["press"] = files.read_value(world["press"], PRESSES, location.at("press"))
+    inputs = _parse_inputs(world, location)
     if "world" in world:
-        base = _base(world["world"], at.at("world"), resolve, mats, (*above, path))
+        base = _load_base(world["world"], location.at("world"), resolve, mats, (*above, path))
     else:
-        base = WorldFile(path, {"floor": False} if names_world(found) and not changes else {})
+        base = WorldFile(path, {"floor": False} if has_world_values(values) and not changes else {})
     return WorldFile(
         path,
-        {**base.settings, **found},
+        {**base.settings, **values},
         program or base.program,
         (path, *referred, *base.files),
         inputs or base.inputs,
     )
 
 
-def _inputs(world: Mapping[str, Any], at: Location) -> tuple[str, ...]:
-    listed = files.entries(world.get("inputs", []), at.at("inputs"), MAX_INPUTS, "inputs")
+def _parse_inputs(world: Mapping[str, Any], location: Location) -> tuple[str, ...]:
+    listed = files.entries(world.get("inputs", []), location.at("inputs"), MAX_INPUTS, "inputs")
     return tuple(files.convert(text, str, place) for text, place in listed)
 
 
-def _base(
-    word: str, at: Location, resolve: Resolver, mats: str | None, above: tuple[Path, ...]
+def _load_base(
+    word: str, location: Location, resolve: Resolver, mats: str | None, above: tuple[Path, ...]
 ) -> WorldFile:
     """Load the world that another one is based on."""
     path = Path(resolve(word))
     if any(os.path.normpath(path) == os.path.normpath(other) for other in above):
-        raise at.wrong(f"{path} is based on itself")
+        raise location.wrong(f"{path} is based on itself")
     if not os.path.exists(path):
         # Names the file and the key: the user may not know that this file names another.
-        raise at.wrong(f"there is no such file: {path}")
+        raise location.wrong(f"there is no such file: {path}")
     return _load_world(path, mats, above)
 
 
-def _parted(data: object, at: Location) -> tuple[dict[str, Any], dict[str, Any]]:
+def _split_table(data: object, location: Location) -> tuple[dict[str, Any], dict[str, Any]]:
     """Return the values of a run in a world file, by path, and its other keys."""
-    world = files.table(data, at, (*_World.__struct_fields__, *_TABLES))
+    world = files.table(data, location, (*_World.__struct_fields__, *_TABLES))
     others = files.convert(
-        {key: value for key, value in world.items() if key not in _TABLES}, _World, at
+        {key: value for key, value in world.items() if key not in _TABLES}, _World, location
     )
-    found: dict[str, Any] = {}
+    values: dict[str, Any] = {}
     for name, value in world.items():
         if keys := _TABLES.get(name):
-            inside = files.table(value, at.at(name), keys)
-            found |= {f"{name}.{key}": inside[key] for key in inside}
+            inside = files.table(value, location.at(name), keys)
+            values |= {f"{name}.{key}": inside[key] for key in inside}
         elif name in _TABLES:
-            found[name] = value
-    found = {
-        path: files.read_value(value, RUN_VALUES[path].value, at.at(path))
-        for path, value in found.items()
+            values[name] = value
+    values = {
+        path: files.read_value(value, RUN_VALUES[path].value, location.at(path))
+        for path, value in values.items()
     }
-    return found, {
+    return values, {
         key: value for key, value in structs.asdict(others).items() if value is not UNSET
     }
 
 
-def pose_from_table(data: object, at: Location) -> Pose:
+def parse_pose(data: object, location: Location) -> Pose:
     """Return a pose; all of its keys are required.
 
     Raises:
         ConfigError: a key is missing or unknown, or a value is wrong.
     """
-    given = files.table(data, at, START_VALUES)
-    found = {
-        key: files.read_value(value, START_VALUES[key], at.at(key)) for key, value in given.items()
+    entries = files.table(data, location, START_VALUES)
+    coordinates = {
+        key: files.read_value(value, START_VALUES[key], location.at(key))
+        for key, value in entries.items()
     }
     for key in START_VALUES:
-        files.required(found, key, at)
-    return Pose(**found)
+        files.required(coordinates, key, location)
+    return Pose(**coordinates)
 
 
-def _argument(word: object, at: Location) -> str:
+def _parse_argument(word: object, location: Location) -> str:
     if not isinstance(word, str):
-        raise at.wrong(f"must be text, got {quote(word)}", 'in quotes, such as "5"')
+        raise location.wrong(f"must be text, got {quote(word)}", 'in quotes, such as "5"')
     if "\0" in word:
-        raise at.wrong("must be text without null characters")
+        raise location.wrong("must be text without null characters")
     return word
 
 
-def _program(word: str, folder: Path, resolve: Resolver) -> str:
+def _find_program(word: str, folder: Path, resolve: Resolver) -> str:
     """Resolve the path of a program; an example's name stays a name if there is no such file beside the world."""
     known = os.sep not in word and not os.path.exists(folder / word)
     if known and any(os.path.isfile(programs_folder() / name) for name in (word, f"{word}.py")):
@@ -267,58 +274,60 @@ def _program(word: str, folder: Path, resolve: Resolver) -> str:
     return resolve(word)
 
 
-def _resolved(folder: Path, referred: list[Path], word: str) -> str:
+def _resolve(folder: Path, referred: list[Path], word: str) -> str:
     """Resolve a path in the file, and append it to `referred`."""
-    found = Path(os.path.normpath(folder / user_path(word)))
-    referred.append(found)
-    return str(found)
+    resolved = Path(os.path.normpath(folder / user_path(word)))
+    referred.append(resolved)
+    return str(resolved)
 
 
-def _mat(
-    world: Mapping[str, Any], at: Location, resolve: Resolver, mats: str | None
+def _parse_mat(
+    world: Mapping[str, Any], location: Location, resolve: Resolver, mats: str | None
 ) -> dict[str, Any]:
     """Return mat and folder of mats; the mat's start pose applies to what neither this nor another layer sets."""
-    found: dict[str, Any] = {}
+    settings: dict[str, Any] = {}
     if "mats" in world:
-        found["mats"] = resolve(world["mats"])
+        settings["mats"] = resolve(world["mats"])
     if "background" in world:
         word = world["background"]
-        found["background"] = resolve(word) if os.sep in word or Path(word).suffix else word
-        with files.errors_at(at.file, "background"):
+        settings["background"] = resolve(word) if os.sep in word or Path(word).suffix else word
+        with files.errors_at(location.file, "background"):
             try:
-                find_mat(found["background"], found.get("mats", mats))
+                find_mat(settings["background"], settings.get("mats", mats))
             except ConfigError as error:
                 if not error.file:
                     raise
                 # What is wrong is an image that this file names.
-                raise at.at("background", type(error)).wrong(f"{error}") from error.__cause__
-    return found
+                raise location.at("background", type(error)).wrong(f"{error}") from error.__cause__
+    return settings
 
 
-def _named(word: str, at: Location, resolve: Resolver, load: Callable[[str], object]) -> str:
+def _resolve_name(
+    word: str, location: Location, resolve: Resolver, load: Callable[[str], object]
+) -> str:
     """Return a name or the path of a file; it is loaded once, so that errors name this file and key."""
     if files.means_file(word):
         word = resolve(word)
-    with files.errors_at(at.file, at.key):
+    with files.errors_at(location.file, location.key):
         load(word)
     return word
 
 
-def _infrared(world: Mapping[str, Any], at: Location) -> dict[str, Any]:
+def _parse_infrared(world: Mapping[str, Any], location: Location) -> dict[str, Any]:
     """Return beacon and remote control."""
-    found: dict[str, Any] = {}
+    settings: dict[str, Any] = {}
     if "beacon" in world:
-        found["beacon"] = files.read_part(
-            world["beacon"], BeaconSpec, at.at("beacon", ObstacleError)
+        settings["beacon"] = files.read_part(
+            world["beacon"], BeaconSpec, location.at("beacon", ObstacleError)
         )
     if "remote" in world:
         presses = files.entries(
-            world["remote"], at.at("remote", ObstacleError), MAX_PRESSES, "presses"
+            world["remote"], location.at("remote", ObstacleError), MAX_PRESSES, "presses"
         )
-        found["remote"] = tuple(
+        settings["remote"] = tuple(
             files.read_part(press, RemotePress, place) for press, place in presses
         )
-    return found
+    return settings
 
 
 _HEAD = "# A world for tuisim. Lengths in mm, angles in degrees counter-clockwise from +x; y up from the bottom edge."
@@ -342,27 +351,27 @@ def save_world(
         ConfigError: the file cannot be written, or cannot represent the run.
     """
     path = Path(path)
-    at = Location(str(path))
+    location = Location(str(path))
 
     def read(data: object) -> RunSpec:
-        return build_run_spec(settings_of(world_from_table(data, path).settings))
+        return build_run_spec(merge_settings(parse_world(data, path).settings))
 
     def check(data: object) -> None:
-        _, world = _parted(data, at)
+        _, world = _split_table(data, location)
         if "mats" in world:
             # A folder with an image of the same name would replace the mat.
-            found = find_mat(
-                settings_from(spec)["background"], str(path.parent / user_path(world["mats"]))
+            mat = find_mat(
+                extract_settings(spec)["background"], str(path.parent / user_path(world["mats"]))
             )
-            if spec_name(found) != spec.world.background:
-                kept.remove("mats")
+            if spec_name(mat) != spec.world.background:
+                kept_keys.remove("mats")
 
-    kept = list(_NOT_IN_A_RUN)
-    lines = world_lines(spec, path.parent, program, arguments)
-    files.save_toml(path, lines, at, read, spec, check=check, kept=kept)
+    kept_keys = list(_NOT_IN_A_RUN)
+    lines = format_world(spec, path.parent, program, arguments)
+    files.save_toml(path, lines, location, read, spec, check=check, kept=kept_keys)
 
 
-def world_lines(
+def format_world(
     spec: RunSpec, folder: Path, program: str | None = None, arguments: Sequence[str] = ()
 ) -> list[str]:
     """Return a run as TOML lines.
@@ -371,23 +380,23 @@ def world_lines(
         folder: Where the file will be; paths are relative to it.
         program, arguments: As for `save_world`.
     """
-    settings = settings_from(spec)
+    settings = extract_settings(spec)
     top: dict[str, Scalar] = {}
     if program is not None:
-        top["program"] = _relative(program, folder) if os.path.exists(program) else program
+        top["program"] = _make_relative(program, folder) if os.path.exists(program) else program
     if arguments:
         top["arguments"] = list(arguments)
     mat = settings["background"]
-    top["background"] = _relative(mat, folder) if os.sep in mat else mat
+    top["background"] = _make_relative(mat, folder) if os.sep in mat else mat
     values = {
-        path: files.toml_form(one.value, tree.get_value(spec, one.spec_path))
-        for path, one in RUN_VALUES.items()
+        path: files.toml_form(option.value, tree.get_value(spec, option.spec_path))
+        for path, option in RUN_VALUES.items()
     }
     # What came later is left out at its default, so that files do not change.
     left_out = {
         path
-        for path, one in RUN_VALUES.items()
-        if one.value.later and values[path] == _DEFAULTS[path]
+        for path, option in RUN_VALUES.items()
+        if option.value.later and values[path] == _DEFAULTS[path]
     }
     of_world = {
         name: values[name] for name, keys in _TABLES.items() if not keys and name not in left_out
@@ -398,7 +407,7 @@ def world_lines(
         if isinstance(settings[key], str)
     }
     top |= of_world | presets
-    comments = {**_COMMENTS, **{path: one.value.help for path, one in RUN_VALUES.items()}}
+    comments = {**_COMMENTS, **{path: option.value.help for path, option in RUN_VALUES.items()}}
     lines = [_HEAD, "", *files.toml_lines(top, comments)]
     for name, keys in _TABLES.items():
         if keys:
@@ -409,22 +418,22 @@ def world_lines(
                 *files.toml_lines({key: values[f"{name}.{key}"] for key in keys}, help_of),
             ]
     if isinstance(settings["robot"], RobotChoice):
-        lines += ["", *robot_lines(spec.robot, "robot", ("x_mm", "y_mm"))]
+        lines += ["", *format_robot(spec.robot, "robot", ("x_mm", "y_mm"))]
     if isinstance(settings["profile"], ProfileSpec):
-        lines += ["", *profile_lines(spec.profile, "profile")]
+        lines += ["", *format_profile(spec.profile, "profile")]
     if not isinstance(settings["obstacles"], str):
         lines += ["", *obstacle_lines(spec.world.obstacles)]
-    return [*lines, *_infrared_lines(spec.world.beacon, spec.world.remote)]
+    return [*lines, *_format_infrared(spec.world.beacon, spec.world.remote)]
 
 
-def _infrared_lines(beacon: BeaconSpec | None, remote: Iterable[RemotePress]) -> list[str]:
+def _format_infrared(beacon: BeaconSpec | None, remote: Iterable[RemotePress]) -> list[str]:
     lines = ["", "[beacon]", *files.value_lines(beacon, list_values(BeaconSpec))] if beacon else []
     for press in remote:
         lines += ["", "[[remote]]", *files.value_lines(press, list_values(RemotePress))]
     return lines
 
 
-def _relative(path: str, folder: Path) -> str:
+def _make_relative(path: str, folder: Path) -> str:
     """Return a path relative to a folder, in a form that cannot be mistaken for a name."""
-    found = os.path.relpath(user_path(path), folder)
-    return found if os.sep in found or Path(found).suffix else f".{os.sep}{found}"
+    relative = os.path.relpath(user_path(path), folder)
+    return relative if os.sep in relative or Path(relative).suffix else f".{os.sep}{relative}"

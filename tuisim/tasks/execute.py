@@ -30,7 +30,7 @@ from tuisim.tasks.reasons.waited_words import describe_wait
 from tuisim.tasks.task import OUTPUT_CHARACTERS, Keep, Result, Task, VariableStatistics
 
 MATS_KEPT = 20
-MOST_OUTPUT_BYTES = 16 << 20
+MAX_OUTPUT_BYTES = 16 << 20
 """A failed run that printed more is not kept: its end says what happened, and nobody reads so much."""
 
 
@@ -53,7 +53,7 @@ def _run_task(task: Task, folder: Path) -> Result:
             handle = RunHandle(
                 task.program,
                 task.spec,
-                _field_files(task.spec),
+                _load_field_files(task.spec),
                 task.options,
                 temporary,
                 of_many=not task.isolate,
@@ -62,21 +62,21 @@ def _run_task(task: Task, folder: Path) -> Result:
         except TuisimError as error:
             return build_unjudged(task, str(error))
         try:
-            ended = _to_the_end(handle, task.real_time_limit_s)
+            ended = _run_to_end(handle, task.real_time_limit_s)
             run = handle.stored()
             # Each is read once: nothing changes any more.
             for view in (run.telemetry, run.output):
                 view.read_on()
                 view.holds = True
-            run, told = _replay_run(task, run, ended)
-            judgements = _judged(task, run)
-            result = _result(task, run, told, judgements)
+            run, replayed_end = _replay_run(task, run, ended)
+            judgements = _judge(task, run)
+            result = _build_result(task, run, replayed_end, judgements)
         except LogError as error:
             if has_machine_cause(error):
                 return build_unjudged(task, str(error))
             # Where the recording was differs from machine to machine.
             text = error.message.replace(f"{temporary.folder}{os.sep}", "")
-            return nothing_known_of(task, End.FALSIFIED, describe_falsified(text))
+            return build_unknown_result(task, End.FALSIFIED, describe_falsified(text))
         finally:
             handle.close()
         return (
@@ -86,7 +86,7 @@ def _run_task(task: Task, folder: Path) -> Result:
         )
 
 
-def _to_the_end(handle: RunHandle, limit_s: float) -> Ended:
+def _run_to_end(handle: RunHandle, limit_s: float) -> Ended:
     ended = handle.wait(limit_s or None)
     while ended is None and (left_s := limit_s - handle.time_used_s) > 0:
         # On a busy machine the child had to wait for a processor.
@@ -99,18 +99,18 @@ def _to_the_end(handle: RunHandle, limit_s: float) -> Ended:
 
 
 @lru_cache(MATS_KEPT)
-def _prepared(background_name: str, fit: str, diameters: frozenset[int]) -> FieldFiles:
+def _prepare_field(background_name: str, fit: str, diameters: frozenset[int]) -> FieldFiles:
     return prepare(background(background_name).image, diameters, fit=fit)
 
 
-def _field_files(spec: RunSpec) -> FieldFiles:
+def _load_field_files(spec: RunSpec) -> FieldFiles:
     """Return the prepared mat of a run; the image is read only once in a process, while the files are kept."""
     mat = spec.world.background, spec.world.background_fit, find_diameters(spec)
-    found = _prepared(*mat)
-    if not found.are_sound:
-        _prepared.cache_clear()
-        found = _prepared(*mat)
-    return found
+    files = _prepare_field(*mat)
+    if not files.are_sound:
+        _prepare_field.cache_clear()
+        files = _prepare_field(*mat)
+    return files
 
 
 def _replay_run(task: Task, run: StoredRun, ended: Ended) -> tuple[StoredRun, Ended]:
@@ -131,7 +131,7 @@ def _replay_run(task: Task, run: StoredRun, ended: Ended) -> tuple[StoredRun, En
     return run, replace(ended, end=End.FALSIFIED, exit_code=1, summary=why)
 
 
-def _judged(task: Task, run: StoredRun) -> tuple[Judgement, ...]:
+def _judge(task: Task, run: StoredRun) -> tuple[Judgement, ...]:
     if not task.goals:
         return ()
     # Imported on demand: most batches have no goals.
@@ -142,10 +142,10 @@ def _judged(task: Task, run: StoredRun) -> tuple[Judgement, ...]:
 
 def _is_kept(task: Task, run: StoredRun, ended: Ended, judgements: Sequence[Judgement]) -> bool:
     if task.keep is Keep.FAILED:
-        if run.output.length > MOST_OUTPUT_BYTES:
+        if run.output.length > MAX_OUTPUT_BYTES:
             return False
         is_good = ended.end is End.FINISHED and not ended.exit_code
-        return not is_good or not all(one.is_good for one in judgements)
+        return not is_good or not all(judgement.is_good for judgement in judgements)
     return task.keep is Keep.ALL
 
 
@@ -171,14 +171,16 @@ def build_unjudged(task: Task, why: str) -> Result:
     )
 
 
-def nothing_known_of(task: Task, end: End, why: str) -> Result:
+def build_unknown_result(task: Task, end: End, why: str) -> Result:
     """Return the result of a run of which nothing is recorded, by the program's own doing."""
     return Result(
         task.index, task.parameters, end.value, 1, why, why, 0, 0, 0.0, math.nan, math.nan, math.nan
     )
 
 
-def _result(task: Task, run: StoredRun, ended: Ended, judgements: tuple[Judgement, ...]) -> Result:
+def _build_result(
+    task: Task, run: StoredRun, ended: Ended, judgements: tuple[Judgement, ...]
+) -> Result:
     last = run.telemetry.last()
     pose = last.pose if last else run.spec.world.start
     rows = run.output.all_rows()
@@ -195,23 +197,23 @@ def _result(task: Task, run: StoredRun, ended: Ended, judgements: tuple[Judgemen
         x_mm=pose.x_mm,
         y_mm=pose.y_mm,
         heading_deg=pose.heading_deg,
-        variables=statistics_of(rows),
+        variables=compute_statistics(rows),
         judgements=judgements,
-        output=_beginning(rows),
+        output=_read_beginning(rows),
         waited_for=describe_wait(run),
         plugged=list_parts(run.plugged),
     )
 
 
-def statistics_of(rows: Iterable[OutputRow]) -> dict[str, VariableStatistics]:
+def compute_statistics(rows: Iterable[OutputRow]) -> dict[str, VariableStatistics]:
     """Return statistics of the samples among the rows of a run, by name."""
     values: dict[str, list[float]] = {}
     for sample in samples_of(rows):
         values.setdefault(sample.name, []).append(sample.value)
-    return {name: _statistics(found) for name, found in values.items()}
+    return {name: _compute_variable(samples) for name, samples in values.items()}
 
 
-def _statistics(values: Sequence[float]) -> VariableStatistics:
+def _compute_variable(values: Sequence[float]) -> VariableStatistics:
     count, low, high = len(values), min(values), max(values)
     scale = find_scale(low, high)
     scaled = [value / scale for value in values]
@@ -221,7 +223,7 @@ def _statistics(values: Sequence[float]) -> VariableStatistics:
     return VariableStatistics(values[-1], count, mean * scale, std * scale, low, high)
 
 
-def _beginning(rows: Iterable[OutputRow]) -> str:
+def _read_beginning(rows: Iterable[OutputRow]) -> str:
     text, size = [], 0
     for row in rows:
         if row.stream is Stream.STDOUT and size < OUTPUT_CHARACTERS:

@@ -21,18 +21,18 @@ from tuisim.engine.protocol import End
 from tuisim.engine.runs.child.process import warm_up
 from tuisim.engine.runs.removal import remove_tree
 from tuisim.engine.runs.temporary import batch_folder
-from tuisim.tasks.execute import build_unjudged, execute, nothing_known_of
+from tuisim.tasks.execute import build_unjudged, build_unknown_result, execute
 from tuisim.tasks.task import Result, Task
 
 CHUNK = 4
 """Tasks that a worker gets at once: to hand them over one by one costs as much as a short run."""
 CHUNKS_AHEAD = 2
 """Chunks for each worker that are handed over before their turn."""
-MOST_TRIES = 3
+MAX_TRIES = 3
 """A task whose workers have ended this often gets a result without a run."""
 
 
-def default_jobs() -> int:
+def count_processors() -> int:
     """Return the number of processors that this process may use."""
     try:
         return len(os.sched_getaffinity(0))
@@ -54,7 +54,7 @@ def run_many(tasks: Iterable[Task], jobs: int = 0) -> Generator[Result]:
     Raises:
         LogError: the folder for the recordings cannot be created.
     """
-    jobs, folder = jobs or default_jobs(), batch_folder()
+    jobs, folder = jobs or count_processors(), batch_folder()
     try:
         if jobs == 1:
             warm_up()
@@ -102,13 +102,13 @@ class _Pool:
             try:
                 for future in done:
                     chunk = self._pending[future]
-                    found: list[Result] = []
+                    results: list[Result] = []
                     if len(chunk) > 1 and _is_unsent(future):
                         self._alone += chunk
                     else:
-                        found = _take_results(future, chunk)
+                        results = _take_results(future, chunk)
                     del self._pending[future]
-                    yield from found
+                    yield from results
             except BrokenProcessPool:
                 yield from self._start_again()
 
@@ -136,12 +136,12 @@ class _Pool:
         yield from finished
         for task in unfinished:
             self._tries[task.index] = self._tries.get(task.index, 0) + 1
-            if self._tries[task.index] < MOST_TRIES:
+            if self._tries[task.index] < MAX_TRIES:
                 # One by one: which of them has ended the worker is not known.
                 self._submit([task])
             else:
-                why = f"the process that ran it has ended {MOST_TRIES} times"
-                yield nothing_known_of(task, End.KILLED, why)
+                why = f"the process that ran it has ended {MAX_TRIES} times"
+                yield build_unknown_result(task, End.KILLED, why)
 
     def stop(self) -> None:
         """End the workers and what they run."""

@@ -40,7 +40,7 @@ from tuisim.app.dialogs.chooser import Chooser
 from tuisim.app.panels import PANELS
 from tuisim.app.render.lesson import LessonPicture
 from tuisim.app.snapshot import RunPhase
-from tuisim.tasks.lessons.progress import load_progress, program_path
+from tuisim.tasks.lessons.progress import build_program_path, load_progress
 from tuisim.tasks.lessons.spec import SHOWABLE
 
 
@@ -88,12 +88,12 @@ async def test_a_run_is_judged_after_skip_and_start_over(tmp_path: Path) -> None
         await until(pilot, lambda: "1. Think" in shown(app))
         app.lesson.skip_step()
         assert states() == {"number": "skipped"}
-        program_path(app.lesson.lesson).write_text("pass\n")  # type: ignore[arg-type]
+        build_program_path(app.lesson.lesson).write_text("pass\n")  # type: ignore[arg-type]
         app.lesson.start_over()
         await until(pilot, lambda: "1. Think" in shown(app))
         assert states() == {}
         assert program_of(app).text == PROGRAM
-        assert program_path(app.lesson.lesson).with_suffix(".old.py").read_text() == "pass\n"  # type: ignore[arg-type]
+        assert build_program_path(app.lesson.lesson).with_suffix(".old.py").read_text() == "pass\n"  # type: ignore[arg-type]
         app.lesson.skip_step()
         await run_over(pilot, app)
         await until(pilot, lambda: "✓ Drive" in shown(app))
@@ -120,7 +120,7 @@ async def test_menu_opens_another_lesson(tmp_path: Path) -> None:
 async def test_run_that_misses_a_goal_says_why_and_counts_as_a_try(tmp_path: Path) -> None:
     async with open_lab(opened(tmp_path), size=LARGE) as (pilot, app):
         app.lesson.skip_step()
-        program_path(app.lesson.lesson).write_text("pass\n")  # type: ignore[arg-type]
+        build_program_path(app.lesson.lesson).write_text("pass\n")  # type: ignore[arg-type]
         app.check_files()
         await run_over(pilot, app)
         await until(pilot, lambda: "✗ Drive." in shown(app))
@@ -303,7 +303,7 @@ async def test_running_an_edited_text_saves_it_and_ends_typing_and_the_former_ru
         )
         assert app.panel_area.shown("lesson")
         assert not app.document.dirty
-        assert program_path(app.lesson.lesson).read_text() == f"y=2\n{PROGRAM}"  # type: ignore[arg-type]
+        assert build_program_path(app.lesson.lesson).read_text() == f"y=2\n{PROGRAM}"  # type: ignore[arg-type]
 
 
 async def test_the_last_lesson_can_be_reached_in_a_low_terminal(tmp_path: Path) -> None:

@@ -18,7 +18,7 @@ from tuisim.base.errors import RobotError
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.spec import RobotSpec, WorldSpec
 from tuisim.engine.files import Location
-from tuisim.settings.robots import ROBOTS, robot_from_json
+from tuisim.settings.robots import ROBOTS, parse_json_robot
 
 with gzip.open(Path(__file__).with_name("motor_records.jsonl.gz"), "rt", encoding="utf-8") as _file:
     RECORDS: Mapping[str, dict[str, Any]] = {
@@ -29,7 +29,7 @@ with gzip.open(Path(__file__).with_name("motor_records.jsonl.gz"), "rt", encodin
 def _robot(described: str | dict[str, Any]) -> RobotSpec:
     if isinstance(described, str):
         return ROBOTS[described]
-    return robot_from_json(described, "recorded", Location("robot.json", RobotError)).spec
+    return parse_json_robot(described, "recorded", Location("robot.json", RobotError)).spec
 
 
 @pytest.fixture(scope="module")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from tuisim.base.source import Program
 from tuisim.programs.program_settings import facts_of
 from tuisim.programs.robot.assembly import BuiltRobot
-from tuisim.settings.robots import ROBOTS, ports_of
+from tuisim.settings.robots import ROBOTS, list_ports
 
 USUAL = ROBOTS["Default_Robot"]
 HEAD = """\
@@ -33,6 +33,6 @@ def built(text: str, head: str = HEAD) -> BuiltRobot | None:
 def changed(text: str, head: str = HEAD) -> str:
     """The ports that differ from those of the usual robot."""
     found = built(text, head)
-    now, usual = dict(ports_of(found.choice.spec if found else USUAL)), dict(ports_of(USUAL))
+    now, usual = dict(list_ports(found.choice.spec if found else USUAL)), dict(list_ports(USUAL))
     ports = [port for port in sorted({*now, *usual}) if now.get(port) != usual.get(port)]
     return ", ".join(f"{port[-1]} {now.get(port, '-')}" for port in ports)

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from tests.tasks.goals.recorded import goals_of
-from tuisim.tasks.goals.answers import ASK, answer_lines, line_like
+from tuisim.tasks.goals.answers import ASK, answer_lines, build_matching_line
 
 PATTERNS = [
     *(
@@ -27,12 +27,12 @@ PATTERNS = [
 
 @pytest.mark.parametrize("pattern", PATTERNS)
 def test_a_line_fits_its_pattern(pattern: str) -> None:
-    line = line_like(pattern)
+    line = build_matching_line(pattern)
     assert re.search(pattern, line) and "\n" not in line
 
 
 def test_a_pattern_that_nothing_fits_gives_its_words() -> None:
-    assert line_like("(?=a)b") == "=ab"
+    assert build_matching_line("(?=a)b") == "=ab"
 
 
 TASK = """

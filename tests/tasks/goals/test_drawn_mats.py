@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
-from tuisim.tasks.goals.drawn_mats import DRAWN_MATS, drawn_mat, world_lines
+from tuisim.tasks.goals.drawn_mats import DRAWN_MATS, format_world_lines, generate_mat
 
 SEEDS = range(12)
 BANDS_OF_0 = "8a4511ccfc22"
@@ -18,17 +18,17 @@ BANDS_OF_0 = "8a4511ccfc22"
 
 @pytest.mark.parametrize("kind", DRAWN_MATS)
 def test_a_seed_draws_the_same_mat_and_another_one_another(kind: str) -> None:
-    found = [drawn_mat(kind, seed) for seed in SEEDS]
+    found = [generate_mat(kind, seed) for seed in SEEDS]
     assert all(mat.pixels.shape == (FIELD_HEIGHT_MM, FIELD_WIDTH_MM, 3) for mat in found)
     digests = [hashlib.sha256(mat.pixels.tobytes()).hexdigest() for mat in found]
     assert len(set(digests)) == len(digests)
-    assert digests[0] == hashlib.sha256(drawn_mat(kind, 0).pixels.tobytes()).hexdigest()
+    assert digests[0] == hashlib.sha256(generate_mat(kind, 0).pixels.tobytes()).hexdigest()
     assert kind != "bands" or digests[0].startswith(BANDS_OF_0)
 
 
 def test_bands_are_where_and_as_grey_as_is_said() -> None:
     for seed in SEEDS:
-        mat = drawn_mat("bands", seed)
+        mat = generate_mat("bands", seed)
         row = mat.pixels[FIELD_HEIGHT_MM - 500, :, 0].astype(int)
         edges = np.flatnonzero(np.diff(row)) + 1
         assert edges.tolist() == [
@@ -44,7 +44,7 @@ def test_bands_are_where_and_as_grey_as_is_said() -> None:
 
 def test_a_line_begins_at_the_robot_and_stays_on_the_mat() -> None:
     for seed in SEEDS:
-        mat = drawn_mat("line", seed)
+        mat = generate_mat("line", seed)
         black = mat.pixels[:, :, 0] == 0
         rows = [np.flatnonzero(black[:, column]) for column in range(160, 2190)]
         assert all(len(found) and np.diff(found).max() == 1 for found in rows)
@@ -61,7 +61,7 @@ def test_a_line_begins_at_the_robot_and_stays_on_the_mat() -> None:
 
 @pytest.mark.parametrize("kind", DRAWN_MATS)
 def test_the_lines_are_a_world_of_a_task(kind: str) -> None:
-    lines = world_lines(drawn_mat(kind, 7), "m.png")
+    lines = format_world_lines(generate_mat(kind, 7), "m.png")
     (found,) = tomllib.loads("\n".join(lines))["also"]
     assert (found["background"], found["hidden"]) == ("m.png", True)
     # The goal of the bands is a remark: its name is the author's.

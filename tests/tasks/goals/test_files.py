@@ -11,7 +11,7 @@ from PIL import Image
 from tests.cases import cases
 from tests.conftest import Command
 from tuisim.base.errors import ConfigError
-from tuisim.tasks.goals.files import line_of_key, load_goals
+from tuisim.tasks.goals.files import find_key_line, load_goals
 from tuisim.tasks.goals.spec import AllOf, FinishCondition, PrintCondition, Together
 
 GOOD = "[[goal]]\nname = 'a'\nfinish = true\n\n"
@@ -397,7 +397,7 @@ LINES = {
 
 @cases("text, key, line", LINES)
 def test_line_of_key(text: str, key: str, line: int) -> None:
-    assert line_of_key(text, key) == line
+    assert find_key_line(text, key) == line
 
 
 def test_a_long_list_is_not_parsed_for_each_of_its_lines(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -410,7 +410,7 @@ def test_a_long_list_is_not_parsed_for_each_of_its_lines(monkeypatch: pytest.Mon
 
     monkeypatch.setattr(tomllib, "loads", counted)
     numbers = " 1,\n" * 500
-    assert line_of_key(f"a = [\n{numbers}]\nb = 1\nc = 2\n", "b") == 503
+    assert find_key_line(f"a = [\n{numbers}]\nb = 1\nc = 2\n", "b") == 503
     assert len(parsed) < 10
 
 

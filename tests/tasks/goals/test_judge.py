@@ -15,7 +15,7 @@ from tuisim.engine.runs.run_folder import read_run
 from tuisim.engine.runs.store import RunStore
 from tuisim.tasks.goals.condition import ConditionKind
 from tuisim.tasks.goals.judge import FINDERS, judge
-from tuisim.tasks.goals.judgement import Judgement, points
+from tuisim.tasks.goals.judgement import Judgement, compute_points
 from tuisim.tasks.goals.spec import CONDITIONS
 
 STEPS: tuple[Step, ...] = (
@@ -162,7 +162,7 @@ def test_what_begins_after_the_last_tick_is_judged(home: Path, tmp_path: Path) -
 
 
 def test_points_are_those_of_met_goals(home: Path, tmp_path: Path) -> None:
-    assert points(judged(finished(home), tmp_path, GOALS).values()) == 7.5
+    assert compute_points(judged(finished(home), tmp_path, GOALS).values()) == 7.5
 
 
 def test_lines_that_come_once_are_told_of_when_they_came(home: Path, tmp_path: Path) -> None:

@@ -15,7 +15,7 @@ from tuisim.engine.runs.store import RunStore
 from tuisim.tasks.goals import patterns
 from tuisim.tasks.goals.condition import UnjudgedError
 from tuisim.tasks.goals.judge import judge
-from tuisim.tasks.goals.judgement import points
+from tuisim.tasks.goals.judgement import compute_points
 from tuisim.tasks.goals.patterns import build_search
 
 CARELESS = "^((a|aa)+)+$"
@@ -124,8 +124,8 @@ def test_the_rest_of_a_class_of_goals_is_judged(
     }
     assert judgements[1].reason.startswith(f"The regular expression {CARELESS!r} takes more than")
     assert not judgements[1].is_good
-    assert math.isnan(points(judgements))
-    assert points(each for each in judgements if each.goal.name in ("count", "other")) == 1
+    assert math.isnan(compute_points(judgements))
+    assert compute_points(each for each in judgements if each.goal.name in ("count", "other")) == 1
 
 
 def test_a_line_of_a_million_digits_is_read_at_once() -> None:

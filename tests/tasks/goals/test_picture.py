@@ -13,7 +13,7 @@ from tests.tasks.goals.recorded import Run, Step, ahead, drive, goals_of, turn, 
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 from tuisim.engine.runs.store import RunStore
 from tuisim.tasks.goals.judge import judge
-from tuisim.tasks.goals.picture import cell_mm, compare
+from tuisim.tasks.goals.picture import compare, compute_cell_mm
 
 BANDS = world(100, 500, background="Grey_bands")
 """The black band is from x 1450 to 1651; the sensors are 30 mm ahead."""
@@ -134,7 +134,7 @@ def test_draw(
 
 def test_a_drawing_is_compared_up_to_the_edges_of_the_field() -> None:
     within_mm = 16.0
-    side_mm = cell_mm(within_mm)
+    side_mm = compute_cell_mm(within_mm)
     cols, rows = int(FIELD_WIDTH_MM // side_mm), int(FIELD_HEIGHT_MM // side_mm)
     corners = np.array([[0, 0], [cols - 1, 0], [0, rows - 1], [cols - 1, rows - 1]])
     numbers = corners[:, 1] * cols + corners[:, 0]

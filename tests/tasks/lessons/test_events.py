@@ -19,10 +19,10 @@ from tuisim.tasks.lessons.events import (
     TriedElsewhere,
     Typed,
     Visited,
+    describe_form,
+    explain_unready,
     is_met,
     note_fault,
-    unready,
-    wanted_form,
 )
 from tuisim.tasks.lessons.spec import (
     BreakCheck,
@@ -170,7 +170,7 @@ UNREADY = {
 
 @cases("question, typed, words", UNREADY)
 def test_what_a_question_needs_first(question: QuestionCheck, typed: Typed, words: str) -> None:
-    found = unready(question, typed)
+    found = explain_unready(question, typed)
     assert found.startswith(words)
     assert bool(found) is bool(words)
 
@@ -205,8 +205,8 @@ def test_why_a_note_does_not_pass(note: Noted, words: str) -> None:
     ],
 )
 def test_number_in_another_unit_is_asked_for_again(text: str, words: str) -> None:
-    assert wanted_form(QuestionCheck("At which x, in mm?", 502, within=4), text) == words
+    assert describe_form(QuestionCheck("At which x, in mm?", 502, within=4), text) == words
 
 
 def test_any_unit_will_do_where_none_is_asked_for() -> None:
-    assert wanted_form(QuestionCheck("How far?", 502, within=4), "50.2 cm") == ""
+    assert describe_form(QuestionCheck("How far?", 502, within=4), "50.2 cm") == ""

@@ -8,7 +8,7 @@ import pytest
 
 from tests.cases import cases
 from tuisim.base.errors import ConfigError
-from tuisim.tasks.lessons.files import load_lesson, name_of
+from tuisim.tasks.lessons.files import get_lesson_name, load_lesson
 from tuisim.tasks.lessons.skeleton import SKELETON
 from tuisim.tasks.lessons.spec import CHECKS, QuestionCheck, RunCheck, Way
 
@@ -224,7 +224,7 @@ NAMES = {"01-first-run.md": "first-run", "02_b.md": "b", "plain.md": "plain", "7
 
 @pytest.mark.parametrize("file, name", NAMES.items(), ids=NAMES)
 def test_name_of_file(file: str, name: str) -> None:
-    assert name_of(Path(file)) == name
+    assert get_lesson_name(Path(file)) == name
 
 
 def test_parts_of_a_lesson(tmp_path: Path) -> None:
@@ -288,7 +288,7 @@ def test_wrong_ways_that_are_missing(keys: str, missing: list[str], tmp_path: Pa
         if "run = 'end'" in keys
         else step(keys).replace("```python answer\npass\n```\n", "")
     )
-    assert list(load_lesson(path).steps[0].missing_ways()) == missing
+    assert list(load_lesson(path).steps[0].find_missing_ways()) == missing
 
 
 def test_wrong_program_that_goes_a_way_covers_it(tmp_path: Path) -> None:
@@ -296,4 +296,4 @@ def test_wrong_program_that_goes_a_way_covers_it(tmp_path: Path) -> None:
     body = "## A\n```python answer\n```\n```python wrong: no sensor\npass\n```\n"
     path.write_text(lesson(HEAD + GOAL + RUN, body))
     (one,) = load_lesson(path).steps
-    assert Way.SENSOR not in one.missing_ways()
+    assert Way.SENSOR not in one.find_missing_ways()

@@ -6,7 +6,7 @@ import pytest
 
 from tuisim.guide.catalogue import load_pages
 from tuisim.guide.text import draw_page
-from tuisim.tasks.lessons.markdown import markdown_lines
+from tuisim.tasks.lessons.markdown import render_markdown
 
 TABLE = """
 | to | ev3dev2 | Pybricks |
@@ -16,7 +16,7 @@ TABLE = """
 
 
 def _texts(width: int) -> list[str]:
-    return ["".join(part for part, _ in line).rstrip() for line in markdown_lines(TABLE, width)]
+    return ["".join(part for part, _ in line).rstrip() for line in render_markdown(TABLE, width)]
 
 
 def test_a_cell_breaks_between_words() -> None:

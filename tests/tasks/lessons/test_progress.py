@@ -7,14 +7,14 @@ from pathlib import Path
 import pytest
 
 from tuisim.base.errors import ConfigError
-from tuisim.tasks.lessons.catalogue import shipped_paths
+from tuisim.tasks.lessons.catalogue import find_shipped_paths
 from tuisim.tasks.lessons.files import load_lesson
 from tuisim.tasks.lessons.progress import (
     LessonProgress,
     StepProgress,
     StepState,
-    folder,
-    last_opened,
+    find_folder,
+    find_last_opened,
     load_progress,
     prepare_program,
     save_progress,
@@ -26,14 +26,14 @@ NEW = LessonProgress()
 
 @pytest.fixture
 def lesson() -> Lesson:
-    return load_lesson(shipped_paths()["band-values"])
+    return load_lesson(find_shipped_paths()["band-values"])
 
 
 def after(lesson: Lesson, *states: StepState) -> LessonProgress:
     """Progress with these states of the first steps."""
     progress = NEW
     for step, state in zip(lesson.steps, states, strict=False):
-        progress = progress.with_step(step.name, state=state)
+        progress = progress.update_step(step.name, state=state)
     return progress
 
 
@@ -54,19 +54,19 @@ def test_the_first_open_step_is_the_current_one(lesson: Lesson) -> None:
 
 def test_progress_on_each_lesson_is_kept(home: Path) -> None:
     assert load_progress() == {}
-    one = NEW.with_step("a", tries=2, hints=1)
+    one = NEW.update_step("a", tries=2, hints=1)
     save_progress("one", one)
     save_progress("two", LessonProgress({}, "2026-01-02T00:00:00+00:00"))
     assert load_progress()["one"].of("a") == StepProgress(tries=2, hints=1)
-    assert last_opened(load_progress()) == "two"
-    assert last_opened({"one": one}) == ""
+    assert find_last_opened(load_progress()) == "two"
+    assert find_last_opened({"one": one}) == ""
 
 
 @pytest.mark.parametrize(
     "text", ["{", "[]", '{"one": 3}', '{"one": {"steps": {"a": {"state": "flown"}}}}']
 )
 def test_damaged_progress_is_told_and_stays(text: str, home: Path) -> None:
-    file = folder() / "progress.json"
+    file = find_folder() / "progress.json"
     file.parent.mkdir(parents=True)
     file.write_text(text)
     with pytest.raises(ConfigError, match="is damaged"):

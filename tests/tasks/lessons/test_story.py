@@ -16,7 +16,7 @@ from tuisim.tasks.goals.spec import (
     ReachCondition,
     Together,
 )
-from tuisim.tasks.lessons.story import story
+from tuisim.tasks.lessons.story import build_story
 
 SAID: dict[str, tuple[Condition, str]] = {
     "end": (ReachCondition(x_mm=1150, at_end=True), "it ended at x = 1153 mm, y = 500 mm"),
@@ -53,7 +53,7 @@ def test_story(condition: Condition, words: str) -> None:
     met = Judgement(
         Goal("a", condition), (Change(542, 5.42, GoalState.MET, 1152.9, 500.0),), line=3
     )
-    assert story([met, met]) == f"Your run: {words}."
+    assert build_story([met, met]) == f"Your run: {words}."
 
 
 def test_what_the_end_decides_is_told_of_the_moment_when_it_happened() -> None:
@@ -64,7 +64,9 @@ def test_what_the_end_decides_is_told_of_the_moment_when_it_happened() -> None:
     met = Judgement(
         Goal("a", LogCondition("Grey", (50.2,), once=True)), (end,), line=3, happened=said
     )
-    assert story([met]) == "Your run: line 3 logged Grey at 5.42 s, at x = 1120 mm, y = 500 mm."
+    assert (
+        build_story([met]) == "Your run: line 3 logged Grey at 5.42 s, at x = 1120 mm, y = 500 mm."
+    )
 
 
 def test_of_several_goals_about_a_variable_the_last_is_told() -> None:
@@ -76,12 +78,15 @@ def test_of_several_goals_about_a_variable_the_last_is_told() -> None:
         )
         for name, time_s in (("a", 3.79), ("b", 5.35), ("c", 3.91))
     ]
-    assert story(goals) == "Your run: line 7 logged Colour at 5.35 s, at x = 1120 mm, y = 500 mm."
+    assert (
+        build_story(goals)
+        == "Your run: line 7 logged Colour at 5.35 s, at x = 1120 mm, y = 500 mm."
+    )
 
 
 def test_nothing_is_said_of_what_was_not_met() -> None:
     assert (
-        story(
+        build_story(
             [
                 Judgement(
                     Goal("a", FinishCondition()), (Change(1, 0.1, GoalState.MISSED, 1, 2),), "No."

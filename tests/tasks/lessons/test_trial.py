@@ -12,19 +12,19 @@ from tuisim.commands.learn import learn
 from tuisim.engine.runs.store import RunStore
 from tuisim.programs.program_file import programs
 from tuisim.tasks.goals.spec import LogCondition
-from tuisim.tasks.lessons.catalogue import shipped_paths
+from tuisim.tasks.lessons.catalogue import find_shipped_paths
 from tuisim.tasks.lessons.files import load_lesson
 from tuisim.tasks.lessons.spec import Lesson, QuestionCheck, RunCheck
-from tuisim.tasks.lessons.trial import faults, model_run, task_of, warnings
+from tuisim.tasks.lessons.trial import build_task, find_faults, find_warnings, run_model
 from tuisim.tasks.pool import run_many
 
-LESSONS = {name: load_lesson(path) for name, path in shipped_paths().items()}
+LESSONS = {name: load_lesson(path) for name, path in find_shipped_paths().items()}
 
 
 @pytest.mark.quick_cases("first-run", "exact-moves", "band-values", "stop-and-look", "log-period")
 @pytest.mark.parametrize("name", LESSONS)
 def test_model_answers_pass_and_wrong_answers_do_not(name: str) -> None:
-    assert faults(LESSONS[name]) == []
+    assert find_faults(LESSONS[name]) == []
 
 
 @pytest.mark.parametrize("name", LESSONS)
@@ -35,7 +35,7 @@ def test_lesson_is_complete(name: str) -> None:
     assert re.fullmatch(r"[^.?!]+[^.?!]*[.?!]( [^.?!]+[.?!]){0,2}", lesson.why), (
         "one to three sentences"
     )
-    assert warnings(lesson) == []
+    assert find_warnings(lesson) == []
     for step in lesson.steps:
         assert step.hints, f"{step.name}: no hint"
         assert len(step.text) < 700, f"{step.name}: too long for a small terminal"
@@ -57,7 +57,7 @@ def test_names_that_a_goal_needs_are_in_the_task(name: str) -> None:
 
 def _end(lesson: Lesson, text: str, field: str, seed: int = 0) -> float:
     """A field of the result of a program in the world of a lesson."""
-    (result,) = run_many([task_of(lesson, text, seed)], jobs=1)
+    (result,) = run_many([build_task(lesson, text, seed)], jobs=1)
     return float(getattr(result, field))
 
 
@@ -86,12 +86,12 @@ LIGHT = "print('Light: ' + str(colorLeft.reflected_light_intensity_pc))\n"
 
 
 def _read(lesson: Lesson, text: str) -> float:
-    (result,) = run_many([task_of(lesson, text, 0)], jobs=1)
+    (result,) = run_many([build_task(lesson, text, 0)], jobs=1)
     return result.variables["Light"].last
 
 
 def _rows(lesson: Lesson) -> float:
-    (result,) = run_many([task_of(lesson, lesson.program, 0)], jobs=1)
+    (result,) = run_many([build_task(lesson, lesson.program, 0)], jobs=1)
     return result.variables["Colour"].count
 
 
@@ -119,7 +119,7 @@ def test_question_about_the_end_of_a_run_leads_back_to_its_start() -> None:
 
 def test_a_hand_presses_in_a_trial_as_the_first_line_says() -> None:
     lesson = LESSONS["exact-moves"]
-    task = task_of(lesson, "# %%sim_magic_preloaded --press enter@1-2\n", 0)
+    task = build_task(lesson, "# %%sim_magic_preloaded --press enter@1-2\n", 0)
     hz = task.spec.profile.tick_hz
     assert [action.tick for action in task.options.actions] == [hz, 2 * hz]
 
@@ -131,7 +131,7 @@ def test_names_are_not_those_of_commands_or_examples() -> None:
 
 @pytest.mark.usefixtures("home")
 def test_the_model_answer_drives_and_is_not_stored() -> None:
-    recording = model_run(load_lesson(shipped_paths()["exact-moves"]), None)
+    recording = run_model(load_lesson(find_shipped_paths()["exact-moves"]), None)
     assert recording.name == "the model answer"
     assert not recording.folder.exists()
     assert recording.telemetry.record(recording.newest).pose != recording.telemetry.record(0).pose

@@ -15,7 +15,7 @@ from tuisim.tasks.goals.judgement import GoalState
 from tuisim.tasks.goals.spec import LogCondition, Reading
 from tuisim.tasks.goals.trial_world import TrialWorld
 from tuisim.tasks.lessons.spec import Lesson, LessonStep, RunCheck
-from tuisim.tasks.lessons.trial import task_of
+from tuisim.tasks.lessons.trial import build_task
 from tuisim.tasks.pool import run_many
 
 STEPS = {
@@ -39,7 +39,7 @@ STEPS["dead-reckoning y"] = next(
 
 
 def _misses(lesson: Lesson, check: RunCheck, other: TrialWorld | None, text: str) -> bool:
-    (result,) = run_many([task_of(lesson, text, seed=1, other=other)], jobs=1)
+    (result,) = run_many([build_task(lesson, text, seed=1, other=other)], jobs=1)
     goals = other.goals if other else check.goals
     return any(
         each.state is not GoalState.MET for each in result.judgements if each.goal.name in goals
@@ -54,7 +54,7 @@ def test_there_are_such_steps() -> None:
 @pytest.mark.parametrize(("lesson", "step"), STEPS.values(), ids=STEPS)
 def test_constants_do_not_pass(lesson: Lesson, step: LessonStep, tmp_path: Path) -> None:
     assert isinstance(step.check, RunCheck)
-    task = task_of(lesson, step.answer, seed=1)
+    task = build_task(lesson, step.answer, seed=1)
     handle = start_run(task.program, task.spec, task.options, RunStore(tmp_path))
     lines = over(handle).lines
     handle.close()

@@ -8,7 +8,7 @@ from tests.tasks.lessons.test_trial import LESSONS
 from tuisim.tasks.goals.judgement import GoalState
 from tuisim.tasks.goals.trial_world import TrialWorld
 from tuisim.tasks.lessons.spec import Lesson, RunCheck
-from tuisim.tasks.lessons.trial import task_of
+from tuisim.tasks.lessons.trial import build_task
 from tuisim.tasks.pool import run_many
 
 _ROWS = """\
@@ -513,7 +513,7 @@ def test_honest_way_passes(way: str) -> None:
 
 def _missed(lesson: Lesson, check: RunCheck, other: TrialWorld | None, text: str) -> list[str]:
     """The reasons of the goals that a program misses in a world."""
-    (result,) = run_many([task_of(lesson, text, seed=1, other=other)], jobs=1)
+    (result,) = run_many([build_task(lesson, text, seed=1, other=other)], jobs=1)
     wanted = other.goals if other else check.goals
     missed = [
         each

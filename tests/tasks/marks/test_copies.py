@@ -8,7 +8,7 @@ import pytest
 
 from tests.tasks.marks.the_class import CLASS
 from tuisim.tasks.marks import copies
-from tuisim.tasks.marks.copies import LEAST_TOKENS, Similar, similar
+from tuisim.tasks.marks.copies import MIN_TOKENS, Similar, find_similar
 
 LINE = """\
 while True:
@@ -49,11 +49,13 @@ for side in reversed(range(4)):
 
 
 def _similar(programs: Mapping[str, str], given: Collection[str] = ()) -> Similar:
-    return similar({name: [text] for name, text in programs.items()}, given)
+    return find_similar({name: [text] for name, text in programs.items()}, given)
 
 
 def test_a_copy_in_a_module_is_a_pair() -> None:
-    found = similar({"ada": [LINE], "ben": ["import sol\nsol.drive()\n", RENAMED], "cleo": [OTHER]})
+    found = find_similar(
+        {"ada": [LINE], "ben": ["import sol\nsol.drive()\n", RENAMED], "cleo": [OTHER]}
+    )
     (pair,) = found.pairs
     assert pair.names == ("ada", "ben") and pair.share > 0.9
 
@@ -66,7 +68,7 @@ def test_what_is_compared_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
             yield LINE
         raise AssertionError("all of it was read")
 
-    assert similar({"ada": write(), "ben": write()}).compared == 2
+    assert find_similar({"ada": write(), "ben": write()}).compared == 2
 
 
 def test_other_names_numbers_and_comments_are_the_same_program() -> None:
@@ -100,7 +102,7 @@ def test_short_and_broken_programs_are_not_compared() -> None:
     short = "tank_drive.on_for_rotations(50, 50, 3)\n"
     assert _similar({"ada": short, "ben": short}).compared == 0
     broken = _similar({"ada": LINE + "\n)\x00 '''", "ben": LINE})
-    assert broken.compared == 2 and LEAST_TOKENS > 20
+    assert broken.compared == 2 and MIN_TOKENS > 20
 
 
 def test_the_result_does_not_depend_on_the_order() -> None:

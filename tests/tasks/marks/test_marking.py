@@ -55,7 +55,7 @@ def test_what_is_known_of_a_class_while_it_is_marked(
         yield from OUTCOMES
 
     told: list[str] = []
-    monkeypatch.setattr(markings, "outcomes_of", outcomes)
+    monkeypatch.setattr(markings, "run_entries", outcomes)
     with open_marking(_request(tmp_path)) as marking:
         assert (marking.unlisted, marking.absent, marking.ignored) == (["ben", "cleo"], ["zoe"], ())
         marking.read_programs()

@@ -11,7 +11,7 @@ from ev3dev2 import motor
 from tests.cases import cases
 from tuisim.tasks.goals.judgement import Change, GoalState, Judgement
 from tuisim.tasks.goals.spec import AllOf, FinishCondition, Goal, ReachCondition
-from tuisim.tasks.marks.outcome import GoalOutcome, outcome_of
+from tuisim.tasks.marks.outcome import GoalOutcome, build_outcome
 from tuisim.tasks.task import Result
 
 FOLDER = Path("/copy-of/student/7")
@@ -60,12 +60,12 @@ FAILURES = {
 
 @cases("result, failure", FAILURES)
 def test_why_a_program_did_not_finish(result: Result, failure: str) -> None:
-    assert outcome_of(result, 3, FOLDER).failure == failure
+    assert build_outcome(result, 3, FOLDER).failure == failure
 
 
 def test_a_traceback_has_no_path_and_a_limited_length() -> None:
     error = f'Traceback\n  File "{FOLDER}/main.py", line 3\n' + "ValueError: " + "y" * 100_000
-    found = outcome_of(replace(DONE, end="raised", error=error, error_line=3), 3, FOLDER)
+    found = build_outcome(replace(DONE, end="raised", error=error, error_line=3), 3, FOLDER)
     assert (
         found.error.startswith('Traceback\n  File "main.py", line 3\nValueError: y')
         and len(found.error) < 5000
@@ -74,7 +74,7 @@ def test_a_traceback_has_no_path_and_a_limited_length() -> None:
 
 def test_a_traceback_has_no_path_of_this_machine() -> None:
     library = f"cannot import name 'MoveTanks' from 'ev3dev2.motor' ({motor.__file__})"
-    found = outcome_of(
+    found = build_outcome(
         replace(DONE, end="raised", error="Traceback", summary=f"ImportError: {library}"), 0, FOLDER
     )
     assert (
@@ -84,7 +84,7 @@ def test_a_traceback_has_no_path_of_this_machine() -> None:
 
 
 def test_a_path_of_the_students_own_stays() -> None:
-    found = outcome_of(
+    found = build_outcome(
         replace(DONE, end="raised", summary="FileNotFoundError: '/data/of/ada/x.csv'"), 0, FOLDER
     )
     assert found.failure == "FileNotFoundError: '/data/of/ada/x.csv'"
@@ -100,7 +100,7 @@ def test_a_goal_made_of_others_is_missed_for_the_reason_of_the_first_that_is() -
         _judgement(near, GoalState.MET),
         _judgement(finish, GoalState.MISSED, "It raised an exception.", 9),
     )
-    found = outcome_of(replace(DONE, judgements=judgements), 0, FOLDER)
+    found = build_outcome(replace(DONE, judgements=judgements), 0, FOLDER)
     missed = [
         GoalOutcome(name, False, "It raised an exception.", 9)
         for name in ("every", "both", "finish")

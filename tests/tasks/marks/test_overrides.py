@@ -9,10 +9,10 @@ import pytest
 
 from tests.tasks.marks.test_sheet import COLUMNS, SHEET
 from tuisim.base.errors import ConfigError
-from tuisim.tasks.marks.feedback import feedback_of
-from tuisim.tasks.marks.overrides import overridden, read_overrides
-from tuisim.tasks.marks.page import page_of
-from tuisim.tasks.marks.sheet import Sheet, frame_of
+from tuisim.tasks.marks.feedback import build_feedback
+from tuisim.tasks.marks.overrides import apply_overrides, read_overrides
+from tuisim.tasks.marks.page import build_page
+from tuisim.tasks.marks.sheet import Sheet, build_frame
 
 NAMES = [row.name for row in SHEET.rows]
 TEXT = """\
@@ -28,11 +28,11 @@ points = 4.5
 def _sheet(tmp_path: Path, text: str = TEXT) -> Sheet:
     path = tmp_path / "own.toml"
     path.write_text(text)
-    return overridden(SHEET, read_overrides(path, COLUMNS, NAMES))
+    return apply_overrides(SHEET, read_overrides(path, COLUMNS, NAMES))
 
 
 def test_points_of_a_goal_and_of_the_task(tmp_path: Path) -> None:
-    frame = frame_of(_sheet(tmp_path)).set_index("student")
+    frame = build_frame(_sheet(tmp_path)).set_index("student")
     columns = ["points", "earned", "goal_place", "goal_wall", "comment"]
     assert frame.loc[["ada", "ben", "cleo"], columns].to_numpy().tolist() == [
         [10.0, 10.0, 7.0, 3.0, "Neat."],
@@ -43,9 +43,9 @@ def test_points_of_a_goal_and_of_the_task(tmp_path: Path) -> None:
 
 def test_page_and_feedback_show_them(tmp_path: Path) -> None:
     sheet = _sheet(tmp_path)
-    page = page_of(sheet)
+    page = build_page(sheet)
     assert '<div class="comment">Neat.</div>' in page and "the runs have earned 8.25" in page
-    assert "Comment: Neat." in feedback_of(sheet, sheet.rows[0])
+    assert "Comment: Neat." in build_feedback(sheet, sheet.rows[0])
 
 
 @pytest.mark.parametrize(

@@ -6,26 +6,28 @@ import re
 
 from tests.tasks.marks.test_copies import LINE, OTHER, RENAMED
 from tests.tasks.marks.test_sheet import OUTCOMES, SHEET, STUDENTS
-from tuisim.tasks.marks.copies import similar
-from tuisim.tasks.marks.page import distribution, goal_statistics, page_of
-from tuisim.tasks.marks.sheet import sheet_of
+from tuisim.tasks.marks.copies import find_similar
+from tuisim.tasks.marks.page import build_page, compute_distribution, compute_goal_statistics
+from tuisim.tasks.marks.sheet import build_sheet
 
 
 def test_statistics_of_the_goals() -> None:
-    place, wall = goal_statistics(SHEET)
+    place, wall = compute_goal_statistics(SHEET)
     assert (place.met, place.partly, wall.met, wall.partly) == (1, 1, 3, 0)
     assert (place.mean, wall.mean) == ((7 + 5.25) / 5, 9 / 5)
     assert place.reasons[0] == ("it stopped 40 mm away", 3)
 
 
 def test_every_student_is_in_the_distribution_of_points() -> None:
-    parts = distribution(SHEET)
+    parts = compute_distribution(SHEET)
     assert sum(count for *_, count in parts) == len(SHEET.rows)
     assert parts[0][2] == 2 and parts[8] == (8.0, 9.0, 1) and parts[9] == (9.0, 10.0, 1)
 
 
 def test_goals_and_similar_programs_are_told() -> None:
-    page = page_of(SHEET, similar=similar({"ada": [LINE], "ben": [RENAMED], "cleo": [OTHER]}))
+    page = build_page(
+        SHEET, similar=find_similar({"ada": [LINE], "ben": [RENAMED], "cleo": [OTHER]})
+    )
     assert "<h2>Similar programs</h2>" in page and "ada, ben" in page
     assert (
         re.search(r"met by.*1 of 5, 1 in some runs", page, re.DOTALL)
@@ -34,8 +36,8 @@ def test_goals_and_similar_programs_are_told() -> None:
 
 
 def test_a_class_of_one_has_no_statistics_of_points_and_resemblance() -> None:
-    page = page_of(
-        sheet_of("", SHEET.columns, range(4), STUDENTS[:1], OUTCOMES),
-        similar=similar({"ada": [LINE]}),
+    page = build_page(
+        build_sheet("", SHEET.columns, range(4), STUDENTS[:1], OUTCOMES),
+        similar=find_similar({"ada": [LINE]}),
     )
     assert "<h2>Points</h2>" not in page and "Similar" not in page and "<h2>Goals</h2>" in page

@@ -18,19 +18,19 @@ from tests.web.chromium import needs_chromium
 from tuisim.base.errors import printable
 from tuisim.base.source import Program
 from tuisim.programs.program_file import ProgramSource
-from tuisim.tasks.goals.judgement import in_words
+from tuisim.tasks.goals.judgement import format_points
 from tuisim.tasks.goals.spec import FinishCondition, Goal
-from tuisim.tasks.marks.feedback import feedback_of, file_stems, write_feedback
+from tuisim.tasks.marks.feedback import build_feedback, build_file_stems, write_feedback
 from tuisim.tasks.marks.gradebook import Roster, write_gradebook
 from tuisim.tasks.marks.hand_ins import GradebookKind
 from tuisim.tasks.marks.outcome import GoalOutcome, Outcome
-from tuisim.tasks.marks.overrides import Override, overridden
-from tuisim.tasks.marks.page import distribution, goal_statistics, page_of
+from tuisim.tasks.marks.overrides import Override, apply_overrides
+from tuisim.tasks.marks.page import build_page, compute_distribution, compute_goal_statistics
 from tuisim.tasks.marks.sheet import (
     Sheet,
+    build_frame,
+    build_sheet,
     export_marks,
-    frame_of,
-    sheet_of,
 )
 from tuisim.tasks.marks.students import Student
 
@@ -70,7 +70,7 @@ OUTCOMES = {
         for seed in range(4)
     ],
 }
-SHEET = sheet_of("Grey bands", COLUMNS, range(4), STUDENTS, OUTCOMES)
+SHEET = build_sheet("Grey bands", COLUMNS, range(4), STUDENTS, OUTCOMES)
 
 
 def test_a_row_has_mean_points_robustness_and_the_first_failure() -> None:
@@ -94,13 +94,13 @@ def test_a_row_has_mean_points_robustness_and_the_first_failure() -> None:
 
 def test_in_a_task_without_points_a_run_is_complete_if_it_meets_every_goal() -> None:
     columns = [replace(column, points=0.0) for column in COLUMNS]
-    sheet = sheet_of("", columns, range(4), STUDENTS[:2], OUTCOMES)
+    sheet = build_sheet("", columns, range(4), STUDENTS[:2], OUTCOMES)
 
     assert [(row.robustness, row.reason) for row in sheet.rows] == [
         (1.0, ""),
         (0.75, "it stopped 40 mm away"),
     ]
-    assert 'class="number part">0<' in page_of(sheet)
+    assert 'class="number part">0<' in build_page(sheet)
 
 
 @pytest.mark.parametrize(
@@ -114,15 +114,15 @@ def test_points_that_are_taken_off_never_leave_less_than_none(
         GoalOutcome("place", place, "" if place else "too far"),
         GoalOutcome("hit", hit, is_penalty=True),
     )
-    sheet = sheet_of(
+    sheet = build_sheet(
         "", columns, (0,), STUDENTS[:1], {"ada": [Outcome(0, "finished", goals=goals)]}
     )
     (row,) = sheet.rows
     assert (sheet.most_points, row.points, row.robustness) == (7, points, float(place and not hit))
     assert row.reason == ("too far" if not place else "Hit the wall." if hit else "")
     told = "[happened] Hit the wall. (-2)" if hit else "[did not happen] Hit the wall."
-    assert told in feedback_of(sheet, row)
-    assert f'class="number {"missed" if hit else "met"}' in page_of(sheet)
+    assert told in build_feedback(sheet, row)
+    assert f'class="number {"missed" if hit else "met"}' in build_page(sheet)
 
 
 def _unjudged_sheet() -> Sheet:
@@ -140,7 +140,7 @@ def _unjudged_sheet() -> Sheet:
         ]
         for name, states in {"ada": "???", "ben": "?+-", "cleo": "+?+"}.items()
     }
-    return sheet_of("", COLUMNS, range(1), STUDENTS[:3], outcomes, ("", "a", "b"))
+    return build_sheet("", COLUMNS, range(1), STUDENTS[:3], outcomes, ("", "a", "b"))
 
 
 def test_what_could_not_be_judged_has_no_points() -> None:
@@ -148,10 +148,10 @@ def test_what_could_not_be_judged_has_no_points() -> None:
     table = [row[1:5] for row in sheet.tabulate()[1]]
     assert table == [["?", "0%", "?", "3"], ["3", "0%", "0", "3"], ["?", "0%", "?", "3"]]
     assert sheet.summary.startswith("3 students, 1 seed: mean 3 of 10 points")
-    assert "[could not be judged] Stop at the place." in feedback_of(sheet, sheet.rows[0], TEXT)
-    assert sum(count for *_, count in distribution(sheet)) == 1
-    assert [one.mean for one in goal_statistics(sheet)] == [0.0, 3.0]
-    (row, *_) = overridden(sheet, {"ada": Override(goals={"wall": 2.0})}).rows
+    assert "[could not be judged] Stop at the place." in build_feedback(sheet, sheet.rows[0], TEXT)
+    assert sum(count for *_, count in compute_distribution(sheet)) == 1
+    assert [one.mean for one in compute_goal_statistics(sheet)] == [0.0, 3.0]
+    (row, *_) = apply_overrides(sheet, {"ada": Override(goals={"wall": 2.0})}).rows
     assert math.isnan(row.points)
 
 
@@ -177,7 +177,7 @@ def test_a_table_has_a_column_a_goal_and_names_the_line() -> None:
 
 
 LONG = "n" * 95 + "-" + "m" * 94
-LONG_SHEET = sheet_of(
+LONG_SHEET = build_sheet(
     "", [*COLUMNS, replace(COLUMNS[0], name="g" * 60)], range(4), [_student(LONG)], {}
 )
 
@@ -199,7 +199,7 @@ document.title = edge <= innerWidth ? "all in view" : "marks end at " + edge;
 @pytest.mark.parametrize("width", [800, 1400])
 def test_a_long_name_pushes_no_mark_off_the_page(tmp_path: Path, width: int) -> None:
     (tmp_path / "marks.html").write_text(
-        page_of(LONG_SHEET).replace("</body>", f"{GEOMETRY}</body>")
+        build_page(LONG_SHEET).replace("</body>", f"{GEOMETRY}</body>")
     )
     command = [
         "chromium",
@@ -262,7 +262,7 @@ class _Elements(HTMLParser):
 
 def test_nothing_of_a_student_becomes_html() -> None:
     links = {(EVIL, "", 0): 'class-runs/"><script>.html'}
-    page = page_of(SHEET, links, ignored=("<script>alert(3)</script>.doc",))
+    page = build_page(SHEET, links, ignored=("<script>alert(3)</script>.doc",))
     elements = _Elements(page).found
     tags = {tag for tag, _ in elements}
     assert tags <= TAGS and [tag for tag, _ in elements].count("script") == 1
@@ -275,7 +275,7 @@ def test_nothing_of_a_student_becomes_html() -> None:
 
 
 def test_the_page_shows_each_student_and_the_line() -> None:
-    page = page_of(SHEET)
+    page = build_page(SHEET)
     assert all(f'scope="row">{name}<' in page for name in ("ada", "ben", "cleo", "empty"))
     assert "line 2: <code>stop()  # &lt;b&gt;too late&lt;/b&gt;</code>" in page
     assert page.count("not run with further seeds") == 1
@@ -286,12 +286,12 @@ def test_seeds_with_equal_recordings_share_a_link() -> None:
         ("ben", "", seed): f"runs/{'first' if seed in (0, 1, 3) else 'other'}.html"
         for seed in range(4)
     }
-    page = page_of(SHEET, links)
+    page = build_page(SHEET, links)
     assert '<a href="runs/first.html">0–1, 3</a>, <a href="runs/other.html">2</a>' in page
 
 
 def test_feedback_says_what_was_met_missed_and_why() -> None:
-    text = feedback_of(SHEET, SHEET.rows[1], TEXT)
+    text = build_feedback(SHEET, SHEET.rows[1], TEXT)
     assert text.splitlines() == [
         "ben: 8.25 of 10 points",
         "======================",
@@ -312,12 +312,12 @@ def test_feedback_says_what_was_met_missed_and_why() -> None:
 
 
 def test_feedback_of_a_program_that_could_not_be_run_says_so() -> None:
-    text = feedback_of(SHEET, SHEET.rows[4])
+    text = build_feedback(SHEET, SHEET.rows[4])
     assert "did not run to its end: there is no Python file" in " ".join(text.split())
 
 
 def test_feedback_names_an_error_without_control_characters() -> None:
-    text = feedback_of(SHEET, SHEET.rows[3], TEXT)
+    text = build_feedback(SHEET, SHEET.rows[3], TEXT)
     assert "did not run to its end: \ufffd[2J" in text and not re.search(
         r"[\x00-\x08\x0b-\x1f\x7f]", text
     )
@@ -329,7 +329,7 @@ def test_each_student_has_a_feedback_file_of_a_plain_name(tmp_path: Path) -> Non
     assert len(names) == len(STUDENTS) and {"ada.txt", "ben.txt", "cleo.txt", "empty.txt"} < set(
         names
     )
-    assert file_stems(["ada", "ada.py", "Ada", "a/b", "\x1b[2J", "..", ""]) == [
+    assert build_file_stems(["ada", "ada.py", "Ada", "a/b", "\x1b[2J", "..", ""]) == [
         "ada",
         "ada.py",
         "Ada-2",
@@ -341,7 +341,7 @@ def test_each_student_has_a_feedback_file_of_a_plain_name(tmp_path: Path) -> Non
 
 
 def test_files_of_the_longest_name_can_be_written(tmp_path: Path) -> None:
-    sheet = sheet_of("", COLUMNS, range(1), [_student("\U0001f40d" * 63)], {})
+    sheet = build_sheet("", COLUMNS, range(1), [_student("\U0001f40d" * 63)], {})
     write_feedback(tmp_path, sheet, [TEXT])
     (written,) = tmp_path.iterdir()
     assert len(f"{written.stem}-seed-{2**63 - 1}.html".encode()) <= 255
@@ -350,7 +350,7 @@ def test_files_of_the_longest_name_can_be_written(tmp_path: Path) -> None:
 @pytest.mark.parametrize("suffix", [".csv", ".parquet"])
 def test_exports_of_equal_sheets_are_equal(tmp_path: Path, suffix: str) -> None:
     backwards = {name: list(reversed(found)) for name, found in OUTCOMES.items()}
-    again = sheet_of("Grey bands", COLUMNS, range(4), STUDENTS, backwards)
+    again = build_sheet("Grey bands", COLUMNS, range(4), STUDENTS, backwards)
     for name, sheet in (("first", SHEET), ("second", again)):
         export_marks(sheet, tmp_path / f"{name}{suffix}")
     first, second = ((tmp_path / f"{name}{suffix}").read_bytes() for name in ("first", "second"))
@@ -358,7 +358,7 @@ def test_exports_of_equal_sheets_are_equal(tmp_path: Path, suffix: str) -> None:
 
 
 def test_a_frame_has_a_row_a_student_and_a_column_a_goal() -> None:
-    frame = frame_of(SHEET)
+    frame = build_frame(SHEET)
     assert list(frame.columns) == [
         "student",
         "program",
@@ -378,7 +378,7 @@ def test_a_frame_has_a_row_a_student_and_a_column_a_goal() -> None:
 
 
 def test_a_class_that_was_interrupted_has_rows_without_runs() -> None:
-    sheet: Sheet = sheet_of("", COLUMNS, range(4), STUDENTS[:2], {"ada": OUTCOMES["ada"][:2]})
+    sheet: Sheet = build_sheet("", COLUMNS, range(4), STUDENTS[:2], {"ada": OUTCOMES["ada"][:2]})
     assert [(row.points, row.runs, row.reason) for row in sheet.rows] == [
         (10.0, 2, ""),
         (0.0, 0, "not run"),
@@ -390,8 +390,8 @@ def test_a_run_that_this_machine_could_not_make_says_nothing_about_the_student()
         "ada": [*OUTCOMES["ada"], Outcome(4, "", "too many open files")],
         "ben": [Outcome(0, "", "no space")],
     }
-    sheet: Sheet = sheet_of("", COLUMNS, range(5), STUDENTS[:2], outcomes)
-    assert [(in_words(row.points), row.runs, row.reason) for row in sheet.rows] == [
+    sheet: Sheet = build_sheet("", COLUMNS, range(5), STUDENTS[:2], outcomes)
+    assert [(format_points(row.points), row.runs, row.reason) for row in sheet.rows] == [
         ("10", 4, ""),
         ("?", 0, "could not be judged: no space"),
     ]
@@ -406,14 +406,14 @@ def test_a_run_that_this_machine_could_not_make_says_nothing_about_the_student()
 )
 def test_who_could_choose_which_runs_count_has_no_points(missing: Outcome) -> None:
     earlier = [*OUTCOMES["ada"], Outcome(5, "", "too many open files")]
-    sheet = sheet_of("", COLUMNS, range(6), STUDENTS[:1], {"ada": [*earlier, missing]})
+    sheet = build_sheet("", COLUMNS, range(6), STUDENTS[:1], {"ada": [*earlier, missing]})
     (row,) = sheet.rows
     why = missing.failure.removeprefix("could not be judged: ")
-    assert (in_words(row.points), row.reason) == ("?", f"could not be judged: {why}")
+    assert (format_points(row.points), row.reason) == ("?", f"could not be judged: {why}")
 
 
 def test_a_run_of_which_nothing_is_recorded_has_no_points_and_says_why() -> None:
-    sheet: Sheet = sheet_of(
+    sheet: Sheet = build_sheet(
         "", COLUMNS, range(1), STUDENTS[:1], {"ada": [Outcome(0, "crashed", "it is damaged")]}
     )
     assert [(row.points, row.runs, row.cells[0].reason) for row in sheet.rows] == [

@@ -16,8 +16,8 @@ from tuisim.programs.program_settings import program_settings
 from tuisim.tasks.marks import students
 from tuisim.tasks.marks.journal import Journal
 from tuisim.tasks.marks.outcome import GoalOutcome, Outcome
-from tuisim.tasks.marks.students import file_outside, find_students
-from tuisim.tasks.marks.workspace import copy_of, digest_of, program_in
+from tuisim.tasks.marks.students import find_outside_option, find_students
+from tuisim.tasks.marks.workspace import build_program, compute_digest, copy_files
 
 
 def _folder(tmp_path: Path, *files: str) -> Path:
@@ -113,8 +113,8 @@ def test_a_notebook_is_a_program(tmp_path: Path) -> None:
     assert ben.problem == f"ben.ipynb: which of its 2 program cells is the program? {hint}"
     _, chosen = find_students([str(tmp_path / "class")], "ben.ipynb#2").students
     assert chosen.source is not None and chosen.source.program.name == "ben.ipynb#2"
-    folder = copy_of(chosen, tmp_path / "copy")
-    program = program_in(chosen, folder)
+    folder = copy_files(chosen, tmp_path / "copy")
+    program = build_program(chosen, folder)
     assert (program.path, program.module_folder) == ("", str(folder))
 
 
@@ -164,8 +164,8 @@ def test_what_is_no_file_or_has_an_odd_name_affects_its_own_row_only(tmp_path: P
     found = {one.name: one for one in find_students([str(folder)]).students}
     assert {name for name, one in found.items() if one.source} == {"ada", r"bad\xff"}
     assert {name for name, one in found.items() if one.problem} == {"loop", "pipe", "zero"}
-    place = copy_of(found[r"bad\xff"], tmp_path / "copy")
-    assert Path(program_in(found[r"bad\xff"], place).path).is_file()
+    place = copy_files(found[r"bad\xff"], tmp_path / "copy")
+    assert Path(build_program(found[r"bad\xff"], place).path).is_file()
 
 
 @pytest.mark.parametrize("word", ["nowhere", "class"])
@@ -182,21 +182,21 @@ def test_a_program_sees_a_copy_of_its_own_files_only(tmp_path: Path) -> None:
     os.mkfifo(folder / "ada" / "pipe")
     (folder / "ada" / "link").symlink_to("data/hops.csv")
     ada, ben = find_students([str(folder)]).students
-    program = program_in(ada, copy_of(ada, tmp_path / "0"))
+    program = build_program(ada, copy_files(ada, tmp_path / "0"))
     place = Path(program.working_directory)
     assert place == tmp_path / "0"
     assert sorted(path.name for path in place.iterdir()) == ["data", "link", "main.py"]
     assert (place / "link").is_symlink() and Path(program.path) == place / "main.py"
-    assert [path.name for path in copy_of(ben, tmp_path / "1").iterdir()] == ["ben.py"]
+    assert [path.name for path in copy_files(ben, tmp_path / "1").iterdir()] == ["ben.py"]
 
 
 def test_a_digest_changes_with_every_file(tmp_path: Path) -> None:
     folder = _folder(tmp_path, "ada/main.py", "ada/data/hops.csv")
     (ada,) = find_students([str(folder)]).students
-    before = digest_of(ada)
-    assert digest_of(ada) == before
+    before = compute_digest(ada)
+    assert compute_digest(ada) == before
     (folder / "ada/data/hops.csv").write_text("other\n")
-    assert digest_of(ada) != before
+    assert compute_digest(ada) != before
 
 
 OUTCOME = Outcome(
@@ -312,7 +312,7 @@ def test_a_magic_line_may_not_name_files_outside_the_folder(tmp_path: Path, opti
     (folder / "ada" / "main.py").write_text(f"# %%sim_magic {option} ../../secret.toml\n")
     (folder / "ben" / "main.py").write_text(f"# %%sim_magic {option} ./own.toml\n")
     ada, ben = find_students([str(folder)]).students
-    assert (bool(file_outside(ada)), file_outside(ben)) == (True, "")
+    assert (bool(find_outside_option(ada)), find_outside_option(ben)) == (True, "")
 
 
 @pytest.mark.parametrize(
@@ -331,7 +331,7 @@ def test_a_magic_line_of_a_file_may_not_name_what_is_another_students(
     folder = _folder(tmp_path, "ada.py", "ben/main.py", "zoe.py")
     (folder / "ada.py").write_text(f"# %%sim_magic {words}\n")
     ada = find_students([str(folder)]).students[0]
-    assert bool(file_outside(ada)) == is_refused
+    assert bool(find_outside_option(ada)) == is_refused
 
 
 def test_a_program_that_is_a_file_gets_nothing_from_the_programs_beside_it(tmp_path: Path) -> None:

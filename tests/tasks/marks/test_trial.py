@@ -8,11 +8,11 @@ import pytest
 
 from tests.cases import cases
 from tests.conftest import Command
-from tuisim.tasks.goals.files import example_names
+from tuisim.tasks.goals.files import list_example_names
 
 
 @pytest.mark.slow_cases("*")
-@pytest.mark.parametrize("name", example_names())
+@pytest.mark.parametrize("name", list_example_names())
 def test_an_example_gives_nothing_for_nothing(name: str, here: Command) -> None:
     done = here("goals", "try", name, "--jobs", "1", "--seeds", "0")
     assert (done.returncode, done.stderr) == (0, ""), done.stdout

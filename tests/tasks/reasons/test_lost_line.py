@@ -12,9 +12,9 @@ from tests.tasks.reasons.runs import PROGRAMS, WRONG_SIGN, run_example, run_text
 from tuisim.engine.runs.handle import start_run
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.engine.runs.store import RunStore
-from tuisim.tasks.lessons.catalogue import lesson_paths
+from tuisim.tasks.lessons.catalogue import find_lesson_paths
 from tuisim.tasks.lessons.files import load_lesson
-from tuisim.tasks.lessons.trial import task_of, trials
+from tuisim.tasks.lessons.trial import build_task, list_trials
 from tuisim.tasks.reasons.lost_line import _Way
 from tuisim.tasks.reasons.reason import Reason, ReasonKind, find_reasons
 
@@ -36,12 +36,12 @@ def test_no_example_has_a_reason(
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", lesson_paths())
+@pytest.mark.parametrize("name", find_lesson_paths())
 def test_no_model_answer_of_a_lesson_has_lost_or_blocked_anything(name: str) -> None:
-    lesson = load_lesson(lesson_paths()[name])
-    for trial in trials(lesson):
+    lesson = load_lesson(find_lesson_paths()[name])
+    for trial in list_trials(lesson):
         if trial.passes:
-            task = task_of(lesson, trial.text, trial.seed)
+            task = build_task(lesson, trial.text, trial.seed)
             handle = start_run(task.program, task.spec, task.options)
             assert handle.wait(PATIENCE_S)
             assert find_reasons(RunStore().load_run(handle.run_id)) == (), trial.step.name

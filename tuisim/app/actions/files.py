@@ -22,7 +22,7 @@ from tuisim.engine.obstacles import save_obstacles as write
 from tuisim.engine.runs.recorded_run import Recording
 from tuisim.engine.runs.store import RunStore
 from tuisim.settings.options import Settings
-from tuisim.settings.preferences import keep, preference
+from tuisim.settings.preferences import get_preference, keep
 
 _LOGGING_MAT = "Grey_bands"
 """What a new program is offered in place of the empty mat, on which there is nothing to log."""
@@ -93,7 +93,7 @@ def greet(context: ActionContext) -> None:
     """Show the welcome at the first start, and at later ones if there is something to go on with."""
     from tuisim.app.setup.recent import recent
 
-    if not preference(_WELCOMED_PREFERENCE):
+    if not get_preference(_WELCOMED_PREFERENCE):
         show_welcome(context)
         return
 
@@ -133,7 +133,7 @@ def _push_welcome(context: ActionContext, find: Callable[[], list[Recent]]) -> N
             case Recent():
                 context.document.run_when_saved(partial(_resume_recent, context, what))
 
-    context.app.push_screen(Welcome(not preference(_WELCOMED_PREFERENCE), find), handle_choice)
+    context.app.push_screen(Welcome(not get_preference(_WELCOMED_PREFERENCE), find), handle_choice)
 
 
 def _resume_recent(context: ActionContext, what: Recent) -> None:

@@ -138,7 +138,7 @@ def _ask_restart(context: ActionContext) -> None:
 
 def _switch_model(context: ActionContext) -> None:
     """Let the robot of the model answer drive along beside every run, or no longer."""
-    from tuisim.tasks.lessons.trial import model_run
+    from tuisim.tasks.lessons.trial import run_model
 
     lesson, runs = context.lesson.lesson, context.runs
     if lesson is None or runs.companion is not None:
@@ -155,7 +155,7 @@ def _switch_model(context: ActionContext) -> None:
             )
             context.app.draw(force=True)
 
-    work = partial(model_run, lesson, context.lesson.step)
+    work = partial(run_model, lesson, context.lesson.step)
     background.run(
         context.panels, work, handle_recording, context.app.complain, group="model", exclusive=True
     )

@@ -328,8 +328,8 @@ def build_program_chooser() -> Chooser:
     """Return the dialog for programs, worlds, goals and logs: those in the current folder, and the examples."""
     from tuisim.programs.program_file import programs
     from tuisim.settings.worlds import load_world
-    from tuisim.tasks.goals.files import examples as goals_examples
-    from tuisim.tasks.goals.files import title_of
+    from tuisim.tasks.goals.files import list_examples as goals_examples
+    from tuisim.tasks.goals.files import read_title
 
     examples, goals = programs(), goals_examples()
     known = {str(path.resolve()) for path in (*(path for _, path, _ in examples), *goals)}
@@ -344,7 +344,7 @@ def build_program_chooser() -> Chooser:
         ChoiceGroup("Logs", list_files(LOGS).entries),
         ChoiceGroup("Examples", [(str(path), name, title) for name, path, title in examples]),
         ChoiceGroup(
-            "Examples of goals", [(str(path), path.name, title_of(path)) for path in goals]
+            "Examples of goals", [(str(path), path.name, read_title(path)) for path in goals]
         ),
     ]
     title, suffixes = "Programs, worlds, goals and logs", (*OPENABLE, *LOGS)
@@ -368,11 +368,11 @@ def _read_openable(word: str) -> object:
             raise LogError("no such file", file=word)
         return word
     from tuisim.programs.program_file import find_program, read_program
-    from tuisim.settings.worlds import means_world
+    from tuisim.settings.worlds import is_world_name
     from tuisim.tasks.goals.files import load_task
 
     path = find_program(str(user_path(word)))
-    return load_task(path) if means_world(word) else read_program(path)
+    return load_task(path) if is_world_name(word) else read_program(path)
 
 
 def build_obstacle_chooser(plan: NextRun) -> Chooser:

@@ -43,7 +43,7 @@ from tuisim.app.layout.tree import (
 from tuisim.app.panels import PANELS, PanelPlace, TerminalSize
 from tuisim.base.data_class import dataclass
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
-from tuisim.settings.preferences import keep, preference
+from tuisim.settings.preferences import get_preference, keep
 
 _CODE_FROM_COLS = 120
 """From this width on, code is shown beside them."""
@@ -387,7 +387,7 @@ class KeptLayout:
 
 def load_layout(size: TerminalSize) -> KeptLayout:
     """Return what was kept for a size; what is damaged or unknown is left out."""
-    found = _table(preference(_NAME)).get(size)
+    found = _table(get_preference(_NAME)).get(size)
     kept = _table(found)
     layout = KeptLayout()
     with suppress(ValueError):
@@ -409,7 +409,10 @@ def save_layout(size: TerminalSize, layout: KeptLayout) -> None:
     with suppress(OSError):
         keep(
             _NAME,
-            {**_table(preference(_NAME)), size: {"preset": layout.preset.value, "panels": panels}},
+            {
+                **_table(get_preference(_NAME)),
+                size: {"preset": layout.preset.value, "panels": panels},
+            },
         )
 
 

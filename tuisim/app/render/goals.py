@@ -11,7 +11,7 @@ from rich.style import Style
 from tuisim.base import palette
 from tuisim.base.data_class import dataclass
 from tuisim.tasks.goals.condition import ConditionKind
-from tuisim.tasks.goals.judgement import GoalState, Judgement, most_points, points_of
+from tuisim.tasks.goals.judgement import GoalState, Judgement, compute_max_points, sum_points
 from tuisim.tasks.goals.spec import Goal
 from tuisim.terminal.text_runs import Line, cut
 
@@ -101,12 +101,12 @@ def draw_goals(
     """
     if not view.goals:
         return GoalsPicture(list(_wrapped(NO_GOALS, width, _PALE)))
-    reached = points_of(
+    reached = sum_points(
         goal.points
         for goal, state in zip(view.goals, states, strict=True)
         if state is GoalState.MET
     )
-    total = f"{reached:g} of {most_points(view.goals):g} points"
+    total = f"{reached:g} of {compute_max_points(view.goals):g} points"
     lines = list(_wrapped(view.title, width, _NAME)) if height >= _TITLED_ROWS else []
     lines.append([(total, _HEAD)])
     listed = [

@@ -13,7 +13,7 @@ from tuisim.base import palette
 from tuisim.base.data_class import dataclass
 from tuisim.programs.code_rows import code_rows
 from tuisim.tasks.goals.judgement import GoalState, Judgement
-from tuisim.tasks.lessons.markdown import markdown_lines
+from tuisim.tasks.lessons.markdown import render_markdown
 from tuisim.tasks.lessons.progress import StepState
 from tuisim.tasks.lessons.spec import (
     BreakCheck,
@@ -161,7 +161,7 @@ def _page(view: LessonView, page: int, width: int, away: Away) -> Iterator[Line]
     if is_current and view.done and not view.judgements:
         yield from _done(view.done, view.story, width, away)
     if page == 0 and not (is_current and view.judgements):
-        yield from markdown_lines(lesson.intro, width)
+        yield from render_markdown(lesson.intro, width)
         yield []
     yield from _wrapped(f"{page + 1}. {step.title}", width, _NAME)
     if is_current:
@@ -169,7 +169,7 @@ def _page(view: LessonView, page: int, width: int, away: Away) -> Iterator[Line]
         if view.remark:
             yield from _wrapped(view.remark, width, _BAD)
             yield []
-    yield from markdown_lines(step.text, width)
+    yield from render_markdown(step.text, width)
     if isinstance(step.check, QuestionCheck):
         yield []
         yield from _question(step.check, width)

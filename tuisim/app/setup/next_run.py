@@ -28,14 +28,14 @@ from tuisim.programs.program_settings import (
     decide,
     has_brick_rules,
 )
-from tuisim.settings.build import build_run_spec, settings_from
+from tuisim.settings.build import build_run_spec, extract_settings
 from tuisim.settings.options import (
-    OF_THE_MAT,
-    OF_THE_PROFILE,
+    RESET_BY_MAT,
+    RESET_BY_PROFILE,
     RUN_VALUES,
     START,
     Settings,
-    settings_of,
+    merge_settings,
 )
 from tuisim.settings.profiles import load_profile
 from tuisim.settings.robots import DEFAULT_ROBOT, RobotChoice, choose_robot
@@ -134,7 +134,7 @@ def first_plan(
 
 def plan_of_spec(spec: RunSpec) -> NextRun:
     """Return the plan of a run of which nothing else is known."""
-    return replace(plan_of(settings_of(settings_from(spec))), spec=spec)
+    return replace(plan_of(merge_settings(extract_settings(spec))), spec=spec)
 
 
 def plan_of_run(spec: RunSpec, program: Program | None = None) -> NextRun:
@@ -203,7 +203,7 @@ def with_choices(plan: NextRun, choices: Mapping[str, Any]) -> NextRun:
         if key in OF_THE_GROUND and plan.settings[key] in (None, value)
     }
     if "background" in said:
-        said = {**dict.fromkeys(OF_THE_MAT), **ground, **said}
+        said = {**dict.fromkeys(RESET_BY_MAT), **ground, **said}
     elif "profile" in said and ground:
         said |= ground if has_brick_rules(said["profile"]) else dict.fromkeys(ground)
     elif said.keys() & set(START):
@@ -283,7 +283,7 @@ def with_profile(plan: NextRun, word: str) -> NextRun:
     Raises:
         ProfileError: there is no profile of that name, or the file is invalid.
     """
-    return with_choices(plan, {**dict.fromkeys(OF_THE_PROFILE), "profile": word})
+    return with_choices(plan, {**dict.fromkeys(RESET_BY_PROFILE), "profile": word})
 
 
 def with_robot_as_chosen(plan: NextRun) -> NextRun:

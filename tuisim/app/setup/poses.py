@@ -23,7 +23,7 @@ from tuisim.engine.files import (
     toml_key,
     toml_lines,
 )
-from tuisim.settings.worlds import pose_from_table
+from tuisim.settings.worlds import parse_pose
 
 MOST_TRIES = 2000
 
@@ -109,7 +109,7 @@ def _poses(data: object) -> dict[str, Pose]:
     at = Location(str(poses_file()))
     poses = required(table(data, at, ("poses",)), "poses", at)
     return {
-        name: pose_from_table(pose, at.at(f"poses.{name}"))
+        name: parse_pose(pose, at.at(f"poses.{name}"))
         for name, pose in table(poses, at.at("poses")).items()
     }
 

@@ -21,9 +21,9 @@ from tuisim.settings.robots import (
     DEFAULT_ROBOT,
     HUB_ROBOT,
     ROBOTS,
-    robot_from_table,
-    robot_lines,
-    values_in,
+    format_robot,
+    list_table_values,
+    parse_robot,
 )
 
 USUAL = ROBOTS[DEFAULT_ROBOT]
@@ -111,14 +111,14 @@ class ProgramRobot:
             path,
             self.list_lines(),
             at,
-            lambda data: robot_from_table(data, name, at).spec,
+            lambda data: parse_robot(data, name, at).spec,
             self.spec,
         )
 
 
 def _table(spec: RobotSpec) -> dict[str, Any]:
     """Return the robot as a file has it, with every value."""
-    return tomllib.loads("\n".join(robot_lines(spec)))
+    return tomllib.loads("\n".join(format_robot(spec)))
 
 
 def _difference(robot: Mapping[str, Any], usual: Mapping[str, Any]) -> dict[str, Any]:
@@ -136,7 +136,7 @@ def _difference(robot: Mapping[str, Any], usual: Mapping[str, Any]) -> dict[str,
 def _lines(table: Mapping[str, Any], place: str, said: Mapping[str, str]) -> Iterator[str]:
     values = {key: value for key, value in table.items() if not isinstance(value, dict)}
     under = f"{place}." if place else ""
-    known = values_in(place)
+    known = list_table_values(place)
     comments = {
         key: said.get(f"{under}{key}", known[key].help if key in known else "") for key in values
     }

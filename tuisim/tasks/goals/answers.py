@@ -17,7 +17,7 @@ from tuisim.tasks.goals.spec import DialogueCondition, Goal, LogCondition, Print
 
 ASK = ""
 """Stands for a question, which is answered."""
-_MOST_REPEATED = 200
+_MAX_REPEATED = 200
 _LETTERS = "a1 .:-AZ_"
 """Characters that stand for a class of them, the first that fits."""
 
@@ -36,29 +36,29 @@ def answer_lines(goals: Sequence[Goal]) -> list[str]:
 
     for goal in goals:
         add(goal)
-    return [line for goal in ordered.values() for part in goal.parts for line in _lines(part)]
+    return [line for goal in ordered.values() for part in goal.parts for line in _build_lines(part)]
 
 
-def _lines(condition: Condition) -> Iterator[str]:
+def _build_lines(condition: Condition) -> Iterator[str]:
     match condition:
         case PrintCondition(lines=lines):
-            yield from map(line_like, lines)
+            yield from map(build_matching_line, lines)
         case LogCondition(name=name, levels=levels):
             yield from (f"{name}: {level:.12g}" for level in levels)
         case WhenCondition(conditions=conditions):
-            yield from (line for one in conditions if (line := _line_for(one)))
-        case CountCondition(condition=one, at_least=times):
-            yield from [_line_for(one)] * times if _line_for(one) else ()
+            yield from (line for comparison in conditions if (line := _build_line(comparison)))
+        case CountCondition(condition=comparison, at_least=times):
+            yield from [_build_line(comparison)] * times if _build_line(comparison) else ()
         case DialogueCondition(turns=turns):
             for turn in turns:
                 yield ASK
-                yield from [line_like(turn.reply)] if turn.reply else ()
+                yield from [build_matching_line(turn.reply)] if turn.reply else ()
 
 
-def _line_for(condition: ValueCondition) -> str:
+def _build_line(condition: ValueCondition) -> str:
     """Return a line that makes a condition true; empty if none does."""
     if condition.source is ValueSource.PRINT:
-        return line_like(condition.value)
+        return build_matching_line(condition.value)
     if condition.source is not ValueSource.SAMPLE:
         return ""
     name = condition.name or "Value"
@@ -66,55 +66,55 @@ def _line_for(condition: ValueCondition) -> str:
         return f"{name}: 1" if condition.operator is Operator.SEEN else f"{name}: 1\n{name}: 2"
     with suppress(ValueError):
         number = condition.number
-        found = next(
+        candidate = next(
             (value for value in (number, number - 1, number + 1) if condition.test()(value, value)),
             number,
         )
-        return f"{name}: {found:.12g}"
+        return f"{name}: {candidate:.12g}"
     return ""
 
 
-def line_like(pattern: str) -> str:
+def build_matching_line(pattern: str) -> str:
     """Return a line in which a regular expression is found; its words, if none is found easily."""
     plain = re.sub(r"[\\^$.|?*+(){}\[\]]", "", pattern)
     with suppress(re.error, RecursionError, IndexError, OverflowError, UnjudgedError):
-        found = _text(_parser.parse(pattern), {})
-        return found if "\n" not in found and build_search(pattern)(found) else plain
+        line = _build_text(_parser.parse(pattern), {})
+        return line if "\n" not in line and build_search(pattern)(line) else plain
     return plain
 
 
-def _text(parsed: Any, groups: dict[int, str]) -> str:
+def _build_text(parsed: Any, groups: dict[int, str]) -> str:
     """Return a text that fits a parsed expression; what looks around it is left out."""
-    return "".join(_part(kind, value, groups) for kind, value in parsed)
+    return "".join(_build_part(kind, value, groups) for kind, value in parsed)
 
 
-def _part(kind: object, value: Any, groups: dict[int, str]) -> str:
+def _build_part(kind: object, value: Any, groups: dict[int, str]) -> str:
     match kind:
         case op.LITERAL:
             return chr(value)
         case op.ANY:
             return "a"
         case op.NOT_LITERAL:
-            return next(one for one in _LETTERS if ord(one) != value)
+            return next(letter for letter in _LETTERS if ord(letter) != value)
         case op.IN:
-            return _one_of(value)
+            return _pick_character(value)
         case op.BRANCH:
-            return _text(value[1][0], groups)
+            return _build_text(value[1][0], groups)
         case op.SUBPATTERN:
-            found = _text(value[3], groups)
+            text = _build_text(value[3], groups)
             if value[0] is not None:
-                groups[value[0]] = found
-            return found
+                groups[value[0]] = text
+            return text
         case op.MAX_REPEAT | op.MIN_REPEAT | op.POSSESSIVE_REPEAT:
-            return _text(value[2], groups) * int(min(value[0], _MOST_REPEATED))
+            return _build_text(value[2], groups) * int(min(value[0], _MAX_REPEATED))
         case op.ATOMIC_GROUP:
-            return _text(value, groups)
+            return _build_text(value, groups)
         case op.GROUPREF:
             return groups.get(value, "")
     return ""
 
 
-def _one_of(members: Any) -> str:
+def _pick_character(members: Any) -> str:
     """Return a character of a class."""
     inside = [(kind, value) for kind, value in members if kind is not op.NEGATE]
     is_negated = len(inside) < len(members)
@@ -123,14 +123,14 @@ def _one_of(members: Any) -> str:
         for kind, value in inside
         if kind in (op.LITERAL, op.RANGE)
     ]
-    one: str
-    for one in (*candidates, *_LETTERS):
-        if any(_is_in(ord(one), kind, value) for kind, value in inside) is not is_negated:
-            return one
+    character: str
+    for character in (*candidates, *_LETTERS):
+        if any(_is_member(ord(character), kind, value) for kind, value in inside) is not is_negated:
+            return character
     return _LETTERS[0]
 
 
-def _is_in(code: int, kind: object, value: Any) -> bool:
+def _is_member(code: int, kind: object, value: Any) -> bool:
     match kind:
         case op.LITERAL:
             return bool(code == value)

@@ -32,22 +32,22 @@ _GREEN = 255
 """Until the program sets a LED, all are green."""
 
 
-def with_column(wanted: ValueCondition, run: RunSpec) -> ValueCondition:
+def resolve_column(condition: ValueCondition, run: RunSpec) -> ValueCondition:
     """Return a condition with the name of its column.
 
     Raises:
         ConfigError: the run has no such column.
     """
     if (
-        wanted.source is not ValueSource.COLUMN
-        or wanted.is_momentary
-        or wanted.name in (*BRICK_COLUMNS, *BRICK_TEXTS)
+        condition.source is not ValueSource.COLUMN
+        or condition.is_momentary
+        or condition.name in (*BRICK_COLUMNS, *BRICK_TEXTS)
     ):
-        return wanted
-    return replace(wanted, name=find_named_column(wanted.name, run))
+        return condition
+    return replace(condition, name=find_named_column(condition.name, run))
 
 
-def goal_condition_in(text: str) -> ValueCondition | None:
+def parse_goal_condition(text: str) -> ValueCondition | None:
     """Return the condition that a text of a goal is, None if it is none.
 
     As `parse_run_condition`, and `sound matches REGEX`, `display matches REGEX`.
@@ -59,7 +59,7 @@ def goal_condition_in(text: str) -> ValueCondition | None:
     return parse_run_condition(text)
 
 
-def text_ticks(condition: ValueCondition, rows: Iterable[OutputRow]) -> list[int]:
+def find_text_ticks(condition: ValueCondition, rows: Iterable[OutputRow]) -> list[int]:
     """Return the ticks in which a sound was played, or a text written on the display, that matches.
 
     Raises:
@@ -67,10 +67,10 @@ def text_ticks(condition: ValueCondition, rows: Iterable[OutputRow]) -> list[int
     """
     stream = BRICK_TEXTS[condition.name]
     search = build_search(condition.value)
-    return [row.tick for row in rows if row.stream is stream and any(map(search, _texts(row)))]
+    return [row.tick for row in rows if row.stream is stream and any(map(search, _list_texts(row)))]
 
 
-def _texts(row: OutputRow) -> list[str]:
+def _list_texts(row: OutputRow) -> list[str]:
     return (
         [str(line) for line in json.loads(row.text)[2]]
         if row.stream is Stream.CONSOLE
@@ -78,7 +78,7 @@ def _texts(row: OutputRow) -> list[str]:
     )
 
 
-def brick_column(
+def build_brick_column(
     name: str, ticks: int, rows: Iterable[OutputRow], actions: Iterable[UserAction]
 ) -> Array:
     """Return one of `BRICK_COLUMNS` at every tick, shape (ticks,)."""

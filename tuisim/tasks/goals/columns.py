@@ -10,11 +10,11 @@ from tuisim.base.errors import ConfigError, counted
 from tuisim.engine.core.collision import Solids
 from tuisim.engine.core.conditions import Operator, ValueCondition, ValueSource
 from tuisim.engine.core.spec import WorldSpec
-from tuisim.tasks.goals.brick import with_column
+from tuisim.tasks.goals.brick import resolve_column
 from tuisim.tasks.goals.comparisons import CountCondition, KeepCondition, WhenCondition
 from tuisim.tasks.goals.evidence import Evidence, EvidencePoint, EvidenceSpan
-from tuisim.tasks.goals.found import Occurrence, share_words
-from tuisim.tasks.goals.places import line_of_motion
+from tuisim.tasks.goals.found import Finding, share_words
+from tuisim.tasks.goals.places import find_motion_line
 
 if TYPE_CHECKING:
     import numpy as np
@@ -22,143 +22,145 @@ if TYPE_CHECKING:
     Array = np.ndarray[Any, Any]
 
 
-def find_when(condition: WhenCondition, evidence: Evidence, span: EvidenceSpan) -> Occurrence:
+def find_when(condition: WhenCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
     """Find the first tick at which all conditions are true."""
     import numpy as np
 
     ticks = span.ticks
     met = np.ones(len(evidence.records[ticks]), np.bool_)
     never: list[str] = []
-    for text, wanted in zip(condition.comparisons, condition.conditions, strict=True):
+    for text, comparison in zip(condition.comparisons, condition.conditions, strict=True):
         try:
-            named = with_column(wanted, evidence.spec)
+            named = resolve_column(comparison, evidence.spec)
             here = evidence.held(named)[ticks]
         except (ConfigError, ValueError) as error:
-            return _unfit(text, wanted, error)
+            return _refuse(text, comparison, error)
         if len(here) and not here.any():
-            never.append(f"{named} never became true{_nearest_words(named, evidence, span)}")
+            never.append(f"{named} never became true{_describe_nearest(named, evidence, span)}")
         met &= here
-    found = np.flatnonzero(met)
-    if len(found):
-        return Occurrence(EvidencePoint(span.first_tick + int(found[0])))
-    return Occurrence(
+    true_ticks = np.flatnonzero(met)
+    if len(true_ticks):
+        return Finding(EvidencePoint(span.first_tick + int(true_ticks[0])))
+    return Finding(
         None, f"{'; '.join(never)}." if never else "They were not true at the same time."
     )
 
 
-def _unfit(text: str, wanted: ValueCondition, error: ConfigError | ValueError) -> Occurrence:
+def _refuse(text: str, comparison: ValueCondition, error: ConfigError | ValueError) -> Finding:
     if isinstance(error, ConfigError):
-        return Occurrence(None, f"The robot has no column {wanted.name} ({error.hint}).")
-    return Occurrence(None, f"{text}: {error}.")
+        return Finding(None, f"The robot has no column {comparison.name} ({error.hint}).")
+    return Finding(None, f"{text}: {error}.")
 
 
-def _nearest_words(wanted: ValueCondition, evidence: Evidence, span: EvidenceSpan) -> str:
+def _describe_nearest(comparison: ValueCondition, evidence: Evidence, span: EvidenceSpan) -> str:
     """Return how near a column came to what it is compared with, as the end of a sentence; empty for what is not."""
     import numpy as np
 
-    if wanted.source is not ValueSource.COLUMN or wanted.is_momentary:
+    if comparison.source is not ValueSource.COLUMN or comparison.is_momentary:
         return ""
-    values = evidence.column(wanted.name)[span.ticks]
-    at = int(np.argmin(np.abs(values - wanted.number)))
-    return f": the nearest was {values[at]:.6g} at {evidence.time_words(span.first_tick + at)}"
+    values = evidence.column(comparison.name)[span.ticks]
+    nearest_index = int(np.argmin(np.abs(values - comparison.number)))
+    return f": the nearest was {values[nearest_index]:.6g} at {evidence.time_words(span.first_tick + nearest_index)}"
 
 
-def find_lapse(condition: KeepCondition, evidence: Evidence, span: EvidenceSpan) -> Occurrence:
+def find_lapse(condition: KeepCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
     """Find when conditions were violated, or at the end of a span that they were for too large a share of the time."""
     import numpy as np
 
     records = evidence.records[span.ticks]
     counts = np.ones(len(records), np.bool_)
     parts: list[tuple[Array, str]] = []
-    for text, wanted in zip(condition.comparisons, condition.conditions, strict=True):
+    for text, check in zip(condition.comparisons, condition.conditions, strict=True):
         try:
-            named = with_column(wanted, evidence.spec)
+            named = resolve_column(check, evidence.spec)
             true = evidence.held(named)
             if named.source is ValueSource.SAMPLE:
                 # Between two samples there is nothing to look at.
-                true, seen = _of_samples(named, evidence)
+                true, seen = _check_samples(named, evidence)
                 counts &= seen[span.ticks]
             parts.append((true[span.ticks], f"{named} was not so"))
         except (ConfigError, ValueError) as error:
             return replace(
-                _unfit(text, wanted, error), moment=EvidencePoint(max(0, span.first_tick)), line=0
+                _refuse(text, check, error), moment=EvidencePoint(max(0, span.first_tick)), line=0
             )
     if condition.gap_mm is not None:
-        (least, most), gaps = condition.gap_mm, _gaps_mm(records, evidence)
-        what = f"The robot was not {least:g} to {most:g} mm from the nearest obstacle or wall"
-        parts.append(((gaps >= least) & (gaps <= most), what))
+        (low, high), gaps = condition.gap_mm, _measure_gaps_mm(records, evidence)
+        what = f"The robot was not {low:g} to {high:g} mm from the nearest obstacle or wall"
+        parts.append(((gaps >= low) & (gaps <= high), what))
     wrong = np.flatnonzero(counts & ~np.logical_and.reduce([true for true, _ in parts]))
     share = 1.0 - len(wrong) / max(1, int(counts.sum()))
     if share >= condition.share:
-        return Occurrence()
-    at = int(wrong[0])
-    what = next(text for true, text in parts if not true[at])
-    reason = f"{what} at {evidence.time_words(span.first_tick + at)}"
+        return Finding()
+    index = int(wrong[0])
+    what = next(text for true, text in parts if not true[index])
+    reason = f"{what} at {evidence.time_words(span.first_tick + index)}"
     if condition.share == 1:
-        return Occurrence(EvidencePoint(span.first_tick + at), f"{reason}.")
+        return Finding(EvidencePoint(span.first_tick + index), f"{reason}.")
     decided = span.stop or (evidence.last if span.over else None)
     needed = f"{share_words(share)} of the time, {share_words(condition.share)} are needed"
-    return Occurrence(decided, f"{reason}; it was for {needed}.", line_of_motion(records, at))
+    return Finding(decided, f"{reason}; it was for {needed}.", find_motion_line(records, index))
 
 
-def _of_samples(named: ValueCondition, evidence: Evidence) -> tuple[Array, Array]:
+def _check_samples(named: ValueCondition, evidence: Evidence) -> tuple[Array, Array]:
     """Return whether a condition is true of all samples in each tick, and whether there are any."""
     import numpy as np
 
-    seen = evidence.rows_held(replace(named, sign=Operator.SEEN, value=""))
-    wrong = set(seen).difference(evidence.rows_held(named))
+    seen = evidence.find_true_rows(replace(named, sign=Operator.SEEN, value=""))
+    wrong = set(seen).difference(evidence.find_true_rows(named))
     ticks = np.arange(len(evidence.records))
-    true, found = (
+    true, has_samples = (
         np.isin(ticks, [evidence.rows[number].tick for number in rows]) for rows in (wrong, seen)
     )
-    return ~true, found
+    return ~true, has_samples
 
 
-def _gaps_mm(records: Array, evidence: Evidence) -> Array:
+def _measure_gaps_mm(records: Array, evidence: Evidence) -> Array:
     """Return how far the robot's body is from the nearest obstacle or wall, at every tick."""
     import numpy as np
 
     world = evidence.spec.world
     solids = Solids(WorldSpec(walls=world.walls, obstacles=world.obstacles), evidence.spec.robot)
     poses = zip(*(records[name].tolist() for name in ("x_mm", "y_mm", "heading_deg")), strict=True)
-    found: list[float] = []
+    gaps_mm: list[float] = []
     for pose, same in groupby(poses):
-        found += [min(solids.measure_gaps_mm(pose), default=float("inf"))] * len(list(same))
-    return np.array(found)
+        gaps_mm += [min(solids.measure_gaps_mm(pose), default=float("inf"))] * len(list(same))
+    return np.array(gaps_mm)
 
 
-def find_miscount(condition: CountCondition, evidence: Evidence, span: EvidenceSpan) -> Occurrence:
+def find_miscount(condition: CountCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
     """Find when something had happened too often, or at the end of a span that it had not often enough."""
-    wanted = condition.condition
+    comparison = condition.condition
     try:
-        named = with_column(wanted, evidence.spec)
-        moments = _moments(named, evidence, span)
+        named = resolve_column(comparison, evidence.spec)
+        moments = _find_moments(named, evidence, span)
     except (ConfigError, ValueError) as error:
-        unfit = _unfit(condition.of, wanted, error)
+        unfit = _refuse(condition.of, comparison, error)
         return replace(unfit, moment=EvidencePoint(max(0, span.first_tick)), line=0)
     times = counted(len(moments), "time")
     if condition.at_most is not None and len(moments) > condition.at_most:
         text = f"{named} came {times}; the goal allows at most {condition.at_most:,}."
-        return Occurrence(moments[condition.at_most], text)
+        return Finding(moments[condition.at_most], text)
     if len(moments) >= condition.at_least:
-        return Occurrence()
+        return Finding()
     decided = span.stop or (evidence.last if span.over else None)
     line = evidence.line(moments[-1]) if moments else 0
-    return Occurrence(
+    return Finding(
         decided, f"{named} came {times}; the goal needs at least {condition.at_least:,}.", line
     )
 
 
-def _moments(named: ValueCondition, evidence: Evidence, span: EvidenceSpan) -> list[EvidencePoint]:
+def _find_moments(
+    named: ValueCondition, evidence: Evidence, span: EvidenceSpan
+) -> list[EvidencePoint]:
     """Return when a condition came true in a span: each line or sample of which it is, else when it began to be."""
     import numpy as np
 
     if named.source is not ValueSource.COLUMN:
         return [
             EvidencePoint(evidence.rows[number].tick, number)
-            for number in evidence.rows_held(named)
+            for number in evidence.find_true_rows(named)
             if span.first_row <= number < span.end_row
         ]
     true = evidence.held(named)[span.ticks]
     begins = true if named.is_momentary else true & ~np.concatenate(([False], true[:-1]))
-    return [EvidencePoint(span.first_tick + int(at)) for at in np.flatnonzero(begins)]
+    return [EvidencePoint(span.first_tick + int(index)) for index in np.flatnonzero(begins)]

@@ -14,7 +14,7 @@ from tuisim.engine.core.conditions import (
     parse_condition,
 )
 from tuisim.programs.facts import STRUCTURES
-from tuisim.tasks.goals.brick import goal_condition_in
+from tuisim.tasks.goals.brick import parse_goal_condition
 from tuisim.tasks.goals.condition import Condition, ConditionKind, Gap, Share, Times, check_count
 
 
@@ -30,30 +30,30 @@ class WhenCondition(Condition):
     def __post_init__(self) -> None:
         check_count(self.comparisons, "comparisons")
         for number, text in enumerate(self.comparisons, start=1):
-            _comparison(text, f"comparisons[{number}]")
+            _parse_comparison(text, f"comparisons[{number}]")
 
     @property
     def conditions(self) -> tuple[ValueCondition, ...]:
         """What the texts mean."""
-        return tuple(_comparison(text, "") for text in self.comparisons)
+        return tuple(_parse_comparison(text, "") for text in self.comparisons)
 
 
-def _comparison(text: str, key: str) -> ValueCondition:
+def _parse_comparison(text: str, key: str) -> ValueCondition:
     """Return what a comparison means.
 
     Raises:
         ConfigError: it is none, or its regular expression is wrong.
     """
-    found = goal_condition_in(text)
-    if found is None:
+    condition = parse_goal_condition(text)
+    if condition is None:
         raise ConfigError(
             f"no comparison: {text!r}",
             f"{describe_comparison()}, such as left_red_pc < 10",
             key=key,
         )
-    if found.operator is Operator.MATCHES:
-        require_regex(found.value, key)
-    return found
+    if condition.operator is Operator.MATCHES:
+        require_regex(condition.value, key)
+    return condition
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,7 +79,7 @@ class KeepCondition(Condition):
             )
         for number, text in enumerate(self.comparisons, start=1):
             key = f"comparisons[{number}]"
-            if _comparison(text, key).is_momentary:
+            if _parse_comparison(text, key).is_momentary:
                 raise ConfigError(
                     f"is only true at instants: {text!r}", describe_comparison(), key=key
                 )
@@ -87,7 +87,7 @@ class KeepCondition(Condition):
     @property
     def conditions(self) -> tuple[ValueCondition, ...]:
         """What the texts mean."""
-        return tuple(_comparison(text, "") for text in self.comparisons)
+        return tuple(_parse_comparison(text, "") for text in self.comparisons)
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,7 +102,7 @@ class CountCondition(Condition):
     at_most: Times | None = None
 
     def __post_init__(self) -> None:
-        _comparison(self.of, "of")
+        _parse_comparison(self.of, "of")
         if not self.at_least and self.at_most is None:
             raise ConfigError("does not say how often", "give at_least, at_most, or both")
         if self.at_most is not None and self.at_most < self.at_least:
@@ -111,7 +111,7 @@ class CountCondition(Condition):
     @property
     def condition(self) -> ValueCondition:
         """What the text means."""
-        return _comparison(self.of, "")
+        return _parse_comparison(self.of, "")
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,21 +127,25 @@ class StructureCondition(Condition):
     def __post_init__(self) -> None:
         check_count(self.comparisons, "comparisons")
         for number, text in enumerate(self.comparisons, start=1):
-            key, found = f"comparisons[{number}]", parse_condition(text)
-            if found is None or found.operator not in COMPARE or not found.value.isdecimal():
+            key, condition = f"comparisons[{number}]", parse_condition(text)
+            if (
+                condition is None
+                or condition.operator not in COMPARE
+                or not condition.value.isdecimal()
+            ):
                 raise ConfigError(
                     f"no comparison: {text!r}",
                     f"{describe_comparison()}, such as loops >= 1",
                     key=key,
                 )
-            if found.name not in STRUCTURES:
+            if condition.name not in STRUCTURES:
                 raise ConfigError(
-                    f"nothing is counted as {found.name!r}",
-                    nearest(found.name, STRUCTURES),
+                    f"nothing is counted as {condition.name!r}",
+                    nearest(condition.name, STRUCTURES),
                     key=key,
                 )
 
     @property
     def conditions(self) -> tuple[ValueCondition, ...]:
         """What the texts mean."""
-        return tuple(found for text in self.comparisons if (found := parse_condition(text)))
+        return tuple(condition for text in self.comparisons if (condition := parse_condition(text)))

@@ -57,14 +57,14 @@ WINDOWED = (ConditionKind.REACHED, ConditionKind.HELD)
 """The kinds of conditions that can count for a while only, see `Goal.within_s`."""
 
 
-def check_count(found: tuple[object, ...], key: str) -> None:
+def check_count(entries: tuple[object, ...], key: str) -> None:
     """Check the number of entries in a list.
 
     Raises:
         ConfigError: there are none, or too many.
     """
-    if not 1 <= len(found) <= MAX_PLACES:
-        raise ConfigError(f"must have 1 to {MAX_PLACES} entries, has {len(found)}", key=key)
+    if not 1 <= len(entries) <= MAX_PLACES:
+        raise ConfigError(f"must have 1 to {MAX_PLACES} entries, has {len(entries)}", key=key)
 
 
 @dataclass(frozen=True, slots=True)

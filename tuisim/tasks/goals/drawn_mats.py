@@ -49,15 +49,15 @@ class DrawnMat:
         return content.getvalue()
 
 
-def _white() -> Array:
+def _build_white_mat() -> Array:
     import numpy as np
 
     return np.full((FIELD_HEIGHT_MM, FIELD_WIDTH_MM, 3), 255, np.uint8)
 
 
-def _bands(chance: Random) -> DrawnMat:
+def _draw_bands(chance: Random) -> DrawnMat:
     """Three to five upright bands, the last one black."""
-    pixels, count = _white(), 3 + int(3 * chance.random())
+    pixels, count = _build_white_mat(), 3 + int(3 * chance.random())
     greys: list[int] = [0]
     while len(greys) < count:
         grey = int((255 - _GREY_STEP) * chance.random())
@@ -77,11 +77,11 @@ def _bands(chance: Random) -> DrawnMat:
     return DrawnMat(pixels, (150.0, 500.0, 0.0), tuple(bands))
 
 
-def _line(chance: Random) -> DrawnMat:
+def _draw_line(chance: Random) -> DrawnMat:
     """A black line from left to right, in bends."""
     import numpy as np
 
-    pixels = _white()
+    pixels = _build_white_mat()
     waves = [
         (length, height * (0.5 + chance.random() / 2), math.tau * chance.random())
         for length, height in _WAVES
@@ -110,16 +110,16 @@ def _line(chance: Random) -> DrawnMat:
     )
 
 
-DRAWN_MATS: Mapping[str, Callable[[Random], DrawnMat]] = {"bands": _bands, "line": _line}
+DRAWN_MATS: Mapping[str, Callable[[Random], DrawnMat]] = {"bands": _draw_bands, "line": _draw_line}
 """The kinds of drawn mats. To add one: write its function and a line here."""
 
 
-def drawn_mat(kind: str, seed: int) -> DrawnMat:
+def generate_mat(kind: str, seed: int) -> DrawnMat:
     """Return the mat of one of `DRAWN_MATS` that a seed draws."""
     return DRAWN_MATS[kind](Random(seed))
 
 
-def world_lines(mat: DrawnMat, image: str) -> list[str]:
+def format_world_lines(mat: DrawnMat, image: str) -> list[str]:
     """Return the lines of a task's file that make a hidden world of a mat.
 
     Args:

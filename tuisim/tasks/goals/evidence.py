@@ -24,8 +24,8 @@ from tuisim.tasks.goals.brick import (
     BRICK_COLUMNS,
     BRICK_STREAMS,
     BRICK_TEXTS,
-    brick_column,
-    text_ticks,
+    build_brick_column,
+    find_text_ticks,
 )
 from tuisim.tasks.goals.patterns import Search, build_search
 
@@ -120,9 +120,9 @@ class Evidence:
     @cached_property
     def rows(self) -> list[OutputRow]:
         """The rows that the program printed or read, in order, up to `MAX_ROWS`."""
-        kept = (Stream.STDOUT, Stream.STDERR, Stream.INPUT, Stream.DATA)
+        streams = (Stream.STDOUT, Stream.STDERR, Stream.INPUT, Stream.DATA)
         return list(
-            islice((row for row in self._run.output.rows() if row.stream in kept), MAX_ROWS)
+            islice((row for row in self._run.output.rows() if row.stream in streams), MAX_ROWS)
         )
 
     @cached_property
@@ -150,8 +150,8 @@ class Evidence:
         key = f"search {pattern}"
         if key not in self.memo:
             self.memo[key] = build_search(pattern)
-        found: Search = self.memo[key]
-        return found
+        search_line: Search = self.memo[key]
+        return search_line
 
     @cached_property
     def brick_rows(self) -> list[OutputRow]:
@@ -171,11 +171,13 @@ class Evidence:
         if name not in self.memo:
             actions = self._actions
             if name in BRICK_COLUMNS:
-                self.memo[name] = brick_column(name, len(self.records), self.brick_rows, actions)
+                self.memo[name] = build_brick_column(
+                    name, len(self.records), self.brick_rows, actions
+                )
                 return self.column(name)
             self.memo |= column_values((name,), self.records, self._run, actions, self.mat)
-        found: Array = self.memo[name]
-        return found
+        values: Array = self.memo[name]
+        return values
 
     def held(self, condition: ValueCondition) -> Array:
         """Return whether a condition is true in each tick; one on printed lines is where such a line was printed.
@@ -188,15 +190,17 @@ class Evidence:
         import numpy as np
 
         if condition.operator is Operator.MATCHES and condition.name in BRICK_TEXTS:
-            return np.isin(np.arange(len(self.records)), text_ticks(condition, self.brick_rows))
+            return np.isin(
+                np.arange(len(self.records)), find_text_ticks(condition, self.brick_rows)
+            )
         if condition.source is ValueSource.COLUMN:
             return held(condition, self.column(condition.name))
         return np.isin(
             np.arange(len(self.records)),
-            [self.rows[number].tick for number in self.rows_held(condition)],
+            [self.rows[number].tick for number in self.find_true_rows(condition)],
         )
 
-    def rows_held(self, condition: ValueCondition) -> list[int]:
+    def find_true_rows(self, condition: ValueCondition) -> list[int]:
         """Return the indices of the rows of which a condition on printed lines is true.
 
         Raises:
@@ -211,8 +215,8 @@ class Evidence:
                 if row.stream in SAMPLE_STREAMS and search(row.text)
             ]
         printed = [row for row in self.rows if row.stream in SAMPLE_STREAMS]
-        found = set(map(id, rows_when(condition, printed)))
-        return [number for number, row in enumerate(self.rows) if id(row) in found]
+        ids = set(map(id, rows_when(condition, printed)))
+        return [number for number, row in enumerate(self.rows) if id(row) in ids]
 
     @cached_property
     def mat(self) -> Field:
@@ -238,7 +242,7 @@ class Evidence:
         """The newest moment, after everything in the recording."""
         return EvidencePoint(len(self.records) - 1, len(self.rows), self.end_s)
 
-    def at_time(self, time_s: float) -> EvidencePoint | None:
+    def find_moment(self, time_s: float) -> EvidencePoint | None:
         """Return the moment after everything up to a time; None if the recording does not go beyond that time."""
         if time_s >= self.end_s:
             return None
@@ -246,7 +250,7 @@ class Evidence:
         row = bisect_right(self.rows, time_s * NS_PER_S, key=lambda row: row.time_ns)
         return EvidencePoint(tick, row, time_s)
 
-    def before_time(self, time_s: float) -> EvidencePoint | None:
+    def find_earlier_moment(self, time_s: float) -> EvidencePoint | None:
         """Return the moment just before a time; None if the recording does not go that far."""
         if time_s > self.end_s:
             return None
@@ -261,13 +265,13 @@ class Evidence:
         return EvidenceSpan(
             first_tick=start.tick + 1,
             end_tick=end.tick + (end.row >= 0),
-            first_row=self._row_after(start) if start.row < 0 else start.row + 1,
-            end_row=self._row_after(end) if end.row < 0 else end.row,
+            first_row=self._find_next_row(start) if start.row < 0 else start.row + 1,
+            end_row=self._find_next_row(end) if end.row < 0 else end.row,
             stop=stop,
             over=stop is None and self.ended,
         )
 
-    def _row_after(self, moment: EvidencePoint) -> int:
+    def _find_next_row(self, moment: EvidencePoint) -> int:
         return (
             bisect_left(self.rows, moment.tick, key=lambda row: row.tick) if moment.tick > 0 else 0
         )

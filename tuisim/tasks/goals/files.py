@@ -22,10 +22,10 @@ from tuisim.engine.core.profile import PROFILES
 from tuisim.engine.core.spec import RunSpec, WorldSpec
 from tuisim.engine.core.values import quote
 from tuisim.engine.files import Location
-from tuisim.settings.options import names_world
+from tuisim.settings.options import has_world_values
 from tuisim.settings.robots import DEFAULT_ROBOT, RobotChoice, choose_robot
-from tuisim.settings.worlds import WorldFile, means_world, world_from_table
-from tuisim.tasks.goals.brick import with_column
+from tuisim.settings.worlds import WorldFile, is_world_name, parse_world
+from tuisim.tasks.goals.brick import resolve_column
 from tuisim.tasks.goals.comparisons import CountCondition, KeepCondition, WhenCondition
 from tuisim.tasks.goals.condition import WINDOWED, Condition, ConditionKind, Points, Seconds
 from tuisim.tasks.goals.picture import PictureTable, draw_from_table
@@ -38,7 +38,7 @@ from tuisim.tasks.goals.spec import (
     Together,
     UseCondition,
 )
-from tuisim.tasks.goals.trial_world import TrialWorld, check_names, others_of
+from tuisim.tasks.goals.trial_world import TrialWorld, check_names, parse_other_worlds
 
 MAX_NAME = 60
 _EXAMPLE = "_goals.toml"
@@ -84,20 +84,20 @@ class GoalsFile:
     @property
     def every_goal(self) -> tuple[Goal, ...]:
         """Its goals, and those that only another world has."""
-        found = {
+        goals_by_name = {
             goal.name: replace(goal, hidden=goal.hidden or world.hidden)
             for world in reversed(self.worlds)
             for goal in world.own_goals
         }
         names = dict.fromkeys(goal.name for world in self.worlds for goal in world.own_goals)
-        return tuple(found[name] for name in names)
+        return tuple(goals_by_name[name] for name in names)
 
 
 def load_goals(path: Path | str) -> GoalsFile:
     """Read a goals file, and the world and the pictures that it names.
 
     Args:
-        path: The file, or one of `example_names`.
+        path: The file, or one of `list_example_names`.
 
     Raises:
         ConfigError: it, or a file that it names, cannot be read or is wrong; the error names file, line and key.
@@ -113,23 +113,23 @@ def load_task(path: Path | str, mats: str | None = None) -> tuple[WorldFile, Goa
     """Read a world file, with its goals if it has any.
 
     Args:
-        path: The file, or one of `example_names`.
+        path: The file, or one of `list_example_names`.
         mats: A folder of mats, unless the file names one.
 
     Raises:
         ConfigError: it, or a file that it names, cannot be read or is wrong; the error names file, line and key.
     """
-    path = _found(user_path(path))
-    if not means_world(path.name):
+    path = _find_file(user_path(path))
+    if not is_world_name(path.name):
         raise ConfigError("is not a .toml file", "a world file is TOML", file=str(path))
     data = files.read_file(path, ConfigError)
-    with line_in_errors(path):
-        world = world_from_table(data, path, mats)
-        return world, _goals_file(data, path, world)
+    with add_line_to_errors(path):
+        world = parse_world(data, path, mats)
+        return world, _build_goals_file(data, path, world)
 
 
 @contextmanager
-def line_in_errors(path: Path, text: str | None = None) -> Iterator[None]:
+def add_line_to_errors(path: Path, text: str | None = None) -> Iterator[None]:
     """Add the line to an error in a file that names only its key.
 
     Args:
@@ -141,22 +141,22 @@ def line_in_errors(path: Path, text: str | None = None) -> Iterator[None]:
     except ConfigError as error:
         if error.file != str(path) or not error.key:
             raise
-        line = line_of_key(
+        line = find_key_line(
             path.read_text("utf-8-sig", "replace") if text is None else text, error.key
         )
         raise files.with_location(error, f"{path}, line {line}", error.key) from None
 
 
-def example_names() -> list[str]:
+def list_example_names() -> list[str]:
     """Return the names of the examples: `log_greys` stands for `log_greys_goals.toml`.
 
     Raises:
         ConfigError: there is no folder of programs.
     """
-    return [path.name.removesuffix(_EXAMPLE) for path in examples()]
+    return [path.name.removesuffix(_EXAMPLE) for path in list_examples()]
 
 
-def title_of(path: Path) -> str:
+def read_title(path: Path) -> str:
     """Return the title of a goals file, whose other keys are not checked; empty if it has none.
 
     Raises:
@@ -166,7 +166,7 @@ def title_of(path: Path) -> str:
     return title if isinstance(title, str) else ""
 
 
-def examples() -> list[Path]:
+def list_examples() -> list[Path]:
     """Return the files of the examples, by name.
 
     Raises:
@@ -175,36 +175,36 @@ def examples() -> list[Path]:
     return sorted(programs_folder().glob(f"*{_EXAMPLE}"))
 
 
-def _found(path: Path) -> Path:
+def _find_file(path: Path) -> Path:
     """Return the file of an example if there is no other file of its name."""
     if path.parent != Path() or os.path.exists(path):
         return path
     name = path.name.removesuffix(_EXAMPLE)
-    return programs_folder() / f"{name}{_EXAMPLE}" if name in example_names() else path
+    return programs_folder() / f"{name}{_EXAMPLE}" if name in list_example_names() else path
 
 
-def _goals_file(data: Any, path: Path, world: WorldFile) -> GoalsFile | None:
+def _build_goals_file(data: Any, path: Path, world: WorldFile) -> GoalsFile | None:
     """Return the task in a file, with that of the file that it is based on; None if there is none."""
-    at = Location(str(path))
+    location = Location(str(path))
     base = load_task(path.parent / user_path(data["world"]))[1] if "world" in data else None
     if base is None and "goal" not in data:
         return None
     inherited = base.goals if base else ()
     own = (
-        goals_from_list(data["goal"], at.at("goal"), path.parent, inherited)
+        parse_goals(data["goal"], location.at("goal"), path.parent, inherited)
         if "goal" in data
         else ()
     )
     names = {goal.name for goal in own}
     goals = (*(goal for goal in inherited if goal.name not in names), *own)
     title = (
-        files.convert(data["title"], str, at.at("title"))
+        files.convert(data["title"], str, location.at("title"))
         if "title" in data
         else base.title
         if base
         else ""
     )
-    others = _others(data["also"], goals, at.at("also"), path) if "also" in data else ()
+    others = _parse_others(data["also"], goals, location.at("also"), path) if "also" in data else ()
     known = base.others if base else ()
     task = GoalsFile(
         path,
@@ -216,28 +216,32 @@ def _goals_file(data: Any, path: Path, world: WorldFile) -> GoalsFile | None:
         world.inputs,
     )
     # Without a world, programs choose the robot.
-    if names_world(world.settings):
-        runs = runs_of(task.worlds)
-        check_columns(own, runs, at.at("goal"))
+    if has_world_values(world.settings):
+        runs = build_runs(task.worlds)
+        check_columns(own, runs, location.at("goal"))
         for number, other in enumerate(others, start=1):
-            check_columns(other.own_goals, runs, at.at(f"also[{number}].goal"))
+            check_columns(other.own_goals, runs, location.at(f"also[{number}].goal"))
     return task
 
 
-def _others(
-    data: object, goals: tuple[Goal, ...], at: Location, path: Path
+def _parse_others(
+    data: object, goals: tuple[Goal, ...], location: Location, path: Path
 ) -> tuple[TrialWorld, ...]:
     names = tuple(goal.name for goal in goals)
-    others = others_of(data, names, at, path, partial(goals_from_list, beside=goals), of_task=True)
+    others = parse_other_worlds(
+        data, names, location, path, partial(parse_goals, beside=goals), of_task=True
+    )
     for number, other in enumerate(others, start=1):
         check_names(
-            other.goals, {*names, *(goal.name for goal in other.own_goals)}, at.at(f"[{number}]")
+            other.goals,
+            {*names, *(goal.name for goal in other.own_goals)},
+            location.at(f"[{number}]"),
         )
     return others
 
 
-def goals_from_list(
-    data: object, at: Location, folder: Path, beside: Sequence[Goal] = ()
+def parse_goals(
+    data: object, location: Location, folder: Path, beside: Sequence[Goal] = ()
 ) -> tuple[Goal, ...]:
     """Return the goals in a list of tables; the files that they name are in a folder.
 
@@ -247,49 +251,57 @@ def goals_from_list(
     Raises:
         ConfigError: a goal is wrong; the error names its key.
     """
-    listed = files.entries(data, at, MAX_GOALS, "goals")
-    goals = tuple(_goal(entry, place, folder) for entry, place in listed)
+    listed = files.entries(data, location, MAX_GOALS, "goals")
+    goals = tuple(_parse_goal(entry, place, folder) for entry, place in listed)
     own = {goal.name for goal in goals}
-    kept = [goal for goal in beside if goal.name not in own]
-    _check_names((*goals, *kept), [*(place for _, place in listed), *[at] * len(kept)])
+    inherited = [goal for goal in beside if goal.name not in own]
+    _check_names(
+        (*goals, *inherited), [*(place for _, place in listed), *[location] * len(inherited)]
+    )
     return goals
 
 
-def _goal(data: object, at: Location, folder: Path) -> Goal:
-    found = files.table(data, at, (*_TEXTS, "points", "hidden", "within_s", *CONDITIONS, *_LIMITS))
+def _parse_goal(data: object, location: Location, folder: Path) -> Goal:
+    table = files.table(
+        data, location, (*_TEXTS, "points", "hidden", "within_s", *CONDITIONS, *_LIMITS)
+    )
     values: dict[str, Any] = {
-        key: files.convert(found[key], str, at.at(key)) for key in _TEXTS if key in found
+        key: files.convert(table[key], str, location.at(key)) for key in _TEXTS if key in table
     }
-    files.required(found, "name", at)
+    files.required(table, "name", location)
     if len(values["name"]) > MAX_NAME:
-        raise at.at("name").wrong(
+        raise location.at("name").wrong(
             f"is too long, {len(values['name'])} characters", f"at most {MAX_NAME}"
         )
     conditions = tuple(
-        _condition(kind, found[key], at.at(key), folder)
+        _parse_condition(kind, table[key], location.at(key), folder)
         for key, kind in CONDITIONS.items()
-        if key in found
+        if key in table
     )
     if not conditions:
-        raise at.wrong(
+        raise location.wrong(
             "has no condition", f"one of {', '.join(CONDITIONS)}; {see_page('goal-files')}"
         )
     condition = conditions[0] if len(conditions) == 1 else Together(conditions)
-    if "points" in found:
-        values["points"] = files.convert(found["points"], Points, at.at("points"))
-    if "within_s" in found:
-        values["within_s"] = files.convert(found["within_s"], Seconds, at.at("within_s"))
-    if "hidden" in found:
-        values["hidden"] = files.convert(found["hidden"], bool, at.at("hidden"))
-    values |= {limit: _limit(found[limit], at.at(limit)) for limit in _LIMITS if limit in found}
+    if "points" in table:
+        values["points"] = files.convert(table["points"], Points, location.at("points"))
+    if "within_s" in table:
+        values["within_s"] = files.convert(table["within_s"], Seconds, location.at("within_s"))
+    if "hidden" in table:
+        values["hidden"] = files.convert(table["hidden"], bool, location.at("hidden"))
+    values |= {
+        limit: _parse_limit(table[limit], location.at(limit)) for limit in _LIMITS if limit in table
+    }
     goal = Goal(condition=condition, **values)
-    _check_limits(goal, at)
+    _check_limits(goal, location)
     return goal
 
 
-def _condition(kind: type[Condition], data: object, at: Location, folder: Path) -> Condition:
+def _parse_condition(
+    kind: type[Condition], data: object, location: Location, folder: Path
+) -> Condition:
     if data is False:
-        raise at.wrong("cannot be false", "leave it out")
+        raise location.wrong("cannot be false", "leave it out")
     if data is True:
         data = {}
     elif not isinstance(data, dict) and kind.SHORT:
@@ -297,32 +309,32 @@ def _condition(kind: type[Condition], data: object, at: Location, folder: Path) 
     if isinstance(data, dict) and isinstance(data.get(kind.SHORT), str):
         # A single one needs no list.
         data = {**data, kind.SHORT: [data[kind.SHORT]]}
-    _check_lists(kind, data, at)
+    _check_lists(kind, data, location)
     if kind is UseCondition and isinstance(data, dict) and "reading" in data:
-        raise at.at("reading").wrong(
+        raise location.at("reading").wrong(
             "what decides a call is not judged", "use [[also]]: a world with other right answers"
         )
     if kind is DrawCondition:
-        table = files.convert(data, PictureTable, at)
+        table = files.convert(data, PictureTable, location)
         try:
             return draw_from_table(table, folder)
         except ConfigError as error:
-            raise at.at("image").wrong(f"{error}") from None
-    return files.convert(data, kind, at)
+            raise location.at("image").wrong(f"{error}") from None
+    return files.convert(data, kind, location)
 
 
-def _check_lists(kind: type[Condition], data: object, at: Location) -> None:
+def _check_lists(kind: type[Condition], data: object, location: Location) -> None:
     """Raise ConfigError for what is no list of texts, or of ranges, with what can be written for it."""
     for key, value in data.items() if isinstance(data, dict) else ():
         field = kind.__dataclass_fields__.get(key)
         if field is None:
             continue
         if key == kind.SHORT and field.type == "tuple[str, ...]" and not isinstance(value, list):
-            raise at.at(key).wrong(f"must be text, or a list of texts, got {quote(value)}")
+            raise location.at(key).wrong(f"must be text, or a list of texts, got {quote(value)}")
         if field.type == "tuple[Range, ...]" and not (
             isinstance(value, list) and all(map(_is_list, value))
         ):
-            raise at.at(key).wrong(
+            raise location.at(key).wrong(
                 f"must be [[from, to]], or one such pair for each, got {quote(value)}"
             )
 
@@ -331,12 +343,12 @@ def _is_list(value: object) -> bool:
     return isinstance(value, list)
 
 
-def _limit(data: object, at: Location) -> str | float:
+def _parse_limit(data: object, location: Location) -> str | float:
     if isinstance(data, str):
-        return files.convert(data, str, at)
+        return files.convert(data, str, location)
     if isinstance(data, bool) or not isinstance(data, int | float):
-        raise at.wrong(f"must be the name of a goal, or a time in seconds, got {quote(data)}")
-    return files.convert(data, Seconds, at)
+        raise location.wrong(f"must be the name of a goal, or a time in seconds, got {quote(data)}")
+    return files.convert(data, Seconds, location)
 
 
 _UNFIT = {
@@ -347,15 +359,15 @@ _UNFIT = {
 }
 
 
-def _check_limits(goal: Goal, at: Location) -> None:
+def _check_limits(goal: Goal, location: Location) -> None:
     """Raise ConfigError for a limit that applies to none of the conditions, or comes before the goal counts."""
     kinds = [part.KIND for part in goal.parts]
     fitting = {limit for kind in kinds for limit in goal.limits(kind)}
     if goal.within_s is not None and not set(kinds) & set(WINDOWED):
-        raise at.at("within_s").wrong("does not fit this condition", _UNFIT[kinds[0]])
+        raise location.at("within_s").wrong("does not fit this condition", _UNFIT[kinds[0]])
     for limit in _LIMITS:
         if getattr(goal, limit) is not None and limit not in fitting:
-            raise at.at(limit).wrong("does not fit this condition", _UNFIT[kinds[0]])
+            raise location.at(limit).wrong("does not fit this condition", _UNFIT[kinds[0]])
         end = getattr(goal, limit)
         if (
             limit != "after"
@@ -363,33 +375,37 @@ def _check_limits(goal: Goal, at: Location) -> None:
             and isinstance(goal.after, float)
             and goal.after >= end
         ):
-            raise at.at("after").wrong(f"must be less than {limit}, {end:g}, got {goal.after:g}")
+            raise location.at("after").wrong(
+                f"must be less than {limit}, {end:g}, got {goal.after:g}"
+            )
 
 
 def _check_names(goals: Sequence[Goal], places: Sequence[Location]) -> None:
     """Raise ConfigError for two goals of one name, and for references to no goal or in a circle."""
     by_name: dict[str, Goal] = {}
-    for goal, at in zip(goals, places, strict=True):
+    for goal, location in zip(goals, places, strict=True):
         if goal.name in by_name:
-            raise at.at("name").wrong(
+            raise location.at("name").wrong(
                 f"there are two goals {goal.name!r}", "give each its own name"
             )
         by_name[goal.name] = goal
-    for goal, at in zip(goals, places, strict=True):
+    for goal, location in zip(goals, places, strict=True):
         for name in goal.needs:
             if name not in by_name:
-                raise _reference(goal, name, at).wrong(
+                raise _find_reference(goal, name, location).wrong(
                     f"there is no goal {name!r}", nearest(name, by_name)
                 )
     checked: set[str] = set()
-    for goal, at in zip(goals, places, strict=True):
-        circle = _circle(goal.name, by_name, (), checked)
+    for goal, location in zip(goals, places, strict=True):
+        circle = _find_circle(goal.name, by_name, (), checked)
         if circle:
             words = " needs ".join(f"{name!r}" for name in circle)
-            raise _reference(goal, circle[1], at).wrong(f"the goals need each other: {words}")
+            raise _find_reference(goal, circle[1], location).wrong(
+                f"the goals need each other: {words}"
+            )
 
 
-def _reference(goal: Goal, name: str, at: Location) -> Location:
+def _find_reference(goal: Goal, name: str, location: Location) -> Location:
     """Return the location of a reference to a goal; of the goal if the reference is farther away."""
     limits = (limit for limit in _LIMITS if getattr(goal, limit) == name)
     combined = (
@@ -399,10 +415,10 @@ def _reference(goal: Goal, name: str, at: Location) -> Location:
         if type(part) is kind and isinstance(part, Combination) and name in part.goals
     )
     key = next(limits, next(combined, ""))
-    return at.at(key) if key else at
+    return location.at(key) if key else location
 
 
-def _circle(
+def _find_circle(
     name: str, goals: Mapping[str, Goal], above: tuple[str, ...], checked: set[str]
 ) -> tuple[str, ...]:
     """Return the names on a circle that begins with a goal or one that it needs; empty if there is none."""
@@ -411,7 +427,7 @@ def _circle(
     if name in checked:
         return ()
     for other in goals[name].needs:
-        if circle := _circle(other, goals, (*above, name), checked):
+        if circle := _find_circle(other, goals, (*above, name), checked):
             return circle
     checked.add(name)
     return ()
@@ -422,7 +438,7 @@ _STATEMENT = re.compile(r"[ \t]*(?:[\w\"'-].*=|\[.*\][ \t]*(?:#.*)?$)")
 _STEP = re.compile(r"\[(\d+)\]|([^.\[\]]+)")
 
 
-def line_of_key(text: str, key: str) -> int:
+def find_key_line(text: str, key: str) -> int:
     """Return the line, from 1, at which a value of a valid TOML text begins.
 
     Args:
@@ -431,7 +447,7 @@ def line_of_key(text: str, key: str) -> int:
     """
     lines = text.split("\n")
     path = [int(step[1]) - 1 if step[1] else step[2] for step in _STEP.finditer(key)]
-    while path and not _has(_parsed(lines), path):
+    while path and not _has(_parse_lines(lines), path):
         path.pop()
 
     # Only where statements begin: a value on thousands of lines would be parsed as often.
@@ -440,15 +456,15 @@ def line_of_key(text: str, key: str) -> int:
 
     def begun(count: int) -> bool:
         """Whether the value begins in the first statements; a value that they cut off is read to its end."""
-        while (found := _parsed(lines[: ends[count]])) is None:
+        while (parsed := _parse_lines(lines[: ends[count]])) is None:
             count += 1
-        return _has(found, path)
+        return _has(parsed, path)
 
     statements = bisect_left(range(len(ends)), True, key=begun)
     return starts[statements - 1] + 1 if statements else 1
 
 
-def _parsed(lines: list[str]) -> Any:
+def _parse_lines(lines: list[str]) -> Any:
     try:
         return tomllib.loads("\n".join(lines))
     except (ValueError, RecursionError):
@@ -464,15 +480,18 @@ def _has(data: Any, path: list[int | str]) -> bool:
     return True
 
 
-def runs_of(worlds: Sequence[TrialWorld]) -> list[RunSpec]:
+def build_runs(worlds: Sequence[TrialWorld]) -> list[RunSpec]:
     """Return runs in some worlds, each with all columns that it can have."""
     chosen = [world.settings.get("robot", DEFAULT_ROBOT) for world in worlds]
-    robots = [one if isinstance(one, RobotChoice) else choose_robot(one) for one in chosen]
+    robots = [
+        chosen_robot if isinstance(chosen_robot, RobotChoice) else choose_robot(chosen_robot)
+        for chosen_robot in chosen
+    ]
     # Whoever runs a program may choose another profile: this one has the most columns.
     return [RunSpec(robot.spec, WorldSpec(), PROFILES["ev3"]) for robot in robots]
 
 
-def check_columns(goals: Sequence[Goal], runs: Sequence[RunSpec], at: Location) -> None:
+def check_columns(goals: Sequence[Goal], runs: Sequence[RunSpec], location: Location) -> None:
     """Check the goals in a list of tables, in its order.
 
     Raises:
@@ -480,12 +499,12 @@ def check_columns(goals: Sequence[Goal], runs: Sequence[RunSpec], at: Location) 
     """
     for number, goal in enumerate(goals, start=1):
         for part in goal.parts:
-            for wanted in _conditions(part):
+            for comparison in _list_conditions(part):
                 key = next(key for key, kind in CONDITIONS.items() if type(part) is kind)
-                _check(wanted, runs, at.at(f"[{number}]").at(key))
+                _check(comparison, runs, location.at(f"[{number}]").at(key))
 
 
-def _conditions(part: Condition) -> tuple[ValueCondition, ...]:
+def _list_conditions(part: Condition) -> tuple[ValueCondition, ...]:
     match part:
         case WhenCondition() | KeepCondition():
             return part.conditions
@@ -494,13 +513,13 @@ def _conditions(part: Condition) -> tuple[ValueCondition, ...]:
     return ()
 
 
-def _check(wanted: ValueCondition, runs: Sequence[RunSpec], at: Location) -> None:
-    found: ConfigError | None = None
+def _check(comparison: ValueCondition, runs: Sequence[RunSpec], location: Location) -> None:
+    failure: ConfigError | None = None
     for run in runs:
         try:
-            with_column(wanted, run)
+            resolve_column(comparison, run)
             return
         except ConfigError as error:
-            found = error
-    if found:
-        raise at.wrong(f"the robot has no column {wanted.name!r}", found.hint)
+            failure = error
+    if failure:
+        raise location.wrong(f"the robot has no column {comparison.name!r}", failure.hint)

@@ -7,7 +7,7 @@ from tuisim.tasks.goals.evidence import EvidencePoint
 
 
 @dataclass(frozen=True, slots=True)
-class Occurrence:
+class Finding:
     """When a condition was reached or, if it is one to hold, violated."""
 
     moment: EvidencePoint | None = None
@@ -20,7 +20,7 @@ class Occurrence:
     """When that happened which reaches it, if only a later moment decides: lines may come once up to the end."""
 
 
-def distance_words(distance_mm: float) -> str:
+def format_distance(distance_mm: float) -> str:
     """Return a distance for a sentence, such as `35 mm`; small ones with a decimal."""
     return f"{distance_mm:.1f} mm" if distance_mm < 10 else f"{distance_mm:.0f} mm"
 

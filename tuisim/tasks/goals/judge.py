@@ -19,7 +19,7 @@ from tuisim.tasks.goals.comparisons import (
 )
 from tuisim.tasks.goals.condition import WINDOWED, Condition, ConditionKind, UnjudgedError
 from tuisim.tasks.goals.evidence import START, Evidence, EvidencePoint, EvidenceSpan, JudgedRun
-from tuisim.tasks.goals.found import Occurrence
+from tuisim.tasks.goals.found import Finding
 from tuisim.tasks.goals.judgement import Change, GoalState, Judgement
 from tuisim.tasks.goals.spec import (
     AllOf,
@@ -42,7 +42,7 @@ from tuisim.tasks.goals.spec import (
     UseCondition,
 )
 
-Finder = Callable[[Any, Evidence, EvidenceSpan], Occurrence]
+Finder = Callable[[Any, Evidence, EvidenceSpan], Finding]
 
 FINDERS: Mapping[type, Finder] = {
     ReachCondition: places.find_reach,
@@ -101,7 +101,7 @@ def judge(
     # Records of a damaged file may hold any numbers.
     with np.errstate(all="ignore"):
         judged = _Judge(goals, Evidence(run, field))
-        return tuple(judged.judgement(goal) for goal in goals)
+        return tuple(judged.build_judgement(goal) for goal in goals)
 
 
 class _Judge:
@@ -110,23 +110,23 @@ class _Judge:
         self._evidence = evidence
         self._outcomes: dict[str, _Outcome] = {}
 
-    def judgement(self, goal: Goal) -> Judgement:
-        outcome = self._outcome(goal.name)
+    def build_judgement(self, goal: Goal) -> Judgement:
+        outcome = self._find_outcome(goal.name)
         if outcome.state is GoalState.OPEN:
-            return Judgement(goal, (), outcome.reason, self._line(outcome))
+            return Judgement(goal, (), outcome.reason, self._find_line(outcome))
         changes = (self._change(outcome.moment, outcome.state),)
         happened = self._change(outcome.happened, outcome.state) if outcome.happened else None
-        return Judgement(goal, changes, outcome.reason, self._line(outcome), happened)
+        return Judgement(goal, changes, outcome.reason, self._find_line(outcome), happened)
 
     def _change(self, moment: EvidencePoint, state: GoalState) -> Change:
         # What begins after the last tick is decided in it.
         tick = max(0, min(moment.tick, self._evidence.last.tick))
         return Change(tick, self._evidence.time_s(moment), state, *self._evidence.place_mm(tick))
 
-    def _line(self, outcome: _Outcome) -> int:
+    def _find_line(self, outcome: _Outcome) -> int:
         return self._evidence.line(outcome.moment) if outcome.line is None else outcome.line
 
-    def _outcome(self, name: str, if_missed: str = "") -> _Outcome:
+    def _find_outcome(self, name: str, if_missed: str = "") -> _Outcome:
         """Return the outcome of a goal, if it is missed perhaps with another reason."""
         if name not in self._goals:
             raise ConfigError(f"there is no goal {name!r}")
@@ -150,12 +150,12 @@ class _Judge:
                 GoalState.MISSED, reason=f"The program does not compile: {fault[0]}.", line=fault[1]
             )
         for name in (goal.before, goal.after, goal.until):
-            if isinstance(name, str) and self._outcome(name).state is GoalState.UNKNOWN:
-                return self._unknown(f"Whether “{name}” was met is not known.")
+            if isinstance(name, str) and self._find_outcome(name).state is GoalState.UNKNOWN:
+                return self._build_unknown(f"Whether “{name}” was met is not known.")
         start = START
         match goal.after:
             case str(name):
-                first = self._outcome(name)
+                first = self._find_outcome(name)
                 if first.state is GoalState.OPEN:
                     return _Outcome(GoalState.OPEN, reason=f"“{name}” is not met yet.")
                 if first.state is GoalState.MISSED:
@@ -164,31 +164,31 @@ class _Judge:
                     )
                 start = first.moment
             case float() | int() as time_s:
-                moment = self._evidence.before_time(time_s)
+                moment = self._evidence.find_earlier_moment(time_s)
                 if moment is None:
-                    return self._never(f"The program ended before {time_s:g} s.")
+                    return self._judge_missing(f"The program ended before {time_s:g} s.")
                 start = moment
-        outcomes = [self._part(part, goal, start) for part in goal.parts]
-        return outcomes[0] if len(outcomes) == 1 else _first_of(outcomes, GoalState.MISSED)
+        outcomes = [self._judge_part(part, goal, start) for part in goal.parts]
+        return outcomes[0] if len(outcomes) == 1 else _pick_deciding(outcomes, GoalState.MISSED)
 
-    def _part(self, condition: Condition, goal: Goal, start: EvidencePoint) -> _Outcome:
+    def _judge_part(self, condition: Condition, goal: Goal, start: EvidencePoint) -> _Outcome:
         """Return the outcome of one condition of a goal, which counts after a moment."""
         if isinstance(condition, AllOf | AnyOf | NoneOf):
-            return self._combined(condition, goal)
+            return self._judge_combined(condition, goal)
         stop = self._stop(goal, condition.KIND, start)
         span = self._evidence.span(start, stop)
         try:
-            found = FINDERS[type(condition)](condition, self._evidence, span)
+            finding = FINDERS[type(condition)](condition, self._evidence, span)
         except UnjudgedError as error:
-            return self._unknown(f"{error}.")
+            return self._build_unknown(f"{error}.")
         match condition.KIND:
             case ConditionKind.REACHED:
-                return self._reached(goal, found, stop)
+                return self._judge_reached(goal, finding, stop)
             case ConditionKind.HELD:
-                return self._held(goal, found, stop)
+                return self._judge_held(goal, finding, stop)
             case ConditionKind.FIXED:
-                state = GoalState.MET if found.moment is not None else GoalState.MISSED
-                return _Outcome(state, START, found.reason, found.line or 0)
+                state = GoalState.MET if finding.moment is not None else GoalState.MISSED
+                return _Outcome(state, START, finding.reason, finding.line or 0)
             case ConditionKind.COMBINED:
                 raise AssertionError(condition)
             case _:
@@ -201,62 +201,72 @@ class _Judge:
         stops = []
         for limit in (getattr(goal, limit) for limit in goal.limits(kind) if limit != "after"):
             if isinstance(limit, str):
-                outcome = self._outcome(limit)
+                outcome = self._find_outcome(limit)
                 stops.append(outcome.moment if outcome.state is GoalState.MET else None)
             else:
-                stops.append(self._evidence.at_time(limit))
+                stops.append(self._evidence.find_moment(limit))
         if goal.within_s is not None and kind in WINDOWED:
-            stops.append(self._evidence.at_time(self._evidence.time_s(start) + goal.within_s))
+            stops.append(self._evidence.find_moment(self._evidence.time_s(start) + goal.within_s))
         return min((stop for stop in stops if stop is not None), default=None)
 
-    def _unknown(self, reason: str) -> _Outcome:
+    def _build_unknown(self, reason: str) -> _Outcome:
         return _Outcome(GoalState.UNKNOWN, self._evidence.last, reason)
 
-    def _never(self, reason: str) -> _Outcome:
+    def _judge_missing(self, reason: str) -> _Outcome:
         """Return the outcome of what has not happened: open, or missed if the run has ended."""
         if not self._evidence.ended:
             return _Outcome(GoalState.OPEN, reason="")
         return _Outcome(GoalState.MISSED, self._evidence.last, reason)
 
-    def _reached(self, goal: Goal, found: Occurrence, stop: EvidencePoint | None) -> _Outcome:
-        if found.moment is not None:
-            return _Outcome(GoalState.MET, found.moment, line=found.line, happened=found.happened)
+    def _judge_reached(self, goal: Goal, finding: Finding, stop: EvidencePoint | None) -> _Outcome:
+        if finding.moment is not None:
+            return _Outcome(
+                GoalState.MET, finding.moment, line=finding.line, happened=finding.happened
+            )
         if stop is not None:
-            return _Outcome(GoalState.MISSED, stop, _too_late(goal, found.reason), found.line or 0)
+            return _Outcome(
+                GoalState.MISSED, stop, _explain_lateness(goal, finding.reason), finding.line or 0
+            )
         if self._evidence.ended:
-            return _Outcome(GoalState.MISSED, self._evidence.last, found.reason, found.line or 0)
-        return _Outcome(GoalState.OPEN, reason=found.reason, line=found.line or 0)
+            return _Outcome(
+                GoalState.MISSED, self._evidence.last, finding.reason, finding.line or 0
+            )
+        return _Outcome(GoalState.OPEN, reason=finding.reason, line=finding.line or 0)
 
-    def _held(self, goal: Goal, found: Occurrence, stop: EvidencePoint | None) -> _Outcome:
-        if found.moment is not None:
-            return _Outcome(GoalState.MISSED, found.moment, found.reason, found.line)
+    def _judge_held(self, goal: Goal, finding: Finding, stop: EvidencePoint | None) -> _Outcome:
+        if finding.moment is not None:
+            return _Outcome(GoalState.MISSED, finding.moment, finding.reason, finding.line)
         if stop is not None:
             return _Outcome(GoalState.MET, stop, line=None)
         if not self._evidence.ended:
-            return _Outcome(GoalState.OPEN, reason=found.reason, line=found.line or 0)
+            return _Outcome(GoalState.OPEN, reason=finding.reason, line=finding.line or 0)
         if isinstance(goal.until, str):
             return _Outcome(GoalState.MISSED, self._evidence.last, f"“{goal.until}” was not met.")
         return _Outcome(GoalState.MET, self._evidence.last, line=None)
 
-    def _combined(self, condition: AllOf | AnyOf | NoneOf, goal: Goal) -> _Outcome:
+    def _judge_combined(self, condition: AllOf | AnyOf | NoneOf, goal: Goal) -> _Outcome:
         stop = self._stop(goal, condition.KIND)
         if isinstance(condition, AllOf):
-            parts = [self._outcome(name, f"“{name}” was missed.") for name in condition.goals]
-            outcome = _first_of(parts, GoalState.MISSED)
+            parts = [self._find_outcome(name, f"“{name}” was missed.") for name in condition.goals]
+            outcome = _pick_deciding(parts, GoalState.MISSED)
         elif isinstance(condition, NoneOf):
-            parts = [_inverted(name, self._outcome(name)) for name in condition.goals]
-            outcome = _first_of(parts, GoalState.MISSED)
+            parts = [_invert(name, self._find_outcome(name)) for name in condition.goals]
+            outcome = _pick_deciding(parts, GoalState.MISSED)
         else:
-            parts = [self._outcome(name, "None of its goals was met.") for name in condition.goals]
-            outcome = _first_of(parts, GoalState.MET)
+            parts = [
+                self._find_outcome(name, "None of its goals was met.") for name in condition.goals
+            ]
+            outcome = _pick_deciding(parts, GoalState.MET)
         if outcome.state is GoalState.UNKNOWN:
             return outcome
         if stop is not None and not (outcome.state is not GoalState.OPEN and outcome.moment < stop):
-            return _Outcome(GoalState.MISSED, stop, _too_late(goal, ""), self._line(outcome))
+            return _Outcome(
+                GoalState.MISSED, stop, _explain_lateness(goal, ""), self._find_line(outcome)
+            )
         return outcome
 
 
-def _inverted(name: str, outcome: _Outcome) -> _Outcome:
+def _invert(name: str, outcome: _Outcome) -> _Outcome:
     """Return the outcome of not meeting a goal."""
     match outcome.state:
         case GoalState.MET:
@@ -273,7 +283,7 @@ def _inverted(name: str, outcome: _Outcome) -> _Outcome:
             assert_never(outcome.state)
 
 
-def _first_of(parts: Sequence[_Outcome], deciding: GoalState) -> _Outcome:
+def _pick_deciding(parts: Sequence[_Outcome], deciding: GoalState) -> _Outcome:
     """Return the outcome of a combination: the first part with the deciding state, else the last one to be decided.
 
     One that is open, or not known, leaves it so unless another one decides.
@@ -288,7 +298,7 @@ def _first_of(parts: Sequence[_Outcome], deciding: GoalState) -> _Outcome:
     return max(parts, key=lambda part: part.moment)
 
 
-def _too_late(goal: Goal, reason: str) -> str:
+def _explain_lateness(goal: Goal, reason: str) -> str:
     """Return the reason of a goal that was not met before its limit."""
     if goal.before is None:
         limit = f"within {goal.within_s:g} s"

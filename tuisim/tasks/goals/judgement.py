@@ -68,17 +68,17 @@ class Judgement:
         return known[-1] if known else GoalState.OPEN
 
 
-def points(judgements: Iterable[Judgement]) -> float:
+def compute_points(judgements: Iterable[Judgement]) -> float:
     """Return the sum of the points of the goals that are met, never less than 0; NaN if one cannot be judged."""
     counts = (GoalState.MET, GoalState.UNKNOWN)
-    return points_of(
+    return sum_points(
         math.nan if each.state is GoalState.UNKNOWN and each.goal.points else each.goal.points
         for each in judgements
         if each.state in counts
     )
 
 
-def points_of(met: Iterable[float]) -> float:
+def sum_points(met: Iterable[float]) -> float:
     """Return the sum of the points of goals that are met, some of which may be negative; never less than 0.
 
     NaN stands for what is not known, and makes the sum NaN.
@@ -87,11 +87,11 @@ def points_of(met: Iterable[float]) -> float:
     return max(math.fsum(met), 0.0)
 
 
-def most_points(goals: Iterable[Goal]) -> float:
+def compute_max_points(goals: Iterable[Goal]) -> float:
     """Return the points of a run that meets every goal but those whose points are negative."""
     return math.fsum(goal.points for goal in goals if goal.points > 0)
 
 
-def in_words(points: float) -> str:
+def format_points(points: float) -> str:
     """Return points as text, at most two decimals; `?` for NaN."""
     return "?" if math.isnan(points) else f"{points:.2f}".rstrip("0").rstrip(".")

@@ -12,15 +12,15 @@ from tuisim.engine.protocol import End
 from tuisim.engine.runs.records import OutputRow, Stream
 from tuisim.engine.runs.samples import Sample
 from tuisim.tasks.goals.evidence import Evidence, EvidencePoint, EvidenceSpan
-from tuisim.tasks.goals.found import Occurrence
+from tuisim.tasks.goals.found import Finding
 from tuisim.tasks.goals.patterns import build_search
 from tuisim.tasks.goals.readings import (
     NOUNS,
+    describe_place,
+    describe_ranges,
+    filter_ticks,
     is_as_read,
-    place_words,
-    range_words,
     read_ticks,
-    within,
 )
 from tuisim.tasks.goals.spec import (
     DialogueCondition,
@@ -29,116 +29,120 @@ from tuisim.tasks.goals.spec import (
     LogCondition,
     PrintCondition,
     Reading,
-    place_of,
+    select_place,
 )
 
-_MOST_SHOWN = 60
+_MAX_SHOWN = 60
 _STILL_MM_S = 10.0
 _STOP_TICKS = 20
 """A robot that becomes so slow within so many ticks has stopped: the motors' commands return a little earlier."""
-_MOST_TRIED = 1000
+_MAX_TRIED = 1000
 """Of so many lines that say what is asked for, one must have been printed where and how it must be."""
 
 
-def _asked(pattern: str) -> str:
+def _describe_pattern(pattern: str) -> str:
     """Return how a line that fits a pattern is named in a reason: by its words, if it is nothing but words."""
     words = re.sub(r"\(\?i\)|\\b|[\^$]", "", pattern)
     if words == re.escape(words).replace("\\ ", " "):
-        return f"matches {_shown(words)}"
+        return f"matches {_quote(words)}"
     # What a line must not say is told by the goal's own words, and no student reads it from the pattern.
     return (
         "says what the goal needs"
         if re.search(r"\(\?<?[=!]", pattern)
-        else f"matches {_shown(pattern)}"
+        else f"matches {_quote(pattern)}"
     )
 
 
-def _shown(text: str) -> str:
-    return repr(text if len(text) <= _MOST_SHOWN else text[: _MOST_SHOWN - 1] + "…")
+def _quote(text: str) -> str:
+    return repr(text if len(text) <= _MAX_SHOWN else text[: _MAX_SHOWN - 1] + "…")
 
 
-def _printed(evidence: Evidence, span: EvidenceSpan) -> list[tuple[int, OutputRow]]:
+def _list_printed(evidence: Evidence, span: EvidenceSpan) -> list[tuple[int, OutputRow]]:
     """Return the printed lines of a span, each with its index."""
     rows = evidence.rows[span.first_row : span.end_row]
     return [
-        (at, row)
-        for at, row in enumerate(rows, start=span.first_row)
+        (index, row)
+        for index, row in enumerate(rows, start=span.first_row)
         if row.stream == Stream.STDOUT
     ]
 
 
-def find_printed(condition: PrintCondition, evidence: Evidence, span: EvidenceSpan) -> Occurrence:
+def find_printed(condition: PrintCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
     """Find when the last of the lines was printed."""
-    rows = _printed(evidence, span)
-    at, last, line = 0, -1, None
+    rows = _list_printed(evidence, span)
+    next_place, last, line = 0, -1, None
     # The row before, since which a reading must have been taken.
     since = -1
     for count, pattern in enumerate(condition.lines):
         search = evidence.search(pattern)
-        start = at if condition.in_order else 0
-        fault = Occurrence()
+        start = next_place if condition.in_order else 0
+        fault = Finding()
         fitting = (place for place in range(start, len(rows)) if search(rows[place][1].text))
-        for place in islice(fitting, _MOST_TRIED):
+        for place in islice(fitting, _MAX_TRIED):
             row = rows[place][1]
-            found = _fault(condition, count, row, since, evidence)
-            if not found:
+            problem = _explain_fault(condition, count, row, since, evidence)
+            if not problem:
                 break
-            fault = fault if fault.reason else Occurrence(None, found, row.line)
+            fault = fault if fault.reason else Finding(None, problem, row.line)
         else:
             # Of the line that the reason quotes.
             about = rows[-1][1].line if rows and line is None else line
             if fault.reason:
                 return fault
-            return Occurrence(
-                None, _no_line(condition, pattern, rows, line is not None, evidence), about
+            return Finding(
+                None,
+                _explain_missing_line(condition, pattern, rows, line is not None, evidence),
+                about,
             )
-        at, line, since = place + 1, row.line, row.tick
+        next_place, line, since = place + 1, row.line, row.tick
         last = max(last, place)
-    if condition.once and (open_or_missed := _not_once(condition, rows, span, evidence)):
+    if condition.once and (open_or_missed := _check_once(condition, rows, span, evidence)):
         return open_or_missed
     number, row = rows[last]
-    return _printed_at(EvidencePoint(row.tick, number), row.line, condition.once, evidence)
+    return _report_printed(EvidencePoint(row.tick, number), row.line, condition.once, evidence)
 
 
-def _not_once(
+def _check_once(
     condition: PrintCondition,
     rows: list[tuple[int, OutputRow]],
     span: EvidenceSpan,
     evidence: Evidence,
-) -> Occurrence | None:
+) -> Finding | None:
     """Return what is missing of a condition whose lines come only once; None if nothing is."""
     searches = list(map(evidence.search, condition.lines))
     fits = [(row, sum(search(row.text) for search in searches)) for _, row in rows]
     if several := [row for row, count in fits if count > 1]:
-        return Occurrence(
+        return Finding(
             None,
-            f"{_shown(several[0].text)} matches several of the lines at once.",
+            f"{_quote(several[0].text)} matches several of the lines at once.",
             several[0].line,
         )
     fitting = [row for row, count in fits if count]
     if len(fitting) > len(condition.lines):
-        return _again(condition, fitting, evidence)
-    return None if span.over else Occurrence()
+        return _find_repeated_line(condition, fitting, evidence)
+    return None if span.over else Finding()
 
 
-def _again(condition: PrintCondition, rows: list[OutputRow], evidence: Evidence) -> Occurrence:
+def _find_repeated_line(
+    condition: PrintCondition, rows: list[OutputRow], evidence: Evidence
+) -> Finding:
     """Return which of some rows is the first that says again what one before it says."""
-    said: set[str] = set()
+    seen: set[str] = set()
     for row in rows:
         pattern = next(pattern for pattern in condition.lines if evidence.search(pattern)(row.text))
-        if pattern in said:
+        if pattern in seen:
             break
-        said.add(pattern)
+        seen.add(pattern)
     x_mm = evidence.place_mm(row.tick)[0]
-    reason = f"{_shown(row.text)} was printed again at {row.time_ns / NS_PER_S:.2f} s, at x = {x_mm:.0f} mm"
-    return Occurrence(
+    reason = f"{_quote(row.text)} was printed again at {row.time_ns / NS_PER_S:.2f} s, at x = {x_mm:.0f} mm"
+    return Finding(
         None,
         f"{reason}: {counted(len(rows), 'such line')} in all; the goal needs each line once.",
         row.line,
     )
 
 
-def _fault(
+def _explain_fault(
     condition: PrintCondition, count: int, row: OutputRow, since: int, evidence: Evidence
 ) -> str:
     """Return why a line that matches does not count, in a sentence; empty if it does.
@@ -147,8 +151,8 @@ def _fault(
         count: Index of the pattern.
         since: Tick of the line before; -1 if there is none.
     """
-    when = f"{_shown(row.text)} was printed at {row.time_ns / NS_PER_S:.2f} s"
-    if fault := _elsewhere(condition, count, row.tick, evidence):
+    when = f"{_quote(row.text)} was printed at {row.time_ns / NS_PER_S:.2f} s"
+    if fault := _describe_wrong_place(condition, count, row.tick, evidence):
         return f"{when}, when {fault}"
     if condition.still and (speed_mm_s := _speed_mm_s(row.tick, evidence)) > _STILL_MM_S:
         return f"{when}, while the robot was still moving at {speed_mm_s:.0f} mm/s: it must have stopped."
@@ -167,28 +171,28 @@ def _speed_mm_s(tick: int, evidence: Evidence) -> float:
     """Return how fast the robot moves when it is slowest, from a tick on as long as a stop may take."""
     ticks = range(max(0, tick), min(tick + _STOP_TICKS, len(evidence.records)))
     return min(
-        (_between_mm_s(first, then, evidence) for first, then in pairwise(ticks)), default=0.0
+        (_measure_speed_mm_s(first, then, evidence) for first, then in pairwise(ticks)), default=0.0
     )
 
 
-def _between_mm_s(first: int, then: int, evidence: Evidence) -> float:
+def _measure_speed_mm_s(first: int, then: int, evidence: Evidence) -> float:
     way_mm = math.dist(evidence.place_mm(first), evidence.place_mm(then))
     return way_mm / float(evidence.times_s[then] - evidence.times_s[first])
 
 
-def _elsewhere(
+def _describe_wrong_place(
     condition: PrintCondition | LogCondition, count: int, tick: int, evidence: Evidence
 ) -> str:
     """Return where the robot was at a tick if that was wrong, as the end of a sentence; empty if it was right."""
-    place = place_of(condition, count)
+    place = select_place(condition, count)
     x_mm, y_mm = evidence.place_mm(tick)
-    at = {"x_mm": x_mm, "y_mm": y_mm}
-    if all(least <= at[key] <= most for key, (least, most) in place.items()):
+    position = {"x_mm": x_mm, "y_mm": y_mm}
+    if all(low <= position[key] <= high for key, (low, high) in place.items()):
         return ""
-    return f"the robot was at {place_words(tick, place, evidence)}; it must be at {range_words(place)}."
+    return f"the robot was at {describe_place(tick, place, evidence)}; it must be at {describe_ranges(place)}."
 
 
-def _no_line(
+def _explain_missing_line(
     condition: PrintCondition,
     pattern: str,
     rows: list[tuple[int, OutputRow]],
@@ -198,112 +202,119 @@ def _no_line(
     if not rows:
         return "The program printed nothing."
     if some and condition.in_order and any(evidence.search(pattern)(row.text) for _, row in rows):
-        return f"A line that {_asked(pattern)} was printed, but not after the lines before it."
-    last = _shown(rows[-1][1].text)
+        return f"A line that {_describe_pattern(pattern)} was printed, but not after the lines before it."
+    last = _quote(rows[-1][1].text)
     printed = "the only one is" if len(rows) == 1 else f"the last of the {len(rows):,} is"
-    return f"No printed line {_asked(pattern)}; {printed} {last}."
+    return f"No printed line {_describe_pattern(pattern)}; {printed} {last}."
 
 
-def find_levels(condition: LogCondition, evidence: Evidence, span: EvidenceSpan) -> Occurrence:
+def find_levels(condition: LogCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
     """Find when the samples of a variable had taken all levels."""
     samples = [
         (number, sample)
         for number, sample in evidence.samples
         if sample.name == condition.name and span.first_row <= number < span.end_row
     ]
-    at, last = 0, -1
+    next_place, last = 0, -1
     for count, level in enumerate(condition.levels):
-        start = at if condition.in_order else 0
-        fault = Occurrence()
+        start = next_place if condition.in_order else 0
+        fault = Finding()
         near = (
             place
             for place in range(start, len(samples))
-            if _near(samples[place][1], level, condition)
+            if _is_near(samples[place][1], level, condition)
         )
-        for place in islice(near, _MOST_TRIED):
+        for place in islice(near, _MAX_TRIED):
             sample = samples[place][1]
-            found = _not_measured(condition, count, sample, evidence)
-            if not found:
+            problem = _explain_unmeasured(condition, count, sample, evidence)
+            if not problem:
                 break
-            fault = fault if fault.reason else Occurrence(None, found, sample.line)
+            fault = fault if fault.reason else Finding(None, problem, sample.line)
         else:
             return (
                 fault
                 if fault.reason
-                else _missing_level(condition, count, samples, start, last, evidence)
+                else _find_missing_level(condition, count, samples, start, last, evidence)
             )
-        at = place + 1
+        next_place = place + 1
         last = max(last, place)
     number, sample = samples[last]
-    if condition.apart_mm and (gap := _gap(condition, [one for _, one in samples], evidence)):
+    if condition.apart_mm and (
+        gap := _find_gap(condition, [logged for _, logged in samples], evidence)
+    ):
         return gap
     if condition.once and len(samples) > len(condition.levels):
         reason = f"{len(samples):,} samples {condition.name} were printed; the goal needs {len(condition.levels)}."
-        return Occurrence(None, reason, samples[-1][1].line)
+        return Finding(None, reason, samples[-1][1].line)
     if condition.once and not span.over:
-        return Occurrence()
-    return _printed_at(EvidencePoint(sample.tick, number), sample.line, condition.once, evidence)
-
-
-def _printed_at(moment: EvidencePoint, line: int, once: bool, evidence: Evidence) -> Occurrence:
-    """Return that what was asked for was printed; that it came only once, the end of the run decides."""
-    return (
-        Occurrence(evidence.last, line=line, happened=moment)
-        if once
-        else Occurrence(moment, line=line)
+        return Finding()
+    return _report_printed(
+        EvidencePoint(sample.tick, number), sample.line, condition.once, evidence
     )
 
 
-def _gap(condition: LogCondition, samples: list[Sample], evidence: Evidence) -> Occurrence | None:
+def _report_printed(moment: EvidencePoint, line: int, once: bool, evidence: Evidence) -> Finding:
+    """Return that what was asked for was printed; that it came only once, the end of the run decides."""
+    return (
+        Finding(evidence.last, line=line, happened=moment) if once else Finding(moment, line=line)
+    )
+
+
+def _find_gap(condition: LogCondition, samples: list[Sample], evidence: Evidence) -> Finding | None:
     """Return where samples are too far apart; None if they are nowhere."""
     for before, after in pairwise(samples):
         way_mm = math.dist(evidence.place_mm(before.tick), evidence.place_mm(after.tick))
         if way_mm > condition.apart_mm:
             when = f"Between {before.time_ns / NS_PER_S:.2f} s and {after.time_ns / NS_PER_S:.2f} s"
             reason = f"{when} the robot went {way_mm:.0f} mm without a sample {condition.name}"
-            return Occurrence(
+            return Finding(
                 None, f"{reason}; the goal allows at most {condition.apart_mm:g} mm.", after.line
             )
     return None
 
 
-def _not_measured(condition: LogCondition, count: int, sample: Sample, evidence: Evidence) -> str:
+def _explain_unmeasured(
+    condition: LogCondition, count: int, sample: Sample, evidence: Evidence
+) -> str:
     """Return why a sample near its level does not count, in a sentence; empty if it does."""
     value = f"{sample.name}: {sample.value:.6g} was printed at {sample.time_ns / NS_PER_S:.2f} s"
     printed = sum(
-        one.name == condition.counts and one.tick <= sample.tick for _, one in evidence.samples
+        other.name == condition.counts and other.tick <= sample.tick
+        for _, other in evidence.samples
     )
     if condition.counts and printed != sample.value:
         return (
             f"{value}, but the program had printed {counted(printed, 'sample')} {condition.counts}."
         )
-    reading, place = condition.reading, place_of(condition, count)
+    reading, place = condition.reading, select_place(condition, count)
     # What the motors count is of the place where it is printed.
     if reading in (None, Reading.MOTOR):
-        fault = _elsewhere(condition, count, sample.tick, evidence)
+        fault = _describe_wrong_place(condition, count, sample.tick, evidence)
         if fault or reading is None:
             return f"{value}, when {fault}" if fault else ""
     ticks = read_ticks(reading, evidence)
     ticks = ticks[ticks <= sample.tick]
     if not len(ticks):
         return f"{value}, but the program had not read the {NOUNS[reading]} before."
-    there = within(ticks, place, evidence)
+    there = filter_ticks(ticks, place, evidence)
     if not len(there):
-        where = place_words(int(ticks[-1]), place, evidence)
-        return f"{value}, read when the robot was at {where}; it must be at {range_words(place)}."
+        where = describe_place(int(ticks[-1]), place, evidence)
+        return (
+            f"{value}, read when the robot was at {where}; it must be at {describe_ranges(place)}."
+        )
     if condition.as_read and not is_as_read(sample.value, there, evidence):
         return f"{value}, but that is not what the {NOUNS[reading]} gave where the program had read it."
     return ""
 
 
-def _missing_level(
+def _find_missing_level(
     condition: LogCondition,
     count: int,
     samples: list[tuple[int, Sample]],
     start: int,
     last: int,
     evidence: Evidence,
-) -> Occurrence:
+) -> Finding:
     """Return which level is missing, the one after the first `count`, and why.
 
     Args:
@@ -316,17 +327,19 @@ def _missing_level(
         rest, key=lambda sample: abs(sample.value - condition.levels[count]), default=None
     )
     about = nearest or (samples[last][1] if last >= 0 else None)
-    return Occurrence(
-        None, _no_level(condition, count, nearest, evidence), about.line if about else 0
+    return Finding(
+        None,
+        _explain_missing_level(condition, count, nearest, evidence),
+        about.line if about else 0,
     )
 
 
-def _near(sample: Sample, level: float, condition: LogCondition) -> bool:
+def _is_near(sample: Sample, level: float, condition: LogCondition) -> bool:
     # Rounding of the difference must not matter.
     return abs(sample.value - level) <= condition.within + 1e-9 * max(1.0, abs(level))
 
 
-def _no_level(
+def _explain_missing_level(
     condition: LogCondition, count: int, nearest: Sample | None, evidence: Evidence
 ) -> str:
     """Return why a level is missing, the one after the first `count`; `nearest` is the sample that came nearest."""
@@ -334,7 +347,7 @@ def _no_level(
     if not any(sample.name == name for _, sample in evidence.samples):
         others = sorted({sample.name for _, sample in evidence.samples})
         logged = f" It logged {', '.join(others[:5])}." if others else ""
-        return f"The program logged no sample {name}.{logged}{_form_fault(name, evidence)}"
+        return f"The program logged no sample {name}.{logged}{_explain_form_fault(name, evidence)}"
     level, after = (
         f"{levels[count]:g}",
         f" after {levels[count - 1]:g}" if count and condition.in_order else "",
@@ -349,7 +362,7 @@ def _no_level(
     return f"{name} came near {count or 'none'} of {len(levels)} levels: {level} is {place}, and {near}."
 
 
-def _form_fault(name: str, evidence: Evidence) -> str:
+def _explain_form_fault(name: str, evidence: Evidence) -> str:
     """Return why a line with the name and a number is no sample, as a further sentence; empty if there is none."""
     like = re.compile(rf"(?:.*\W)?{re.escape(name)}\s*(?:[:=]\s*)?[+-]?\.?\d").match
     row = next(
@@ -358,52 +371,56 @@ def _form_fault(name: str, evidence: Evidence) -> str:
     if row is None:
         return ""
     form = f"a sample is the name, a colon, and the number, and nothing else: {name}: 1.5."
-    return f" Line {row.line} printed {_shown(row.text)}: {form}"
+    return f" Line {row.line} printed {_quote(row.text)}: {form}"
 
 
-def find_dialogue(
-    condition: DialogueCondition, evidence: Evidence, span: EvidenceSpan
-) -> Occurrence:
+def find_dialogue(condition: DialogueCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
     """Find when the last of the turns was complete."""
     rows = evidence.rows[: span.end_row]
-    questions = [at for at, row in enumerate(rows) if row.stream == Stream.INPUT]
+    questions = [index for index, row in enumerate(rows) if row.stream == Stream.INPUT]
     known = dict(zip(questions, evidence.answers, strict=False))
-    asked = [at for at in questions if at >= span.first_row]
-    at, moment, line = 0, EvidencePoint(0, -1), 0
+    input_rows = [index for index in questions if index >= span.first_row]
+    index, moment, line = 0, EvidencePoint(0, -1), 0
     for number, turn in enumerate(condition.turns, start=1):
         reply: int | None = None
         reason = ""
-        while at < len(asked) and reply is None:
-            end = asked[at + 1] if at + 1 < len(asked) else len(rows)
+        while index < len(input_rows) and reply is None:
+            end = input_rows[index + 1] if index + 1 < len(input_rows) else len(rows)
             if (
-                prompt := _prompt(rows[asked[at]].text, turn.answer, known.get(asked[at]))
+                prompt := _find_prompt(
+                    rows[input_rows[index]].text, turn.answer, known.get(input_rows[index])
+                )
             ) is not None:
-                reply, reason = _turn(turn, prompt, rows, range(asked[at], end), evidence)
-                line = rows[asked[at]].line
-            at += 1
+                reply, reason = _find_reply(
+                    turn, prompt, rows, range(input_rows[index], end), evidence
+                )
+                line = rows[input_rows[index]].line
+            index += 1
         if reply is None:
-            return Occurrence(None, reason or _not_asked(number, turn, len(asked)), line)
+            return Finding(
+                None, reason or _explain_missing_question(number, turn, len(input_rows)), line
+            )
         moment, line = EvidencePoint(rows[reply].tick, reply), rows[reply].line
-    return Occurrence(moment, line=line)
+    return Finding(moment, line=line)
 
 
-def _prompt(text: str, answer: str, given: str | None) -> str | None:
+def _find_prompt(text: str, answer: str, typed: str | None) -> str | None:
     """Return the prompt in a row of input, which the answer follows; None if another answer was given.
 
     Args:
         given: The answer, if it is known.
     """
-    if not text.endswith(answer) or (given is not None and given != answer):
+    if not text.endswith(answer) or (typed is not None and typed != answer):
         return None
     prompt = text.removesuffix(answer)
     # `15` is not a prompt 1 and an answer 5.
-    if given is None and answer[:1].isdigit() and prompt[-1:].isdigit():
+    if typed is None and answer[:1].isdigit() and prompt[-1:].isdigit():
         return None
     return prompt
 
 
-def _turn(
-    turn: DialogueTurn, prompt: str, rows: list[OutputRow], asked: range, evidence: Evidence
+def _find_reply(
+    turn: DialogueTurn, prompt: str, rows: list[OutputRow], span: range, evidence: Evidence
 ) -> tuple[int | None, str]:
     """Return the row that completes a turn or None, and what is wrong with a turn that got its answer.
 
@@ -413,45 +430,47 @@ def _turn(
     if turn.prompt and not build_search(turn.prompt)(prompt):
         return (
             None,
-            f"The question for {_shown(turn.answer)} was {_shown(prompt)}, not one like {_shown(turn.prompt)}.",
+            f"The question for {_quote(turn.answer)} was {_quote(prompt)}, not one like {_quote(turn.prompt)}.",
         )
     if not turn.reply:
-        return asked.start, ""
-    printed = [at for at in asked if rows[at].stream == Stream.STDOUT]
-    found = next((at for at in printed if evidence.search(turn.reply)(rows[at].text)), None)
-    if found is not None:
-        return found, ""
-    said = (
-        f"the program printed {_shown(rows[printed[0]].text)}"
+        return span.start, ""
+    printed = [index for index in span if rows[index].stream == Stream.STDOUT]
+    reply = next(
+        (index for index in printed if evidence.search(turn.reply)(rows[index].text)), None
+    )
+    if reply is not None:
+        return reply, ""
+    outcome = (
+        f"the program printed {_quote(rows[printed[0]].text)}"
         if printed
         else "the program printed nothing"
     )
     return (
         None,
-        f"After the answer {_shown(turn.answer)} {said}, and no line like {_shown(turn.reply)}.",
+        f"After the answer {_quote(turn.answer)} {outcome}, and no line like {_quote(turn.reply)}.",
     )
 
 
-def _not_asked(number: int, turn: DialogueTurn, asked: int) -> str:
-    times = {1: "once", 2: "twice"}.get(asked, f"{asked} times")
-    if not asked:
+def _explain_missing_question(number: int, turn: DialogueTurn, question_count: int) -> str:
+    times = {1: "once", 2: "twice"}.get(question_count, f"{question_count} times")
+    if not question_count:
         return "The program did not ask for input."
-    return f"The program asked {times}; no question got answer {number}, {_shown(turn.answer)}."
+    return f"The program asked {times}; no question got answer {number}, {_quote(turn.answer)}."
 
 
-def find_finish(condition: FinishCondition, evidence: Evidence, span: EvidenceSpan) -> Occurrence:
+def find_finish(condition: FinishCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
     """Find when the program finished without an error."""
     if not span.over:
-        return Occurrence(
+        return Finding(
             None, "The program was still running.", evidence.line(span.stop or evidence.last)
         )
     end = evidence.end
     if end is None:
-        return Occurrence(None, "The run was interrupted.", evidence.line(evidence.last))
+        return Finding(None, "The run was interrupted.", evidence.line(evidence.last))
     if end.end is End.FINISHED and not end.exit_code:
-        return Occurrence(evidence.last)
+        return Finding(evidence.last)
     what = f"exit code {end.exit_code}" if end.end is End.FINISHED else end.end.replace("_", " ")
     summary = end.summary.removesuffix(f" (line {end.error_line})").rstrip(".")
-    return Occurrence(
+    return Finding(
         None, f"The program did not finish: {summary or what}.", evidence.line(evidence.last)
     )

@@ -8,7 +8,7 @@ from tuisim.engine.core.spec import PenSpec
 from tuisim.engine.core.tick_record import FLAG_PEN_DOWN
 from tuisim.tasks.goals import picture
 from tuisim.tasks.goals.evidence import Evidence, EvidencePoint, EvidenceSpan
-from tuisim.tasks.goals.found import Occurrence, share_words
+from tuisim.tasks.goals.found import Finding, share_words
 from tuisim.tasks.goals.spec import DrawCondition
 
 if TYPE_CHECKING:
@@ -17,21 +17,21 @@ if TYPE_CHECKING:
     Array = np.ndarray[Any, Any]
 
 
-def find_drawn(condition: DrawCondition, evidence: Evidence, span: EvidenceSpan) -> Occurrence:
+def find_drawn(condition: DrawCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
     """Find out at the end of a span whether the drawing is near the picture."""
     import numpy as np
 
     records = evidence.records[span.ticks]
-    points, ticks = _strokes(records, evidence.spec.robot.pen, condition)
+    points, ticks = _sample_strokes(records, evidence.spec.robot.pen, condition)
     if not len(points):
-        return Occurrence(None, "The pen drew nothing.")
-    wanted = picture.cells(condition)
-    covered, near = picture.compare(wanted, points, condition.within_mm)
+        return Finding(None, "The pen drew nothing.")
+    cells = picture.list_cells(condition)
+    covered, near = picture.compare(cells, points, condition.within_mm)
     drawn, on_picture = float(covered.mean()), float(near.mean())
     reasons = []
     line = 0
     if drawn < condition.share:
-        x_mm, y_mm = picture.centres_mm(wanted[~covered][:1], condition.within_mm)[0]
+        x_mm, y_mm = picture.compute_centres_mm(cells[~covered][:1], condition.within_mm)[0]
         reasons.append(
             f"{share_words(drawn)} of the picture is drawn, not the part at x {x_mm:.0f}, y {y_mm:.0f} mm"
         )
@@ -44,13 +44,13 @@ def find_drawn(condition: DrawCondition, evidence: Evidence, span: EvidenceSpan)
             f"y {y_mm:.0f} mm at {evidence.time_words(tick)}"
         )
     if reasons:
-        return Occurrence(
+        return Finding(
             None, f"{' and '.join(reasons)}; {share_words(condition.share)} are needed.", line
         )
-    return Occurrence(evidence.last if span.over else span.stop)
+    return Finding(evidence.last if span.over else span.stop)
 
 
-def _strokes(records: Array, pen: PenSpec, condition: DrawCondition) -> tuple[Array, Array]:
+def _sample_strokes(records: Array, pen: PenSpec, condition: DrawCondition) -> tuple[Array, Array]:
     """Return the points that the pen drew, shape (n, 2) in mm, close enough for the comparison, and their ticks."""
     import numpy as np
 
@@ -59,16 +59,16 @@ def _strokes(records: Array, pen: PenSpec, condition: DrawCondition) -> tuple[Ar
         return np.empty((0, 2)), np.empty(0, np.int64)
     from tuisim.engine.runs.arrays import world_points_mm
 
-    at = np.column_stack(world_points_mm(records, pen.x_mm, pen.y_mm))
+    pen_mm = np.column_stack(world_points_mm(records, pen.x_mm, pen.y_mm))
     # A robot that was moved by hand draws no line.
     joined = down[1:] & down[:-1] & (np.diff(records["actions"].astype("i4")) == 0)
-    way_mm = np.where(joined, np.hypot(*np.diff(at, axis=0).T), 0.0)
-    count = np.ceil(way_mm / picture.cell_mm(condition.within_mm)).astype(np.int64)
-    ends = np.repeat(np.arange(1, len(at)), count)
+    way_mm = np.where(joined, np.hypot(*np.diff(pen_mm, axis=0).T), 0.0)
+    count = np.ceil(way_mm / picture.compute_cell_mm(condition.within_mm)).astype(np.int64)
+    ends = np.repeat(np.arange(1, len(pen_mm)), count)
     number = np.arange(len(ends)) - np.repeat(np.cumsum(count) - count, count)
     part = ((number + 1) / np.repeat(np.maximum(count, 1), count))[:, None]
-    between = at[ends - 1] * (1 - part) + at[ends] * part
+    between = pen_mm[ends - 1] * (1 - part) + pen_mm[ends] * part
     touched = np.flatnonzero(down & np.concatenate(([True], ~joined)))
-    points, ticks = np.concatenate((at[touched], between)), np.concatenate((touched, ends))
+    points, ticks = np.concatenate((pen_mm[touched], between)), np.concatenate((touched, ends))
     order = np.argsort(ticks, kind="stable")
     return points[order], ticks[order]

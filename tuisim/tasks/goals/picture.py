@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 _DARK = 128
 """Pixels of an image that are darker on average belong to the picture."""
-_AT_ONCE = 4096
+_MAX_POINTS_TOGETHER = 4096
 """Cells of a drawing that are compared in one step, which limits the memory."""
 
 
@@ -71,14 +71,14 @@ def draw_from_table(table: PictureTable, folder: Path) -> DrawCondition:
 
     if table.image:
         path = folder / user_path(table.image)
-        points = _dark_points(path, table.fit)
+        points = _find_dark_points(path, table.fit)
     else:
-        points = _points_of_lines(table.lines_mm, cell_mm(table.within_mm))
-    found = np.unique(_cell_numbers(points, table.within_mm))
-    return DrawCondition(found.astype("<i4").tobytes(), table.within_mm, table.share)
+        points = _sample_lines(table.lines_mm, compute_cell_mm(table.within_mm))
+    numbers = np.unique(_number_cells(points, table.within_mm))
+    return DrawCondition(numbers.astype("<i4").tobytes(), table.within_mm, table.share)
 
 
-def _dark_points(path: Path, fit: str) -> Array:
+def _find_dark_points(path: Path, fit: str) -> Array:
     import numpy as np
 
     pixels = mat_image.decode(mat_image.read_file(path), path, fit)
@@ -88,7 +88,7 @@ def _dark_points(path: Path, fit: str) -> Array:
     return np.column_stack((cols + 0.5, FIELD_HEIGHT_MM - rows - 0.5))
 
 
-def _points_of_lines(lines: Sequence[Sequence[tuple[float, float]]], step_mm: float) -> Array:
+def _sample_lines(lines: Sequence[Sequence[tuple[float, float]]], step_mm: float) -> Array:
     import numpy as np
 
     parts = []
@@ -101,42 +101,44 @@ def _points_of_lines(lines: Sequence[Sequence[tuple[float, float]]], step_mm: fl
     return np.concatenate(parts)
 
 
-def cell_mm(within_mm: float) -> float:
+def compute_cell_mm(within_mm: float) -> float:
     """Return the side of a cell for a tolerance."""
     return max(1.0, within_mm / 8)
 
 
-def _grid(within_mm: float) -> tuple[int, int]:
+def _count_cells(within_mm: float) -> tuple[int, int]:
     """Return the number of columns and rows of cells."""
-    side = cell_mm(within_mm)
+    side = compute_cell_mm(within_mm)
     return math.ceil(FIELD_WIDTH_MM / side), math.ceil(FIELD_HEIGHT_MM / side)
 
 
-def _cell_numbers(points: Array, within_mm: float) -> Array:
+def _number_cells(points: Array, within_mm: float) -> Array:
     import numpy as np
 
-    cols, rows = _grid(within_mm)
-    col, row = (np.floor(points / cell_mm(within_mm))).astype(np.int64).T
+    cols, rows = _count_cells(within_mm)
+    col, row = (np.floor(points / compute_cell_mm(within_mm))).astype(np.int64).T
     numbers: Array = np.clip(row, 0, rows - 1) * cols + np.clip(col, 0, cols - 1)
     return numbers
 
 
-def cells(condition: DrawCondition) -> Array:
+def list_cells(condition: DrawCondition) -> Array:
     """Return the indices of the picture's cells, ascending, shape (n,)."""
     import numpy as np
 
     return np.frombuffer(condition.picture, "<i4")
 
 
-def centres_mm(numbers: Array, within_mm: float) -> Array:
+def compute_centres_mm(numbers: Array, within_mm: float) -> Array:
     """Return the centres of cells, shape (n, 2)."""
     import numpy as np
 
-    cols, _ = _grid(within_mm)
-    return np.column_stack((numbers % cols + 0.5, numbers // cols + 0.5)) * cell_mm(within_mm)
+    cols, _ = _count_cells(within_mm)
+    return np.column_stack((numbers % cols + 0.5, numbers // cols + 0.5)) * compute_cell_mm(
+        within_mm
+    )
 
 
-def compare(wanted: Array, points: Array, within_mm: float) -> tuple[Array, Array]:
+def compare(cells: Array, points: Array, within_mm: float) -> tuple[Array, Array]:
     """Compare a drawing with a picture.
 
     Args:
@@ -149,23 +151,23 @@ def compare(wanted: Array, points: Array, within_mm: float) -> tuple[Array, Arra
     """
     import numpy as np
 
-    side = cell_mm(within_mm)
+    side = compute_cell_mm(within_mm)
     reach = math.ceil(within_mm / side) + 1
     # What is off the field lies in the inner half of the margin, what is near that in the outer half.
     margin = 2 * reach
-    cols, rows = _grid(within_mm)
+    cols, rows = _count_cells(within_mm)
     wide = cols + 2 * margin
     col = np.clip(np.floor(points[:, 0] / side).astype(np.int64), -reach, cols + reach - 1) + margin
     row = np.clip(np.floor(points[:, 1] / side).astype(np.int64), -reach, rows + reach - 1) + margin
     drawn, which = np.unique(row * wide + col, return_inverse=True)
-    wanted = (wanted // cols + margin) * wide + wanted % cols + margin
+    cells = (cells // cols + margin) * wide + cells % cols + margin
     picture, reached = (np.zeros(wide * (rows + 2 * margin), np.bool_) for _ in range(2))
-    picture[wanted] = True
+    picture[cells] = True
     near = np.zeros(len(drawn), np.bool_)
     across, down = np.meshgrid(np.arange(-reach, reach + 1), np.arange(-reach, reach + 1))
     around = (down * wide + across)[np.hypot(down, across) * side <= within_mm]
-    for start in range(0, len(drawn), _AT_ONCE):
-        there = drawn[start : start + _AT_ONCE, None] + around
-        near[start : start + _AT_ONCE] = picture[there].any(axis=1)
+    for start in range(0, len(drawn), _MAX_POINTS_TOGETHER):
+        there = drawn[start : start + _MAX_POINTS_TOGETHER, None] + around
+        near[start : start + _MAX_POINTS_TOGETHER] = picture[there].any(axis=1)
         reached[there] = True
-    return reached[wanted], near[which]
+    return reached[cells], near[which]

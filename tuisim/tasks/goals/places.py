@@ -8,7 +8,7 @@ from tuisim.engine.core.collision import Solids
 from tuisim.engine.core.outline import build_outline
 from tuisim.engine.core.spec import Obstacle, RobotSpec, WorldSpec
 from tuisim.tasks.goals.evidence import Evidence, EvidencePoint, EvidenceSpan
-from tuisim.tasks.goals.found import Occurrence, distance_words
+from tuisim.tasks.goals.found import Finding, format_distance
 from tuisim.tasks.goals.spec import (
     AreaCondition,
     BodyPart,
@@ -30,7 +30,7 @@ CONTACT_MM = 0.01
 _WALLS = ("the left wall", "the right wall", "the lower wall", "the upper wall")
 
 
-def find_reach(condition: ReachCondition, evidence: Evidence, span: EvidenceSpan) -> Occurrence:
+def find_reach(condition: ReachCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
     """Find when the robot was at a place and heading."""
     import numpy as np
 
@@ -39,37 +39,35 @@ def find_reach(condition: ReachCondition, evidence: Evidence, span: EvidenceSpan
         # The goal before it was met in the last tick: the robot is now where it is at the end.
         records = evidence.records[-1:]
     if not len(records):
-        return Occurrence(None, "The robot was not simulated at that time.")
-    away_mm, turned_deg = _away_mm(condition, records), _turned_deg(condition, records)
+        return Finding(None, "The robot was not simulated at that time.")
+    away_mm, turned_deg = _find_away_mm(condition, records), _find_turned_deg(condition, records)
     there = (away_mm <= condition.within_mm) & (turned_deg <= condition.within_deg)
     if condition.at_end:
         if span.over and there[-1]:
-            return Occurrence(evidence.last)
-        words = _off_words(condition, records[-1], away_mm[-1], turned_deg[-1])
+            return Finding(evidence.last)
+        words = _describe_miss(condition, records[-1], away_mm[-1], turned_deg[-1])
         text = f"At the end the robot was {words}." if span.over else f"The robot is {words}."
-        return Occurrence(
-            None, "" if there[-1] else text, line_of_motion(records, len(records) - 1)
-        )
+        return Finding(None, "" if there[-1] else text, find_motion_line(records, len(records) - 1))
     if not there.any():
         nearest = int(
             np.argmin(np.maximum(away_mm / condition.within_mm, turned_deg / condition.within_deg))
         )
-        words = _off_words(condition, records[nearest], away_mm[nearest], turned_deg[nearest])
+        words = _describe_miss(condition, records[nearest], away_mm[nearest], turned_deg[nearest])
         text = f"At its nearest, at {evidence.time_words(first + nearest)}, the robot was {words}."
-        return Occurrence(None, text, line_of_motion(records, nearest))
+        return Finding(None, text, find_motion_line(records, nearest))
     times_s = evidence.times_s[span.ticks]
-    came = _came_at(there)
+    came = _find_arrivals(there)
     stayed_s = np.where(there, times_s - times_s[came], -1.0)
     enough = np.flatnonzero(stayed_s >= condition.for_s - 1e-9)
     if len(enough):
-        return Occurrence(EvidencePoint(first + int(enough[0])))
+        return Finding(EvidencePoint(first + int(enough[0])))
     longest = int(np.argmax(stayed_s))
     text = f"The robot stayed there for at most {stayed_s[longest]:.2f} s, {condition.for_s:g} s are needed."
     # What moved it away, else what brought it there.
-    return Occurrence(None, text, line_of_motion(records, longest + 1))
+    return Finding(None, text, find_motion_line(records, longest + 1))
 
 
-def line_of_motion(records: Array, at: int) -> int:
+def find_motion_line(records: Array, index: int) -> int:
     """Return the program's line of the last tick up to an index that moved the robot, else of the first after it.
 
     A robot that stands where it is says nothing about the line at that time: 0, if it never moved.
@@ -80,11 +78,11 @@ def line_of_motion(records: Array, at: int) -> int:
     moved = np.flatnonzero(np.logical_or.reduce(steps)) + 1
     if not len(moved):
         return 0
-    before = int(np.searchsorted(moved, at, side="right")) - 1
+    before = int(np.searchsorted(moved, index, side="right")) - 1
     return int(records["line"][moved[max(0, before)]])
 
 
-def _came_at(there: Array) -> Array:
+def _find_arrivals(there: Array) -> Array:
     """Return for each tick since which index it has been there without a break."""
     import numpy as np
 
@@ -93,7 +91,7 @@ def _came_at(there: Array) -> Array:
     return since
 
 
-def _away_mm(condition: ReachCondition, records: Array) -> Array:
+def _find_away_mm(condition: ReachCondition, records: Array) -> Array:
     import numpy as np
 
     x_mm = 0.0 if condition.x_mm is None else records["x_mm"] - condition.x_mm
@@ -102,7 +100,7 @@ def _away_mm(condition: ReachCondition, records: Array) -> Array:
     return away
 
 
-def _turned_deg(condition: ReachCondition, records: Array) -> Array:
+def _find_turned_deg(condition: ReachCondition, records: Array) -> Array:
     import numpy as np
 
     if condition.heading_deg is None:
@@ -111,18 +109,20 @@ def _turned_deg(condition: ReachCondition, records: Array) -> Array:
     return turned
 
 
-def _off_words(condition: ReachCondition, record: Any, away_mm: float, turned_deg: float) -> str:
+def _describe_miss(
+    condition: ReachCondition, record: Any, away_mm: float, turned_deg: float
+) -> str:
     words = []
     if condition.x_mm is not None or condition.y_mm is not None:
         words.append(
-            f"{distance_words(away_mm)} {_side_words(condition, record)} {_place_words(condition)}"
+            f"{format_distance(away_mm)} {_describe_side(condition, record)} {_place_words(condition)}"
         )
     if condition.heading_deg is not None:
         words.append(f"turned {turned_deg:.1f}° off")
     return " and ".join(words)
 
 
-def _side_words(condition: ReachCondition, record: Any) -> str:
+def _describe_side(condition: ReachCondition, record: Any) -> str:
     """Return on which side of a line the robot is; a point has no sides."""
     if condition.x_mm is None:
         return "below" if record["y_mm"] < condition.y_mm else "above"
@@ -139,15 +139,15 @@ def _place_words(condition: ReachCondition) -> str:
     return f"({condition.x_mm:g}, {condition.y_mm:g})"
 
 
-def find_pass(condition: PassCondition, evidence: Evidence, span: EvidenceSpan) -> Occurrence:
+def find_pass(condition: PassCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
     """Find when the robot had passed the last of the places."""
     records, first = evidence.records[span.ticks], span.first_tick
     if not len(records):
-        return Occurrence(None, "The robot was not simulated at that time.")
-    at = last = 0
+        return Finding(None, "The robot was not simulated at that time.")
+    passed = last = 0
     for count, (x_mm, y_mm) in enumerate(condition.places_mm):
-        away_mm = _way_away_mm(records, x_mm, y_mm)
-        start = at if condition.in_order else 0
+        away_mm = _measure_way_away_mm(records, x_mm, y_mm)
+        start = passed if condition.in_order else 0
         near = away_mm[start:] <= condition.within_mm
         if not near.any():
             nearest = start + int(away_mm[start:].argmin())
@@ -158,16 +158,16 @@ def find_pass(condition: PassCondition, evidence: Evidence, span: EvidenceSpan) 
                 else ""
             )
             text = (
-                f"The robot came no nearer than {distance_words(away_mm[nearest])} to place {which}"
+                f"The robot came no nearer than {format_distance(away_mm[nearest])} to place {which}"
                 f"({x_mm:g}, {y_mm:g}){after}, at {evidence.time_words(first + nearest)}."
             )
-            return Occurrence(None, text, line_of_motion(records, nearest))
-        at = start + int(near.argmax())
-        last = max(last, at)
-    return Occurrence(EvidencePoint(first + last))
+            return Finding(None, text, find_motion_line(records, nearest))
+        passed = start + int(near.argmax())
+        last = max(last, passed)
+    return Finding(EvidencePoint(first + last))
 
 
-def _way_away_mm(records: Array, x_mm: float, y_mm: float) -> Array:
+def _measure_way_away_mm(records: Array, x_mm: float, y_mm: float) -> Array:
     """Return how near the robot came to a place during each tick."""
     import numpy as np
 
@@ -183,55 +183,63 @@ def _way_away_mm(records: Array, x_mm: float, y_mm: float) -> Array:
     return away_mm
 
 
-def find_left(condition: InsideCondition, evidence: Evidence, span: EvidenceSpan) -> Occurrence:
+def find_left(condition: InsideCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
     """Find when the robot left an area."""
     import numpy as np
 
     records = evidence.records[span.ticks]
     inside = np.ones(len(records), np.bool_)
-    for x_mm, y_mm in _points(condition.part, records, evidence.spec.robot):
-        inside &= _in_area(condition, x_mm, y_mm)
-    return _first(~inside, "left the area", "was not in the area from the start", evidence, span)
+    for x_mm, y_mm in _compute_points(condition.part, records, evidence.spec.robot):
+        inside &= _find_inside(condition, x_mm, y_mm)
+    return _find_first_wrong(
+        ~inside, "left the area", "was not in the area from the start", evidence, span
+    )
 
 
-def find_entered(condition: OutsideCondition, evidence: Evidence, span: EvidenceSpan) -> Occurrence:
+def find_entered(condition: OutsideCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
     """Find when the robot entered an area."""
     import numpy as np
 
     records = evidence.records[span.ticks]
     if condition.part is BodyPart.CENTRE:
-        within = _in_area(condition, records["x_mm"], records["y_mm"])
+        within = _find_inside(condition, records["x_mm"], records["y_mm"])
     elif condition.radius_mm is not None:
-        within = _circle_gap_mm(condition, records, evidence.spec.robot) < condition.radius_mm
+        within = (
+            _measure_circle_gap_mm(condition, records, evidence.spec.robot) < condition.radius_mm
+        )
     else:
         left, lower, right, upper = condition.box_mm
         world = WorldSpec(
             walls=False, obstacles=(Obstacle(left, lower, right - left, upper - lower),)
         )
-        found = _first_contact(records, Solids(world, evidence.spec.robot), 0.0, forgiven=False)
+        contact = _find_first_contact(
+            records, Solids(world, evidence.spec.robot), 0.0, forgiven=False
+        )
         within = np.zeros(len(records), np.bool_)
-        if found is not None:
-            within[found[0]] = True
-    return _first(within, "entered the area", "was in the area from the start", evidence, span)
+        if contact is not None:
+            within[contact[0]] = True
+    return _find_first_wrong(
+        within, "entered the area", "was in the area from the start", evidence, span
+    )
 
 
-def _first(
+def _find_first_wrong(
     wrong: Array, text: str, at_start: str, evidence: Evidence, span: EvidenceSpan
-) -> Occurrence:
+) -> Finding:
     if not wrong.any():
-        return Occurrence()
+        return Finding()
     tick = span.first_tick + int(wrong.argmax())
     x_mm, y_mm = evidence.place_mm(tick)
     what = f"{text} at {evidence.time_words(tick)}" if tick else at_start
     # No line of the program has put it where it is at the start.
-    return Occurrence(
+    return Finding(
         EvidencePoint(tick),
         f"The robot {what}, at x {x_mm:.0f} mm, y {y_mm:.0f} mm.",
         None if tick else 0,
     )
 
 
-def _points(part: BodyPart, records: Array, robot: RobotSpec) -> list[tuple[Array, Array]]:
+def _compute_points(part: BodyPart, records: Array, robot: RobotSpec) -> list[tuple[Array, Array]]:
     """Return x and y of the points of the robot that matter, in mm, each at every tick."""
     import numpy as np
 
@@ -247,7 +255,7 @@ def _points(part: BodyPart, records: Array, robot: RobotSpec) -> list[tuple[Arra
     ]
 
 
-def _in_area(area: AreaCondition, x_mm: Array, y_mm: Array) -> Array:
+def _find_inside(area: AreaCondition, x_mm: Array, y_mm: Array) -> Array:
     import numpy as np
 
     if area.radius_mm is not None:
@@ -258,7 +266,7 @@ def _in_area(area: AreaCondition, x_mm: Array, y_mm: Array) -> Array:
     return in_box
 
 
-def _circle_gap_mm(area: AreaCondition, records: Array, robot: RobotSpec) -> Array:
+def _measure_circle_gap_mm(area: AreaCondition, records: Array, robot: RobotSpec) -> Array:
     """Return the distance of the robot's body from the centre of a circle, at every tick."""
     import numpy as np
 
@@ -272,21 +280,19 @@ def _circle_gap_mm(area: AreaCondition, records: Array, robot: RobotSpec) -> Arr
     return gap
 
 
-def find_touch(
-    condition: TouchNothingCondition, evidence: Evidence, span: EvidenceSpan
-) -> Occurrence:
+def find_touch(condition: TouchNothingCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
     """Find when the robot touched an obstacle or a wall, or came too near to one."""
     world, robot = evidence.spec.world, evidence.spec.robot
     walls = world.walls and condition.walls
     obstacles = world.obstacles if condition.obstacles else ()
     solids = Solids(WorldSpec(walls=walls, obstacles=obstacles), robot)
-    found = _first_contact(
+    contact = _find_first_contact(
         evidence.records[span.ticks], solids, max(condition.gap_mm, CONTACT_MM), forgiven=True
     )
-    if found is None:
-        return Occurrence()
-    at, number = found
-    tick = span.first_tick + at
+    if contact is None:
+        return Finding()
+    index, number = contact
+    tick = span.first_tick + index
     names = [
         *(_WALLS if walls else ()),
         *(f"the obstacle at x {o.x_mm:g}, y {o.y_mm:g}" for o in obstacles),
@@ -294,13 +300,13 @@ def find_touch(
     did = "came too near to" if condition.gap_mm > CONTACT_MM else "touched"
     x_mm, y_mm = evidence.place_mm(tick)
     place = f"at x {x_mm:.0f} mm, y {y_mm:.0f} mm"
-    return Occurrence(
+    return Finding(
         EvidencePoint(tick),
         f"The robot {did} {names[number]} at {evidence.time_words(tick)}, {place}.",
     )
 
 
-def _first_contact(
+def _find_first_contact(
     records: Array, solids: Solids, gap_mm: float, *, forgiven: bool
 ) -> tuple[int, int] | None:
     """Return the first index at which a gap is below `gap_mm`, and the number of the gap; None if there is none.
@@ -319,10 +325,10 @@ def _first_contact(
         np.hypot(np.diff(records["x_mm"]), np.diff(records["y_mm"])) + turned * solids.reach_mm
     )
     way_mm = np.concatenate(([0.0], np.cumsum(steps_mm)))
-    at, near_from_start = 0, None
-    while at < len(records):
+    index, near_from_start = 0, None
+    while index < len(records):
         x_mm, y_mm, heading_deg = (
-            float(records[name][at]) for name in ("x_mm", "y_mm", "heading_deg")
+            float(records[name][index]) for name in ("x_mm", "y_mm", "heading_deg")
         )
         gaps = solids.measure_gaps_mm((x_mm, y_mm, heading_deg))
         near = {number for number, gap in enumerate(gaps) if gap < gap_mm}
@@ -330,7 +336,7 @@ def _first_contact(
             near_from_start = near if forgiven else set()
         near_from_start &= near
         if near - near_from_start:
-            return at, min(near - near_from_start)
+            return index, min(near - near_from_start)
         free_mm = min((abs(gap - gap_mm) for gap in gaps), default=np.inf)
-        at = max(at + 1, int(np.searchsorted(way_mm, way_mm[at] + free_mm - 1e-6)))
+        index = max(index + 1, int(np.searchsorted(way_mm, way_mm[index] + free_mm - 1e-6)))
     return None

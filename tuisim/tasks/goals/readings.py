@@ -10,9 +10,9 @@ from tuisim.engine.core.spec import FIELD_HEIGHT_MM, ColorSensorSpec
 from tuisim.engine.runs.readings import MODES_BY_KIND, find_ticks
 from tuisim.tasks.goals.condition import UnjudgedError
 from tuisim.tasks.goals.evidence import Evidence, EvidencePoint, EvidenceSpan
-from tuisim.tasks.goals.found import Occurrence, share_words
-from tuisim.tasks.goals.places import line_of_motion
-from tuisim.tasks.goals.spec import FollowCondition, Range, ReadCondition, Reading, place_of
+from tuisim.tasks.goals.found import Finding, share_words
+from tuisim.tasks.goals.places import find_motion_line
+from tuisim.tasks.goals.spec import FollowCondition, Range, ReadCondition, Reading, select_place
 
 if TYPE_CHECKING:
     import numpy as np
@@ -38,19 +38,19 @@ _NOISE_SHARE = 0.1
 """The same for each percent of the light's noise."""
 
 
-def range_words(place: Mapping[str, Range]) -> str:
-    """Return ranges of `place_of` for a sentence."""
+def describe_ranges(place: Mapping[str, Range]) -> str:
+    """Return ranges of `select_place` for a sentence."""
     return " and ".join(
-        f"{key[0]} from {least:g} to {most:g} mm" for key, (least, most) in place.items()
+        f"{key[0]} from {low:g} to {high:g} mm" for key, (low, high) in place.items()
     )
 
 
 def read_ticks(reading: Reading, evidence: Evidence) -> Array:
     """Return the tick of each such reading that the program took, in ascending order."""
-    return _readings(reading, evidence)[0]
+    return _find_readings(reading, evidence)[0]
 
 
-def _readings(reading: Reading, evidence: Evidence) -> tuple[Array, Array]:
+def _find_readings(reading: Reading, evidence: Evidence) -> tuple[Array, Array]:
     """Return tick and source line of each such reading that the program took, in ascending order.
 
     Raises:
@@ -68,18 +68,18 @@ def _readings(reading: Reading, evidence: Evidence) -> tuple[Array, Array]:
     return readings
 
 
-def within(ticks: Array, place: Mapping[str, Range], evidence: Evidence) -> Array:
-    """Return those of some ticks at which the robot was in the ranges of `place_of`."""
-    for key, (least, most) in place.items():
+def filter_ticks(ticks: Array, place: Mapping[str, Range], evidence: Evidence) -> Array:
+    """Return those of some ticks at which the robot was in the ranges of `select_place`."""
+    for key, (low, high) in place.items():
         values = evidence.records[key][ticks]
-        ticks = ticks[(values >= least) & (values <= most)]
+        ticks = ticks[(values >= low) & (values <= high)]
     return ticks
 
 
-def place_words(tick: int, place: Mapping[str, Range], evidence: Evidence) -> str:
-    """Return where the robot was at a tick along the axes of `place_of`, for a sentence."""
-    at = dict(zip(("x_mm", "y_mm"), evidence.place_mm(tick), strict=True))
-    return " and ".join(f"{key[0]} = {at[key]:.0f} mm" for key in place)
+def describe_place(tick: int, place: Mapping[str, Range], evidence: Evidence) -> str:
+    """Return where the robot was at a tick along the axes of `select_place`, for a sentence."""
+    position = dict(zip(("x_mm", "y_mm"), evidence.place_mm(tick), strict=True))
+    return " and ".join(f"{key[0]} = {position[key]:.0f} mm" for key in place)
 
 
 def is_as_read(value: float, ticks: Array, evidence: Evidence) -> bool:
@@ -94,13 +94,13 @@ def is_as_read(value: float, ticks: Array, evidence: Evidence) -> bool:
 
     every = read_ticks(Reading.COLOR, evidence)
     if "light as read" not in evidence.memo:
-        evidence.memo["light as read"] = _light(evidence.records[every], evidence)
+        evidence.memo["light as read"] = _compute_light(evidence.records[every], evidence)
     scatter = _NOISE_SHARE * evidence.spec.world.noise.light
     missing = evidence.memo["light as read"][:, np.isin(every, ticks)] - value
     return bool(((missing >= -_ABOVE - scatter) & (missing <= _BELOW + scatter)).any())
 
 
-def _light(records: Array, evidence: Evidence) -> Array:
+def _compute_light(records: Array, evidence: Evidence) -> Array:
     """Return the levels of light that each colour sensor would give without noise, shape (levels, ticks)."""
     import numpy as np
 
@@ -114,25 +114,25 @@ def _light(records: Array, evidence: Evidence) -> Array:
     return np.array(rows).reshape(len(rows), len(records))
 
 
-def find_read(condition: ReadCondition, evidence: Evidence, span: EvidenceSpan) -> Occurrence:
+def find_read(condition: ReadCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
     """Find when the program had taken enough readings."""
     noun = NOUNS[condition.reading]
-    every, lines = _readings(condition.reading, evidence)
+    every, lines = _find_readings(condition.reading, evidence)
     ticks = every[(every >= span.first_tick) & (every < span.end_tick)]
-    ticks = within(ticks, place := place_of(condition), evidence)
+    ticks = filter_ticks(ticks, place := select_place(condition), evidence)
     if len(ticks) >= condition.times:
         tick = int(ticks[condition.times - 1])
-        return Occurrence(EvidencePoint(tick), line=int(lines[every.searchsorted(tick)]))
+        return Finding(EvidencePoint(tick), line=int(lines[every.searchsorted(tick)]))
     if not len(every):
-        return Occurrence(None, f"The program did not read the {noun}.")
-    where = f" at {range_words(place)}" if place else ""
+        return Finding(None, f"The program did not read the {noun}.")
+    where = f" at {describe_ranges(place)}" if place else ""
     when = " in that time" if span.first_tick else ""
     times = counted(len(ticks), "time")
     text = f"The program read the {noun} {times}{where}{when}; {condition.times:,} are needed."
-    return Occurrence(None, text, int(lines[0]))
+    return Finding(None, text, int(lines[0]))
 
 
-def find_off_line(condition: FollowCondition, evidence: Evidence, span: EvidenceSpan) -> Occurrence:
+def find_off_line(condition: FollowCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
     """Find out at the end of a span whether the robot was on a line for too small a share of the time."""
     import numpy as np
 
@@ -141,20 +141,24 @@ def find_off_line(condition: FollowCondition, evidence: Evidence, span: Evidence
     if unknown:
         known = ", ".join(named) or "none"
         text = f"The robot has no colour sensor {unknown[0]}; it has: {known}."
-        return Occurrence(EvidencePoint(max(0, span.first_tick)), text, 0)
+        return Finding(EvidencePoint(max(0, span.first_tick)), text, 0)
     records = evidence.records[span.ticks]
     if not len(records):
-        return Occurrence()
+        return Finding()
     if condition.point_mm is not None:
-        on_line = _is_line(condition, _light_at_percent(records, *condition.point_mm, evidence))
+        on_line = _is_line(
+            condition, _compute_light_percent(records, *condition.point_mm, evidence)
+        )
     else:
         on_line = np.zeros(len(records), np.bool_)
         for name in condition.sensors:
-            on_line |= _is_line(condition, _reflected_percent(records, named[name], evidence))
+            on_line |= _is_line(
+                condition, _compute_reflected_percent(records, named[name], evidence)
+            )
     share = float(on_line.mean())
     if share >= condition.share:
-        return Occurrence()
-    gap = _longest_gap(on_line)
+        return Finding()
+    gap = _find_longest_gap(on_line)
     lost = span.first_tick + gap
     what = f"The sensor {' or '.join(condition.sensors)}" if condition.sensors else "The robot"
     text = (
@@ -162,10 +166,10 @@ def find_off_line(condition: FollowCondition, evidence: Evidence, span: Evidence
         f"was off for longest from {evidence.time_words(lost)}."
     )
     decided = span.stop or (evidence.last if span.over else None)
-    return Occurrence(decided, text, line_of_motion(records, gap))
+    return Finding(decided, text, find_motion_line(records, gap))
 
 
-def _light_at_percent(records: Array, x_mm: float, y_mm: float, evidence: Evidence) -> Array:
+def _compute_light_percent(records: Array, x_mm: float, y_mm: float, evidence: Evidence) -> Array:
     """Return the light of the mat's pixel under a point of the robot, at every tick; 0 where there is nothing."""
     import numpy as np
 
@@ -181,7 +185,9 @@ def _light_at_percent(records: Array, x_mm: float, y_mm: float, evidence: Eviden
     return percent
 
 
-def _reflected_percent(records: Array, sensor: ColorSensorSpec, evidence: Evidence) -> Array:
+def _compute_reflected_percent(
+    records: Array, sensor: ColorSensorSpec, evidence: Evidence
+) -> Array:
     """Return what `reflected_light_intensity_pc` would be without noise, at every tick."""
     from tuisim.engine.runs.sensor_arrays import quiet_color_columns
 
@@ -201,7 +207,7 @@ def _is_line(condition: FollowCondition, percent: Array) -> Array:
     return on_line
 
 
-def _longest_gap(on_line: Array) -> int:
+def _find_longest_gap(on_line: Array) -> int:
     """Return the index at which the longest time off the line begins."""
     import numpy as np
 

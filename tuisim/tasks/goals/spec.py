@@ -63,24 +63,26 @@ Range = tuple[X, X]
 """From where to where along x, or along y."""
 
 
-def _check_ranges(condition: PrintCondition | LogCondition | ReadCondition, wanted: int) -> None:
+def _check_ranges(condition: PrintCondition | LogCondition | ReadCondition, count: int) -> None:
     for key, way in (("x_mm", "left to right"), ("y_mm", "below to above")):
-        found: tuple[Range, ...] = getattr(condition, key)
-        for number, (least, most) in enumerate(found, start=1):
-            if least >= most:
+        ranges: tuple[Range, ...] = getattr(condition, key)
+        for number, (low, high) in enumerate(ranges, start=1):
+            if low >= high:
                 raise ConfigError(
-                    f"must be from {way}, got {least:g} to {most:g}", key=f"{key}[{number}]"
+                    f"must be from {way}, got {low:g} to {high:g}", key=f"{key}[{number}]"
                 )
-        if len(found) not in (0, 1, wanted):
-            raise ConfigError(f"must have one entry, or {wanted}, has {len(found)}", key=key)
+        if len(ranges) not in (0, 1, count):
+            raise ConfigError(f"must have one entry, or {count}, has {len(ranges)}", key=key)
 
 
-def place_of(
+def select_place(
     condition: PrintCondition | LogCondition | ReadCondition, count: int = 0
 ) -> dict[str, Range]:
     """Return where the robot must be for one of the lines or levels: ranges by `x_mm` and `y_mm`, as far as given."""
-    found = {key: getattr(condition, key) for key in ("x_mm", "y_mm")}
-    return {key: ranges[count if len(ranges) > 1 else 0] for key, ranges in found.items() if ranges}
+    places = {key: getattr(condition, key) for key in ("x_mm", "y_mm")}
+    return {
+        key: ranges[count if len(ranges) > 1 else 0] for key, ranges in places.items() if ranges
+    }
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,7 +11,7 @@ from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ConfigError
 from tuisim.engine import files
 from tuisim.engine.files import Location
-from tuisim.settings.worlds import world_from_table
+from tuisim.settings.worlds import parse_world
 from tuisim.tasks.goals.spec import DialogueCondition, Goal
 
 _OWN_KEYS = ("where", "goals", "goal")
@@ -65,7 +65,7 @@ class TrialWorld:
             tuple(turn.answer for dialogue in dialogues for turn in dialogue.turns) or self.inputs
         )
 
-    def goals_among(self, goals: Sequence[Goal]) -> tuple[Goal, ...]:
+    def select_goals(self, goals: Sequence[Goal]) -> tuple[Goal, ...]:
         """Return the goals that are judged there: those of the first world, which its own of the same name replace."""
         own = {goal.name: goal for goal in self.own_goals}
         return (*(own.pop(goal.name, goal) for goal in goals), *own.values())
@@ -75,15 +75,15 @@ class TrialWorld:
         return replace(
             self,
             settings={**first.settings, **self.settings},
-            own_goals=self.goals_among(first.own_goals),
+            own_goals=self.select_goals(first.own_goals),
             inputs=self.inputs or first.inputs,
         )
 
 
-def others_of(
+def parse_other_worlds(
     data: object,
     goals: tuple[str, ...],
-    at: Location,
+    location: Location,
     path: Path,
     read_goals: GoalReader,
     *,
@@ -104,24 +104,24 @@ def others_of(
     """
     others: list[TrialWorld] = []
     for entry, place in files.entries(
-        data, at, MAX_TASK_WORLDS if of_task else MAX_LESSON_WORLDS, "other worlds"
+        data, location, MAX_TASK_WORLDS if of_task else MAX_LESSON_WORLDS, "other worlds"
     ):
-        found = files.table(
+        table = files.table(
             entry, place, (*_OWN_KEYS, *((_HIDDEN,) if of_task else ()), *_WORLD_KEYS)
         )
-        where = files.convert(files.required(found, "where", place), str, place.at("where"))
-        if any(where == one.where for one in others):
+        where = files.convert(files.required(table, "where", place), str, place.at("where"))
+        if any(where == other.where for other in others):
             raise place.at("where").wrong(
                 f"there are two {where!r}", "say what is different in each"
             )
-        own = read_goals(found["goal"], place.at("goal"), path.parent) if "goal" in found else ()
+        own = read_goals(table["goal"], place.at("goal"), path.parent) if "goal" in table else ()
         own_names = tuple(goal.name for goal in own)
-        named = files.convert(found.get("goals", []), tuple[str, ...], place.at("goals"))
+        named = files.convert(table.get("goals", []), tuple[str, ...], place.at("goals"))
         usual = goals if of_task or not own else ()
-        wanted = tuple(dict.fromkeys((*(named or usual), *own_names)))
+        goal_names = tuple(dict.fromkeys((*(named or usual), *own_names)))
         try:
-            world = world_from_table(
-                {key: found[key] for key in _WORLD_KEYS if key in found}, path, changes=True
+            world = parse_world(
+                {key: table[key] for key in _WORLD_KEYS if key in table}, path, changes=True
             )
         except ConfigError as error:
             # It names the key in the table, or another file.
@@ -130,12 +130,12 @@ def others_of(
             raise files.with_location(error, place.file, f"{place.key}.{error.key}") from None
         if not (world.settings or world.inputs):
             raise place.wrong("is the same world", f"one of {', '.join(_WORLD_KEYS)}")
-        is_hidden = files.convert(found.get(_HIDDEN, False), bool, place.at(_HIDDEN))
-        others.append(TrialWorld(where, world.settings, wanted, own, world.inputs, is_hidden))
+        is_hidden = files.convert(table.get(_HIDDEN, False), bool, place.at(_HIDDEN))
+        others.append(TrialWorld(where, world.settings, goal_names, own, world.inputs, is_hidden))
     return tuple(others)
 
 
-def check_names(names: Sequence[str], known: Collection[str], at: Location) -> None:
+def check_names(names: Sequence[str], known: Collection[str], location: Location) -> None:
     """Check the key `goals` of a table.
 
     Raises:
@@ -143,6 +143,6 @@ def check_names(names: Sequence[str], known: Collection[str], at: Location) -> N
     """
     for number, name in enumerate(names, start=1):
         if name not in known:
-            raise at.at(f"goals[{number}]").wrong(
+            raise location.at(f"goals[{number}]").wrong(
                 f"there is no goal {name!r}", f"one of {', '.join(sorted(known))}"
             )

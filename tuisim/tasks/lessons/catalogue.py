@@ -10,7 +10,7 @@ from tuisim.base.errors import ConfigError, nearest
 from tuisim.base.folders import user_path
 from tuisim.engine.core.profile import Library
 from tuisim.engine.files import FILE_SUFFIXES
-from tuisim.tasks.lessons.files import SUFFIX, load_lesson, name_of, told_name
+from tuisim.tasks.lessons.files import SUFFIX, build_telling_name, get_lesson_name, load_lesson
 from tuisim.tasks.lessons.spec import Lesson
 
 VARIABLE = "TUISIM_LESSONS"
@@ -18,12 +18,12 @@ VARIABLE = "TUISIM_LESSONS"
 _TEXTS = Path(__file__).resolve().parent / "texts"
 
 
-def shipped_paths() -> dict[str, Path]:
+def find_shipped_paths() -> dict[str, Path]:
     """Return the files of tuisim's own lessons by name, in their order."""
-    return _in_folder(_TEXTS)
+    return _find_folder_paths(_TEXTS)
 
 
-def lesson_paths(folder: Path | str | None = None) -> dict[str, Path]:
+def find_lesson_paths(folder: Path | str | None = None) -> dict[str, Path]:
     """Return the files of all lessons by name: tuisim's own, then those of the folder, which may replace some.
 
     Args:
@@ -33,24 +33,24 @@ def lesson_paths(folder: Path | str | None = None) -> dict[str, Path]:
         ConfigError: the folder does not exist, or has no lessons.
     """
     word = os.environ.get(VARIABLE, "") if folder is None else str(folder)
-    found = shipped_paths()
+    paths = find_shipped_paths()
     if not word:
-        return found
+        return paths
     own = user_path(word)
     key = VARIABLE if folder is None else "--folder"
     if not os.path.isdir(own):
         raise ConfigError(f"there is no folder {own}", "name a folder of lessons", key=key)
-    lessons = _in_folder(own)
+    lessons = _find_folder_paths(own)
     if not lessons:
         raise ConfigError(
             f"no lessons in {own}", f"they are {SUFFIX} files, see `tuisim learn new`", key=key
         )
-    return found | lessons
+    return paths | lessons
 
 
-def _in_folder(folder: Path) -> dict[str, Path]:
+def _find_folder_paths(folder: Path) -> dict[str, Path]:
     return {
-        name_of(path): path
+        get_lesson_name(path): path
         for path in sorted(folder.glob(f"*{SUFFIX}"))
         if path.name.lower() != "readme.md"
     }
@@ -61,7 +61,7 @@ def find_lesson(word: str, folder: Path | str | None = None, others: Iterable[st
 
     Args:
         word: Its name, number or path.
-        folder: As for `lesson_paths`.
+        folder: As for `find_lesson_paths`.
         others: Other words that may have been meant.
 
     Raises:
@@ -69,44 +69,44 @@ def find_lesson(word: str, folder: Path | str | None = None, others: Iterable[st
     """
     if os.sep in word or word.lower().endswith((SUFFIX, *FILE_SUFFIXES)):
         return user_path(word)
-    found = lesson_paths(folder)
+    paths = find_lesson_paths(folder)
     # By its text: a number of thousands of digits is no number for Python.
-    numbered = {str(number): path for number, path in enumerate(found.values(), start=1)}
-    if word not in found and word.lstrip("0") in numbered:
+    numbered = {str(number): path for number, path in enumerate(paths.values(), start=1)}
+    if word not in paths and word.lstrip("0") in numbered:
         return numbered[word.lstrip("0")]
-    if word not in found and word.isdecimal():
+    if word not in paths and word.isdecimal():
         raise ConfigError(
-            f"there is no lesson {word}", f"1 to {len(found)}. See `tuisim learn list`"
+            f"there is no lesson {word}", f"1 to {len(paths)}. See `tuisim learn list`"
         )
-    if word not in found:
+    if word not in paths:
         raise ConfigError(
             f"no such lesson {word!r}",
-            f"{nearest(word, [*found, *others])} See `tuisim learn list`",
+            f"{nearest(word, [*paths, *others])} See `tuisim learn list`",
         )
-    return found[word]
+    return paths[word]
 
 
-def telling_of(lesson: Path, library: Library, folder: Path | str | None = None) -> Path:
+def find_telling(lesson: Path, library: Library, folder: Path | str | None = None) -> Path:
     """Return the file that tells a lesson for a library.
 
     Raises:
         ConfigError: there is none.
     """
-    found, name = lesson_paths(folder), name_of(lesson)
-    if library is Library.EV3DEV2 or name.endswith(told_name("", library)):
+    paths, name = find_lesson_paths(folder), get_lesson_name(lesson)
+    if library is Library.EV3DEV2 or name.endswith(build_telling_name("", library)):
         return lesson
-    if told_name(name, library) not in found:
-        told = [
-            one.removesuffix(told_name("", library))
-            for one in found
-            if one.endswith(told_name("", library))
+    if build_telling_name(name, library) not in paths:
+        libraries = [
+            telling.removesuffix(build_telling_name("", library))
+            for telling in paths
+            if telling.endswith(build_telling_name("", library))
         ]
         raise ConfigError(
             f"the lesson {name} has no version for {library}",
-            f"one of {', '.join(told)}",
+            f"one of {', '.join(libraries)}",
             key="--library",
         )
-    return found[told_name(name, library)]
+    return paths[build_telling_name(name, library)]
 
 
 def load_all(folder: Path | str | None = None) -> list[Lesson]:
@@ -115,4 +115,4 @@ def load_all(folder: Path | str | None = None) -> list[Lesson]:
     Raises:
         ConfigError: the folder or a lesson is wrong.
     """
-    return [load_lesson(path) for path in lesson_paths(folder).values()]
+    return [load_lesson(path) for path in find_lesson_paths(folder).values()]

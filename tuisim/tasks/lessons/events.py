@@ -126,13 +126,15 @@ def is_met(check: Check, events: Sequence[Event]) -> bool:
     """Return whether what a student has done since a step began passes its check."""
     match check:
         case RunCheck():
-            return good_runs(check, events) >= check.times
+            return count_good_runs(check, events) >= check.times
         case QuestionCheck():
             typed = [event for event in events if isinstance(event, Typed)]
-            return any(is_right(check, event.text) and not unready(check, event) for event in typed)
+            return any(
+                is_right(check, event.text) and not explain_unready(check, event) for event in typed
+            )
         case WatchCheck(expression):
             return any(
-                isinstance(event, ExpressionWatched) and _same(event.expression, expression)
+                isinstance(event, ExpressionWatched) and _is_same(event.expression, expression)
                 for event in events
             )
         case BreakCheck(matches):
@@ -150,13 +152,15 @@ def is_met(check: Check, events: Sequence[Event]) -> bool:
                 isinstance(event, Visited) and from_s <= event.time_s <= to_s for event in events
             )
         case ShowCheck(panel, paused):
-            shown = (event for event in events if isinstance(event, Shown) and event.panel == panel)
-            return any(event.paused or not paused for event in shown)
+            shown_events = (
+                event for event in events if isinstance(event, Shown) and event.panel == panel
+            )
+            return any(event.paused or not paused for event in shown_events)
         case _:
             assert_never(check)
 
 
-def good_runs(check: RunCheck, events: Sequence[Event]) -> int:
+def count_good_runs(check: RunCheck, events: Sequence[Event]) -> int:
     """Return how many runs have passed a check so far."""
     passed = {
         (event.run_id, other.where)
@@ -168,13 +172,13 @@ def good_runs(check: RunCheck, events: Sequence[Event]) -> int:
     }
     good = [
         run
-        for run in met_by(check, events)
+        for run in find_passed_runs(check, events)
         if all((run.run_id, other.where) in passed for other in check.also)
     ]
     return len({run.seed for run in good} if check.seeds else {run.run_id for run in good})
 
 
-def met_by(check: RunCheck, events: Sequence[Event]) -> list[JudgedRun]:
+def find_passed_runs(check: RunCheck, events: Sequence[Event]) -> list[JudgedRun]:
     """Return the runs that have met the goals of a check, whatever their programs do in other worlds."""
     runs = [event for event in events if isinstance(event, JudgedRun)]
     return [
@@ -185,16 +189,16 @@ def met_by(check: RunCheck, events: Sequence[Event]) -> list[JudgedRun]:
 def is_right(question: QuestionCheck, text: str) -> bool:
     """Return whether a typed text answers a question. A number may have a unit; a choice may be given by its number."""
     match question.answer:
-        case int() | float() as wanted:
-            found = _number(text)
-            return found is not None and abs(found - wanted) <= question.within + 1e-9
-        case str() as wanted:
-            return _same(_chosen(question, text), wanted)
+        case int() | float() as answer:
+            number = _parse_number(text)
+            return number is not None and abs(number - answer) <= question.within + 1e-9
+        case str() as answer:
+            return _is_same(_resolve_choice(question, text), answer)
         case several:
-            return any(_same(text, wanted) for wanted in several)
+            return any(_is_same(text, answer) for answer in several)
 
 
-def unready(question: QuestionCheck, event: Typed) -> str:
+def explain_unready(question: QuestionCheck, event: Typed) -> str:
     """Return in a sentence what must happen before an answer counts; empty if that has happened."""
     if question.run and not event.has_run:
         return "Run the program first: the question is about that run."
@@ -210,42 +214,42 @@ def unready(question: QuestionCheck, event: Typed) -> str:
     return ""
 
 
-def wanted_form(question: QuestionCheck, text: str) -> str:
+def describe_form(question: QuestionCheck, text: str) -> str:
     """Return in words what form an answer must have; empty if the text has it."""
     if isinstance(question.answer, int | float):
-        found = _NUMBER.match(text.replace(",", "."))
-        if found is None:
+        match = _NUMBER.match(text.replace(",", "."))
+        if match is None:
             return "a number, such as 12.5"
-        is_other_length = found["unit"].strip() in _OTHER_LENGTHS and re.search(
+        is_other_length = match["unit"].strip() in _OTHER_LENGTHS and re.search(
             r"\bmm\b", question.ask
         )
         return "the number in mm" if is_other_length else ""
     if question.choices and not any(
-        _same(_chosen(question, text), choice) for choice in question.choices
+        _is_same(_resolve_choice(question, text), choice) for choice in question.choices
     ):
         return f"the number of a choice, 1 to {len(question.choices)}"
     return ""
 
 
-def _number(text: str) -> float | None:
+def _parse_number(text: str) -> float | None:
     """Return the number in a text, which may have a decimal comma and a unit; None if it has another form."""
-    found = _NUMBER.match(text.replace(",", "."))
-    return None if found is None else float(found[1])
+    match = _NUMBER.match(text.replace(",", "."))
+    return None if match is None else float(match[1])
 
 
-def _chosen(question: QuestionCheck, text: str) -> str:
+def _resolve_choice(question: QuestionCheck, text: str) -> str:
     number = text.strip().rstrip(".)")
     if question.choices and number.isdecimal() and 1 <= int(number) <= len(question.choices):
         return question.choices[int(number) - 1]
     return text
 
 
-def _same(text: str, wanted: str) -> bool:
+def _is_same(text: str, answer: str) -> bool:
     """Compare two texts without regard to case, spaces, quotes around them and a full stop at the end."""
-    return _plain(text) == _plain(wanted)
+    return _normalize(text) == _normalize(answer)
 
 
-def _plain(text: str) -> str:
+def _normalize(text: str) -> str:
     return "".join(text.split()).casefold().strip("\"'`“”‘’.!")
 
 
@@ -273,7 +277,7 @@ def note_fault(check: NoteCheck, event: Noted) -> str:
     return f"{note} the right samples, but its text does not say what the step asks for."
 
 
-def event_of(check: Check, text: str) -> Event:
+def parse_event(check: Check, text: str) -> Event:
     """Return what a text in a lesson's file stands for: an answer, a breakpoint, an expression, a file name.
 
     Raises:
@@ -300,19 +304,19 @@ def event_of(check: Check, text: str) -> Event:
             assert_never(check)
 
 
-def model_event(check: Check, model: str) -> Event:
+def build_model_event(check: Check, model: str) -> Event:
     """Return what passes a check that is not about runs; `model` is needed for breakpoints and notes.
 
     Raises:
-        ValueError: as for `event_of`.
+        ValueError: as for `parse_event`.
     """
     if model:
-        return event_of(check, model)
+        return parse_event(check, model)
     match check:
         case QuestionCheck(answer=answer):
             return Typed(answer[0] if isinstance(answer, tuple) else f"{answer}")
         case WatchCheck(text) | ExportCheck(text) | ShowCheck(text):
-            return event_of(check, text)
+            return parse_event(check, text)
         case VisitCheck(from_s, to_s):
             return Visited((from_s + to_s) / 2)
         case _:

@@ -24,10 +24,10 @@ from tuisim.base.folders import user_path
 from tuisim.engine import files
 from tuisim.engine.core.values import quote
 from tuisim.engine.files import Location
-from tuisim.settings.worlds import WorldFile, world_from_table
-from tuisim.tasks.goals.files import goals_from_list, line_in_errors
-from tuisim.tasks.goals.trial_world import check_names, others_of
-from tuisim.tasks.lessons.events import event_of, is_met, model_event
+from tuisim.settings.worlds import WorldFile, parse_world
+from tuisim.tasks.goals.files import add_line_to_errors, parse_goals
+from tuisim.tasks.goals.trial_world import check_names, parse_other_worlds
+from tuisim.tasks.lessons.events import build_model_event, is_met, parse_event
 from tuisim.tasks.lessons.spec import (
     CHECKS,
     MAX_HINTS,
@@ -88,7 +88,7 @@ class _Section:
         return [block for block in self.blocks if block.role is role]
 
 
-def name_of(path: Path) -> str:
+def get_lesson_name(path: Path) -> str:
     """Return the name of a lesson from its file: without suffix, and without a number that only sorts it."""
     return files.name_of(Path(_NUMBERED.sub("", path.name) or path.name))
 
@@ -125,30 +125,34 @@ def parse_lesson(text: str, path: Path) -> Lesson:
         ConfigError: it is wrong; the error names file, line and key.
     """
     lines = text.split("\n")
-    front, end = _front(lines, path)
-    sections = _sections(lines, end + 1, path)
+    front, end = _split_front_matter(lines, path)
+    sections = _split_sections(lines, end + 1, path)
     data = files.parse_toml(front, str(path), ConfigError)
-    with line_in_errors(path, front):
-        return _lesson(_with_told(data, path), sections, path)
+    with add_line_to_errors(path, front):
+        return _build_lesson(_merge_told_lesson(data, path), sections, path)
 
 
-def _front(lines: Sequence[str], path: Path) -> tuple[str, int]:
+def _split_front_matter(lines: Sequence[str], path: Path) -> tuple[str, int]:
     """Return the TOML, and the index of the line that ends it."""
     end = _end_of_front(lines, path)
     # The line with `+++` becomes an empty one, so that the lines of the TOML keep their numbers.
     return "\n".join(["", *lines[1:end]]), end
 
 
-def _with_told(data: Any, path: Path) -> Any:
+def _merge_told_lesson(data: Any, path: Path) -> Any:
     """Return the TOML of a lesson; if it is a telling, together with that of the lesson that it tells."""
     if TELLS not in data:
         return data
-    at = Location(str(path)).at(TELLS)
-    other = path.parent / files.convert(data[TELLS], str, at)
-    told = files.parse_toml(_front(_read(other).split("\n"), other)[0], str(other), ConfigError)
-    if TELLS in told:
-        raise at.wrong(f"{other.name} is a version of a lesson itself", "name the original lesson")
-    return merge_telling(told, data)
+    location = Location(str(path)).at(TELLS)
+    other = path.parent / files.convert(data[TELLS], str, location)
+    lesson_table = files.parse_toml(
+        _split_front_matter(_read(other).split("\n"), other)[0], str(other), ConfigError
+    )
+    if TELLS in lesson_table:
+        raise location.wrong(
+            f"{other.name} is a version of a lesson itself", "name the original lesson"
+        )
+    return merge_telling(lesson_table, data)
 
 
 def _end_of_front(lines: Sequence[str], path: Path) -> int:
@@ -167,7 +171,7 @@ def _end_of_front(lines: Sequence[str], path: Path) -> int:
     )
 
 
-def _sections(lines: Sequence[str], start: int, path: Path) -> list[_Section]:
+def _split_sections(lines: Sequence[str], start: int, path: Path) -> list[_Section]:
     """Cut the Markdown into the introduction and the steps, each with its blocks of code."""
     sections = [_Section("", start + 1)]
     number = start
@@ -176,14 +180,16 @@ def _sections(lines: Sequence[str], start: int, path: Path) -> list[_Section]:
         number += 1
         if opened := _CODE_FENCE.match(line):
             first, number = number, _end_of_block(lines, number, opened[1], path)
-            at = Location(f"{path}, line {first}")
+            location = Location(f"{path}, line {first}")
             info, _, way = opened[2].partition(":")
-            role = _role(info, at)
+            role = _parse_role(info, location)
             if role is None:
                 sections[-1].lines += lines[first - 1 : number]
             else:
                 text = "\n".join(lines[first : number - 1]) + "\n"
-                sections[-1].blocks.append(_Block(role, text, first, _way(way.strip(), role, at)))
+                sections[-1].blocks.append(
+                    _Block(role, text, first, _parse_way(way.strip(), role, location))
+                )
         elif line.startswith("## "):
             sections.append(_Section(line[3:].strip(), number))
         else:
@@ -201,37 +207,39 @@ def _end_of_block(lines: Sequence[str], start: int, fence: str, path: Path) -> i
     )
 
 
-def _role(info: str, at: Location) -> Role | None:
+def _parse_role(info: str, location: Location) -> Role | None:
     words = info.split()
     if len(words) < 2:
         return None
     if words[0] != "python" or words[1] not in list(Role) or len(words) > 2:
         allowed = ", ".join(f"python {role}" for role in Role)
-        raise at.wrong(f"no such block of code {quote(info)}", f"one of {allowed}; or only python")
+        raise location.wrong(
+            f"no such block of code {quote(info)}", f"one of {allowed}; or only python"
+        )
     return Role(words[1])
 
 
-def _way(word: str, role: Role, at: Location) -> Way | None:
+def _parse_way(word: str, role: Role, location: Location) -> Way | None:
     """Return the wrong way that a block of code goes."""
     if not word:
         return None
     if role is not Role.WRONG:
-        raise at.wrong("only a wrong program goes a wrong way", f"python {role}")
-    return files.convert(word, Way, at)
+        raise location.wrong("only a wrong program goes a wrong way", f"python {role}")
+    return files.convert(word, Way, location)
 
 
-def _lesson(data: Any, sections: Sequence[_Section], path: Path) -> Lesson:
-    at = Location(str(path))
+def _build_lesson(data: Any, sections: Sequence[_Section], path: Path) -> Lesson:
+    location = Location(str(path))
     texts = {
-        key: files.convert(files.required(data, key, at), str, at.at(key))
+        key: files.convert(files.required(data, key, location), str, location.at(key))
         for key in ("title", "why")
     }
-    minutes = files.convert(data.get("minutes", 10), int, at.at("minutes"))
+    minutes = files.convert(data.get("minutes", 10), int, location.at("minutes"))
     if not 1 <= minutes <= MAX_MINUTES:
-        raise at.at("minutes").wrong(f"must be from 1 to {MAX_MINUTES}, got {minutes}")
-    world = _world(data, path)
-    goals = goals_from_list(data["goal"], at.at("goal"), path.parent) if "goal" in data else ()
-    steps = _steps(data, sections[1:], {goal.name for goal in goals}, at)
+        raise location.at("minutes").wrong(f"must be from 1 to {MAX_MINUTES}, got {minutes}")
+    world = _parse_world(data, path)
+    goals = parse_goals(data["goal"], location.at("goal"), path.parent) if "goal" in data else ()
+    steps = _parse_steps(data, sections[1:], {goal.name for goal in goals}, location)
     programs = [block for section in sections for block in section.of(Role.PROGRAM)]
     if len(programs) > 1:
         raise Location(f"{path}, line {programs[1].line}").wrong(
@@ -239,7 +247,7 @@ def _lesson(data: Any, sections: Sequence[_Section], path: Path) -> Lesson:
         )
     program = programs[0].text if programs else ""
     intro = sections[0].text
-    name = name_of(path)
+    name = get_lesson_name(path)
     return Lesson(
         name,
         path,
@@ -254,49 +262,47 @@ def _lesson(data: Any, sections: Sequence[_Section], path: Path) -> Lesson:
     )
 
 
-def _world(data: dict[str, Any], path: Path) -> WorldFile:
+def _parse_world(data: dict[str, Any], path: Path) -> WorldFile:
     """Return the world in the front matter."""
-    at = Location(str(path))
+    location = Location(str(path))
     for key in ("program", "world", "arguments", "autorun"):
         if key in data:
             hint = "put it into a block ```python program" if key == "program" else "leave it out"
-            raise at.at(key).wrong("is not a key of a lesson", hint)
-    return world_from_table(
-        {key: value for key, value in data.items() if key not in _LESSON_KEYS}, path
-    )
+            raise location.at(key).wrong("is not a key of a lesson", hint)
+    return parse_world({key: value for key, value in data.items() if key not in _LESSON_KEYS}, path)
 
 
-def _steps(
-    data: Any, sections: Sequence[_Section], goals: set[str], at: Location
+def _parse_steps(
+    data: Any, sections: Sequence[_Section], goals: set[str], location: Location
 ) -> tuple[LessonStep, ...]:
     if not data.get("step"):
-        raise at.at("step").wrong("there are no steps", "begin each with a line [[step]]")
-    listed = files.entries(data["step"], at.at("step"), MAX_STEPS, "steps")
+        raise location.at("step").wrong("there are no steps", "begin each with a line [[step]]")
+    listed = files.entries(data["step"], location.at("step"), MAX_STEPS, "steps")
     if len(listed) != len(sections):
-        where = Location(f"{at.file}, line {sections[-1].line}") if sections else at
+        where = Location(f"{location.file}, line {sections[-1].line}") if sections else location
         raise where.wrong(
             f"there are {len(listed)} steps [[step]], but {len(sections)} sections ## in the text"
         )
     steps: list[LessonStep] = []
     for (entry, place), section in zip(listed, sections, strict=True):
-        step = _step(entry, section, place, at.file)
+        step = _parse_step(entry, section, place, location.file)
         if any(step.name == other.name for other in steps):
             raise place.at("name").wrong(
                 f"there are two steps {step.name!r}", "give each its own name"
             )
         _check_goals(step.check, goals, place)
         steps.append(step)
-    return _with_answers(steps, at)
+    return _add_answers(steps, location)
 
 
-def _step(data: object, section: _Section, at: Location, file: str) -> LessonStep:
-    found = files.table(data, at, (*_STEP_KEYS, *CHECKS))
-    name = files.convert(files.required(found, "name", at), str, at.at("name"))
-    kinds = [key for key in CHECKS if key in found]
+def _parse_step(data: object, section: _Section, location: Location, file: str) -> LessonStep:
+    table = files.table(data, location, (*_STEP_KEYS, *CHECKS))
+    name = files.convert(files.required(table, "name", location), str, location.at("name"))
+    kinds = [key for key in CHECKS if key in table]
     if len(kinds) != 1:
         named = f"has {len(kinds)} checks: {', '.join(kinds)}" if kinds else "has no check"
-        raise at.wrong(named, f"exactly one of {', '.join(CHECKS)}")
-    check = _check(CHECKS[kinds[0]], found[kinds[0]], at.at(kinds[0]), Path(file))
+        raise location.wrong(named, f"exactly one of {', '.join(CHECKS)}")
+    check = _parse_check(CHECKS[kinds[0]], table[kinds[0]], location.at(kinds[0]), Path(file))
     if not section.title:
         raise Location(f"{file}, line {section.line}").wrong("the step has no title", "## TITLE")
     answers = section.of(Role.ANSWER)
@@ -306,52 +312,55 @@ def _step(data: object, section: _Section, at: Location, file: str) -> LessonSte
         text=section.text,
         check=check,
         line=section.line,
-        hints=_texts(found, "hints", at, MAX_HINTS),
-        why=files.convert(found["why"], str, at.at("why")) if "why" in found else "",
+        hints=_parse_texts(table, "hints", location, MAX_HINTS),
+        why=files.convert(table["why"], str, location.at("why")) if "why" in table else "",
         answer=answers[-1].text if answers else "",
-        model=files.convert(found.get("model", ""), str, at.at("model"))
-        if "model" in found
+        model=files.convert(table.get("model", ""), str, location.at("model"))
+        if "model" in table
         else "",
-        wrong=_texts(found, "wrong", at, MAX_WRONG),
+        wrong=_parse_texts(table, "wrong", location, MAX_WRONG),
         wrong_programs=tuple(
             WrongProgram(block.text, block.line, block.way) for block in section.of(Role.WRONG)
         ),
-        excludes=_excludes(found.get("excludes", {}), at.at("excludes")),
+        excludes=_parse_excludes(table.get("excludes", {}), location.at("excludes")),
     )
     if step.wrong_programs and not isinstance(check, RunCheck):
         raise Location(f"{file}, line {step.wrong_programs[0].line}").wrong(
             "this step does not run a program"
         )
-    _check_models(step, at)
+    _check_models(step, location)
     return step
 
 
-def _excludes(data: object, at: Location) -> dict[Way, str]:
-    found = files.table(data, at, tuple(Way))
-    return {Way(way): files.convert(reason, str, at.at(way)) for way, reason in found.items()}
+def _parse_excludes(data: object, location: Location) -> dict[Way, str]:
+    table = files.table(data, location, tuple(Way))
+    return {Way(way): files.convert(reason, str, location.at(way)) for way, reason in table.items()}
 
 
-def _texts(found: Any, key: str, at: Location, most: int) -> tuple[str, ...]:
-    listed = files.entries(found.get(key, []), at.at(key), most, key)
+def _parse_texts(table: Any, key: str, location: Location, max_count: int) -> tuple[str, ...]:
+    listed = files.entries(table.get(key, []), location.at(key), max_count, key)
     return tuple(files.convert(text, str, place) for text, place in listed)
 
 
-def _check(kind: type[Check], data: object, at: Location, path: Path) -> Check:
+def _parse_check(kind: type[Check], data: object, location: Location, path: Path) -> Check:
     if not isinstance(data, dict) and kind.SHORT:
         data = {kind.SHORT: [data] if kind is RunCheck and isinstance(data, str) else data}
     if kind is not RunCheck or not isinstance(data, dict) or "also" not in data:
-        return files.convert(data, kind, at)
-    run = files.convert({key: value for key, value in data.items() if key != "also"}, RunCheck, at)
+        return files.convert(data, kind, location)
+    run = files.convert(
+        {key: value for key, value in data.items() if key != "also"}, RunCheck, location
+    )
     return replace(
-        run, also=others_of(data["also"], run.goals, at.at("also"), path, goals_from_list)
+        run,
+        also=parse_other_worlds(data["also"], run.goals, location.at("also"), path, parse_goals),
     )
 
 
-def _check_goals(check: Check, goals: set[str], at: Location) -> None:
+def _check_goals(check: Check, goals: set[str], location: Location) -> None:
     if isinstance(check, RunCheck):
-        check_names(check.goals, goals, at.at("run"))
+        check_names(check.goals, goals, location.at("run"))
         for number, other in enumerate(check.also, start=1):
-            place, own = at.at(f"run.also[{number}]"), {goal.name for goal in other.own_goals}
+            place, own = location.at(f"run.also[{number}]"), {goal.name for goal in other.own_goals}
             if twice := sorted(own & goals):
                 raise place.wrong(
                     f"{twice[0]!r} is a goal of the lesson, too", "give it another name"
@@ -359,48 +368,52 @@ def _check_goals(check: Check, goals: set[str], at: Location) -> None:
             check_names(other.goals, goals | own, place)
 
 
-def _check_models(step: LessonStep, at: Location) -> None:
+def _check_models(step: LessonStep, location: Location) -> None:
     """Raise ConfigError if the model does not pass, or a wrong one does."""
     if isinstance(step.check, RunCheck):
         for key in ("model", "wrong"):
             if getattr(step, key):
-                raise at.at(key).wrong(
+                raise location.at(key).wrong(
                     "is not for a step that runs a program", f"a block ```python {key}"
                 )
         return
     if not step.model and isinstance(step.check, BreakCheck | NoteCheck):
-        raise at.at("model").wrong("is missing", "give what a student would type")
+        raise location.at("model").wrong("is missing", "give what a student would type")
     for key, text in (
         ("model", step.model),
-        *((f"wrong[{at_}]", one) for at_, one in enumerate(step.wrong, 1)),
+        *((f"wrong[{number}]", answer) for number, answer in enumerate(step.wrong, 1)),
     ):
         try:
-            event = model_event(step.check, text) if key == "model" else event_of(step.check, text)
+            event = (
+                build_model_event(step.check, text)
+                if key == "model"
+                else parse_event(step.check, text)
+            )
         except ValueError:
-            raise at.at(key).wrong(f"must be a number, got {quote(text)}") from None
+            raise location.at(key).wrong(f"must be a number, got {quote(text)}") from None
         if is_met(step.check, [event]) is not (key == "model"):
-            raise at.at(key).wrong(
+            raise location.at(key).wrong(
                 f"{quote(text)} {'does not pass' if key == 'model' else 'passes'}"
             )
 
 
-def _with_answers(steps: Sequence[LessonStep], at: Location) -> tuple[LessonStep, ...]:
+def _add_answers(steps: Sequence[LessonStep], location: Location) -> tuple[LessonStep, ...]:
     """Give each step that runs a program its model answer: the next one in the text."""
-    answer, found = "", []
+    answer, completed = "", []
     for step in reversed(steps):
         answer = step.answer or answer
         if isinstance(step.check, RunCheck) and not answer:
-            where = Location(f"{at.file}, line {step.line}")
+            where = Location(f"{location.file}, line {step.line}")
             raise where.wrong(
                 f"the step {step.name!r} has no model answer", "a block ```python answer"
             )
-        found.append(
+        completed.append(
             replace(step, answer=answer if isinstance(step.check, RunCheck) else step.answer)
         )
-    return tuple(reversed(found))
+    return tuple(reversed(completed))
 
 
-def told_name(lesson: str, library: str) -> str:
+def build_telling_name(lesson: str, library: str) -> str:
     """Return the name of the telling of a lesson for a library."""
     return f"{lesson}-{library}"
 
@@ -418,12 +431,14 @@ def merge_telling(other: Any, own: Any) -> Any:
                 },
             }
         case [dict(), *_], [dict(), *_]:
-            named = {_table_name(table): table for table in own}
-            known = {_table_name(table) for table in other}
-            tables = [merge_telling(table, named.get(_table_name(table), {})) for table in other]
-            return tables + [table for table in own if _table_name(table) not in known]
+            named = {_read_table_name(table): table for table in own}
+            known = {_read_table_name(table) for table in other}
+            tables = [
+                merge_telling(table, named.get(_read_table_name(table), {})) for table in other
+            ]
+            return tables + [table for table in own if _read_table_name(table) not in known]
     return own
 
 
-def _table_name(table: Any) -> Any:
+def _read_table_name(table: Any) -> Any:
     return str(table.get("name", table.get("where"))) if isinstance(table, dict) else ""

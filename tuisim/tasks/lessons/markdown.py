@@ -41,32 +41,40 @@ class WholeTable(TableElement):
         for heading in headings:
             heading.stylize("markdown.table.header")
         columns = [
-            _measured(console, options, column) for column in zip(headings, *rows, strict=False)
+            _measure_column(console, options, column)
+            for column in zip(headings, *rows, strict=False)
         ]
-        widths = _widths(columns, options.max_width - _GAP * len(columns))
-        yield _as_list(headings, rows) if widths is None else _as_table(headings, rows, widths)
+        widths = _compute_widths(columns, options.max_width - _GAP * len(columns))
+        yield (
+            _build_list(headings, rows) if widths is None else _build_table(headings, rows, widths)
+        )
 
 
-def _measured(console: Console, options: ConsoleOptions, column: Sequence[Text]) -> Measurement:
+def _measure_column(
+    console: Console, options: ConsoleOptions, column: Sequence[Text]
+) -> Measurement:
     """Return the cells of the longest word and of the longest text of a column."""
     cells = [Measurement.get(console, options, text) for text in column]
-    return Measurement(max(one.minimum for one in cells), max(one.maximum for one in cells))
+    return Measurement(max(cell.minimum for cell in cells), max(cell.maximum for cell in cells))
 
 
-def _widths(columns: Sequence[Measurement], room: int) -> list[int] | None:
+def _compute_widths(columns: Sequence[Measurement], room: int) -> list[int] | None:
     """Return the widths of columns; None if their longest words have no room beside each other."""
-    least = sum(one.minimum for one in columns)
-    if least > room:
+    min_total = sum(column.minimum for column in columns)
+    if min_total > room:
         return None
-    wanted = sum(one.span for one in columns)
-    more = min(room - least, wanted)
-    return [one.minimum + (one.span * more // wanted if wanted else 0) for one in columns]
+    total_span = sum(column.span for column in columns)
+    more = min(room - min_total, total_span)
+    return [
+        column.minimum + (column.span * more // total_span if total_span else 0)
+        for column in columns
+    ]
 
 
-def _as_table(
+def _build_table(
     headings: Sequence[Text], rows: Sequence[Sequence[Text]], widths: Sequence[int]
 ) -> Table:
-    made = Table(
+    table = Table(
         box=box.SIMPLE,
         pad_edge=False,
         style="markdown.table.border",
@@ -74,13 +82,13 @@ def _as_table(
         collapse_padding=True,
     )
     for heading, width in zip(headings, widths, strict=True):
-        made.add_column(heading, width=width, overflow="fold")
+        table.add_column(heading, width=width, overflow="fold")
     for row in rows:
-        made.add_row(*row)
-    return made
+        table.add_row(*row)
+    return table
 
 
-def _as_list(headings: Sequence[Text], rows: Sequence[Sequence[Text]]) -> Group:
+def _build_list(headings: Sequence[Text], rows: Sequence[Sequence[Text]]) -> Group:
     def lines() -> Iterator[RenderableType]:
         for row in rows:
             yield Text("")
@@ -118,7 +126,7 @@ class _Markdown(Markdown):
     }
 
 
-def markdown_lines(text: str, width: int) -> list[Line]:
+def render_markdown(text: str, width: int) -> list[Line]:
     """Return Markdown as lines of at most a number of columns; lists are indented, code is coloured.
 
     Of several empty lines, as above and below code, there is one.
@@ -132,24 +140,24 @@ def markdown_lines(text: str, width: int) -> list[Line]:
     )
     drawn = _Markdown(text, code_theme="ansi_dark", justify="left")
     lines = console.render_lines(drawn, console.options.update(width=max(10, width)), pad=False)
-    found = [
-        _stripped([_run(segment.text, segment.style) for segment in line if segment.text])
+    rendered = [
+        _strip_line([_run(segment.text, segment.style) for segment in line if segment.text])
         for line in lines
     ]
-    return [line for line, above in zip(found, [[], *found], strict=False) if line or above]
+    return [line for line, above in zip(rendered, [[], *rendered], strict=False) if line or above]
 
 
 def _run(text: str, style: Style | None) -> Run:
     # Without background colours, which differ from those of the panel.
-    shown = (
+    decoration = (
         (style or Style()) + Style(bgcolor="default")
         if style and style.bgcolor
         else style or Style()
     )
-    return text, PLAIN + shown
+    return text, PLAIN + decoration
 
 
-def _stripped(line: Line) -> Line:
+def _strip_line(line: Line) -> Line:
     while line and not line[-1][0].strip():
         line.pop()
     if line:
@@ -158,6 +166,6 @@ def _stripped(line: Line) -> Line:
     return line
 
 
-def plain_text(text: str, width: int = 80) -> str:
+def render_plain_text(text: str, width: int = 80) -> str:
     """Return Markdown as plain text."""
-    return "\n".join("".join(part for part, _ in line) for line in markdown_lines(text, width))
+    return "\n".join("".join(part for part, _ in line) for line in render_markdown(text, width))

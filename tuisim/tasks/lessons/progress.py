@@ -57,14 +57,16 @@ class LessonProgress:
         """Return the progress on a step."""
         return self.steps.get(step, StepProgress())
 
-    def with_step(self, step: str, **changes: Any) -> LessonProgress:
+    def update_step(self, step: str, **changes: Any) -> LessonProgress:
         """Return the progress with changes to a step."""
         return replace(self, steps={**self.steps, step: replace(self.of(step), **changes)})
 
     def current(self, lesson: Lesson) -> int | None:
         """Return the index of the first open step of a lesson; None if there is none."""
         open_steps = (
-            at for at, step in enumerate(lesson.steps) if self.of(step.name).state is StepState.OPEN
+            index
+            for index, step in enumerate(lesson.steps)
+            if self.of(step.name).state is StepState.OPEN
         )
         return next(open_steps, None)
 
@@ -83,12 +85,12 @@ class LessonProgress:
         return f"{done} of {count} steps" if begun or self.opened_at else "new"
 
 
-def now() -> str:
+def format_now() -> str:
     """Return the time in ISO 8601."""
     return datetime.now(UTC).isoformat(timespec="seconds")
 
 
-def folder() -> Path:
+def find_folder() -> Path:
     """Return the folder with the progress and the student's programs; it may not exist yet."""
     return home_folder() / FOLDER
 
@@ -99,7 +101,7 @@ def load_progress() -> dict[str, LessonProgress]:
     Raises:
         ConfigError: the file is damaged.
     """
-    path = folder() / _FILE
+    path = find_folder() / _FILE
     try:
         text = read_regular(path, _MAX_BYTES, follow_links=True)
     except FileNotFoundError:
@@ -107,14 +109,14 @@ def load_progress() -> dict[str, LessonProgress]:
     except OSError as error:
         raise ConfigError(f"cannot be read: {error.strerror or error}", file=str(path)) from None
     try:
-        return {name: _lesson(entry) for name, entry in json.loads(text).items()}
+        return {name: _parse_progress(entry) for name, entry in json.loads(text).items()}
     except (ValueError, TypeError, KeyError, AttributeError, OverflowError, RecursionError):
         raise ConfigError(
             "is damaged", "to start all lessons again, delete it", file=str(path)
         ) from None
 
 
-def _lesson(data: Mapping[str, Any]) -> LessonProgress:
+def _parse_progress(data: Mapping[str, Any]) -> LessonProgress:
     steps = {str(name): _step(entry) for name, entry in data["steps"].items()}
     return LessonProgress(steps, str(data.get("opened_at", "")))
 
@@ -132,9 +134,11 @@ def save_progress(lesson: str, progress: LessonProgress) -> None:
         ConfigError: the file is damaged or cannot be written.
     """
     every = {**load_progress(), lesson: progress}
-    path = folder() / _FILE
+    path = find_folder() / _FILE
     text = json.dumps(
-        {name: asdict(one) for name, one in every.items()}, indent=1, ensure_ascii=False
+        {name: asdict(lesson_progress) for name, lesson_progress in every.items()},
+        indent=1,
+        ensure_ascii=False,
     )
     try:
         make_private_folder(path.parent)
@@ -146,15 +150,19 @@ def save_progress(lesson: str, progress: LessonProgress) -> None:
         ) from None
 
 
-def last_opened(progress: Mapping[str, LessonProgress]) -> str:
+def find_last_opened(progress: Mapping[str, LessonProgress]) -> str:
     """Return the name of the lesson that was opened last; empty if none was."""
-    opened = [(one.opened_at, name) for name, one in progress.items() if one.opened_at]
+    opened = [
+        (lesson_progress.opened_at, name)
+        for name, lesson_progress in progress.items()
+        if lesson_progress.opened_at
+    ]
     return max(opened)[1] if opened else ""
 
 
-def program_path(lesson: Lesson) -> Path:
+def build_program_path(lesson: Lesson) -> Path:
     """Return the file with the student's program of a lesson; it may not exist yet."""
-    return folder() / f"{lesson.name}.py"
+    return find_folder() / f"{lesson.name}.py"
 
 
 def prepare_program(lesson: Lesson, anew: bool = False) -> Path:
@@ -166,7 +174,7 @@ def prepare_program(lesson: Lesson, anew: bool = False) -> Path:
     Raises:
         ConfigError: it cannot be written.
     """
-    path = program_path(lesson)
+    path = build_program_path(lesson)
     try:
         if path.exists() and not anew:
             return path

@@ -17,7 +17,7 @@ from tuisim.engine.core.values import list_values
 from tuisim.engine.runs.recorded_run import Recording
 from tuisim.engine.runs.store import load_run
 from tuisim.settings.build import build_run_spec
-from tuisim.settings.options import settings_of
+from tuisim.settings.options import merge_settings
 from tuisim.tasks.goals.judgement import GoalState, Judgement
 from tuisim.tasks.goals.spec import LogCondition, PrintCondition
 from tuisim.tasks.goals.trial_world import TrialWorld
@@ -32,18 +32,18 @@ from tuisim.tasks.lessons.events import (
     TriedElsewhere,
     Typed,
     Visited,
-    good_runs,
+    count_good_runs,
+    describe_form,
+    explain_unready,
+    find_passed_runs,
     is_met,
-    met_by,
     note_fault,
-    unready,
-    wanted_form,
 )
 from tuisim.tasks.lessons.progress import (
     LessonProgress,
     StepState,
+    format_now,
     load_progress,
-    now,
     save_progress,
 )
 from tuisim.tasks.lessons.spec import (
@@ -58,7 +58,7 @@ from tuisim.tasks.lessons.spec import (
     VisitCheck,
     WatchCheck,
 )
-from tuisim.tasks.lessons.story import story
+from tuisim.tasks.lessons.story import build_story
 
 WorldJudgements: TypeAlias = list[tuple[TrialWorld, tuple[Judgement, ...]]]
 """How a program does in other worlds."""
@@ -116,9 +116,9 @@ class WorldTrial:
         Raises:
             TuisimError: the run is damaged, or its magic line is wrong there.
         """
-        from tuisim.tasks.lessons.trial import tried_elsewhere
+        from tuisim.tasks.lessons.trial import try_elsewhere
 
-        return tried_elsewhere(self.lesson, self.check, load_run(self.folder))
+        return try_elsewhere(self.lesson, self.check, load_run(self.folder))
 
 
 @dataclass(slots=True)
@@ -171,11 +171,11 @@ class LessonSession:
         try:
             self.progress = load_progress().get(self.lesson.name, LessonProgress())
         finally:
-            self.progress = replace(self.progress, opened_at=now())
+            self.progress = replace(self.progress, opened_at=format_now())
 
     def start_over(self) -> None:
         """Forget the progress."""
-        self.progress, self.done = LessonProgress(opened_at=now()), None
+        self.progress, self.done = LessonProgress(opened_at=format_now()), None
 
     def save(self) -> None:
         """Store the progress, if it has changed.
@@ -206,8 +206,8 @@ class LessonSession:
     @property
     def step_before(self) -> LessonStep | None:
         """The step before the one to do, or the last one at the end of the lesson."""
-        at = len(self.lesson.steps) if self.at is None else self.at
-        return self.lesson.steps[at - 1] if at else None
+        index = len(self.lesson.steps) if self.at is None else self.at
+        return self.lesson.steps[index - 1] if index else None
 
     @property
     def hints(self) -> int:
@@ -220,7 +220,7 @@ class LessonSession:
         step = self.step
         if step is None or not isinstance(step.check, RunCheck):
             return 0
-        return good_runs(step.check, self.attempt.events)
+        return count_good_runs(step.check, self.attempt.events)
 
     def describe_elsewhere(self, pose: Pose, *, in_run: bool) -> str:
         """Return why the last run does not count, in a sentence, and what to do; empty if it does.
@@ -244,7 +244,7 @@ class LessonSession:
         return "This run began elsewhere: m moves the robot to its start, then R."
 
     def _build_spec(self) -> RunSpec:
-        return build_run_spec(settings_of(self.lesson.settings))
+        return build_run_spec(merge_settings(self.lesson.settings))
 
     # What the student does
 
@@ -260,7 +260,7 @@ class LessonSession:
         check = step.check
         if not text:
             raise TuisimError("Type an answer")
-        if form := wanted_form(check, text):
+        if form := describe_form(check, text):
             raise TuisimError(f"{text}: type {form}")
         self.attempt.seen |= sight.panels
         # A run may have printed millions of lines, which most questions are not about.
@@ -271,7 +271,7 @@ class LessonSession:
         seen = frozenset(self.attempt.seen)
         typed = Typed(text, x_mm, seen, printed, sight.recording is not None)
         # What is measured elsewhere is not wrong, it is about something else.
-        if first := unready(check, typed):
+        if first := explain_unready(check, typed):
             raise TuisimError(first)
         if self._take(typed):
             return Change.GO_ON
@@ -281,12 +281,12 @@ class LessonSession:
 
     def _count_try(self, step: LessonStep) -> None:
         tries = self.progress.of(step.name).tries + 1
-        self.progress = self.progress.with_step(step.name, tries=tries)
+        self.progress = self.progress.update_step(step.name, tries=tries)
 
     def show_hint(self) -> None:
         """Show the next hint of the step, which has one."""
         if self.step:
-            self.progress = self.progress.with_step(self.step.name, hints=self.hints + 1)
+            self.progress = self.progress.update_step(self.step.name, hints=self.hints + 1)
 
     def skip_step(self) -> LessonStep | None:
         """Leave the step undone, and return it; None if all are done or skipped."""
@@ -345,7 +345,7 @@ class LessonSession:
         if sight.is_over and is_missed and attempt.run_counted != run.run_id:
             attempt.run_counted = run.run_id
             self._count_try(step)
-        is_good = any(good.run_id == run.run_id for good in met_by(check, attempt.events))
+        is_good = any(good.run_id == run.run_id for good in find_passed_runs(check, attempt.events))
         is_tried = attempt.trial is not None and attempt.trial.run_id == run.run_id
         if not (is_good and sight.is_over and check.also) or is_tried:
             return Change.SHOW
@@ -368,7 +368,7 @@ class LessonSession:
                 if each.goal.name in other.goals and each.goal.name not in met
             ]
             if missed and not remark:
-                remark = f"Also tried {other.where}, it does not work{_at_start(other)}: {_why_elsewhere(missed[0])}"
+                remark = f"Also tried {other.where}, it does not work{_tell_start(other)}: {_explain_miss(missed[0])}"
         # The student may have begun another run meanwhile: this one counts, but what is told is about that one.
         if self.attempt.trial is trial:
             self.attempt.remark = remark
@@ -393,7 +393,7 @@ class LessonSession:
         if step is None or event in events:
             return False
         if isinstance(event, JudgedRun):
-            events[:] = [one for one in events if not _is_of(one, event.run_id)]
+            events[:] = [earlier for earlier in events if not _is_about_run(earlier, event.run_id)]
         events.append(event)
         if not is_met(step.check, events):
             return False
@@ -402,12 +402,14 @@ class LessonSession:
 
     def _leave_step(self, step: LessonStep, state: StepState) -> None:
         goals = step.check.goals if isinstance(step.check, RunCheck) else ()
-        self.story = story(each for each in self.attempt.judgements if each.goal.name in goals)
-        self.progress = self.progress.with_step(step.name, state=state, at=now())
+        self.story = build_story(
+            each for each in self.attempt.judgements if each.goal.name in goals
+        )
+        self.progress = self.progress.update_step(step.name, state=state, at=format_now())
         self.done = step if state is StepState.DONE else None
 
 
-def _is_of(event: Event, run_id: str) -> bool:
+def _is_about_run(event: Event, run_id: str) -> bool:
     return isinstance(event, JudgedRun) and event.run_id == run_id
 
 
@@ -425,17 +427,17 @@ def _list_place(world: WorldSpec) -> tuple[object, ...]:
     return world.background, world.start, world.obstacles
 
 
-def _why_elsewhere(missed: Judgement) -> str:
+def _explain_miss(missed: Judgement) -> str:
     """Return why a goal is missed in another world, without the numbers and words that are asked for there."""
     if any(isinstance(part, LogCondition | PrintCondition) for part in missed.goal.parts):
         return "it does not print what the robot sees there, where the robot sees it."
     return missed.reason
 
 
-def _at_start(other: TrialWorld) -> str:
+def _tell_start(other: TrialWorld) -> str:
     """Return where the robot starts in another world, for a sentence; empty if it is where the lesson starts."""
-    found = {axis: other.settings.get(f"start.{axis}_mm") for axis in "xy"}
-    places = [f"{axis} = {value:g} mm" for axis, value in found.items() if value is not None]
+    coordinates = {axis: other.settings.get(f"start.{axis}_mm") for axis in "xy"}
+    places = [f"{axis} = {value:g} mm" for axis, value in coordinates.items() if value is not None]
     return f" (start {', '.join(places)})" if places else ""
 
 
@@ -454,8 +456,9 @@ def _read_notes(folder: Path) -> Iterator[Noted]:
     samples = samples_of(load_run(folder).output.all_rows())
     for note in notes:
         values = [
-            one.value
-            for one in samples
-            if note.start_s <= one.time_s <= note.stop_s and one.name == (note.variable or one.name)
+            sample.value
+            for sample in samples
+            if note.start_s <= sample.time_s <= note.stop_s
+            and sample.name == (note.variable or sample.name)
         ]
         yield Noted(note.text, sum(values) / len(values) if values else None)

@@ -293,9 +293,13 @@ class LessonStep:
     excludes: Mapping[Way, str] = field(default_factory=dict)
     """The wrong ways that it does not admit, each with the reason."""
 
-    def missing_ways(self) -> tuple[Way, ...]:
+    def find_missing_ways(self) -> tuple[Way, ...]:
         """Return the wrong ways that are neither tried nor excluded with a reason."""
-        covered = {*self.excludes, *self.check.EXCLUDES, *(one.way for one in self.wrong_programs)}
+        covered = {
+            *self.excludes,
+            *self.check.EXCLUDES,
+            *(program.way for program in self.wrong_programs),
+        }
         match self.check:
             case QuestionCheck(choices=choices, at_x_mm=place, seen=seen, run=run):
                 # What must have happened is not there in the trials of `is_met`.

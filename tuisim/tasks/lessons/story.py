@@ -16,31 +16,33 @@ from tuisim.tasks.goals.spec import (
 )
 
 
-def story(judgements: Iterable[Judgement]) -> str:
+def build_story(judgements: Iterable[Judgement]) -> str:
     """Return when and where a run met goals, such as `Your run: line 3 printed it at 5.42 s, at x = 1153 mm.`
 
     Args:
         judgements: Those of the goals of the step.
     """
-    parts = dict.fromkeys(part for each in sorted(judgements, key=_time_s) for part in _parts(each))
+    parts = dict.fromkeys(
+        part for each in sorted(judgements, key=_time_s) for part in _list_parts(each)
+    )
     # Of several goals about one variable, the one that was met last.
-    told = {part.partition(" at ")[0]: part for part in parts}
-    return f"Your run: {'; '.join(told.values())}." if told else ""
+    facts = {part.partition(" at ")[0]: part for part in parts}
+    return f"Your run: {'; '.join(facts.values())}." if facts else ""
 
 
 def _time_s(judgement: Judgement) -> float:
     return judgement.event.time_s if judgement.event is not None else 0.0
 
 
-def _parts(judgement: Judgement) -> Iterator[str]:
+def _list_parts(judgement: Judgement) -> Iterator[str]:
     if judgement.state is not GoalState.MET or judgement.event is None:
         return
     for condition in judgement.goal.parts:
-        if words := _words(condition, judgement.event, judgement.line):
+        if words := _describe_condition(condition, judgement.event, judgement.line):
             yield words
 
 
-def _words(condition: Condition, event: Change, line: int) -> str:
+def _describe_condition(condition: Condition, event: Change, line: int) -> str:
     """Return what met a condition; empty for those that only the program's text meets."""
     when, where = f"at {event.time_s:.2f} s", f"at x = {event.x_mm:.0f} mm, y = {event.y_mm:.0f} mm"
     match condition:

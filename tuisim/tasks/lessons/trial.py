@@ -15,7 +15,7 @@ from tuisim.engine.runs.temporary import temporary_home
 from tuisim.programs.program_file import parse_program
 from tuisim.programs.program_settings import program_settings
 from tuisim.settings.build import build_run_spec
-from tuisim.settings.options import settings_of
+from tuisim.settings.options import merge_settings
 from tuisim.tasks.goals.judgement import GoalState, Judgement
 from tuisim.tasks.goals.trial_world import TrialWorld
 from tuisim.tasks.lessons.spec import Lesson, LessonStep, QuestionCheck, RunCheck, Way
@@ -43,23 +43,23 @@ class Trial:
     """The wrong way that it goes, if it is said."""
 
 
-def trials(lesson: Lesson) -> list[Trial]:
+def list_trials(lesson: Lesson) -> list[Trial]:
     """Return what has to be tried: each model answer as often as its step asks for, and each wrong program once."""
-    found = []
-    seed = build_run_spec(settings_of(lesson.settings)).seed
+    trials_to_run = []
+    seed = build_run_spec(merge_settings(lesson.settings)).seed
     for step in lesson.steps:
         if isinstance(step.check, RunCheck):
-            found += [
+            trials_to_run += [
                 Trial(step, step.answer, 0, True, seed + more) for more in range(step.check.times)
             ]
-            found += [
+            trials_to_run += [
                 Trial(step, wrong.text, wrong.line, False, seed, wrong.way)
                 for wrong in step.wrong_programs
             ]
-    return found
+    return trials_to_run
 
 
-def task_of(
+def build_task(
     lesson: Lesson, text: str, seed: int, index: int = 0, other: TrialWorld | None = None
 ) -> Task:
     """Return the run of a program in the world of a lesson, or in another world of a step, with a seed.
@@ -68,18 +68,18 @@ def task_of(
         ConfigError: its magic line, or the world, is wrong.
     """
     source = parse_program(text, f"{lesson.name}.py")
-    given = {**lesson.settings, **(other.settings if other else {})}
-    found = program_settings(source, given, {"seed": seed})
+    world_settings = {**lesson.settings, **(other.settings if other else {})}
+    resolved = program_settings(source, world_settings, {"seed": seed})
     spec, goals = (
-        build_run_spec(found.settings),
+        build_run_spec(resolved.settings),
         (*lesson.goals, *(other.own_goals if other else ())),
     )
-    actions = press_actions(found.settings["press"], spec.profile.tick_hz)
+    actions = press_actions(resolved.settings["press"], spec.profile.tick_hz)
     options = RunOptions(time_limit_s=TIME_LIMIT_S, actions=actions)
     return Task(index, source.program, spec, options, goals)
 
 
-def tried_elsewhere(
+def try_elsewhere(
     lesson: Lesson, check: RunCheck, run: StoredRun
 ) -> list[tuple[TrialWorld, tuple[Judgement, ...]]]:
     """Try the program of a run in the other worlds of a check, and judge that; blocks meanwhile.
@@ -88,18 +88,18 @@ def tried_elsewhere(
         ConfigError: the program's magic line is wrong there.
     """
     text, seed = run.program.text, run.spec.seed
-    tasks = [task_of(lesson, text, seed, index, other) for index, other in enumerate(check.also)]
+    tasks = [build_task(lesson, text, seed, index, other) for index, other in enumerate(check.also)]
     return [(check.also[result.index], result.judgements) for result in run_many(tasks, jobs=1)]
 
 
-def model_run(lesson: Lesson, step: LessonStep | None) -> Recording:
+def run_model(lesson: Lesson, step: LessonStep | None) -> Recording:
     """Run the model answer of a step, or else of the lesson, in the lesson's world; blocks meanwhile. It is not stored.
 
     Raises:
         TuisimError: it cannot run.
     """
     text = (step.answer if step else "") or lesson.model_answer
-    task = task_of(lesson, text, build_run_spec(settings_of(lesson.settings)).seed)
+    task = build_task(lesson, text, build_run_spec(merge_settings(lesson.settings)).seed)
     with temporary_home() as home:
         handle = start_run(task.program, task.spec, task.options, RunStore(home))
         try:
@@ -114,58 +114,60 @@ def model_run(lesson: Lesson, step: LessonStep | None) -> Recording:
             handle.close()
 
 
-def faults(lesson: Lesson) -> list[str]:
+def find_faults(lesson: Lesson) -> list[str]:
     """Try a lesson out, and return what is wrong, each as a line; blocks while its programs run.
 
     Raises:
         ConfigError: a program's magic line, or the world, is wrong.
     """
-    tried = trials(lesson)
+    tried = list_trials(lesson)
     tasks: dict[_Key, Task] = {}
     for trial in tried:
-        for key, other in _worlds(trial):
+        for key, other in _list_worlds(trial):
             if key not in tasks:
-                tasks[key] = task_of(lesson, trial.text, trial.seed, len(tasks), other)
+                tasks[key] = build_task(lesson, trial.text, trial.seed, len(tasks), other)
     keys = list(tasks)
     results = {keys[result.index]: result for result in run_many(list(tasks.values()), jobs=1)}
-    return [fault for trial in tried for fault in _faults_of(lesson, trial, results)]
+    return [fault for trial in tried for fault in _find_trial_faults(lesson, trial, results)]
 
 
-def _worlds(trial: Trial) -> list[tuple[_Key, TrialWorld | None]]:
+def _list_worlds(trial: Trial) -> list[tuple[_Key, TrialWorld | None]]:
     """Return the worlds in which a trial runs, each with its key; None for that of the lesson."""
     check = trial.step.check
     assert isinstance(check, RunCheck)
-    found = [
+    others = [
         ((trial.text, trial.seed, f"{trial.step.name} {other.where}"), other)
         for other in check.also
     ]
-    return [((trial.text, trial.seed, ""), None), *found]
+    return [((trial.text, trial.seed, ""), None), *others]
 
 
-def warnings(lesson: Lesson) -> list[str]:
+def find_warnings(lesson: Lesson) -> list[str]:
     """Return what a lesson lacks, each as a line: wrong ways that are not tried, and answers without a reason."""
-    found = []
+    warnings = []
     for step in lesson.steps:
-        at = f"{lesson.path}, line {step.line}"
-        found += [
-            f"{at}: no wrong way “{way}” is tried on “{step.title}”, nor excluded"
-            for way in step.missing_ways()
+        place = f"{lesson.path}, line {step.line}"
+        warnings += [
+            f"{place}: no wrong way “{way}” is tried on “{step.title}”, nor excluded"
+            for way in step.find_missing_ways()
         ]
         if isinstance(step.check, QuestionCheck | RunCheck) and not step.why:
-            found.append(f"{at}: no `why` says why what passes “{step.title}” is right")
-    return found
+            warnings.append(f"{place}: no `why` says why what passes “{step.title}” is right")
+    return warnings
 
 
-def _faults_of(lesson: Lesson, trial: Trial, results: Mapping[_Key, Result]) -> Iterator[str]:
+def _find_trial_faults(
+    lesson: Lesson, trial: Trial, results: Mapping[_Key, Result]
+) -> Iterator[str]:
     """Yield what is wrong with a trial."""
     check = trial.step.check
     assert isinstance(check, RunCheck)
-    tried = [(results[key], other) for key, other in _worlds(trial)]
+    tried = [(results[key], other) for key, other in _list_worlds(trial)]
     missed = [
-        (result, _missed(other.goals if other else check.goals, result), other)
+        (result, _find_missed(other.goals if other else check.goals, result), other)
         for result, other in tried
     ]
-    result, reasons, other = next((one for one in missed if one[1]), missed[0])
+    result, reasons, other = next((miss for miss in missed if miss[1]), missed[0])
     if trial.passes and reasons:
         error = (
             f"; it ended with: {source_lines(result.error.strip())[-1]}"
@@ -182,7 +184,7 @@ def _faults_of(lesson: Lesson, trial: Trial, results: Mapping[_Key, Result]) -> 
         yield f"{lesson.path}, line {trial.line}: this wrong program{way} passes “{trial.step.title}”"
 
 
-def _missed(goals: Sequence[str], result: Result) -> list[str]:
+def _find_missed(goals: Sequence[str], result: Result) -> list[str]:
     """Return which of some goals a run has missed, each with the reason."""
     by_name = {each.goal.name: each for each in result.judgements}
     return [

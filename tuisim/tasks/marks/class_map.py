@@ -42,24 +42,24 @@ class MissesOfRun:
         return self.run.spec.world.background
 
 
-def build_class_maps(found: Sequence[MissesOfRun]) -> list[Picture]:
+def build_class_maps(runs: Sequence[MissesOfRun]) -> list[Picture]:
     """Return a picture of each mat on which goals were missed; the mat with the most misses first.
 
     A mat that can no longer be drawn is left out: the reports of its runs say why.
     """
     count = Counter[str]()
-    for one in found:
-        count[one.mat] += len(one.misses)
+    for run_misses in runs:
+        count[run_misses.mat] += len(run_misses.misses)
     maps = [
-        _build_map([one for one in found if one.mat == mat])
+        _build_map([run_misses for run_misses in runs if run_misses.mat == mat])
         for mat, number in count.most_common()
         if number
     ]
     return [picture for picture in maps if picture is not None]
 
 
-def _build_map(found: Sequence[MissesOfRun]) -> Picture | None:
-    first, misses = found[0].run, [miss for one in found for miss in one.misses]
+def _build_map(runs: Sequence[MissesOfRun]) -> Picture | None:
+    first, misses = runs[0].run, [miss for run_misses in runs for miss in run_misses.misses]
     try:
         picture = draw_world(first.spec, mat_pixels(mat_files(first)))
     except LogError:

@@ -9,8 +9,8 @@ from tuisim.base.errors import ExportError, counted
 from tuisim.pictures.charts.files import write_whole
 from tuisim.tasks.goals.trial_world import TrialWorld
 from tuisim.tasks.marks.class_map import build_class_maps
-from tuisim.tasks.marks.copies import similar
-from tuisim.tasks.marks.page import page_of
+from tuisim.tasks.marks.copies import find_similar
+from tuisim.tasks.marks.page import build_page
 from tuisim.tasks.marks.reports import write_reports
 from tuisim.tasks.marks.sheet import Sheet
 from tuisim.tasks.marks.students import Student
@@ -41,7 +41,7 @@ def write_class_page(
     Raises:
         ExportError: the page cannot be written, or is without some of the reports.
     """
-    kept = sum(bool(outcome.run_id) for row in sheet.rows for outcome in row.outcomes)
+    run_count = sum(bool(outcome.run_id) for row in sheet.rows for outcome in row.outcomes)
     links, misses, faults = {}, [], []
     for report in write_reports(sheet, worlds, target, movies=movies):
         if report.fault:
@@ -49,8 +49,8 @@ def write_class_page(
             continue
         links[report.student, report.world, report.seed] = report.path
         misses.append(report.misses)
-        tell(f"report {len(links)} of {kept}", len(links), kept)
-    alike = similar({student.name: read_modules(student) for student in students})
-    write_whole(target, page_of(sheet, links, ignored, alike, build_class_maps(misses)).encode())
+        tell(f"report {len(links)} of {run_count}", len(links), run_count)
+    alike = find_similar({student.name: read_modules(student) for student in students})
+    write_whole(target, build_page(sheet, links, ignored, alike, build_class_maps(misses)).encode())
     if faults:
         raise ExportError(f"{target} is without {counted(len(faults), 'report')}: {faults[0]}")

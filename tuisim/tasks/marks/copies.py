@@ -20,17 +20,17 @@ TOKENS = 10
 """Length of the passages that are compared: shorter ones are found in any two programs."""
 WINDOW = 6
 """Of so many passages in a row, one is a fingerprint: a common passage of `TOKENS + WINDOW - 1` tokens is found."""
-LEAST_TOKENS = 40
+MIN_TOKENS = 40
 """Shorter programs are not compared: there are few ways to write them."""
 MAX_TOKENS = 50_000
 """So many of a student's are compared: more are data, or would take the memory of this machine."""
-COMMON_SHARE, COMMON_LEAST = 0.25, 5
+COMMON_SHARE, MIN_COMMON = 0.25, 5
 """A passage in more than this share of the programs, and in more than so many, is common to the class."""
-LEAST_SHARE = 0.6
+MIN_SHARE = 0.6
 """Pairs that share fewer of their fingerprints are left out."""
-LEAST_LINES = 5
+MIN_LINES = 5
 """Nor those with fewer lines in common."""
-MOST_PAIRS = 60
+MAX_PAIRS = 60
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,28 +69,30 @@ _Prints = Mapping[int, frozenset[int]]
 """The fingerprints of one program: the lines of each."""
 
 
-def _first_tokens(texts: Iterable[str]) -> list[Token]:
+def _read_tokens(texts: Iterable[str]) -> list[Token]:
     return list(islice(chain.from_iterable(map(list_tokens, texts)), MAX_TOKENS))
 
 
-def _prints(tokens: Sequence[Token]) -> _Prints:
+def _compute_prints(tokens: Sequence[Token]) -> _Prints:
     """Return the fingerprints of a program: of each window the least hash, the rightmost of equal ones."""
     kinds = [token.kind for token in tokens]
     hashes = [
-        zlib.crc32("\0".join(kinds[at : at + TOKENS]).encode("utf-8", "surrogatepass"))
-        for at in range(len(kinds) - TOKENS + 1)
+        zlib.crc32("\0".join(kinds[start : start + TOKENS]).encode("utf-8", "surrogatepass"))
+        for start in range(len(kinds) - TOKENS + 1)
     ]
     chosen = {
-        min(range(at, at + WINDOW), key=lambda place: (hashes[place], -place))
-        for at in range(max(len(hashes) - WINDOW + 1, 0))
+        min(range(start, start + WINDOW), key=lambda place: (hashes[place], -place))
+        for start in range(max(len(hashes) - WINDOW + 1, 0))
     }
     lines: dict[int, set[int]] = defaultdict(set)
-    for at in chosen:
-        lines[hashes[at]].update(token.line for token in tokens[at : at + TOKENS])
-    return {key: frozenset(found) for key, found in lines.items()}
+    for start in chosen:
+        lines[hashes[start]].update(token.line for token in tokens[start : start + TOKENS])
+    return {key: frozenset(numbers) for key, numbers in lines.items()}
 
 
-def similar(programs: Mapping[str, Iterable[str]], given: Collection[str] = ()) -> Similar:
+def find_similar(
+    programs: Mapping[str, Iterable[str]], handed_out: Collection[str] = ()
+) -> Similar:
     """Return which programs resemble each other.
 
     Args:
@@ -98,55 +100,70 @@ def similar(programs: Mapping[str, Iterable[str]], given: Collection[str] = ()) 
         given: Texts that everybody was given, such as a skeleton: what is in them is left out.
     """
     tokens = {
-        name: found
+        name: program_tokens
         for name, texts in programs.items()
-        if len(found := _first_tokens(texts)) >= LEAST_TOKENS
+        if len(program_tokens := _read_tokens(texts)) >= MIN_TOKENS
     }
-    alike = _groups({name: tuple(token.kind for token in found) for name, found in tokens.items()})
-    words = {name: tuple(token.text for token in found) for name, found in tokens.items()}
+    alike = _group_equal(
+        {
+            name: tuple(token.kind for token in program_tokens)
+            for name, program_tokens in tokens.items()
+        }
+    )
+    words = {
+        name: tuple(token.text for token in program_tokens)
+        for name, program_tokens in tokens.items()
+    }
     groups = tuple(
         SimilarGroup(
             names,
-            tuple(same for same in _groups({name: words[name] for name in names}) if len(same) > 1),
+            tuple(
+                same
+                for same in _group_equal({name: words[name] for name in names})
+                if len(same) > 1
+            ),
         )
         for names in alike
         if len(names) > 1
     )
-    prints = {names[0]: _prints(tokens[names[0]]) for names in alike}
-    common = {key for text in given for key in _prints(_first_tokens([text]))} | _common(prints)
-    return Similar(groups, _pairs(prints, common), len(tokens))
+    prints = {names[0]: _compute_prints(tokens[names[0]]) for names in alike}
+    common = {
+        key for text in handed_out for key in _compute_prints(_read_tokens([text]))
+    } | _find_common(prints)
+    return Similar(groups, _find_pairs(prints, common), len(tokens))
 
 
-def _groups(contents: Mapping[str, tuple[str, ...]]) -> list[tuple[str, ...]]:
+def _group_equal(contents: Mapping[str, tuple[str, ...]]) -> list[tuple[str, ...]]:
     """Return the names with equal contents, the largest group first."""
-    found: dict[tuple[str, ...], list[str]] = defaultdict(list)
+    groups: dict[tuple[str, ...], list[str]] = defaultdict(list)
     for name, content in contents.items():
-        found[content].append(name)
-    return sorted(map(tuple, found.values()), key=lambda names: (-len(names), names))
+        groups[content].append(name)
+    return sorted(map(tuple, groups.values()), key=lambda names: (-len(names), names))
 
 
-def _common(prints: Mapping[str, _Prints]) -> set[int]:
+def _find_common(prints: Mapping[str, _Prints]) -> set[int]:
     """Return the fingerprints that say nothing, because so many programs have them."""
-    count = Counter(key for one in prints.values() for key in one)
-    most = max(COMMON_LEAST, COMMON_SHARE * len(prints))
-    return {key for key, programs in count.items() if programs > most}
+    count = Counter(key for program_prints in prints.values() for key in program_prints)
+    limit = max(MIN_COMMON, COMMON_SHARE * len(prints))
+    return {key for key, programs in count.items() if programs > limit}
 
 
-def _pairs(prints: Mapping[str, _Prints], common: Collection[int]) -> tuple[SimilarPair, ...]:
-    own = {name: {key for key in one if key not in common} for name, one in prints.items()}
+def _find_pairs(prints: Mapping[str, _Prints], common: Collection[int]) -> tuple[SimilarPair, ...]:
+    own = {
+        name: {key for key in program_prints if key not in common}
+        for name, program_prints in prints.items()
+    }
     users: dict[int, list[str]] = defaultdict(list)
     for name, keys in own.items():
         for key in keys:
             users[key].append(name)
     both = Counter(pair for names in users.values() for pair in combinations(names, 2))
-    found = []
+    pairs = []
     for (first, second), count in both.items():
         share = count / min(len(own[first]), len(own[second]))
-        if share < LEAST_SHARE:
+        if share < MIN_SHARE:
             continue
         lines = frozenset[int]().union(*(prints[first][key] for key in own[first] & own[second]))
-        if len(lines) >= LEAST_LINES:
-            found.append(SimilarPair((first, second), share, len(lines)))
-    return tuple(
-        sorted(found, key=lambda pair: (-pair.share, -pair.lines, pair.names))[:MOST_PAIRS]
-    )
+        if len(lines) >= MIN_LINES:
+            pairs.append(SimilarPair((first, second), share, len(lines)))
+    return tuple(sorted(pairs, key=lambda pair: (-pair.share, -pair.lines, pair.names))[:MAX_PAIRS])

@@ -17,15 +17,15 @@ from tuisim.engine.mats import background
 from tuisim.programs.program_file import ProgramSource
 from tuisim.programs.program_settings import ProgramSettings, program_settings
 from tuisim.settings.build import build_run_spec
-from tuisim.settings.options import names_world, settings_of
+from tuisim.settings.options import has_world_values, merge_settings
 from tuisim.tasks.goals.files import GoalsFile
 from tuisim.tasks.goals.trial_world import TrialWorld
 from tuisim.tasks.marks.runs import RunEntry
-from tuisim.tasks.marks.students import Student, file_outside
+from tuisim.tasks.marks.students import Student, find_outside_option
 
 
-def entries_of(
-    found: Sequence[Student], task: GoalsFile, given: Mapping[str, Any]
+def build_entries(
+    submissions: Sequence[Student], task: GoalsFile, options: Mapping[str, Any]
 ) -> tuple[list[RunEntry], list[Student]]:
     """Return the students whose programs can be run, and all students.
 
@@ -38,20 +38,20 @@ def entries_of(
         ConfigError: the world of the goals, or an option, is wrong, or none of the programs can run by its profile.
     """
     for world in task.worlds:
-        build_run_spec(settings_of(world.settings, given))
-    names_profile = "profile" in {**task.settings, **given}
+        build_run_spec(merge_settings(world.settings, options))
+    names_profile = "profile" in {**task.settings, **options}
     entries, students, misfits = [], [], []
-    for student in found:
+    for student in submissions:
         if student.source:
             try:
-                entries.append(_build_entry(student, student.source, task, given))
+                entries.append(_build_entry(student, student.source, task, options))
                 student = entries[-1].student
             except ConfigError as error:
                 misfits += [error] if isinstance(error, ProfileError) and names_profile else []
                 student = replace(
                     student,
                     source=None,
-                    problem=_told(error, student),
+                    problem=_describe_error(error, student),
                     is_unread=has_machine_cause(error),
                 )
             except Exception as error:  # Whatever it is, the others go on.
@@ -65,11 +65,11 @@ def entries_of(
 
 
 def _build_entry(
-    student: Student, source: ProgramSource, task: GoalsFile, given: Mapping[str, Any]
+    student: Student, source: ProgramSource, task: GoalsFile, options: Mapping[str, Any]
 ) -> RunEntry:
-    every = [_settings(student, world, given) for world in task.worlds]
+    every = [_resolve_settings(student, world, options) for world in task.worlds]
     specs = tuple(build_run_spec(own.settings) for own in every)
-    if not names_world(task.settings):
+    if not has_world_values(task.settings):
         _check_background(specs[0])
     decided = every[0].decided
     program = replace(source.program, shown_ports=decided.shown_ports)
@@ -78,7 +78,9 @@ def _build_entry(
     return RunEntry(student, specs, tuple(own.settings["press"] for own in every))
 
 
-def _settings(student: Student, world: TrialWorld, given: Mapping[str, Any]) -> ProgramSettings:
+def _resolve_settings(
+    student: Student, world: TrialWorld, options: Mapping[str, Any]
+) -> ProgramSettings:
     """Return the settings of a student's program: in a world of the task if it is said, else in that of its magic line.
 
     In a world of the task, the rules are those for the program's library where the goals name no others.
@@ -88,12 +90,12 @@ def _settings(student: Student, world: TrialWorld, given: Mapping[str, Any]) -> 
         ProfileError: a profile is named for another library.
     """
     assert student.source is not None
-    if names_world(world.settings):
+    if has_world_values(world.settings):
         bare = replace(student.source, options={})
-        return program_settings(bare, world.settings, given)
-    if outside := file_outside(student):
+        return program_settings(bare, world.settings, options)
+    if outside := find_outside_option(student):
         raise ConfigError("the first line names a file outside the folder", key=outside)
-    return program_settings(student.source, world.settings, given)
+    return program_settings(student.source, world.settings, options)
 
 
 def _check_background(spec: RunSpec) -> None:
@@ -108,7 +110,7 @@ def _check_background(spec: RunSpec) -> None:
         decode(read_file(image), image, spec.world.background_fit)
 
 
-def _told(error: ConfigError, student: Student) -> str:
+def _describe_error(error: ConfigError, student: Student) -> str:
     """Return what is wrong, with the student's files named as they are in the folder."""
     folder = student.path if student.path.is_dir() else student.path.parent
     text = str(error)

@@ -12,82 +12,85 @@ from tuisim.base.atomic import replacing
 from tuisim.base.errors import ExportError, printable
 from tuisim.base.faults import describe_fault
 from tuisim.base.source import source_lines
-from tuisim.tasks.goals.judgement import in_words
+from tuisim.tasks.goals.judgement import format_points
 from tuisim.tasks.goals.spec import Goal
 from tuisim.tasks.marks.sheet import Cell, Sheet, SheetRow
 
 SUFFIX = ".txt"
 WIDTH = 88
-MOST_ERROR_LINES = 20
+MAX_ERROR_LINES = 20
 _ELSEWHERE = "in every other world in which it ran"
 """What is told of a hidden world."""
-MOST_NAME_BYTES = 160
+MAX_NAME_BYTES = 160
 """Longer names of files are cut off: with seed and suffix they must fit into the 255 bytes of common file systems."""
 _FORBIDDEN = frozenset('/\\:*?"<>|')
 """Characters that some file systems, or links of a page, do not take in a name."""
 
 
-def file_stems(names: Iterable[str]) -> list[str]:
+def build_file_stems(names: Iterable[str]) -> list[str]:
     """Return a distinct name for the files of each student, without characters that are odd in file names."""
-    found: list[str] = []
+    stems: list[str] = []
     taken: set[str] = set()
     for name in names:
-        plain = "".join("_" if one in _FORBIDDEN or not one.isprintable() else one for one in name)
-        stem = plain.encode()[:MOST_NAME_BYTES].decode(errors="ignore").strip(" .") or "student"
+        plain = "".join(
+            "_" if character in _FORBIDDEN or not character.isprintable() else character
+            for character in name
+        )
+        stem = plain.encode()[:MAX_NAME_BYTES].decode(errors="ignore").strip(" .") or "student"
         number, candidate = 1, stem
         while candidate.casefold() in taken:
             number += 1
             candidate = f"{stem}-{number}"
         taken.add(candidate.casefold())
-        found.append(candidate)
-    return found
+        stems.append(candidate)
+    return stems
 
 
-def feedback_of(sheet: Sheet, row: SheetRow, source: str = "") -> str:
+def build_feedback(sheet: Sheet, row: SheetRow, source: str = "") -> str:
     """Return the feedback for one student as plain text.
 
     Args:
         source: The text of the main program, whose lines are quoted.
     """
     try:
-        return _feedback_of(sheet, row, source)
+        return _build_feedback(sheet, row, source)
     except Exception as error:  # Whatever it is, the others go on.
         return f"{describe_fault(error)}\n"
 
 
-def _feedback_of(sheet: Sheet, row: SheetRow, source: str) -> str:
-    head = f"{row.name}: {in_words(row.points)} of {in_words(sheet.most_points)} points"
+def _build_feedback(sheet: Sheet, row: SheetRow, source: str) -> str:
+    head = f"{row.name}: {format_points(row.points)} of {format_points(sheet.most_points)} points"
     parts = (
         [head, "=" * min(len(head), WIDTH), "", sheet.title, ""] if sheet.title else [head, "", ""]
     )
     if row.comment:
-        parts += [_wrapped(f"Comment: {row.comment}"), ""]
-    parts += _how_often(row)
+        parts += [_wrap(f"Comment: {row.comment}"), ""]
+    parts += _describe_frequency(row)
     if row.failure and row.hidden:
-        parts += [_wrapped(f"Your program did not run to its end {_ELSEWHERE}."), ""]
+        parts += [_wrap(f"Your program did not run to its end {_ELSEWHERE}."), ""]
     elif row.failure:
-        parts += [_wrapped(f"Your program did not run to its end: {row.failure}"), ""]
-        parts += [f"    {line}" for line in source_lines(row.error)[-MOST_ERROR_LINES:]]
+        parts += [_wrap(f"Your program did not run to its end: {row.failure}"), ""]
+        parts += [f"    {line}" for line in source_lines(row.error)[-MAX_ERROR_LINES:]]
         parts += [""] if row.error else []
     if row.refusal:
-        parts += [_wrapped(f"Your program would not run on a brick: {row.refusal}"), ""]
+        parts += [_wrap(f"Your program would not run on a brick: {row.refusal}"), ""]
     quoted = source_lines(source)
     cells = list(zip(sheet.columns, row.cells, strict=True))
     for column, cell in cells:
-        parts += [*_goal(column, cell, row.runs, quoted), ""] if not column.hidden else []
-    parts += _hidden([(column, cell) for column, cell in cells if column.hidden])
+        parts += [*_describe_goal(column, cell, row.runs, quoted), ""] if not column.hidden else []
+    parts += _describe_hidden([(column, cell) for column, cell in cells if column.hidden])
     lines = "\n".join(parts).rstrip("\n").split("\n")
     return "".join(f"{printable(line)}\n" for line in lines)
 
 
-def _how_often(row: SheetRow) -> list[str]:
+def _describe_frequency(row: SheetRow) -> list[str]:
     if row.stopped_early:
         return ["Your program ran once: it would not end in other runs either.", ""]
     if row.runs < 2:
         return []
     full = round(row.robustness * row.runs)
     return [
-        _wrapped(
+        _wrap(
             f"Your program ran {row.runs} times, each time with different random numbers: "
             f"{full} of {row.runs} runs met every goal."
         ),
@@ -95,18 +98,22 @@ def _how_often(row: SheetRow) -> list[str]:
     ]
 
 
-def _hidden(cells: Sequence[tuple[Goal, Cell]]) -> list[str]:
+def _describe_hidden(cells: Sequence[tuple[Goal, Cell]]) -> list[str]:
     """Return what is told of hidden goals: their points together."""
-    most = math.fsum(max(column.points, 0.0) for column, _ in cells)
+    max_points = math.fsum(max(column.points, 0.0) for column, _ in cells)
     points = math.fsum(cell.points for _, cell in cells)
-    return [f"Hidden goals: {in_words(points)} of {in_words(most)} points", ""] if cells else []
+    return (
+        [f"Hidden goals: {format_points(points)} of {format_points(max_points)} points", ""]
+        if cells
+        else []
+    )
 
 
-def _goal(column: Goal, cell: Cell, runs: int, lines: Sequence[str]) -> list[str]:
+def _describe_goal(column: Goal, cell: Cell, runs: int, lines: Sequence[str]) -> list[str]:
     if math.isnan(cell.points):
-        return [_wrapped(f"[could not be judged] {column.say}")]
+        return [_wrap(f"[could not be judged] {column.say}")]
     if column.points < 0 and not cell.met:
-        return [_wrapped(f"[did not happen] {column.say}")]
+        return [_wrap(f"[did not happen] {column.say}")]
     is_met = bool(runs) and cell.met == runs
     mark = (
         "happened"
@@ -117,29 +124,29 @@ def _goal(column: Goal, cell: Cell, runs: int, lines: Sequence[str]) -> list[str
         if not cell.met
         else "met in part"
     )
-    of = f" of {in_words(column.points)}" if column.points > 0 else ""
-    points = f" ({in_words(cell.points)}{of})" if column.points else ""
-    found = [_wrapped(f"[{mark}] {column.say}{points}")]
+    of = f" of {format_points(column.points)}" if column.points > 0 else ""
+    points = f" ({format_points(cell.points)}{of})" if column.points else ""
+    paragraphs = [_wrap(f"[{mark}] {column.say}{points}")]
     if is_met and column.points >= 0:
-        return found
+        return paragraphs
     if cell.hidden:
-        found.append(
-            _wrapped(f"Why: it is right in the task's own world, but not {_ELSEWHERE}.", "    ")
+        paragraphs.append(
+            _wrap(f"Why: it is right in the task's own world, but not {_ELSEWHERE}.", "    ")
         )
     elif cell.met:
-        found.append(
-            _wrapped(f"Met in {cell.met} of {runs} runs; missed with seed {cell.seed}.", "    ")
+        paragraphs.append(
+            _wrap(f"Met in {cell.met} of {runs} runs; missed with seed {cell.seed}.", "    ")
         )
     if cell.reason and not cell.hidden:
-        found.append(_wrapped(f"Why: {cell.reason}", "    "))
+        paragraphs.append(_wrap(f"Why: {cell.reason}", "    "))
     if 0 < cell.line <= len(lines) and not cell.hidden:
-        found.append(f"    Line {cell.line}: {lines[cell.line - 1].strip()[:WIDTH]}")
+        paragraphs.append(f"    Line {cell.line}: {lines[cell.line - 1].strip()[:WIDTH]}")
     if column.hint:
-        found.append(_wrapped(f"Hint: {column.hint}", "    "))
-    return found
+        paragraphs.append(_wrap(f"Hint: {column.hint}", "    "))
+    return paragraphs
 
 
-def _wrapped(text: str, indent: str = "") -> str:
+def _wrap(text: str, indent: str = "") -> str:
     return fill(
         text, WIDTH, initial_indent=indent, subsequent_indent=indent, break_on_hyphens=False
     )
@@ -154,11 +161,11 @@ def write_feedback(folder: Path, sheet: Sheet, sources: Sequence[str]) -> None:
     Raises:
         ExportError: a file cannot be written.
     """
-    stems = file_stems(row.name for row in sheet.rows)
+    stems = build_file_stems(row.name for row in sheet.rows)
     try:
         os.makedirs(folder, exist_ok=True)
         for stem, row, source in zip(stems, sheet.rows, sources, strict=True):
             with replacing(folder / f"{stem}{SUFFIX}", durable=False) as handle:
-                handle.write(feedback_of(sheet, row, source).encode("utf-8", "backslashreplace"))
+                handle.write(build_feedback(sheet, row, source).encode("utf-8", "backslashreplace"))
     except OSError as error:
         raise ExportError(f"cannot write to {folder}: {error.strerror or error}") from error

@@ -18,12 +18,12 @@ from tuisim.base.errors import ConfigError, listed
 from tuisim.engine.files import read_bytes
 from tuisim.logs.csv_cells import escape_formula, restore_formula
 from tuisim.pictures.charts.files import write_whole
-from tuisim.tasks.goals.judgement import in_words
-from tuisim.tasks.marks.feedback import feedback_of
+from tuisim.tasks.goals.judgement import format_points
+from tuisim.tasks.marks.feedback import build_feedback
 from tuisim.tasks.marks.hand_ins import GradebookKind
 from tuisim.tasks.marks.sheet import Sheet, SheetRow
 
-MOST_BYTES = 16 << 20
+MAX_BYTES = 16 << 20
 ITEM = "tuisim"
 """Name of the assignment, if the task has no title."""
 
@@ -36,7 +36,7 @@ _IDENTITY: Mapping[GradebookKind, Sequence[str]] = {
     GradebookKind.CANVAS: ("Student", "ID", "SIS User ID", "SIS Login ID", "Section"),
 }
 """Columns that say who a student is."""
-_BY_NAME: Mapping[GradebookKind, str] = {
+_NAME_COLUMNS: Mapping[GradebookKind, str] = {
     GradebookKind.MOODLE: "Username",
     GradebookKind.CANVAS: "SIS Login ID",
 }
@@ -70,9 +70,9 @@ def read_roster(path: Path) -> Roster:
     Raises:
         ConfigError: it cannot be read, has no such column, or names a submission twice.
     """
-    shown = str(path)
+    file_name = str(path)
     data = read_bytes(
-        path, MOST_BYTES, ConfigError, "there is no such file", "is a folder", "name a CSV file"
+        path, MAX_BYTES, ConfigError, "there is no such file", "is a folder", "name a CSV file"
     )
     try:
         text = data.decode("utf-8-sig")
@@ -84,23 +84,27 @@ def read_roster(path: Path) -> Roster:
         ]
     except (UnicodeDecodeError, csv.Error) as error:
         raise ConfigError(
-            f"is no CSV in UTF-8: {error}", "a heading, and one row for each student", file=shown
+            f"is no CSV in UTF-8: {error}",
+            "a heading, and one row for each student",
+            file=file_name,
         ) from error
     heads = [cell.casefold() for cell in rows[0]] if rows else []
-    keys = (SUBMISSION, *(name.casefold() for name in _BY_NAME.values()))
+    keys = (SUBMISSION, *(name.casefold() for name in _NAME_COLUMNS.values()))
     key = next((name for name in keys if name in heads), None)
     if key is None:
         raise ConfigError(
             "has no column that names the submissions",
-            f"name one of the columns: {listed([SUBMISSION, *_BY_NAME.values()])}",
-            file=shown,
+            f"name one of the columns: {listed([SUBMISSION, *_NAME_COLUMNS.values()])}",
+            file=file_name,
         )
     people: dict[str, Mapping[str, str]] = {}
     for row in rows[1:]:
         person = dict(zip(heads, row, strict=False))
         name = person.get(key, "")
         if name in people:
-            raise ConfigError(f"has two rows for {name!r}", "one row for each student", file=shown)
+            raise ConfigError(
+                f"has two rows for {name!r}", "one row for each student", file=file_name
+            )
         if name:
             people[name] = person
     return Roster(people)
@@ -126,30 +130,30 @@ def write_gradebook(
     """
     item = sheet.title or ITEM
     # Students see them: what is hidden, and what takes points off, is only in the total.
-    shown = [
-        at
-        for at, column in enumerate(sheet.columns)
+    indices = [
+        index
+        for index, column in enumerate(sheet.columns)
         if goals and not column.hidden and column.points >= 0
     ]
     identity, total, feedback = _choose_heads(kind, sheet, roster)
-    names = [total or item, *(f"{item}: {sheet.columns[at].name}" for at in shown)]
+    names = [total or item, *(f"{item}: {sheet.columns[index].name}" for index in indices)]
     heads = [*identity, *names]
     table = []
     if kind is GradebookKind.CANVAS:
-        most = [
-            in_words(points)
-            for points in (sheet.most_points, *(sheet.columns[at].points for at in shown))
+        possible = [
+            format_points(points)
+            for points in (sheet.most_points, *(sheet.columns[index].points for index in indices))
         ]
-        table.append(["Points Possible", *[""] * (len(identity) - 1), *most])
+        table.append(["Points Possible", *[""] * (len(identity) - 1), *possible])
     else:
         heads.append(feedback)
     for row, source in zip(sheet.rows, sources, strict=True):
-        points = [row.points, *(row.cells[at].points for at in shown)]
+        points = [row.points, *(row.cells[index].points for index in indices)]
         # What could not be judged stays empty.
-        words = ["" if math.isnan(one) else in_words(one) for one in points]
-        cells = [*_identity(row, identity, kind, roster), *words]
+        words = ["" if math.isnan(number) else format_points(number) for number in points]
+        cells = [*_identify(row, identity, kind, roster), *words]
         table.append(
-            cells if kind is GradebookKind.CANVAS else [*cells, feedback_of(sheet, row, source)]
+            cells if kind is GradebookKind.CANVAS else [*cells, build_feedback(sheet, row, source)]
         )
     text = io.StringIO()
     csv.writer(text, lineterminator="\n").writerows(
@@ -168,10 +172,10 @@ def _choose_heads(
     return _IDENTITY[kind], "", "Feedback"
 
 
-def _identity(
+def _identify(
     row: SheetRow, heads: Sequence[str], kind: GradebookKind, roster: Roster
 ) -> list[str]:
-    names = ("student", "full name", *(() if kind in row.ids else [_BY_NAME[kind].casefold()]))
+    names = ("student", "full name", *(() if kind in row.ids else [_NAME_COLUMNS[kind].casefold()]))
     person = dict.fromkeys(names, row.name)
     if number := row.ids.get(kind):
         person |= {"id": number, "identifier": f"Participant {number}"}

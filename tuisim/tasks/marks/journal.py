@@ -19,7 +19,7 @@ FOLDER = "marks"
 """In the user's data folder."""
 
 
-def journal_of(goals: Path) -> Path:
+def build_journal_path(goals: Path) -> Path:
     """Return the journal of a goals file, which depends on its path."""
     key = hashlib.sha256(bytes(goals.resolve())).hexdigest()[:32]
     return home_folder() / FOLDER / f"{key}.jsonl"
@@ -50,7 +50,7 @@ class Journal:
                 # The last line may be incomplete; an empty one is ignored.
                 self._file.write(b"\n")
         except OSError as error:
-            raise self._error(error) from error
+            raise self._build_error(error) from error
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -65,11 +65,11 @@ class Journal:
             self._file.write(line)
             self._file.flush()
         except OSError as error:
-            raise self._error(error) from error
+            raise self._build_error(error) from error
 
     def _read(self) -> dict[str, Outcome]:
         """Return what can be read: an interrupted process may have left an incomplete line."""
-        found = {}
+        outcomes = {}
         try:
             lines = self._path.read_bytes().split(b"\n")
         except FileNotFoundError:
@@ -77,10 +77,10 @@ class Journal:
         for line in filter(None, lines):
             try:
                 entry = json.loads(line)
-                found[str(entry["key"])] = msgspec.convert(entry["outcome"], Outcome)
+                outcomes[str(entry["key"])] = msgspec.convert(entry["outcome"], Outcome)
             except (ValueError, TypeError, KeyError, RecursionError, msgspec.ValidationError):
                 continue
-        return found
+        return outcomes
 
-    def _error(self, error: OSError) -> LogError:
+    def _build_error(self, error: OSError) -> LogError:
         return LogError(f"cannot be written: {error.strerror or error}", file=str(self._path))

@@ -17,18 +17,18 @@ from tuisim.engine.runs.child.supervisor import supervised
 from tuisim.engine.runs.handle import RunOptions
 from tuisim.engine.runs.temporary import temporary_home
 from tuisim.logs.export import EXPORTERS
-from tuisim.settings.options import settings_of
+from tuisim.settings.options import merge_settings
 from tuisim.tasks.goals.files import GoalsFile
-from tuisim.tasks.marks.entries import entries_of
+from tuisim.tasks.marks.entries import build_entries
 from tuisim.tasks.marks.feedback import write_feedback
 from tuisim.tasks.marks.gradebook import Roster, read_roster, write_gradebook
 from tuisim.tasks.marks.hand_ins import GradebookKind
-from tuisim.tasks.marks.journal import Journal, journal_of
-from tuisim.tasks.marks.outcome import Outcome, unknown_goals
-from tuisim.tasks.marks.overrides import overridden, read_overrides
-from tuisim.tasks.marks.page import reports_folder
-from tuisim.tasks.marks.runs import STALL_LIMIT_S, MarkPlan, RunEntry, outcomes_of, runs_of
-from tuisim.tasks.marks.sheet import Sheet, columns_of, export_marks, sheet_of
+from tuisim.tasks.marks.journal import Journal, build_journal_path
+from tuisim.tasks.marks.outcome import Outcome, find_unknown_goals
+from tuisim.tasks.marks.overrides import apply_overrides, read_overrides
+from tuisim.tasks.marks.page import build_reports_folder
+from tuisim.tasks.marks.runs import STALL_LIMIT_S, MarkPlan, RunEntry, count_runs, run_entries
+from tuisim.tasks.marks.sheet import Sheet, build_sheet, export_marks, list_columns
 from tuisim.tasks.marks.students import Student, find_students
 from tuisim.tasks.task import TIME_LIMIT_S, Keep
 
@@ -78,7 +78,7 @@ class MarkRequest:
         files = [self.task.path, self.roster, self.overrides, self.feedback]
         files += self.gradebooks.values()
         for target in self.exports:
-            files += [target, target.with_name(target.name + ".json"), reports_folder(target)]
+            files += [target, target.with_name(target.name + ".json"), build_reports_folder(target)]
         return frozenset(Path(os.path.realpath(path)) for path in files if path)
 
 
@@ -107,18 +107,18 @@ class Marking:
 
     def __init__(self, request: MarkRequest, unpacked: Path) -> None:
         self._request, task = request, request.task
-        found = find_students(
+        submissions = find_students(
             request.folders,
             Path(task.program).name if task.program else "",
             request.list_own_files(),
             unpacked,
             request.max_bytes,
         )
-        names = [student.name for student in found.students]
-        self.students: Sequence[Student] = found.students
-        self.ignored, self.left_out = found.ignored, found.left_out
+        names = [student.name for student in submissions.students]
+        self.students: Sequence[Student] = submissions.students
+        self.ignored, self.left_out = submissions.ignored, submissions.left_out
         self.outcomes: dict[str, list[Outcome]] = {name: [] for name in names}
-        self._columns = columns_of(task.every_goal)
+        self._columns = list_columns(task.every_goal)
         self._overrides = (
             read_overrides(request.overrides, self._columns, names) if request.overrides else {}
         )
@@ -137,7 +137,7 @@ class Marking:
             keep=request.keep,
             jobs=request.jobs,
             version=request.version,
-            arguments=settings_of(task.settings)["arguments"],
+            arguments=merge_settings(task.settings)["arguments"],
         )
 
     def read_programs(self) -> None:
@@ -146,7 +146,7 @@ class Marking:
         Raises:
             ConfigError: the world of the goals, or a setting, is wrong, or none of the programs can run by its profile.
         """
-        self._entries, self.students = entries_of(
+        self._entries, self.students = build_entries(
             self.students, self._request.task, self._request.settings
         )
 
@@ -157,15 +157,17 @@ class Marking:
             LogError: the journal cannot be read or written.
         """
         plan = replace(self._plan, isolate=isolate)
-        counts = {entry.student.name: runs_of((), plan) for entry in self._entries}
+        counts = {entry.student.name: count_runs((), plan) for entry in self._entries}
         with (
             nullcontext() if isolate else supervised(),
-            Journal(journal_of(self._request.task.path), resumes=self._request.resumes) as known,
-            closing(outcomes_of(self._entries, plan, known)) as outcomes,
+            Journal(
+                build_journal_path(self._request.task.path), resumes=self._request.resumes
+            ) as known,
+            closing(run_entries(self._entries, plan, known)) as outcomes,
         ):
             for done, (name, outcome) in enumerate(outcomes, start=1):
                 self.outcomes[name].append(outcome)
-                counts[name] = runs_of(self.outcomes[name], plan)
+                counts[name] = count_runs(self.outcomes[name], plan)
                 total = sum(counts.values())
                 tell(f"run {done} of {total}", done, total)
 
@@ -185,7 +187,7 @@ class Marking:
         reasons: dict[str, str] = {}
         names = defaultdict(list)
         for name, outcomes in self.outcomes.items():
-            unknown = unknown_goals(outcomes)
+            unknown = find_unknown_goals(outcomes)
             reasons |= unknown
             for goal in unknown:
                 names[goal].append(name)
@@ -193,7 +195,7 @@ class Marking:
 
     def build_sheet(self) -> Sheet:
         """Return the marks of the class, with what the tutor says."""
-        return overridden(self._build_sheet(self.students), self._overrides)
+        return apply_overrides(self._build_sheet(self.students), self._overrides)
 
     def build_sheet_so_far(self) -> Sheet:
         """Return the marks of the students whose programs have had all their runs."""
@@ -202,13 +204,13 @@ class Marking:
                 student
                 for student in self.students
                 if not student.source
-                or len(outcomes := self.outcomes[student.name]) == runs_of(outcomes, self._plan)
+                or len(outcomes := self.outcomes[student.name]) == count_runs(outcomes, self._plan)
             ]
         )
 
     def _build_sheet(self, students: Sequence[Student]) -> Sheet:
         worlds = [world.where for world in self._plan.worlds]
-        return sheet_of(
+        return build_sheet(
             self._request.task.title,
             self._columns,
             self._plan.seeds,

@@ -23,7 +23,7 @@ from tuisim.tasks.goals.trial_world import TrialWorld
 from tuisim.tasks.task import Result
 
 _ADDRESS = re.compile(r"\b0x[0-9a-fA-F]{6,}\b")
-MOST_CHARACTERS = 300
+MAX_CHARACTERS = 300
 """Longest reason; the rest is cut off."""
 _ERROR_HEAD, _ERROR_TAIL = 1000, 3000
 """Characters of a long traceback that are kept, at its beginning and its end."""
@@ -66,7 +66,7 @@ class GoalOutcome:
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """One run of a student's program, or with a seed all of its runs in the worlds of the task: see `merged`."""
+    """One run of a student's program, or with a seed all of its runs in the worlds of the task: see `merge_worlds`."""
 
     seed: int
     end: str
@@ -108,7 +108,9 @@ class Outcome:
         )
 
 
-def outcome_of(result: Result, seed: int, folder: Path, world: TrialWorld | None = None) -> Outcome:
+def build_outcome(
+    result: Result, seed: int, folder: Path, world: TrialWorld | None = None
+) -> Outcome:
     """Return the outcome of a task.
 
     Args:
@@ -117,33 +119,35 @@ def outcome_of(result: Result, seed: int, folder: Path, world: TrialWorld | None
         folder: The folder in which the program ran; its path does not appear in the outcome.
         world: Another world, of whose goals only some may count.
     """
-    failure = "" if result.end == End.FINISHED and not result.exit_code else _failure(result)
-    judgements = {one.goal.name: one for one in result.judgements}
+    failure = (
+        "" if result.end == End.FINISHED and not result.exit_code else _describe_failure(result)
+    )
+    judgements = {judgement.goal.name: judgement for judgement in result.judgements}
     goals = []
-    for name, one in judgements.items():
+    for name, judgement in judgements.items():
         if world is not None and name not in world.goals:
             continue
-        if one.state is GoalState.MET:
-            goals.append(GoalOutcome(name, True, is_penalty=one.goal.points < 0))
+        if judgement.state is GoalState.MET:
+            goals.append(GoalOutcome(name, True, is_penalty=judgement.goal.points < 0))
         else:
-            cause = _cause(one, judgements)
-            reason = _one_line(portable(cause.reason, folder))
+            cause = _find_cause(judgement, judgements)
+            reason = _join_lines(make_portable(cause.reason, folder))
             goals.append(
                 GoalOutcome(
                     name,
                     False,
                     reason,
                     cause.line,
-                    is_penalty=one.goal.points < 0,
-                    is_unknown=one.state is GoalState.UNKNOWN,
+                    is_penalty=judgement.goal.points < 0,
+                    is_unknown=judgement.state is GoalState.UNKNOWN,
                 )
             )
     return Outcome(
         seed,
         result.end,
-        _one_line(portable(failure, folder)),
+        _join_lines(make_portable(failure, folder)),
         result.error_line,
-        _head_and_tail("\n".join(map(printable, source_lines(portable(result.error, folder))))),
+        _cut_middle("\n".join(map(printable, source_lines(make_portable(result.error, folder))))),
         result.time_s,
         tuple(goals),
         result.run_id,
@@ -152,7 +156,7 @@ def outcome_of(result: Result, seed: int, folder: Path, world: TrialWorld | None
     )
 
 
-def merged(
+def merge_worlds(
     outcomes: Sequence[Outcome], seeds: Sequence[int], worlds: Sequence[str] = ("",)
 ) -> list[Outcome]:
     """Return for each seed what came out of it: a goal is met if it is met in every world where it counts.
@@ -166,23 +170,27 @@ def merged(
         seeds: Those of the marking.
         worlds: The worlds, the first one first.
     """
-    if any(one.is_in_doubt for one in outcomes):
+    if any(outcome.is_in_doubt for outcome in outcomes):
         return []
-    known = {(one.world, one.seed): one for one in outcomes}
-    gave_up = {one.world: one for one in outcomes if one.gave_up and one.seed == seeds[0]}
-    found = []
+    known = {(outcome.world, outcome.seed): outcome for outcome in outcomes}
+    gave_up = {
+        outcome.world: outcome
+        for outcome in outcomes
+        if outcome.gave_up and outcome.seed == seeds[0]
+    }
+    seed_outcomes = []
     for seed in seeds:
         first = known.get((worlds[0], seed))
         # A program that gave up in the first world was not run in the others.
         own = worlds[:1] if worlds[0] in gave_up else worlds
         parts = [first, *(known.get((world, seed), gave_up.get(world)) for world in own[1:])]
-        complete = [one for one in parts if one is not None and one.counts]
+        complete = [outcome for outcome in parts if outcome is not None and outcome.counts]
         if len(complete) == len(parts):
-            found.append(_merged(seed, complete))
-    return found
+            seed_outcomes.append(_merge(seed, complete))
+    return seed_outcomes
 
 
-def _merged(seed: int, parts: Sequence[Outcome]) -> Outcome:
+def _merge(seed: int, parts: Sequence[Outcome]) -> Outcome:
     """Return what came out of the runs with a seed, the one in the first world first."""
     # What a student may be told comes before what is hidden.
     parts = sorted(parts, key=lambda part: part.hidden)
@@ -191,7 +199,7 @@ def _merged(seed: int, parts: Sequence[Outcome]) -> Outcome:
     is_known = all(part.goals for part in parts)
     for part in parts:
         for goal in part.goals if is_known else ():
-            if _counts_more(goal, goals.get(goal.name)):
+            if _is_weightier(goal, goals.get(goal.name)):
                 reason = (
                     f"{part.world}: {goal.reason}" if part.world and goal.reason else goal.reason
                 )
@@ -206,19 +214,21 @@ def _merged(seed: int, parts: Sequence[Outcome]) -> Outcome:
     )
 
 
-def _counts_more(goal: GoalOutcome, before: GoalOutcome | None) -> bool:
+def _is_weightier(goal: GoalOutcome, before: GoalOutcome | None) -> bool:
     """Return whether a world decides on a goal, not those before: a fault counts most, then what is not known."""
     if before is None or before.is_good:
         return True
     return before.is_unknown and not (goal.is_good or goal.is_unknown)
 
 
-def unknown_goals(outcomes: Iterable[Outcome]) -> dict[str, str]:
+def find_unknown_goals(outcomes: Iterable[Outcome]) -> dict[str, str]:
     """Return the goals that could not be judged in some runs, by name, each with its reason."""
-    return {goal.name: goal.reason for one in outcomes for goal in one.goals if goal.is_unknown}
+    return {
+        goal.name: goal.reason for outcome in outcomes for goal in outcome.goals if goal.is_unknown
+    }
 
 
-def portable(text: str, folder: Path | str) -> str:
+def make_portable(text: str, folder: Path | str) -> str:
     """Return a text without addresses in memory, and without what its paths say about this machine.
 
     Of files in the folder in which the program ran, in those of modules, and of Python, the path in the folder is left.
@@ -235,16 +245,16 @@ def portable(text: str, folder: Path | str) -> str:
     return _ADDRESS.sub("0x…", text)
 
 
-def _cause(judgement: Judgement, judgements: Mapping[str, Judgement]) -> Judgement:
+def _find_cause(judgement: Judgement, judgements: Mapping[str, Judgement]) -> Judgement:
     """Return the judgement that says why a goal was missed: of goals that must all be met, the first that was not."""
     if isinstance(judgement.goal.condition, AllOf):
         for name in judgement.goal.condition.goals:
             if judgements[name].state is not GoalState.MET:
-                return _cause(judgements[name], judgements)
+                return _find_cause(judgements[name], judgements)
     return judgement
 
 
-def _failure(result: Result) -> str:
+def _describe_failure(result: Result) -> str:
     """Return why a program did not finish."""
     if result.end == End.STOPPED:
         return "stopped, because it took too long"
@@ -257,11 +267,11 @@ def _failure(result: Result) -> str:
     )
 
 
-def _head_and_tail(text: str) -> str:
+def _cut_middle(text: str) -> str:
     if len(text) <= _ERROR_HEAD + _ERROR_TAIL:
         return text
     return f"{text[:_ERROR_HEAD]}…\n…{text[-_ERROR_TAIL:]}"
 
 
-def _one_line(text: str) -> str:
-    return shortened(printable(text.strip()), MOST_CHARACTERS)
+def _join_lines(text: str) -> str:
+    return shortened(printable(text.strip()), MAX_CHARACTERS)

@@ -19,11 +19,11 @@ from pathlib import Path
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ConfigError
 from tuisim.engine import files
-from tuisim.tasks.goals.judgement import points_of
+from tuisim.tasks.goals.judgement import sum_points
 from tuisim.tasks.goals.spec import Goal
-from tuisim.tasks.marks.sheet import Sheet, SheetRow, rounded
+from tuisim.tasks.marks.sheet import Sheet, SheetRow, round_points
 
-BY_TUTOR = "given by the tutor"
+TUTOR_REASON = "given by the tutor"
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,34 +49,42 @@ def read_overrides(
     Raises:
         ConfigError: it cannot be read, or names a student, a goal or a key that there is not.
     """
-    at = files.Location(str(path))
-    found: dict[str, Override] = {}
-    for student, entry in files.table(files.read_file(path, ConfigError), at, students).items():
-        found[student] = files.convert(entry, Override, at.at(student))
+    location = files.Location(str(path))
+    overrides: dict[str, Override] = {}
+    for student, entry in files.table(
+        files.read_file(path, ConfigError), location, students
+    ).items():
+        overrides[student] = files.convert(entry, Override, location.at(student))
         files.table(
-            dict(found[student].goals), at.at(student).at("goals"), [goal.name for goal in goals]
+            dict(overrides[student].goals),
+            location.at(student).at("goals"),
+            [goal.name for goal in goals],
         )
-    return found
+    return overrides
 
 
-def overridden(sheet: Sheet, overrides: Mapping[str, Override]) -> Sheet:
+def apply_overrides(sheet: Sheet, overrides: Mapping[str, Override]) -> Sheet:
     """Return the sheet with what the tutor says; what the runs have earned is kept in `earned`."""
     rows = tuple(
-        _row(row, sheet.columns, overrides[row.name]) if row.name in overrides else row
+        _override_row(row, sheet.columns, overrides[row.name]) if row.name in overrides else row
         for row in sheet.rows
     )
     return replace(sheet, rows=rows)
 
 
-def _row(row: SheetRow, columns: Sequence[Goal], override: Override) -> SheetRow:
+def _override_row(row: SheetRow, columns: Sequence[Goal], override: Override) -> SheetRow:
     cells = tuple(
-        replace(cell, points=override.goals[column.name], reason=BY_TUTOR)
+        replace(cell, points=override.goals[column.name], reason=TUTOR_REASON)
         if column.name in override.goals
         else cell
         for column, cell in zip(columns, row.cells, strict=True)
     )
     points = override.points
     if points is None:
-        points = rounded(points_of(cell.points for cell in cells)) if override.goals else row.points
+        points = (
+            round_points(sum_points(cell.points for cell in cells))
+            if override.goals
+            else row.points
+        )
     earned = row.points if points != row.points or cells != row.cells else None
     return replace(row, cells=cells, points=points, earned=earned, comment=override.comment)

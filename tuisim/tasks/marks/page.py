@@ -11,14 +11,14 @@ from types import MappingProxyType
 from tuisim.analysis.pins import Picture
 from tuisim.base.data_class import dataclass
 from tuisim.pictures.html.render import Table, render_page
-from tuisim.tasks.goals.judgement import in_words
+from tuisim.tasks.goals.judgement import format_points
 from tuisim.tasks.goals.spec import Goal
-from tuisim.tasks.marks.copies import LEAST_TOKENS, Similar
+from tuisim.tasks.marks.copies import MIN_TOKENS, Similar
 from tuisim.tasks.marks.sheet import Cell, Sheet, SheetRow
 
-_LEAST_STUDENTS = 3
+_MIN_STUDENTS = 3
 """Fewer have no statistics of points."""
-MOST_REASONS = 3
+MAX_REASONS = 3
 BINS = 10
 
 
@@ -62,7 +62,7 @@ class _Student:
     """For each world the paths of its reports, each with the seeds in words."""
 
 
-def page_of(
+def build_page(
     sheet: Sheet,
     links: Links = MappingProxyType({}),
     ignored: Sequence[str] = (),
@@ -82,20 +82,22 @@ def page_of(
         "marks.html",
         title=f"Marks: {sheet.title}" if sheet.title else "Marks",
         summary=sheet.summary,
-        bins=distribution(sheet) if len(sheet.rows) >= _LEAST_STUDENTS else (),
-        goals=goal_statistics(sheet),
+        bins=compute_distribution(sheet) if len(sheet.rows) >= _MIN_STUDENTS else (),
+        goals=compute_goal_statistics(sheet),
         maps=maps,
         heads=["student", "points", "robustness", *goals, "reason"],
         students=[_build_student(row, sheet, links) for row in sheet.rows],
         ignored=ignored,
         similar=_tabulate(similar) if similar is not None and similar.compared > 1 else None,
-        in_words=in_words,
+        in_words=format_points,
     )
 
 
 def _build_student(row: SheetRow, sheet: Sheet, links: Links) -> _Student:
     level = (
-        _level(row.points, sheet.most_points) if sheet.most_points else _level(row.robustness, 1.0)
+        _classify_points(row.points, sheet.most_points)
+        if sheet.most_points
+        else _classify_points(row.robustness, 1.0)
     )
     marks = [
         _mark(cell, column, row.runs) for cell, column in zip(row.cells, sheet.columns, strict=True)
@@ -103,8 +105,8 @@ def _build_student(row: SheetRow, sheet: Sheet, links: Links) -> _Student:
     return _Student(row, level, tuple(marks), tuple(_find_reports(row, links).items()))
 
 
-def _level(points: float, most: float) -> str:
-    return "met" if points >= most else "part" if points else "missed"
+def _classify_points(points: float, max_points: float) -> str:
+    return "met" if points >= max_points else "part" if points else "missed"
 
 
 def _mark(cell: Cell, column: Goal, runs: int) -> _Mark:
@@ -123,20 +125,22 @@ def _find_reports(row: SheetRow, links: Links) -> dict[str, list[tuple[str, str]
         if path := links.get((row.name, outcome.world, outcome.seed)):
             seeds.setdefault(outcome.world, {}).setdefault(path, []).append(outcome.seed)
     return {
-        world: [(path, _ranges(numbers)) for path, numbers in paths.items()]
+        world: [(path, _format_ranges(numbers)) for path, numbers in paths.items()]
         for world, paths in seeds.items()
     }
 
 
-def _ranges(seeds: Sequence[int]) -> str:
+def _format_ranges(seeds: Sequence[int]) -> str:
     """Return ascending numbers with runs of them as ranges, such as `0, 3–5`."""
-    found: list[list[int]] = []
+    ranges: list[list[int]] = []
     for seed in seeds:
-        if found and seed == found[-1][-1] + 1:
-            found[-1].append(seed)
+        if ranges and seed == ranges[-1][-1] + 1:
+            ranges[-1].append(seed)
         else:
-            found.append([seed])
-    return ", ".join(f"{one[0]}–{one[-1]}" if len(one) > 1 else str(one[0]) for one in found)
+            ranges.append([seed])
+    return ", ".join(
+        f"{numbers[0]}–{numbers[-1]}" if len(numbers) > 1 else str(numbers[0]) for numbers in ranges
+    )
 
 
 def _tabulate(similar: Similar) -> Mapping[str, object]:
@@ -155,39 +159,40 @@ def _tabulate(similar: Similar) -> Mapping[str, object]:
         "groups": Table(heads, groups, numbers=len(heads)),
         "pairs": Table(("program", "and", "passages in common", "lines"), pairs, numbers=2),
         "compared": similar.compared,
-        "least_tokens": LEAST_TOKENS,
+        "least_tokens": MIN_TOKENS,
     }
 
 
-def goal_statistics(sheet: Sheet) -> tuple[GoalStatistics, ...]:
+def compute_goal_statistics(sheet: Sheet) -> tuple[GoalStatistics, ...]:
     """Return the statistics of each goal that is shown."""
-    found = []
-    for at, goal in enumerate(sheet.columns):
-        cells = [(row, row.cells[at]) for row in sheet.rows]
+    statistics = []
+    for index, goal in enumerate(sheet.columns):
+        cells = [(row, row.cells[index]) for row in sheet.rows]
         met = sum(bool(row.runs) and cell.met == row.runs for row, cell in cells)
         partly = sum(0 < cell.met < row.runs for row, cell in cells)
         points = [cell.points for _, cell in cells if not math.isnan(cell.points)]
         mean = math.fsum(points) / len(points) if points else 0.0
-        reasons = Counter(cell.reason for _, cell in cells if cell.reason).most_common(MOST_REASONS)
-        found.append(GoalStatistics(goal, met, partly, mean, tuple(reasons)))
-    return tuple(found)
+        reasons = Counter(cell.reason for _, cell in cells if cell.reason).most_common(MAX_REASONS)
+        statistics.append(GoalStatistics(goal, met, partly, mean, tuple(reasons)))
+    return tuple(statistics)
 
 
-def distribution(sheet: Sheet) -> tuple[tuple[float, float, int], ...]:
+def compute_distribution(sheet: Sheet) -> tuple[tuple[float, float, int], ...]:
     """Return how many students have how many points: lower end, upper end and number for equal parts of the scale.
 
     The upper end belongs to the next part, but for the last one; fewer and more points count at the ends.
     """
-    most = sheet.most_points
+    max_points = sheet.most_points
     known = [row.points for row in sheet.rows if not math.isnan(row.points)]
-    if not most or not known:
+    if not max_points or not known:
         return ()
-    counts = Counter(min(max(int(points / most * BINS), 0), BINS - 1) for points in known)
+    counts = Counter(min(max(int(points / max_points * BINS), 0), BINS - 1) for points in known)
     return tuple(
-        (most * part / BINS, most * (part + 1) / BINS, counts[part]) for part in range(BINS)
+        (max_points * part / BINS, max_points * (part + 1) / BINS, counts[part])
+        for part in range(BINS)
     )
 
 
-def reports_folder(file: Path) -> Path:
+def build_reports_folder(file: Path) -> Path:
     """Return the folder of the reports that the page in a file links to."""
     return file.with_name(f"{file.stem}-runs")

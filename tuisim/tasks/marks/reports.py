@@ -22,16 +22,16 @@ from tuisim.engine.runs.store import RunStore
 from tuisim.pictures.charts.files import write_whole
 from tuisim.pictures.html.render import Table
 from tuisim.tasks.goals.condition import ConditionKind
-from tuisim.tasks.goals.judgement import Change, in_words
+from tuisim.tasks.goals.judgement import Change, format_points
 from tuisim.tasks.goals.spec import Goal
 from tuisim.tasks.goals.trial_world import TrialWorld
 from tuisim.tasks.marks.class_map import Miss, MissesOfRun
-from tuisim.tasks.marks.feedback import file_stems
-from tuisim.tasks.marks.outcome import GoalOutcome, Outcome, portable
-from tuisim.tasks.marks.page import reports_folder
+from tuisim.tasks.marks.feedback import build_file_stems
+from tuisim.tasks.marks.outcome import GoalOutcome, Outcome, make_portable
+from tuisim.tasks.marks.page import build_reports_folder
 from tuisim.tasks.marks.sheet import Sheet
 
-MOST_OUTPUT_BYTES = 4 << 20
+MAX_OUTPUT_BYTES = 4 << 20
 """Runs that printed more get no report: a browser could hardly show it."""
 _HEADS = ("", "goal", "result", "why", "points")
 
@@ -69,25 +69,29 @@ def write_reports(
     Raises:
         ExportError: a report cannot be written.
     """
-    folder, store = reports_folder(page), RunStore()
+    folder, store = build_reports_folder(page), RunStore()
     shutil.rmtree(folder, ignore_errors=True)
-    for stem, row in zip(file_stems(one.name for one in sheet.rows), sheet.rows, strict=True):
+    for stem, row in zip(
+        build_file_stems(student_row.name for student_row in sheet.rows), sheet.rows, strict=True
+    ):
         written: dict[tuple[str, str], str] = {}
         for outcome in row.outcomes:
-            run = _stored(store, outcome.run_id) if outcome.run_id else None
+            run = _load_stored(store, outcome.run_id) if outcome.run_id else None
             if run is None:
                 continue
             number, world = next(
-                (at, one) for at, one in enumerate(worlds) if one.where == outcome.world
+                (index, student_row)
+                for index, student_row in enumerate(worlds)
+                if student_row.where == outcome.world
             )
             name = f"{stem}{f'-world-{number + 1}' if number else ''}-seed-{outcome.seed}.html"
             misses, fault = tuple[Miss, ...](), ""
             try:
-                recorded = outcome.world, _digest(run)
+                recorded = outcome.world, _compute_digest(run)
                 if recorded not in written:
                     columns = [column for column in sheet.columns if column.name in world.goals]
-                    goals = columns, _judged(world.own_goals, outcome, run)
-                    misses = _misses(row.name, *goals, outcome, run)
+                    goals = columns, _judge_goals(world.own_goals, outcome, run)
+                    misses = _find_misses(row.name, *goals, outcome, run)
                     shows = movies and bool(misses)
                     _write(folder / name, _build_report(row.name, goals, outcome, run, movie=shows))
                     written[recorded] = f"{folder.name}/{name}"
@@ -102,17 +106,17 @@ def write_reports(
 
 
 _Judged = tuple[Sequence[Goal], Mapping[str, Change]]
-"""The goals that are shown, and when and where they were decided, as of `_judged`."""
+"""The goals that are shown, and when and where they were decided, as of `_judge_goals`."""
 
 
 def _build_report(
     student: str, goals: _Judged, outcome: Outcome, run: StoredRun, *, movie: bool
 ) -> str:
     *_, opened = open_pieces(LogRequest(runs=(run.id,)))
-    opened = replace(opened, runs=tuple(map(_portable, opened.runs)))
-    shown, pins = _verdicts(*goals, outcome)
+    opened = replace(opened, runs=tuple(map(_make_portable, opened.runs)))
+    goals_table, pins = _list_verdicts(*goals, outcome)
     title = ", ".join(filter(None, (student, outcome.world, f"seed {outcome.seed}")))
-    return build_report(opened, title=title, movie=movie, pins=pins, goals=shown)
+    return build_report(opened, title=title, movie=movie, pins=pins, goals=goals_table)
 
 
 def _write(path: Path, content: str) -> None:
@@ -123,37 +127,39 @@ def _write(path: Path, content: str) -> None:
     write_whole(path, content.encode())
 
 
-def _stored(store: RunStore, run_id: str) -> StoredRun | None:
+def _load_stored(store: RunStore, run_id: str) -> StoredRun | None:
     """Return a run; None if it no longer exists, or is too large for a report."""
     try:
         run = store.load_run(run_id)
-        return run if run.output.length <= MOST_OUTPUT_BYTES else None
+        return run if run.output.length <= MAX_OUTPUT_BYTES else None
     except LogError:
         return None
 
 
-def _portable(run: StoredRun) -> StoredRun:
+def _make_portable(run: StoredRun) -> StoredRun:
     """Return a run whose end is described without what differs from machine to machine."""
     if run.end is None:
         return run
     folder = run.program.working_directory
     end = replace(
-        run.end, error=portable(run.end.error, folder), summary=portable(run.end.summary, folder)
+        run.end,
+        error=make_portable(run.end.error, folder),
+        summary=make_portable(run.end.summary, folder),
     )
     return replace(run, end=end)
 
 
-def _digest(run: StoredRun) -> str:
+def _compute_digest(run: StoredRun) -> str:
     """Return a hash of what a run recorded, hexadecimal."""
-    found = hashlib.sha256(run.telemetry.array().tobytes())
+    digest = hashlib.sha256(run.telemetry.array().tobytes())
     folder = run.program.working_directory.encode("utf-8", "surrogateescape")
     for stream, row in run.output.raw_rows():
         text = row.replace(folder, b"")
-        found.update(b"%d %d " % (stream, len(text)) + text)
-    return found.hexdigest()
+        digest.update(b"%d %d " % (stream, len(text)) + text)
+    return digest.hexdigest()
 
 
-def _misses(
+def _find_misses(
     student: str,
     columns: Sequence[Goal],
     judged: Mapping[str, Change],
@@ -162,52 +168,52 @@ def _misses(
 ) -> tuple[Miss, ...]:
     """Return where a run missed goals: those that were decided nowhere, at the robot's last place."""
     last = run.telemetry.last()
-    missed = {one.name: one for one in outcome.goals if not one.is_good}
-    found = []
+    missed = {goal.name: goal for goal in outcome.goals if not goal.is_good}
+    misses = []
     for column in columns:
         place = judged.get(column.name) or last
         if column.name in missed and place is not None:
-            found.append(
+            misses.append(
                 Miss(student, column.name, place.x_mm, place.y_mm, missed[column.name].reason)
             )
-    return tuple(found)
+    return tuple(misses)
 
 
-def _verdicts(
+def _list_verdicts(
     columns: Sequence[Goal], judged: Mapping[str, Change], outcome: Outcome
 ) -> tuple[Table, list[Pin]]:
     """Return the table of the goals of a run, and a pin for each goal that was decided at a place.
 
     Args:
         columns: The goals that are shown, in their order.
-        judged: When and where goals were decided, as of `_judged`.
+        judged: When and where goals were decided, as of `_judge_goals`.
         outcome: What the run has achieved.
     """
-    found = {one.name: one for one in outcome.goals}
+    goals = {goal_outcome.name: goal_outcome for goal_outcome in outcome.goals}
     rows, pins = [], []
     for number, column in enumerate(columns, start=1):
-        goal = found.get(column.name, GoalOutcome(column.name, False, outcome.failure))
+        goal = goals.get(column.name, GoalOutcome(column.name, False, outcome.failure))
         result = "could not be judged" if goal.is_unknown else "met" if goal.met else "missed"
         why = f"{goal.reason} (line {goal.line})" if goal.line else goal.reason
         earned = math.nan if goal.is_unknown else column.points if goal.met else 0
-        points = f"{in_words(earned)} of {in_words(max(0, column.points))}"
+        points = f"{format_points(earned)} of {format_points(max(0, column.points))}"
         if (event := judged.get(column.name)) is not None:
             result += f" at {event.time_s:.2f} s, x {event.x_mm:.0f}, y {event.y_mm:.0f} mm"
-            said = f"{number}. {column.say} {result}"
+            verdict = f"{number}. {column.say} {result}"
             pins.append(
                 Pin(
                     str(number),
                     event.x_mm,
                     event.y_mm,
                     goal.is_good,
-                    f"{said}: {why}" if why else said,
+                    f"{verdict}: {why}" if why else verdict,
                 )
             )
         rows.append([str(number), column.say, result, why, points])
     return Table(_HEADS, rows, numbers=len(_HEADS) - 1), pins
 
 
-def _judged(goals: Sequence[Goal], outcome: Outcome, run: StoredRun) -> dict[str, Change]:
+def _judge_goals(goals: Sequence[Goal], outcome: Outcome, run: StoredRun) -> dict[str, Change]:
     """Return when and where goals were met or missed, of those that were at a time and a place."""
     if outcome.end == End.FALSIFIED:
         return {}
@@ -220,9 +226,9 @@ def _judged(goals: Sequence[Goal], outcome: Outcome, run: StoredRun) -> dict[str
         # What is known of the run is in its outcome.
         return {}
     return {
-        one.goal.name: one.event
-        for one in judgements
-        if one.event and not _is_of_the_text(one.goal)
+        judgement.goal.name: judgement.event
+        for judgement in judgements
+        if judgement.event and not _is_of_the_text(judgement.goal)
     }
 
 

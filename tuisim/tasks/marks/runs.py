@@ -19,9 +19,9 @@ from tuisim.engine.runs.removal import remove_tree
 from tuisim.engine.runs.temporary import temporary_home
 from tuisim.tasks.goals.trial_world import TrialWorld
 from tuisim.tasks.marks.journal import Journal
-from tuisim.tasks.marks.outcome import Outcome, outcome_of
+from tuisim.tasks.marks.outcome import Outcome, build_outcome
 from tuisim.tasks.marks.students import Student
-from tuisim.tasks.marks.workspace import copy_of, digest_of, program_in
+from tuisim.tasks.marks.workspace import build_program, compute_digest, copy_files
 from tuisim.tasks.pool import run_many
 from tuisim.tasks.task import Keep, Task
 
@@ -72,7 +72,7 @@ class _Turn:
     key: str
 
 
-def outcomes_of(
+def run_entries(
     entries: Sequence[RunEntry], plan: MarkPlan, journal: Journal
 ) -> Generator[tuple[str, Outcome]]:
     """Run every student's program with every seed; yield names of students and outcomes as they become known.
@@ -89,7 +89,7 @@ def outcomes_of(
     turns: dict[str, list[_Turn]] = {}
     for entry in entries:
         try:
-            turns[entry.student.name] = _turns(entry, plan)
+            turns[entry.student.name] = _list_turns(entry, plan)
         except Exception as error:  # Whatever it is, the others go on.
             yield entry.student.name, Outcome(plan.seeds[0], "", describe_fault(error))
     given_up: set[tuple[str, str]] = set()
@@ -114,22 +114,24 @@ def outcomes_of(
             yield name, outcome
 
 
-def runs_of(outcomes: Sequence[Outcome], plan: MarkPlan) -> int:
+def count_runs(outcomes: Sequence[Outcome], plan: MarkPlan) -> int:
     """Return how many runs a student's program has in all, as far as its outcomes tell."""
-    given_up = {one.world for one in outcomes if one.gave_up and one.seed == plan.seeds[0]}
+    given_up = {
+        outcome.world for outcome in outcomes if outcome.gave_up and outcome.seed == plan.seeds[0]
+    }
     if plan.worlds[0].where in given_up:
         return 1
     return sum(1 if world.where in given_up else len(plan.seeds) for world in plan.worlds)
 
 
-def _turns(entry: RunEntry, plan: MarkPlan) -> list[_Turn]:
+def _list_turns(entry: RunEntry, plan: MarkPlan) -> list[_Turn]:
     student = entry.student
     assert student.source is not None
     basis: list[object] = [
         plan.version,
         student.main,
         student.source.program.prelude,
-        digest_of(student),
+        compute_digest(student),
     ]
     basis += [plan.keep, plan.isolate, plan.arguments, user_python_path()]
     turns = []
@@ -162,10 +164,10 @@ def _run(turns: Sequence[_Turn], plan: MarkPlan, journal: Journal) -> Iterator[t
         # Its resolved path is what a program sees.
         workspace = home.resolve()
         uncopied: list[tuple[str, Outcome]] = []
-        for result in run_many(_tasks(unknown, plan, workspace, uncopied), plan.jobs):
+        for result in run_many(_build_tasks(unknown, plan, workspace, uncopied), plan.jobs):
             turn, place = unknown[result.index], workspace / str(result.index)
             try:
-                outcome = outcome_of(result, turn.seed, place, turn.world)
+                outcome = build_outcome(result, turn.seed, place, turn.world)
             except Exception as error:  # Whatever it is, the others go on.
                 outcome = _build_unjudged(turn, error)
             remove_tree(place)
@@ -179,7 +181,7 @@ def _build_unjudged(turn: _Turn, error: Exception) -> Outcome:
     return Outcome(turn.seed, "", describe_fault(error), world=turn.world.where)
 
 
-def _tasks(
+def _build_tasks(
     turns: Sequence[_Turn],
     plan: MarkPlan,
     workspace: Path,
@@ -189,11 +191,11 @@ def _tasks(
     for index, turn in enumerate(turns):
         student = turn.entry.student
         try:
-            folder = copy_of(student, workspace / str(index))
+            folder = copy_files(student, workspace / str(index))
         except Exception as error:  # Whatever it is, the others go on.
             uncopied.append((student.name, _build_unjudged(turn, error)))
             continue
-        program = program_in(
+        program = build_program(
             student, folder, arguments=plan.arguments, python_path=user_python_path()
         )
         yield Task(

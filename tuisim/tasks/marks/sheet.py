@@ -16,10 +16,10 @@ from tuisim.base.errors import counted, printable
 from tuisim.base.faults import UNJUDGED
 from tuisim.base.source import source_lines
 from tuisim.logs.export import export_frame
-from tuisim.tasks.goals.judgement import in_words, most_points, points_of
+from tuisim.tasks.goals.judgement import compute_max_points, format_points, sum_points
 from tuisim.tasks.goals.spec import Goal
 from tuisim.tasks.marks.hand_ins import GradebookKind
-from tuisim.tasks.marks.outcome import Outcome, merged
+from tuisim.tasks.marks.outcome import Outcome, merge_worlds
 from tuisim.tasks.marks.students import Student
 
 if TYPE_CHECKING:
@@ -105,7 +105,7 @@ class Sheet:
     @property
     def most_points(self) -> float:
         """The points of a program that meets every goal."""
-        return rounded(most_points(self.columns))
+        return round_points(compute_max_points(self.columns))
 
     @property
     def summary(self) -> str:
@@ -114,41 +114,39 @@ class Sheet:
         known = [row.points for row in self.rows if not math.isnan(row.points)]
         mean = math.fsum(known) / len(known) if known else 0.0
         size = f"{counted(len(self.rows), 'student')}, {counted(len(self.seeds), 'seed')}"
-        points = f"mean {in_words(mean)} of {in_words(self.most_points)} points"
+        points = f"mean {format_points(mean)} of {format_points(self.most_points)} points"
         return f"{size}: {points}; {full} with all points" + (
             " for every seed" if len(self.seeds) > 1 else ""
         )
 
-    def tabulate(
-        self, most_name: int = 40, most_goal: int = 60
-    ) -> tuple[list[str], list[list[str]]]:
+    def tabulate(self, max_name: int = 40, max_goal: int = 60) -> tuple[list[str], list[list[str]]]:
         """Return heads and rows of the text table; the reason comes last.
 
         Args:
             most_name, most_goal: Characters of the names of students and goals; the middle of longer ones is left out.
         """
-        goals = [_without_middle(column.name, most_goal) for column in self.columns]
+        goals = [_cut_middle(column.name, max_goal) for column in self.columns]
         heads = ["student", "points", "robustness", *goals, "reason"]
         rows = []
         for row in self.rows:
             points = (
-                in_words(row.points),
+                format_points(row.points),
                 f"{row.robustness:.0%}",
-                *(in_words(cell.points) for cell in row.cells),
+                *(format_points(cell.points) for cell in row.cells),
             )
             where = (
                 f"line {row.line}: " if row.line and f"line {row.line}" not in row.reason else ""
             )
-            rows.append([_without_middle(row.name, most_name), *points, f"{where}{row.reason}"])
+            rows.append([_cut_middle(row.name, max_name), *points, f"{where}{row.reason}"])
         return heads, rows
 
 
-def columns_of(goals: Sequence[Goal]) -> list[Goal]:
+def list_columns(goals: Sequence[Goal]) -> list[Goal]:
     """Return the goals that a student is shown, in words: not those that are only parts of others."""
     return [replace(goal, say=goal.say or goal.name) for goal in goals if goal.points or goal.say]
 
 
-def sheet_of(
+def build_sheet(
     title: str,
     columns: Sequence[Goal],
     seeds: Sequence[int],
@@ -163,13 +161,13 @@ def sheet_of(
         worlds: The worlds of the task, see `TrialWorld.where`, the first one first.
     """
     rows = tuple(
-        row_of(student, columns, outcomes.get(student.name, ()), seeds, worlds)
+        build_row(student, columns, outcomes.get(student.name, ()), seeds, worlds)
         for student in students
     )
     return Sheet(title, tuple(columns), rows, tuple(seeds))
 
 
-def row_of(
+def build_row(
     student: Student,
     columns: Sequence[Goal],
     outcomes: Sequence[Outcome],
@@ -177,22 +175,22 @@ def row_of(
     worlds: Sequence[str],
 ) -> SheetRow:
     """Return the row of a student."""
-    ordered = merged(outcomes, seeds, worlds)
+    ordered = merge_worlds(outcomes, seeds, worlds)
     if not student.source or not ordered:
         return _build_empty_row(student, columns, outcomes)
-    totals = [_points(columns, one) for one in ordered]
+    totals = [_compute_points(columns, outcome) for outcome in ordered]
     # In a task without points, every goal counts.
     counted_goals = [column for column in columns if column.points] or columns
-    incomplete = [one for one in ordered if _missed(one, counted_goals)]
+    incomplete = [outcome for outcome in ordered if _has_missed(outcome, counted_goals)]
     failed = incomplete[0] if incomplete else None
-    reason, line = _reason(failed, counted_goals) if failed else ("", 0)
+    reason, line = _find_reason(failed, counted_goals) if failed else ("", 0)
     lines = source_lines(student.text)
     return SheetRow(
         name=student.name,
         program=student.shown_main,
-        points=rounded(math.fsum(totals) / len(totals)),
-        robustness=rounded(1 - len(incomplete) / len(ordered)),
-        cells=tuple(_cell(column, ordered) for column in columns),
+        points=round_points(math.fsum(totals) / len(totals)),
+        robustness=round_points(1 - len(incomplete) / len(ordered)),
+        cells=tuple(_build_cell(column, ordered) for column in columns),
         reason=reason,
         line=line,
         source_line=printable(lines[line - 1].strip()) if 0 < line <= len(lines) else "",
@@ -206,8 +204,8 @@ def row_of(
         ids=student.ids,
         outcomes=tuple(
             sorted(
-                (one for one in outcomes if one.counts),
-                key=lambda one: (worlds.index(one.world), one.seed),
+                (outcome for outcome in outcomes if outcome.counts),
+                key=lambda outcome: (worlds.index(outcome.world), outcome.seed),
             )
         ),
     )
@@ -218,7 +216,11 @@ def _build_empty_row(
 ) -> SheetRow:
     """Return the row of a student without marks; the points are NaN unless that is the student's doing."""
     failed = next(
-        (one for one in sorted(outcomes, key=lambda one: not one.is_in_doubt) if not one.counts),
+        (
+            outcome
+            for outcome in sorted(outcomes, key=lambda outcome: not outcome.is_in_doubt)
+            if not outcome.counts
+        ),
         None,
     )
     reason = student.problem or NOT_RUN
@@ -235,25 +237,28 @@ def _build_empty_row(
     )
 
 
-def _points(columns: Sequence[Goal], outcome: Outcome) -> float:
+def _compute_points(columns: Sequence[Goal], outcome: Outcome) -> float:
     """Return the points of one run; one of which nothing is recorded has no judgements, and no points."""
     met = {goal.name for goal in outcome.goals if goal.met}
     unknown = {goal.name for goal in outcome.goals if goal.is_unknown}
-    return points_of(
+    return sum_points(
         math.nan if column.points and column.name in unknown else column.points
         for column in columns
         if column.name in met | unknown
     )
 
 
-def _cell(column: Goal, outcomes: Sequence[Outcome]) -> Cell:
+def _build_cell(column: Goal, outcomes: Sequence[Outcome]) -> Cell:
     goals = [
-        (one, next((goal for goal in one.goals if goal.name == column.name), None))
-        for one in outcomes
+        (
+            world_outcome,
+            next((goal for goal in world_outcome.goals if goal.name == column.name), None),
+        )
+        for world_outcome in outcomes
     ]
     met = sum(goal is not None and goal.met for _, goal in goals)
     is_unknown = any(goal is not None and goal.is_unknown for _, goal in goals)
-    points = math.nan if is_unknown else rounded(column.points * met / len(goals))
+    points = math.nan if is_unknown else round_points(column.points * met / len(goals))
     for outcome, goal in goals:
         if goal is None:
             # Of a run of which nothing is recorded, it is known only that it failed.
@@ -263,13 +268,13 @@ def _cell(column: Goal, outcomes: Sequence[Outcome]) -> Cell:
     return Cell(points, met)
 
 
-def _missed(outcome: Outcome, columns: Sequence[Goal]) -> bool:
+def _has_missed(outcome: Outcome, columns: Sequence[Goal]) -> bool:
     """Return whether a run has missed one of the goals, or met one that takes points off."""
     good = {goal.name for goal in outcome.goals if goal.is_good}
     return not all(column.name in good for column in columns)
 
 
-def _reason(outcome: Outcome, columns: Sequence[Goal]) -> tuple[str, int]:
+def _find_reason(outcome: Outcome, columns: Sequence[Goal]) -> tuple[str, int]:
     """Return why a run failed, and the program's line: an error comes before the goals that it prevented."""
     names = {column.name: column.say for column in columns}
     missed = [goal for goal in outcome.goals if not goal.is_good and goal.name in names]
@@ -279,19 +284,19 @@ def _reason(outcome: Outcome, columns: Sequence[Goal]) -> tuple[str, int]:
     return (missed[0].reason or names[missed[0].name], missed[0].line) if missed else ("", 0)
 
 
-def rounded(value: float) -> float:
+def round_points(value: float) -> float:
     """Return points or a share as they are shown and stored."""
     # Without the sign of a zero.
     return round(value, DIGITS) + 0.0
 
 
-def _without_middle(name: str, most: int) -> str:
+def _cut_middle(name: str, max_length: int) -> str:
     # Names of files that belong together differ at either end.
-    end = most // 3
-    return name if len(name) <= most else f"{name[: most - end - 1]}…{name[-end:]}"
+    end = max_length // 3
+    return name if len(name) <= max_length else f"{name[: max_length - end - 1]}…{name[-end:]}"
 
 
-def frame_of(sheet: Sheet) -> pd.DataFrame:
+def build_frame(sheet: Sheet) -> pd.DataFrame:
     """Return the sheet as a frame: one row a student, for each goal a column `goal_NAME` with its mean points."""
     import pandas as pd
 
@@ -303,8 +308,8 @@ def frame_of(sheet: Sheet) -> pd.DataFrame:
         "robustness": [row.robustness for row in rows],
         "runs": [row.runs for row in rows],
     }
-    for at, column in enumerate(sheet.columns):
-        columns[f"{GOAL_PREFIX}{column.name}"] = [row.cells[at].points for row in rows]
+    for index, column in enumerate(sheet.columns):
+        columns[f"{GOAL_PREFIX}{column.name}"] = [row.cells[index].points for row in rows]
     columns |= {
         "reason": [row.reason for row in rows],
         "line": [row.line for row in rows],
@@ -316,14 +321,14 @@ def frame_of(sheet: Sheet) -> pd.DataFrame:
     return pd.DataFrame(columns)
 
 
-def metadata_of(sheet: Sheet) -> dict[str, Any]:
+def build_metadata(sheet: Sheet) -> dict[str, Any]:
     """Return the metadata of an exported sheet: the goals with their points, and the seeds."""
     return {
         "format": MARKS_FORMAT,
         "table": "marks",
         "title": sheet.title,
         "goals": [
-            {"name": one.name, "say": one.say, "points": one.points} for one in sheet.columns
+            {"name": goal.name, "say": goal.say, "points": goal.points} for goal in sheet.columns
         ],
         "points": sheet.most_points,
         "seeds": list(sheet.seeds),
@@ -336,4 +341,4 @@ def export_marks(sheet: Sheet, path: Path) -> None:
     Raises:
         ExportError: it cannot be written; an existing file is unchanged.
     """
-    export_frame(frame_of(sheet), path, metadata_of(sheet))
+    export_frame(build_frame(sheet), path, build_metadata(sheet))

@@ -31,7 +31,7 @@ ZIP_SUFFIX = ".zip"
 _PACKAGE = "__init__.py"
 """What makes a folder a package is no program."""
 _LINK = "it is a link; hand in the files themselves"
-_MOST_LEVELS = 50
+_MAX_LEVELS = 50
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +58,7 @@ class Student:
     @property
     def shown_main(self) -> str:
         """The path of the main program as it is shown."""
-        return _shown(self.main)
+        return _quote_name(self.main)
 
     @property
     def text(self) -> str:
@@ -87,7 +87,7 @@ class _Search:
     left_out: dict[str, None] = field(default_factory=dict)
     places: int = 0
 
-    def new_place(self, name: str) -> Path:
+    def build_place(self, name: str) -> Path:
         """Return the path of a folder for what is unpacked; it has the name, unless that leads elsewhere."""
         assert self.unpacked is not None
         self.places += 1
@@ -99,15 +99,15 @@ class _Search:
         """Unpack a zip, if zips are unpacked; return the folder, or the path as it is."""
         if self.unpacked is None or path.suffix.lower() != ZIP_SUFFIX or not os.path.isfile(path):
             return path
-        place = self.new_place(path.stem)
+        place = self.build_place(path.stem)
         unpack_zip(path, place, self.max_bytes)
         return place
 
-    def names_in(self, folder: Path) -> list[str]:
+    def list_names(self, folder: Path) -> list[str]:
         """Return the names in a folder that may be a student's, in order."""
         names = os.listdir(folder)
         left_out = LEFT_OUT(str(folder), names)
-        self.left_out |= dict.fromkeys(sorted(map(_shown, left_out)))
+        self.left_out |= dict.fromkeys(sorted(map(_quote_name, left_out)))
         return sorted(set(names) - left_out, key=lambda name: (name.casefold(), name))
 
 
@@ -132,21 +132,21 @@ def find_students(
     Raises:
         ConfigError: there is no such file or folder, or nothing in it.
     """
-    students: list[_Found] = []
+    students: list[_Submission] = []
     ignored: list[str] = []
     search = _Search(program, unpacked, max_bytes)
     for word in words:
         path = search.unpack(Path(word))
         if os.path.isdir(path) and not os.path.isfile(path / MAIN):
-            for hand_in in _find_hand_ins(_entries(path, excluded, search), unpacked):
+            for hand_in in _find_hand_ins(_list_entries(path, excluded, search), unpacked):
                 entry = next(iter(hand_in.paths.values()))
                 if hand_in.name or entry.is_symlink() or entry.is_dir() or _is_program(entry):
-                    students.append((path, _own_name(entry), _student(hand_in, search)))
+                    students.append((path, _own_name(entry), _build_student(hand_in, search)))
                 else:
-                    ignored.append(_shown(entry.name))
+                    ignored.append(_quote_name(entry.name))
         elif os.path.exists(path):
-            student = _student(HandIn({path.name: path}), search)
-            students.append((_real(path).parent, _own_name(path), student))
+            student = _build_student(HandIn({path.name: path}), search)
+            students.append((_resolve_links(path).parent, _own_name(path), student))
         else:
             raise ConfigError(
                 "there is no such file or folder", "name a folder of students' programs", file=word
@@ -154,10 +154,12 @@ def find_students(
     if not students:
         hint = f"a file NAME.py or a folder for each student; {see_page('marking')}"
         raise ConfigError("has no programs", hint, file=listed(words))
-    return StudentsFound(tuple(_named(students)), tuple(ignored), tuple(search.left_out))
+    return StudentsFound(
+        tuple(_make_names_unique(students)), tuple(ignored), tuple(search.left_out)
+    )
 
 
-_Found = tuple[Path, str, Student]
+_Submission = tuple[Path, str, Student]
 """The folder, the name of the file or folder there, and the student."""
 
 
@@ -166,48 +168,49 @@ def _find_hand_ins(paths: Iterable[Path], unpacked: Path | None) -> list[HandIn]
 
 
 def _is_program(path: Path) -> bool:
-    return path.suffix.lower() in (SUFFIX, NOTEBOOK_SUFFIX) or bool(_why_no_program(path.name))
+    return path.suffix.lower() in (SUFFIX, NOTEBOOK_SUFFIX) or bool(_explain_no_program(path.name))
 
 
-def _real(path: Path) -> Path:
+def _resolve_links(path: Path) -> Path:
     """Return a path without links; `Path.resolve` raises an error for links in a circle."""
     return Path(os.path.realpath(path))
 
 
-def _entries(folder: Path, excluded: Collection[Path], search: _Search) -> Iterator[Path]:
+def _list_entries(folder: Path, excluded: Collection[Path], search: _Search) -> Iterator[Path]:
     """Return the visible entries of a folder by name."""
     try:
-        names = search.names_in(folder)
+        names = search.list_names(folder)
     except OSError as error:
         raise ConfigError(f"cannot be read: {error.strerror or error}", file=str(folder)) from error
-    search.left_out |= dict.fromkeys(_shown(name) for name in names if name.startswith("."))
+    search.left_out |= dict.fromkeys(_quote_name(name) for name in names if name.startswith("."))
     return (
         folder / name
         for name in names
-        if not name.startswith(".") and _real(folder / name) not in excluded
+        if not name.startswith(".") and _resolve_links(folder / name) not in excluded
     )
 
 
-def _named(students: Iterable[_Found]) -> Iterator[Student]:
+def _make_names_unique(students: Iterable[_Submission]) -> Iterator[Student]:
     """Return the students with names that are unique.
 
     A file whose name without `.py` is also that of a neighbour keeps the ending. Where names are the same in several
     folders, they have the name of the folder before them, and otherwise a number after them, that of the
     gradebook where it gives one.
     """
-    every = [(_real(folder), student, own) for folder, own, student in students]
+    every = [(_resolve_links(folder), student, own) for folder, own, student in students]
     beside = Counter((folder, student.name) for folder, student, _ in every)
     names = [
-        one.name if one.ids or beside[folder, one.name] < 2 else own for folder, one, own in every
+        pupil.name if pupil.ids or beside[folder, pupil.name] < 2 else own
+        for folder, pupil, own in every
     ]
     counts = Counter(names)
     full = [
         name
         if counts[name] < 2
-        else " ".join([name, *one.ids.values()])
-        if one.ids
+        else " ".join([name, *pupil.ids.values()])
+        if pupil.ids
         else f"{folder.name}/{name}"
-        for (folder, one, _), name in zip(every, names, strict=True)
+        for (folder, pupil, _), name in zip(every, names, strict=True)
     ]
     taken: set[str] = set()
     for name, (_, student, _) in zip(full, every, strict=True):
@@ -220,36 +223,38 @@ def _named(students: Iterable[_Found]) -> Iterator[Student]:
         yield replace(student, name=unique)
 
 
-def _student(hand_in: HandIn, search: _Search) -> Student:
+def _build_student(hand_in: HandIn, search: _Search) -> Student:
     path = next(iter(hand_in.paths.values()))
     name = hand_in.name or _own_name(path)
     try:
-        path = gather_files(hand_in, search.new_place(hand_in.name)) if hand_in.name else path
+        path = gather_files(hand_in, search.build_place(hand_in.name)) if hand_in.name else path
         student = _read_student(path, search)
     except Exception as error:  # Whatever it is, the others go on.
         student = Student(name, path, problem=describe_fault(error), is_unread=True)
-    return replace(student, name=_shown(hand_in.name) or student.name, ids=hand_in.ids)
+    return replace(student, name=_quote_name(hand_in.name) or student.name, ids=hand_in.ids)
 
 
 def _read_student(path: Path, search: _Search) -> Student:
     own = _own_name(path)
     is_file = not os.path.isdir(path)
     endings = (SUFFIX, NOTEBOOK_SUFFIX, *_NO_PROGRAM)
-    ending = max((one for one in endings if own.lower().endswith(one)), key=len, default="")
+    ending = max(
+        (suffix for suffix in endings if own.lower().endswith(suffix)), key=len, default=""
+    )
     name = own[: -len(ending)] if is_file and 0 < len(ending) < len(own) else own
     if path.is_symlink():
         return Student(name, path, problem=_LINK)
     cell = search.program.partition("#")[2]
     try:
         path = _enter_folder(path, search)
-        if not os.path.isdir(path) and (why := _why_no_program(own)):
+        if not os.path.isdir(path) and (why := _explain_no_program(own)):
             return Student(name, path, problem=f"{own}: {why}")
         if not os.path.isdir(path):
             # Its copy has the name of the file.
             return _read(Student(name, path, own), path, cell)
-        if refused := _what_is_refused(path, name, search):
+        if refused := _explain_refusal(path, name, search):
             return Student(name, path, problem=refused)
-        main = _main_of(path, search.program)
+        main = _find_main(path, search.program)
     except (ConfigError, OSError) as error:
         problem = str(error).replace(f"{path}{os.sep}", "")
         return Student(name, path, problem=problem, is_unread=isinstance(error, OSError))
@@ -264,10 +269,10 @@ def _enter_folder(path: Path, search: _Search) -> Path:
         OSError: a folder cannot be read.
     """
     is_packed = True
-    for _ in range(_MOST_LEVELS):
+    for _ in range(_MAX_LEVELS):
         unpacked = search.unpack(path) if is_packed else path
         is_packed, path = is_packed and unpacked == path, unpacked
-        names = search.names_in(path) if os.path.isdir(path) else []
+        names = search.list_names(path) if os.path.isdir(path) else []
         if len(names) != 1 or (path / names[0]).is_symlink():
             break
         is_zip = is_packed and search.unpacked and names[0].lower().endswith(ZIP_SUFFIX)
@@ -277,30 +282,30 @@ def _enter_folder(path: Path, search: _Search) -> Path:
     return path
 
 
-def _why_no_program(name: str) -> str:
+def _explain_no_program(name: str) -> str:
     """Return what a student is to do with a file that is no program, but was meant as one; empty for others."""
     return next((why for ending, why in _NO_PROGRAM.items() if name.lower().endswith(ending)), "")
 
 
 def _own_name(path: Path) -> str:
     """Return the name of a file or folder as it is shown; a path such as `.` ends in none."""
-    return _shown(path.name if path.name not in ("", "..") else _real(path).name)
+    return _quote_name(path.name if path.name not in ("", "..") else _resolve_links(path).name)
 
 
-def _what_is_refused(folder: Path, name: str, search: _Search) -> str:
+def _explain_refusal(folder: Path, name: str, search: _Search) -> str:
     """Return why what is in a student's folder is not copied, as a sentence; empty if it is."""
-    own = _real(folder)
+    own = _resolve_links(folder)
     files = size = 0
     inside = [folder]
     while inside:
         place = inside.pop()
-        for path in (place / inner for inner in search.names_in(place)):
+        for path in (place / inner for inner in search.list_names(place)):
             if path.is_symlink():
-                if not _real(path).is_relative_to(own):
-                    return f"{_shown(os.path.relpath(path, folder))} is a link that leads out of the folder"
+                if not _resolve_links(path).is_relative_to(own):
+                    return f"{_quote_name(os.path.relpath(path, folder))} is a link that leads out of the folder"
             elif path.is_dir():
-                if len(path.relative_to(folder).parts) > _MOST_LEVELS:
-                    return f"its folders are nested more than {_MOST_LEVELS} deep"
+                if len(path.relative_to(folder).parts) > _MAX_LEVELS:
+                    return f"its folders are nested more than {_MAX_LEVELS} deep"
                 inside.append(path)
             elif path.is_file():
                 files, size = files + 1, size + path.lstat().st_size
@@ -310,12 +315,12 @@ def _what_is_refused(folder: Path, name: str, search: _Search) -> str:
                     )
             else:
                 search.left_out[
-                    f"{name}/{_shown(os.path.relpath(path, folder))}, which is not a file"
+                    f"{name}/{_quote_name(os.path.relpath(path, folder))}, which is not a file"
                 ] = None
     return ""
 
 
-def file_outside(student: Student) -> str:
+def find_outside_option(student: Student) -> str:
     """Return the option of the student's magic line that names a file outside the folder; empty if there is none.
 
     Such a file would be read with the rights of whoever marks. Beside a program that is a file, the folders and the
@@ -323,11 +328,11 @@ def file_outside(student: Student) -> str:
     """
     assert student.source is not None
     is_file = not student.path.is_dir()
-    own = _real(student.path.parent if is_file else student.path)
+    own = _resolve_links(student.path.parent if is_file else student.path)
     for name in sorted(FILE_FIELDS & student.source.options.keys()):
         word = str(student.source.options[name])
         if name == "mats" or names_file(word):
-            place = _real(Path(word))
+            place = _resolve_links(Path(word))
             if is_file and (
                 place.parent != own or place.is_dir() or place.suffix.lower() == SUFFIX
             ):
@@ -337,7 +342,7 @@ def file_outside(student: Student) -> str:
     return ""
 
 
-def _shown(name: str) -> str:
+def _quote_name(name: str) -> str:
     """Return the name of a file or folder as it is shown and stored; bytes that are not UTF-8 become `\\xff`."""
     return printable(os.fsencode(name).decode("utf-8", "backslashreplace"))
 
@@ -350,17 +355,18 @@ def _read(student: Student, path: Path, cell: str) -> Student:
     """
     try:
         if path.suffix.lower() == NOTEBOOK_SUFFIX:
-            return replace(student, source=_program_cell(path, cell))
+            return replace(student, source=_read_program_cell(path, cell))
         source = read_program(path, as_python=True, alone=path == student.path)
         return replace(
-            student, source=replace(source, program=replace(source.program, name=_shown(path.name)))
+            student,
+            source=replace(source, program=replace(source.program, name=_quote_name(path.name))),
         )
     except ConfigError as error:
         problem = printable(str(error).replace(str(path), path.name))
         return replace(student, problem=problem, is_unread=isinstance(error.__cause__, OSError))
 
 
-def _program_cell(path: Path, cell: str) -> ProgramSource:
+def _read_program_cell(path: Path, cell: str) -> ProgramSource:
     """Return the program of a notebook.
 
     Raises:
@@ -381,7 +387,7 @@ def _program_cell(path: Path, cell: str) -> ProgramSource:
     return cells[0].source
 
 
-def _main_of(folder: Path, program: str) -> str:
+def _find_main(folder: Path, program: str) -> str:
     """Return the name of a folder's main program.
 
     Raises:
@@ -400,9 +406,11 @@ def _main_of(folder: Path, program: str) -> str:
     if len(names) == 1:
         return names[0]
     if names:
-        raise ConfigError(f"which of {listed(map(_shown, names))} is the main program?", MAIN)
+        raise ConfigError(f"which of {listed(map(_quote_name, names))} is the main program?", MAIN)
     instead = next(
-        (f"{_shown(name)}: {why}" for name in files if (why := _why_no_program(name))), ""
+        (f"{_quote_name(name)}: {why}" for name in files if (why := _explain_no_program(name))), ""
     )
-    entries = listed(_shown(f"{name}/" if os.path.isdir(folder / name) else name) for name in every)
+    entries = listed(
+        _quote_name(f"{name}/" if os.path.isdir(folder / name) else name) for name in every
+    )
     raise ConfigError(instead or f"there is no Python file, only: {entries}", MAIN)

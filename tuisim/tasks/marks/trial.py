@@ -13,11 +13,11 @@ from tuisim.base.errors import ConfigError
 from tuisim.engine.runs.handle import RunOptions
 from tuisim.engine.runs.temporary import temporary_home
 from tuisim.programs.program_file import find_program
-from tuisim.settings.options import settings_of
+from tuisim.settings.options import merge_settings
 from tuisim.tasks.goals.answers import ASK, answer_lines
 from tuisim.tasks.goals.condition import ConditionKind
 from tuisim.tasks.goals.files import GoalsFile
-from tuisim.tasks.goals.judgement import in_words
+from tuisim.tasks.goals.judgement import format_points
 from tuisim.tasks.goals.spec import (
     AvoidCondition,
     DialogueCondition,
@@ -27,11 +27,11 @@ from tuisim.tasks.goals.spec import (
     PrintCondition,
     UseCondition,
 )
-from tuisim.tasks.marks.entries import entries_of
+from tuisim.tasks.marks.entries import build_entries
 from tuisim.tasks.marks.journal import Journal
-from tuisim.tasks.marks.outcome import Outcome, unknown_goals
-from tuisim.tasks.marks.runs import STALL_LIMIT_S, MarkPlan, outcomes_of
-from tuisim.tasks.marks.sheet import Sheet, SheetRow, columns_of, sheet_of
+from tuisim.tasks.marks.outcome import Outcome, find_unknown_goals
+from tuisim.tasks.marks.runs import STALL_LIMIT_S, MarkPlan, run_entries
+from tuisim.tasks.marks.sheet import Sheet, SheetRow, build_sheet, list_columns
 from tuisim.tasks.marks.students import Student, find_students
 from tuisim.tasks.task import Keep
 
@@ -67,7 +67,7 @@ class TaskTrial:
     """What is wrong with the task, each as a line."""
 
 
-def trial_of(
+def run_trial(
     task: GoalsFile,
     wrong: Sequence[str],
     seeds: tuple[int, ...],
@@ -94,27 +94,27 @@ def trial_of(
         options=RunOptions(time_limit_s=time_limit_s, stall_limit_s=STALL_LIMIT_S),
         keep=Keep.NONE,
         jobs=jobs,
-        arguments=settings_of(task.settings)["arguments"],
+        arguments=merge_settings(task.settings)["arguments"],
     )
     with temporary_home("tuisim-try-") as home:
-        tried = [*_fakes(task, home), *_of_author(task, wrong)]
-        entries, students = entries_of([student for _, student in tried], task, {})
+        tried = [*_write_fakes(task, home), *_list_author_programs(task, wrong)]
+        entries, students = build_entries([student for _, student in tried], task, {})
         outcomes: dict[str, list[Outcome]] = {student.name: [] for student in students}
         with (
             Journal(home / "journal.jsonl", resumes=False) as journal,
-            closing(outcomes_of(entries, plan, journal)) as found,
+            closing(run_entries(entries, plan, journal)) as results,
         ):
-            for name, outcome in found:
+            for name, outcome in results:
                 outcomes[name].append(outcome)
     worlds = [world.where for world in plan.worlds]
-    sheet = sheet_of(
-        task.title, columns_of(task.every_goal), plan.seeds, students, outcomes, worlds
+    sheet = build_sheet(
+        task.title, list_columns(task.every_goal), plan.seeds, students, outcomes, worlds
     )
-    rows = tuple((row.name, *_earned(sheet, row)) for row in sheet.rows)
-    return TaskTrial(rows, tuple(_faults(sheet, [role for role, _ in tried])))
+    rows = tuple((row.name, *_describe_earned(sheet, row)) for row in sheet.rows)
+    return TaskTrial(rows, tuple(_find_faults(sheet, [role for role, _ in tried])))
 
 
-def _earned(sheet: Sheet, row: SheetRow) -> tuple[str, str]:
+def _describe_earned(sheet: Sheet, row: SheetRow) -> tuple[str, str]:
     """Return the points of a program, and which goals it meets."""
     met = [column.name for column, cell in zip(sheet.columns, row.cells, strict=True) if cell.met]
     good = all(
@@ -122,25 +122,27 @@ def _earned(sheet: Sheet, row: SheetRow) -> tuple[str, str]:
         for column, cell in zip(sheet.columns, row.cells, strict=True)
     )
     names = "all" if good and row.runs else ", ".join(met) or "-"
-    return f"{in_words(row.points)} of {in_words(sheet.most_points)}", names
+    return f"{format_points(row.points)} of {format_points(sheet.most_points)}", names
 
 
-def _fakes(task: GoalsFile, folder: Path) -> Iterator[tuple[TrialRole, Student]]:
+def _write_fakes(task: GoalsFile, folder: Path) -> Iterator[tuple[TrialRole, Student]]:
     """Write the programs that do nothing of what is asked for."""
     still = f"import time\n\ntime.sleep({STILL_S:g})\n"
     texts = {TrialRole.EMPTY: "", TrialRole.STILL: still}
     if lines := answer_lines(task.goals):
-        said = [
+        prints = [
             f"print({line!r})\ntime.sleep(0.1)" if line is not ASK else "input()" for line in lines
         ]
-        texts[TrialRole.PRINTS] = "\n".join(["import time", "", *said, ""])
+        texts[TrialRole.PRINTS] = "\n".join(["import time", "", *prints, ""])
     for role, text in texts.items():
         path = folder / f"{role}.py"
         path.write_text(text, encoding="utf-8")
         yield role, find_students([str(path)]).students[0]
 
 
-def _of_author(task: GoalsFile, wrong: Sequence[str]) -> Iterator[tuple[TrialRole, Student]]:
+def _list_author_programs(
+    task: GoalsFile, wrong: Sequence[str]
+) -> Iterator[tuple[TrialRole, Student]]:
     """Return the task's model and wrong examples.
 
     Raises:
@@ -154,22 +156,24 @@ def _of_author(task: GoalsFile, wrong: Sequence[str]) -> Iterator[tuple[TrialRol
             yield role, replace(student, name=f"{student.path.name} ({role})")
 
 
-def _faults(sheet: Sheet, roles: Sequence[TrialRole]) -> Iterator[str]:
+def _find_faults(sheet: Sheet, roles: Sequence[TrialRole]) -> Iterator[str]:
     """Yield what is wrong with a task."""
     rows = list(zip(sheet.rows, roles, strict=True))
-    for at, goal in enumerate(sheet.columns):
+    for index, goal in enumerate(sheet.columns):
         if by := [
             _DOES[role]
             for row, role in rows
-            if role in _DOES and row.cells[at].met and goal.points >= 0
+            if role in _DOES and row.cells[index].met and goal.points >= 0
         ]:
             points = (
-                f" ({in_words(goal.points)} of {in_words(sheet.most_points)} points)"
+                f" ({format_points(goal.points)} of {format_points(sheet.most_points)} points)"
                 if goal.points
                 else ""
             )
-            yield f"{' and '.join(by)} meets “{goal.name}”{points}: {_remedy(goal)}"
-    for name, reason in unknown_goals(one for row in sheet.rows for one in row.outcomes).items():
+            yield f"{' and '.join(by)} meets “{goal.name}”{points}: {_suggest_remedy(goal)}"
+    for name, reason in find_unknown_goals(
+        outcome for row in sheet.rows for outcome in row.outcomes
+    ).items():
         yield f"“{name}” cannot be judged: {reason}"
     for row, role in rows:
         if role is TrialRole.MODEL and row.robustness < 1:
@@ -179,7 +183,7 @@ def _faults(sheet: Sheet, roles: Sequence[TrialRole]) -> Iterator[str]:
             yield f"the wrong example {row.program} gets all points"
 
 
-def _remedy(goal: Goal) -> str:
+def _suggest_remedy(goal: Goal) -> str:
     """Return how to change a goal that a program meets without doing anything for it."""
     for part in goal.parts:
         match part:

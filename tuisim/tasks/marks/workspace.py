@@ -20,7 +20,7 @@ _PIECE = 1 << 20
 _MAX_MODULES_BYTES = 1 << 20
 
 
-def copy_of(student: Student, place: Path) -> Path:
+def copy_files(student: Student, place: Path) -> Path:
     """Return a new folder with a copy of a student's files.
 
     Files that cannot be read are left out, as the program could not read them either.
@@ -39,7 +39,7 @@ def copy_of(student: Student, place: Path) -> Path:
     return place
 
 
-def program_in(student: Student, folder: Path, **changes: Any) -> Program:
+def build_program(student: Student, folder: Path, **changes: Any) -> Program:
     """Return a student's main program as one of the copy in a folder, which is its working directory."""
     assert student.source is not None
     program = student.source.program
@@ -51,10 +51,10 @@ def program_in(student: Student, folder: Path, **changes: Any) -> Program:
     )
 
 
-def digest_of(student: Student) -> str:
+def compute_digest(student: Student) -> str:
     """Return a hash of the names and contents of a student's files, hexadecimal."""
     digest = hashlib.sha256()
-    for path in _files(student.path):
+    for path in _list_files(student.path):
         relative = os.path.relpath(path, student.path.parent)
         digest.update(os.fsencode(relative) + b"\0")
         try:
@@ -72,7 +72,7 @@ def read_modules(student: Student) -> Iterator[str]:
     """Yield the texts of the main program and of other Python files of a student, as far as they are compared."""
     yield student.text
     left = _MAX_MODULES_BYTES
-    for path in _files(student.path) if os.path.isdir(student.path) else ():
+    for path in _list_files(student.path) if os.path.isdir(student.path) else ():
         if path.suffix == SUFFIX and path != student.path / student.main:
             with suppress(OSError):
                 data = read_regular(path, left)
@@ -88,7 +88,7 @@ def _hash_file(path: Path) -> bytes:
     return digest.digest()
 
 
-def _files(path: Path) -> Iterator[Path]:
+def _list_files(path: Path) -> Iterator[Path]:
     if not os.path.isdir(path):
         yield path
         return

@@ -124,7 +124,9 @@ def is_on_mat(records: Array, sensor: ColorSensorSpec) -> Bools:
     return is_on
 
 
-def reflected_percent(records: Array, sensor: ColorSensorSpec, spec: RunSpec, mat: Field) -> Array:
+def compute_reflected_percent(
+    records: Array, sensor: ColorSensorSpec, spec: RunSpec, mat: Field
+) -> Array:
     """Return what a light sensor reads of the mat without noise, in percent, shape (n,)."""
     red, *_ = quiet_color_columns(records, sensor, spec, mat).values()
     percent: Array = red / 2.55
@@ -160,7 +162,7 @@ def _see_line(
 ) -> _Seen | None:
     """Return where the line was under some points; None if nothing on the mat that they saw has enough contrast."""
     on = [is_on_mat(records, point) for point in points]
-    light = [reflected_percent(records, point, spec, mat) for point in points]
+    light = [compute_reflected_percent(records, point, spec, mat) for point in points]
     there = np.concatenate([percent[is_on] for percent, is_on in zip(light, on, strict=True)])
     if not len(there) or np.ptp(there) < _MIN_CONTRAST_PC:
         return None

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from tuisim.engine.runs.run_folder import StoredRun
     from tuisim.tasks.reasons.lost_line import LostLine
 
-_ASKED_FOR = frozenset({End.FINISHED, End.STOPPED, End.TIME_LIMIT})
+_EXPECTED_ENDS = frozenset({End.FINISHED, End.STOPPED, End.TIME_LIMIT})
 """Ends that are no fault by themselves."""
 _TRACEBACK = "Traceback"
 """How the error text of an exception begins."""
@@ -116,7 +116,7 @@ def is_repeat(run: StoredRun | Recording, earlier: StoredRun | Recording) -> boo
     )
 
 
-def _line_at(run: StoredRun, time_s: float) -> int:
+def _find_line(run: StoredRun, time_s: float) -> int:
     """Return the program's line at a time."""
     if not run.telemetry.count:
         return 0
@@ -127,7 +127,7 @@ def _line_at(run: StoredRun, time_s: float) -> int:
 def _find_raised(run: StoredRun) -> Iterator[Reason]:
     """Yield the error that ended the run, and those of threads, which did not."""
     end = run.end
-    ending = end.summary if end and end.end not in _ASKED_FOR else ""
+    ending = end.summary if end and end.end not in _EXPECTED_ENDS else ""
     for error in _find_tracebacks(run):
         if error.text not in ending:
             yield error
@@ -145,8 +145,8 @@ def _find_tracebacks(run: StoredRun) -> Iterator[Reason]:
             continue
         if row.text.startswith(_TRACEBACK):
             is_inside, line = True, 0
-        elif is_inside and (found := place.match(row.text)):
-            line = int(found[1])
+        elif is_inside and (match := place.match(row.text)):
+            line = int(match[1])
         elif is_inside and not row.text.startswith(" "):
             is_inside = False
             yield Reason(ReasonKind.RAISED, row.time_ns / NS_PER_S, line, row.text)
@@ -155,7 +155,7 @@ def _find_tracebacks(run: StoredRun) -> Iterator[Reason]:
 def _find_blocked(run: StoredRun, all_waits: Sequence[Wait]) -> Iterator[Reason]:
     """Yield where something solid stopped the robot, and what the program waited for in vain."""
     if stood := standstill_of(run.telemetry, run.spec):
-        line = _line_at(run, stood.since_s)
+        line = _find_line(run, stood.since_s)
         yield Reason(ReasonKind.BLOCKED, stood.since_s, line, f"the robot {stood.words}")
     waits = "waited" if run.end else "waits"
     for wait in all_waits:
@@ -196,7 +196,7 @@ def _find_lost(run: StoredRun, mat: Field | None, has_waited: bool) -> Iterator[
         yield _describe_loss(run, lost)
     if not has_waited and (seen := find_one_color(records, run.spec, mat, read_ticks)):
         text = f"from here on the {seen.sensor} sensor saw only {seen.color}"
-        yield _lost_at(run, seen.tick, text)
+        yield _explain_lost(run, seen.tick, text)
 
 
 def _find_left_mat(run: StoredRun) -> Iterator[Reason]:
@@ -205,7 +205,7 @@ def _find_left_mat(run: StoredRun) -> Iterator[Reason]:
     x_mm, y_mm = records["x_mm"], records["y_mm"]
     is_off = (x_mm < 0) | (x_mm > FIELD_WIDTH_MM) | (y_mm < 0) | (y_mm > FIELD_HEIGHT_MM)
     if is_off.any():
-        yield _lost_at(run, int(is_off.argmax()), "the robot left the mat")
+        yield _explain_lost(run, int(is_off.argmax()), "the robot left the mat")
 
 
 def _find_mistaken(run: StoredRun, mat: Field | None, has_left_mat: bool) -> Iterator[Reason]:
@@ -255,7 +255,7 @@ def describe_end(run: StoredRun) -> str:
     return Reason(ReasonKind.ENDED, early.time_s, early.line, early.text).words if early else ""
 
 
-def _lost_at(run: StoredRun, tick: int, text: str) -> Reason:
+def _explain_lost(run: StoredRun, tick: int, text: str) -> Reason:
     time_s = tick / run.spec.profile.tick_hz
     return Reason(ReasonKind.LOST, time_s, run.telemetry.record(tick).line, text)
 
@@ -279,11 +279,11 @@ def _describe_loss(run: StoredRun, lost: LostLine) -> Reason:
     """Return what a sensor lost, and when it was seen again."""
     text = f"the {lost.sensor} sensor left the {'black' if lost.is_black else 'dark'}"
     if lost.seen_again is None:
-        return _lost_at(run, lost.tick, f"{text}, and did not see it again")
+        return _explain_lost(run, lost.tick, f"{text}, and did not see it again")
     sensor, tick = lost.seen_again
     who = "it" if sensor == lost.sensor else f"the {sensor} one"
     after_s = (tick - lost.tick) / run.spec.profile.tick_hz
-    return _lost_at(run, lost.tick, f"{text}; {who} saw it again after {after_s:.1f} s")
+    return _explain_lost(run, lost.tick, f"{text}; {who} saw it again after {after_s:.1f} s")
 
 
 def _find_difference(run: StoredRun, earlier: Recording) -> Iterator[Reason]:
@@ -292,4 +292,4 @@ def _find_difference(run: StoredRun, earlier: Recording) -> Iterator[Reason]:
     time_s = parted_at_s(run.telemetry.array(), earlier.telemetry.array(), hz)
     if time_s is not None:
         text = f"the robot left the path of {earlier.name}"
-        yield Reason(ReasonKind.DIFFERS, time_s, _line_at(run, time_s), text)
+        yield Reason(ReasonKind.DIFFERS, time_s, _find_line(run, time_s), text)

@@ -105,9 +105,9 @@ _HANDS: dict[Subject, tuple[str, ...]] = {
     Subject.REMOTE: tuple(REMOTE_BY_HAND),
 }
 """What can be pressed by hand for a subject."""
-_BY_HAND = (Subject.BUTTONS, Subject.REMOTE)
+_HAND_SUBJECTS = (Subject.BUTTONS, Subject.REMOTE)
 """While the robot moves, a look at these is a guard, not a wait."""
-_PRESSED = (*_BY_HAND, Subject.TOUCH)
+_PRESSED = (*_HAND_SUBJECTS, Subject.TOUCH)
 """While the program logs or plays, a look at these that only ends it is a guard."""
 SEEN = (Subject.COLOR, Subject.DISTANCE, Subject.PROXIMITY)
 """A robot that drives waits for these first."""
@@ -116,7 +116,7 @@ _MEASURED = (Subject.DISTANCE, Subject.PROXIMITY, Subject.GYRO)
 """A program that only computes with these waits for nothing."""
 _SAME_HEADING_DEG = 2.0
 """A robot that turns less is not turned by hand."""
-_FROM_OUTSIDE = (Subject.CONNECTION, Subject.DATA, Subject.GAMEPAD)
+_OUTSIDE_SUBJECTS = (Subject.CONNECTION, Subject.DATA, Subject.GAMEPAD)
 """Each recorded look at these was in vain."""
 
 
@@ -241,11 +241,13 @@ class _Search:
         """Yield what the program waits for, most important first."""
         if not len(self._rows) or not len(self._records):
             return
-        subjects = [subject for subject in Subject if not (subject in _BY_HAND and self._drives)]
+        subjects = [
+            subject for subject in Subject if not (subject in _HAND_SUBJECTS and self._drives)
+        ]
         if self._drives:
-            subjects.sort(key=lambda one: one not in SEEN)
+            subjects.sort(key=lambda candidate: candidate not in SEEN)
         for subject in subjects:
-            if subject in _BY_HAND and self._is_turning():
+            if subject in _HAND_SUBJECTS and self._is_turning():
                 continue
             for port in READING_PORTS:
                 rows = self._find_readings(subject, port)
@@ -286,7 +288,7 @@ class _Search:
     def _is_asking(self, subject: Subject, line: int) -> bool:
         """Return whether the program waits for a subject on a line, if it waits at all."""
         question = self._ask(line)
-        if subject in _FROM_OUTSIDE:
+        if subject in _OUTSIDE_SUBJECTS:
             return True
         is_guard = subject in _PRESSED and question.is_last and self._is_logging_or_playing()
         is_computed = subject in _MEASURED and not question.is_test
@@ -376,7 +378,7 @@ class _Search:
         """Return what was read each time, in words; None if it changed, or was what a program waits for."""
         import numpy as np
 
-        if subject in _FROM_OUTSIDE:
+        if subject in _OUTSIDE_SUBJECTS:
             return "" if subject is not Subject.GAMEPAD or len(rows) > 1 else None
         ticks = np.unique(self._ticks[rows])
         sensor = next(
@@ -413,8 +415,8 @@ class _Search:
             if isinstance(action.command, SetButtons)
         ]
         states = [False, *(is_pressed for _, is_pressed in changes)]
-        at = np.searchsorted([tick for tick, _ in changes], ticks, side="right")
-        return bool(np.array(states)[at].any())
+        indices = np.searchsorted([tick for tick, _ in changes], ticks, side="right")
+        return bool(np.array(states)[indices].any())
 
     def _is_remote_pressed(self, ticks: Array, sought: tuple[str, ...], needs_all: bool) -> bool:
         times_s = ticks / self._hz
