@@ -193,14 +193,12 @@ def _threshold_of(arguments: Arguments) -> EventChoice:
     Raises:
         ConfigError: none is given, or two are.
     """
-    if bool(arguments.when) is (arguments.sample is not None):
+    if bool(arguments.when) is (arguments.at is not None):
         raise ConfigError(
             "takes one threshold", "such as --at 50, or --when 'Colour < 50'", key="events"
         )
     if not arguments.when:
-        return Threshold(
-            "", Operator.EQUAL, repr(arguments.sample), hysteresis=arguments.hysteresis
-        )
+        return Threshold("", Operator.EQUAL, repr(arguments.at), hysteresis=arguments.hysteresis)
     if arguments.variable:
         raise ConfigError("names the variable already", "leave --variable out", key="--when")
     threshold = parse_threshold(arguments.when)
