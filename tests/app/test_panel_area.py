@@ -76,7 +76,7 @@ async def test_the_world_is_as_large_as_its_panel(size: tuple[int, int]) -> None
         await until(pilot, lambda: view._port is not None)
         port = view._port
         assert port is not None
-        cell = view.cell_for(view.graphics)
+        cell = view.choose_cell(view.graphics)
         columns, rows = (
             FIELD_WIDTH_MM / port.mm_per_px / cell.cols,
             FIELD_HEIGHT_MM / port.mm_per_row / cell.rows,

@@ -17,7 +17,7 @@ from tuisim.app.plot_view import PlotView
 from tuisim.app.screenshot import screen_cells
 from tuisim.terminal.picture_mode import Sharpness
 from tuisim.terminal.picture_options import AUTO, CellSet, Protocol
-from tuisim.terminal.queries import TerminalAnswered, facts_in
+from tuisim.terminal.queries import TerminalAnswered, parse_facts
 
 
 def _fed(pilot: Pilot[Any], end_s: float) -> PlotView:
@@ -70,7 +70,7 @@ async def test_a_screenshot_of_a_chart_has_its_characters() -> None:
         view = _fed(pilot, 5.0)
         await until_quiet(pilot)
         expected = _characters(pilot, view)
-        pilot.app.post_message(TerminalAnswered(facts_in(ANSWERS[Protocol.SIXEL])))
+        pilot.app.post_message(TerminalAnswered(parse_facts(ANSWERS[Protocol.SIXEL])))
         await until(pilot, lambda: view._tiles is not None)
         await until_quiet(pilot)
         assert _characters(pilot, view) == expected

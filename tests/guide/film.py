@@ -24,7 +24,7 @@ from tuisim.base.source import Program
 from tuisim.pictures.movies.image_files import PALETTE_FRAMES, encode_gif
 from tuisim.settings.build import build_run_spec
 from tuisim.settings.options import Settings
-from tuisim.terminal.cell_image import CellGrid, image_of_cells
+from tuisim.terminal.cell_image import CellGrid, draw_cells
 from tuisim.terminal.picture_options import CellSet
 
 FILM = Path(__file__).with_name("tuisim.gif")
@@ -82,7 +82,7 @@ async def _watch(pilot: Pilot[Any], key: str, seconds: float) -> AsyncIterator[F
 def gif_of(film: Sequence[Frame]) -> bytes:
     """Return frames as GIF, each as long as it was seen."""
     begins_ms = [round(at_s * 1000 / _GIF_MS) * _GIF_MS for at_s, _ in film]
-    images = [image_of_cells(grid) for _, grid in film]
+    images = [draw_cells(grid) for _, grid in film]
     durations_ms = [end - begin for begin, end in pairwise(begins_ms)]
     samples = images[:: max(len(images) // PALETTE_FRAMES, 1)]
     return encode_gif(iter(images), samples, [*durations_ms, _LAST_MS])

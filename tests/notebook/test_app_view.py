@@ -85,7 +85,7 @@ class Page:
 
 def address(view: AppView) -> str:
     """Return a new address of the page."""
-    given = view.renew_address(())
+    given = view.create_address(())
     return f"http://127.0.0.1:{given['port']}/{given['token']}"
 
 

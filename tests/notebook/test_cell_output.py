@@ -13,8 +13,8 @@ from tuisim.notebook.cell_output import (
     FEWEST_FOLDED,
     FIRST_LINES,
     LAST_LINES,
-    MOST_FOLDED_LINES,
-    folded,
+    MAX_FOLDED_LINES,
+    fold_lines,
 )
 
 
@@ -61,7 +61,7 @@ def test_a_few_more_lines_are_not_folded(kernel_cell: Cell) -> None:
     assert bundle["text/plain"] == lines(FIRST_LINES, count).rstrip("\n")
     assert (
         "… 15 more lines"
-        in folded(["a line"] * (FEWEST_FOLDED + LAST_LINES), FEWEST_FOLDED + LAST_LINES)[
+        in fold_lines(["a line"] * (FEWEST_FOLDED + LAST_LINES), FEWEST_FOLDED + LAST_LINES)[
             "text/plain"
         ]
     )
@@ -83,7 +83,7 @@ def test_an_error_is_never_folded(kernel_cell: Cell) -> None:
 
 
 def test_an_endless_output_keeps_its_newest_lines() -> None:
-    page = folded([f"line {at}" for at in range(MOST_FOLDED_LINES)], MOST_FOLDED_LINES + 7)[
+    page = fold_lines([f"line {at}" for at in range(MAX_FOLDED_LINES)], MAX_FOLDED_LINES + 7)[
         "text/html"
     ]
     assert "The first 7 lines of these are in the log only." in page

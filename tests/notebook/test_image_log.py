@@ -7,7 +7,7 @@ import pytest
 from tests.notebook.conftest import Cell
 from tuisim.engine.runs.records import OutputRow, Stream
 from tuisim.engine.runs.store import RunStore
-from tuisim.notebook.image_log import asked_side
+from tuisim.notebook.image_log import parse_side
 
 LINES = [
     ("image_data left", "left"),
@@ -23,8 +23,8 @@ LINES = [
 
 @pytest.mark.parametrize("text, side", LINES, ids=[text for text, _ in LINES])
 def test_a_line_asks_for_sides(text: str, side: str) -> None:
-    assert asked_side(OutputRow(text, 0, 0, 1, Stream.STDOUT)) == side
-    assert asked_side(OutputRow(text, 0, 0, 1, Stream.STDERR)) == ""
+    assert parse_side(OutputRow(text, 0, 0, 1, Stream.STDOUT)) == side
+    assert parse_side(OutputRow(text, 0, 0, 1, Stream.STDERR)) == ""
 
 
 def program(text: str, words: str = "") -> str:

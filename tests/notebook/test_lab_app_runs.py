@@ -36,7 +36,7 @@ def test_the_state_and_the_picture_are_of_the_world_of_the_run(cell: Cell) -> No
     state = lab.state
     assert (state["background"], state["profile"], state["seed"]) == ("Loop", "ev3", 3)
     assert state["time_s"] >= 1.0
-    plan = lab._checked(parse_line("", "sim_magic"), None, "none")
+    plan = lab._plan_cell(parse_line("", "sim_magic"), None, "none")
     assert plan.spec.world.background == "Grey_bands"
-    scene, _ = lab._scene(plan)
+    scene, _ = lab._build_scene(plan)
     assert (scene.spec.world.background, scene.spec.world.noise.light) == ("Loop", 74)

@@ -50,7 +50,7 @@ class View:
         self.is_alive, self.is_shown = True, False
         self.tokens = 0
 
-    def renew_address(self, origins: tuple[str, ...]) -> dict[str, Any]:
+    def create_address(self, origins: tuple[str, ...]) -> dict[str, Any]:
         self.tokens += 1
         return {"port": 5, "token": f"secret-{self.tokens}"}
 

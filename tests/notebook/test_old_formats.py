@@ -14,9 +14,9 @@ from tests.notebook.conftest import Cell
 from tuisim.base.errors import ConfigError, LogError
 from tuisim.notebook.image_log import LoggedArray
 from tuisim.notebook.old_formats import (
-    bw_picture,
-    image_frame,
-    image_pair,
+    build_image_frame,
+    draw_bw_picture,
+    pick_image_pair,
     process_raw_image_data,
     record_text,
 )
@@ -62,14 +62,14 @@ def test_a_clock_counts_the_old_ticks(time_ns: int, clock: str) -> None:
 
 
 def test_a_frame_holds_texts() -> None:
-    frame = image_frame(
+    frame = build_image_frame(
         [record_text(array("left")), record_text(array("right", 10**9))], mode="greyscale"
     )
     assert list(frame.columns) == ["side", "vals", "clock"]
     assert list(frame.side) == ["left", "right"]
     assert list(frame.clock) == ["0", "30"]
     assert frame.vals[0].split(",") == ["0"] * 5 + ["128"] * 395
-    assert list(image_frame([]).columns) == ["side", "vals", "clock"]
+    assert list(build_image_frame([]).columns) == ["side", "vals", "clock"]
 
 
 def test_pairs_are_what_was_logged_of_both_at_one_time() -> None:
@@ -81,26 +81,28 @@ def test_pairs_are_what_was_logged_of_both_at_one_time() -> None:
     ]
     second = [array("left", 5, 50), array("right", 5, 60)]
     greys = [
-        [picture.getpixel((9, 9)) for picture in image_pair([first, second], index)]
+        [picture.getpixel((9, 9)) for picture in pick_image_pair([first, second], index)]
         for index in (0, 1, -1, -2)
     ]
     assert greys == [[20, 30], [50, 60], [50, 60], [20, 30]]
-    assert {(picture.mode, picture.size) for picture in image_pair([first])} == {("L", (14, 14))}
+    assert {(picture.mode, picture.size) for picture in pick_image_pair([first])} == {
+        ("L", (14, 14))
+    }
     with pytest.raises(LogError, match=r"no pixel arrays 2 \(0 … 1 are logged"):
-        image_pair([first, second], 2)
+        pick_image_pair([first, second], 2)
 
 
 @pytest.mark.parametrize("threshold, white", [(127, 395), (128, 0), (0, 395), (255, 0)])
 def test_a_picture_is_white_above_the_threshold(threshold: int, white: int) -> None:
-    picture = bw_picture([array("left")], threshold=threshold)
+    picture = draw_bw_picture([array("left")], threshold=threshold)
     assert picture.mode == "1"
     assert np.count_nonzero(np.asarray(picture)) == white
 
 
 def test_a_part_must_lie_inside_the_picture() -> None:
-    assert bw_picture([array("left")], crop=(0, 0, 5, 1)).size == (5, 1)
+    assert draw_bw_picture([array("left")], crop=(0, 0, 5, 1)).size == (5, 1)
     with pytest.raises(LogError, match="20 × 20 pixels"):
-        bw_picture([array("left")], crop=(3, 3, 21, 17))
+        draw_bw_picture([array("left")], crop=(3, 3, 21, 17))
 
 
 def test_a_pair_is_shown_as_a_picture(cell: Cell) -> None:

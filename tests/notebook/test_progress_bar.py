@@ -8,11 +8,11 @@ import wave
 import pytest
 
 from tests.notebook.lesson import execute, stream
-from tuisim.notebook.progress_bar import RATE_HZ, tone_wav
+from tuisim.notebook.progress_bar import RATE_HZ, build_tone
 
 
 def test_a_tone_is_a_short_sound() -> None:
-    with wave.open(io.BytesIO(tone_wav())) as sound:
+    with wave.open(io.BytesIO(build_tone())) as sound:
         assert (sound.getnchannels(), sound.getsampwidth(), sound.getframerate()) == (1, 2, RATE_HZ)
         assert sound.getnframes() / RATE_HZ == 0.4
 

@@ -19,7 +19,7 @@ from tests.proof.kind import FaultError
 from tests.running import PATIENCE_S
 from tests.web.stand_in import stand_in
 from tuisim.web.gate import Gate
-from tuisim.web.server import Server, ServerLimits, listening
+from tuisim.web.server import Server, ServerLimits, run_server
 from tuisim.web.visit import VisitLimits
 
 TOKEN = "the-token"
@@ -332,7 +332,7 @@ async def _attack(name: str) -> None:
             stack.callback(logger.removeHandler, logged)
         limits = ServerLimits(_VISITORS, VisitLimits(PATIENCE_S, 0.0))
         server = Server(stand_in(), Gate("127.0.0.1", TOKEN), limits, reports.append)
-        port = await stack.enter_async_context(listening(server, "127.0.0.1", 0))
+        port = await stack.enter_async_context(run_server(server, "127.0.0.1", 0))
         target = Target(await stack.enter_async_context(ClientSession()), port)
         await ATTACKS[name](target)
         await target.visits()

@@ -13,7 +13,7 @@ from tests.terminal.decoder import PixelTerminal
 from tuisim.app.plot_view import PlotView
 from tuisim.terminal.cell_view import PixelView
 from tuisim.terminal.picture_options import Protocol
-from tuisim.terminal.queries import TerminalAnswered, facts_in
+from tuisim.terminal.queries import TerminalAnswered, parse_facts
 
 CELL_PX = 8, 16
 ANSWERS = {
@@ -53,7 +53,7 @@ async def sharp(pilot: Pilot[Any], view: PixelView) -> None:
 async def answered(pilot: Pilot[Any], answers: str) -> None:
     await ready(pilot)
     await until_quiet(pilot)
-    pilot.app.post_message(TerminalAnswered(facts_in(answers)))
+    pilot.app.post_message(TerminalAnswered(parse_facts(answers)))
     await until_quiet(pilot)
 
 

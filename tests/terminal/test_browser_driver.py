@@ -81,8 +81,8 @@ CODES = {
     "text": ("a [8m\x1b[1mé", "a [8m\x1b[1mé"),
     "a command of kitty": (f"a{kitty.delete(7)}b", "a\x1b]7766;Ga=d,d=I,q=2,i=7\x1b\\b"),
     "placeholders": (
-        f"\x1b[38;5;7m{kitty.placeholder(0, 1)}{kitty.placeholder(1, 1)}a",
-        f"\x1b[38;5;7m\x1b[8m{kitty.placeholder(0, 1)}{kitty.placeholder(1, 1)}\x1b[28ma",
+        f"\x1b[38;5;7m{kitty.build_placeholder(0, 1)}{kitty.build_placeholder(1, 1)}a",
+        f"\x1b[38;5;7m\x1b[8m{kitty.build_placeholder(0, 1)}{kitty.build_placeholder(1, 1)}\x1b[28ma",
     ),
 }
 

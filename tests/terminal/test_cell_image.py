@@ -9,7 +9,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-from tuisim.terminal.cell_image import CELL_PX, Cell, CellGrid, Look, image_of_cells, svg_of_cells
+from tuisim.terminal.cell_image import CELL_PX, Cell, CellGrid, Look, draw_cells, draw_cells_svg
 
 RED, BLUE, WHITE, BLACK = (255, 0, 0), (0, 0, 255), (255, 255, 255), (0, 0, 0)
 LOOK = Look(WHITE, BLACK)
@@ -21,7 +21,7 @@ def cells(text: str, look: Look = LOOK) -> list[Cell]:
 
 
 def pixels(grid: CellGrid) -> Any:
-    return np.asarray(image_of_cells(grid))
+    return np.asarray(draw_cells(grid))
 
 
 # What each glyph fills, in parts of its cell.
@@ -155,14 +155,14 @@ ROWS: Sequence[tuple[str, list[str]]] = [
 
 @pytest.mark.parametrize("row, texts", ROWS)
 def test_svg_holds_text_as_text(row: str, texts: list[str]) -> None:
-    svg = svg_of_cells([cells(row)], "a <title>")
+    svg = draw_cells_svg([cells(row)], "a <title>")
     assert texts_of(svg) == texts
     root = ElementTree.fromstring(svg)
     assert (root.attrib["width"], root.attrib["height"]) == (str(3 * CELL_PX[0]), str(CELL_PX[1]))
 
 
 def test_svg_places_each_letter_in_its_cell() -> None:
-    root = ElementTree.fromstring(svg_of_cells([cells("x  y"), cells("  z ")], ""))
+    root = ElementTree.fromstring(draw_cells_svg([cells("x  y"), cells("  z ")], ""))
     places = [
         (node.attrib["x"], int(node.attrib["y"]) // CELL_PX[1]) for node in root.iter(f"{SVG}text")
     ]

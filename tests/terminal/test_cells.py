@@ -8,9 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.cases import cases
-from tuisim.terminal.cells import changed_cells, changed_runs
-from tuisim.terminal.fitted_cells import Cells, all_cells, fit_cells
-from tuisim.terminal.glyphs import GLYPHS, glyph_set, half_block_of
+from tuisim.terminal.cells import find_changed_cells, find_changed_runs
+from tuisim.terminal.fitted_cells import Cells, fit_cells, list_cells
+from tuisim.terminal.glyphs import GLYPHS, build_glyph_set, build_half_block
 from tuisim.terminal.picture_options import CellSet
 from tuisim.terminal.pixels import Pixels
 
@@ -20,7 +20,7 @@ FINE = (CellSet.QUADRANT, CellSet.SEXTANT, CellSet.OCTANT, CellSet.BRAILLE)
 
 def picture_of(cells: CellSet, pattern: int) -> Pixels:
     """One cell with ink on the points of a pattern."""
-    glyphs = glyph_set(cells)
+    glyphs = build_glyph_set(cells)
     points = glyphs.rows * glyphs.cols
     colors = [INK if pattern >> point & 1 else PAPER for point in range(points)]
     return np.array(colors, np.uint8).reshape(glyphs.rows, glyphs.cols, 3)
@@ -33,18 +33,18 @@ def glyph(cell: int) -> str:
 def test_a_cell_holds_upper_and_lower_colour() -> None:
     picture = np.array([[[1, 2, 3]], [[4, 5, 6]]], np.uint8)
 
-    assert fit_cells(picture, glyph_set(CellSet.HALF), all_cells(1, 1)).tolist() == [
+    assert fit_cells(picture, build_glyph_set(CellSet.HALF), list_cells(1, 1)).tolist() == [
         0x010203_040506
     ]
 
 
 @pytest.mark.parametrize("cells", FINE)
 def test_two_colours_are_shown_exactly_whatever_their_pattern(cells: CellSet) -> None:
-    glyphs = glyph_set(cells)
+    glyphs = build_glyph_set(cells)
     for pattern in range(1, (1 << glyphs.rows * glyphs.cols) - 1):
         picture = picture_of(cells, pattern)
 
-        cell = int(fit_cells(picture, glyphs, all_cells(1, 1))[0])
+        cell = int(fit_cells(picture, glyphs, list_cells(1, 1))[0])
 
         covered = glyphs.covered[glyphs.numbers.tolist().index(cell >> 48)] > 0.5
         fore, back = cell >> 24 & 0xFFFFFF, cell & 0xFFFFFF
@@ -54,34 +54,34 @@ def test_two_colours_are_shown_exactly_whatever_their_pattern(cells: CellSet) ->
 
 @pytest.mark.parametrize("cells", FINE)
 def test_an_even_cell_needs_no_glyph(cells: CellSet) -> None:
-    glyphs = glyph_set(cells)
+    glyphs = build_glyph_set(cells)
     picture = np.full((glyphs.rows, glyphs.cols, 3), 211, np.uint8)
     picture[0, 0] = 212
 
-    cell = int(fit_cells(picture, glyphs, all_cells(1, 1))[0])
+    cell = int(fit_cells(picture, glyphs, list_cells(1, 1))[0])
 
     assert cell >> 24 == cell & 0xFFFFFF
 
 
 @pytest.mark.parametrize("cells", FINE)
 def test_only_cells_that_differ_are_fitted(cells: CellSet) -> None:
-    glyphs = glyph_set(cells)
+    glyphs = build_glyph_set(cells)
     old = np.zeros((3 * glyphs.rows, 5 * glyphs.cols, 3), np.uint8)
     new = old.copy()
     new[2 * glyphs.rows, 4 * glyphs.cols, 2] = new[glyphs.rows - 1, 2 * glyphs.cols - 1, 0] = 1
 
-    rows, cols = changed_cells(old, new, glyphs)
+    rows, cols = find_changed_cells(old, new, glyphs)
 
     assert list(zip(rows.tolist(), cols.tolist(), strict=True)) == [(0, 1), (2, 4)]
 
 
 @pytest.mark.parametrize("cells", [CellSet.QUADRANT, CellSet.SEXTANT, CellSet.OCTANT])
 def test_fine_points_can_be_drawn_as_half_blocks(cells: CellSet) -> None:
-    coarse = half_block_of(cells)
+    coarse = build_half_block(cells)
     picture = np.full((coarse.rows, coarse.cols, 3), 255, np.uint8)
     picture[: coarse.rows // 2] = 0
 
-    cell: Cells = fit_cells(picture, coarse, all_cells(1, 1))
+    cell: Cells = fit_cells(picture, coarse, list_cells(1, 1))
 
     assert cell.tolist() == [0x000000_FFFFFF]
     assert glyph(int(cell[0])) == "▀"
@@ -102,7 +102,7 @@ def test_changed_runs(changed: list[int], runs: list[tuple[int, int, int]]) -> N
     new = old.copy()
     new.flat[changed] = 1
 
-    assert changed_runs(old, new) == runs
+    assert find_changed_runs(old, new) == runs
 
 
 @given(st.lists(st.booleans(), min_size=60, max_size=60))
@@ -111,7 +111,7 @@ def test_runs_hold_every_change_and_do_not_touch(changed: list[bool]) -> None:
     new = np.array(changed, np.int64).reshape(3, 20)
     covered = np.zeros((3, 20), int)
 
-    for row, first, length in changed_runs(old, new):
+    for row, first, length in find_changed_runs(old, new):
         covered[row, first : first + length] += 1
 
     assert covered.max() <= 1

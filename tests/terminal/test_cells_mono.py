@@ -5,19 +5,19 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tuisim.terminal.cells import mono_cells
-from tuisim.terminal.fitted_cells import all_cells
-from tuisim.terminal.glyphs import GLYPHS, glyph_set
+from tuisim.terminal.cells import draw_mono_cells
+from tuisim.terminal.fitted_cells import list_cells
+from tuisim.terminal.glyphs import GLYPHS, build_glyph_set
 from tuisim.terminal.picture_options import CellSet
 
 
 @pytest.mark.parametrize("cells", [CellSet.BRAILLE, CellSet.ASCII])
 def test_the_greys_of_the_mats_look_different(cells: CellSet) -> None:
-    glyphs = glyph_set(cells)
+    glyphs = build_glyph_set(cells)
 
     def area(grey: int) -> str:
         picture = np.full((glyphs.rows, glyphs.cols, 3), grey, np.uint8)
-        return GLYPHS[int(mono_cells(picture, glyphs, all_cells(1, 1), cells)[0]) >> 48]
+        return GLYPHS[int(draw_mono_cells(picture, glyphs, list_cells(1, 1), cells)[0]) >> 48]
 
     shown = [area(grey) for grey in (255, 220, 211, 128, 0)]
 

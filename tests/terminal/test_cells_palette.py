@@ -12,8 +12,8 @@ from tuisim.terminal.cells import (
     PALETTE_16,
     PALETTE_256,
     ColorMode,
+    find_sgr_index,
     reduce_pixels,
-    sgr_index,
 )
 from tuisim.terminal.pixels import Pixels
 
@@ -75,7 +75,7 @@ def test_marker_and_body_differ_in_grey() -> None:
     },
 )
 def test_palette_numbers(rgb: int, depth: int, index: int) -> None:
-    assert sgr_index(rgb, depth) == index
+    assert find_sgr_index(rgb, depth) == index
 
 
 @pytest.mark.parametrize("depth", [PALETTE_256, PALETTE_16])
@@ -86,6 +86,6 @@ def test_reduced_colours_are_written_as_they_are(depth: int) -> None:
     zero = np.full(200, 2)
 
     once = reduce_pixels(pixels, zero, zero, ColorMode(depth))
-    codes = [sgr_index(int(r) << 16 | int(g) << 8 | int(b), depth) for r, g, b in once]
+    codes = [find_sgr_index(int(r) << 16 | int(g) << 8 | int(b), depth) for r, g, b in once]
 
     assert len(set(codes)) == len(np.unique(once, axis=0))

@@ -34,7 +34,7 @@ STYLES = (
 
 
 def sent(frame_buffer: FrameBuffer, update: CompositorUpdate, mode: TextMode = FULL) -> str:
-    codes = frame_buffer.codes(update, mode)
+    codes = frame_buffer.encode_update(update, mode)
     assert codes is not None
     return codes
 
@@ -177,7 +177,7 @@ def test_an_unknown_kind_of_update_is_left_to_textual() -> None:
     frame_buffer = FrameBuffer()
     sent(frame_buffer, rows([text("word")]))
 
-    assert frame_buffer.codes(InlineUpdate([text("else")]), FULL) is None
+    assert frame_buffer.encode_update(InlineUpdate([text("else")]), FULL) is None
     assert sent(frame_buffer, rows([text("word")])) == "\x1b[1;1Hword"
 
 

@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import pytest
 
-from tuisim.terminal.glyph_shapes import Area, Bend, GlyphShape, shapes_of
+from tuisim.terminal.glyph_shapes import Area, Bend, GlyphShape, draw_character
 
 
 def painted(shapes: tuple[GlyphShape, ...] | None) -> set[tuple[int, int]]:
@@ -24,25 +24,25 @@ def painted(shapes: tuple[GlyphShape, ...] | None) -> set[tuple[int, int]]:
 @pytest.mark.parametrize("width, height", [(4, 8), (7, 15), (20, 41)])
 @pytest.mark.parametrize("char", "┼╬╋")
 def test_lines_that_cross_reach_all_edges(char: str, width: int, height: int) -> None:
-    found = painted(shapes_of(char, width, height))
+    found = painted(draw_character(char, width, height))
     assert {0, width - 1} <= {x for x, _ in found}
     assert {0, height - 1} <= {y for _, y in found}
     assert all(0 <= x < width and 0 <= y < height for x, y in found)
 
 
 def test_an_eighth_of_a_small_cell_is_a_pixel() -> None:
-    assert painted(shapes_of("▁", 3, 3)) == {(x, 2) for x in range(3)}
-    assert painted(shapes_of("▔", 3, 3)) == {(x, 0) for x in range(3)}
+    assert painted(draw_character("▁", 3, 3)) == {(x, 2) for x in range(3)}
+    assert painted(draw_character("▔", 3, 3)) == {(x, 0) for x in range(3)}
 
 
 def test_an_arc_ends_where_lines_of_the_next_cells_begin() -> None:
-    (arc,) = shapes_of("╭", 8, 16) or ()
+    (arc,) = draw_character("╭", 8, 16) or ()
     assert isinstance(arc, Bend)
     assert (arc.points[0], arc.points[-1]) == ((3.5, 16.0), (8.0, 7.5))
 
 
 @pytest.mark.parametrize("char, count", [("┄", 3), ("┈", 4), ("╌", 2)])
 def test_dashes_have_gaps(char: str, count: int) -> None:
-    columns = sorted({x for x, _ in painted(shapes_of(char, 24, 24))})
+    columns = sorted({x for x, _ in painted(draw_character(char, 24, 24))})
     gaps = sum(after - before > 1 for before, after in pairwise(columns))
     assert gaps + 1 == count

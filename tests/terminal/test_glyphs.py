@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 from tests.cases import cases
-from tuisim.terminal.glyphs import GLYPHS, glyph_set
+from tuisim.terminal.glyphs import GLYPHS, build_glyph_set
 from tuisim.terminal.picture_options import CellSet
 
 
 def shown(cells: CellSet) -> dict[str, str]:
     """The points of each glyph, row by row from the upper left."""
-    glyphs = glyph_set(cells)
+    glyphs = build_glyph_set(cells)
     points = ["".join("#" if point else "." for point in covered) for covered in glyphs.covered]
     return dict(zip((GLYPHS[number] for number in glyphs.numbers), points, strict=True))
 
@@ -44,7 +44,7 @@ def test_the_points_of_a_glyph(cells: CellSet, glyph: str, points: str) -> None:
 
 @pytest.mark.parametrize("cells", list(CellSet)[1:5])
 def test_every_split_of_a_cell_has_one_glyph(cells: CellSet) -> None:
-    glyphs = glyph_set(cells)
+    glyphs = build_glyph_set(cells)
     points = glyphs.rows * glyphs.cols
     patterns = {tuple(row) for row in glyphs.covered} | {tuple(1 - row) for row in glyphs.covered}
 

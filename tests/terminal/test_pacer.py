@@ -43,7 +43,7 @@ class Line:
     def send(self, size: int) -> None:
         """The app paints."""
         self._free_s = max(self._free_s, self.clock.now_s) + size / self.bytes_s
-        if self.pacer.painted(size) and self.answers:
+        if self.pacer.record_painted(size) and self.answers:
             self._due_s.append(self._free_s + self.round_trip_s)
 
     @property
@@ -57,7 +57,7 @@ class Line:
         for _ in range(round(seconds / TICK_S)):
             while self._due_s and self._due_s[0] <= self.clock.now_s:
                 self._due_s.popleft()
-                self.pacer.answered()
+                self.pacer.record_answer()
             if self.pacer.ready():
                 drawn += 1
                 self.pacer.drawn()
@@ -123,7 +123,7 @@ def test_questions_to_a_page_that_is_gone_are_no_slow_link() -> None:
     line.drive(1.0)
     line.answers = False
     line.drive(0.2)
-    line.pacer.shown_elsewhere()
+    line.pacer.record_interruption()
     line.clock.now_s += 5.0
     line.answers = True
 
@@ -137,12 +137,12 @@ def test_a_page_that_begins_late_is_not_taken_for_a_slow_link() -> None:
 
     def draws(answer_after_s: float) -> None:
         pacer.drawn()
-        pacer.painted(FRAME_BYTES)
+        pacer.record_painted(FRAME_BYTES)
         clock.now_s += answer_after_s
-        pacer.answered()
+        pacer.record_answer()
 
     draws(0.01)
-    pacer.shown_elsewhere()
+    pacer.record_interruption()
     draws(2.0)
     was_slow = pacer.is_slow
     draws(2.0)
@@ -153,7 +153,7 @@ def test_a_page_that_begins_late_is_not_taken_for_a_slow_link() -> None:
 def test_what_is_no_frame_is_asked_about_only_if_it_is_large() -> None:
     pacer = Pacer(20, clock=Clock())
 
-    assert [pacer.painted(size) for size in (100, 30_000, 100)] == [False, True, False]
+    assert [pacer.record_painted(size) for size in (100, 30_000, 100)] == [False, True, False]
 
 
 def test_nothing_is_asked_before_anything_is_painted() -> None:
@@ -161,12 +161,12 @@ def test_nothing_is_asked_before_anything_is_painted() -> None:
     pacer.drawn()
 
     assert pacer.ready() is False
-    assert pacer.painted(10)
+    assert pacer.record_painted(10)
 
 
 def test_an_answer_to_nothing_is_ignored() -> None:
     pacer = Pacer(20, clock=Clock())
-    pacer.answered()
+    pacer.record_answer()
     assert pacer.ready()
 
 

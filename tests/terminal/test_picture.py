@@ -11,7 +11,7 @@ import pytest
 from tests.cases import cases
 from tests.terminal.decoder import PixelTerminal
 from tuisim.terminal import kitty, sixel
-from tuisim.terminal.picture import Graphics, Rectangle, TilePicture, rectangles
+from tuisim.terminal.picture import Graphics, Rectangle, TilePicture, find_rectangles
 from tuisim.terminal.picture_options import Protocol
 
 ROWS, COLS = 11, 21
@@ -106,7 +106,7 @@ def _sent_again(terminal: PixelTerminal, picture: TilePicture) -> None:
 
 def _gone(terminal: PixelTerminal, picture: TilePicture) -> None:
     _draw(terminal, picture, picture.put(_disc(20, 40)))
-    terminal.feed(picture.images()())
+    terminal.feed(picture.build_deletion()())
 
 
 KEPT = {
@@ -159,7 +159,7 @@ def test_pictures_with_many_colors_are_sent_in_the_nearest() -> None:
     terminal.feed(sixel.encode(points))
     difference = terminal.pixels[:24, :60].astype(int) - points
     assert np.abs(difference).mean() < 40
-    assert len(np.unique(terminal.pixels.reshape(-1, 3), axis=0)) <= sixel.MOST_COLORS + 1
+    assert len(np.unique(terminal.pixels.reshape(-1, 3), axis=0)) <= sixel.MAX_COLORS + 1
 
 
 @pytest.mark.parametrize(
@@ -176,10 +176,10 @@ def test_changed_cells_are_joined_to_rectangles(
     rows: list[str], expected: list[tuple[int, ...]]
 ) -> None:
     changed = np.array([[mark == "#" for mark in row] for row in rows])
-    assert rectangles(changed, lambda _: True) == [Rectangle(*one) for one in expected]
+    assert find_rectangles(changed, lambda _: True) == [Rectangle(*one) for one in expected]
 
 
 def test_rectangles_are_not_joined_over_what_must_not_be_drawn() -> None:
     changed = np.array([[True, False, True]])
-    assert len(rectangles(changed, lambda _: True)) == 1
-    assert len(rectangles(changed, lambda _: False)) == 2
+    assert len(find_rectangles(changed, lambda _: True)) == 1
+    assert len(find_rectangles(changed, lambda _: False)) == 2

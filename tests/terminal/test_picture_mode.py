@@ -17,10 +17,10 @@ from tests.cases import cases
 from tuisim.app.app import LabApp
 from tuisim.terminal import probe
 from tuisim.terminal.cells import MONO
-from tuisim.terminal.frame_buffer import as_ascii
-from tuisim.terminal.picture_mode import PictureMode, color_depth, picture_mode_for
+from tuisim.terminal.frame_buffer import convert_ascii
+from tuisim.terminal.picture_mode import PictureMode, choose_picture_mode, find_color_depth
 from tuisim.terminal.picture_options import CellSet
-from tuisim.terminal.probe import colors_without_asking
+from tuisim.terminal.probe import read_colors
 
 SOURCES = [
     path for path in Path(tuisim.__file__).parent.rglob("*") if path.suffix in (".py", ".tcss")
@@ -30,7 +30,7 @@ SOURCES = [
 def test_every_sign_of_the_app_has_one_in_ascii() -> None:
     used = set("".join(path.read_text("utf-8") for path in SOURCES))
 
-    lost = {char for char in used if not char.isascii() and as_ascii(char) in ("", "?", "??")}
+    lost = {char for char in used if not char.isascii() and convert_ascii(char) in ("", "?", "??")}
     # Letters of other scripts appear in examples only.
     assert not {char for char in lost if not char.isalpha()} - set("\u200b\ufeff")
 
@@ -46,7 +46,7 @@ def test_every_sign_of_the_app_has_one_in_ascii() -> None:
     },
 )
 def test_each_sign_keeps_its_width(text: str, plain: str) -> None:
-    assert as_ascii(text) == plain
+    assert convert_ascii(text) == plain
 
 
 @pytest.mark.parametrize(
@@ -61,12 +61,12 @@ def test_each_sign_keeps_its_width(text: str, plain: str) -> None:
     ],
 )
 def test_colours_of_a_kind_of_terminal(terminal: str, colors: str) -> None:
-    assert colors_without_asking({"TERM": terminal, "COLORTERM": "truecolor"}) == colors
+    assert read_colors({"TERM": terminal, "COLORTERM": "truecolor"}) == colors
 
 
 @pytest.mark.parametrize("terminal", ["vt52", "xterm-256color"])
 def test_terminfo_knows_which_terminals_have_no_colours(terminal: str) -> None:
-    code = f"from tuisim.terminal.probe import terminfo_has_colors; print(terminfo_has_colors({terminal!r}))"
+    code = f"from tuisim.terminal.probe import has_terminfo_colors; print(has_terminfo_colors({terminal!r}))"
     # curses reads one entry a process.
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
 
@@ -84,11 +84,11 @@ def test_terminfo_knows_which_terminals_have_no_colours(terminal: str) -> None:
 def test_without_colours_no_blocks_are_taken(
     environment: dict[str, str], cells: CellSet, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(probe, "first_environment", lambda: environment)
+    monkeypatch.setattr(probe, "read_first_environment", lambda: environment)
     monkeypatch.setenv("TERM", environment["TERM"])
     monkeypatch.setenv("NO_COLOR", "1")
 
-    assert picture_mode_for("auto", "auto").cells is cells
+    assert choose_picture_mode("auto", "auto").cells is cells
 
 
 @pytest.mark.slow
@@ -108,7 +108,7 @@ async def test_without_colours_nothing_but_text_is_sent(
         await until_quiet(pilot)
         await pilot.press("question_mark")
         await until_quiet(pilot)
-        assert color_depth(app) == MONO
+        assert find_color_depth(app) == MONO
         sent = "".join(wire_of(pilot).sent)
 
     assert max(map(ord, sent)) <= most

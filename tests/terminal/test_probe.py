@@ -14,7 +14,7 @@ from tests.cases import cases
 from tests.running import PATIENCE_S
 from tuisim.terminal import probe
 from tuisim.terminal.picture_options import CellSet
-from tuisim.terminal.probe import best_cells, cells_of, cells_without_asking
+from tuisim.terminal.probe import choose_cells, find_cells, read_cells
 
 ATTRIBUTES = b"\x1b[?62;4c"
 
@@ -41,7 +41,7 @@ ATTRIBUTES = b"\x1b[?62;4c"
 def test_fine_glyphs_are_for_terminals_that_draw_them(
     name: str, octant_cols: int | None, cells: CellSet
 ) -> None:
-    assert cells_of(name, octant_cols) is cells
+    assert find_cells(name, octant_cols) is cells
 
 
 @cases(
@@ -61,7 +61,7 @@ def test_fine_glyphs_are_for_terminals_that_draw_them(
 def test_what_the_environment_decides(
     environment: Mapping[str, str], cells: CellSet | None
 ) -> None:
-    assert cells_without_asking(environment) is cells
+    assert read_cells(environment) is cells
 
 
 class Answers:
@@ -108,12 +108,12 @@ def test_a_terminal_is_asked(
 ) -> None:
     terminal = Answers(answers)
     monkeypatch.setenv("TERM", "xterm-256color")
-    monkeypatch.setattr(probe, "first_environment", lambda: {"LANG": "C.UTF-8"})
+    monkeypatch.setattr(probe, "read_first_environment", lambda: {"LANG": "C.UTF-8"})
     monkeypatch.setattr(probe, "ANSWER_S", PATIENCE_S if answers else 0.1)
     with open(terminal.inside, "rb+", buffering=0, closefd=False) as tty:
         monkeypatch.setattr(sys, "stdin", tty)
         monkeypatch.setattr(sys, "stdout", tty)
-        found = best_cells()
+        found = choose_cells()
     terminal.close()
 
     assert found is cells
@@ -125,13 +125,13 @@ def test_a_terminal_is_asked(
 def test_what_is_typed_while_the_terminal_is_asked_is_kept(monkeypatch: pytest.MonkeyPatch) -> None:
     terminal = Answers({b"[6n": b"R\x1b[9;2R", b"[c": b"\x7f" + ATTRIBUTES + b"\x1b[A"})
     monkeypatch.setenv("TERM", "xterm-256color")
-    monkeypatch.setattr(probe, "first_environment", lambda: {"LANG": "C.UTF-8"})
+    monkeypatch.setattr(probe, "read_first_environment", lambda: {"LANG": "C.UTF-8"})
     monkeypatch.setattr(probe, "ANSWER_S", PATIENCE_S)
     probe.take_typed()
     with open(terminal.inside, "rb+", buffering=0, closefd=False) as tty:
         monkeypatch.setattr(sys, "stdin", tty)
         monkeypatch.setattr(sys, "stdout", tty)
-        best_cells()
+        choose_cells()
     terminal.close()
     assert probe.take_typed() == "R\x7f\x1b[A"
     assert probe.take_typed() == ""

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from tests.cases import cases
-from tuisim.terminal.probe import colors_without_asking, name_around
+from tuisim.terminal.probe import name_around, read_colors
 
 AROUND = {"COLORTERM": "truecolor"}
 TMUX = {"TMUX": "/run/tmux/default,1,0"}
@@ -47,7 +47,7 @@ def test_the_colours_in_a_multiplexer(
     tmux: Path, environment: Mapping[str, str], features: str, colors: str
 ) -> None:
     tmux.write_text(f"{features}\n")
-    assert colors_without_asking({**AROUND, **environment}) == colors
+    assert read_colors({**AROUND, **environment}) == colors
 
 
 @cases(
@@ -72,10 +72,10 @@ def test_a_tmux_that_is_not_there_or_does_not_answer_means_256_colours(
 ) -> None:
     environment = {**AROUND, "TERM": "screen", **TMUX}
     monkeypatch.setenv("PATH", str(tmp_path))
-    assert colors_without_asking(environment) == "256"
+    assert read_colors(environment) == "256"
 
     def never(command: list[str], **_: object) -> None:
         raise subprocess.TimeoutExpired(command, 1.0)
 
     monkeypatch.setattr(subprocess, "run", never)
-    assert colors_without_asking(environment) == "256"
+    assert read_colors(environment) == "256"

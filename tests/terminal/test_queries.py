@@ -14,9 +14,9 @@ from textual.message import Message
 from tests.cases import cases, for_each
 from tuisim.terminal import queries
 from tuisim.terminal.picture import Graphics
-from tuisim.terminal.picture_mode import graphics_of
+from tuisim.terminal.picture_mode import choose_graphics
 from tuisim.terminal.picture_options import AUTO, NO_PIXELS, Protocol
-from tuisim.terminal.queries import AnswerParser, TerminalAnswered, TerminalFacts, cell_size_px
+from tuisim.terminal.queries import AnswerParser, TerminalAnswered, TerminalFacts, read_cell_size_px
 
 XTERM = "\x1bP>|XTerm(379)\x1b\\\x1b[6;14;7t\x1b[?63;1;2;4;6;9;15;22c"
 KITTY = "\x1bP>|kitty(0.36.4)\x1b\\\x1b[6;20;10t\x1b[?62;52;c"
@@ -104,23 +104,27 @@ CHOICES = {
 
 @cases("answers, expected", CHOICES)
 def test_the_answers_decide_how_pixels_are_drawn(answers: str, expected: Graphics | None) -> None:
-    assert graphics_of(_facts(answers), AUTO, (9, 18)) == expected
+    assert choose_graphics(_facts(answers), AUTO, (9, 18)) == expected
 
 
 def test_the_user_may_know_better() -> None:
-    assert graphics_of(TerminalFacts(), Protocol.SIXEL, None) == Graphics(Protocol.SIXEL, (8, 16))
-    assert graphics_of(_facts(TMUX), Protocol.SIXEL, (9, 18)) == Graphics(
+    assert choose_graphics(TerminalFacts(), Protocol.SIXEL, None) == Graphics(
+        Protocol.SIXEL, (8, 16)
+    )
+    assert choose_graphics(_facts(TMUX), Protocol.SIXEL, (9, 18)) == Graphics(
         Protocol.SIXEL, (9, 18), in_tmux=True
     )
-    assert graphics_of(_facts(XTERM), NO_PIXELS, None) is None
-    assert graphics_of(_facts(KITTY), Protocol.KITTY, None) == Graphics(Protocol.KITTY, (10, 20))
+    assert choose_graphics(_facts(XTERM), NO_PIXELS, None) is None
+    assert choose_graphics(_facts(KITTY), Protocol.KITTY, None) == Graphics(
+        Protocol.KITTY, (10, 20)
+    )
 
 
 @pytest.mark.parametrize(
     "answers", [OLD_KITTY + OLD_KITTY_AGAIN, KITTY + KITTY_YES + KITTY_ERROR], ids=["no", "error"]
 )
 def test_the_user_does_not_know_better_than_an_answer(answers: str) -> None:
-    assert graphics_of(_facts(answers), Protocol.KITTY, None) is None
+    assert choose_graphics(_facts(answers), Protocol.KITTY, None) is None
 
 
 def test_kitty_is_asked_once() -> None:
@@ -146,14 +150,14 @@ def test_the_kernel_may_tell_nonsense(
     main, other = os.openpty()
     try:
         fcntl.ioctl(other, termios.TIOCSWINSZ, struct.pack("HHHH", 40, 120, *size_px))
-        assert cell_size_px(other) == expected
+        assert read_cell_size_px(other) == expected
     finally:
         os.close(main)
         os.close(other)
 
 
 def test_sixel_needs_the_size_of_a_cell() -> None:
-    assert graphics_of(_facts("\x1b[?63;4c"), AUTO, None) is None
+    assert choose_graphics(_facts("\x1b[?63;4c"), AUTO, None) is None
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,7 @@ import pytest
 from rich.style import Style
 from textual.content import Content
 
-from tuisim.terminal.text_runs import as_markup, cut, cut_line
+from tuisim.terminal.text_runs import cut, cut_line, escape_markup
 
 PLAIN, BOLD = Style(), Style(bold=True)
 
@@ -39,4 +39,4 @@ def test_a_line_is_cut(texts: list[str], shown: list[str]) -> None:
     "text", ["a[b]", "[bold]x[/]", "[ ]", "\\[a]", "[@click=app.quit]", '["=[(\\', "@=\\", "[/a"]
 )
 def test_markup_shows_the_text(text: str) -> None:
-    assert Content.from_markup(as_markup(text)).plain == text
+    assert Content.from_markup(escape_markup(text)).plain == text

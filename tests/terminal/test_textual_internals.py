@@ -179,15 +179,15 @@ def _uses(module: ModuleType) -> list[str]:
 
 
 def test_a_name_that_textual_lacks_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
-    assert textual_internals.missing_names() == []
+    assert textual_internals.list_missing_names() == []
     monkeypatch.delattr(OptionList, "_move_page")
-    assert textual_internals.missing_names() == ["OptionList._move_page"]
+    assert textual_internals.list_missing_names() == ["OptionList._move_page"]
 
 
 def test_a_character_is_its_own_key_where_textual_has_no_name_for_it(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    assert textual_internals.key_of_character("?") == "question_mark"
+    assert textual_internals.find_key("?") == "question_mark"
     monkeypatch.delattr("textual.keys._character_to_key")
-    assert textual_internals.key_of_character("?") == "?"
-    assert textual_internals.missing_names() == ["keys._character_to_key"]
+    assert textual_internals.find_key("?") == "?"
+    assert textual_internals.list_missing_names() == ["keys._character_to_key"]

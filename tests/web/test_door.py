@@ -16,7 +16,7 @@ from tests.web.test_server import TOKEN, Visited, visited
 from tuisim.web import door, uploads
 from tuisim.web.door import Door
 from tuisim.web.gate import Gate
-from tuisim.web.server import Server, ServerLimits, listening
+from tuisim.web.server import Server, ServerLimits, run_server
 
 assert visited
 
@@ -39,7 +39,7 @@ async def test_of_many_who_ask_for_nothing_the_first_go(monkeypatch: pytest.Monk
     monkeypatch.setattr(door, "MAX_STRANGERS", 3)
     async with AsyncExitStack() as stack:
         server = Server(stand_in(), Gate("127.0.0.1", TOKEN), ServerLimits(1))
-        port = await stack.enter_async_context(listening(server, "127.0.0.1", 0))
+        port = await stack.enter_async_context(run_server(server, "127.0.0.1", 0))
         pairs = [await asyncio.open_connection("127.0.0.1", port) for _ in range(9)]
         for reader, _ in pairs[:6]:
             assert await asyncio.wait_for(reader.read(), PATIENCE_S) == b""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tests.cases import cases
-from tuisim.web.gate import Gate, new_token
+from tuisim.web.gate import Gate, create_token
 
 HERE = "127.0.0.1:8000"
 REQUESTS: dict[str, tuple[str, str, str, str | None, bool, bool]] = {
@@ -80,9 +80,12 @@ REQUESTS: dict[str, tuple[str, str, str, str | None, bool, bool]] = {
 def test_only_the_address_and_its_own_pages_are_admitted(
     listens_on: str, path: str, host: str, origin: str | None, from_a_page: bool, admitted: bool
 ) -> None:
-    assert Gate(listens_on, "token").admits(path, host, origin, from_a_page=from_a_page) is admitted
+    assert (
+        Gate(listens_on, "token").is_allowed(path, host, origin, from_a_page=from_a_page)
+        is admitted
+    )
 
 
 def test_each_token_is_long_and_new() -> None:
-    tokens = {new_token() for _ in range(100)}
+    tokens = {create_token() for _ in range(100)}
     assert (len(tokens), min(map(len, tokens))) == (100, 32)

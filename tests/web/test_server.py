@@ -25,7 +25,7 @@ from tests.running import PATIENCE_S
 from tests.web.stand_in import stand_in
 from tuisim.web import downloads, session
 from tuisim.web.gate import Gate
-from tuisim.web.server import _REFUSAL, Server, ServerLimits, listening
+from tuisim.web.server import _REFUSAL, Server, ServerLimits, run_server
 from tuisim.web.visit import VisitLimits
 
 TOKEN = "the-token"
@@ -111,7 +111,7 @@ async def visited() -> AsyncIterator[Visited]:
         ) -> Visitor:
             limits = ServerLimits(visitors, VisitLimits(idle_s, keep_s, keep_unused_s))
             server = Server(command or stand_in(), Gate("127.0.0.1", TOKEN), limits, report)
-            port = await stack.enter_async_context(listening(server, "127.0.0.1", 0))
+            port = await stack.enter_async_context(run_server(server, "127.0.0.1", 0))
             visitor = Visitor(await stack.enter_async_context(ClientSession()), port)
             stack.push_async_callback(visitor.leave)
             return visitor
@@ -399,7 +399,7 @@ async def test_an_app_that_no_tab_shows_ends_after_a_while(
 async def test_the_end_of_the_server_ends_all_apps() -> None:
     server = Server(stand_in(), Gate("127.0.0.1", TOKEN), ServerLimits(2))
     async with ClientSession() as client:
-        async with listening(server, "127.0.0.1", 0) as port:
+        async with run_server(server, "127.0.0.1", 0) as port:
             started = [await Visitor(client, port).started() for _ in range(2)]
         assert [await heard(socket) for socket, _ in started] == ["The server has stopped."] * 2
     assert [is_there(pid) for _, pid in started] == [False, False]

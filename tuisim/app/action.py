@@ -23,8 +23,8 @@ from textual.widget import Widget
 from tuisim.base import palette
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import TuisimError
-from tuisim.terminal.text_runs import as_markup
-from tuisim.terminal.textual_internals import bindings_of, is_leaving
+from tuisim.terminal.text_runs import escape_markup
+from tuisim.terminal.textual_internals import find_bindings, is_leaving
 
 ACT = "act"
 """Key of the style metadata that names the action of a clickable word."""
@@ -129,7 +129,7 @@ def with_keys_of(app: App[Any], text: str) -> str:
 
 def action_link(app: App[Any], action: str, word: str) -> str:
     """Return the markup of a word that runs an action when it is clicked, after the key of the action."""
-    key = as_markup(with_keys_of(app, f"{{{action}}}"))
+    key = escape_markup(with_keys_of(app, f"{{{action}}}"))
     return f"[@click=app.act('{action}')]{key} {word}[/]"
 
 
@@ -148,7 +148,7 @@ class ActionHost(DOMNode):
             action for name, action in actions.items() if action.key != self.ACTIONS[name].key
         ]
         calls = {_call(action) for action in changed}
-        bindings = bindings_of(self).key_to_bindings
+        bindings = find_bindings(self).key_to_bindings
         for key, bound in [*bindings.items()]:
             if kept := [one for one in bound if one.action not in calls]:
                 bindings[key] = kept
@@ -156,7 +156,7 @@ class ActionHost(DOMNode):
                 del bindings[key]
         for action in changed:
             for key in action.key.split(","):
-                bindings_of(self).bind(
+                find_bindings(self).bind(
                     key, _call(action), action.title, show=False, priority=action.comes_first
                 )
         self.ACTIONS = actions
@@ -287,7 +287,7 @@ class ActionWords(Widget):
 async def press(screen: Screen[Any], key: str) -> None:
     """Run the action of a key, as the widget with the focus, or one around it, understands it."""
     for node in (screen.focused or screen).ancestors_with_self:
-        if bound := bindings_of(node).key_to_bindings.get(key):
+        if bound := find_bindings(node).key_to_bindings.get(key):
             await screen.app.run_action(bound[0].action, node)
             return
 

@@ -78,7 +78,7 @@ from tuisim.settings.user_config import FILE, UserConfig, load_config
 from tuisim.terminal.pacer import PAGE_QUEUED_S, Pacer
 from tuisim.terminal.picture_mode import PictureMode
 from tuisim.terminal.picture_options import AUTO
-from tuisim.terminal.probe import in_browser
+from tuisim.terminal.probe import is_in_browser
 from tuisim.terminal.textual_internals import is_leaving
 
 if TYPE_CHECKING:
@@ -176,7 +176,7 @@ class LabApp(PanelMessages):
         self.run_controller = RunController(settings.program, first, settings.speed)
         self.panel_area = PanelArea(settings.panels_on, settings.panels_off)
         self.key_footer = KeyFooter()
-        self.pacer = Pacer(settings.fps, most_queued_s=PAGE_QUEUED_S if in_browser() else None)
+        self.pacer = Pacer(settings.fps, most_queued_s=PAGE_QUEUED_S if is_in_browser() else None)
         self.picture_mode.is_slow, self.picture_mode.is_idle = (
             lambda: self.pacer.is_slow,
             lambda: self.pacer.is_idle,
@@ -240,7 +240,7 @@ class LabApp(PanelMessages):
     def on_ready(self) -> None:
         if self.is_headless:
             self.pacer.asks = False
-        self.situation_changed()
+        self.handle_situation_change()
         self.set_timer(AFTER_FIRST_PAINT_S, self._begin)
 
     def _begin(self) -> None:
@@ -286,7 +286,7 @@ class LabApp(PanelMessages):
         waits = is_of_run and self.loader.is_preparing
         return super()._waits(event) or (waits and not self.is_typed_into)
 
-    def suspending(self) -> None:
+    def prepare_suspension(self) -> None:
         """Pause the run and playback before the app is suspended, so that nothing resumes by itself."""
         time_travel.stop_time(self.context)
 
@@ -312,7 +312,7 @@ class LabApp(PanelMessages):
         """Update the panels after the plan of the next run has changed."""
         self._introduce_program()
         self.panel_area.show_next_run(self.run_controller.next_run)
-        self.situation_changed()
+        self.handle_situation_change()
         self.draw(force=True)
 
     # A run
@@ -355,7 +355,7 @@ class LabApp(PanelMessages):
         self.document.run_changed()
         self.document.mark_failure(error_line)
         self.debugger.run_changed()
-        self.situation_changed()
+        self.handle_situation_change()
 
     def _on_frame_timer(self) -> None:
         """Process what the run has written, and draw a frame if the terminal has shown the last one."""
@@ -382,7 +382,7 @@ class LabApp(PanelMessages):
             # What cannot be read now cannot be read at the next frame either.
             self.run_controller.close()
             self.complain(error)
-            self.situation_changed()
+            self.handle_situation_change()
         if self._frame_timer is not None and not self._is_awake:
             self._frame_timer.pause()
 
@@ -446,7 +446,7 @@ class LabApp(PanelMessages):
                 output.stop_asking()
         if news.branched and (recording := self.run_controller.timeline.recording):
             self.say(branch_message(news.branched, recording))
-            self.situation_changed()
+            self.handle_situation_change()
         if news.ended:
             self._ended(news.ended, news.stood)
         if self._last_words and len(news.rows) < ROWS_A_POLL and self.panel_area.output:
@@ -476,7 +476,7 @@ class LabApp(PanelMessages):
         if not self.panel_area.shown("output"):
             self.notify(notice, severity="information" if good else "error", markup=False)
         self.debugger.ended()
-        self.situation_changed()
+        self.handle_situation_change()
         self.check_files()
 
     # The picture
@@ -501,20 +501,20 @@ class LabApp(PanelMessages):
         self.pacer.drawn()
         return True
 
-    def painted(self, size: int) -> None:
+    def handle_painted(self, size: int) -> None:
         """Ask the terminal to report when it has shown what it was sent; the answer is a `CursorPosition` event."""
-        if self.pacer.painted(size) and self.own_driver is not None:
+        if self.pacer.record_painted(size) and self.own_driver is not None:
             self.own_driver.write(_CURSOR_QUERY)
 
     def on_cursor_position(self, event: events.CursorPosition) -> None:
-        self.pacer.answered()
+        self.pacer.record_answer()
 
     @on(Driver.SignalResume)
     def pace_again(self) -> None:
         """Wait for no answers of a terminal that was away, or of another page."""
-        self.pacer.shown_elsewhere()
+        self.pacer.record_interruption()
 
-    def situation_changed(self) -> None:
+    def handle_situation_change(self) -> None:
         """Update the footer; together with the world once it stands still, or it would be said to before it does."""
         self._wake()
         state = self.state()

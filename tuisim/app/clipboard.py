@@ -9,7 +9,7 @@ from textual.widget import Widget
 
 from tuisim.app.panels import PANELS
 from tuisim.base.data_class import dataclass
-from tuisim.terminal.textual_internals import screen_strips
+from tuisim.terminal.textual_internals import render_screen
 
 if TYPE_CHECKING:
     from tuisim.app.snapshot import Snapshot
@@ -72,7 +72,7 @@ def describe_copy(panel: str, copied: Copied) -> str:
 def read_rows(widget: Widget) -> Sequence[str]:
     """Return the rows of characters inside a widget's edges, without blanks at their ends."""
     inside = widget.region.shrink((1, 1, 1, 1))
-    strips = screen_strips(widget.app)[inside.y : inside.bottom]
+    strips = render_screen(widget.app)[inside.y : inside.bottom]
     rows = [strip.crop(inside.x, inside.right).text.rstrip() for strip in strips]
     last = max((at for at, row in enumerate(rows, 1) if row), default=0)
     return rows[:last]

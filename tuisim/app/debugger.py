@@ -393,7 +393,7 @@ class DebugController:
             # The program may have gone on to another line within this tick.
             paused = replace(paused, line=chosen[1], file="")
         self._set_paused(PauseView(self._set_tick_time(paused), inspected, True))
-        self._app.situation_changed()
+        self._app.handle_situation_change()
         if self._more_back:
             self.lines_back(0)
         elif self._steps:

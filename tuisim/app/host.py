@@ -31,10 +31,10 @@ class LabHost(ActionHost, TerminalApp):
     def offer_undo(self, undo: Callable[[], None] | None) -> None:
         """Offer a key that takes something back, until a run starts or another key changes something."""
         self.undo = undo
-        self.situation_changed()
+        self.handle_situation_change()
 
     @abstractmethod
-    def situation_changed(self) -> None:
+    def handle_situation_change(self) -> None:
         """Update the footer: other keys may be available."""
 
     @abstractmethod

@@ -14,7 +14,7 @@ from tuisim.app.themes import theme_names
 from tuisim.base.errors import nearest
 from tuisim.engine.files import Location
 from tuisim.settings.user_config import THEME, Section, UserConfig
-from tuisim.terminal.textual_internals import key_of_character
+from tuisim.terminal.textual_internals import find_key
 
 Host = TypeVar("Host")
 Now = TypeVar("Now")
@@ -57,7 +57,7 @@ def key_of(text: str, at: Location) -> str:
     modifiers = match[0] if match and len(text) > 1 else ""
     last = text[len(modifiers) :]
     if len(last) == 1 and last.isprintable():
-        name = key_of_character(last.lower() if modifiers else last)
+        name = find_key(last.lower() if modifiers else last)
     else:
         name = KEY_NAME_REPLACEMENTS.get(last.lower(), last.lower())
         if name not in _NAMED and name not in _SAME:

@@ -154,7 +154,7 @@ class LessonController:
                 # The arrow keys are to move the robot, not the lines of the program.
                 self._panel_area.leave_code()
         self.show()
-        self._app.situation_changed()
+        self._app.handle_situation_change()
 
     def lessons(self) -> list[Lesson]:
         """Return all lessons that can be read, in their order."""

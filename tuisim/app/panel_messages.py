@@ -74,7 +74,7 @@ class PanelMessages(LabHost):
         self.context.app.tell_server("panels", shown=[*self.context.panels.arrangement.boxes])
 
     def on_code_typing_changed(self, message: Code.TypingChanged) -> None:
-        self.situation_changed()
+        self.handle_situation_change()
         area = self.context.panels
         if not message.typing:
             area.maximize("")
@@ -94,7 +94,7 @@ class PanelMessages(LabHost):
             self.context.panels.clicked = self.context.panels.find_owner(event.widget)
 
     def on_code_area_letters_changed(self) -> None:
-        self.situation_changed()
+        self.handle_situation_change()
 
     def _end_former_text(self) -> None:
         """End a run of the text before the edit: the user wants the new one to run."""
@@ -138,15 +138,15 @@ class PanelMessages(LabHost):
 
     def on_descendant_focus(self) -> None:
         """Update the footer: other keys may be available."""
-        self.call_later(self.situation_changed)
+        self.call_later(self.handle_situation_change)
 
     def on_descendant_blur(self) -> None:
-        self.call_later(self.situation_changed)
+        self.call_later(self.handle_situation_change)
 
     @on(ClosesOnce.Changed)
     def show_keys_of_the_screen(self) -> None:
         """Update the footer: below a dialog that closed another widget has the focus."""
-        self.situation_changed()
+        self.handle_situation_change()
 
     def on_world_pose_dragged(self, message: World.PoseDragged) -> None:
         """Move the robot with the mouse; in the past, ask about a branch at the end of the drag."""

@@ -18,8 +18,8 @@ from tuisim.pictures.charts.plot_image import Plot, PlotInks, draw_plot
 from tuisim.pictures.charts.text_chart import ChartPicture
 from tuisim.terminal.cell_view import JoinedStrip, LinesView, PictureStrip
 from tuisim.terminal.picture import Graphics, TilePicture
-from tuisim.terminal.picture_mode import Sharpness, picture_mode_of
-from tuisim.terminal.text_runs import Run, rgb_of
+from tuisim.terminal.picture_mode import Sharpness, find_picture_mode
+from tuisim.terminal.text_runs import Run, convert_color
 
 if TYPE_CHECKING:
     from tuisim.engine.core.css_colors import Rgb
@@ -76,7 +76,7 @@ class PlotView(LinesView):
     @property
     def graphics(self) -> Graphics | None:
         """How pixels are drawn now; None for characters: they have fewer bytes on a slow link, and need no colours."""
-        picture_mode = picture_mode_of(self.app)
+        picture_mode = find_picture_mode(self.app)
         is_coarse = self.app.no_color or (picture_mode.is_slow() and not self._sharpness.is_still)
         return None if is_coarse else picture_mode.graphics
 
@@ -94,8 +94,8 @@ class PlotView(LinesView):
             self._show(lines, pictures, graphics)
         else:
             self.set_lines(lines)
-            self._sharpness.changed(
-                is_coarse=picture_mode_of(self.app).graphics is not None and not self.app.no_color
+            self._sharpness.record_change(
+                is_coarse=find_picture_mode(self.app).graphics is not None and not self.app.no_color
             )
 
     def _show(
@@ -119,16 +119,20 @@ class PlotView(LinesView):
                 self._text_strips[row] = None
         if runs:
             self.refresh(*[Region(col, row, length, 1) for row, col, length in runs])
-        self._sharpness.changed()
+        self._sharpness.record_change()
 
     def _image(self, plots: Sequence[tuple[int, int, Plot]], cell: tuple[int, int]) -> Pixels:
         (width, height), size = cell, self.size
         image: Pixels = np.zeros((size.height * height, size.width * width, 3), np.uint8)
-        theme = picture_mode_of(self.app).theme
+        theme = find_picture_mode(self.app).theme
         shades = tuple(
-            theme.rgb(rgb) if theme else rgb for shade in SHADES if (rgb := rgb_of(shade.bgcolor))
+            theme.rgb(rgb) if theme else rgb
+            for shade in SHADES
+            if (rgb := convert_color(shade.bgcolor))
         )
-        inks = PlotInks(self.ground_rgb, self._ink(rgb_of(AXIS.color)), self._ink(_CURSOR), shades)
+        inks = PlotInks(
+            self.ground_rgb, self._ink(convert_color(AXIS.color)), self._ink(_CURSOR), shades
+        )
         for top, left, plot in plots:
             rows, cols = plot.size
             curves = tuple(replace(curve, rgb=self._ink(curve.rgb)) for curve in plot.curves)
@@ -137,9 +141,9 @@ class PlotView(LinesView):
         return image
 
     def _ink(self, own: Rgb | None) -> Rgb:
-        theme = picture_mode_of(self.app).theme
+        theme = find_picture_mode(self.app).theme
         rgb = own or _CURSOR
-        return theme.text_rgb(rgb) if theme else rgb
+        return theme.choose_text_rgb(rgb) if theme else rgb
 
     def set_lines(self, lines: Lines) -> None:
         """Show lines of characters."""
@@ -147,7 +151,7 @@ class PlotView(LinesView):
             self._tiles, self._spans = None, {}
             super().redraw()
         super().set_lines(lines)
-        self._sharpness.changed()
+        self._sharpness.record_change()
 
     def _refine(self) -> bool:
         self._draw_again()
@@ -172,4 +176,4 @@ class PlotView(LinesView):
     def _spare_line(self, y: int) -> Strip:
         if self._spare is None:
             self._spare = self._spare_lines()
-        return self.strip_of(self._spare[y] if y < len(self._spare) else [])
+        return self.draw_strip(self._spare[y] if y < len(self._spare) else [])

@@ -41,7 +41,7 @@ def look(context: ActionContext) -> None:
 def note(context: ActionContext, recording: Recording, found: FoundReasons) -> None:
     """Keep the reasons of a run, and let the footer name the key."""
     context.reasons.take(recording, *found)
-    context.app.situation_changed()
+    context.app.handle_situation_change()
 
 
 def find(

@@ -11,8 +11,8 @@ from textual.app import App
 
 from tuisim.logs.export import check_place
 from tuisim.pictures.charts.files import write_whole
-from tuisim.terminal.cell_image import CellGrid, image_of_cells, row_of_cells, svg_of_cells
-from tuisim.terminal.textual_internals import screen_strips
+from tuisim.terminal.cell_image import CellGrid, draw_cells, draw_cells_svg, split_cells
+from tuisim.terminal.textual_internals import render_screen
 
 
 def screen_cells(app: App[Any]) -> CellGrid:
@@ -20,9 +20,9 @@ def screen_cells(app: App[Any]) -> CellGrid:
     width = app.screen.size.width
     runs = (
         [(text, style) for text, style, control in strip if not control]
-        for strip in screen_strips(app)
+        for strip in render_screen(app)
     )
-    return [row_of_cells(row, width) for row in runs]
+    return [split_cells(row, width) for row in runs]
 
 
 def save_screenshot(grid: CellGrid, folder: Path) -> tuple[Path, Path]:
@@ -38,7 +38,7 @@ def save_screenshot(grid: CellGrid, folder: Path) -> tuple[Path, Path]:
     for path in (svg, png):
         check_place(path)
     content = io.BytesIO()
-    image_of_cells(grid).save(content, "png", optimize=True)
-    write_whole(svg, svg_of_cells(grid, "tuisim").encode())
+    draw_cells(grid).save(content, "png", optimize=True)
+    write_whole(svg, draw_cells_svg(grid, "tuisim").encode())
     write_whole(png, content.getvalue())
     return svg, png

@@ -35,7 +35,12 @@ from tuisim.pictures.charts.traces import TRACE_COLORS
 from tuisim.settings.user_config import CELL_SET, SETTINGS, THEME, load_config
 from tuisim.terminal.app import ActionAsked, BufferedApp, offer
 from tuisim.terminal.cells import PALETTE_256
-from tuisim.terminal.picture_mode import PictureMode, choose_colors, color_depth, picture_mode_for
+from tuisim.terminal.picture_mode import (
+    PictureMode,
+    choose_colors,
+    choose_picture_mode,
+    find_color_depth,
+)
 from tuisim.terminal.picture_options import NO_PIXELS
 from tuisim.terminal.textual_internals import SUPPORTED, Codes, is_leaving
 
@@ -113,7 +118,7 @@ class TerminalApp(BufferedApp):
 
     def on_mount(self) -> None:
         self.theme_changed_signal.subscribe(self, self._theme_changed)
-        self.set_class(color_depth(self) < PALETTE_256 or bool(self.no_color), "-few-colors")
+        self.set_class(find_color_depth(self) < PALETTE_256 or bool(self.no_color), "-few-colors")
 
     def _take_theme(self) -> None:
         is_own = self.theme == OWN_THEME
@@ -213,7 +218,7 @@ class TerminalApp(BufferedApp):
     async def give_waiting_keys(self) -> None:
         """Pass the keys that were pressed while a screen was being opened to the topmost screen."""
         self.notices.follow_screen()
-        await self._input.go_on()
+        await self._input.release_inputs()
 
     @on(ClosesOnce.Changed)
     @on(events.DescendantFocus)
@@ -337,5 +342,5 @@ def picture_mode_at_start(cells: str | None, colors: str) -> PictureMode:
     """
     most_colors = choose_colors(colors)
     return replace(
-        picture_mode_for(cells, str(load_config().value(CELL_SET))), most_colors=most_colors
+        choose_picture_mode(cells, str(load_config().value(CELL_SET))), most_colors=most_colors
     )

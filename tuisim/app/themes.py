@@ -20,7 +20,7 @@ from textual.theme import BUILTIN_THEMES, Theme
 
 from tuisim.base import palette
 from tuisim.terminal.pixels import Rgb
-from tuisim.terminal.text_runs import rgb_of
+from tuisim.terminal.text_runs import convert_color
 
 OWN_THEME = "textual-dark"
 """Under it the app's colours are as they are."""
@@ -105,7 +105,7 @@ class ThemeColors(LineFilter):
         """Return the colour in place of one of the app's own; any other is returned as it is."""
         return self._replaced.get(own, own)
 
-    def text_rgb(self, own: Rgb) -> Rgb:
+    def choose_text_rgb(self, own: Rgb) -> Rgb:
         """Return the colour of text or lines in one of the app's own colours: it can be read on the background."""
         new = self.rgb(own)
         return (
@@ -135,7 +135,7 @@ class ThemeColors(LineFilter):
         return round(255 * red), round(255 * green), round(255 * blue)
 
     def _themed(self, style: Style) -> Style:
-        fore, back = rgb_of(style.color), rgb_of(style.bgcolor)
+        fore, back = convert_color(style.color), convert_color(style.bgcolor)
         # No own background is white: a white one shows what a sensor sees.
         new_fore, new_back = (
             fore and self.rgb(fore),

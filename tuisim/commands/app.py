@@ -191,9 +191,9 @@ def has_terminal() -> bool:
 
 
 def _in_browser() -> bool:
-    from tuisim.terminal.probe import in_browser
+    from tuisim.terminal.probe import is_in_browser
 
-    return in_browser()
+    return is_in_browser()
 
 
 def _goals(word: str | None) -> GoalsFile | None:

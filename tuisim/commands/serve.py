@@ -98,13 +98,15 @@ def serve(**given: Any) -> int:
         hint = "pip install -e '.[web]' in the clone of tuisim"
         raise ConfigError("needs textual-serve", hint, key="serve") from error
     from tuisim.web.gate import Gate
-    from tuisim.web.session import app_command
+    from tuisim.web.session import build_app_command
     from tuisim.web.visit import VisitLimits
 
     idle_s = float("inf") if arguments.idle is None else 60 * arguments.idle
     limits = server.ServerLimits(arguments.max_visitors, VisitLimits(idle_s, 60 * arguments.keep))
     gate = Gate(arguments.host)
-    visitors = server.Server(app_command(drop_options(_SERVER)), gate, limits, echo_error_lines)
+    visitors = server.Server(
+        build_app_command(drop_options(_SERVER)), gate, limits, echo_error_lines
+    )
     return server.serve(
         visitors, arguments.host, arguments.port, lambda port: _announce(gate, port)
     )

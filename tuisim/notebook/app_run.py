@@ -39,26 +39,26 @@ class AppRun:
         self._is_interrupted = is_interrupted
         self.ended: Ended | None = None
         self.wheels = Wheels()
-        self.run_id = str(self._next("run", "problem")["id"])
+        self.run_id = str(self._wait_for_news("run", "problem")["id"])
         self.output = RunStore().load_run(self.run_id).output
 
-    def _next(self, *kinds: str) -> Mapping[str, Any]:
+    def _wait_for_news(self, *kinds: str) -> Mapping[str, Any]:
         """Wait until the app tells one of these, but not for ever."""
         until_s = time.monotonic() + _START_WITHIN_S
         while self._view.is_alive and time.monotonic() < until_s:
             if self._is_interrupted():
                 self._view.ask("stop")
                 raise HostError("interrupted before the app had begun")
-            told = self._told(0.2)
-            if told.get("what") == "problem" and "problem" in kinds:
-                raise HostError(str(told["text"]))
-            if told.get("what") in kinds:
-                return told
+            news = self._receive(0.2)
+            if news.get("what") == "problem" and "problem" in kinds:
+                raise HostError(str(news["text"]))
+            if news.get("what") in kinds:
+                return news
         raise HostError(
             "the app in the cell does not answer", "%sim_app --off runs cells without it"
         )
 
-    def _told(self, timeout_s: float) -> Mapping[str, Any]:
+    def _receive(self, timeout_s: float) -> Mapping[str, Any]:
         try:
             return (
                 self._view.told.get(timeout=timeout_s)
@@ -71,9 +71,9 @@ class AppRun:
     def wait_for_event(self, timeout_s: float) -> None:
         """Wait until the run has ended, or the time is over."""
         if self.ended is None:
-            told = self._told(timeout_s)
+            news = self._receive(timeout_s)
             if (
-                told.get("what") == "ended" and told.get("id") == self.run_id
+                news.get("what") == "ended" and news.get("id") == self.run_id
             ) or not self._view.is_alive:
                 self.ended = self.stored().end
 

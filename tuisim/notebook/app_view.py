@@ -17,9 +17,9 @@ from typing import Any
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import HostError
 from tuisim.base.source import Program
-from tuisim.web.gate import Gate, new_token
+from tuisim.web.gate import Gate, create_token
 from tuisim.web.server import BackgroundServer, Server, ServerLimits
-from tuisim.web.session import app_command
+from tuisim.web.session import build_app_command
 from tuisim.web.visit import Visit, VisitLimits
 
 _START_WITHIN_S = 60.0
@@ -54,22 +54,22 @@ class AppView:
         limits = ServerLimits(1, VisitLimits(keep_s=float("inf"), keep_unused_s=float("inf")))
         self._folder = TemporaryDirectory(prefix="tuisim-")
         self._find_state = find_state
-        command = app_command(words, self._folder.name)
+        command = build_app_command(words, self._folder.name)
         self._server = BackgroundServer(Server(command, gate, limits))
         self._is_ready, self._lock = Event(), Lock()
         self.begun: SimpleQueue[str] = SimpleQueue()
         """The ids of the runs that have begun in the app."""
         self.told: SimpleQueue[Mapping[str, Any]] = SimpleQueue()
         """What the app has told: `run` and `ended` with the `id` of a run, `problem` with its `text`."""
-        visit = self._server.call(self._server.server.begin(*_SIZE_AT_FIRST, told=self._take))
+        visit = self._server.call(self._server.server.begin(*_SIZE_AT_FIRST, on_message=self._take))
         assert visit is not None
         self._visit: Visit = visit
 
-    def renew_address(self, origins: tuple[str, ...]) -> dict[str, Any]:
+    def create_address(self, origins: tuple[str, ...]) -> dict[str, Any]:
         """Return the port and a new token: whoever has had another one cannot open the app again."""
         server = self._server.server
         frames = dict.fromkeys((*server.gate.frames, *origins))
-        server.gate = replace(server.gate, token=new_token(), frames=tuple(frames))
+        server.gate = replace(server.gate, token=create_token(), frames=tuple(frames))
         return {"port": self._server.port, "token": server.gate.token}
 
     @property
@@ -123,23 +123,23 @@ class AppView:
         with self._lock:
             is_told = self._is_ready.is_set() and self.is_alive
         if is_told:
-            for asked in _ask_state(self._find_state()):
-                self.ask(**asked)
+            for request in _ask_state(self._find_state()):
+                self.ask(**request)
 
-    async def _ask_first(self, asked: list[dict[str, Any]]) -> None:
-        for each in asked:
+    async def _ask_first(self, requests: list[dict[str, Any]]) -> None:
+        for each in requests:
             await self._visit.ask(each)
 
-    def _take(self, told: Mapping[str, Any]) -> None:
-        match told:
+    def _take(self, news: Mapping[str, Any]) -> None:
+        match news:
             case {"what": "ready"}:
                 with self._lock:
-                    asked = [*_ask_state(self._find_state())]
-                    self._asking = asyncio.get_running_loop().create_task(self._ask_first(asked))
+                    requests = [*_ask_state(self._find_state())]
+                    self._asking = asyncio.get_running_loop().create_task(self._ask_first(requests))
                     self._is_ready.set()
             case {"what": "run", "id": str(run_id)}:
                 self.begun.put(run_id)
-        self.told.put(told)
+        self.told.put(news)
 
     def close(self) -> None:
         """End the app and its server."""

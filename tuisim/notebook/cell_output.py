@@ -12,21 +12,21 @@ from IPython.display import DisplayHandle, display
 
 from tuisim.base.errors import counted
 from tuisim.engine.runs.records import OutputRow, Stream, line_of
-from tuisim.notebook.image_log import IMAGE_DATA, asked_side
+from tuisim.notebook.image_log import IMAGE_DATA, parse_side
 
 FIRST_LINES, LAST_LINES = 20, 5
 """What of a long output is always shown."""
 FEWEST_FOLDED = 15
 """Fewer lines are not worth a click."""
-MOST_FOLDED_LINES = 20_000
+MAX_FOLDED_LINES = 20_000
 """A page with more lines is slow."""
 _REDRAW_S = 0.5
 _SHOWN = {Stream.STDOUT, Stream.STDERR, Stream.SPEECH}
 
 
-def shown_text(row: OutputRow) -> str:
+def format_row(row: OutputRow) -> str:
     """Return the line that a cell shows for a row."""
-    if row.text.startswith(IMAGE_DATA) and (side := asked_side(row)):
+    if row.text.startswith(IMAGE_DATA) and (side := parse_side(row)):
         return f"{side} image data logged..."
     return line_of(row)
 
@@ -50,10 +50,10 @@ class CellOutput:
 
     def show(self, rows: Sequence[OutputRow]) -> None:
         """Show rows in order, batched by stream; errors are never folded."""
-        shown = _SHOWN - {Stream.SPEECH} if self._quiet else _SHOWN
-        printed = (row for row in rows if row.stream in shown)
+        streams = _SHOWN - {Stream.SPEECH} if self._quiet else _SHOWN
+        printed = (row for row in rows if row.stream in streams)
         for is_error, group in groupby(printed, key=lambda row: row.stream == Stream.STDERR):
-            lines = [line for row in group for line in shown_text(row).split("\n")]
+            lines = [line for row in group for line in format_row(row).split("\n")]
             if is_error or not self._folds:
                 print("\n".join(lines), file=sys.stderr if is_error else sys.stdout)
             else:
@@ -66,7 +66,7 @@ class CellOutput:
             self._printed += len(at_once)
         if rest := lines[len(at_once) :]:
             self._count += len(rest)
-            self._folded = (self._folded + rest)[-MOST_FOLDED_LINES:]
+            self._folded = (self._folded + rest)[-MAX_FOLDED_LINES:]
             if time.monotonic() >= self._due_s:
                 self.finish()
                 self._due_s = time.monotonic() + _REDRAW_S
@@ -75,7 +75,7 @@ class CellOutput:
         """Show what is folded now."""
         if not self._folded:
             return
-        bundle = folded(self._folded, self._count)
+        bundle = fold_lines(self._folded, self._count)
         if self._handle is None:
             # A kernel sends printed text with a delay, but displays immediately.
             sys.stdout.flush()
@@ -84,24 +84,24 @@ class CellOutput:
             self._handle.update(bundle, raw=True)
 
 
-def folded(lines: Sequence[str], count: int) -> dict[str, str]:
+def fold_lines(lines: Sequence[str], count: int) -> dict[str, str]:
     """Return lines as a display: the last ones, and all others on a click.
 
     Args:
-        lines: The lines, at most `MOST_FOLDED_LINES`.
+        lines: The lines, at most `MAX_FOLDED_LINES`.
         count: How many there are, with those that are not among them any more.
     """
     hidden, last = lines[:-LAST_LINES], lines[-LAST_LINES:]
     if len(hidden) < FEWEST_FOLDED:
-        return {"text/plain": "\n".join(lines), "text/html": _pre(lines)}
+        return {"text/plain": "\n".join(lines), "text/html": _format_pre(lines)}
     title = f"… {counted(count - len(last), 'more line')}"
     lost = count - len(lines)
     note = f"<p>The first {counted(lost, 'line')} of these are in the log only.</p>" if lost else ""
-    fold = f"<details><summary>{title}</summary>{note}{_pre(hidden)}</details>"
-    return {"text/plain": "\n".join([title, *last]), "text/html": f"{fold}{_pre(last)}"}
+    fold = f"<details><summary>{title}</summary>{note}{_format_pre(hidden)}</details>"
+    return {"text/plain": "\n".join([title, *last]), "text/html": f"{fold}{_format_pre(last)}"}
 
 
-def _pre(lines: Sequence[str]) -> str:
+def _format_pre(lines: Sequence[str]) -> str:
     # As large as what JupyterLab shows of printed text.
     style = "margin: 0; font-size: var(--jp-code-font-size, inherit)"
     return f'<pre style="{style}">{html.escape(chr(10).join(lines))}</pre>'

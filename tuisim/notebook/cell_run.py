@@ -30,8 +30,8 @@ from tuisim.engine.runs.store import RunStore
 from tuisim.notebook.app_run import AppRun
 from tuisim.notebook.cell_output import CellOutput
 from tuisim.notebook.display import Scene, Stage, start_record
-from tuisim.notebook.image_log import SENT_DATA, ArrayReader, ImageLog, asked_side
-from tuisim.notebook.old_formats import sent_text
+from tuisim.notebook.image_log import SENT_DATA, ArrayReader, ImageLog, parse_side
+from tuisim.notebook.old_formats import format_sent
 from tuisim.pictures.scene.pen import Piece, build_pen_trace
 from tuisim.programs.plugged_words import list_parts
 
@@ -55,7 +55,7 @@ BYTES_IN_A_HURRY = 1 << 20
 """Output processed at once."""
 
 TEXT_PREFIX = "PY::"
-FOR_THE_NOTEBOOK = (TEXT_PREFIX, SENT_DATA)
+NOTEBOOK_PREFIXES = (TEXT_PREFIX, SENT_DATA)
 """Prefixes of lines for the responder."""
 
 JSON_PREFIX = "JSON::"
@@ -147,7 +147,7 @@ def run_cell(
         try:
             _Follower(cell, handle, screen, interruption, run).follow()
         except BaseException:  # whatever a responder raises, the program must not outlive the cell
-            cell.images.incomplete(run)
+            cell.images.mark_incomplete(run)
             handle.stop()
             handle.wait(STOP_WAIT_S)
             raise
@@ -157,11 +157,11 @@ def run_cell(
             begun(done, handle.wheels)
             # A user who has interrupted a flood of lines does not wait until all are read.
             hurry = interruption.count > 0
-            screen.draw(end_text(done, hurry=hurry), ROWS_A_DRAWING if hurry else None)
+            screen.draw(describe_end(done, hurry=hurry), ROWS_A_DRAWING if hurry else None)
     return done
 
 
-def end_text(run: StoredRun, *, hurry: bool = False) -> str:
+def describe_end(run: StoredRun, *, hurry: bool = False) -> str:
     """Return a status line of a finished run: state, simulated time, samples.
 
     In a hurry, the number of samples is omitted if counting them would be slow.
@@ -233,7 +233,7 @@ class _Follower:
         # What the notebook's functions print stands among the lines that they hear.
         folds = screen.redraws and not cell.listener.answers
         self._printed = CellOutput(folds=folds, quiet=cell.quiet)
-        self._said: list[Any] = []
+        self._answers: list[Any] = []
         """Answers of the responder that have not been sent to the program."""
         self._stopping = False
 
@@ -254,34 +254,34 @@ class _Follower:
             more = self._relay()
             # An answer must take into account everything printed before the question.
             if not more and not interruption.count:
-                self._reply()
+                self._send_answers()
             if not interruption.count:
                 self._screen.draw_if_due()
         self._finish()
 
     def _relay(self) -> bool:
         """Show new output, pass lines to the responder, and return whether there is more."""
-        rows, shown = self._handle.output.new_rows(ROWS_AT_ONCE), 0
-        for at, row in enumerate(rows, 1):
-            asked, addressed = asked_side(row), self._is_addressed(row)
-            if asked or addressed:
+        rows, start = self._handle.output.new_rows(ROWS_AT_ONCE), 0
+        for stop, row in enumerate(rows, 1):
+            side, addressed = parse_side(row), self._is_addressed(row)
+            if side or addressed:
                 # What the notebook's functions print belongs below the line that they hear.
-                self._printed.show(rows[shown:at])
-                shown = at
-            if asked:
+                self._printed.show(rows[start:stop])
+                start = stop
+            if side:
                 self._log_arrays(row)
             if addressed:
                 self._hear(row)
-        self._printed.show(rows[shown:])
+        self._printed.show(rows[start:])
         return len(rows) == ROWS_AT_ONCE
 
     def _is_addressed(self, row: OutputRow) -> bool:
         listens = self._cell.listener.responder is not None
-        return listens and row.stream == Stream.STDOUT and row.text.startswith(FOR_THE_NOTEBOOK)
+        return listens and row.stream == Stream.STDOUT and row.text.startswith(NOTEBOOK_PREFIXES)
 
     def _log_arrays(self, row: OutputRow) -> None:
         handler = self._cell.listener.image_handler
-        for array in self._arrays.arrays(row):
+        for array in self._arrays.read_arrays(row):
             self._cell.images.add(self._run, array)
             if handler is not None and not array.sent:
                 self._take_text(
@@ -293,9 +293,13 @@ class _Follower:
         assert listener.responder is not None
         if not listener.in_texts:
             answer = call(partial(listener.responder, row.text.removeprefix(TEXT_PREFIX)))
-            self._said += [] if answer is None else [_message("roboSim.responder", answer)]
+            self._answers += [] if answer is None else [_build_message("roboSim.responder", answer)]
             return
-        heard = sent_text(self._arrays.seen(row)) if row.text.startswith(SENT_DATA) else row.text
+        heard = (
+            format_sent(self._arrays.read_pixels(row))
+            if row.text.startswith(SENT_DATA)
+            else row.text
+        )
         self._take_text("roboSim.pyresponder", call(partial(listener.responder, heard)))
 
     def _take_text(self, who: str, answer: object) -> None:
@@ -304,13 +308,13 @@ class _Follower:
             return
         print(f"{RESPONSE_HEADING}\n{answer}")
         if isinstance(answer, str) and answer.startswith(JSON_PREFIX):
-            self._said.append(_parsed(who, answer.removeprefix(JSON_PREFIX)))
+            self._answers.append(_parse_answer(who, answer.removeprefix(JSON_PREFIX)))
 
-    def _reply(self) -> None:
+    def _send_answers(self) -> None:
         handle = self._handle
         if handle.waiting_for_reply:
-            said, self._said = self._said, []
-            handle.send(Reply(tuple(said)))
+            answers, self._answers = self._answers, []
+            handle.send(Reply(tuple(answers)))
         prompt = handle.waiting_for_input
         if prompt is not None:
             answer = self._interruption.call(partial(_ask, prompt))
@@ -318,12 +322,12 @@ class _Follower:
                 handle.send(Answer(answer, at_once=self._cell.speed == 0))
 
     def _finish(self) -> None:
-        shown = 0
-        while not (self._interruption.count and shown > ROWS_AFTER_INTERRUPT) and self._relay():
-            shown += ROWS_AT_ONCE
+        row_count = 0
+        while not (self._interruption.count and row_count > ROWS_AFTER_INTERRUPT) and self._relay():
+            row_count += ROWS_AT_ONCE
         self._printed.finish()
         if self._handle.output.new_rows(1):
-            self._cell.images.incomplete(self._run)
+            self._cell.images.mark_incomplete(self._run)
             print("… and more lines, which are in the log", file=sys.stderr)
         ended = self._handle.ended
         if (
@@ -358,7 +362,7 @@ class _Screen:
     def draw(self, status: str, most_rows: int | None = ROWS_A_DRAWING) -> None:
         """Draw the current state of the run; search at most `most_rows` new lines for samples, None for all."""
         cell, run = self._cell, self._run
-        if self._stage.shows("chart"):
+        if self._stage.is_enabled("chart"):
             for row, after in islice(run.output.rows_from(self._position), most_rows):
                 self._samples += samples_of((row,))
                 self._position = after
@@ -369,14 +373,14 @@ class _Screen:
         )
 
 
-def _plain(value: Any) -> Any:
+def _convert_plain(value: Any) -> Any:
     """Convert numbers and arrays of other libraries to Python types."""
     if hasattr(value, "tolist"):
         return value.tolist()
     raise TypeError(f"a {type(value).__name__}")
 
 
-def _parsed(who: str, text: str) -> Any:
+def _parse_answer(who: str, text: str) -> Any:
     try:
         return json.loads(text)
     except (ValueError, RecursionError) as error:
@@ -385,9 +389,9 @@ def _parsed(who: str, text: str) -> Any:
         ) from None
 
 
-def _message(who: str, answer: object) -> Any:
+def _build_message(who: str, answer: object) -> Any:
     try:
-        return json.loads(json.dumps(answer, default=_plain))
+        return json.loads(json.dumps(answer, default=_convert_plain))
     except (TypeError, ValueError, RecursionError) as error:
         hint = "text, numbers, True, None, lists and dicts; None means no answer"
         raise ConfigError(f"the program cannot get {error}", hint, key=who) from None

@@ -43,7 +43,7 @@ _UNITS = (("_mm", " ", "mm"), ("_dps", " ", "°/s"), ("_deg", "", "°"))
 Row = tuple[str, str]
 
 
-def picture_bundle(picture: Any, name: str) -> dict[str, Any]:
+def bundle_picture(picture: Any, name: str) -> dict[str, Any]:
     """Return a Pillow image as a displayable object."""
     return {
         "image/png": encode_png(picture),
@@ -51,7 +51,7 @@ def picture_bundle(picture: Any, name: str) -> dict[str, Any]:
     }
 
 
-def table_bundle(title: str, rows: Sequence[Row], *, keep_blanks: bool = False) -> dict[str, Any]:
+def build_table(title: str, rows: Sequence[Row], *, keep_blanks: bool = False) -> dict[str, Any]:
     """Return rows of name and value as a displayable table.
 
     Blanks in the values, as in a program, are preserved only on request; a browser collapses them.
@@ -71,17 +71,19 @@ def table_bundle(title: str, rows: Sequence[Row], *, keep_blanks: bool = False) 
     }
 
 
-def _reading(name: str, values: dict[str, float], spec: RunSpec) -> str:
+def _format_reading(name: str, values: dict[str, float], spec: RunSpec) -> str:
     if f"{name}_red" in values:
         red, green, blue = (values[f"{name}_{channel}"] for channel in ("red", "green", "blue"))
         seen = ColorReading(red, green, blue, spec.profile.brick_colors)
         return f"red {seen.red_percent:.1f} %, mean {seen.mean_percent:.1f} %, rgb {seen.rgb}, {seen.name}"
     return ", ".join(
-        f"{value:g}{_unit(column)}" for column, value in values.items() if column.startswith(name)
+        f"{value:g}{_find_unit(column)}"
+        for column, value in values.items()
+        if column.startswith(name)
     )
 
 
-def _unit(column: str) -> str:
+def _find_unit(column: str) -> str:
     return next((f"{space}{unit}" for end, space, unit in _UNITS if column.endswith(end)), "")
 
 
@@ -115,7 +117,7 @@ def start_record(spec: RunSpec) -> TickRecord:
     )
 
 
-def instrumentation(scene: Scene) -> list[Row]:
+def list_instruments(scene: Scene) -> list[Row]:
     """Return motors, sensors and pose of a scene."""
     spec, record, field = scene.spec, scene.last, scene.open_field()
     instant = instant_of(record, spec, spec.world.noise)
@@ -126,16 +128,16 @@ def instrumentation(scene: Scene) -> list[Row]:
     for sensor in spec.robot.sensors:
         values = measure_sensors([sensor], instant, spec, field)
         name = getattr(sensor, "name", "gyro")
-        shown = (
+        columns = (
             f"Sensor{_LEFT_RIGHT.index(name) + 1} ({name})"
             if name in _LEFT_RIGHT
             else name.capitalize()
         )
-        rows.append((shown, _reading(name, values, scene.spec)))
+        rows.append((columns, _format_reading(name, values, scene.spec)))
     return [*rows, ("Clock", f"{record.tick / spec.profile.tick_hz:.2f} s")]
 
 
-def _positioning(scene: Scene) -> list[Row]:
+def _list_positions(scene: Scene) -> list[Row]:
     pose = scene.last.pose
     return [
         ("x", f"{pose.x_mm:.1f} mm"),
@@ -144,7 +146,7 @@ def _positioning(scene: Scene) -> list[Row]:
     ]
 
 
-def _settings(scene: Scene) -> list[Row]:
+def _list_settings(scene: Scene) -> list[Row]:
     spec = scene.spec
     world, names = spec.world, (spec.robot.name, spec.profile.name)
     what = ("robot", "profile", "mat", "obstacles", "seed")
@@ -156,12 +158,12 @@ def _settings(scene: Scene) -> list[Row]:
 
 
 _TABLES: Mapping[str, Callable[[Scene], list[Row]]] = {
-    "instrumentation": instrumentation,
-    "positioning": _positioning,
+    "instrumentation": list_instruments,
+    "positioning": _list_positions,
     "noise": lambda scene: [
         (name, str(level)) for name, level in asdict(scene.spec.world.noise).items()
     ],
-    "settings": _settings,
+    "settings": _list_settings,
     "code": lambda scene: [
         (str(number), line)
         for number, line in enumerate(source_lines(scene.program.text if scene.program else ""), 1)
@@ -205,7 +207,7 @@ class Stage:
             if handle is not None:
                 self._handles[panel] = handle
 
-    def shows(self, panel: str) -> bool:
+    def is_enabled(self, panel: str) -> bool:
         """Return whether a panel is enabled in the cell."""
         return panel in self._settings["panels_on"]
 
@@ -218,24 +220,24 @@ class Stage:
         if "world" not in off:
             mat, pose, rays = mat_pixels(scene.files), scene.last.pose, self._settings["rays"]
             picture = draw_world(scene.spec, mat, pose, scene.traces, rays=rays)
-            self._put("world", picture_bundle(picture, "world"))
+            self._put("world", bundle_picture(picture, "world"))
         for name, caption in self._captions.items():
             if name not in self._handles:
                 self._put(name, caption)
         if "arrays" in on:
-            self._put("arrays", picture_bundle(_draw_arrays(scene), "sensor arrays"))
+            self._put("arrays", bundle_picture(_draw_arrays(scene), "sensor arrays"))
         if "chart" in on:
             drawing = lay_out_chart(
                 build_sample_chart(scene.samples, CHART_SIZE[0]), *CHART_SIZE, titled=False
             )
-            self._put("chart", picture_bundle(draw_image(drawing), "chart"))
+            self._put("chart", bundle_picture(draw_image(drawing), "chart"))
         if "output" in on and scene.printed is not None:
             self._put("output", {"text/plain": "\n".join(scene.printed) or "nothing was printed"})
         for panel, rows in _TABLES.items():
             if panel in on:
                 self._put(
                     panel,
-                    table_bundle(panel.capitalize(), rows(scene), keep_blanks=panel == "code"),
+                    build_table(panel.capitalize(), rows(scene), keep_blanks=panel == "code"),
                 )
         if "controls" not in off:
             self._put("controls", {"text/plain": status})

@@ -41,9 +41,9 @@ def get_image_data_from_datalog(log: Iterable[StoredRun]) -> pd.DataFrame:
     Raises:
         LogError: a recording is damaged, or its mat is gone.
     """
-    from tuisim.notebook.image_log import logged_arrays
+    from tuisim.notebook.image_log import list_logged_arrays
 
-    return image_frame(logged_arrays(run) for run in log)
+    return image_frame(list_logged_arrays(run) for run in log)
 
 
 def image_frame(arrays: Iterable[Iterable[LoggedArray]]) -> pd.DataFrame:

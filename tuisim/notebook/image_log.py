@@ -35,18 +35,18 @@ class LoggedArray:
     """Whether the line was for a responder, which the old simulator did not log."""
 
 
-def asked_side(row: OutputRow) -> str:
+def parse_side(row: OutputRow) -> str:
     """Return the side of the pixel arrays that a line asks for: left, right or both; empty if it asks for none."""
     # Most lines are told apart without the slower search.
     if row.stream != Stream.STDOUT or not row.text.startswith((IMAGE_DATA, SENT_DATA)):
         return ""
-    found = _LINE.fullmatch(row.text)
-    if found is None:
+    match = _LINE.fullmatch(row.text)
+    if match is None:
         return ""
-    return found[2] or ("both" if found[1] == SENT_DATA else "")
+    return match[2] or ("both" if match[1] == SENT_DATA else "")
 
 
-def arrays_at(
+def read_arrays(
     spec: RunSpec, record: TickRecord, noise: NoiseSpec, field: Field
 ) -> list[tuple[ColorSensorSpec, bytes]]:
     """Return the pixels under the colour sensors at a tick: RGB bytes, row by row."""
@@ -59,9 +59,9 @@ def arrays_at(
     ]
 
 
-def with_alpha(rgb: bytes) -> bytes:
+def add_alpha(rgb: bytes) -> bytes:
     """Return RGB bytes as RGBA, all opaque."""
-    return b"".join(rgb[at : at + 3] + b"\xff" for at in range(0, len(rgb), 3))
+    return b"".join(rgb[offset : offset + 3] + b"\xff" for offset in range(0, len(rgb), 3))
 
 
 class ArrayReader:
@@ -71,21 +71,21 @@ class ArrayReader:
         self._run = run
         self._field: Field | None = None
 
-    def arrays(self, row: OutputRow) -> list[LoggedArray]:
+    def read_arrays(self, row: OutputRow) -> list[LoggedArray]:
         """Return the arrays that a line logs.
 
         Raises:
             LogError: the recording is damaged, or its mat is gone.
         """
-        side = asked_side(row)
+        side = parse_side(row)
         sent = row.text.startswith(SENT_DATA)
         return [
             LoggedArray(name, rgba, row.time_ns, sent)
-            for name, rgba in (self.seen(row) if side else {}).items()
+            for name, rgba in (self.read_pixels(row) if side else {}).items()
             if side in (name, "both")
         ]
 
-    def seen(self, row: OutputRow) -> dict[str, bytes]:
+    def read_pixels(self, row: OutputRow) -> dict[str, bytes]:
         """Return RGBA bytes by sensor, from the tick of a row; empty if that is lost.
 
         Raises:
@@ -98,18 +98,18 @@ class ArrayReader:
             return {}
         self._field = self._field or open_mat(run)
         record = run.telemetry.record(row.tick)
-        found = arrays_at(run.spec, record, run.noise_at(record), self._field)
-        return {sensor.name: with_alpha(pixels) for sensor, pixels in found}
+        arrays = read_arrays(run.spec, record, run.noise_at(record), self._field)
+        return {sensor.name: add_alpha(pixels) for sensor, pixels in arrays}
 
 
-def logged_arrays(run: StoredRun) -> list[LoggedArray]:
+def list_logged_arrays(run: StoredRun) -> list[LoggedArray]:
     """Return all pixel arrays that a run has logged.
 
     Raises:
         LogError: the recording is damaged, or its mat is gone.
     """
     reader = ArrayReader(run)
-    return [array for row in run.output.rows() for array in reader.arrays(row)]
+    return [array for row in run.output.rows() for array in reader.read_arrays(row)]
 
 
 class ImageLog:
@@ -130,7 +130,7 @@ class ImageLog:
         """Add an array of a run that has begun."""
         self._arrays[run.id].append(array)
 
-    def incomplete(self, run: StoredRun) -> None:
+    def mark_incomplete(self, run: StoredRun) -> None:
         """Note that not all lines of a run were heard: its arrays are computed when they are asked for."""
         self._arrays.pop(run.id, None)
 
@@ -139,15 +139,15 @@ class ImageLog:
         for arrays in self._arrays.values():
             arrays.clear()
 
-    def of(self, runs: Iterable[StoredRun]) -> list[list[LoggedArray]]:
+    def list_arrays(self, runs: Iterable[StoredRun]) -> list[list[LoggedArray]]:
         """Return the arrays of each run.
 
         Raises:
             LogError: a recording is damaged, or its mat is gone.
         """
-        return [self._of_run(run) for run in runs]
+        return [self._list_run_arrays(run) for run in runs]
 
-    def _of_run(self, run: StoredRun) -> list[LoggedArray]:
+    def _list_run_arrays(self, run: StoredRun) -> list[LoggedArray]:
         if run.id not in self._arrays:
-            self._arrays[run.id] = logged_arrays(run)
+            self._arrays[run.id] = list_logged_arrays(run)
         return self._arrays[run.id]

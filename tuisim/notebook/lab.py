@@ -126,13 +126,13 @@ class Lab:
 
     def images(self) -> pd.DataFrame:
         """Return the pixel arrays that were logged since the log was cleared, as numbers; see `eds`."""
-        return eds.image_frame(self._images.of(self.results_log))
+        return eds.image_frame(self._images.list_arrays(self.results_log))
 
     def logged_arrays(self) -> list[list[LoggedArray]]:
         """Return the pixel arrays that `raw_image_data` has, run by run."""
         return [
             [array for array in of_run if not array.sent]
-            for of_run in self._images.of(self.results_log)
+            for of_run in self._images.list_arrays(self.results_log)
         ]
 
     # The log under the old simulator's names
@@ -161,7 +161,7 @@ class Lab:
         return (
             self.raw_image_data
             if datatype == "raw"
-            else old_formats.image_frame(self.raw_image_data, mode)
+            else old_formats.build_image_frame(self.raw_image_data, mode)
         )
 
     process_raw_image_data = staticmethod(old_formats.process_raw_image_data)
@@ -179,11 +179,11 @@ class Lab:
             spec = self.spec
             field = open_field(field_files(spec), has_floor=spec.world.is_open)
             highest_deg = spec.world.start.heading_deg
-            return old_formats.robot_state(
+            return old_formats.build_robot_state(
                 spec, start_record(spec), spec.world.noise, field, highest_deg, self._wheels
             )
         highest_deg = float(run.telemetry.array()["heading_deg"].max())
-        return old_formats.robot_state(
+        return old_formats.build_robot_state(
             run.spec, record, run.noise_at(record), open_mat(run), highest_deg, self._wheels
         )
 
@@ -235,7 +235,7 @@ class Lab:
         Raises:
             ConfigError: a mat, robot or value is invalid, or there is no program to run.
         """
-        plan = self._checked(words, text, prelude)
+        plan = self._plan_cell(words, text, prelude)
         runs = plan.settings["autorun"] or (self.autorun and text is not None)
         if runs and plan.program is None:
             raise ConfigError(
@@ -243,7 +243,7 @@ class Lab:
                 "write one in a cell below %%sim_magic_preloaded",
                 key="-R",
             )
-        listener = self._listener(words.collaborative)
+        listener = self._build_listener(words.collaborative)
         if plan.spec != self._spec or words.move_back:
             self._last, self._wheels = None, Wheels()
         before = self._spec.world if self._spec else plan.spec.world
@@ -253,7 +253,7 @@ class Lab:
         )
         self._traces = self._traces if same_mat and not plan.settings["clear_trace"] else ()
         self._persistent, self._program, self._spec = plan.persistent, plan.program, plan.spec
-        self._said = _choose_said(plan, words)
+        self._said = _select_given(plan, words)
         if text is not None:
             self._presses = plan.settings["press"]
         self._show(plan, words, listener, runs=runs)
@@ -281,7 +281,7 @@ class Lab:
         if runs:
             self._run(plan, stage, words, listener, view)
         else:
-            scene, status = self._scene(plan)
+            scene, status = self._build_scene(plan)
             stage.show(scene, f"nothing is running · {status}" if words.stop else status)
         if view is None and self._live.view is not None:
             self._live.view.show_state()
@@ -299,7 +299,7 @@ class Lab:
         )
         return CellState(self._said, self._program, last.id if last and is_shown else "")
 
-    def _checked(self, words: Arguments, text: str | None, prelude: str) -> _CellPlan:
+    def _plan_cell(self, words: Arguments, text: str | None, prelude: str) -> _CellPlan:
         from tuisim.base.source import Program
         from tuisim.engine.runs.run_folder import field_files
         from tuisim.programs.program_file import ProgramSource
@@ -324,15 +324,15 @@ class Lab:
             source = ProgramSource(program, has_magic=True)
             # A line says what holds for the cells below it: the program above it has run already.
             insists = text is not None or settings["autorun"]
-            found = program_settings(source, *layers, insists=insists)
-            settings = found.settings
-            program = replace(program, shown_ports=found.decided.shown_ports)
-            if text is not None and found.decided.note:
-                print(f"tuisim: note: {found.decided.note}", file=sys.stderr)
+            effective = program_settings(source, *layers, insists=insists)
+            settings = effective.settings
+            program = replace(program, shown_ports=effective.decided.shown_ports)
+            if text is not None and effective.decided.note:
+                print(f"tuisim: note: {effective.decided.note}", file=sys.stderr)
         spec = build_run_spec(settings)
         return _CellPlan(persistent, settings, spec, field_files(spec), program)
 
-    def _listener(self, collaborative: bool) -> Listener:
+    def _build_listener(self, collaborative: bool) -> Listener:
         from tuisim.notebook.cell_run import Listener
 
         name = "pyresponder" if self._in_texts else "responder"
@@ -341,19 +341,19 @@ class Lab:
             if not (function is None or callable(function)):
                 raise ConfigError(f"must be a function, got {function!r}", key=f"roboSim.{key}")
 
-        def handled() -> object:
+        def call_handler() -> object:
             return handler(sum(map(len, self.logged_arrays()))) if handler is not None else None
 
-        return Listener(responder, self._in_texts, None if handler is None else handled)
+        return Listener(responder, self._in_texts, None if handler is None else call_handler)
 
     def _build_captions(self, words: Arguments, plan: _CellPlan) -> dict[str, dict[str, Any]]:
         """Return what stands below the picture of the cell; without a picture, only the app that it asks for."""
-        asked = words.app if words.app is not None and not words.app.off else None
+        app_words = words.app if words.app is not None and not words.app.off else None
         if words.app is not None:
-            self._live.turn(on=asked is not None)
-        if asked is None and "world" in plan.settings["panels_off"]:
+            self._live.turn(on=app_words is not None)
+        if app_words is None and "world" in plan.settings["panels_off"]:
             return {}
-        return self._live.build_captions(plan.spec.world.background, asked)
+        return self._live.build_captions(plan.spec.world.background, app_words)
 
     def _catch_up(self) -> None:
         """Take the runs that have begun in the app into the log, as far as they are."""
@@ -365,10 +365,10 @@ class Lab:
             from tuisim.engine.runs.store import RunStore
 
             for run in map(RunStore().load_run, tuple(self._followed)):
-                known = [one.id for one in self._runs]
-                at = known.index(run.id) if run.id in known else len(known)
-                self._last, self._runs[at : at + 1] = run, [run]
-                self._images.incomplete(run)
+                known = [stored.id for stored in self._runs]
+                index = known.index(run.id) if run.id in known else len(known)
+                self._last, self._runs[index : index + 1] = run, [run]
+                self._images.mark_incomplete(run)
                 if run.end is not None:
                     self._followed.remove(run.id)
 
@@ -400,7 +400,7 @@ class Lab:
         def note(run: StoredRun, wheels: Wheels) -> None:
             self._wheels = wheels
             # The run is in the log from its start, for a responder, which may have started runs itself.
-            places = [at for at, known in enumerate(self._runs) if known.id == run.id]
+            places = [index for index, stored in enumerate(self._runs) if stored.id == run.id]
             if not places:
                 self._images.begin(run)
                 places = [len(self._runs)]
@@ -416,13 +416,13 @@ class Lab:
                     build_pen_trace(self._last.spec, self._last.telemetry.array()),
                 )
 
-    def _scene(self, plan: _CellPlan) -> tuple[Scene, str]:
+    def _build_scene(self, plan: _CellPlan) -> tuple[Scene, str]:
         """Return the scene while nothing runs, and its status line."""
         from tuisim.engine.runs.records import TEXT_STREAMS
         from tuisim.engine.runs.run_folder import mat_files
         from tuisim.engine.runs.samples import samples_of
-        from tuisim.notebook.cell_output import shown_text
-        from tuisim.notebook.cell_run import end_text
+        from tuisim.notebook.cell_output import format_row
+        from tuisim.notebook.cell_run import describe_end
         from tuisim.notebook.display import Scene, start_record
 
         program, start = plan.program, start_record(plan.spec)
@@ -434,19 +434,19 @@ class Lab:
         if self._last.first_spec != spec:
             spec, files = self._last.spec, mat_files(self._last)
         rows = self._last.output.all_rows()
-        printed = [shown_text(row) for row in rows if row.stream in TEXT_STREAMS]
+        printed = [format_row(row) for row in rows if row.stream in TEXT_STREAMS]
         last, samples = self._last.telemetry.last() or start, samples_of(rows)
-        status = ready if is_other else end_text(self._last)
+        status = ready if is_other else describe_end(self._last)
         return Scene(spec, files, program, last, self._traces, samples, printed), status
 
 
-def _choose_said(plan: _CellPlan, words: Arguments) -> Mapping[str, Any]:
+def _select_given(plan: _CellPlan, words: Arguments) -> Mapping[str, Any]:
     """Return what the cells have set, by path, as the app gets it."""
     from tuisim.settings.options import merge_settings
 
     presses = {"press": plan.settings["press"]}
-    said = merge_settings(plan.persistent, words.settings, presses).given
-    return {path: value for path, value in said.items() if path not in ("autorun", "speed")}
+    given = merge_settings(plan.persistent, words.settings, presses).given
+    return {path: value for path, value in given.items() if path not in ("autorun", "speed")}
 
 
 roboSim = Lab()  # noqa: N816 - the course's cells call it so

@@ -90,12 +90,12 @@ class LiveRobot:
         kernel = _find_kernel()
         if kernel is None:
             return {}
-        shown = {}
+        captions = {}
         if words is not None or self._is_due(kernel):
-            shown["offer"] = self._offer_app(background, words, kernel)
+            captions["offer"] = self._offer_app(background, words, kernel)
         if "drag" in str(kernel.get_parent("shell")["content"].get("code", "")).lower():
-            shown["drag"] = _build_bundle(HOW_TO_DRAG)
-        return shown
+            captions["drag"] = _build_bundle(HOW_TO_DRAG)
+        return captions
 
     def _offer_app(self, background: str, words: AppWords | None, kernel: Any) -> dict[str, Any]:
         origins = (*find_notebook_origins(), *self._origins, *(words.origins if words else ()))
@@ -148,7 +148,7 @@ class LiveRobot:
         self._is_taken = True
         if self.view is None:
             self.view = AppView(self._words, self._origins, self._find_state)
-        return self.view.renew_address(self._origins)
+        return self.view.create_address(self._origins)
 
     def turn(self, *, on: bool) -> None:
         """Offer the app from now on, another one if it has ended; or end it and show pictures only."""

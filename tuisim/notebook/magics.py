@@ -24,10 +24,10 @@ if TYPE_CHECKING:
 Handler = Callable[[str, str | None], Any]
 
 
-def _guarded(act: Handler) -> Callable[..., Any]:
+def _guard_magic(act: Handler) -> Callable[..., Any]:
     """Print expected errors as one line in the cell."""
 
-    def magic(line: str, cell: str | None = None) -> Any:
+    def call_magic(line: str, cell: str | None = None) -> Any:
         try:
             return act(line, cell)
         except TuisimError as error:
@@ -37,18 +37,18 @@ def _guarded(act: Handler) -> Callable[..., Any]:
             print("tuisim: interrupted; no program was running", file=sys.stderr)
         return None
 
-    return magic
+    return call_magic
 
 
-def _lab(shell: InteractiveShell, name: str | None) -> Lab:
-    found = roboSim if name is None else shell.user_ns.get(name)
-    if not isinstance(found, Lab):
+def _find_lab(shell: InteractiveShell, name: str | None) -> Lab:
+    lab = roboSim if name is None else shell.user_ns.get(name)
+    if not isinstance(lab, Lab):
         raise ConfigError(f"no simulator {name!r}", "roboSim is one", key="-s")
-    return found
+    return lab
 
 
-def _sim_magic(shell: InteractiveShell, magic: str) -> Handler:
-    def act(line: str, cell: str | None) -> str | None:
+def _build_magic(shell: InteractiveShell, magic: str) -> Handler:
+    def run_magic(line: str, cell: str | None) -> str | None:
         from tuisim.settings.magic_line import parse_line
 
         words = parse_line(line, magic)
@@ -61,69 +61,71 @@ def _sim_magic(shell: InteractiveShell, magic: str) -> Handler:
             print(f"# ---- {magic}: predefined names ----\n\n{ready}\n# ---- the program ----\n")
             if cell is None:
                 return None
-        lab = _lab(shell, words.sim)
+        lab = _find_lab(shell, words.sim)
         lab.apply(words, cell, prelude)
         if words.preview:
             print(lab.program_text)
         return None
 
-    return act
+    return run_magic
 
 
 Log = Callable[[Lab, "Arguments"], Any]
 
 
-def _log_magic(shell: InteractiveShell, magic: str, act: Log) -> Handler:
+def _build_log_magic(shell: InteractiveShell, magic: str, act: Log) -> Handler:
     def read(line: str, cell: str | None) -> Any:
         from tuisim.settings.magic_line import parse_log_line
 
-        found = parse_log_line(line, magic)
-        if found.help:
-            print(found.help)
+        words = parse_log_line(line, magic)
+        if words.help:
+            print(words.help)
             return None
-        return act(_lab(shell, found.sim), found)
+        return act(_find_lab(shell, words.sim), words)
 
     return read
 
 
-def _sim_data(lab: Lab, found: Arguments) -> Any:
-    return lab.clear_datalog() if found.clear else lab.data()
+def _show_data(lab: Lab, words: Arguments) -> Any:
+    return lab.clear_datalog() if words.clear else lab.data()
 
 
-def _sim_robot_state(lab: Lab, found: Arguments) -> old_formats.RobotState:
+def _show_robot_state(lab: Lab, words: Arguments) -> old_formats.RobotState:
     return old_formats.RobotState(lab.robot_state)
 
 
-def _sim_image_pair(lab: Lab, found: Arguments) -> old_formats.ImagePair:
-    return old_formats.image_pair(lab.logged_arrays(), found.index)
+def _show_image_pair(lab: Lab, words: Arguments) -> old_formats.ImagePair:
+    return old_formats.pick_image_pair(lab.logged_arrays(), words.index)
 
 
-def _sim_bw_image_data(lab: Lab, found: Arguments) -> Image:
+def _show_bw_image(lab: Lab, words: Arguments) -> Image:
     from random import randrange
 
     arrays = [array for of_run in lab.logged_arrays() for array in of_run]
-    index = randrange(len(arrays)) if found.random and arrays else found.index
-    crop = found.crop or (None if found.nocrop else old_formats.FOCUS_PX)
-    return old_formats.bw_picture(arrays, index, found.threshold, crop)
+    index = randrange(len(arrays)) if words.random and arrays else words.index
+    crop = words.crop or (None if words.nocrop else old_formats.FOCUS_PX)
+    return old_formats.draw_bw_picture(arrays, index, words.threshold, crop)
 
 
 LOG_MAGICS: Mapping[str, Log] = {
-    "sim_data": _sim_data,
-    "sim_robot_state": _sim_robot_state,
-    "sim_image_pair": _sim_image_pair,
-    "sim_bw_image_data": _sim_bw_image_data,
+    "sim_data": _show_data,
+    "sim_robot_state": _show_robot_state,
+    "sim_image_pair": _show_image_pair,
+    "sim_bw_image_data": _show_bw_image,
 }
 
 
 def install(shell: InteractiveShell) -> None:
     """Register every magic, and put `roboSim` and `eds` into the notebook's namespace."""
     for name in PRELUDES:
-        shell.magics_manager.register_function(_guarded(_sim_magic(shell, name)), "line_cell", name)
+        shell.magics_manager.register_function(
+            _guard_magic(_build_magic(shell, name)), "line_cell", name
+        )
     shell.magics_manager.register_function(
-        _guarded(_sim_magic(shell, APP_MAGIC)), "line", APP_MAGIC
+        _guard_magic(_build_magic(shell, APP_MAGIC)), "line", APP_MAGIC
     )
     for name, read in LOG_MAGICS.items():
         shell.magics_manager.register_function(
-            _guarded(_log_magic(shell, name, read)), "line", name
+            _guard_magic(_build_log_magic(shell, name, read)), "line", name
         )
     shell.push({"roboSim": roboSim, "eds": eds})

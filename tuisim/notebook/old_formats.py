@@ -41,21 +41,21 @@ _DIGITS = tuple(map(str, range(256)))
 """The texts of all bytes: a lookup is faster than a conversion, and a log has millions."""
 
 
-def values_text(rgba: bytes) -> str:
+def format_values(rgba: bytes) -> str:
     """Return an array as text: `r,g,b,a,r,g,b,a,…`."""
     return ",".join(map(_DIGITS.__getitem__, rgba))
 
 
 def record_text(array: LoggedArray) -> str:
     """Return a record of the image log: `SIDE r,g,b,a,… CLOCK`."""
-    return f"{array.side} {values_text(array.rgba)} {array.time_ns * TICKS_PER_S // 10**9}"
+    return f"{array.side} {format_values(array.rgba)} {array.time_ns * TICKS_PER_S // 10**9}"
 
 
-def sent_text(seen: Mapping[str, bytes]) -> str:
+def format_sent(seen: Mapping[str, bytes]) -> str:
     """Return what a responder is called with for `IMG_DATA`; a sensor that the robot has not got is empty."""
     import json
 
-    return f"IMG_DATA::{json.dumps({side: values_text(seen.get(side, b'')) for side in SIDES})}"
+    return f"IMG_DATA::{json.dumps({side: format_values(seen.get(side, b'')) for side in SIDES})}"
 
 
 def process_raw_image_data(text: str, mode: str = "rgb", to_str: bool = True) -> str | list[str]:
@@ -72,17 +72,17 @@ def process_raw_image_data(text: str, mode: str = "rgb", to_str: bool = True) ->
     """
     if mode not in MODES:
         raise ConfigError(f"no such mode {mode!r}", ", ".join(MODES), key="mode")
-    found = text.split(",")
+    values = text.split(",")
     if mode == "rgb":
-        del found[3::4]
+        del values[3::4]
     else:
-        found = found[::4]
+        values = values[::4]
     if mode == "bw":
-        found = ["1" if int(number) > _MAX_BLACK else "0" for number in found]
-    return ",".join(found) if to_str else found
+        values = ["1" if int(number) > _MAX_BLACK else "0" for number in values]
+    return ",".join(values) if to_str else values
 
 
-def image_frame(records: Iterable[str], mode: str = "rgb") -> pd.DataFrame:
+def build_image_frame(records: Iterable[str], mode: str = "rgb") -> pd.DataFrame:
     """Return records as a frame of texts with the columns `side`, `vals` and `clock`.
 
     Raises:
@@ -131,7 +131,7 @@ class ImagePair(NamedTuple):
         return encode_png(both)
 
 
-def image_pair(arrays: Iterable[Sequence[LoggedArray]], index: int = -1) -> ImagePair:
+def pick_image_pair(arrays: Iterable[Sequence[LoggedArray]], index: int = -1) -> ImagePair:
     """Return the pictures that were logged of both sensors at the same time.
 
     Args:
@@ -154,7 +154,7 @@ def image_pair(arrays: Iterable[Sequence[LoggedArray]], index: int = -1) -> Imag
     return ImagePair(left, right)
 
 
-def bw_picture(
+def draw_bw_picture(
     arrays: Sequence[LoggedArray],
     index: int = -1,
     threshold: int = 127,
@@ -186,7 +186,7 @@ def bw_picture(
 # The robot's state
 
 
-def robot_state(
+def build_robot_state(
     spec: RunSpec,
     record: TickRecord,
     noise: NoiseSpec,
@@ -207,46 +207,46 @@ def robot_state(
     from tuisim.engine.core.sensors import measure_sensors
     from tuisim.engine.core.tick_record import FLAG_LEFT_RUNNING, FLAG_PEN_DOWN, FLAG_RIGHT_RUNNING
     from tuisim.engine.runs.views import instant_of
-    from tuisim.notebook.image_log import arrays_at, with_alpha
+    from tuisim.notebook.image_log import add_alpha, read_arrays
 
     start, pose, instant = spec.world.start, record.pose, instant_of(record, spec, noise)
     measured = measure_sensors(spec.robot.sensors, instant, spec, field)
     seen = {
-        sensor.name: values_text(with_alpha(rgb))
-        for sensor, rgb in arrays_at(spec, record, noise, field)
+        sensor.name: format_values(add_alpha(rgb))
+        for sensor, rgb in read_arrays(spec, record, noise, field)
     }
     state: dict[str, Any] = {
-        **_place("", pose.x_mm, pose.y_mm, _wrapped(pose.heading_deg, highest_deg)),
+        **_place("", pose.x_mm, pose.y_mm, _wrap_heading(pose.heading_deg, highest_deg)),
         **_place("_", start.x_mm, start.y_mm, start.heading_deg),
         "penDown": bool(record.flags & FLAG_PEN_DOWN),
         "_wheelNoise": noise.motor,
         "_sensorNoise": noise.light,
-        "leftWheel": _wheel(
+        "leftWheel": _build_wheel(
             wheels.left,
             record.left_position_deg,
             record.left_speed_dps,
             record.flags & FLAG_LEFT_RUNNING,
         ),
-        "rightWheel": _wheel(
+        "rightWheel": _build_wheel(
             wheels.right,
             record.right_position_deg,
             record.right_speed_dps,
             record.flags & FLAG_RIGHT_RUNNING,
         ),
     }
-    for at, side in enumerate(SIDES, 1):
-        state[f"sensor{at}"] = [
+    for number, side in enumerate(SIDES, 1):
+        state[f"sensor{number}"] = [
             measured.get(f"{side}_{channel}", 0) for channel in ("red", "green", "blue")
         ]
-        state[f"sensor{at}dataArray"] = seen.get(side, "")
+        state[f"sensor{number}dataArray"] = seen.get(side, "")
     state["gyro"] = [measured.get("gyro_deg", 0), measured.get("gyro_rate_dps", 0)]
     state["ultrasonic"] = measured.get("ultrasonic_mm", 0)
-    for at, side in enumerate(SIDES, 1):
-        state |= _light(side, state[f"sensor{at}"])
+    for number, side in enumerate(SIDES, 1):
+        state |= _build_light(side, state[f"sensor{number}"])
     return state
 
 
-def _wrapped(heading_deg: float, highest_deg: float) -> float:
+def _wrap_heading(heading_deg: float, highest_deg: float) -> float:
     """Return a heading as the old simulator counts it: it drops by 360° when it passes 360°, but never rises."""
     return heading_deg - 360 * max(0, math.ceil(highest_deg / 360) - 1)
 
@@ -261,7 +261,7 @@ def _place(prefix: str, x_mm: float, y_mm: float, heading_deg: float) -> dict[st
     }
 
 
-def _wheel(
+def _build_wheel(
     registers: MotorRegisters, position_deg: float, speed_dps: float, runs: int
 ) -> dict[str, Any]:
     return {
@@ -276,7 +276,7 @@ def _wheel(
     }
 
 
-def _light(side: str, rgb: list[float]) -> dict[str, Any]:
+def _build_light(side: str, rgb: list[float]) -> dict[str, Any]:
     # Unlike what a program reads, the means are not truncated.
     return {
         f"{side}_light_raw": rgb,
@@ -295,17 +295,17 @@ class RobotState:
     def __init__(self, read: Callable[[], dict[str, Any]]) -> None:
         self._read = read
         self.state = read()
-        """By the old simulator's names; see `robot_state`."""
+        """By the old simulator's names; see `build_robot_state`."""
 
     def update(self) -> None:
         """Read the state again."""
         self.state = self._read()
 
     def _repr_mimebundle_(self, **_: object) -> dict[str, Any]:
-        from tuisim.notebook.display import table_bundle
+        from tuisim.notebook.display import build_table
 
         rows = ((name, str(value)) for name, value in self.state.items())
-        return table_bundle(
+        return build_table(
             "Robot",
             [
                 (name, text if len(text) <= _LONG_TEXT else text[:_LONG_TEXT] + "…")

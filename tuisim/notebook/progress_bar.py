@@ -14,10 +14,13 @@ from tqdm.notebook import tqdm
 RATE_HZ, TONE_HZ, TONE_S = 8000, 440.0, 0.4
 
 
-def tone_wav() -> bytes:
+def build_tone() -> bytes:
     """Return a short tone as a WAV file."""
     count = int(RATE_HZ * TONE_S)
-    levels = (round(16_000 * math.sin(2 * math.pi * TONE_HZ * at / RATE_HZ)) for at in range(count))
+    levels = (
+        round(16_000 * math.sin(2 * math.pi * TONE_HZ * sample / RATE_HZ))
+        for sample in range(count)
+    )
     data = io.BytesIO()
     with wave.open(data, "wb") as sound:
         sound.setnchannels(1)
@@ -36,4 +39,4 @@ class SoundedBar(tqdm):  # type: ignore[misc] # tqdm ships no types
         sounds = not self.disable and hasattr(get_ipython(), "kernel")
         super().close()
         if sounds:
-            display(Audio(tone_wav(), autoplay=True))
+            display(Audio(build_tone(), autoplay=True))

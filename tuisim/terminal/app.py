@@ -27,9 +27,9 @@ from tuisim.terminal import input_order
 from tuisim.terminal.cell_view import RowsView
 from tuisim.terminal.driver import SIGNALLED, TerminalDriver, run_in_foreground
 from tuisim.terminal.frame_buffer import FrameBuffer, TextMode
-from tuisim.terminal.picture_mode import PictureMode, color_depth, graphics_of
+from tuisim.terminal.picture_mode import PictureMode, choose_graphics, find_color_depth
 from tuisim.terminal.picture_options import AUTO, NO_PIXELS, CellSet
-from tuisim.terminal.probe import in_browser, is_multiplexer
+from tuisim.terminal.probe import is_in_browser, is_multiplexer
 from tuisim.terminal.queries import (
     ATTRIBUTES_QUERY,
     CELL_SIZE_QUERY,
@@ -37,7 +37,7 @@ from tuisim.terminal.queries import (
     AnswerParser,
     TerminalAnswered,
     TerminalFacts,
-    cell_size_px,
+    read_cell_size_px,
 )
 from tuisim.terminal.server_asks import ActionAsked as ActionAsked
 from tuisim.terminal.server_asks import ServerAsks as ServerAsks
@@ -47,7 +47,7 @@ from tuisim.terminal.textual_internals import (
     CompositorUpdate,
     HookedApp,
     is_leaving,
-    mend,
+    repair_textual,
 )
 
 _CONTROLS = re.compile("[\x00-\x1f\x7f-\x9f]")
@@ -63,12 +63,12 @@ class Sanitize(LineFilter):
         return [
             segment
             if segment.control
-            else Segment(_CONTROLS.sub(_blank, segment.text), segment.style)
+            else Segment(_CONTROLS.sub(_blank_match, segment.text), segment.style)
             for segment in segments
         ]
 
 
-def _blank(match: re.Match[str]) -> str:
+def _blank_match(match: re.Match[str]) -> str:
     return " " * cell_len(match[0])
 
 
@@ -83,7 +83,7 @@ class BufferedApp(HookedApp):
     """An app that restores the terminal, even when it is stopped or terminated from outside."""
 
     def __init__(self, picture_mode: PictureMode | None = None) -> None:
-        super().__init__(driver_class=_driver_class())
+        super().__init__(driver_class=_choose_driver_class())
         self.line_filters = [*self.line_filters, Sanitize()]
         # They take the code for italics for that of reverse video.
         self._has_italics = not is_multiplexer(os.environ.get("TERM", ""))
@@ -133,12 +133,12 @@ class BufferedApp(HookedApp):
             and not isinstance(update, Codes)
             and self.is_writing
         ):
-            codes = self.frame_buffer.codes(update, self.text_mode)
+            codes = self.frame_buffer.encode_update(update, self.text_mode)
             if codes is not None:
                 update = Codes(codes) if codes else None
         super().show_update(screen, update)
         if codes:
-            self.painted(len(codes))
+            self.handle_painted(len(codes))
 
     def choose_cells(self, chosen: str) -> None:
         """Draw every picture with another set of glyphs; `AUTO` or the name of a set."""
@@ -156,17 +156,17 @@ class BufferedApp(HookedApp):
         """Whether pictures are drawn with pixels, or were until the user switched to characters."""
         return self.picture_mode.graphics is not None or self._left_pixels is not None
 
-    def painted(self, size: int) -> None:
+    def handle_painted(self, size: int) -> None:
         """Called with the number of characters after an update was sent to the terminal."""
 
     @property
     def text_mode(self) -> TextMode:
         """What the terminal supports."""
         is_ascii = self.picture_mode.cells is CellSet.ASCII
-        return TextMode(color_depth(self), is_ascii, has_italics=self._has_italics)
+        return TextMode(find_color_depth(self), is_ascii, has_italics=self._has_italics)
 
     @on(events.DescendantFocus)
-    def still_cursor(self, event: events.DescendantFocus) -> None:
+    def stop_blinking(self, event: events.DescendantFocus) -> None:
         """Stop the cursor from blinking: an idle app sends nothing."""
         if hasattr(event.widget, "cursor_blink"):
             event.widget.cursor_blink = False
@@ -207,20 +207,20 @@ class BufferedApp(HookedApp):
 
     def _choose_graphics(self) -> None:
         size_px = (
-            cell_size_px(self.own_driver.fileno)
+            read_cell_size_px(self.own_driver.fileno)
             if isinstance(self.own_driver, TerminalDriver)
             else None
         )
         # Who has chosen glyphs wants to see them; pixels have colours.
         is_without = self.picture_mode.chosen != AUTO or self.no_color
-        wanted = NO_PIXELS if self.pixels == AUTO and is_without else self.pixels
-        found = graphics_of(self.terminal_facts, wanted, size_px) if SUPPORTED else None
-        if found != self.picture_mode.graphics:
-            self.picture_mode.graphics = found
+        choice = NO_PIXELS if self.pixels == AUTO and is_without else self.pixels
+        graphics = choose_graphics(self.terminal_facts, choice, size_px) if SUPPORTED else None
+        if graphics != self.picture_mode.graphics:
+            self.picture_mode.graphics = graphics
             self.redraw_pictures()
-            self.call_after_refresh(self.situation_changed)
+            self.call_after_refresh(self.handle_situation_change)
 
-    def situation_changed(self) -> None:
+    def handle_situation_change(self) -> None:
         """Called when other keys are available."""
 
     def redraw_pictures(self) -> None:
@@ -237,12 +237,12 @@ class BufferedApp(HookedApp):
 
     def action_suspend_process(self) -> None:
         if isinstance(self.own_driver, TerminalDriver):
-            self.suspending()
+            self.prepare_suspension()
             if not self.own_driver.stop_as_job():
                 self.notify(
                     f"{self.TITLE} cannot be suspended: no shell could resume it", markup=False
                 )
-        elif in_browser():
+        elif is_in_browser():
             self.notify(f"{self.TITLE} cannot be suspended in a browser", markup=False)
         else:
             super().action_suspend_process()
@@ -255,14 +255,14 @@ class BufferedApp(HookedApp):
         """
         if not isinstance(self.own_driver, TerminalDriver):
             return False
-        self.suspending()
-        with self.own_driver.lent():
+        self.prepare_suspension()
+        with self.own_driver.lend():
             run_in_foreground(command)
         return True
 
     def tell_server(self, what: str, **details: object) -> None:
         """Tell something to the server that shows the app in a browser, if one does."""
-        if not in_browser():
+        if not is_in_browser():
             return
         # Most apps run in a terminal.
         from tuisim.terminal.browser_driver import BrowserDriver
@@ -270,7 +270,7 @@ class BufferedApp(HookedApp):
         if isinstance(self.own_driver, BrowserDriver):
             self.own_driver.write_meta({"type": "tell", "what": what, **details})
 
-    def suspending(self) -> None:
+    def prepare_suspension(self) -> None:
         """Called before the app stops, or gives its terminal away."""
 
     def is_harmless(self, error: Exception) -> bool:
@@ -283,14 +283,14 @@ class BufferedApp(HookedApp):
         return is_leaving(self) and isinstance(cause, (WidgetError, NoMatches, ScreenStackError))
 
 
-mend(input_order.end_messages)
+repair_textual(input_order.end_messages)
 
 
-def _driver_class() -> type[Driver] | None:
+def _choose_driver_class() -> type[Driver] | None:
     """Return the driver for what shows the app: a browser or a terminal; None for Textual's own."""
     if not SUPPORTED:
         return None
-    if not in_browser():
+    if not is_in_browser():
         return TerminalDriver
     # Most apps run in a terminal.
     from tuisim.terminal.browser_driver import BrowserDriver

@@ -14,7 +14,7 @@ from textual.message import Message
 from tuisim.terminal import kitty
 from tuisim.terminal.queries import QUESTIONS, AnswerParser
 from tuisim.terminal.server_asks import ActionAsked, ServerAsks
-from tuisim.terminal.textual_internals import app_of, parse_page_input_with, write_with
+from tuisim.terminal.textual_internals import find_app, replace_write, set_page_parser
 
 _MODES = "\x1b[?1049h\x1b[?25l\x1b[?1000h\x1b[?1003h\x1b[?1015h\x1b[?1006h\x1b[?2004h"
 """What an app sets in a terminal: the screen of an app without a cursor, reports of the mouse and of pastes."""
@@ -32,7 +32,7 @@ class BrowserDriver(WebDriver):
         size: tuple[int, int] | None = None,
     ) -> None:
         super().__init__(app, debug=debug, mouse=mouse, size=size)
-        write_with(self, self._write_all)
+        replace_write(self, self._write_all)
         self._one_at_a_time = Lock()
         self._server_is_gone = False
 
@@ -57,7 +57,7 @@ class BrowserDriver(WebDriver):
 
     def write(self, data: str) -> None:
         """Write to the page's terminal."""
-        super().write(kitty.for_page(data))
+        super().write(kitty.wrap_page(data))
 
     def process_message(self, message: Message) -> None:
         """Pass on what the page sends, but not a size in pixels, which is for the places of the mouse: the server tells
@@ -69,7 +69,7 @@ class BrowserDriver(WebDriver):
         """Pass on input until the app ends, or end it because the server has ended."""
         super().run_input_thread()
         if not self.exit_event.is_set():
-            app_of(self).post_message(messages.ExitApp())
+            find_app(self).post_message(messages.ExitApp())
 
     def on_meta(self, packet_type: str, payload: dict[str, object]) -> None:
         """Handle a message of the server.
@@ -80,19 +80,19 @@ class BrowserDriver(WebDriver):
         match packet_type:
             case "focus" | "blur":
                 event = events.AppFocus() if packet_type == "focus" else events.AppBlur()
-                app_of(self).call_later(app_of(self).post_message, event)
+                find_app(self).call_later(find_app(self).post_message, event)
             case "resize":
-                app_of(self).call_later(super().on_meta, packet_type, payload)
+                find_app(self).call_later(super().on_meta, packet_type, payload)
             case "show":
                 self.on_meta("resize", payload)
                 self.write(_MODES + QUESTIONS)
-                app_of(self).call_later(app_of(self).post_message, self.SignalResume())
+                find_app(self).call_later(find_app(self).post_message, self.SignalResume())
             case "act":
-                app_of(self).post_message(ActionAsked(str(payload["name"])))
+                find_app(self).post_message(ActionAsked(str(payload["name"])))
             case "ask":
-                app_of(self).post_message(ServerAsks(payload))
+                find_app(self).post_message(ServerAsks(payload))
             case _:
                 super().on_meta(packet_type, payload)
 
 
-parse_page_input_with(AnswerParser)
+set_page_parser(AnswerParser)

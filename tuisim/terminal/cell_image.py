@@ -21,7 +21,7 @@ from rich.cells import split_graphemes
 from rich.color import Color
 from rich.style import Style
 
-from tuisim.terminal.glyph_shapes import Area, Bend, Dot, GlyphShape, shapes_of
+from tuisim.terminal.glyph_shapes import Area, Bend, Dot, GlyphShape, draw_character
 from tuisim.terminal.pixels import Rgb
 
 if TYPE_CHECKING:
@@ -67,7 +67,7 @@ _DIM = 0.5
 """Share of its own colour that dim text keeps."""
 
 
-def row_of_cells(runs: Iterable[tuple[str, Style | None]], width: int) -> list[Cell]:
+def split_cells(runs: Iterable[tuple[str, Style | None]], width: int) -> list[Cell]:
     """Return pieces of styled text as cells, cut or padded to a width."""
     row: list[Cell] = []
     for text, style in runs:
@@ -79,12 +79,16 @@ def row_of_cells(runs: Iterable[tuple[str, Style | None]], width: int) -> list[C
 
 
 def _look(style: Style) -> Look:
-    ink, ground = _rgb(style.color, PLAIN.ink), _rgb(style.bgcolor, PLAIN.ground)
+    ink, ground = (
+        _resolve_color(style.color, PLAIN.ink),
+        _resolve_color(style.bgcolor, PLAIN.ground),
+    )
     if style.reverse:
         ink, ground = ground, ink
     if style.dim:
         red, green, blue = (
-            round(_DIM * one + (1 - _DIM) * other) for one, other in zip(ink, ground, strict=True)
+            round(_DIM * channel + (1 - _DIM) * other)
+            for channel, other in zip(ink, ground, strict=True)
         )
         ink = red, green, blue
     return Look(
@@ -92,7 +96,7 @@ def _look(style: Style) -> Look:
     )
 
 
-def _rgb(color: Color | None, default: Rgb) -> Rgb:
+def _resolve_color(color: Color | None, default: Rgb) -> Rgb:
     if color is None or color.is_default:
         return default
     red, green, blue = color.get_truecolor()
@@ -103,7 +107,7 @@ Mask = npt.NDArray[np.uint8]
 """The share of each pixel that a character covers, 0 to 255."""
 
 
-def image_of_cells(grid: CellGrid) -> Image:
+def draw_cells(grid: CellGrid) -> Image:
     """Return the picture of cells, `CELL_PX` each."""
     from PIL import Image
 
@@ -120,7 +124,7 @@ def image_of_cells(grid: CellGrid) -> Image:
             wide = text
             if key not in kinds:
                 kinds[key] = len(masks)
-                masks.append(_mask(*key))
+                masks.append(_draw_mask(*key))
             numbers[y, x] = kinds[key]
             colors[:, y, x] = look.ink, look.ground
     if not masks:
@@ -133,23 +137,23 @@ def image_of_cells(grid: CellGrid) -> Image:
 
 
 @lru_cache(maxsize=4096)
-def _mask(text: str, bold: bool, italic: bool, underline: bool, strike: bool) -> Mask:
+def _draw_mask(text: str, bold: bool, italic: bool, underline: bool, strike: bool) -> Mask:
     """Return the share of each pixel of a cell that a character covers; after a NUL, of the cell to its right."""
     width, height = CELL_PX
     right = text.startswith("\0")
     text = text.removeprefix("\0")
-    shapes = shapes_of(text, width, height)
+    shapes = draw_character(text, width, height)
     if shapes is not None:
-        mask = np.zeros((height, width), np.uint8) if right else _drawn(shapes)
+        mask = np.zeros((height, width), np.uint8) if right else _draw_shapes(shapes)
     else:
-        mask = _written(text, bold, italic)[:, width * right : width * (right + 1)].copy()
+        mask = _write_character(text, bold, italic)[:, width * right : width * (right + 1)].copy()
     for line, y in ((underline, height - 3), (strike, height // 2)):
         if line:
             mask[y : y + 1] = 255
     return mask
 
 
-def _drawn(shapes: Sequence[GlyphShape]) -> Mask:
+def _draw_shapes(shapes: Sequence[GlyphShape]) -> Mask:
     from PIL import Image, ImageDraw
 
     width, height = CELL_PX
@@ -175,14 +179,14 @@ def _drawn(shapes: Sequence[GlyphShape]) -> Mask:
 
 
 @lru_cache(maxsize=1)
-def _font() -> FreeTypeFont:
+def _load_font() -> FreeTypeFont:
     from PIL import ImageFont
 
     content = files("tuisim.pictures.charts").joinpath("fonts", "DejaVuSansMono.ttf").read_bytes()
     return ImageFont.truetype(io.BytesIO(content), _FONT_PX, layout_engine=ImageFont.Layout.BASIC)
 
 
-def _written(text: str, bold: bool, italic: bool) -> Mask:
+def _write_character(text: str, bold: bool, italic: bool) -> Mask:
     """Return the mask of a character in two cells, of which a narrow one fills the left."""
     from PIL import Image, ImageDraw
 
@@ -191,7 +195,7 @@ def _written(text: str, bold: bool, italic: bool) -> Mask:
     if text.strip():
         draw = ImageDraw.Draw(image)
         for more in range(1 + bold):
-            draw.text((more * 0.6, _BASELINE), text, 255, _font(), "ls")
+            draw.text((more * 0.6, _BASELINE), text, 255, _load_font(), "ls")
         if italic:
             slant = (1, _ITALIC, -_ITALIC * _BASELINE, 0, 1, 0)
             image = image.transform(
@@ -200,7 +204,7 @@ def _written(text: str, bold: bool, italic: bool) -> Mask:
     return np.asarray(image)
 
 
-def svg_of_cells(grid: CellGrid, title: str) -> str:
+def draw_cells_svg(grid: CellGrid, title: str) -> str:
     """Return the picture of cells as an SVG file with text."""
     rows, columns = len(grid), len(grid[0]) if grid else 0
     width, height = columns * CELL_PX[0], rows * CELL_PX[1]
@@ -210,20 +214,20 @@ def svg_of_cells(grid: CellGrid, title: str) -> str:
         (
             f'<svg xmlns="http://www.w3.org/2000/svg" {size} {font} role="img" shape-rendering="crispEdges">',
             f"<title>{escape(title)}</title>",
-            *_svg_grounds(grid),
-            *_svg_shapes(grid),
-            *_svg_texts(grid),
+            *_draw_svg_grounds(grid),
+            *_draw_svg_shapes(grid),
+            *_draw_svg_texts(grid),
             "</svg>",
             "",
         )
     )
 
 
-def _hex(rgb: Rgb) -> str:
+def _format_hex(rgb: Rgb) -> str:
     return f"#{bytes(rgb).hex()}"
 
 
-def _svg_grounds(grid: CellGrid) -> Iterator[str]:
+def _draw_svg_grounds(grid: CellGrid) -> Iterator[str]:
     """Yield a path for each background colour."""
     paths: dict[Rgb, list[str]] = {}
     for y, row in enumerate(grid):
@@ -231,73 +235,75 @@ def _svg_grounds(grid: CellGrid) -> Iterator[str]:
         for ground, run in groupby(look.ground for _, look in row):
             count = len(list(run))
             area = Area(0, 0, count * CELL_PX[0], CELL_PX[1])
-            paths.setdefault(ground, []).append(_svg_area(area, x * CELL_PX[0], y * CELL_PX[1]))
+            paths.setdefault(ground, []).append(
+                _draw_svg_area(area, x * CELL_PX[0], y * CELL_PX[1])
+            )
             x += count
     for color, parts in paths.items():
-        yield f'<path fill="{_hex(color)}" d="{"".join(parts)}"/>'
+        yield f'<path fill="{_format_hex(color)}" d="{"".join(parts)}"/>'
 
 
-def _svg_area(area: Area, x: float, y: float) -> str:
+def _draw_svg_area(area: Area, x: float, y: float) -> str:
     return f"M{x + area.left:g} {y + area.top:g}H{x + area.right:g}V{y + area.bottom:g}H{x + area.left:g}z"
 
 
-def _svg_shapes(grid: CellGrid) -> Iterator[str]:
+def _draw_svg_shapes(grid: CellGrid) -> Iterator[str]:
     """Yield a path for each colour and opacity, and elements for what is no rectangle."""
     paths: dict[tuple[Rgb, float], list[str]] = {}
     for y, row in enumerate(grid):
         for x, (text, look) in enumerate(row):
             left, top = x * CELL_PX[0], y * CELL_PX[1]
-            for shape in shapes_of(text, *CELL_PX) or ():
+            for shape in draw_character(text, *CELL_PX) or ():
                 match shape:
                     case Area():
                         paths.setdefault((look.ink, shape.opacity), []).append(
-                            _svg_area(shape, left, top)
+                            _draw_svg_area(shape, left, top)
                         )
                     case Dot():
                         place = (
                             f'cx="{left + shape.x:g}" cy="{top + shape.y:g}" r="{shape.radius:.2f}"'
                         )
-                        yield f'<circle {place} fill="{_hex(look.ink)}" shape-rendering="auto"/>'
+                        yield f'<circle {place} fill="{_format_hex(look.ink)}" shape-rendering="auto"/>'
                     case Bend():
                         points = " ".join(
                             f"{left + at_x:.1f},{top + at_y:.1f}" for at_x, at_y in shape.points
                         )
-                        line = f'stroke="{_hex(look.ink)}" stroke-width="{shape.width:g}" shape-rendering="auto"'
+                        line = f'stroke="{_format_hex(look.ink)}" stroke-width="{shape.width:g}" shape-rendering="auto"'
                         yield f'<polyline points="{points}" fill="none" {line}/>'
     for (color, opacity), parts in paths.items():
         faint = f' fill-opacity="{opacity:g}"' if opacity < 1 else ""
-        yield f'<path fill="{_hex(color)}"{faint} d="{"".join(parts)}"/>'
+        yield f'<path fill="{_format_hex(color)}"{faint} d="{"".join(parts)}"/>'
 
 
-def _svg_texts(grid: CellGrid) -> Iterator[str]:
+def _draw_svg_texts(grid: CellGrid) -> Iterator[str]:
     """Yield the text of each row, in pieces of one style; every character has its own place."""
     width, height = CELL_PX
     for y, row in enumerate(grid):
-        at = 0
+        column = 0
         for look, run in groupby(row, key=lambda cell: cell[1]):
             cells = list(run)
             written = [
                 (x, text)
-                for x, (text, _) in enumerate(cells, at)
-                if text.strip() and shapes_of(text, width, height) is None
+                for x, (text, _) in enumerate(cells, column)
+                if text.strip() and draw_character(text, width, height) is None
             ]
             if written:
-                yield _svg_text(written, y, look)
-            yield from _svg_lines(at, at + len(cells), y, look)
-            at += len(cells)
+                yield _draw_svg_text(written, y, look)
+            yield from _draw_svg_lines(column, column + len(cells), y, look)
+            column += len(cells)
 
 
-def _svg_text(written: Sequence[tuple[int, str]], y: int, look: Look) -> str:
+def _draw_svg_text(written: Sequence[tuple[int, str]], y: int, look: Look) -> str:
     # One position for each character: a combining one stands where its letter does.
     places = " ".join(str(x * CELL_PX[0]) for x, text in written for _ in text)
     text = escape("".join(text for _, text in written))
     style = ' font-weight="bold"' * look.bold + ' font-style="italic"' * look.italic
-    return f'<text x="{places}" y="{y * CELL_PX[1] + _BASELINE}" fill="{_hex(look.ink)}"{style}>{text}</text>'
+    return f'<text x="{places}" y="{y * CELL_PX[1] + _BASELINE}" fill="{_format_hex(look.ink)}"{style}>{text}</text>'
 
 
-def _svg_lines(first: int, end: int, y: int, look: Look) -> Iterator[str]:
+def _draw_svg_lines(first: int, end: int, y: int, look: Look) -> Iterator[str]:
     width, height = CELL_PX
     for line, down in ((look.underline, height - 3), (look.strike, height // 2)):
         if line:
             place = f'x="{first * width}" y="{y * height + down}" width="{(end - first) * width}" height="1"'
-            yield f'<rect {place} fill="{_hex(look.ink)}"/>'
+            yield f'<rect {place} fill="{_format_hex(look.ink)}"/>'

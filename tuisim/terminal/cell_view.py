@@ -23,24 +23,24 @@ from tuisim.terminal.cells import (
     MONO,
     CellRun,
     ColorMode,
-    changed_cells,
-    changed_runs,
-    mono_cells,
+    draw_mono_cells,
+    find_changed_cells,
+    find_changed_runs,
     reduce_cells,
     reduce_pixels,
 )
-from tuisim.terminal.fitted_cells import CellIndex, Cells, all_cells, fit_cells, is_flat
-from tuisim.terminal.glyphs import GLYPHS, GlyphSet, glyph_set, half_block_of
+from tuisim.terminal.fitted_cells import CellIndex, Cells, fit_cells, is_flat, list_cells
+from tuisim.terminal.glyphs import GLYPHS, GlyphSet, build_glyph_set, build_half_block
 from tuisim.terminal.picture import Graphics, PictureCell, TilePicture
 from tuisim.terminal.picture_mode import (
     BLOCKS,
     PictureMode,
     Sharpness,
-    color_depth,
-    picture_mode_of,
+    find_color_depth,
+    find_picture_mode,
 )
 from tuisim.terminal.picture_options import CellSet
-from tuisim.terminal.pixels import CellPoints, Pixels, channels_of
+from tuisim.terminal.pixels import CellPoints, Pixels, unpack_rgb
 from tuisim.terminal.text_runs import Run, cut_line
 from tuisim.terminal.textual_internals import MadeOnDemand
 
@@ -56,7 +56,7 @@ class RowsView(Widget):
     @cached_property
     def picture_mode(self) -> PictureMode:
         """How the app draws pictures."""
-        return picture_mode_of(self.app)
+        return find_picture_mode(self.app)
 
     @property
     def ground_rgb(self) -> tuple[int, int, int]:
@@ -91,10 +91,10 @@ class PixelView(RowsView):
         self._cells: Cells = np.empty((0, 0), np.int64)
         self._coarse: npt.NDArray[np.bool_] = np.empty((0, 0), bool)
         """The cells that are drawn as half blocks, to be refined."""
-        self._glyphs = glyph_set(CellSet.HALF)
+        self._glyphs = build_glyph_set(CellSet.HALF)
         self._tiles: TilePicture | None = None
         """The image, while it is drawn with pixels."""
-        self._sharpness = Sharpness(self, self._refine_some)
+        self._sharpness = Sharpness(self, self._refine_cells)
         self._strips: list[Strip | None] = []
         self._signs: Mapping[tuple[int, int], int] = {}
         """Cells above those of the image, by row and column."""
@@ -102,7 +102,7 @@ class PixelView(RowsView):
     @property
     def color_mode(self) -> ColorMode:
         """The colours that the terminal supports."""
-        return ColorMode(color_depth(self.app), bool(self.app.no_color))
+        return ColorMode(find_color_depth(self.app), bool(self.app.no_color))
 
     @property
     def cell_set(self) -> CellSet:
@@ -114,12 +114,12 @@ class PixelView(RowsView):
         """How pixels are drawn; None for cells."""
         return self.picture_mode.graphics
 
-    def cell_for(self, graphics: Graphics | None) -> CellPoints:
+    def choose_cell(self, graphics: Graphics | None) -> CellPoints:
         """Return the points of an image in a cell; `graphics` is None for the app's glyphs."""
         if graphics is not None:
             width_px, height_px = graphics.cell_px
             return CellPoints(*graphics.cell_points, height_px / width_px)
-        glyphs = glyph_set(self.cell_set)
+        glyphs = build_glyph_set(self.cell_set)
         return CellPoints(glyphs.cols, glyphs.rows)
 
     def set_fine_picture(
@@ -148,7 +148,7 @@ class PixelView(RowsView):
             self._forget_cells()
         runs = self._tiles.put(picture, self.picture_mode.is_slow())
         rows, _ = self._tiles.size
-        self._sharpness.changed(is_coarse=self._tiles.is_coarse)
+        self._sharpness.record_change(is_coarse=self._tiles.is_coarse)
         if len(self._strips) != rows:
             self._strips = [None] * rows
             self.refresh()
@@ -173,43 +173,43 @@ class PixelView(RowsView):
             self._tiles = None
             self._forget_cells()
         old, was = self._shown, self._cells
-        fine, mode = glyph_set(cell_set), self.color_mode
+        fine, mode = build_glyph_set(cell_set), self.color_mode
         self._reduce(picture, mode)
         shape = len(picture) // fine.rows, picture.shape[1] // fine.cols
         as_before = was.shape == shape and old.shape == picture.shape and fine is self._glyphs
-        at = changed_cells(old, self._shown, fine) if as_before else all_cells(*shape)
+        places = find_changed_cells(old, self._shown, fine) if as_before else list_cells(*shape)
         if as_before and stands and self.is_coarse:
             changed = self._coarse.copy()
-            changed[at] = True
+            changed[places] = True
             rows, cols = np.nonzero(changed)
-            at = rows, cols
+            places = rows, cols
         self._glyphs = fine
         has_finer = cell_set in BLOCKS and cell_set != CellSet.HALF
         is_coarse = has_finer and not stands and self.picture_mode.is_slow()
         if not as_before:
             self._coarse = np.zeros(shape, bool)
-        self._coarse[at] = is_coarse and ~is_flat(self._shown, fine, at)
+        self._coarse[places] = is_coarse and ~is_flat(self._shown, fine, places)
         cells = was.copy() if as_before else np.empty(shape, np.int64)
-        glyphs = half_block_of(cell_set) if is_coarse else fine
-        cells[at] = self._fitted(glyphs, mode, at)
+        glyphs = build_half_block(cell_set) if is_coarse else fine
+        cells[places] = self._fit_places(glyphs, mode, places)
         self._put(cells)
-        self._sharpness.changed(is_coarse=self.is_coarse)
+        self._sharpness.record_change(is_coarse=self.is_coarse)
 
-    def _fitted(self, glyphs: GlyphSet, mode: ColorMode, at: CellIndex) -> Cells:
+    def _fit_places(self, glyphs: GlyphSet, mode: ColorMode, places: CellIndex) -> Cells:
         if mode.depth == MONO:
-            return mono_cells(self._shown, glyphs, at, self.cell_set)
-        return reduce_cells(fit_cells(self._shown, glyphs, at), mode)
+            return draw_mono_cells(self._shown, glyphs, places, self.cell_set)
+        return reduce_cells(fit_cells(self._shown, glyphs, places), mode)
 
     def _put(self, cells: Cells) -> None:
         if cells.shape != self._cells.shape:
             self._cells, self._strips = cells, [None] * len(cells)
             self.refresh()
             return
-        runs = changed_runs(self._cells, cells)
+        runs = find_changed_runs(self._cells, cells)
         self._cells = cells
         self._refresh_runs(runs)
 
-    def _refine_some(self) -> bool:
+    def _refine_cells(self) -> bool:
         """Draw some of the coarse cells fine; return whether more are coarse."""
         count = REFINED_CELLS if self.picture_mode.is_slow() else QUICKLY_REFINED_CELLS
         if self._tiles is not None:
@@ -220,10 +220,10 @@ class PixelView(RowsView):
 
     def _refine_glyphs(self, count: int) -> None:
         rows, cols = np.nonzero(self._coarse)
-        at = rows[:count], cols[:count]
-        self._coarse[at] = False
+        places = rows[:count], cols[:count]
+        self._coarse[places] = False
         cells = self._cells.copy()
-        cells[at] = self._fitted(self._glyphs, self.color_mode, at)
+        cells[places] = self._fit_places(self._glyphs, self.color_mode, places)
         self._put(cells)
 
     def redraw(self) -> None:
@@ -251,27 +251,29 @@ class PixelView(RowsView):
             self._raw = self._shown = picture
             return
         if self._raw is None or self._raw.shape != picture.shape:
-            shown = np.empty_like(picture)
+            reduced = np.empty_like(picture)
             rows, cols = np.indices(picture.shape[:2]).reshape(2, -1)
         else:
-            shown = self._shown.copy()
+            reduced = self._shown.copy()
             rows, cols = np.nonzero((self._raw != picture).any(axis=2))
-        shown[rows, cols] = reduce_pixels(picture[rows, cols], rows, cols, mode)
-        self._shown, self._raw = shown, picture
+        reduced[rows, cols] = reduce_pixels(picture[rows, cols], rows, cols, mode)
+        self._shown, self._raw = reduced, picture
 
     def render_line(self, y: int) -> Strip:
         """Return one row."""
         if y >= len(self._strips):
-            return self._blank()
+            return self._draw_blank()
         strip = self._strips[y]
         if strip is None:
             strip = (
-                CellStrip(self._row(y)) if self._tiles is None else PictureStrip(self._tiles.row(y))
+                CellStrip(self._read_row(y))
+                if self._tiles is None
+                else PictureStrip(self._tiles.row(y))
             )
             self._strips[y] = strip
         return strip
 
-    def _row(self, y: int) -> list[int]:
+    def _read_row(self, y: int) -> list[int]:
         cells: list[int] = self._cells[y].tolist()
         for (row, col), cell in self._signs.items():
             if row == y and 0 <= col < len(cells):
@@ -281,13 +283,13 @@ class PixelView(RowsView):
     def set_signs(self, signs: Mapping[tuple[int, int], int]) -> None:
         """Show other cells above those of the image, by row and column; not above pixels."""
         rows, cols = self._cells.shape
-        changed = {at for at, _ in self._signs.items() ^ signs.items()}
+        changed = {place for place, _ in self._signs.items() ^ signs.items()}
         self._signs = signs
         self._refresh_runs(
             (row, col, 1) for row, col in changed if 0 <= row < rows and 0 <= col < cols
         )
 
-    def _blank(self) -> Strip:
+    def _draw_blank(self) -> Strip:
         # A strip without a style would break Textual's filter for terminals without colours.
         strip = Strip.blank(self.size.width, self.rich_style)
         for line_filter in self.app.get_line_filters():
@@ -315,7 +317,7 @@ class LinesView(RowsView):
         for y, (before, now) in enumerate(zip(old, self._lines, strict=True)):
             if before != now:
                 self._text_strips[y] = None
-                regions += [Region(x, y, length, 1) for x, length in _changes(before, now)]
+                regions += [Region(x, y, length, 1) for x, length in _find_changes(before, now)]
         if regions:
             self.refresh(*regions)
 
@@ -332,13 +334,13 @@ class LinesView(RowsView):
     def render_line(self, y: int) -> Strip:
         """Return one row."""
         if y >= len(self._text_strips):
-            return self.strip_of([])
+            return self.draw_strip([])
         strip = self._text_strips[y]
         if strip is None or strip.cell_length != self.size.width:
-            strip = self._text_strips[y] = self.strip_of(self._lines[y])
+            strip = self._text_strips[y] = self.draw_strip(self._lines[y])
         return strip
 
-    def strip_of(self, line: Sequence[Run]) -> Strip:
+    def draw_strip(self, line: Sequence[Run]) -> Strip:
         """Return a line as a row of the widget."""
         base = self.rich_style
         whole = Strip([Segment(text, base + style) for text, style in line if text])
@@ -367,7 +369,7 @@ class LinesPanel(Widget):
     def _redraw(self) -> None:
         """Draw the lines for the current size."""
 
-    def cell_at(self, event: MouseEvent) -> tuple[int, int]:
+    def find_cell(self, event: MouseEvent) -> tuple[int, int]:
         """Return column and row of the mouse in the text."""
         origin = self._text.region
         return int(event.screen_x) - origin.x, int(event.screen_y) - origin.y
@@ -387,7 +389,7 @@ def _spread(line: Sequence[Run]) -> list[tuple[str, Style]]:
     return [(char, style) for text, style in line for char in text]
 
 
-def _changes(before: Sequence[Run], now: Sequence[Run]) -> list[tuple[int, int]]:
+def _find_changes(before: Sequence[Run], now: Sequence[Run]) -> list[tuple[int, int]]:
     """Return the columns at which two lines differ, as (first, length)."""
     old, new = _spread(before), _spread(now)
     blank = (" ", Style.null())
@@ -406,8 +408,8 @@ def _changes(before: Sequence[Run], now: Sequence[Run]) -> list[tuple[int, int]]
 
 
 @lru_cache(maxsize=8192)
-def _segment(cell: int) -> Segment:
-    fore, back = Color.from_rgb(*channels_of(cell >> 24)), Color.from_rgb(*channels_of(cell))
+def _build_segment(cell: int) -> Segment:
+    fore, back = Color.from_rgb(*unpack_rgb(cell >> 24)), Color.from_rgb(*unpack_rgb(cell))
     return Segment(GLYPHS[cell >> 48] if fore != back else " ", Style(color=fore, bgcolor=back))
 
 
@@ -416,7 +418,7 @@ class LazyStrip(MadeOnDemand):
 
     __slots__ = []
 
-    def _plain(self) -> Strip:
+    def _render_plain(self) -> Strip:
         return Strip(self, self.cell_length)
 
     def __bool__(self) -> bool:
@@ -434,11 +436,11 @@ class LazyStrip(MadeOnDemand):
 
     def divide(self, cuts: Iterable[int]) -> Sequence[Strip]:
         """Return the strips between the cuts, the first one from column 0."""
-        pieces, at = [], 0
+        pieces, start = [], 0
         for cut in cuts:
             if cut <= self.cell_length:
-                pieces.append(self.crop(at, cut))
-                at = cut
+                pieces.append(self.crop(start, cut))
+                start = cut
         return pieces
 
     def adjust_cell_length(self, cell_length: int, style: Style | None = None) -> Strip:
@@ -446,7 +448,7 @@ class LazyStrip(MadeOnDemand):
         return (
             self
             if cell_length == self.cell_length
-            else self._plain().adjust_cell_length(cell_length, style)
+            else self._render_plain().adjust_cell_length(cell_length, style)
         )
 
     def crop_extend(self, start: int, end: int, style: Style | None) -> Strip:
@@ -454,16 +456,16 @@ class LazyStrip(MadeOnDemand):
         return (
             self.crop(start, end)
             if end <= self.cell_length
-            else self._plain().crop_extend(start, end, style)
+            else self._render_plain().crop_extend(start, end, style)
         )
 
     def apply_filter(self, filter: LineFilter, background: TextualColor) -> Strip:  # noqa: A002  # the base class's name
         """Return the strip with a filter of Textual applied."""
-        return self._plain().apply_filter(filter, background)
+        return self._render_plain().apply_filter(filter, background)
 
     def apply_style(self, style: Style) -> Strip:
         """Return the strip with a style laid over it."""
-        return self._plain().apply_style(style)
+        return self._render_plain().apply_style(style)
 
     def apply_offsets(self, x: int, y: int) -> Strip:
         """Return the strip unchanged: a picture cannot be selected as text."""
@@ -492,10 +494,12 @@ class JoinedStrip(LazyStrip):
 
     def _cut(self, start: int, end: int) -> list[Strip]:
         """Return the parts between two columns."""
-        cut, at = [], 0
+        cut, offset = [], 0
         for part in self.parts:
-            cut.append(part.crop(max(start - at, 0), max(min(end - at, part.cell_length), 0)))
-            at += part.cell_length
+            cut.append(
+                part.crop(max(start - offset, 0), max(min(end - offset, part.cell_length), 0))
+            )
+            offset += part.cell_length
         return cut
 
 
@@ -515,7 +519,7 @@ class CellStrip(LazyStrip):
 
     def make(self) -> list[Segment]:
         """Return its segments."""
-        return [_segment(cell) for cell in self.cells]
+        return [_build_segment(cell) for cell in self.cells]
 
     def _part(self, start: int, end: int) -> CellStrip:
         return CellStrip(self.cells[start:end])
@@ -540,7 +544,7 @@ class PictureStrip(CellStrip):
         if not self.parts:
             return ()
         first = self.parts[0]
-        return first.picture.half_blocks(first.row)[first.col : first.col + len(self.parts)]
+        return first.picture.draw_half_blocks(first.row)[first.col : first.col + len(self.parts)]
 
     def _part(self, start: int, end: int) -> PictureStrip:
         return PictureStrip(self.parts[start:end])

@@ -9,18 +9,18 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from tuisim.terminal.fitted_cells import CellIndex, Cells, all_cells
+from tuisim.terminal.fitted_cells import CellIndex, Cells, list_cells
 from tuisim.terminal.glyphs import (
     BRAILLE_FROM,
     GLYPHS,
     Covered,
     GlyphSet,
-    glyph_set,
-    nearest_signs,
+    build_glyph_set,
+    find_nearest_signs,
     sign_number,
 )
 from tuisim.terminal.picture_options import CellSet
-from tuisim.terminal.pixels import CellPoints, Pixels, channels_of, packed_rgb
+from tuisim.terminal.pixels import CellPoints, Pixels, pack_rgb, unpack_rgb
 
 CellRun: TypeAlias = tuple[int, int, int]
 """Row, first column and number of some cells; several are in order from the top left."""
@@ -29,35 +29,35 @@ MERGE_GAP = 3
 """Unchanged cells between two runs that are cheaper to send again than to jump over."""
 
 
-def changed_cells(old: Pixels, new: Pixels, glyphs: GlyphSet) -> CellIndex:
+def find_changed_cells(old: Pixels, new: Pixels, glyphs: GlyphSet) -> CellIndex:
     """Return the cells in which two pictures of the same shape differ."""
     cols = new.shape[1] // glyphs.cols
     row_bytes = new.shape[1] * 3
     # Four bytes at a time; a word may belong to two cells.
     word = np.uint32 if new.nbytes % 4 == 0 else np.uint16
-    first = np.flatnonzero(_words(new, word) != _words(old, word)) * word().itemsize
+    first = np.flatnonzero(_view_words(new, word) != _view_words(old, word)) * word().itemsize
     changed = np.zeros((len(new) // glyphs.rows, cols), bool)
-    for at in (first, first + word().itemsize - 1):
-        changed[at // (row_bytes * glyphs.rows), at % row_bytes // (3 * glyphs.cols)] = True
+    for offset in (first, first + word().itemsize - 1):
+        changed[offset // (row_bytes * glyphs.rows), offset % row_bytes // (3 * glyphs.cols)] = True
     at_rows, at_cols = np.nonzero(changed)
     return at_rows, at_cols
 
 
-def _words(picture: Pixels, word: type[np.unsignedinteger]) -> npt.NDArray[np.unsignedinteger]:
+def _view_words(picture: Pixels, word: type[np.unsignedinteger]) -> npt.NDArray[np.unsignedinteger]:
     return np.ascontiguousarray(picture).ravel().view(word)
 
 
-def changed_runs(old: Cells, new: Cells) -> list[CellRun]:
+def find_changed_runs(old: Cells, new: Cells) -> list[CellRun]:
     """Return the runs of cells that differ between two frames of the same shape; close ones are one.
 
     Args:
         old: The frame on the screen.
         new: The next frame.
     """
-    return runs_of(old != new, MERGE_GAP)
+    return find_runs(old != new, MERGE_GAP)
 
 
-def runs_of(changed: npt.NDArray[np.bool_], gap: int = 1) -> list[CellRun]:
+def find_runs(changed: npt.NDArray[np.bool_], gap: int = 1) -> list[CellRun]:
     """Return the runs of some cells, shape (rows, columns); those with fewer than `gap` cells between them are one."""
     rows, cols = np.nonzero(changed)
     if not len(rows):
@@ -119,25 +119,25 @@ def reduce_cells(cells: Cells, mode: ColorMode) -> Cells:
         return cells
     colors = np.stack((cells >> 24, cells), axis=-1)[..., None] >> np.array([16, 8, 0]) & 255
     flat = colors.reshape(-1, 3).astype(np.uint8)
-    reduced = packed_rgb(_nearest(_greyed(flat, mode), mode.depth).astype(np.int64).T).reshape(
-        *cells.shape, 2
-    )
+    reduced = pack_rgb(
+        _find_nearest(_convert_greys(flat, mode), mode.depth).astype(np.int64).T
+    ).reshape(*cells.shape, 2)
     return cells >> 48 << 48 | reduced[..., 0] << 24 | reduced[..., 1]
 
 
-def _greyed(pixels: Pixels, mode: ColorMode) -> Pixels:
+def _convert_greys(pixels: Pixels, mode: ColorMode) -> Pixels:
     if not mode.grey:
         return pixels
     return np.repeat(np.rint(pixels @ _LUMA).astype(np.uint8)[:, None], 3, axis=1)
 
 
-def _nearest(pixels: Pixels, depth: int) -> Pixels:
+def _find_nearest(pixels: Pixels, depth: int) -> Pixels:
     """Return the nearest colours of a palette."""
     if depth >= TRUECOLOR:
         return pixels
     if depth >= PALETTE_256:
-        return _palette_rgb()[_nearest_256(pixels.astype(np.int32))]
-    return _STANDARD[_nearest_16(pixels.astype(np.int32), depth)].astype(np.uint8)
+        return _build_palette()[_find_nearest_256(pixels.astype(np.int32))]
+    return _STANDARD[_find_nearest_16(pixels.astype(np.int32), depth)].astype(np.uint8)
 
 
 def reduce_pixels(
@@ -156,15 +156,15 @@ def reduce_pixels(
     Returns:
         Shape (n, 3).
     """
-    pixels = _greyed(pixels, mode)
+    pixels = _convert_greys(pixels, mode)
     if not mode.dithers:
-        return _nearest(pixels, mode.depth)
+        return _find_nearest(pixels, mode.depth)
     # Strong colours are close enough to one of the 16; dithering would only spoil them.
     paleness = 1 - (pixels.max(axis=1).astype(np.float32) - pixels.min(axis=1)) / 255
     if mode.depth == PALETTE_8:
-        return _dithered_8(pixels, (_BAYER[rows % 4, cols % 4] + 0.5) / 16, paleness)
+        return _mix_pale_8(pixels, (_BAYER[rows % 4, cols % 4] + 0.5) / 16, paleness)
     offset = (_BAYER[rows % 4, cols % 4] - 7.5) / 8 * _DITHER * paleness
-    return _nearest(np.clip(pixels + offset[:, None], 0, 255).astype(np.uint8), mode.depth)
+    return _find_nearest(np.clip(pixels + offset[:, None], 0, 255).astype(np.uint8), mode.depth)
 
 
 _SHARES_8 = ((40, 128, 211, 220, 255), (0.0, 0.5, 0.75, 0.875, 1.0))
@@ -172,24 +172,24 @@ _SHARES_8 = ((40, 128, 211, 220, 255), (0.0, 0.5, 0.75, 0.875, 1.0))
 panel, gets no dots."""
 
 
-def _dithered_8(
+def _mix_pale_8(
     pixels: Pixels, thresholds: npt.NDArray[np.float64], paleness: npt.NDArray[np.float32]
 ) -> Pixels:
     """Return pale pixels as black and white, each in a share that tells it from other greys; others as the nearest."""
     white = np.interp(pixels @ _LUMA, *_SHARES_8) > thresholds
     dithered = np.where(white[:, None], _STANDARD[7], _STANDARD[0])
-    return np.where((paleness > 0.75)[:, None], dithered, _nearest(pixels, PALETTE_8)).astype(
+    return np.where((paleness > 0.75)[:, None], dithered, _find_nearest(pixels, PALETTE_8)).astype(
         np.uint8
     )
 
 
 @lru_cache(maxsize=8192)
-def color_codes(rgb: int, depth: int) -> tuple[str, str]:
+def build_color_codes(rgb: int, depth: int) -> tuple[str, str]:
     """Return the codes that set a colour, 0xRRGGBB, as foreground and as background."""
     if depth >= TRUECOLOR:
-        channels = "{};{};{}".format(*channels_of(rgb))
+        channels = "{};{};{}".format(*unpack_rgb(rgb))
         return f"38;2;{channels}", f"48;2;{channels}"
-    number = sgr_index(rgb, depth)
+    number = find_sgr_index(rgb, depth)
     if depth >= PALETTE_256:
         return f"38;5;{number}", f"48;5;{number}"
     # The bright ones are 90 to 97 and 100 to 107.
@@ -197,20 +197,22 @@ def color_codes(rgb: int, depth: int) -> tuple[str, str]:
     return str(30 + shade), str(40 + shade)
 
 
-def sgr_index(rgb: int, depth: int) -> int:
+def find_sgr_index(rgb: int, depth: int) -> int:
     """Return the palette number nearest to 0xRRGGBB: 16 to 255, or 0 to 15 for a depth of 16."""
-    color = np.array([channels_of(rgb)], np.int32)
-    return int((_nearest_256(color) if depth >= PALETTE_256 else _nearest_16(color, depth))[0])
+    color = np.array([unpack_rgb(rgb)], np.int32)
+    return int(
+        (_find_nearest_256(color) if depth >= PALETTE_256 else _find_nearest_16(color, depth))[0]
+    )
 
 
 @lru_cache(maxsize=1)
-def _palette_rgb() -> Pixels:
+def _build_palette() -> Pixels:
     """Return the 256 colours; the first 16 are never used."""
     cube = [(red, green, blue) for red in _CUBE for green in _CUBE for blue in _CUBE]
     return np.array([(0, 0, 0)] * 16 + cube + [(grey,) * 3 for grey in _GREYS], np.uint8)
 
 
-def _nearest_256(pixels: npt.NDArray[np.int32]) -> npt.NDArray[np.intp]:
+def _find_nearest_256(pixels: npt.NDArray[np.int32]) -> npt.NDArray[np.intp]:
     levels = np.array(_CUBE, np.int32)
     steps = np.searchsorted((levels[1:] + levels[:-1]) / 2, pixels)
     cube = 16 + steps @ np.array([36, 6, 1])
@@ -221,7 +223,9 @@ def _nearest_256(pixels: npt.NDArray[np.int32]) -> npt.NDArray[np.intp]:
     return nearest
 
 
-def _nearest_16(pixels: npt.NDArray[np.int32], depth: int = PALETTE_16) -> npt.NDArray[np.intp]:
+def _find_nearest_16(
+    pixels: npt.NDArray[np.int32], depth: int = PALETTE_16
+) -> npt.NDArray[np.intp]:
     # Green weighs most and blue least, as in human vision.
     errors = ((pixels[:, None, :] - _STANDARD[:depth]) ** 2) @ np.array([3, 5, 2])
     nearest: npt.NDArray[np.intp] = errors.argmin(axis=1)
@@ -239,17 +243,21 @@ _INK_ON_PAPER = 0xFFFFFF << 24
 """Light dots on black where a picture needs colours after all, as in a screenshot."""
 
 
-def darkness(points: npt.NDArray[np.uint8]) -> Covered:
+def measure_darkness(points: npt.NDArray[np.uint8]) -> Covered:
     """Return how dark colours are, shape (…, 3), from 0 for white to 1 for black."""
-    found: Covered = np.interp(points @ _LUMA, _INK_GREYS, _DARKNESS).astype(np.float32)
-    return found
+    shares: Covered = np.interp(points @ _LUMA, _INK_GREYS, _DARKNESS).astype(np.float32)
+    return shares
 
 
-def mono_cells(picture: Pixels, glyphs: GlyphSet, at: CellIndex, cell_set: CellSet) -> Cells:
+def draw_mono_cells(
+    picture: Pixels, glyphs: GlyphSet, places: CellIndex, cell_set: CellSet
+) -> Cells:
     """Return some cells of a picture as dots or signs, shape (n,)."""
     rows, cols = len(picture) // glyphs.rows, picture.shape[1] // glyphs.cols
-    points = picture.reshape(rows, glyphs.rows, cols, glyphs.cols, 3).transpose(0, 2, 1, 3, 4)[at]
-    ink = darkness(points.reshape(len(points), glyphs.rows * glyphs.cols, 3))
+    points = picture.reshape(rows, glyphs.rows, cols, glyphs.cols, 3).transpose(0, 2, 1, 3, 4)[
+        places
+    ]
+    ink = measure_darkness(points.reshape(len(points), glyphs.rows * glyphs.cols, 3))
     if cell_set is CellSet.BRAILLE:
         dots = ink > _THRESHOLDS
         patterns = (dots << np.arange(dots.shape[1])).sum(axis=1)
@@ -258,22 +266,22 @@ def mono_cells(picture: Pixels, glyphs: GlyphSet, at: CellIndex, cell_set: CellS
         ramp = np.array([sign_number(sign) for sign in _RAMP])
         even = np.ptp(ink, axis=1) < _EVEN
         steps = np.rint(ink.mean(axis=1) * (len(_RAMP) - 1)).astype(np.intp)
-        numbers = np.where(even, ramp[steps], nearest_signs(ink))
+        numbers = np.where(even, ramp[steps], find_nearest_signs(ink))
     cells: Cells = numbers.astype(np.int64) << 48 | _INK_ON_PAPER
     return cells
 
 
 def find_cell_points(cell_set: CellSet) -> CellPoints:
     """Return the points of an image in a cell with some glyphs."""
-    glyphs = glyph_set(cell_set)
+    glyphs = build_glyph_set(cell_set)
     return CellPoints(glyphs.cols, glyphs.rows)
 
 
 def draw_mono_rows(picture: Pixels, cell_set: CellSet) -> list[str]:
     """Return an image as rows of characters without colours; it has the points of these glyphs."""
-    glyphs = glyph_set(cell_set)
+    glyphs = build_glyph_set(cell_set)
     shape = len(picture) // glyphs.rows, picture.shape[1] // glyphs.cols
-    cells = mono_cells(picture, glyphs, all_cells(*shape), cell_set).reshape(shape)
+    cells = draw_mono_cells(picture, glyphs, list_cells(*shape), cell_set).reshape(shape)
     return ["".join(GLYPHS[cell >> 48] for cell in row).rstrip() for row in cells.tolist()]
 
 

@@ -15,15 +15,15 @@ from typing import TextIO
 from textual.app import App
 
 from tuisim.terminal import kitty
-from tuisim.terminal.picture_mode import picture_mode_of
+from tuisim.terminal.picture_mode import find_picture_mode
 from tuisim.terminal.picture_options import Protocol
 from tuisim.terminal.probe import SILENT, take_typed
 from tuisim.terminal.queries import QUESTIONS, AnswerParser
 from tuisim.terminal.textual_internals import (
     HookedLinuxDriver,
-    app_of,
+    find_app,
     is_leaving,
-    parse_input_with,
+    set_input_parser,
 )
 
 SIGNALLED = 128
@@ -137,7 +137,7 @@ class TerminalDriver(HookedLinuxDriver):
             super().run_input_thread()
         except (EOFError, OSError):
             # Not every shell tells its jobs.
-            app_of(self).call_later(app_of(self).exit, return_code=_LOST)
+            find_app(self).call_later(find_app(self).exit, return_code=_LOST)
 
     def start_application_mode(self) -> None:
         """Take the terminal over, and ask what it can do."""
@@ -148,15 +148,13 @@ class TerminalDriver(HookedLinuxDriver):
 
     def stop_application_mode(self) -> None:
         """Leave the terminal, and nothing in its memory."""
-        graphics = picture_mode_of(app_of(self)).graphics
+        graphics = find_picture_mode(find_app(self)).graphics
         if graphics is not None and graphics.protocol is Protocol.KITTY:
-            self.write(
-                kitty.through_tmux(kitty.DELETE_ALL) if graphics.in_tmux else kitty.DELETE_ALL
-            )
+            self.write(kitty.wrap_tmux(kitty.DELETE_ALL) if graphics.in_tmux else kitty.DELETE_ALL)
         super().stop_application_mode()
 
     @contextmanager
-    def lent(self) -> Iterator[None]:
+    def lend(self) -> Iterator[None]:
         """Give the terminal back for a while: to the shell while the app is stopped, or to another program."""
         # Were the terminal taken over again by a stop from outside that ends meanwhile, it would be taken from them.
         self._is_lent = True
@@ -171,7 +169,7 @@ class TerminalDriver(HookedLinuxDriver):
                 self.resume()
             else:
                 # The terminal was lost meanwhile, and nobody reads from it who would notice.
-                app_of(self).exit(return_code=_LOST)
+                find_app(self).exit(return_code=_LOST)
 
     def stop_as_job(self) -> bool:
         """Restore the terminal and stop the whole process group; resume when the shell says so.
@@ -182,12 +180,12 @@ class TerminalDriver(HookedLinuxDriver):
         Returns:
             Whether the app was stopped, and has resumed.
         """
-        with self.lent():
+        with self.lend():
             self._was_continued = False
             os.kill(0, signal.SIGTSTP)
             return self._was_continued
 
-    def continued(self) -> None:
+    def handle_continuation(self) -> None:
         """The process was stopped, and goes on; called from the handler of the signal."""
         if self._is_lent:
             self._was_continued = True
@@ -198,7 +196,7 @@ class TerminalDriver(HookedLinuxDriver):
     def _take_terminal_again(self) -> None:
         # The signal also arrives when the terminal is lost, so that nothing can resume, and after a stop without
         # preparation, where the former reader and writer must end before they are started again.
-        if is_leaving(app_of(self)) or not self.resumes or not os.isatty(self.fileno):
+        if is_leaving(find_app(self)) or not self.resumes or not os.isatty(self.fileno):
             return
         if self.writes:
             self.suspend_application_mode()
@@ -207,4 +205,4 @@ class TerminalDriver(HookedLinuxDriver):
             self.resume_application_mode()
 
 
-parse_input_with(AnswerParser, InputDecoder)
+set_input_parser(AnswerParser, InputDecoder)

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tuisim.terminal.glyphs import GlyphSet
-from tuisim.terminal.pixels import Pixels, packed_rgb
+from tuisim.terminal.pixels import Pixels, pack_rgb
 
 Cells = npt.NDArray[np.int64]
 """Shape (rows, columns): the glyph's number in `GLYPHS` in bits 48 to 62, the colour of the points that it covers in
@@ -28,32 +28,32 @@ CellIndex = tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]
 """The rows and columns of some cells."""
 
 
-def all_cells(rows: int, cols: int) -> CellIndex:
+def list_cells(rows: int, cols: int) -> CellIndex:
     """Return every cell of a picture."""
     at_rows, at_cols = np.indices((rows, cols)).reshape(2, -1)
     return at_rows, at_cols
 
 
-def fit_cells(picture: Pixels, glyphs: GlyphSet, at: CellIndex) -> Cells:
+def fit_cells(picture: Pixels, glyphs: GlyphSet, places: CellIndex) -> Cells:
     """Return the glyphs and colours that show some cells of a picture best, whatever was there before.
 
     Args:
         picture: A whole number of cells, each with the points of the glyphs.
         glyphs: The glyphs to choose from.
-        at: Which cells.
+        places: Which cells.
 
     Returns:
         Shape (n,).
     """
-    cells: Cells = np.empty(len(at[0]), np.int64)
+    cells: Cells = np.empty(len(places[0]), np.int64)
     for first in range(0, len(cells), _AT_ONCE):
         some = slice(first, first + _AT_ONCE)
-        chosen = _points(picture, glyphs, (at[0][some], at[1][some]))
-        cells[some] = _fitted(chosen, glyphs)
+        chosen = _read_points(picture, glyphs, (places[0][some], places[1][some]))
+        cells[some] = _fit_points(chosen, glyphs)
     return cells
 
 
-def is_flat(picture: Pixels, glyphs: GlyphSet, at: CellIndex) -> npt.NDArray[np.bool_]:
+def is_flat(picture: Pixels, glyphs: GlyphSet, places: CellIndex) -> npt.NDArray[np.bool_]:
     """Return whether some cells are of one colour, so that no glyph shows more of them than another.
 
     Args:
@@ -62,14 +62,14 @@ def is_flat(picture: Pixels, glyphs: GlyphSet, at: CellIndex) -> npt.NDArray[np.
     Returns:
         Shape (n,).
     """
-    return _is_one_color(_points(picture, glyphs, at))
+    return _is_one_color(_read_points(picture, glyphs, places))
 
 
-def _points(picture: Pixels, glyphs: GlyphSet, at: CellIndex) -> npt.NDArray[np.uint8]:
+def _read_points(picture: Pixels, glyphs: GlyphSet, places: CellIndex) -> npt.NDArray[np.uint8]:
     """Return the points of some cells, shape (3, points of a cell, n)."""
     rows, cols = len(picture) // glyphs.rows, picture.shape[1] // glyphs.cols
     points = picture.reshape(rows, glyphs.rows, cols, glyphs.cols, 3).transpose(4, 1, 3, 0, 2)
-    return points[..., at[0], at[1]].reshape(3, glyphs.rows * glyphs.cols, -1)
+    return points[..., places[0], places[1]].reshape(3, glyphs.rows * glyphs.cols, -1)
 
 
 def _is_one_color(points: npt.NDArray[np.uint8]) -> npt.NDArray[np.bool_]:
@@ -77,38 +77,38 @@ def _is_one_color(points: npt.NDArray[np.uint8]) -> npt.NDArray[np.bool_]:
     return is_one
 
 
-def _fitted(points: npt.NDArray[np.uint8], glyphs: GlyphSet) -> Cells:
+def _fit_points(points: npt.NDArray[np.uint8], glyphs: GlyphSet) -> Cells:
     """Return the cells for points of shape (3, points of a cell, n)."""
-    packed = packed_rgb(points.astype(np.int64))
+    packed = pack_rgb(points.astype(np.int64))
     if len(packed) == 2:
         # The two points are the two colours.
         halves: Cells = packed[0] << 24 | packed[1]
         return halves
     if len(glyphs.numbers) == 1:
-        return _half_blocks(points, glyphs)
+        return _draw_half_blocks(points, glyphs)
     cells: Cells = packed[0] << 24 | packed[0]
     uneven = np.flatnonzero(~_is_one_color(points))
-    lab = _lab(points[..., uneven])
-    chosen = _best_glyphs(lab, glyphs)
-    fore, back = _typical(lab, glyphs.covered[chosen].T)
+    lab = _convert_lab(points[..., uneven])
+    chosen = _find_best_glyphs(lab, glyphs)
+    fore, back = _find_typical(lab, glyphs.covered[chosen].T)
     cells[uneven] = glyphs.numbers[chosen] << 48 | packed[fore, uneven] << 24 | packed[back, uneven]
     return cells
 
 
-def _half_blocks(points: npt.NDArray[np.uint8], glyphs: GlyphSet) -> Cells:
+def _draw_half_blocks(points: npt.NDArray[np.uint8], glyphs: GlyphSet) -> Cells:
     """Return cells of the half block alone, in the mean colours of two of their rows of points.
 
     Of a line in one of the two points of a row, either colour alone would lose the line, or the ground.
     """
     of_rows = np.rint(points.reshape(3, glyphs.rows, glyphs.cols, -1).mean(axis=2)).astype(np.uint8)
     covered = np.repeat(glyphs.covered[0, :: glyphs.cols, None], of_rows.shape[2], axis=1)
-    fore, back = _typical(_lab(of_rows), covered)
-    packed, at = packed_rgb(of_rows.astype(np.int64)), np.arange(of_rows.shape[2])
-    cells: Cells = glyphs.numbers[0] << 48 | packed[fore, at] << 24 | packed[back, at]
+    fore, back = _find_typical(_convert_lab(of_rows), covered)
+    packed, numbers = pack_rgb(of_rows.astype(np.int64)), np.arange(of_rows.shape[2])
+    cells: Cells = glyphs.numbers[0] << 48 | packed[fore, numbers] << 24 | packed[back, numbers]
     return cells
 
 
-def _typical(
+def _find_typical(
     lab: npt.NDArray[np.float32], covered: npt.NDArray[np.float32]
 ) -> list[npt.NDArray[np.intp]]:
     """Return the point of each cell's two groups that is nearest to the mean of its group; of two, the darker one.
@@ -116,15 +116,15 @@ def _typical(
     It is a colour of the picture; the mean of three colours is often none, and looks blurred. Of the edge of a band
     beside a robot's corner, the ground would be a notch in the band.
     """
-    found: list[npt.NDArray[np.intp]] = []
+    points: list[npt.NDArray[np.intp]] = []
     for share in (covered, 1 - covered):
         mean = (lab * share).sum(axis=1, keepdims=True) / share.sum(axis=0)
         distance = np.square(lab - mean).sum(axis=0) + _DARKER * lab[0]
-        found.append((distance + _OTHER * (share < 0.5)).argmin(axis=0))
-    return found
+        points.append((distance + _OTHER * (share < 0.5)).argmin(axis=0))
+    return points
 
 
-def _best_glyphs(lab: npt.NDArray[np.float32], glyphs: GlyphSet) -> npt.NDArray[np.intp]:
+def _find_best_glyphs(lab: npt.NDArray[np.float32], glyphs: GlyphSet) -> npt.NDArray[np.intp]:
     """Return which glyph splits the points of each cell into the two most even groups.
 
     The search is exhaustive: with the points relative to their mean, the sum of those that a glyph covers gives the
@@ -140,7 +140,7 @@ def _best_glyphs(lab: npt.NDArray[np.float32], glyphs: GlyphSet) -> npt.NDArray[
 
 
 @lru_cache(maxsize=1)
-def _linear() -> npt.NDArray[np.float32]:
+def _build_linear() -> npt.NDArray[np.float32]:
     """Return the light of each sRGB value."""
     value = np.arange(256) / 255
     return np.where(value <= 0.04045, value / 12.92, ((value + 0.055) / 1.055) ** 2.4).astype(
@@ -156,9 +156,9 @@ _FROM_ROOTS = np.array([[0, 116, 0], [500, -500, 0], [0, 200, -200]], np.float32
 """From the cube roots of XYZ to L*a*b*, but for the 16 that is subtracted from every L*."""
 
 
-def _lab(points: npt.NDArray[np.uint8]) -> npt.NDArray[np.float32]:
+def _convert_lab(points: npt.NDArray[np.uint8]) -> npt.NDArray[np.float32]:
     """Return colours of shape (3, …) in CIE L*a*b*, where distances are about as large as they look."""
-    xyz = _XYZ @ _linear()[points].reshape(3, -1)
+    xyz = _XYZ @ _build_linear()[points].reshape(3, -1)
     root = np.where(xyz > 0.008856, np.cbrt(xyz), 7.787 * xyz + 16 / 116)
     lab: npt.NDArray[np.float32] = (_FROM_ROOTS @ root).reshape(points.shape)
     return lab

@@ -28,8 +28,8 @@ from tuisim.terminal.cells import (
     PALETTE_16,
     PALETTE_256,
     TRUECOLOR,
-    color_codes,
-    sgr_index,
+    build_color_codes,
+    find_sgr_index,
 )
 from tuisim.terminal.glyphs import GLYPHS
 from tuisim.terminal.picture import PictureCell, TilePicture
@@ -96,7 +96,7 @@ class FrameBuffer:
         for picture in self._pictures:
             picture.forget()
 
-    def codes(self, update: object, mode: TextMode) -> str | None:
+    def encode_update(self, update: object, mode: TextMode) -> str | None:
         """Return the codes that update the terminal, empty if it shows the update already.
 
         Args:
@@ -112,30 +112,31 @@ class FrameBuffer:
                 # What was drawn for another size since the terminal has got this one is wrapped or cut there.
                 self.forget()
                 self._size = update.region.size
-            pieces = _pieces_of_all(update)
+            pieces = _split_layout(update)
         elif isinstance(update, ChopsUpdate):
-            pieces = _pieces_of_part(update)
+            pieces = _split_chops(update)
         else:
             self.forget()
             return None
         places: dict[TilePicture, list[tuple[int, int, PictureCell]]] = {}
         for y, x, strip in pieces:
-            for col, cell in self._put(pen, y, x, _cells(strip, mode)):
+            for col, cell in self._put(pen, y, x, _read_cells(strip, mode)):
                 places.setdefault(cell.picture, []).append((y, col, cell))
         for picture in places:
             if picture not in self._pictures:
                 self._pictures.add(picture)
-                finalize(picture, self._gone.append, picture.images()).atexit = False
+                finalize(picture, self._gone.append, picture.build_deletion()).atexit = False
         drawn = "".join(
-            picture.draw(some, partial(self._shows, picture)) for picture, some in places.items()
+            picture.draw(some, partial(self._is_showing, picture))
+            for picture, some in places.items()
         )
-        return pen.finish() + drawn + self._deleted()
+        return pen.finish() + drawn + self._delete_pictures()
 
-    def _deleted(self) -> str:
+    def _delete_pictures(self) -> str:
         gone = [self._gone.pop() for _ in range(len(self._gone))]
         return "".join(codes() for codes in gone)
 
-    def _shows(self, picture: TilePicture, y: int, x: int) -> bool:
+    def _is_showing(self, picture: TilePicture, y: int, x: int) -> bool:
         """Return whether a cell of the screen is a part of a picture."""
         row = self._rows.get(y, ())
         cell = row[x] if x < len(row) else None
@@ -158,7 +159,7 @@ class FrameBuffer:
                 row[x] = cell
 
 
-def _pieces_of_all(update: LayoutUpdate) -> Iterator[tuple[int, int, Strip]]:
+def _split_layout(update: LayoutUpdate) -> Iterator[tuple[int, int, Strip]]:
     """Yield row, column and strip of the whole screen."""
     for y, strips in enumerate(update.strips, update.region.y):
         x = update.region.x
@@ -167,7 +168,7 @@ def _pieces_of_all(update: LayoutUpdate) -> Iterator[tuple[int, int, Strip]]:
             x += strip.cell_length
 
 
-def _pieces_of_part(update: ChopsUpdate) -> Iterator[tuple[int, int, Strip]]:
+def _split_chops(update: ChopsUpdate) -> Iterator[tuple[int, int, Strip]]:
     """Yield row, column and strip of the parts that may have changed."""
     for y, first, last in update.spans:
         for end, (x, strip) in zip(update.chop_ends[y], update.chops[y].items(), strict=False):
@@ -181,32 +182,34 @@ def _pieces_of_part(update: ChopsUpdate) -> Iterator[tuple[int, int, Strip]]:
                 yield y, x, strip.crop(0, end - x)
 
 
-def _cells(strip: Strip, mode: TextMode) -> Sequence[Cell]:
+def _read_cells(strip: Strip, mode: TextMode) -> Sequence[Cell]:
     if isinstance(strip, JoinedStrip):
-        return [cell for part in strip.parts for cell in _cells(part, mode)]
+        return [cell for part in strip.parts for cell in _read_cells(part, mode)]
     if isinstance(strip, PictureStrip):
         return [
-            ("", cell) if cell.half_block is None else _image_cell(cell.half_block, mode.depth)
+            ("", cell)
+            if cell.half_block is None
+            else _build_image_cell(cell.half_block, mode.depth)
             for cell in strip.parts
         ]
     if isinstance(strip, CellStrip):
-        return [_image_cell(cell, mode.depth) for cell in strip.cells]
+        return [_build_image_cell(cell, mode.depth) for cell in strip.cells]
     return [
         cell
         for text, style, control in strip
         if not control
-        for cell in _written(text, style, mode)
+        for cell in _split_text(text, style, mode)
     ]
 
 
 @lru_cache(maxsize=16384)
-def _image_cell(cell: int, depth: int) -> Cell:
+def _build_image_cell(cell: int, depth: int) -> Cell:
     if depth == MONO:
         glyph = GLYPHS[cell >> 48]
         return glyph, CellLook((), "" if glyph == " " else "39")
     fore, back = (
-        color_codes(cell >> 24 & 0xFFFFFF, depth)[0],
-        color_codes(cell & 0xFFFFFF, depth)[1],
+        build_color_codes(cell >> 24 & 0xFFFFFF, depth)[0],
+        build_color_codes(cell & 0xFFFFFF, depth)[1],
     )
     return (
         (" ", CellLook((), "", back))
@@ -221,22 +224,22 @@ def _is_same(fore: str, back: str) -> bool:
 
 
 @lru_cache(maxsize=4096)
-def _written(text: str, style: Style | None, mode: TextMode) -> tuple[Cell, ...]:
+def _split_text(text: str, style: Style | None, mode: TextMode) -> tuple[Cell, ...]:
     look = _look(style, mode.depth)
     if not mode.has_italics and _ITALIC in look.attributes:
         look = look._replace(attributes=tuple(code for code in look.attributes if code != _ITALIC))
     if mode.is_ascii:
-        text = as_ascii(text)
+        text = convert_ascii(text)
     if text.isascii():
-        return tuple(_simplest(char, look) for char in text)
+        return tuple(_simplify_cell(char, look) for char in text)
     cells: list[Cell] = []
     for start, end, width in split_graphemes(text)[0]:
         if width:
-            cells += [_simplest(text[start:end], look), *[("", look)] * (width - 1)]
+            cells += [_simplify_cell(text[start:end], look), *[("", look)] * (width - 1)]
     return tuple(cells)
 
 
-def _simplest(text: str, look: CellLook) -> Cell:
+def _simplify_cell(text: str, look: CellLook) -> Cell:
     """Return the cell that looks the same with the fewest codes."""
     if text == _UPPER_HALF and _is_same(look.foreground, look.background) and not look.attributes:
         text = " "
@@ -249,14 +252,14 @@ def _simplest(text: str, look: CellLook) -> Cell:
 def _look(style: Style | None, depth: int) -> CellLook:
     if style is None:
         return CellLook()
-    shown = style._attributes & style._set_attributes
-    attributes = tuple(code for bit, code in enumerate(SGR_STYLES) if shown & 1 << bit)
+    attributes_set = style._attributes & style._set_attributes
+    attributes = tuple(code for bit, code in enumerate(SGR_STYLES) if attributes_set & 1 << bit)
     link = f"id={style._link_id};{style.link}" if style.link else ""
     if depth == MONO:
-        return CellLook(_without_colors(attributes, style), link=link)
+        return CellLook(_strip_colors(attributes, style), link=link)
     foreground, background = (
-        _color_codes(style.color, depth)[0],
-        _color_codes(style.bgcolor, depth)[1],
+        _build_color_codes(style.color, depth)[0],
+        _build_color_codes(style.bgcolor, depth)[1],
     )
     return CellLook(attributes, foreground, background, link)
 
@@ -266,7 +269,7 @@ _LIT = 50.0
 _REVERSE, _ITALIC = "7", "3"
 
 
-def _without_colors(attributes: tuple[str, ...], style: Style) -> tuple[str, ...]:
+def _strip_colors(attributes: tuple[str, ...], style: Style) -> tuple[str, ...]:
     """Return the attributes of a style, and reverse video where only its background makes it stand out."""
     background = style.bgcolor.triplet if style.bgcolor else None
     if background is None or _REVERSE in attributes:
@@ -279,19 +282,21 @@ _SEEN_ON_BLACK = 120
 """Text and lines whose channels add up to more are not black."""
 
 
-def _color_codes(color: Color | None, depth: int) -> tuple[str, str]:
+def _build_color_codes(color: Color | None, depth: int) -> tuple[str, str]:
     if color is None:
         return "39", "49"
     if depth == PALETTE_8 and color.triplet is not None and sum(color.triplet) > _SEEN_ON_BLACK:
         # The nearest of so few is black too often, and black on black is nothing.
-        number = sgr_index(int.from_bytes(color.triplet, "big"), depth) or 7
-        return str(30 + number), color_codes(int.from_bytes(color.triplet, "big"), depth)[1]
+        number = find_sgr_index(int.from_bytes(color.triplet, "big"), depth) or 7
+        return str(30 + number), build_color_codes(int.from_bytes(color.triplet, "big"), depth)[1]
     if color.triplet is not None and depth in (PALETTE_8, PALETTE_256):
         # The same reduction as in images; otherwise an image under a dialog would be resent in nearly identical
         # colours.
-        return color_codes(int.from_bytes(color.triplet, "big"), depth)
-    least = color.downgrade(_SYSTEMS[depth])
-    return ";".join(least.get_ansi_codes()), ";".join(least.get_ansi_codes(foreground=False))
+        return build_color_codes(int.from_bytes(color.triplet, "big"), depth)
+    system_color = color.downgrade(_SYSTEMS[depth])
+    return ";".join(system_color.get_ansi_codes()), ";".join(
+        system_color.get_ansi_codes(foreground=False)
+    )
 
 
 _ROWS_OF_BLOCK = 8
@@ -310,13 +315,13 @@ class _Run:
         self.x, self.y, self.look, self.cells, self.row = x, y, look, cells, row
 
 
-def _joined(one: CellLook, other: CellLook) -> CellLook | None:
+def _join_looks(first: CellLook, second: CellLook) -> CellLook | None:
     """Return the style in which cells of two styles can be written, blanks in any colour; None if there is none."""
-    if one == other:
-        return one
-    if (one.background, one.link) != (other.background, other.link):
+    if first == second:
+        return first
+    if (first.background, first.link) != (second.background, second.link):
         return None
-    return one if not other.foreground else other if not one.foreground else None
+    return first if not second.foreground else second if not first.foreground else None
 
 
 class _Pen:
@@ -343,7 +348,7 @@ class _Pen:
         if (
             last is None
             or (last.y, last.x + len(last.cells)) != (y, x)
-            or (joined := _joined(last.look, look)) is None
+            or (joined := _join_looks(last.look, look)) is None
         ):
             self._runs.append(_Run(x, y, look, [(text, look)], row))
         else:
@@ -358,8 +363,8 @@ class _Pen:
             of_ground.setdefault(run.look, []).append(run)
         for looks in grounds.values():
             for run in chain.from_iterable(looks.values()):
-                for at, (text, look) in enumerate(run.cells):
-                    self.write(run.x + at, run.y, text, look, run.row)
+                for offset, (text, look) in enumerate(run.cells):
+                    self.write(run.x + offset, run.y, text, look, run.row)
         self._runs = []
 
     def write(self, x: int, y: int, text: str, look: CellLook, row: Sequence[Cell | None]) -> None:
@@ -380,31 +385,31 @@ class _Pen:
             self._parts.append(f"\x1b[{y + 1};{x + 1}H")
             return
         between = row[self._x : x]
-        if len(between) <= _REWRITTEN and all(self._writes(cell) for cell in between):
+        if len(between) <= _REWRITTEN and all(self._can_write(cell) for cell in between):
             self._parts += [cell[0] for cell in between if cell]
         else:
             self._parts.append(f"\x1b[{x - self._x}C")
 
-    def _writes(self, cell: Cell | None) -> bool:
+    def _can_write(self, cell: Cell | None) -> bool:
         """Return whether a cell can be written without a code."""
         if cell is None or isinstance(cell[1], PictureCell) or not cell[0]:
             return False
-        return cell[0].isascii() and not any(self._changes(cell[1]))
+        return cell[0].isascii() and not any(self._switch_look(cell[1]))
 
-    def _changes(self, look: CellLook) -> Iterable[str]:
+    def _switch_look(self, look: CellLook) -> Iterable[str]:
         """Yield the codes that switch to a style."""
         now = self._look
-        kept: tuple[str, ...] = now.attributes
+        common: tuple[str, ...] = now.attributes
         if not look.foreground:
             # A blank looks the same bold or not.
-            if not _SEEN_ON_BLANKS.isdisjoint(kept):
+            if not _SEEN_ON_BLANKS.isdisjoint(common):
                 yield "0"
-                now, kept = CellLook(), ()
-        elif kept != look.attributes:
-            if not set(kept) <= set(look.attributes):
+                now, common = CellLook(), ()
+        elif common != look.attributes:
+            if not set(common) <= set(look.attributes):
                 yield "0"
-                now, kept = CellLook(), ()
-            yield from (code for code in look.attributes if code not in kept)
+                now, common = CellLook(), ()
+            yield from (code for code in look.attributes if code not in common)
         if look.foreground and look.foreground != now.foreground:
             yield look.foreground
         if look.background != now.background:
@@ -413,7 +418,7 @@ class _Pen:
     def _take(self, look: CellLook) -> None:
         if look.link != self._look.link:
             self._parts.append(f"\x1b]8;{look.link or ';'}\x1b\\")
-        if changes := list(self._changes(look)):
+        if changes := list(self._switch_look(look)):
             self._parts.append(f"\x1b[{';'.join(changes)}m")
         attributes, foreground = look.attributes, look.foreground
         if not foreground:
@@ -496,13 +501,13 @@ _ELLIPSIS = re.compile(r" … |…  |[A-Za-z0-9]{2}…")
 _BY_DOTS = " .':;+*#@"
 
 
-def as_ascii(text: str) -> str:
+def convert_ascii(text: str) -> str:
     """Return a text of the same width in ASCII."""
-    return text if text.isascii() else "".join(map(_as_ascii, _ELLIPSIS.sub("...", text)))
+    return text if text.isascii() else "".join(map(_convert_character, _ELLIPSIS.sub("...", text)))
 
 
 @lru_cache(maxsize=4096)
-def _as_ascii(char: str) -> str:
+def _convert_character(char: str) -> str:
     if char.isascii():
         return char
     if (sign := _SIGNS.get(char)) is not None:
@@ -511,14 +516,14 @@ def _as_ascii(char: str) -> str:
     if 0x2800 <= code < 0x2900:
         return _BY_DOTS[(code - 0x2800).bit_count()]
     if 0x2500 <= code < 0x2580:
-        return _line(unicodedata.name(char))
+        return _convert_frame_line(unicodedata.name(char))
     if 0x2580 <= code < 0x25A0:
         return "#"
     plain = unicodedata.normalize("NFKD", char)[0]
     return plain if plain.isascii() and cell_len(char) == 1 else "?" * cell_len(char)
 
 
-def _line(name: str) -> str:
+def _convert_frame_line(name: str) -> str:
     """Return the sign for a line of a frame."""
     if "DIAGONAL" in name:
         return "X" if "CROSS" in name else "/" if "UPPER RIGHT TO LOWER LEFT" in name else "\\"

@@ -63,20 +63,23 @@ _ARC_POINTS = 9
 
 
 @lru_cache(maxsize=4096)
-def shapes_of(char: str, width: int, height: int) -> tuple[GlyphShape, ...] | None:
+def draw_character(char: str, width: int, height: int) -> tuple[GlyphShape, ...] | None:
     """Return what a character draws in a cell of some pixels; None for characters that a font draws."""
     if len(char) != 1:
         return None
-    if found := _EIGHTHS.get(char):
-        left, top, right, bottom = found
-        return (_area(left / 8, top / 8, right / 8, bottom / 8, width, height),)
+    if eighths := _EIGHTHS.get(char):
+        left, top, right, bottom = eighths
+        return (_place_area(left / 8, top / 8, right / 8, bottom / 8, width, height),)
     if char in _SHADES:
         return (Area(0, 0, width, height, _SHADES[char]),)
     if char in block_patterns():
         rows, bits = block_patterns()[char]
-        parts = [(at % 2, at // 2) for at in range(2 * rows) if bits >> at & 1]
+        parts = [
+            (position % 2, position // 2) for position in range(2 * rows) if bits >> position & 1
+        ]
         return tuple(
-            _area(x / 2, y / rows, (x + 1) / 2, (y + 1) / rows, width, height) for x, y in parts
+            _place_area(x / 2, y / rows, (x + 1) / 2, (y + 1) / rows, width, height)
+            for x, y in parts
         )
     if ord(char) in _BRAILLE:
         dots = [place for bit, place in enumerate(_BRAILLE_PLACES) if ord(char) >> bit & 1]
@@ -84,12 +87,14 @@ def shapes_of(char: str, width: int, height: int) -> tuple[GlyphShape, ...] | No
         return tuple(Dot((x + 0.5) * width / 2, (y + 0.5) * height / 4, radius) for x, y in dots)
     if ord(char) in _BOX:
         return tuple(
-            _box_shapes(unicodedata.name(char).removeprefix("BOX DRAWINGS ").split(), width, height)
+            _draw_box(unicodedata.name(char).removeprefix("BOX DRAWINGS ").split(), width, height)
         )
     return None
 
 
-def _area(left: float, top: float, right: float, bottom: float, width: int, height: int) -> Area:
+def _place_area(
+    left: float, top: float, right: float, bottom: float, width: int, height: int
+) -> Area:
     """Return a rectangle, given in shares of the cell, on whole pixels."""
     x = [math.floor(share * width + 0.5) for share in (left, right)]
     y = [math.floor(share * height + 0.5) for share in (top, bottom)]
@@ -114,25 +119,25 @@ _WEIGHTS = {"LIGHT": _LIGHT, "SINGLE": _LIGHT, "HEAVY": _HEAVY, "DOUBLE": _DOUBL
 _DASHES = {"DOUBLE": 2, "TRIPLE": 3, "QUADRUPLE": 4}
 
 
-def _thickness(width: int) -> int:
+def _choose_thickness(width: int) -> int:
     return max(1, round(width / 8))
 
 
-def _box_shapes(words: list[str], width: int, height: int) -> Iterator[GlyphShape]:
+def _draw_box(words: list[str], width: int, height: int) -> Iterator[GlyphShape]:
     """Yield the shapes of a box drawing character by the words of its name."""
-    thick = _thickness(width)
+    thick = _choose_thickness(width)
     if "DIAGONAL" in words:
         rising = ((0.0, float(height)), (float(width), 0.0))
         falling = ((0.0, 0.0), (float(width), float(height)))
         yield from (
             Bend(line, thick)
-            for line, said in ((rising, ["UPPER", "RIGHT"]), (falling, ["UPPER", "LEFT"]))
-            if "CROSS" in words or words[2:4] == said
+            for line, corner in ((rising, ["UPPER", "RIGHT"]), (falling, ["UPPER", "LEFT"]))
+            if "CROSS" in words or words[2:4] == corner
         )
     elif "ARC" in words:
-        yield _arc("RIGHT" in words, "DOWN" in words, width, height, thick)
+        yield _draw_arc("RIGHT" in words, "DOWN" in words, width, height, thick)
     elif "DASH" in words:
-        yield from _dashes(
+        yield from _draw_dashes(
             _DASHES[words[1]],
             "VERTICAL" in words,
             thick * (2 if words[0] == _HEAVY else 1),
@@ -140,10 +145,10 @@ def _box_shapes(words: list[str], width: int, height: int) -> Iterator[GlyphShap
             height,
         )
     else:
-        yield from _arms(_arms_of(words), width, height, thick)
+        yield from _draw_arms(_parse_arms(words), width, height, thick)
 
 
-def _arms_of(words: list[str]) -> dict[str, str]:
+def _parse_arms(words: list[str]) -> dict[str, str]:
     """Return the weight of each arm."""
     arms: dict[str, str] = {}
     weight = ""
@@ -155,7 +160,7 @@ def _arms_of(words: list[str]) -> dict[str, str]:
     return arms
 
 
-def _arms(arms: Mapping[str, str], width: int, height: int, thick: int) -> Iterator[Area]:
+def _draw_arms(arms: Mapping[str, str], width: int, height: int, thick: int) -> Iterator[Area]:
     """Yield the arms of lines that meet in the middle of the cell."""
     middle = {"x": (width - thick) // 2, "y": (height - thick) // 2}
     # A double line is two light ones, the width of one apart.
@@ -165,20 +170,20 @@ def _arms(arms: Mapping[str, str], width: int, height: int, thick: int) -> Itera
         _DOUBLE: ((-thick, thick), (thick, thick)),
     }
 
-    def edges(sides: tuple[str, str], axis: str) -> tuple[int, int]:
+    def find_edges(sides: tuple[str, str], axis: str) -> tuple[int, int]:
         """Where the lines of two opposite arms begin and end across."""
-        found = [strip for side in sides if side in arms for strip in strips[arms[side]]] or [
+        lines = [strip for side in sides if side in arms for strip in strips[arms[side]]] or [
             (0, thick)
         ]
-        return middle[axis] + min(at for at, _ in found), middle[axis] + max(
-            at + size for at, size in found
+        return middle[axis] + min(start for start, _ in lines), middle[axis] + max(
+            start + size for start, size in lines
         )
 
-    columns, rows = edges(("UP", "DOWN"), "x"), edges(("LEFT", "RIGHT"), "y")
+    columns, rows = find_edges(("UP", "DOWN"), "x"), find_edges(("LEFT", "RIGHT"), "y")
     for side, weight in arms.items():
-        for at, size in strips[weight]:
+        for start, size in strips[weight]:
             if side in ("UP", "DOWN"):
-                left = middle["x"] + at
+                left = middle["x"] + start
                 yield Area(
                     left,
                     0 if side == "UP" else rows[0],
@@ -186,7 +191,7 @@ def _arms(arms: Mapping[str, str], width: int, height: int, thick: int) -> Itera
                     rows[1] if side == "UP" else height,
                 )
             else:
-                top = middle["y"] + at
+                top = middle["y"] + start
                 yield Area(
                     0 if side == "LEFT" else columns[0],
                     top,
@@ -195,23 +200,23 @@ def _arms(arms: Mapping[str, str], width: int, height: int, thick: int) -> Itera
                 )
 
 
-def _arc(right: bool, down: bool, width: int, height: int, thick: int) -> Bend:
+def _draw_arc(right: bool, down: bool, width: int, height: int, thick: int) -> Bend:
     x, y = (width - thick) // 2 + thick / 2, (height - thick) // 2 + thick / 2
     end_x, end_y = (float(width) if right else 0.0), (float(height) if down else 0.0)
     radius = min(abs(end_x - x), abs(end_y - y))
     across, along = math.copysign(radius, end_x - x), math.copysign(radius, end_y - y)
-    turns = [at * math.pi / 2 / (_ARC_POINTS - 1) for at in range(_ARC_POINTS)]
+    turns = [number * math.pi / 2 / (_ARC_POINTS - 1) for number in range(_ARC_POINTS)]
     curve = [
         (x + across * (1 - math.cos(turn)), y + along * (1 - math.sin(turn))) for turn in turns
     ]
     return Bend(((x, end_y), *curve, (end_x, y)), thick)
 
 
-def _dashes(count: int, upright: bool, thick: int, width: int, height: int) -> Iterator[Area]:
+def _draw_dashes(count: int, upright: bool, thick: int, width: int, height: int) -> Iterator[Area]:
     length, across = (height, width) if upright else (width, height)
     start = (across - thick) // 2
-    for at in range(count):
-        first, last = round(at * length / count), round((at + 0.6) * length / count)
+    for number in range(count):
+        first, last = round(number * length / count), round((number + 0.6) * length / count)
         yield (
             Area(start, first, start + thick, last)
             if upright

@@ -30,19 +30,19 @@ _BRAILLE_BITS = (0, 3, 1, 4, 2, 5, 6, 7)
 """The bit of a braille pattern for each point, row by row."""
 
 
-def _octants() -> list[str]:
+def _list_octants() -> list[str]:
     """Return the glyphs of all 256 patterns; those of U+1CD00 are in the order of the patterns, without the others."""
     following = iter(range(0x1CD00, 0x1CDE6))
     return [_ELSEWHERE.get(pattern) or chr(next(following)) for pattern in range(256)]
 
 
-def _sextants() -> list[str]:
+def _list_sextants() -> list[str]:
     known = {0: " ", 21: "▌", 42: "▐", 63: "█"}
     following = iter(range(0x1FB00, 0x1FB3C))
     return [known.get(pattern) or chr(next(following)) for pattern in range(64)]
 
 
-def _braille() -> list[str]:
+def _list_braille() -> list[str]:
     return [
         chr(
             0x2800
@@ -54,15 +54,21 @@ def _braille() -> list[str]:
 
 _SEXTANTS_FROM, BRAILLE_FROM, _ASCII_FROM = 256, 320, 576
 
-GLYPHS: tuple[str, ...] = ("▀", *_octants()[1:], *_sextants(), *_braille(), *map(chr, range(128)))
+GLYPHS: tuple[str, ...] = (
+    "▀",
+    *_list_octants()[1:],
+    *_list_sextants(),
+    *_list_braille(),
+    *map(chr, range(128)),
+)
 """Every glyph by its number in a cell. 0 is the upper half block: two colours without a glyph are a half block."""
 
 
 @cache
 def block_patterns() -> dict[str, tuple[int, int]]:
     """Return for each block glyph the number of rows of two points, and which it covers; bit 0 is the upper left."""
-    octants = {char: (4, pattern) for pattern, char in enumerate(_octants())}
-    return {char: (3, pattern) for pattern, char in enumerate(_sextants())} | octants
+    octants = {char: (4, pattern) for pattern, char in enumerate(_list_octants())}
+    return {char: (3, pattern) for pattern, char in enumerate(_list_sextants())} | octants
 
 
 _INK = {
@@ -93,7 +99,7 @@ def sign_number(sign: str) -> int:
     return _ASCII_FROM + ord(sign)
 
 
-def nearest_signs(ink: Covered, letters: bool = True) -> npt.NDArray[np.int64]:
+def find_nearest_signs(ink: Covered, letters: bool = True) -> npt.NDArray[np.int64]:
     """Return the numbers of the characters that look most like points of some darkness, shape (n, 8), 0 to 1.
 
     Args:
@@ -121,12 +127,12 @@ class GlyphSet:
     """Of each glyph, in `GLYPHS`; ascending, but for ASCII, where several patterns have the same glyph."""
 
 
-def _bits(patterns: list[int], points: int) -> Covered:
+def _unpack_bits(patterns: list[int], points: int) -> Covered:
     return (np.array(patterns)[:, None] >> np.arange(points) & 1).astype(np.float32)
 
 
 @cache
-def glyph_set(cells: CellSet) -> GlyphSet:
+def build_glyph_set(cells: CellSet) -> GlyphSet:
     """Return the glyphs of a set.
 
     Of a pattern and its inverse a set of blocks has the one with the upper left point: two colours change places
@@ -134,30 +140,32 @@ def glyph_set(cells: CellSet) -> GlyphSet:
     """
     if cells is CellSet.SEXTANT:
         patterns = list(range(1, 63, 2))
-        return GlyphSet(2, 3, _bits(patterns, 6), np.array(patterns) + _SEXTANTS_FROM)
+        return GlyphSet(2, 3, _unpack_bits(patterns, 6), np.array(patterns) + _SEXTANTS_FROM)
     if cells is CellSet.QUADRANT:
         whole = [0x05, 0x0F, 0x55, 0x5F, 0xA5, 0xAF, 0xF5]
-        return GlyphSet(2, 2, _bits(whole, 8)[:, [0, 1, 4, 5]], np.array(whole))
+        return GlyphSet(2, 2, _unpack_bits(whole, 8)[:, [0, 1, 4, 5]], np.array(whole))
     if cells is CellSet.OCTANT:
         patterns = list(range(1, 255, 2))
-        return GlyphSet(2, 4, _bits(patterns, 8), np.array(patterns))
+        return GlyphSet(2, 4, _unpack_bits(patterns, 8), np.array(patterns))
     if cells in (CellSet.BRAILLE, CellSet.ASCII):
         patterns = [
-            at for at in range(1, 255) if at.bit_count() < 4 or (at.bit_count() == 4 and at & 1)
+            pattern
+            for pattern in range(1, 255)
+            if pattern.bit_count() < 4 or (pattern.bit_count() == 4 and pattern & 1)
         ]
-        covered = _bits(patterns, 8)
+        covered = _unpack_bits(patterns, 8)
         numbers = (
             np.array(patterns) + BRAILLE_FROM
             if cells is CellSet.BRAILLE
-            else nearest_signs(covered, letters=False)
+            else find_nearest_signs(covered, letters=False)
         )
         return GlyphSet(2, 4, covered, numbers)
-    return GlyphSet(1, 2, _bits([1], 2), np.array([0]))
+    return GlyphSet(1, 2, _unpack_bits([1], 2), np.array([0]))
 
 
 @cache
-def half_block_of(cells: CellSet) -> GlyphSet:
+def build_half_block(cells: CellSet) -> GlyphSet:
     """Return the half block alone, with the points of a finer set."""
-    fine = glyph_set(cells)
+    fine = build_glyph_set(cells)
     upper = np.clip(fine.rows / 2 - np.arange(fine.rows), 0, 1).astype(np.float32)
     return GlyphSet(fine.cols, fine.rows, np.repeat(upper, fine.cols)[None], np.array([0]))

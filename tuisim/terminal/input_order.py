@@ -97,7 +97,7 @@ class Turn:
             _follow_turns()
             self._ended()
 
-    def later(self, pump: MessagePump, callback: Callable[[], Any]) -> Callable[[], Awaitable[Any]]:
+    def delay(self, pump: MessagePump, callback: Callable[[], Any]) -> Callable[[], Awaitable[Any]]:
         """Return a callback, the call of which belongs to the turn."""
         self.add(pump)
 
@@ -144,10 +144,10 @@ def dispatch_message(pump: MessagePump, message: Message) -> Awaitable[None]:
         _current.get() is None or isinstance(message, (events.Compose, events.Mount))
     ):
         return DISPATCH(pump, message)
-    return _dispatch_in(turn, pump, message)
+    return _dispatch_message(turn, pump, message)
 
 
-async def _dispatch_in(turn: Turn | None, pump: MessagePump, message: Message) -> None:
+async def _dispatch_message(turn: Turn | None, pump: MessagePump, message: Message) -> None:
     if turn is not None:
         with turn.step(pump):
             await DISPATCH(pump, message)
@@ -171,7 +171,7 @@ async def end_messages(widget: Widget) -> None:
 def call_next(pump: MessagePump, callback: Callable[..., Any], *args: Any, **kwargs: Any) -> None:
     """Call something after the current message, within the turn."""
     if turn := _turn():
-        CALL_NEXT(pump, turn.later(pump, partial(callback, *args, **kwargs)))
+        CALL_NEXT(pump, turn.delay(pump, partial(callback, *args, **kwargs)))
     else:
         CALL_NEXT(pump, callback, *args, **kwargs)
 
@@ -181,9 +181,9 @@ def call_after_refresh(
 ) -> bool:
     """Call something after the next refresh, within the turn; Textual's own callbacks only scroll, and may lag."""
     turn = _turn()
-    if turn is None or _module(callback).startswith("textual."):
+    if turn is None or _find_module(callback).startswith("textual."):
         return CALL_LATER(pump, callback, *args, **kwargs)
-    is_posted = CALL_LATER(pump, turn.later(pump, partial(callback, *args, **kwargs)))
+    is_posted = CALL_LATER(pump, turn.delay(pump, partial(callback, *args, **kwargs)))
     if not is_posted:
         turn.drop(pump, 1)
     return is_posted
@@ -202,7 +202,7 @@ def takes_letters(widget: Widget) -> bool:
     return bool(getattr(widget, "takes_letters", isinstance(widget, Input)))
 
 
-def _module(callback: Callable[..., Any]) -> str:
+def _find_module(callback: Callable[..., Any]) -> str:
     while isinstance(callback, partial):
         callback = callback.func
     return getattr(callback, "__module__", None) or ""
@@ -245,12 +245,12 @@ class InputOrder:
         ):
             self._held.pop()
         self._held.append(event)
-        await self.go_on()
+        await self.release_inputs()
 
-    async def go_on(self) -> None:
+    async def release_inputs(self) -> None:
         """Give out what may be given out now."""
         while self._held and not self._waits(self._held[0]):
-            into = self._takes_letter(self._held[0])
+            into = self._find_field(self._held[0])
             if self._turn is not None and (into is None or into is not self._typed_into):
                 return
             event, self._typed_into = self._held.popleft(), into
@@ -261,9 +261,9 @@ class InputOrder:
 
     async def _ask_again(self) -> None:
         self._asks_again = False
-        await self.go_on()
+        await self.release_inputs()
 
-    def _takes_letter(self, event: events.Event) -> Widget | None:
+    def _find_field(self, event: events.Event) -> Widget | None:
         """Return the field that takes a letter at once, and does nothing else with it."""
         if not (isinstance(event, events.Key) and event.is_printable and self._app.screen_stack):
             return None
@@ -274,7 +274,7 @@ class InputOrder:
         """Give out an event as a new turn, or as more of the one that goes on: letters are typed in a row."""
         turn, is_new = self._turn, self._turn is None
         if turn is None:
-            turn = self._turn = Turn(self._ended)
+            turn = self._turn = Turn(self._end_turn)
         turn.add(self._app)
         with turn.step(self._app):
             await self._give(event)
@@ -290,10 +290,10 @@ class InputOrder:
         if not turn.is_over:
             turn.end() if turn.steps == steps else self._watch(turn)
 
-    def _ended(self) -> None:
+    def _end_turn(self) -> None:
         self._turn = None
         if self._timer is not None:
             self._timer.cancel()
             self._timer = None
         if self._held:
-            self._app.call_later(self.go_on)
+            self._app.call_later(self.release_inputs)

@@ -21,14 +21,14 @@ PAGE = "tuisim"
 """The name that the page of a browser answers."""
 TERMINALS: Mapping[str, str] = {
     "kitty": "https://sw.kovidgoyal.net/kitty/graphics-protocol/#unicode-placeholders (since 0.28)",
-    PAGE: "tuisim/web/page/pictures.js: the page of a browser, see `for_page`",
+    PAGE: "tuisim/web/page/pictures.js: the page of a browser, see `wrap_page`",
     "ghostty": "https://ghostty.org/docs/features (kitty graphics protocol with Unicode placeholders)",
 }
 """Terminals that have placeholders, by name, and where that is written."""
 PLACEHOLDER = "\U0010eeee"
 DIACRITICS = "\u0305\u030d\u030e\u0310\u0312\u033d\u033e\u033f"
 """They follow a placeholder, and say which row and column of the image it shows; the first ones of the protocol."""
-MOST_CELLS = len(DIACRITICS)
+MAX_CELLS = len(DIACRITICS)
 """Most rows and columns of an image."""
 QUERY_IMAGE = 31
 QUERY = f"\x1b_Gi={QUERY_IMAGE},s=1,v=1,a=q,U=1,t=d,f=24;AAAA\x1b\\"
@@ -52,17 +52,17 @@ def encode(
     Args:
         picture: Shape (height, width, 3).
         image: Its number, from 1 to 0xFFFFFF; an image that had this number is gone.
-        cols: Number of cells across, at most `MOST_CELLS`.
-        rows: Number of cells from top to bottom, at most `MOST_CELLS`.
+        cols: Number of cells across, at most `MAX_CELLS`.
+        rows: Number of cells from top to bottom, at most `MAX_CELLS`.
         answers_errors: Whether the terminal answers if it cannot show the picture.
     """
     data = b64encode(zlib.compress(picture.tobytes(), _COMPRESSION)).decode()
-    chunks = [data[at : at + _CHUNK] for at in range(0, len(data), _CHUNK)]
+    chunks = [data[position : position + _CHUNK] for position in range(0, len(data), _CHUNK)]
     quiet = 1 if answers_errors else 2
     keys = f"a=T,U=1,q={quiet},f=24,o=z,i={image},s={picture.shape[1]},v={picture.shape[0]},c={cols},r={rows},"
     parts = []
-    for at, chunk in enumerate(chunks, 1):
-        parts.append(f"\x1b_G{keys}m={int(at < len(chunks))};{chunk}\x1b\\")
+    for position, chunk in enumerate(chunks, 1):
+        parts.append(f"\x1b_G{keys}m={int(position < len(chunks))};{chunk}\x1b\\")
         keys = ""
     return "".join(parts)
 
@@ -77,12 +77,12 @@ def delete(image: int) -> str:
     return f"\x1b_Ga=d,d=I,q=2,i={image}\x1b\\"
 
 
-def placeholder(col: int, row: int) -> str:
+def build_placeholder(col: int, row: int) -> str:
     """Return the text of a cell that shows a part of an image; its foreground colour is the number of the image."""
     return PLACEHOLDER + DIACRITICS[row] + DIACRITICS[col]
 
 
-def for_page(codes: str) -> str:
+def wrap_page(codes: str) -> str:
     """Return codes as a page of a browser takes them.
 
     Its terminal, xterm.js, ignores commands of this kind, and would draw a placeholder as a character.
@@ -92,6 +92,6 @@ def for_page(codes: str) -> str:
     )
 
 
-def through_tmux(codes: str) -> str:
+def wrap_tmux(codes: str) -> str:
     """Return codes that tmux passes on to its terminal, if it is allowed to."""
     return "\x1bPtmux;" + codes.replace("\x1b", "\x1b\x1b") + "\x1b\\"

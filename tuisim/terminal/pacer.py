@@ -30,17 +30,17 @@ class Throttle:
     def ask(self, at_once: bool = False) -> None:
         """Call the function now if the last call is at least a period ago, or `at_once`; else as soon as it is."""
         if at_once:
-            self.now()
+            self.call_now()
             return
         if self._timer is not None or not self._widget.is_attached:
             return
         left_s = self._last_s + self.period_s - time.monotonic()
         if left_s > 0:
-            self._timer = self._widget.set_timer(left_s, self.now)
+            self._timer = self._widget.set_timer(left_s, self.call_now)
         else:
-            self.now()
+            self.call_now()
 
-    def now(self) -> None:
+    def call_now(self) -> None:
         """Call the function at once."""
         if self._timer is not None:
             self._timer.stop()
@@ -72,7 +72,7 @@ LARGE_BYTES = 1_500
 
 SLOW_S = 2.0
 """A link on which a frame had to queue counts as slow for this long: twice as long each time this was too short."""
-MOST_SLOW_S = 16.0
+MAX_SLOW_S = 16.0
 
 
 class Pacer:
@@ -155,7 +155,7 @@ class Pacer:
         self._last_s = self._clock()
         self._frame_is_new = True
 
-    def painted(self, size: int) -> bool:
+    def record_painted(self, size: int) -> bool:
         """Note that `size` bytes were sent. Return whether to query the terminal now."""
         self._loose_bytes += size
         if not self.asks or not (self._frame_is_new or self._loose_bytes >= LARGE_BYTES):
@@ -170,13 +170,13 @@ class Pacer:
         self._loose_bytes = 0
         return True
 
-    def shown_elsewhere(self) -> None:
+    def record_interruption(self) -> None:
         """Note that what was sent is not answered any more: another program, or page, had the terminal."""
         self._asked.clear()
         self._queued_s = None
         self._begun_s = inf
 
-    def answered(self) -> None:
+    def record_answer(self) -> None:
         """Note an answer of the terminal."""
         self._heard_s = self._clock()
         first, self.answers = not self.answers, True
@@ -204,5 +204,5 @@ class Pacer:
             self._slow_s = SLOW_S
         elif rested_s >= self._slow_s:
             # Fine frames were too much for it as soon as they were drawn again.
-            self._slow_s = min(2 * self._slow_s, MOST_SLOW_S)
+            self._slow_s = min(2 * self._slow_s, MAX_SLOW_S)
         self._queued_s = now

@@ -13,11 +13,11 @@ from typing import NamedTuple
 import numpy as np
 
 from tuisim.terminal import kitty, sixel
-from tuisim.terminal.cells import TRUECOLOR, CellRun, color_codes, runs_of
+from tuisim.terminal.cells import TRUECOLOR, CellRun, build_color_codes, find_runs
 from tuisim.terminal.picture_options import Protocol
-from tuisim.terminal.pixels import Pixels, packed_rgb
+from tuisim.terminal.pixels import Pixels, pack_rgb
 
-MOST_POINTS, MOST_PAGE_POINTS = 12, 32
+MAX_POINTS, MAX_PAGE_POINTS = 12, 32
 """Most points of a picture across a cell: in a terminal, and in a page, which shows each pixel of a fine screen."""
 
 
@@ -30,7 +30,7 @@ class Graphics:
     """Width and height of a cell."""
     in_tmux: bool = False
     """Whether tmux has to pass codes on."""
-    most_points: int = MOST_POINTS
+    most_points: int = MAX_POINTS
     """Most points of a picture across a cell."""
 
     @property
@@ -73,7 +73,7 @@ class Rectangle(NamedTuple):
         """The number of cells."""
         return (self.bottom - self.top) * (self.right - self.left)
 
-    def joined(self, other: Rectangle) -> Rectangle:
+    def join(self, other: Rectangle) -> Rectangle:
         """Return the smallest rectangle around both."""
         return Rectangle(
             min(self.top, other.top),
@@ -96,7 +96,7 @@ class TilePicture:
         self._versions = np.empty((0, 0), np.int64)
         self._coarse: Mask = np.zeros((0, 0), bool)
         self._changes = 0
-        self._first_image = 1 + next(_COUNT) % _MOST_PICTURES * _MOST_IMAGES
+        self._first_image = 1 + next(_COUNT) % _MAX_PICTURES * _MAX_IMAGES
         self._tiles: dict[tuple[int, int], tuple[int, int]] = {}
         """The version and the image of each tile that the terminal has, by row and column of its first cell."""
 
@@ -131,11 +131,11 @@ class TilePicture:
             return [(row, 0, cols) for row in range(rows)]
         differs = (points != self._points).reshape(rows, height, cols, width * 3).any(axis=(1, 3))
         if self.graphics.protocol is Protocol.KITTY and differs.any():
-            differs = _whole_tiles(differs)
+            differs = _fill_tiles(differs)
         self._versions[differs] = self._changes
         self._coarse[differs] = coarse
         self._points = points
-        return runs_of(differs)
+        return find_runs(differs)
 
     def refine(self, cells: int) -> list[CellRun]:
         """Draw the pixels of about so many of the cells that are drawn as half blocks.
@@ -147,11 +147,11 @@ class TilePicture:
         some: Mask = np.zeros(self._coarse.shape, bool)
         some[rows[:cells], cols[:cells]] = True
         if self.graphics.protocol is Protocol.KITTY:
-            some = _whole_tiles(some)
+            some = _fill_tiles(some)
         self._coarse[some] = False
-        return runs_of(some)
+        return find_runs(some)
 
-    def half_blocks(self, row: int) -> list[int]:
+    def draw_half_blocks(self, row: int) -> list[int]:
         """Return the cells of a row as half blocks (see `terminal.fitted_cells.Cells`), for what cannot show pixels."""
         width, height = self.graphics.cell_points
         points = self._points[row * height : (row + 1) * height].astype(np.float32)
@@ -159,7 +159,7 @@ class TilePicture:
             half.reshape(len(half), -1, width, 3).mean(axis=(0, 2))
             for half in np.array_split(points, 2)
         )
-        packed = [packed_rgb(np.rint(half).astype(np.int64).T) for half in (upper, lower)]
+        packed = [pack_rgb(np.rint(half).astype(np.int64).T) for half in (upper, lower)]
         cells: list[int] = (packed[0] << 24 | packed[1]).tolist()
         return cells
 
@@ -168,14 +168,14 @@ class TilePicture:
         for tile, (_, image) in self._tiles.items():
             self._tiles[tile] = _NEVER, image
 
-    def images(self) -> Callable[[], str]:
+    def build_deletion(self) -> Callable[[], str]:
         """Return what returns the codes that delete everything of it that the terminal has, also after its end."""
-        return partial(_deleted, self.graphics, self._tiles)
+        return partial(_delete_tiles, self.graphics, self._tiles)
 
     def row(self, row: int) -> list[PictureCell]:
         """Return the cells of a row."""
         versions, coarse = self._versions[row].tolist(), self._coarse[row]
-        blocks = self.half_blocks(row) if coarse.any() else []
+        blocks = self.draw_half_blocks(row) if coarse.any() else []
         return [
             PictureCell(self, row, col, version, blocks[col] if is_coarse else None)
             for col, (version, is_coarse) in enumerate(zip(versions, coarse.tolist(), strict=True))
@@ -195,11 +195,11 @@ class TilePicture:
             key=lambda at: (at[0] - at[2].row, at[1] - at[2].col),
         )
         return "".join(
-            self._draw_at(down, right, [cell for _, _, cell in some], is_shown)
+            self._draw_tiles(down, right, [cell for _, _, cell in some], is_shown)
             for (down, right), some in by_offset
         )
 
-    def _draw_at(
+    def _draw_tiles(
         self,
         down: int,
         right: int,
@@ -207,7 +207,7 @@ class TilePicture:
         is_shown: Callable[[int, int], bool],
     ) -> str:
         if self.graphics.protocol is Protocol.KITTY:
-            return self._placeholders(down, right, cells)
+            return self._draw_placeholders(down, right, cells)
         changed = np.zeros(self._versions.shape, bool)
         for cell in cells:
             if cell.row < len(changed) and cell.col < changed.shape[1]:
@@ -221,20 +221,20 @@ class TilePicture:
             )
 
         return "".join(
-            f"\x1b[{one.top + down + 1};{one.left + right + 1}H{self._encoded(one)}"
-            for one in rectangles(changed, may_draw)
+            f"\x1b[{rectangle.top + down + 1};{rectangle.left + right + 1}H{self._encode_part(rectangle)}"
+            for rectangle in find_rectangles(changed, may_draw)
         )
 
-    def _part(self, some: Rectangle) -> Pixels:
+    def _cut_part(self, some: Rectangle) -> Pixels:
         width, height = self.graphics.cell_points
         return self._points[
             some.top * height : some.bottom * height, some.left * width : some.right * width
         ]
 
-    def _encoded(self, some: Rectangle) -> str:
-        points = self._part(some)
+    def _encode_part(self, some: Rectangle) -> str:
+        points = self._cut_part(some)
         if self.graphics.protocol is Protocol.ITERM:
-            return _inline_image(points, some.right - some.left, some.bottom - some.top)
+            return _encode_inline(points, some.right - some.left, some.bottom - some.top)
         scale = self.graphics.cell_px[0] // self.graphics.cell_points[0]
         return sixel.encode(
             points.repeat(scale, axis=0).repeat(scale, axis=1) if scale > 1 else points
@@ -242,7 +242,7 @@ class TilePicture:
 
     # Kitty
 
-    def _placeholders(self, down: int, right: int, cells: Sequence[PictureCell]) -> str:
+    def _draw_placeholders(self, down: int, right: int, cells: Sequence[PictureCell]) -> str:
         """Return the codes that send the tiles of some cells, and draw the placeholders of those that changed."""
         tiles = {
             (cell.row // _TILE_ROWS * _TILE_ROWS, cell.col // _TILE_COLS * _TILE_COLS)
@@ -260,11 +260,11 @@ class TilePicture:
             if (cell.row, cell.col) != cursor:
                 parts.append(f"\x1b[{cell.row + down + 1};{cell.col + right + 1}H")
             if image != pen:
-                parts.append(f"\x1b[{color_codes(image, TRUECOLOR)[0]}m")
-            parts.append(kitty.placeholder(cell.col - left, cell.row - top))
+                parts.append(f"\x1b[{build_color_codes(image, TRUECOLOR)[0]}m")
+            parts.append(kitty.build_placeholder(cell.col - left, cell.row - top))
             cursor, pen = (cell.row, cell.col + 1), image
         parts.append("\x1b[0m")
-        parts += [self._passed_on(kitty.delete(image)) for image in stale]
+        parts += [self._wrap_codes(kitty.delete(image)) for image in stale]
         return "".join(parts) + self._drop_tiles()
 
     def _send(self, tile: tuple[int, int]) -> tuple[str, list[int]]:
@@ -278,43 +278,43 @@ class TilePicture:
         if had is not None and had[0] == version:
             return "", []
         # Two images in turn: the old one is seen until its placeholders have been replaced.
-        number = self._first_image + 2 * (top // _TILE_ROWS * _MOST_TILES + left // _TILE_COLS)
+        number = self._first_image + 2 * (top // _TILE_ROWS * _MAX_TILES + left // _TILE_COLS)
         image = number + 1 if had is not None and had[1] == number else number
         self._tiles[tile] = version, image
         cols, rows = some.right - some.left, some.bottom - some.top
         # What comes back through tmux would be taken for keys.
         codes = kitty.encode(
-            self._part(some), image, cols, rows, answers_errors=not self.graphics.in_tmux
+            self._cut_part(some), image, cols, rows, answers_errors=not self.graphics.in_tmux
         )
-        return self._passed_on(codes), [had[1]] if had is not None else []
+        return self._wrap_codes(codes), [had[1]] if had is not None else []
 
     def _drop_tiles(self) -> str:
         """Return the codes that delete the tiles beyond its size."""
         rows, cols = self.size
         beyond = {
-            tile: kept for tile, kept in self._tiles.items() if tile[0] >= rows or tile[1] >= cols
+            tile: image for tile, image in self._tiles.items() if tile[0] >= rows or tile[1] >= cols
         }
         for tile in beyond:
             del self._tiles[tile]
-        return _deleted(self.graphics, beyond)
+        return _delete_tiles(self.graphics, beyond)
 
-    def _passed_on(self, codes: str) -> str:
-        return _passed_on(self.graphics, codes)
-
-
-def _passed_on(graphics: Graphics, codes: str) -> str:
-    return kitty.through_tmux(codes) if graphics.in_tmux else codes
+    def _wrap_codes(self, codes: str) -> str:
+        return _wrap_codes(self.graphics, codes)
 
 
-def _deleted(graphics: Graphics, tiles: Mapping[tuple[int, int], tuple[int, int]]) -> str:
-    return "".join(_passed_on(graphics, kitty.delete(image)) for _, image in tiles.values())
+def _wrap_codes(graphics: Graphics, codes: str) -> str:
+    return kitty.wrap_tmux(codes) if graphics.in_tmux else codes
+
+
+def _delete_tiles(graphics: Graphics, tiles: Mapping[tuple[int, int], tuple[int, int]]) -> str:
+    return "".join(_wrap_codes(graphics, kitty.delete(image)) for _, image in tiles.values())
 
 
 _COMPRESSION = 1
 """Of PNG: a tenth of the time of the default, for a few per cent more bytes."""
 
 
-def _inline_image(picture: Pixels, cols: int, rows: int) -> str:
+def _encode_inline(picture: Pixels, cols: int, rows: int) -> str:
     """Return the codes of iTerm2, and WezTerm, that draw a picture at the cursor, scaled to some columns and rows.
 
     Reference: https://iterm2.com/documentation-images.html
@@ -336,15 +336,15 @@ _TILE_ROWS, _TILE_COLS = 4, 8
 _NEVER = -1
 """The version of a tile that the terminal does not have."""
 _COUNT = count()
-_MOST_PICTURES, _MOST_IMAGES = 255, 1 << 16
+_MAX_PICTURES, _MAX_IMAGES = 255, 1 << 16
 """Numbers of images have 24 bits; each picture has its own."""
-_MOST_TILES = 256
+_MAX_TILES = 256
 """Most tiles in a row."""
 _JOIN_CELLS = 6
 """Rectangles are joined if at most this many unchanged cells come with it: each costs some codes of its own."""
 
 
-def _whole_tiles(changed: Mask) -> Mask:
+def _fill_tiles(changed: Mask) -> Mask:
     """Return all cells of the tiles in which a cell has changed: another image has another number."""
     rows, cols = changed.shape
     filled = np.pad(changed, ((0, -rows % _TILE_ROWS), (0, -cols % _TILE_COLS)))
@@ -355,25 +355,25 @@ def _whole_tiles(changed: Mask) -> Mask:
     return whole
 
 
-def rectangles(changed: Mask, may_draw: Callable[[Rectangle], bool]) -> list[Rectangle]:
+def find_rectangles(changed: Mask, may_draw: Callable[[Rectangle], bool]) -> list[Rectangle]:
     """Return rectangles that together contain all changed cells, from top to bottom.
 
     Args:
         changed: Shape (rows, columns).
         may_draw: Whether all cells of a rectangle may be drawn.
     """
-    found: list[Rectangle] = []
-    for row, col, length in runs_of(changed):
+    boxes: list[Rectangle] = []
+    for row, col, length in find_runs(changed):
         run = Rectangle(row, col, row + 1, col + length)
-        for at, other in enumerate(found):
-            both = run.joined(other)
+        for number, other in enumerate(boxes):
+            both = run.join(other)
             if (
                 other.bottom >= run.top
                 and both.area <= run.area + other.area + _JOIN_CELLS
                 and may_draw(both)
             ):
-                found[at] = both
+                boxes[number] = both
                 break
         else:
-            found.append(run)
-    return found
+            boxes.append(run)
+    return boxes

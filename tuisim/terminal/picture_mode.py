@@ -18,20 +18,20 @@ from textual.widget import Widget
 
 from tuisim.terminal import kitty
 from tuisim.terminal.cells import MONO, PALETTE_8, PALETTE_16, PALETTE_256, TRUECOLOR
-from tuisim.terminal.picture import MOST_PAGE_POINTS, MOST_POINTS, Graphics
+from tuisim.terminal.picture import MAX_PAGE_POINTS, MAX_POINTS, Graphics
 from tuisim.terminal.picture_options import AUTO, NO_PIXELS, CellSet, Protocol
 from tuisim.terminal.pixels import Rgb
 from tuisim.terminal.probe import (
     SILENT,
     Answers,
     ask_everything,
-    best_cells,
-    cells_of,
-    cells_without_asking,
-    colors_without_asking,
-    first_environment,
-    in_browser,
+    choose_cells,
+    find_cells,
+    is_in_browser,
     name_around,
+    read_cells,
+    read_colors,
+    read_first_environment,
 )
 from tuisim.terminal.queries import TerminalFacts
 from tuisim.terminal.textual_internals import SUPPORTED
@@ -46,7 +46,7 @@ class Recoloring(TypingProtocol):
     def rgb(self, own: Rgb) -> Rgb:
         """Return the colour in place of one of the app's own; any other is returned as it is."""
 
-    def text_rgb(self, own: Rgb) -> Rgb:
+    def choose_text_rgb(self, own: Rgb) -> Rgb:
         """Return the colour of text or lines in one of the app's own colours: it can be read on the background."""
 
 
@@ -78,7 +78,7 @@ class PictureMode:
 def choose_colors(colors: str) -> int:
     """Set the colour depth of the terminal; `auto` leaves the choice to Textual. Return the most colours to use."""
     if colors == "auto":
-        colors = colors_without_asking(os.environ)
+        colors = read_colors(os.environ)
     system = {"truecolor": "truecolor", "256": "256", "16": "standard", "8": "standard"}.get(colors)
     if system:
         # Textual reads the environment when it is imported, before the settings are known.
@@ -88,23 +88,23 @@ def choose_colors(colors: str) -> int:
     return PALETTE_8 if colors == "8" else TRUECOLOR
 
 
-def picture_mode_for(given: str | None, kept: str) -> PictureMode:
+def choose_picture_mode(argument: str | None, stored: str) -> PictureMode:
     """Return how an app that starts draws pictures.
 
     Args:
-        given: The set, or `AUTO`, that the user asks for now, if any.
-        kept: What the user has asked for before, perhaps on another terminal.
+        argument: The set, or `AUTO`, that the user asks for now, if any.
+        stored: What the user has asked for before, perhaps on another terminal.
     """
-    chosen = given or kept
+    chosen = argument or stored
     # As Textual decides it.
     has_colors = "NO_COLOR" not in os.environ
-    if in_browser():
+    if is_in_browser():
         best = CellSet.QUADRANT if has_colors else CellSet.BRAILLE
     elif not SUPPORTED and has_colors:
         best = CellSet.HALF
     else:
-        best = best_cells(ask=chosen == AUTO, has_colors=has_colors)
-    if given is None and (best is CellSet.ASCII or (not has_colors and chosen in BLOCKS)):
+        best = choose_cells(ask=chosen == AUTO, has_colors=has_colors)
+    if argument is None and (best is CellSet.ASCII or (not has_colors and chosen in BLOCKS)):
         # Chosen on another terminal.
         chosen = AUTO
     return PictureMode(best if chosen == AUTO else CellSet(chosen), chosen, best)
@@ -114,26 +114,26 @@ _DEPTHS = {"standard": PALETTE_16, "windows": PALETTE_16, "256": PALETTE_256}
 """Number of colours by the name of Rich's colour system."""
 
 
-def color_depth(app: App[Any]) -> int:
+def find_color_depth(app: App[Any]) -> int:
     """Return the number of colours that an app draws with; full colour if the terminal does not say.
 
     Blocks without colours are drawn in greys; dots and signs need none at all.
     """
-    picture_mode = picture_mode_of(app)
+    picture_mode = find_picture_mode(app)
     if app.no_color and picture_mode.cells not in BLOCKS:
         return MONO
     return min(_DEPTHS.get(app.console.color_system or "", TRUECOLOR), picture_mode.most_colors)
 
 
-def shows_ascii(app: App[Any]) -> bool:
+def is_ascii(app: App[Any]) -> bool:
     """Return whether an app draws with ASCII only."""
-    return picture_mode_of(app).cells is CellSet.ASCII
+    return find_picture_mode(app).cells is CellSet.ASCII
 
 
-def picture_mode_of(app: App[Any]) -> PictureMode:
+def find_picture_mode(app: App[Any]) -> PictureMode:
     """Return how an app draws pictures."""
-    found = getattr(app, "picture_mode", None)
-    return found if isinstance(found, PictureMode) else PictureMode()
+    mode = getattr(app, "picture_mode", None)
+    return mode if isinstance(mode, PictureMode) else PictureMode()
 
 
 INLINE_IMAGES: Mapping[str, str] = {
@@ -149,27 +149,27 @@ DEFAULT_CELL_PX = (8, 16)
 """Size of a cell if neither the terminal nor the kernel tells."""
 
 
-def graphics_of(
-    facts: TerminalFacts, wanted: str, cell_px: tuple[int, int] | None
+def choose_graphics(
+    facts: TerminalFacts, choice: str, cell_px: tuple[int, int] | None
 ) -> Graphics | None:
     """Return how a terminal is drawn with pixels; None if it cannot, does not tell, or should not.
 
     Args:
         facts: What it has answered.
-        wanted: One of `PIXELS`.
+        choice: One of `PIXELS`.
         cell_px: Width and height of a cell as the kernel knows them.
     """
-    if wanted == NO_PIXELS:
+    if choice == NO_PIXELS:
         return None
-    protocol = _protocol_of(facts) if wanted == AUTO else Protocol(wanted)
+    protocol = _find_protocol(facts) if choice == AUTO else Protocol(choice)
     if protocol is Protocol.KITTY and facts.has_kitty_graphics is False:
         # Its answer counts for more than a wish: the world would be black.
         return None
     # A terminal that scales its window, as on many laptops, draws in its own pixels, not the kernel's.
     known_px = facts.cell_px or cell_px
-    if protocol is None or (protocol is Protocol.SIXEL and wanted == AUTO and known_px is None):
+    if protocol is None or (protocol is Protocol.SIXEL and choice == AUTO and known_px is None):
         return None
-    most_points = MOST_PAGE_POINTS if facts.program == kitty.PAGE else MOST_POINTS
+    most_points = MAX_PAGE_POINTS if facts.program == kitty.PAGE else MAX_POINTS
     return Graphics(protocol, known_px or DEFAULT_CELL_PX, facts.program == TMUX, most_points)
 
 
@@ -205,24 +205,25 @@ def describe_terminal(fd: int, environment: Mapping[str, str]) -> TerminalReport
         fd: The terminal, open for reading and writing.
         environment: That of the app.
     """
-    term, first = environment.get("TERM", ""), first_environment()
+    term, first = environment.get("TERM", ""), read_first_environment()
     is_asked = term not in SILENT
     try:
         answers = ask_everything(fd) if is_asked else Answers()
     except (OSError, termios.error):
         return None
     # Textual takes an empty variable as well.
-    colors = "none" if "NO_COLOR" in environment else colors_without_asking(environment)
+    colors = "none" if "NO_COLOR" in environment else read_colors(environment)
     has_colors = colors != "none"
-    cells = cells_without_asking({**first, "TERM": term}, has_colors=has_colors)
-    graphics = graphics_of(answers.facts, AUTO if has_colors else NO_PIXELS, answers.cell_px)
+    cells = read_cells({**first, "TERM": term}, has_colors=has_colors)
+    graphics = choose_graphics(answers.facts, AUTO if has_colors else NO_PIXELS, answers.cell_px)
     return TerminalReport(
         name=answers.facts.name,
-        colors=_colors_of_textual(environment) if colors == AUTO else colors,
+        colors=_find_textual_colors(environment) if colors == AUTO else colors,
         has_colors=has_colors,
         has_fixed_colors=colors != AUTO,
-        cells=cells or cells_of(name_around(answers.facts.name, environment), answers.octant_cols),
-        is_limited=cells_without_asking({**first, "TERM": "xterm"}) is not cells,
+        cells=cells
+        or find_cells(name_around(answers.facts.name, environment), answers.octant_cols),
+        is_limited=read_cells({**first, "TERM": "xterm"}) is not cells,
         protocol=graphics.protocol if graphics else "",
         is_asked=is_asked,
         latency_s=answers.latency_s,
@@ -230,13 +231,13 @@ def describe_terminal(fd: int, environment: Mapping[str, str]) -> TerminalReport
     )
 
 
-def _colors_of_textual(environment: Mapping[str, str]) -> str:
+def _find_textual_colors(environment: Mapping[str, str]) -> str:
     system = Console(force_terminal=True, _environ=environment).color_system
     depths = {"truecolor": "truecolor", "256": "256", "standard": "16", "windows": "16"}
     return depths.get(system or "", "none")
 
 
-def _protocol_of(facts: TerminalFacts) -> Protocol | None:
+def _find_protocol(facts: TerminalFacts) -> Protocol | None:
     name = facts.program
     if name == TMUX:
         # Built with sixel, it says so whatever its own terminal can; elsewhere it shows frames with a text.
@@ -277,14 +278,14 @@ class Sharpness:
         """Whether the picture stands still."""
         return time.monotonic() - self._changed_s >= self._still_s
 
-    def changed(self, *, is_coarse: bool = False) -> None:
+    def record_change(self, *, is_coarse: bool = False) -> None:
         """Note that the picture was drawn; `is_coarse` if it is to be drawn more finely as soon as that is possible."""
         self._changed_s, self._is_coarse = time.monotonic(), is_coarse
         if is_coarse and self._timer is None:
             self._timer = self._widget.set_interval(REFINE_S, self._step)
 
     def _step(self) -> None:
-        picture_mode = picture_mode_of(self._widget.app)
+        picture_mode = find_picture_mode(self._widget.app)
         if not picture_mode.is_idle() or (picture_mode.is_slow() and not self.is_still):
             return
         if self._is_coarse:

@@ -13,12 +13,12 @@ Rgb: TypeAlias = tuple[int, int, int]
 """Red, green and blue, 0 to 255."""
 
 
-def channels_of(packed: int) -> Rgb:
+def unpack_rgb(packed: int) -> Rgb:
     """Return red, green and blue of 0xRRGGBB."""
     return packed >> 16 & 255, packed >> 8 & 255, packed & 255
 
 
-def packed_rgb(colors: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:
+def pack_rgb(colors: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:
     """Return 0xRRGGBB of colours of shape (3, …)."""
     packed: npt.NDArray[np.int64] = colors[0] << 16 | colors[1] << 8 | colors[2]
     return packed

@@ -29,8 +29,8 @@ from tuisim.terminal.queries import (
     NAME_QUERY,
     QUESTIONS,
     TerminalFacts,
-    cell_size_px,
-    facts_in,
+    parse_facts,
+    read_cell_size_px,
 )
 
 ANSWER_S = 0.4
@@ -68,26 +68,24 @@ TERMINALS: Mapping[str, Drawn] = {
 test card in the app, chooses any other set."""
 
 
-def cells_of(name: str, octant_cols: int | None) -> CellSet:
+def find_cells(name: str, octant_cols: int | None) -> CellSet:
     """Return the finest set that a terminal with UTF-8 is known to show.
 
     Args:
         name: What it answered to XTVERSION, see `name_around`; empty if nothing.
         octant_cols: By how many columns an octant moved its cursor; None if it did not answer.
     """
-    found = _NAME_AND_VERSION.match(name)
-    known = TERMINALS.get(found[1]) if found else None
-    if found is None or known is None or octant_cols != 1:
+    match = _NAME_AND_VERSION.match(name)
+    known = TERMINALS.get(match[1]) if match else None
+    if match is None or known is None or octant_cols != 1:
         return CellSet.QUADRANT
-    version = tuple(int(part) for part in re.findall(r"\d+", found[2]))
+    version = tuple(int(part) for part in re.findall(r"\d+", match[2]))
     if known.octants is not None and version >= known.octants:
         return CellSet.OCTANT
     return CellSet.SEXTANT if version >= known.sextants else CellSet.QUADRANT
 
 
-def cells_without_asking(
-    environment: Mapping[str, str], *, has_colors: bool = True
-) -> CellSet | None:
+def read_cells(environment: Mapping[str, str], *, has_colors: bool = True) -> CellSet | None:
     """Return the set that the environment decides; None if the terminal has to be asked.
 
     Args:
@@ -103,26 +101,26 @@ def cells_without_asking(
     return None if has_colors else CellSet.BRAILLE
 
 
-def colors_without_asking(environment: Mapping[str, str]) -> str:
+def read_colors(environment: Mapping[str, str]) -> str:
     """Return the colours that the terminal is known to have by its environment; `auto` if Textual knows better."""
     terminal = environment.get("TERM", "")
     if is_multiplexer(terminal):
-        around = colors_of_kind(terminal.partition(".")[2] or terminal)
+        around = find_colors(terminal.partition(".")[2] or terminal)
         return around if around != AUTO else "truecolor" if has_all_colors(environment) else "256"
-    return colors_of_kind(terminal)
+    return find_colors(terminal)
 
 
-def colors_of_kind(terminal: str) -> str:
+def find_colors(terminal: str) -> str:
     """Return the colours that a kind of terminal, as in TERM, is known to have; `auto` if that does not tell."""
     if terminal in _PLAIN or terminal.startswith(("vt1", "vt2", "vt3")):
         return "none"
     if terminal in ("linux", "ansi"):
         # The Linux console has eight colours for backgrounds.
         return "8"
-    return AUTO if terminfo_has_colors(terminal) else "none"
+    return AUTO if has_terminfo_colors(terminal) else "none"
 
 
-def terminfo_has_colors(terminal: str) -> bool:
+def has_terminfo_colors(terminal: str) -> bool:
     """Return whether terminfo gives a kind of terminal colours; True for a kind that it does not know.
 
     curses reads one entry a process: the first kind that is asked for decides.
@@ -156,7 +154,7 @@ def has_all_colors(environment: Mapping[str, str]) -> bool:
     of such a colour for blinking, underlined and coloured text, and has no way to be asked. tmux has; inside GNU screen
     (STY) it may be the one around it.
     """
-    return _ALL_COLORS in _told_by_tmux("client_termfeatures", environment).split(",")
+    return _ALL_COLORS in _ask_tmux("client_termfeatures", environment).split(",")
 
 
 def name_around(name: str, environment: Mapping[str, str]) -> str:
@@ -164,10 +162,10 @@ def name_around(name: str, environment: Mapping[str, str]) -> str:
 
     tmux passes glyphs on, so that terminal draws them.
     """
-    return (name.startswith("tmux") and _told_by_tmux("client_termtype", environment)) or name
+    return (name.startswith("tmux") and _ask_tmux("client_termtype", environment)) or name
 
 
-def _told_by_tmux(what: str, environment: Mapping[str, str]) -> str:
+def _ask_tmux(what: str, environment: Mapping[str, str]) -> str:
     """Return what tmux knows of the terminal around it; empty if it is not the innermost program, or says nothing."""
     if "TMUX" not in environment or "STY" in environment:
         return ""
@@ -190,7 +188,7 @@ WEB_DRIVER = "textual.drivers.web_driver:WebDriver"
 """The driver that a server such as textual-serve names in the environment of an app in a browser."""
 
 
-def in_browser() -> bool:
+def is_in_browser() -> bool:
     """Return whether a server has started this process to show its app in a browser."""
     return os.environ.get("TEXTUAL_DRIVER") == WEB_DRIVER
 
@@ -203,7 +201,7 @@ def _may_be_utf8(environment: Mapping[str, str]) -> bool:
     return not locale or "utf-8" in locale.lower() or "utf8" in locale.lower()
 
 
-def first_environment() -> Mapping[str, str]:
+def read_first_environment() -> Mapping[str, str]:
     """Return the environment that this process was started with, where the system tells."""
     try:
         entries = Path("/proc/self/environ").read_bytes().split(b"\0")
@@ -213,14 +211,14 @@ def first_environment() -> Mapping[str, str]:
     return {name: value for name, _, value in pairs}
 
 
-def best_cells(*, ask: bool = True, has_colors: bool = True) -> CellSet:
+def choose_cells(*, ask: bool = True, has_colors: bool = True) -> CellSet:
     """Return the finest set that this terminal is known to show; `ask` it if the environment does not decide."""
-    environment = {**first_environment(), "TERM": os.environ.get("TERM", "")}
-    decided = cells_without_asking(environment, has_colors=has_colors)
+    environment = {**read_first_environment(), "TERM": os.environ.get("TERM", "")}
+    decided = read_cells(environment, has_colors=has_colors)
     if decided is not None or not ask:
         return decided or CellSet.QUADRANT
     try:
-        return _asked()
+        return _ask_terminal()
     except (OSError, termios.error, ValueError):
         return CellSet.QUADRANT
 
@@ -255,30 +253,32 @@ def ask_everything(fd: int) -> Answers:
     before = termios.tcgetattr(fd)
     try:
         tty.setcbreak(fd, termios.TCSANOW)
-        octant_cols = _cols_in(_ask_width(fd, fd))
-        latency_s = _latency_s(fd)
+        octant_cols = _parse_cols(_ask_width(fd, fd))
+        latency_s = _measure_latency_s(fd)
         if latency_s is None:
             return Answers(octant_cols=octant_cols)
         text = _ask(fd, QUESTIONS, _has_attributes, fd)
-        facts = facts_in(text.decode("latin-1"))
+        facts = parse_facts(text.decode("latin-1"))
         if facts.asks_for_kitty:
             text += _ask(fd, KITTY_QUESTIONS, _has_attributes, fd)
-        return Answers(facts_in(text.decode("latin-1")), octant_cols, latency_s, cell_size_px(fd))
+        return Answers(
+            parse_facts(text.decode("latin-1")), octant_cols, latency_s, read_cell_size_px(fd)
+        )
     finally:
         # Answers that come late are not typed into the shell.
         termios.tcsetattr(fd, termios.TCSAFLUSH, before)
 
 
-def _latency_s(fd: int) -> float | None:
-    found = []
+def _measure_latency_s(fd: int) -> float | None:
+    times_s = []
     for _ in range(_ROUND_TRIPS):
         begun = time.monotonic()
-        if not facts_in(
+        if not parse_facts(
             _ask(fd, ATTRIBUTES_QUERY, _has_attributes, fd).decode("latin-1")
         ).attributes:
             break
-        found.append(time.monotonic() - begun)
-    return min(found, default=None)
+        times_s.append(time.monotonic() - begun)
+    return min(times_s, default=None)
 
 
 def _ask_width(fd: int, output: int | None = None) -> bytes:
@@ -288,17 +288,17 @@ def _ask_width(fd: int, output: int | None = None) -> bytes:
     return answer
 
 
-def _cols_in(answer: bytes) -> int | None:
+def _parse_cols(answer: bytes) -> int | None:
     """Return by how many columns an octant moved the cursor, if that was answered."""
     position = _POSITION.search(answer)
     return int(position[1]) - 1 if position else None
 
 
 def _has_attributes(answer: bytes) -> bool:
-    return bool(facts_in(answer.decode("latin-1")).attributes)
+    return bool(parse_facts(answer.decode("latin-1")).attributes)
 
 
-def _asked() -> CellSet:
+def _ask_terminal() -> CellSet:
     """Ask the terminal of the standard input and output.
 
     The name is asked for only once an octant has moved the cursor: an answer that comes too late would be taken for
@@ -309,14 +309,16 @@ def _asked() -> CellSet:
     try:
         tty.setcbreak(fd, termios.TCSANOW)
         position = _ask_width(fd)
-        cols = _cols_in(position)
+        cols = _parse_cols(position)
         if cols != 1:
-            return cells_of("", cols)
+            return find_cells("", cols)
         answers = _ask(fd, NAME_QUERY + ATTRIBUTES_QUERY, _has_attributes)
         position += answers
-        return cells_of(name_around(facts_in(answers.decode("latin-1")).name, os.environ), cols)
+        return find_cells(
+            name_around(parse_facts(answers.decode("latin-1")).name, os.environ), cols
+        )
     finally:
-        _typed.append(_without_answers(position))
+        _typed.append(_strip_answers(position))
         termios.tcsetattr(fd, termios.TCSANOW, before)
 
 
@@ -331,7 +333,7 @@ def take_typed() -> str:
     return typed
 
 
-def _without_answers(data: bytes) -> bytes:
+def _strip_answers(data: bytes) -> bytes:
     text = _POSITION.sub(b"", data).decode("latin-1")
     return ANSWER.sub("", text).encode("latin-1")
 
@@ -377,11 +379,11 @@ def restore_terminal(fd: int, term: str) -> None:
     os.write(fd, (RESTORING if term in SILENT else RESTORING + kitty.DELETE_ALL).encode())
     with suppress(termios.error):
         attributes = termios.tcgetattr(fd)
-        attributes[:4] = _sane(*attributes[:4])
+        attributes[:4] = _build_sane_modes(*attributes[:4])
         termios.tcsetattr(fd, termios.TCSAFLUSH, attributes)
 
 
-def _sane(iflag: int, oflag: int, cflag: int, lflag: int) -> list[int]:
+def _build_sane_modes(iflag: int, oflag: int, cflag: int, lflag: int) -> list[int]:
     """Return the modes of a terminal with what `stty sane` switches on, as far as apps change it."""
     iflag = (iflag | termios.BRKINT | termios.ICRNL | termios.IXON | termios.IMAXBEL) & ~(
         termios.INLCR | termios.IGNCR

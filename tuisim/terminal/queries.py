@@ -37,7 +37,7 @@ ANSWER = re.compile(
 _SIXEL = "4"
 """Number of sixel graphics among the attributes of a terminal."""
 _PROGRAM = re.compile(r"[A-Za-z0-9]+")
-_LEAST_CELL_PX, _MOST_CELL_PX = (2, 4), (300, 300)
+_MIN_CELL_PX, _MAX_CELL_PX = (2, 4), (300, 300)
 """Width and height; terminals have told sizes of 1 pixel, and none at all."""
 
 
@@ -59,8 +59,8 @@ class TerminalFacts:
     @property
     def program(self) -> str:
         """Its name without its version; empty if it does not tell."""
-        found = _PROGRAM.match(self.name)
-        return found[0] if found else ""
+        match = _PROGRAM.match(self.name)
+        return match[0] if match else ""
 
     @property
     def asks_for_kitty(self) -> bool:
@@ -81,41 +81,41 @@ class TerminalFacts:
         """Whether it draws sixel graphics."""
         return _SIXEL in self.attributes
 
-    def with_answer(self, match: re.Match[str]) -> TerminalFacts:
+    def add_answer(self, match: re.Match[str]) -> TerminalFacts:
         """Return the facts with an answer of the terminal."""
-        found = match.groupdict()
-        if found["name"] is not None:
+        groups = match.groupdict()
+        if groups["name"] is not None:
             # All questions are asked anew, perhaps by another page, before those for kitty's protocol were answered.
-            return replace(self.without_refusal, name=found["name"], attributes=frozenset())
-        if found["kitty"] is not None:
+            return replace(self.without_refusal, name=groups["name"], attributes=frozenset())
+        if groups["kitty"] is not None:
             # It may come late, as attributes are asked for when the size changes, too; an error counts for good.
-            error = self.kitty_error if found["kitty"] == "OK" else found["kitty"]
+            error = self.kitty_error if groups["kitty"] == "OK" else groups["kitty"]
             return replace(self, has_kitty_graphics=not error, kitty_error=error)
-        if found["attributes"] is not None:
+        if groups["attributes"] is not None:
             # The second time they come after the question for kitty's protocol.
             answered = False if self.attributes and self.asks_for_kitty else self.has_kitty_graphics
-            attributes = frozenset(found["attributes"].split(";"))
+            attributes = frozenset(groups["attributes"].split(";"))
             return replace(self, attributes=attributes, has_kitty_graphics=answered)
-        width, height = int(found["width"]), int(found["height"])
+        width, height = int(groups["width"]), int(groups["height"])
         return replace(self, cell_px=(width, height)) if _is_possible((width, height)) else self
 
 
 def _is_possible(cell_px: tuple[int, int]) -> bool:
     return all(
-        least <= px <= most
-        for least, px, most in zip(_LEAST_CELL_PX, cell_px, _MOST_CELL_PX, strict=True)
+        smallest <= px <= largest
+        for smallest, px, largest in zip(_MIN_CELL_PX, cell_px, _MAX_CELL_PX, strict=True)
     )
 
 
-def facts_in(text: str) -> TerminalFacts:
+def parse_facts(text: str) -> TerminalFacts:
     """Return what the answers in a text tell; anything else in it is ignored."""
     facts = TerminalFacts()
     for match in ANSWER.finditer(text):
-        facts = facts.with_answer(match)
+        facts = facts.add_answer(match)
     return facts
 
 
-def cell_size_px(fd: int) -> tuple[int, int] | None:
+def read_cell_size_px(fd: int) -> tuple[int, int] | None:
     """Return width and height of a cell as the kernel knows them, also over SSH; None if it does not."""
     try:
         rows, cols, width, height = struct.unpack(
@@ -166,13 +166,13 @@ class AnswerParser(XTermParser):
         if "\x1b" in text:
             for match in ANSWER.finditer(text):
                 was = ""
-                self._facts = self._facts.with_answer(match)
+                self._facts = self._facts.add_answer(match)
                 if match["attributes"] is not None:
                     AnswerParser.is_asked = False
                 if match["attributes"] is not None or match["kitty"] is not None:
                     yield TerminalAnswered(self._facts)
             text = ANSWER.sub("", text)
-            if not is_end and (begun := self._begun_at_end(text)):
+            if not is_end and (begun := self._find_unfinished(text)):
                 self._begun = begun if len(begun) <= _LONGEST else ""
                 self._begun_s = self._begun_s if was else monotonic()
                 text = text[: -len(begun)]
@@ -181,13 +181,13 @@ class AnswerParser(XTermParser):
         if is_end:
             yield from super().feed("")
 
-    def _begun_at_end(self, text: str) -> str:
-        found = _BEGUN.search(text)
-        if found is None and (
+    def _find_unfinished(self, text: str) -> str:
+        match = _BEGUN.search(text)
+        if match is None and (
             self.is_asked or not self._facts.attributes or self._facts.asks_for_kitty
         ):
-            found = _MAYBE_BEGUN.search(text)
-        return found[0] if found else ""
+            match = _MAYBE_BEGUN.search(text)
+        return match[0] if match else ""
 
     def tick(self) -> Iterable[Message]:
         """Yield what has been held back for long enough; drop an answer whose rest does not come."""

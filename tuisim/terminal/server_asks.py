@@ -18,7 +18,7 @@ class ActionAsked(Message):
 class ServerAsks(Message):
     """The server that shows the app in a browser asks for something."""
 
-    def __init__(self, asked: Mapping[str, object]) -> None:
+    def __init__(self, request: Mapping[str, object]) -> None:
         super().__init__()
-        self.asked = asked
+        self.asked = request
         """What it is, under `what`, with its details; from JSON."""

@@ -8,11 +8,11 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from tuisim.terminal.pixels import Pixels, channels_of
+from tuisim.terminal.pixels import Pixels, unpack_rgb
 
 BAND_PX = 6
 """A character stands for this many pixels, one below the other."""
-MOST_COLORS = 256
+MAX_COLORS = 256
 """Number of colours that every terminal with sixel supports."""
 PERCENT = 100
 """Largest value of a colour channel."""
@@ -27,50 +27,54 @@ def encode(picture: Pixels) -> str:
     """Return the codes that draw a picture at the cursor. Where the cursor is after them differs among terminals.
 
     Args:
-        picture: Shape (height, width, 3); with more than `MOST_COLORS` colours, the nearest of a palette are taken.
+        picture: Shape (height, width, 3); with more than `MAX_COLORS` colours, the nearest of a palette are taken.
     """
     height_px, width_px = picture.shape[:2]
-    colors, numbers = _palette(picture)
+    colors, numbers = _find_palette(picture)
     parts = [f'{_BEGIN}"1;1;{width_px};{height_px}']
-    parts += [_definition(number, color) for number, color in enumerate(colors)]
+    parts += [_define_color(number, color) for number, color in enumerate(colors)]
     parts += [
-        "-".join(_band(numbers[top : top + BAND_PX]) for top in range(0, height_px, BAND_PX)),
+        "-".join(
+            _encode_band(numbers[top : top + BAND_PX]) for top in range(0, height_px, BAND_PX)
+        ),
         _END,
     ]
     return "".join(parts)
 
 
-def _palette(picture: Pixels) -> tuple[list[tuple[int, ...]], npt.NDArray[np.intp]]:
+def _find_palette(picture: Pixels) -> tuple[list[tuple[int, ...]], npt.NDArray[np.intp]]:
     """Return the colours of a picture, and which of them each pixel has, shape (height, width)."""
     packed = picture.astype(np.int32) @ np.array([1 << 16, 1 << 8, 1], np.int32)
-    found, numbers = np.unique(packed, return_inverse=True)
-    if len(found) > MOST_COLORS:
-        return _reduced(picture)
-    return [channels_of(color) for color in found.tolist()], numbers.reshape(packed.shape)
+    colors_found, numbers = np.unique(packed, return_inverse=True)
+    if len(colors_found) > MAX_COLORS:
+        return _reduce_palette(picture)
+    return [unpack_rgb(color) for color in colors_found.tolist()], numbers.reshape(packed.shape)
 
 
-def _reduced(picture: Pixels) -> tuple[list[tuple[int, ...]], npt.NDArray[np.intp]]:
+def _reduce_palette(picture: Pixels) -> tuple[list[tuple[int, ...]], npt.NDArray[np.intp]]:
     # Imported on demand: most pictures have few colours.
     from PIL import Image
 
-    image = Image.fromarray(picture).quantize(MOST_COLORS, dither=Image.Dither.NONE)
+    image = Image.fromarray(picture).quantize(MAX_COLORS, dither=Image.Dither.NONE)
     channels = image.getpalette() or []
-    colors = [tuple(channels[at : at + 3]) for at in range(0, len(channels), 3)]
+    colors = [tuple(channels[start : start + 3]) for start in range(0, len(channels), 3)]
     return colors, np.asarray(image, np.intp)
 
 
-def _definition(number: int, color: tuple[int, ...]) -> str:
+def _define_color(number: int, color: tuple[int, ...]) -> str:
     red, green, blue = (round(channel * PERCENT / 255) for channel in color)
     return f"#{number};2;{red};{green};{blue}"
 
 
-def _band(numbers: npt.NDArray[np.intp]) -> str:
+def _encode_band(numbers: npt.NDArray[np.intp]) -> str:
     """Return up to six rows of pixels, one colour after the other."""
     colors, places = np.unique(numbers, return_inverse=True)
     rows, cols = numbers.shape
     bits = np.repeat(1 << np.arange(rows), cols)
-    at = places.ravel() * cols + np.tile(np.arange(cols), rows)
-    columns = np.bincount(at, bits, len(colors) * cols).astype(np.intp).reshape(len(colors), cols)
+    positions = places.ravel() * cols + np.tile(np.arange(cols), rows)
+    columns = (
+        np.bincount(positions, bits, len(colors) * cols).astype(np.intp).reshape(len(colors), cols)
+    )
     # Where a run begins, and in the first column.
     begins = np.diff(columns, axis=1, prepend=-1) != 0
     owners, starts = np.nonzero(begins)

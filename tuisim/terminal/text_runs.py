@@ -17,7 +17,7 @@ Run: TypeAlias = tuple[str, Style]
 Line: TypeAlias = list[Run]
 
 
-def as_markup(text: str) -> str:
+def escape_markup(text: str) -> str:
     """Return a text that comes from a file or the user as markup that shows it as it is.
 
     `textual.markup.escape` leaves some brackets that follow a backslash or stand in quotes.
@@ -25,7 +25,7 @@ def as_markup(text: str) -> str:
     return text.replace("[", "\\[")
 
 
-def rgb_of(color: Color | None) -> Rgb | None:
+def convert_color(color: Color | None) -> Rgb | None:
     """Return red, green and blue of a colour; None without one, and for a number of the terminal's palette."""
     if color is None or color.triplet is None:
         return None
@@ -45,20 +45,20 @@ def cut_line(line: Sequence[Run], width: int) -> Sequence[Run]:
         or not "".join(text for text, _ in line)[width:].strip()
     ):
         return line
-    kept: list[Run] = []
+    runs: list[Run] = []
     left = width
     for text, style in line:
-        kept.append((cut(text, left) if len(text) > left else text, style))
+        runs.append((cut(text, left) if len(text) > left else text, style))
         left -= len(text)
         if left < 0:
-            return kept
+            return runs
         if left == 0:
             # The next piece is cut off completely, so this one gets the ellipsis.
-            kept[-1] = (text[:-1] + "…", style)
-            return kept
-    return kept
+            runs[-1] = (text[:-1] + "…", style)
+            return runs
+    return runs
 
 
-def first_shown(chosen: int, count: int, room: int) -> int:
+def find_first_row(chosen: int, count: int, room: int) -> int:
     """Return the first row shown, so that the selected one is near the middle."""
     return min(max(chosen - room // 2, 0), max(count - room, 0))

@@ -116,9 +116,9 @@ _GLOBALS: Sequence[tuple[ModuleType, str]] = (
 """Names in modules."""
 
 
-def missing_names() -> list[str]:
+def list_missing_names() -> list[str]:
     """Return which names the Textual that is installed does not have, such as `App._display`."""
-    found = [
+    missing = [
         f"{owner.__name__}.{name}"
         for owner, names in _USED.items()
         for name in names
@@ -130,28 +130,28 @@ def missing_names() -> list[str]:
         for module, name in _GLOBALS
         if not hasattr(module, name)
     ]
-    return [*found, *lacking]
+    return [*missing, *lacking]
 
 
 def _has(owner: type, name: str) -> bool:
-    made = (getattr(vars(one).get("__init__"), "__code__", None) for one in owner.__mro__)
-    return hasattr(owner, name) or any(code is not None and name in code.co_names for code in made)
+    codes = (getattr(vars(base).get("__init__"), "__code__", None) for base in owner.__mro__)
+    return hasattr(owner, name) or any(code is not None and name in code.co_names for code in codes)
 
 
-def textual_version() -> Version:
+def read_textual_version() -> Version:
     """Return the version of the Textual that is installed; empty if it is no release.
 
     It is read from the name of its metadata: `importlib.metadata` would take a tenth of the time that Textual takes.
     """
-    found = [
+    numbers = [
         _METADATA.fullmatch(entry.name) for entry in os.scandir(Path(textual.__file__).parents[1])
     ]
-    return next((tuple(map(int, match[1].split("."))) for match in found if match), ())
+    return next((tuple(map(int, match[1].split("."))) for match in numbers if match), ())
 
 
 def describe_textual() -> tuple[Version, tuple[Version, Version], list[str]]:
     """Return the version that is installed, the first and the last one that was tried, and what it lacks."""
-    return textual_version(), TESTED, missing_names()
+    return read_textual_version(), TESTED, list_missing_names()
 
 
 def _is_tested() -> bool:
@@ -216,22 +216,22 @@ class HookedApp(App[None]):
 class HookedScreen(ModalScreen[Result], Generic[Result]):
     """Textual's modal screen, which may drop messages and see what is below it."""
 
-    def drops(self, message: Message) -> bool:
+    def should_drop(self, message: Message) -> bool:
         """Return whether to ignore a message."""
         return False
 
     async def _on_message(self, message: Message) -> None:
-        if not self.drops(message):
+        if not self.should_drop(message):
             await super()._on_message(message)
 
-    def parts_below(self, crop: Region) -> list[list[Strip]] | None:
+    def read_lower_parts(self, crop: Region) -> list[list[Strip]] | None:
         """Return the parts of each row that the screen below draws, from left to right; None if that is not known."""
         stack = self.app.screen_stack
-        at = stack.index(self) if self in stack else 0
-        if not at or not SUPPORTED:
+        index = stack.index(self) if self in stack else 0
+        if not index or not SUPPORTED:
             return None
         rows = Region(0, crop.y, self.size.width, crop.height)
-        chops = stack[at - 1]._compositor._render_chops(rows, rows.line_range.__contains__)
+        chops = stack[index - 1]._compositor._render_chops(rows, rows.line_range.__contains__)
         below = [[part for part in chop.values() if part] for chop in chops[crop.y : crop.bottom]]
         # After a resize, the screen below may still be laid out for fewer rows.
         return below + [[] for _ in range(crop.height - len(below))]
@@ -280,12 +280,12 @@ class MadeOnDemand(Strip):
 class HookedLinuxDriver(LinuxDriver):
     """Textual's driver of a terminal, which asks what to do when the process was stopped and is continued."""
 
-    def continued(self) -> None:
+    def handle_continuation(self) -> None:
         """The process was stopped, and goes on; called from the handler of the signal."""
         super()._sigcont_application()
 
     def _sigcont_application(self, *_: object) -> None:
-        self.continued()
+        self.handle_continuation()
 
     def wrap_output(self, wrap: Callable[[TextIO], object]) -> None:
         """Write to another file, which `wrap` makes of the present one."""
@@ -326,20 +326,20 @@ class ThoroughCompositor(Compositor):
     def reflow(self, parent: Widget, size: Size) -> ReflowResult:
         """Lay out the widgets, and return which of them are hidden, shown and resized since they were last told."""
         before = self._full_map
-        hidden, shown, resized = super().reflow(parent, size)
-        told, self._told = self._told, self._full_map
-        if before is not told:
-            shown = shown | (self._told.keys() - told.keys())
+        hidden, visible, resized = super().reflow(parent, size)
+        previous_map, self._told = self._told, self._full_map
+        if before is not previous_map:
+            visible = visible | (self._told.keys() - previous_map.keys())
             resized = resized | {
                 widget
-                for widget in self._told.keys() & told.keys()
-                if self._told[widget].region.size != told[widget].region.size
+                for widget in self._told.keys() & previous_map.keys()
+                if self._told[widget].region.size != previous_map[widget].region.size
             }
-            changes = (geometry for _, geometry in self._told.items() ^ told.items())
+            changes = (geometry for _, geometry in self._told.items() ^ previous_map.items())
             self._dirty_regions.update(
-                filter(None, (one.clip.intersection(one.region) for one in changes))
+                filter(None, (change.clip.intersection(change.region) for change in changes))
             )
-        return ReflowResult(hidden, shown, resized)
+        return ReflowResult(hidden, visible, resized)
 
 
 def is_leaving(app: App[Any]) -> bool:
@@ -356,22 +356,22 @@ def can_show_notices(app: App[Any]) -> bool:
     return not getattr(app, "_disable_notifications", False)
 
 
-def app_of(driver: Driver) -> App[Any]:
+def find_app(driver: Driver) -> App[Any]:
     """Return the app that a driver draws."""
     return driver._app
 
 
-def write_with(driver: Driver, write: Callable[[bytes], int]) -> None:
+def replace_write(driver: Driver, write: Callable[[bytes], int]) -> None:
     """Let the driver of a browser write by a function from now on."""
     driver._write = write  # type: ignore[attr-defined]  # a partial function
 
 
-def bindings_of(node: DOMNode) -> BindingsMap:
+def find_bindings(node: DOMNode) -> BindingsMap:
     """Return the keys of a node, to be changed."""
     return getattr(node, "_bindings", None) or BindingsMap()
 
 
-def screen_strips(app: App[Any]) -> list[Strip]:
+def render_screen(app: App[Any]) -> list[Strip]:
     """Return the rows of the whole screen, with its dialogs and notices."""
     if SUPPORTED:
         # As Textual's own `export_screenshot` does.
@@ -379,7 +379,7 @@ def screen_strips(app: App[Any]) -> list[Strip]:
     return app.screen._compositor.render_strips()
 
 
-def text_selection(widget: Widget) -> Selection | None:
+def find_selection(widget: Widget) -> Selection | None:
     """Return what is selected of a widget; nothing in a screen without styles: it is not drawn yet, or is gone."""
     screen = widget.screen
     return (
@@ -387,18 +387,18 @@ def text_selection(widget: Widget) -> Selection | None:
     )
 
 
-def key_of_character(character: str) -> str:
+def find_key(character: str) -> str:
     """Return the name of the key that types a character, such as `question_mark`; itself if that is not known."""
     name_of = getattr(textual_keys, "_character_to_key", str)
     return str(name_of(character))
 
 
-def columns_to_tab_stop(area: TextArea) -> int:
+def count_tab_columns(area: TextArea) -> int:
     """Return the number of columns from the cursor to the next tab stop."""
     return area._find_columns_to_next_tab_stop() if SUPPORTED else area.indent_width
 
 
-def line_at_row(area: TextArea, row: int) -> tuple[int, int]:
+def find_line(area: TextArea, row: int) -> tuple[int, int]:
     """Return the index of the line at a row of the wrapped text, and which of its rows it is.
 
     Raises:
@@ -434,14 +434,14 @@ def route_messages(
     MessagePump.call_after_refresh = call_later  # type: ignore[method-assign]
 
 
-def parse_input_with(parser: type[XTermParser], decoder: Callable[[], Any]) -> None:
+def set_input_parser(parser: type[XTermParser], decoder: Callable[[], Any]) -> None:
     """Let Textual's driver, which makes its parser and its decoder itself, make these."""
     if SUPPORTED:
         linux_driver.XTermParser = parser  # type: ignore[attr-defined]
         linux_driver.getincrementaldecoder = lambda _: decoder  # type: ignore[attr-defined, assignment]
 
 
-def parse_page_input_with(parser: type[XTermParser]) -> None:
+def set_page_parser(parser: type[XTermParser]) -> None:
     """Let Textual's driver for browsers, which makes its parser itself, make this one."""
     # Most apps run in a terminal.
     from textual.drivers import web_driver
@@ -452,7 +452,7 @@ def parse_page_input_with(parser: type[XTermParser]) -> None:
 _click, _move_page = getattr(OptionList, "_on_click", None), getattr(OptionList, "_move_page", None)
 
 
-async def _click_there(listed: OptionList, event: Click) -> None:
+async def _choose_clicked(listed: OptionList, event: Click) -> None:
     """Choose the option that was clicked on; nothing if the list has become shorter since."""
     if event.style.meta.get("option", 0) < listed.option_count:
         await _click(listed, event)  # type: ignore[misc]  # there if it is called
@@ -464,7 +464,7 @@ def _move_seen_page(listed: OptionList, direction: Literal[-1, 1]) -> None:
         _move_page(listed, direction)  # type: ignore[misc]  # there if it is called
 
 
-def mend(end_messages: Callable[[Widget], Awaitable[None]]) -> None:
+def repair_textual(end_messages: Callable[[Widget], Awaitable[None]]) -> None:
     """Mend what Textual's own screens and lists get wrong.
 
     Args:
@@ -474,9 +474,9 @@ def mend(end_messages: Callable[[Widget], Awaitable[None]]) -> None:
         return
     # A screen makes its compositor itself.
     textual_screen.Compositor = ThoroughCompositor  # type: ignore[attr-defined]
-    OptionList._on_click = _click_there  # type: ignore[method-assign, assignment]
+    OptionList._on_click = _choose_clicked  # type: ignore[method-assign, assignment]
     OptionList._move_page = _move_seen_page  # type: ignore[method-assign, assignment]
-    Widget.text_selection = property(text_selection)  # type: ignore[assignment]
+    Widget.text_selection = property(find_selection)  # type: ignore[assignment]
     Widget._message_loop_exit = end_messages  # type: ignore[method-assign, assignment]
     # Otherwise the cache of this method keeps what it is a method of: the rows of a thousand widgets that are gone.
     StylesCache.get_inner_outer = classmethod(StylesCache.get_inner_outer)  # type: ignore[method-assign, arg-type, assignment]

@@ -79,7 +79,7 @@ class Door:
             handler.transport.abort()
         else:
             # It has gone, or comes in this moment.
-            asyncio.get_running_loop().call_later(_NOT_YET_S, _abort, handler)
+            asyncio.get_running_loop().call_later(_NOT_YET_S, _abort_connection, handler)
 
     def _hear(self, loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
         """Tell what has gone wrong in the loop; that nobody can come in now, only from time to time."""
@@ -91,6 +91,6 @@ class Door:
             self._report(f"The server cannot accept visitors: {error.strerror}")
 
 
-def _abort(handler: web.RequestHandler) -> None:
+def _abort_connection(handler: web.RequestHandler) -> None:
     if handler.transport is not None:
         handler.transport.abort()

@@ -33,7 +33,7 @@ class Downloads(DownloadManager):
         """Offer a file, unless there is one of this key."""
         if len(delivery_key) > MAX_KEY or delivery_key in self._active_downloads:
             return
-        own = self._keys_of(app_service.app_service_id)
+        own = self._list_keys(app_service.app_service_id)
         if len(own) >= MAX_OFFERED:
             del self._active_downloads[own[0]]
         await super().create_download(app_service=app_service, delivery_key=delivery_key, **about)
@@ -53,7 +53,7 @@ class Downloads(DownloadManager):
             TimeoutError: its app does not hand it over.
         """
         key = download.delivery_key
-        asked: dict[str, str | int | bool | None] = {
+        request: dict[str, str | int | bool | None] = {
             "type": "deliver_chunk_request",
             "key": key,
             "size": DOWNLOAD_CHUNK_SIZE,
@@ -62,7 +62,7 @@ class Downloads(DownloadManager):
         while True:
             self._asked[key] = answer = asyncio.get_running_loop().create_future()
             try:
-                if not await download.app_service.send_meta(asked):
+                if not await download.app_service.send_meta(request):
                     raise TimeoutError
                 piece = await asyncio.wait_for(answer, ANSWER_WITHIN_S)
             finally:
@@ -79,10 +79,10 @@ class Downloads(DownloadManager):
 
     async def cancel_app_downloads(self, app_service_id: str) -> None:
         """Offer the files of an app no more."""
-        for key in self._keys_of(app_service_id):
+        for key in self._list_keys(app_service_id):
             del self._active_downloads[key]
 
-    def _keys_of(self, app_service_id: str) -> list[str]:
+    def _list_keys(self, app_service_id: str) -> list[str]:
         return [
             key
             for key, offered in self._active_downloads.items()

@@ -23,7 +23,7 @@ def is_any_address(host: str) -> bool:
         return not host
 
 
-def new_token() -> str:
+def create_token() -> str:
     """Return a token that nobody can guess."""
     return secrets.token_urlsafe(24)
 
@@ -34,12 +34,12 @@ class Gate:
 
     listens_on: str
     """Host name or address that the server listens on."""
-    token: str = field(default_factory=new_token)
+    token: str = field(default_factory=create_token)
     frames: tuple[str, ...] = ()
     """Origins of pages, such as `http://localhost:8888`, that may show the page in a frame; a proxy may pass the server
     off as a part of theirs."""
 
-    def admits(self, path: str, host: str, origin: str | None, *, from_a_page: bool) -> bool:
+    def is_allowed(self, path: str, host: str, origin: str | None, *, from_a_page: bool) -> bool:
         """Return whether to answer a request.
 
         Args:

@@ -91,21 +91,23 @@ class Server:
         self._visits: dict[str, Visit] = {}
         self._lives: dict[str, asyncio.Task[None]] = {}
 
-    def application(self) -> web.Application:
+    def build_application(self) -> web.Application:
         """Return the web application, in which everybody gets the same answer who may not see something, whatever it
         is."""
         application = web.Application(middlewares=[self._guard])
         # The gate looks at the token, which may change.
         application.router.add_routes(
             [
-                web.get("/{token}", _add_slash),
-                web.get("/{token}/", self._page),
-                web.get("/{token}/ws", self._socket),
-                web.get("/{token}/sessions", self._list),
-                web.post("/{token}/sessions/{id}/end", self._end),
-                web.post("/{token}/sessions/{id}/file", self._bring),
-                web.get("/{token}/download/{key}", self._download),
-                web.get(f"/{{token}}/{{folder:{'|'.join(_FOLDERS)}}}/{{name:.+}}", _file_of_page),
+                web.get("/{token}", _redirect),
+                web.get("/{token}/", self._handle_page),
+                web.get("/{token}/ws", self._handle_socket),
+                web.get("/{token}/sessions", self._handle_list),
+                web.post("/{token}/sessions/{id}/end", self._handle_end),
+                web.post("/{token}/sessions/{id}/file", self._handle_upload),
+                web.get("/{token}/download/{key}", self._handle_download),
+                web.get(
+                    f"/{{token}}/{{folder:{'|'.join(_FOLDERS)}}}/{{name:.+}}", _handle_page_file
+                ),
             ]
         )
         application.on_response_prepare.append(self._protect)
@@ -117,7 +119,7 @@ class Server:
         # What does something is sent by a page of ours only.
         acts = request.path.endswith("/ws") or request.method == "POST"
         origin = request.headers.get("Origin")
-        if self.gate.admits(request.path, request.host, origin, from_a_page=acts):
+        if self.gate.is_allowed(request.path, request.host, origin, from_a_page=acts):
             self.door.admit(request)
             return await handler(request)
         if "text/html" in request.headers.get("Accept", ""):
@@ -142,10 +144,10 @@ class Server:
             }
         )
 
-    async def _page(self, _: web.Request) -> web.StreamResponse:
+    async def _handle_page(self, _: web.Request) -> web.StreamResponse:
         return web.FileResponse(PAGE / "index.html")
 
-    async def _list(self, _: web.Request) -> web.StreamResponse:
+    async def _handle_list(self, _: web.Request) -> web.StreamResponse:
         sessions = [visit.to_plain() for visit in self._visits.values()]
         return web.json_response({"sessions": sessions, "free": self._free})
 
@@ -153,18 +155,20 @@ class Server:
     def _free(self) -> int:
         return self._limits.visitors - len(self._visits)
 
-    async def _socket(self, request: web.Request) -> web.StreamResponse:
+    async def _handle_socket(self, request: web.Request) -> web.StreamResponse:
         socket = web.WebSocketResponse(heartbeat=_HEARTBEAT_S, timeout=_CLOSE_WITHIN_S)
         await socket.prepare(request)
-        asked, size = request.query.get("session"), _size(request)
-        visit = await self.begin(*size, socket) if asked is None else self._visits.get(asked)
+        session_id, size = request.query.get("session"), _read_size(request)
+        visit = (
+            await self.begin(*size, socket) if session_id is None else self._visits.get(session_id)
+        )
         if visit is not None:
-            if asked is not None:
-                await visit.take_over(socket, *size)
+            if session_id is not None:
+                await visit.replace_socket(socket, *size)
             await visit.follow(socket)
-        elif asked is None:
-            most = counted(self._limits.visitors, "visitor")
-            reason = f"This server allows {most} at a time, and all places are taken."
+        elif session_id is None:
+            places = counted(self._limits.visitors, "visitor")
+            reason = f"This server allows {places} at a time, and all places are taken."
             await close(socket, reason, WSCloseCode.TRY_AGAIN_LATER)
         else:
             await close(socket, "The session has ended.")
@@ -175,7 +179,7 @@ class Server:
         width: int,
         height: int,
         socket: web.WebSocketResponse | None = None,
-        told: Callable[[Mapping[str, Any]], None] | None = None,
+        on_message: Callable[[Mapping[str, Any]], None] | None = None,
     ) -> Visit | None:
         """Start an app for a visitor, if need be once one that is ending has gone; return None if all live.
 
@@ -183,7 +187,7 @@ class Server:
             width: Columns of the visitor's terminal.
             height: Its rows.
             socket: The connection to the browser that shows it from its first frame; None for none yet.
-            told: Called with what the app tells, from its start on; see `Visit.listen`.
+            on_message: Called with what the app tells, from its start on; see `Visit.listen`.
         """
         while self._free <= 0:
             ending = [life for id_, life in self._lives.items() if self._visits[id_].is_ending]
@@ -192,34 +196,34 @@ class Server:
             await asyncio.wait(ending, return_when=asyncio.FIRST_COMPLETED)
         visit = Visit(self._command, self._downloads, self._limits.visit, self._report)
         self._visits[visit.id] = visit
-        if told is not None:
-            visit.listen(told)
+        if on_message is not None:
+            visit.listen(on_message)
         if socket is not None:
             await visit.take(socket)
         has_begun = asyncio.Event()
 
-        async def live() -> None:
+        async def run_visit() -> None:
             try:
-                await visit.live(width, height, has_begun.set)
+                await visit.run(width, height, has_begun.set)
             finally:
                 del self._visits[visit.id], self._lives[visit.id]
 
-        self._lives[visit.id] = asyncio.create_task(live())
+        self._lives[visit.id] = asyncio.create_task(run_visit())
         await has_begun.wait()
         return visit
 
-    def _visit(self, request: web.Request) -> Visit:
+    def _find_visit(self, request: web.Request) -> Visit:
         try:
             return self._visits[request.match_info["id"]]
         except KeyError:
             raise web.HTTPNotFound(text="There is no such session.\n") from None
 
-    async def _end(self, request: web.Request) -> web.StreamResponse:
-        self._visit(request).end("Another tab has ended this session.")
+    async def _handle_end(self, request: web.Request) -> web.StreamResponse:
+        self._find_visit(request).end("Another tab has ended this session.")
         raise web.HTTPNoContent
 
-    async def _bring(self, request: web.Request) -> web.StreamResponse:
-        visit, name = self._visit(request), request.query.get("name", "")
+    async def _handle_upload(self, request: web.Request) -> web.StreamResponse:
+        visit, name = self._find_visit(request), request.query.get("name", "")
         try:
             pieces = request.content.iter_chunked(_PIECE)
             path = await self._uploads.take(Path.cwd(), name, pieces)
@@ -231,7 +235,7 @@ class Server:
         await visit.open_file(path)
         return web.json_response({"name": path.name})
 
-    async def _download(self, request: web.Request) -> web.StreamResponse:
+    async def _handle_download(self, request: web.Request) -> web.StreamResponse:
         key = request.match_info["key"]
         try:
             download = self._downloads.take(key)
@@ -261,12 +265,12 @@ class Server:
         await asyncio.gather(*self._lives.values())
 
 
-async def _add_slash(request: web.Request) -> web.StreamResponse:
+async def _redirect(request: web.Request) -> web.StreamResponse:
     """Send to the address of the page, which ends in a slash: what it loads is beside it."""
     raise web.HTTPFound(f"{request.rel_url.raw_path}/")
 
 
-async def _file_of_page(request: web.Request) -> web.StreamResponse:
+async def _handle_page_file(request: web.Request) -> web.StreamResponse:
     folder = _FOLDERS[request.match_info["folder"]].resolve()
     try:
         path = (folder / request.match_info["name"]).resolve(strict=True)
@@ -277,7 +281,7 @@ async def _file_of_page(request: web.Request) -> web.StreamResponse:
     return web.FileResponse(path)
 
 
-def _size(request: web.Request) -> tuple[int, int]:
+def _read_size(request: web.Request) -> tuple[int, int]:
     """Return the size of the visitor's terminal in cells, as its page says."""
     try:
         return int(request.query["width"]), int(request.query["height"])
@@ -305,7 +309,7 @@ async def _serve(server: Server, host: str, port: int, announce: Callable[[int],
     ended_by: asyncio.Future[signal.Signals] = loop.create_future()
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         loop.add_signal_handler(number, _note, ended_by, number)
-    async with listening(server, host, port) as actual_port:
+    async with run_server(server, host, port) as actual_port:
         announce(actual_port)
         number = await ended_by
     # ctrl+c is how a server is meant to end.
@@ -313,7 +317,7 @@ async def _serve(server: Server, host: str, port: int, announce: Callable[[int],
 
 
 @asynccontextmanager
-async def listening(server: Server, host: str, port: int) -> AsyncIterator[int]:
+async def run_server(server: Server, host: str, port: int) -> AsyncIterator[int]:
     """Answer requests in the context, which gets the port; at its end, end the apps of all visitors.
 
     Args:
@@ -327,7 +331,10 @@ async def listening(server: Server, host: str, port: int) -> AsyncIterator[int]:
     logger = logging.getLogger(__name__)
     logger.addFilter(_is_no_wrong_request)
     runner = web.AppRunner(
-        server.application(), access_log=None, logger=logger, shutdown_timeout=2 * END_WITHIN_S
+        server.build_application(),
+        access_log=None,
+        logger=logger,
+        shutdown_timeout=2 * END_WITHIN_S,
     )
     await runner.setup()
     stack = AsyncExitStack()
@@ -337,7 +344,7 @@ async def listening(server: Server, host: str, port: int) -> AsyncIterator[int]:
             door = server.door.open(runner.server, host or None, port)
             actual_port = await stack.enter_async_context(door)
         except OSError as error:
-            raise _cannot_listen(host, port, error) from error
+            raise _build_listen_error(host, port, error) from error
         yield actual_port
     finally:
         await stack.aclose()
@@ -354,7 +361,7 @@ def _note(ended_by: asyncio.Future[signal.Signals], number: signal.Signals) -> N
         ended_by.set_result(number)
 
 
-def _cannot_listen(host: str, port: int, error: OSError) -> ConfigError:
+def _build_listen_error(host: str, port: int, error: OSError) -> ConfigError:
     if error.errno == errno.EADDRINUSE:
         return ConfigError(
             f"port {port} is in use", "choose another one, or 0 for any free one", key="--port"
@@ -385,7 +392,7 @@ class BackgroundServer:
         atexit.register(self.close)
 
     async def _listen(self) -> int:
-        self._listening = listening(self.server, "127.0.0.1", 0)
+        self._listening = run_server(self.server, "127.0.0.1", 0)
         return await self._listening.__aenter__()
 
     def call(self, work: Coroutine[Any, Any, _Result], timeout_s: float | None = None) -> _Result:

@@ -22,11 +22,11 @@ END_WITHIN_S = 5.0
 """Time for an app to end by itself; after that it is killed."""
 _HEAD = b"__GANGLION__\n"
 """The line before the first packet of an app."""
-_MOST_ERROR_BYTES = 4096
-_MOST_PACKET_BYTES = 32 << 20
-_MOST_SAID_BYTES = 64 << 10
+_MAX_ERROR_BYTES = 4096
+_MAX_PACKET_BYTES = 32 << 20
+_MAX_MESSAGE_BYTES = 64 << 10
 """A longer message of an app is dropped: some wait for a browser."""
-_OF_A_TERMINAL = (
+_TERMINAL_VARIABLES = (
     "LC_ALL",
     "TMUX",
     "STY",
@@ -41,7 +41,7 @@ _OF_A_TERMINAL = (
     "TERMINAL_EMULATOR",
 )
 """Variables that tell what the terminal shows that the server was started in; the app is not in that one."""
-_OF_A_BROWSER = {
+_BROWSER_ENVIRONMENT = {
     "TERM": "xterm-256color",
     "COLORTERM": "truecolor",
     "LC_CTYPE": "C.UTF-8",
@@ -61,7 +61,7 @@ sys.exit(main())
 _PACKAGE_FOLDER = str(Path(__file__).parent.parent.parent)
 
 
-def app_command(words: Sequence[str], session_folder: str = "") -> list[str]:
+def build_app_command(words: Sequence[str], session_folder: str = "") -> list[str]:
     """Return the command, as words, of an app.
 
     Args:
@@ -85,7 +85,7 @@ class WebSession(AppService):
             " ".join(command),
             write_bytes=link.send_bytes,
             write_str=link.send_str,
-            close=_nothing,
+            close=_do_nothing,
             download_manager=downloads,
         )
         self._words = command
@@ -96,8 +96,8 @@ class WebSession(AppService):
 
     def _build_environment(self, width: int = 80, height: int = 24) -> dict[str, str]:
         environment = super()._build_environment(width, height).items()
-        kept = {name: value for name, value in environment if name not in _OF_A_TERMINAL}
-        return kept | _OF_A_BROWSER
+        inherited = {name: value for name, value in environment if name not in _TERMINAL_VARIABLES}
+        return inherited | _BROWSER_ENVIRONMENT
 
     async def _open_app_process(self, width: int = 80, height: int = 24) -> Process:
         process = await asyncio.create_subprocess_exec(
@@ -114,11 +114,11 @@ class WebSession(AppService):
 
     async def on_meta(self, data: bytes) -> None:
         """Handle a message of the app."""
-        if len(data) > _MOST_SAID_BYTES:
+        if len(data) > _MAX_MESSAGE_BYTES:
             return
-        said = json.loads(data)
-        if said.get("type") == "tell":
-            self.told(said)
+        message = json.loads(data)
+        if message.get("type") == "tell":
+            self.told(message)
         else:
             await super().on_meta(data)
 
@@ -129,13 +129,13 @@ class WebSession(AppService):
             and self._process.stdout is not None
             and self._process.stderr is not None
         )
-        errors = asyncio.create_task(_last_bytes(self._process.stderr))
+        errors = asyncio.create_task(_read_last_bytes(self._process.stderr))
         with suppress(asyncio.IncompleteReadError):
-            await self._pass_on(self._process.stdout)
+            await self._forward_output(self._process.stdout)
         self.errors = (await errors).decode("utf-8", "replace").strip()
         await self._process.wait()
 
-    async def _pass_on(self, output: asyncio.StreamReader) -> None:
+    async def _forward_output(self, output: asyncio.StreamReader) -> None:
         await output.readuntil(_HEAD)
         handlers = {b"D": self.on_data, b"M": self.on_meta, b"P": self.on_packed}
         while True:
@@ -144,7 +144,7 @@ class WebSession(AppService):
                 int.from_bytes(await output.readexactly(4), "big"),
             )
             # What follows cannot be understood either. A program can reach the app that runs it: it is not trusted.
-            if kind not in handlers or size > _MOST_PACKET_BYTES:
+            if kind not in handlers or size > _MAX_PACKET_BYTES:
                 self._kill()
                 return
             payload = await output.readexactly(size)
@@ -159,7 +159,7 @@ class WebSession(AppService):
         """Draw everything: a terminal of this size, in columns and rows, shows the app from now on."""
         await self.send_meta({"type": "show", "width": width, "height": height})
 
-    async def ended(self) -> None:
+    async def wait_until_ended(self) -> None:
         """Wait until the app has ended by itself."""
         # One that could not be started has no task.
         if self._task is not None:
@@ -207,13 +207,13 @@ class WebSession(AppService):
             os.killpg(self._process.pid, signal.SIGKILL)
 
 
-async def _nothing() -> None:
+async def _do_nothing() -> None:
     """The socket is closed after the app has ended, not when it says that it will."""
 
 
-async def _last_bytes(stream: asyncio.StreamReader) -> bytes:
+async def _read_last_bytes(stream: asyncio.StreamReader) -> bytes:
     """Read a stream to its end; return its last bytes."""
     last = b""
-    while data := await stream.read(_MOST_ERROR_BYTES):
-        last = (last + data)[-_MOST_ERROR_BYTES:]
+    while data := await stream.read(_MAX_ERROR_BYTES):
+        last = (last + data)[-_MAX_ERROR_BYTES:]
     return last

@@ -94,12 +94,12 @@ def keep_file(folder: Path, name: str, content: IO[bytes]) -> Path:
                     raise
             return path
         except FileExistsError:
-            if path.is_file() and not path.is_symlink() and _is_in(path, content):
+            if path.is_file() and not path.is_symlink() and _has_content(path, content):
                 return path
     raise AssertionError
 
 
-def _is_in(path: Path, content: IO[bytes]) -> bool:
+def _has_content(path: Path, content: IO[bytes]) -> bool:
     """Return whether a file has this content."""
     with path.open("rb") as file:
         while piece := content.read(_PIECE):

@@ -95,7 +95,7 @@ class Visit:
         self._limits, self._report = limits, report
         self._link, self._activity = Link(), Activity()
         self._session = WebSession(command, self._link, downloads)
-        self._session.told = self._told
+        self._session.told = self._handle_news
         self._program, self._runs = "", False
         """The program that the app has open, and whether it runs, as far as it has told."""
         self._is_used = False
@@ -121,7 +121,7 @@ class Visit:
         shows = {"shown": self.is_shown, "program": self._program}
         return {"id": self.id, **times, **shows, "runs": self._runs}
 
-    async def live(self, width: int, height: int, began: Callable[[], None]) -> None:
+    async def run(self, width: int, height: int, began: Callable[[], None]) -> None:
         """Run the app until it ends, or nobody uses it for too long; then end it.
 
         Args:
@@ -129,13 +129,13 @@ class Visit:
             height: Its rows.
             began: Called once a browser can show it.
         """
-        self._size = _within(width, height)
+        self._size = _clamp_size(width, height)
         try:
             await self._session.start(*self._size)
         except OSError as error:
             self._end.set_result(f"The app cannot be started: {error.strerror}")
         began()
-        waits = [asyncio.create_task(wait()) for wait in (self._app_ends, self._is_idle)]
+        waits = [asyncio.create_task(wait()) for wait in (self._wait_for_app, self._is_idle)]
         try:
             await asyncio.wait({self._end, *waits}, return_when=asyncio.FIRST_COMPLETED)
             reason = next(wait.result() for wait in (self._end, *waits) if wait.done())
@@ -146,19 +146,19 @@ class Visit:
         finally:
             for wait in waits:
                 wait.cancel()
-            self._is_watched()
+            self._cancel_timeout()
             await self._session.stop()
 
     async def take(self, socket: web.WebSocketResponse) -> None:
         """Let a browser show the app from now on, which has not begun yet or is asked to draw everything."""
-        self._is_watched()
+        self._cancel_timeout()
         await self._link.take(
             socket, json.dumps(["session", self.id]), "Another tab has taken this session over."
         )
         if self._panels:
             await self._tell_panels()
 
-    async def take_over(self, socket: web.WebSocketResponse, width: int, height: int) -> None:
+    async def replace_socket(self, socket: web.WebSocketResponse, width: int, height: int) -> None:
         """Let another browser show the app from now on; the one before is told.
 
         Args:
@@ -167,11 +167,11 @@ class Visit:
             height: Its rows.
         """
         await self.take(socket)
-        self._size = _within(width, height)
+        self._size = _clamp_size(width, height)
         await self._session.show(*self._size)
 
-    def _told(self, said: Mapping[str, Any]) -> None:
-        match said:
+    def _handle_news(self, news: Mapping[str, Any]) -> None:
+        match news:
             case {"what": "ready" | "run" as what, **more}:
                 self._program = printable(str(more.get("program", "")))[:_MAX_PROGRAM]
                 self._runs = what == "run"
@@ -194,7 +194,7 @@ class Visit:
         try:
             async for message in socket:
                 if message.type is WSMsgType.TEXT:
-                    await self._take(message.data)
+                    await self._handle_page_message(message.data)
         finally:
             if self._link.leave(socket):
                 keep_s, unused_s = self._limits.keep_s, self._limits.keep_unused_s
@@ -209,9 +209,9 @@ class Visit:
         self._note_use()
         await self.ask({"what": "open", "path": str(path)})
 
-    async def ask(self, asked: Mapping[str, Any]) -> None:
+    async def ask(self, request: Mapping[str, Any]) -> None:
         """Ask the app for something; see `ServerAsks`."""
-        await self._session.send_meta({"type": "ask", **asked})
+        await self._session.send_meta({"type": "ask", **request})
 
     @property
     def is_shown(self) -> bool:
@@ -223,9 +223,9 @@ class Visit:
         """Whether the app has ended, or is about to."""
         return self._end.done() or self._session.has_ended
 
-    def listen(self, told: Callable[[Mapping[str, Any]], None]) -> None:
+    def listen(self, on_message: Callable[[Mapping[str, Any]], None]) -> None:
         """Call a function with what the app tells from now on: a start or an end of a run, a problem."""
-        self._session.told = told
+        self._session.told = on_message
 
     @property
     def is_ending(self) -> bool:
@@ -241,12 +241,12 @@ class Visit:
         self._activity.note()
         self._is_used = True
 
-    def _is_watched(self) -> None:
+    def _cancel_timeout(self) -> None:
         if self._left is not None:
             self._left.cancel()
 
-    async def _app_ends(self) -> str:
-        await self._session.ended()
+    async def _wait_for_app(self) -> str:
+        await self._session.wait_until_ended()
         if self._session.has_failed and self._session.errors:
             self._report(self._session.errors)
         return self._session.reason
@@ -259,7 +259,7 @@ class Visit:
             f"The session has ended after {minutes} minute{'s' * (minutes != '1')} without input."
         )
 
-    async def _take(self, data: str) -> None:
+    async def _handle_page_message(self, data: str) -> None:
         """Handle one message of the page; what no page sends is ignored."""
         with suppress(ValueError, RecursionError):
             match json.loads(data):
@@ -271,7 +271,7 @@ class Visit:
                     await self._session.send_bytes(text.encode("utf-8", "ignore"))
                 case ["resize", {"width": int(width), "height": int(height)}]:
                     self._activity.note()
-                    self._size = _within(width, height)
+                    self._size = _clamp_size(width, height)
                     await self._session.set_terminal_size(*self._size)
                 case ["ping", str(sent)]:
                     await self._link.send_str(json.dumps(["pong", sent]))
@@ -284,6 +284,6 @@ class Visit:
                     await self._session.blur()
 
 
-def _within(width: int, height: int) -> tuple[int, int]:
+def _clamp_size(width: int, height: int) -> tuple[int, int]:
     """Return a size that an app can have."""
     return min(max(width, 1), _LARGEST_SIZE), min(max(height, 1), _LARGEST_SIZE)

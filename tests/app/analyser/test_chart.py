@@ -16,7 +16,7 @@ from tuisim.app.analyser.chart import LogChart
 from tuisim.app.plot_view import PlotView
 from tuisim.pictures.charts.traces import TRACE_COLORS
 from tuisim.terminal.picture_options import Protocol
-from tuisim.terminal.queries import TerminalAnswered, facts_in
+from tuisim.terminal.queries import TerminalAnswered, parse_facts
 
 
 @pytest.mark.quick_cases("kitty-one chart")
@@ -37,7 +37,7 @@ async def test_the_charts_of_the_analyser_are_what_was_drawn(
         )
         chart = pilot.app.screen.query_one(LogChart)
         chart.options.facets = facets
-        pilot.app.post_message(TerminalAnswered(facts_in(ANSWERS[protocol])))
+        pilot.app.post_message(TerminalAnswered(parse_facts(ANSWERS[protocol])))
         view = chart.query_one(PlotView)
         await until(pilot, lambda: view._tiles is not None)
         await until_quiet(pilot)

@@ -12,18 +12,18 @@ from tuisim.settings.user_config import CELL_SET, load_config
 from tuisim.terminal import picture_mode as modes
 from tuisim.terminal.cell_view import PixelView
 from tuisim.terminal.glyphs import GLYPHS
-from tuisim.terminal.picture_mode import PictureMode, picture_mode_for
+from tuisim.terminal.picture_mode import PictureMode, choose_picture_mode
 from tuisim.terminal.picture_options import CellSet
 
 
 @pytest.fixture(autouse=True)
 def known_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(modes, "best_cells", lambda **_: CellSet.SEXTANT)
+    monkeypatch.setattr(modes, "choose_cells", lambda **_: CellSet.SEXTANT)
 
 
 def started(cells: str | None) -> PictureMode:
     """How an app that starts draws pictures."""
-    return picture_mode_for(cells, str(load_config().value(CELL_SET)))
+    return choose_picture_mode(cells, str(load_config().value(CELL_SET)))
 
 
 def glyphs(view: PixelView) -> set[str]:

@@ -90,7 +90,7 @@ async def test_discs_use_the_cells_of_the_app(cells: CellSet) -> None:
         await pilot.pause()
         await pilot.pause()
         view = app.panel.query(PixelView).first()
-        cell = view.cell_for(None)
+        cell = view.choose_cell(None)
         assert view._shown.shape[:2] == (view.size.height * cell.rows, view.size.width * cell.cols)
 
 

@@ -9,7 +9,7 @@ from tests.cases import for_each
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM
 from tuisim.pictures.scene.mat import MatPictures, shrink
 from tuisim.pictures.scene.view import Viewport, fit_field
-from tuisim.terminal.glyphs import glyph_set
+from tuisim.terminal.glyphs import build_glyph_set
 from tuisim.terminal.picture_options import CellSet
 from tuisim.terminal.pixels import CellPoints, Pixels
 
@@ -66,7 +66,7 @@ def test_a_thin_line_has_no_gaps(
     for row, col in zip(rows, middle, strict=False):
         pixels[row, round(col - thick / 2) : round(col + thick / 2)] = 0
 
-    glyphs = glyph_set(cells)
+    glyphs = build_glyph_set(cells)
     view = fit_field(
         size[0] * glyphs.cols, size[1] * glyphs.rows, CellPoints(glyphs.cols, glyphs.rows)
     )

@@ -22,7 +22,7 @@ def toggle(context: ActionContext, panel: str) -> None:
     """Show a panel and focus it; focus one that is shown beside the focus; else hide it."""
     if not context.panels.awaits_focus(panel):
         context.panels.toggle(panel)
-    context.app.situation_changed()
+    context.app.handle_situation_change()
     context.app.call_after_refresh(context.panels.attend, panel)
 
 
@@ -74,7 +74,7 @@ def _say_layout(context: ActionContext, more: str) -> None:
     if not area.shown(area.focused_panel()):
         context.app.call_after_refresh(area.attend, area.front)
     context.app.say(f"Layout: {area.preset}{more}")
-    context.app.situation_changed()
+    context.app.handle_situation_change()
 
 
 def keep_layout(context: ActionContext) -> None:
@@ -88,7 +88,7 @@ def keep_layout(context: ActionContext) -> None:
 def focus_next_panel(context: ActionContext, by: int) -> None:
     """Focus the next panel; where there is room for one only, show it."""
     if panel := context.panels.next_panel(by):
-        context.app.situation_changed()
+        context.app.handle_situation_change()
         context.app.call_after_refresh(context.panels.attend, panel)
 
 
@@ -172,7 +172,7 @@ def change_setting(context: ActionContext, setting: Setting, value: Scalar | Non
     save_setting(setting, value)
     if apply := _APPLY.get(setting.path):
         apply(context, load_config().values.get(setting.path, setting.default))
-        context.app.situation_changed()
+        context.app.handle_situation_change()
         context.app.draw(force=True)
 
 

@@ -60,7 +60,7 @@ def change_speed(context: ActionContext, by: int) -> None:
         return
     context.runs.has_chosen_speed = True
     context.runs.set_speed(SPEEDS[new_index])
-    context.app.situation_changed()
+    context.app.handle_situation_change()
 
 
 def run_to_cursor(context: ActionContext) -> None:

@@ -51,7 +51,7 @@ def _is_laid_out(context: ActionContext, recording: Recording) -> bool:
 
 def refresh(context: ActionContext) -> None:
     """Show another instant: redraw the panels and the footer."""
-    context.app.situation_changed()
+    context.app.handle_situation_change()
     context.app.draw(force=True)
 
 

@@ -26,9 +26,9 @@ from tuisim.pictures.charts.text_chart import (
 )
 from tuisim.pictures.charts.traces import Traces
 from tuisim.terminal.cell_view import LinesPanel
-from tuisim.terminal.picture import MOST_POINTS
-from tuisim.terminal.picture_mode import shows_ascii
-from tuisim.terminal.text_runs import Run, as_markup
+from tuisim.terminal.picture import MAX_POINTS
+from tuisim.terminal.picture_mode import is_ascii
+from tuisim.terminal.text_runs import Run, escape_markup
 
 if TYPE_CHECKING:
     from tuisim.analysis.model import Model
@@ -114,7 +114,7 @@ class LogChart(LinesPanel):
         width, height = self._text.size
         for trace in model.traces.list_ticked():
             trace.prepare(
-                model.find_x_limits(), width * (MOST_POINTS if is_blank else 1), self.options.hold
+                model.find_x_limits(), width * (MAX_POINTS if is_blank else 1), self.options.hold
             )
         unit = "mm" if model.alignment == DISTANCE else "s"
         measured = _measured(model, unit, width)
@@ -128,7 +128,7 @@ class LogChart(LinesPanel):
             model.cursor_s if model.log.rows else None,
             model.find_x_limits(),
             bool(self.app.no_color),
-            shows_ascii(self.app),
+            is_ascii(self.app),
             model.mark_s,
             unit,
             self.options.marks,
@@ -179,7 +179,7 @@ class LogChart(LinesPanel):
         xs, ys = (limit_drawn(model.sample_variable(name)) for name in names)
         marker = (
             trace.mark
-            if (self.app.no_color and shows_ascii(self.app)) or self.options.marks
+            if (self.app.no_color and is_ascii(self.app)) or self.options.marks
             else BRAILLE
         )
         return draw_xy_chart(xs, ys, model.sample, names, trace.rgb, marker, width, height)
@@ -198,7 +198,7 @@ class LogChart(LinesPanel):
             self.show(self._model)
 
     def on_mouse_down(self, event: events.MouseDown) -> None:
-        column, row = self.cell_at(event)
+        column, row = self.find_cell(event)
         for first, picture in self._pictures:
             for box in picture.boxes:
                 if box.row == row - first and box.first <= column < box.end:
@@ -209,7 +209,7 @@ class LogChart(LinesPanel):
                 self.post_message(self.Pointed(time_s))
 
     def on_mouse_move(self, event: events.MouseMove) -> None:
-        column, row = self.cell_at(event)
+        column, row = self.find_cell(event)
         times_s = (picture.find_time_s(column, row - first) for first, picture in self._pictures)
         self._read(next((time_s for time_s in times_s if time_s is not None), None))
 
@@ -228,7 +228,7 @@ class LogChart(LinesPanel):
         if model is not None and drawn:
             unit = "mm" if model.alignment == DISTANCE else "s"
             time_s = model.cursor_s if time_s is None else time_s
-            said = as_markup(format_values(drawn, time_s, unit, self.size.width - 4))
+            said = escape_markup(format_values(drawn, time_s, unit, self.size.width - 4))
         # Each assignment draws the panel again.
         if said != self.border_subtitle:
             self.border_subtitle = said

@@ -36,7 +36,7 @@ from tuisim.logs.plateaus import Search, find_plateaus, find_plateaus_in_subproc
 from tuisim.logs.signals import QUANTILES
 from tuisim.logs.table import FAST_ROWS
 from tuisim.terminal.cell_view import LinesPanel
-from tuisim.terminal.text_runs import Line, cut, first_shown
+from tuisim.terminal.text_runs import Line, cut, find_first_row
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -276,7 +276,7 @@ def pane_lines(name: str, model: Model, chosen: int, width: int, height: int) ->
         text = "Searching for bands …" if searching else pane.empty
         return [[(line, DIM)] for line in _wrapped([text], width, height)]
     below, room = _below(pane, model, width, height)
-    first = first_shown(chosen, len(rows), room)
+    first = find_first_row(chosen, len(rows), room)
     measured = rows if len(rows) <= _MEASURED else rows[first : first + room]
     widths = [max(map(len, column)) for column in zip(pane.heads, *measured, strict=True)]
     used, gap = _columns_of(measured, widths, width)

@@ -9,7 +9,7 @@ from rich.style import Style
 from tuisim.analysis.model import Model
 from tuisim.base import palette
 from tuisim.base.errors import counted
-from tuisim.terminal.text_runs import Line, as_markup, cut, first_shown
+from tuisim.terminal.text_runs import Line, cut, escape_markup, find_first_row
 
 PLAIN, DIM = Style(color=palette.INK), Style(color=palette.SOFT)
 HEAD = Style(color=palette.BLUE, bold=True)
@@ -28,7 +28,7 @@ def table_lines(model: Model, width: int, height: int) -> list[Line]:
         return [[("No row matches the filter: U clears it", DIM)]]
     place = rows.place(model.row)
     room = max(height - 1, 1)
-    first = first_shown(place, len(rows), room)
+    first = find_first_row(place, len(rows), room)
     shown = [rows.row(at) for at in range(first, min(first + room, len(rows)))]
     number_width = max(len(f"{shown[-1] + 1:,}"), len(f"{shown[0] + 1:,}"))
     columns, widths = _fitting(model, shown, width - number_width - 2)
@@ -112,4 +112,4 @@ def count_rows(model: Model) -> str:
     rows, total = model.rows, model.log.rows
     words = f"{len(rows):,} of {total:,} rows" if len(rows) != total else counted(total, "row")
     conditions = " and ".join(map(str, rows.view.conditions))
-    return as_markup(f"{words}: {conditions}") if conditions else words
+    return escape_markup(f"{words}: {conditions}") if conditions else words

@@ -30,7 +30,7 @@ from tuisim.engine.runs.recorded_run import Recording
 from tuisim.engine.runs.views import instant_of
 from tuisim.logs.derived import read_spec
 from tuisim.terminal.cell_view import LinesView
-from tuisim.terminal.text_runs import Run, first_shown
+from tuisim.terminal.text_runs import Run, find_first_row
 
 if TYPE_CHECKING:
     from tuisim.analysis.model import Model
@@ -231,7 +231,7 @@ class WorldPane(Vertical):
         height, width = self._source.size.height, self._source.size.width
         if not texts or not height:
             return [[(f"line {line}", _PLAIN)]]
-        first = first_shown(line - 1, len(texts), height)
+        first = find_first_row(line - 1, len(texts), height)
         shown: list[list[Run]] = []
         for number, text in enumerate(texts[first : first + height], first + 1):
             here = number == line

@@ -88,7 +88,7 @@ class _TestCard(PixelView):
 
     def draw_picture(self) -> None:
         """Draw it for the current size."""
-        cell = self.cell_for(None)
+        cell = self.choose_cell(None)
         if self.size.width and self.size.height:
             self.set_fine_picture(
                 draw_test_card(self.size.width, self.size.height, (cell.cols, cell.rows))

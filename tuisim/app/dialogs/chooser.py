@@ -538,5 +538,5 @@ class _MatPicture(PixelView):
 
 def find_field_view(view: PixelView) -> Viewport:
     """Return the view of the whole field in the finest points of a widget."""
-    cell = view.cell_for(view.graphics)
+    cell = view.choose_cell(view.graphics)
     return fit_field(cell.cols * view.size.width, cell.rows * view.size.height, cell)

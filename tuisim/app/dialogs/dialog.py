@@ -27,7 +27,7 @@ from tuisim.app.action import KeyFooter, KeyWord, label_of_key, press
 from tuisim.app.background import Made
 from tuisim.base.errors import TuisimError
 from tuisim.terminal.cell_view import JoinedStrip, LazyStrip
-from tuisim.terminal.textual_internals import HookedScreen, bindings_of
+from tuisim.terminal.textual_internals import HookedScreen, find_bindings
 
 Result = TypeVar("Result")
 
@@ -167,13 +167,13 @@ class ClosesOnce(HookedScreen[Result], Generic[Result]):
 
     def render_lines(self, crop: Region) -> list[Strip]:
         """Return what is below the dialog. Textual would make plain text of it, and pictures lose their pixels."""
-        below = None if self.styles.background.a else self.parts_below(crop)
+        below = None if self.styles.background.a else self.read_lower_parts(crop)
         if below is None:
             return super().render_lines(crop)
         rows = (JoinedStrip([_strip_links(part) for part in parts]) for parts in below)
         return [row.crop_extend(*crop.column_span, self.rich_style) for row in rows]
 
-    def drops(self, message: Message) -> bool:
+    def should_drop(self, message: Message) -> bool:
         """Return whether to ignore a message: widgets of a closed screen may still post some, as at a second Enter."""
         return message.bubble and self.is_closed
 
@@ -242,7 +242,7 @@ class Dialog(ClosesOnce[Result], Generic[Result]):
             return True
         return (
             not field.check_consume_key(key, key_to_character(key))
-            and key not in bindings_of(field).key_to_bindings
+            and key not in find_bindings(field).key_to_bindings
         )
 
     def compose_content(self) -> ComposeResult:

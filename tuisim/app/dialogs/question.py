@@ -16,7 +16,7 @@ from textual.widgets import Input, Static
 from tuisim.app.action import KeyWord
 from tuisim.app.dialogs.dialog import Dialog
 from tuisim.base.errors import TuisimError
-from tuisim.terminal.text_runs import as_markup
+from tuisim.terminal.text_runs import escape_markup
 
 if TYPE_CHECKING:
     from tuisim.app.branch import Branch
@@ -47,7 +47,7 @@ class Question(Dialog[str]):
     ) -> None:
         super().__init__()
         self.HINT = f"Escape {escape}"
-        self.TITLE_TEXT = as_markup(title)
+        self.TITLE_TEXT = escape_markup(title)
         self._text = text
         self._answers = answers
 
@@ -250,7 +250,7 @@ class LinePrompt(Dialog[bool]):
         self._sees_below = sees_below
         self._placeholder = placeholder
         self._words = words
-        self.TITLE_TEXT = as_markup(title)
+        self.TITLE_TEXT = escape_markup(title)
         self._do = do
         self._value = value
         self._forms = forms

@@ -135,7 +135,7 @@ class RobotPicture(PixelView):
             self.clear_picture()
         elif self.size:
             graphics, mode = self.graphics, self.color_mode
-            cell = self.cell_for(graphics)
+            cell = self.choose_cell(graphics)
             width_px, height_px = cell.cols * self.size.width, cell.rows * self.size.height
             view = fit_view(self._find_robot, width_px, height_px, cell)
             mono = mode.depth == cells.MONO

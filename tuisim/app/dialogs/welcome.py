@@ -16,7 +16,7 @@ from textual.widgets.option_list import Option
 from tuisim.app.action import ActionHost, with_keys_of
 from tuisim.app.dialogs.dialog import Dialog, name_and_title
 from tuisim.app.setup.recent import Recent
-from tuisim.terminal.textual_internals import bindings_of
+from tuisim.terminal.textual_internals import find_bindings
 
 
 class Begin(StrEnum):
@@ -84,7 +84,7 @@ class Welcome(Dialog[Begin | Recent]):
             for key in (
                 action.key.split(",") if action.footer or f"{{{name}}}" in _KEY_WORDS else ()
             ):
-                bindings_of(self).bind(key, f"leave_for('{name}')", name, show=False)
+                find_bindings(self).bind(key, f"leave_for('{name}')", name, show=False)
         self.query_one(OptionList).focus()
         self.wait_while(
             self._find, self._add, lambda error: self.app.notify(str(error), markup=False)

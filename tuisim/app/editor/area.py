@@ -31,7 +31,7 @@ from tuisim.base.data_class import dataclass
 from tuisim.engine.protocol import Variable
 from tuisim.programs.names import UnknownName
 from tuisim.terminal.text_runs import Line, cut_line
-from tuisim.terminal.textual_internals import columns_to_tab_stop, line_at_row
+from tuisim.terminal.textual_internals import count_tab_columns, find_line
 
 # A `TextArea` treats these characters as line ends, Python does not: they are replaced by substitutes.
 _BREAKS = "\x0b\x0c\x1c\x1d\x1e\x85\u2028\u2029"
@@ -300,7 +300,7 @@ class CodeArea(TextArea):
         if self.placeholder and not self.text:
             return strip
         try:
-            line_index, section = line_at_row(self, y + self.scroll_offset.y)
+            line_index, section = find_line(self, y + self.scroll_offset.y)
         except IndexError:
             return strip
         line = line_index + 1
@@ -480,7 +480,7 @@ class CodeArea(TextArea):
         elif word is not None:
             self._set_unknown_word(word)
         else:
-            self.insert_text(" " * columns_to_tab_stop(self))
+            self.insert_text(" " * count_tab_columns(self))
 
     def _set_unknown_word(self, word: str | None) -> None:
         if word != self.unknown_word:

@@ -17,7 +17,7 @@ from textual.widget import Widget
 from tuisim.app.editor.completion import Candidate, Signature
 from tuisim.base import palette
 from tuisim.base.data_class import dataclass
-from tuisim.terminal.text_runs import Line, cut, cut_line, first_shown
+from tuisim.terminal.text_runs import Line, cut, cut_line, find_first_row
 
 MAX_ROWS = 8
 MAX_WIDTH = 76
@@ -34,7 +34,7 @@ _HELP_GROUND = Style(bgcolor=palette.RAISED)
 def list_lines(candidates: Sequence[Candidate], chosen: int, width: int) -> list[Line]:
     """Return the rows of a list: the candidates around the chosen one, and the help for it."""
     room = min(MAX_ROWS, len(candidates))
-    first = first_shown(chosen, len(candidates), room)
+    first = find_first_row(chosen, len(candidates), room)
     lines: list[Line] = []
     for index, candidate in enumerate(candidates[first : first + room], start=first):
         ground = _CHOSEN_GROUND if index == chosen else _GROUND
@@ -207,7 +207,7 @@ class CandidateList(Widget):
         """Choose the name that was clicked, and leave the focus in the text."""
         event.stop()
         event.prevent_default()
-        first = first_shown(self._chosen, len(self._shown), min(MAX_ROWS, len(self._shown)))
+        first = find_first_row(self._chosen, len(self._shown), min(MAX_ROWS, len(self._shown)))
         if event.y < min(MAX_ROWS, len(self._shown)):
             name = self._shown[first + event.y].name
             self.close()

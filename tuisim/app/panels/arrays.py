@@ -35,7 +35,7 @@ class _DiscPicture(PixelView):
             self.clear_picture()
         elif self.size:
             graphics, mode = self.graphics, self.color_mode
-            cell = self.cell_for(graphics)
+            cell = self.choose_cell(graphics)
             rim_rgb = RIM_16_RGB if mode.dithers and not mode.grey else RIM_RGB
             width_px, height_px = cell.cols * self.size.width, cell.rows * self.size.height
             picture = draw_disc(

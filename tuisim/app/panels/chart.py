@@ -24,8 +24,8 @@ from tuisim.pictures.charts.text_chart import ChartPainter, ChartPicture, ChartS
 from tuisim.pictures.charts.traces import Trace, Traces
 from tuisim.terminal.cell_view import LinesPanel
 from tuisim.terminal.pacer import Throttle
-from tuisim.terminal.picture_mode import shows_ascii
-from tuisim.terminal.text_runs import Run, as_markup
+from tuisim.terminal.picture_mode import is_ascii
+from tuisim.terminal.text_runs import Run, escape_markup
 
 _VALUE_COLS = 40
 """More than a value with its unit takes."""
@@ -128,7 +128,7 @@ class Chart(LinesPanel, can_focus=True):
             self._state = replace(self._state, selected=first.name)
         self._find_bands()
         state = replace(
-            self._state, grid=True, grey=bool(self.app.no_color), is_ascii=shows_ascii(self.app)
+            self._state, grid=True, grey=bool(self.app.no_color), is_ascii=is_ascii(self.app)
         )
         if not self.has_focus:
             state = replace(state, selected=None)
@@ -174,7 +174,7 @@ class Chart(LinesPanel, can_focus=True):
 
     def _redraw(self) -> None:
         self._dirty = True
-        self._throttle.now()
+        self._throttle.call_now()
 
     def on_focus(self) -> None:
         self._redraw()
@@ -246,7 +246,7 @@ class Chart(LinesPanel, can_focus=True):
         picture = self._picture
         if picture is None or event.button != 1:
             return
-        column, row = self.cell_at(event)
+        column, row = self.find_cell(event)
         for box in picture.boxes:
             if box.row == row and box.first <= column < box.end:
                 self._switch(next(trace for trace in self._traces if trace.name == box.name))
@@ -260,7 +260,7 @@ class Chart(LinesPanel, can_focus=True):
         picture = self._picture
         if picture is None:
             return
-        column, row = self.cell_at(event)
+        column, row = self.find_cell(event)
         if self._dragging:
             self._put_cursor(self._time_of(column, picture))
         else:
@@ -277,7 +277,9 @@ class Chart(LinesPanel, can_focus=True):
         if time_s is None or not drawn:
             said = self.FROZEN if self._state.x_limits else ""
         else:
-            said = as_markup(format_values(drawn, time_s, self._state.unit, self.size.width - 4))
+            said = escape_markup(
+                format_values(drawn, time_s, self._state.unit, self.size.width - 4)
+            )
         # Each assignment draws the panel again.
         if said != self.border_subtitle:
             self.border_subtitle = said

@@ -30,7 +30,7 @@ from tuisim.app.snapshot import PauseView, RunPhase, Snapshot
 from tuisim.base.data_class import dataclass
 from tuisim.base.source import source_lines
 from tuisim.programs.line_values import line_values
-from tuisim.terminal.text_runs import as_markup
+from tuisim.terminal.text_runs import escape_markup
 
 LIT_GAP_S = 0.1
 """Minimum time between two moves of the highlight while the program runs: more often would only flicker."""
@@ -189,7 +189,7 @@ class Code(Vertical):
             helped = Text(
                 f"no name begins with {word}" if word else "nothing known follows the dot"
             )
-        self.border_subtitle = helped if helped else as_markup(told)
+        self.border_subtitle = helped if helped else escape_markup(told)
 
     def on_resize(self) -> None:
         """Say as much as there is room for."""

@@ -112,7 +112,7 @@ class Goals(LinesPanel, can_focus=True):
         """Show the goal under the mouse in detail."""
         # The focus stays here.
         event.stop()
-        _, row = self.cell_at(event)
+        _, row = self.find_cell(event)
         if 0 <= row < len(self._picture.rows) and (goal := self._picture.rows[row]) is not None:
             self._choose(goal)
 

@@ -11,7 +11,7 @@ from tuisim.app.panels import PANELS
 from tuisim.app.panels.titles import build_title
 from tuisim.app.render.lesson import Away, LessonPicture, LessonView, draw_lesson
 from tuisim.terminal.cell_view import LinesPanel
-from tuisim.terminal.text_runs import as_markup
+from tuisim.terminal.text_runs import escape_markup
 
 if TYPE_CHECKING:
     from tuisim.app.snapshot import Snapshot
@@ -97,7 +97,7 @@ class LessonPanel(LinesPanel, can_focus=True):
         key = "{lesson-back} {lesson-on} read on" if self._is_typing else "{lesson-down} reads on"
         is_read = self.can_focus and (below or (self._is_typing and self.reads_on))
         pages = with_keys_of(self.app, key) if is_read else ""
-        words = "↑↓ text · ←→ steps · M menu" if self.has_focus else as_markup(pages)
+        words = "↑↓ text · ←→ steps · M menu" if self.has_focus else escape_markup(pages)
         if words != self.border_subtitle:
             self.border_subtitle = words
 

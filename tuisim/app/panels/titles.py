@@ -12,7 +12,7 @@ from tuisim.app.action import ActionHost, label_of_key
 from tuisim.app.panels import PANELS
 from tuisim.app.snapshot import Snapshot
 from tuisim.base.source import PRELUDE_TEXTS
-from tuisim.terminal.text_runs import as_markup
+from tuisim.terminal.text_runs import escape_markup
 
 _PREDEFINED = re.compile(r"^(\w+) = ColorSensor\(INPUT_(\d)\)$", re.MULTILINE)
 """A name that programs find for a sensor, and its port."""
@@ -27,8 +27,8 @@ def build_title(app: App[Any], panel: str, name: str = "") -> str:
     action = actions.get(f"panel-{panel}")
     key = action.key_label if action else label_of_key(info.key)
     # A file name is no markup.
-    title = as_markup(f"{info.title}: {name}" if name else info.title)
-    return f"[bold $tuisim-yellow]{as_markup(key)}[/] {title}"
+    title = escape_markup(f"{info.title}: {name}" if name else info.title)
+    return f"[bold $tuisim-yellow]{escape_markup(key)}[/] {title}"
 
 
 def _count_columns(panel: str, width: int) -> int:

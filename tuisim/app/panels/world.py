@@ -284,7 +284,7 @@ class WorldView(PixelView):
             return
         scene = self._scene_of(self._snapshot)
         graphics = self.graphics
-        cell = self.cell_for(graphics)
+        cell = self.choose_cell(graphics)
         width_px, height_px = cell.cols * self.size.width, cell.rows * self.size.height
         port = self._follow(width_px, height_px, scene.pose, self._snapshot, cell)
         has_floor = self._snapshot.spec.world.is_open
