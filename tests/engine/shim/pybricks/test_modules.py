@@ -13,7 +13,12 @@ from tuisim.engine.shim.pybricks.unsimulated import IO_DEVICES, NXT_DEVICES
 SEEN = ROOT / "tuisim/engine/shim/names"
 REFUSED = {"pybricks.iodevices": set(IO_DEVICES), "pybricks.nxtdevices": set(NXT_DEVICES)}
 BUILTINS = {"pybricks.tools": {"print"}}
-VERSION_4 = {"pybricks.tools": {"run_task", "multitask"}}
+VERSION_4 = {
+    "pybricks.parameters": {"Axis", "Font", "Image", "Side"},
+    "pybricks.tools": {
+        *("Axis", "Matrix", "cross", "multitask", "read_input_byte", "run_task", "vector")
+    },
+}
 
 
 @pytest.mark.parametrize("module", MODULES)

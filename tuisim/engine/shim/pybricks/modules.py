@@ -93,15 +93,23 @@ MODULES: Mapping[str, Mapping[str, Any]] = {
 
 def _version_4() -> Mapping[str, Mapping[str, Any]]:
     """Return the names of each module of version 4."""
-    from tuisim.engine.shim.pybricks import version_4
+    from tuisim.engine.shim.pybricks import brick_4, matrix, version_4
 
-    hub = type("EV3Brick", (hubs.EV3Brick,), {"buttons": version_4.Buttons()})
-    changed = {
-        "pybricks.hubs": {"EV3Brick": hub, "ThisHub": hub},
-        "pybricks.ev3devices": _public(version_4, "Motor", "ColorSensor"),
-        "pybricks.parameters": _public(version_4, "Stop", "Color"),
-        "pybricks.robotics": _public(version_4, "DriveBase"),
-        "pybricks.tools": _public(version_4, "run_task", "multitask"),
+    changed: dict[str, Mapping[str, Any]] = {
+        "pybricks": {"version": ("ev3", "4.0.0", "tuisim")},
+        "pybricks.hubs": {"EV3Brick": brick_4.EV3Brick, "ThisHub": brick_4.EV3Brick},
+        "pybricks.ev3devices": _public(
+            version_4, "Motor", "Stop", "ColorSensor", "GyroSensor", "InfraredSensor"
+        ),
+        "pybricks.parameters": _public(version_4, "Stop", "Color")
+        | _public(matrix, "Axis", "Side")
+        | _public(image, "Image")
+        | _public(font, "Font"),
+        "pybricks.robotics": _public(version_4, "DriveBase", "Stop"),
+        "pybricks.tools": _public(
+            version_4, "StopWatch", "multitask", "read_input_byte", "run_task"
+        )
+        | _public(matrix, "Axis", "Matrix", "cross", "vector"),
     }
     return {
         name: {**MODULES.get(name, {}), **changed.get(name, {})} for name in {**MODULES, **changed}

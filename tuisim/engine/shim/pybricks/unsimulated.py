@@ -21,6 +21,7 @@ LOGGER = Hardware(
     "the log of a motor",
     "tuisim records every motor: see the chart, or tuisim run --telemetry FILE",
 )
+MODEL = Hardware("the model of a motor", "angle() and speed() are exact here")
 _LEGO = "use the sensors of pybricks.ev3devices, or Ev3devSensor"
 _ANALOG = Hardware("an analog sensor", _LEGO)
 

@@ -14,12 +14,17 @@ from tuisim.engine.core.commands.calls import Call
 from tuisim.engine.core.servo.control import Ending
 from tuisim.engine.core.servo.settings import COUNTS_PER_DEG
 from tuisim.engine.core.servo.trajectory import MILLI
-from tuisim.engine.shim.pybricks import hubs, motor, robotics
+from tuisim.engine.shim.pybricks import motor, robotics
 from tuisim.engine.shim.pybricks.brick import Connected, Waiting, invalid_argument, refused, whole
 from tuisim.engine.shim.pybricks.ev3devices import ColorSensor as EarlierColorSensor
+from tuisim.engine.shim.pybricks.ev3devices import GyroSensor as EarlierGyroSensor
+from tuisim.engine.shim.pybricks.ev3devices import InfraredSensor as EarlierInfraredSensor
 from tuisim.engine.shim.pybricks.hsv_color import Color as Color
 from tuisim.engine.shim.pybricks.motor import ending_of, gear_ratio
 from tuisim.engine.shim.pybricks.parameters import Button, Direction, Port, shown_by_name
+from tuisim.engine.shim.pybricks.tools import StopWatch as EarlierStopWatch
+from tuisim.engine.shim.pybricks.unsimulated import MODEL
+from tuisim.engine.shim.unsupported.modules import refused_part
 
 NOMINAL_VOLTAGE_MV = 9000
 MAX_SPEED_DPS = 2000
@@ -51,6 +56,7 @@ class Motor(motor.Motor):
     """A large or medium motor."""
 
     ENDINGS = ENDINGS
+    model = refused_part("Motor", "model", MODEL)
 
     def __init__(
         self,
@@ -331,12 +337,38 @@ class ColorSensor(EarlierColorSensor):
         return Color.NONE if found is None else Color[found.name]
 
 
-class Buttons(hubs.Buttons):
-    """The buttons of the brick."""
+class InfraredSensor(EarlierInfraredSensor):
+    """An infrared sensor."""
 
-    def pressed(self) -> set[Button]:  # type: ignore[override]
-        """Return the pressed buttons."""
-        return set(super().pressed())
+    def buttons(self, channel: int) -> set[Button]:  # type: ignore[override]
+        """Return the pressed buttons of the remote."""
+        return set(super().buttons(channel))
+
+    def keypad(self) -> set[Button]:  # type: ignore[override]
+        """Return the pressed buttons of the remote on channel 1, any number of them."""
+        return set(super().keypad())
+
+
+class GyroSensor(EarlierGyroSensor):
+    """A gyro."""
+
+    def calibrate(self) -> None:
+        """Calibrate it: the angle is 0 then."""
+        self.reset_angle(0)
+
+
+class StopWatch(EarlierStopWatch):
+    """A stopwatch, which runs at once."""
+
+    def running(self) -> bool:
+        """Return whether it counts."""
+        return self._runs
+
+
+def read_input_byte(last: bool = False, chr: bool = False) -> int | str | None:  # noqa: A002
+    """Return a byte that a computer has sent: there is none."""
+    Connected.brick.command()
+    return None
 
 
 # Tasks

@@ -1,0 +1,99 @@
+"""What the EV3 has under version 4: programs with its own names."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.engine.shim.conftest import RunOn
+from tuisim.engine.runs.records import Stream
+
+PROFILE = "pybricks4"
+HEAD = """
+from pybricks.hubs import EV3Brick
+from pybricks.parameters import Button, Color
+from pybricks.tools import StopWatch, wait
+ev3 = EV3Brick()
+"""
+
+
+def lights(run_on: RunOn, text: str) -> list[tuple[int, str]]:
+    """Return the times in ms, and what the light of the brick showed."""
+    done = run_on(HEAD + text, profile=PROFILE)
+    assert not done.errors
+    rows = [row for row in done.run.output.all_rows() if row.stream == Stream.LED]
+    return [(row.time_ns // 1_000_000, row.text) for row in rows]
+
+
+def test_the_light_blinks_until_it_is_told_otherwise(run_on: RunOn) -> None:
+    shown = lights(
+        run_on,
+        "ev3.light.off()\nev3.light.blink(Color.RED, [100, 50])\nwait(330)\nev3.light.off()\nwait(500)",
+    )
+    assert [time for time, _ in shown[1:]] == [0, 100, 150, 250, 300, 330]
+    assert len({text for _, text in shown[1:]}) == 2
+
+
+def test_the_light_shows_colors_in_turn(run_on: RunOn) -> None:
+    text = "ev3.light.animate([Color.GREEN, Color(20, 90, 90)], 100)\nwait(350)\nev3.light.on(Color.BLUE)\nwait(300)"
+    times = [time for time, _ in lights(run_on, text)]
+    assert times[-4:] == [100, 200, 300, 350]
+
+
+@pytest.mark.parametrize(
+    "call", ["blink(Color.RED, [])", "animate([Color.RED], 0)", "blink(Color.RED, [5, 0])"]
+)
+def test_a_light_that_cannot_change_is_refused(run_on: RunOn, call: str) -> None:
+    done = run_on(f"{HEAD}ev3.light.{call}", profile=PROFILE)
+    assert done.errors[-1] == "ValueError: Invalid argument"
+
+
+def test_a_button_stops_the_program_if_it_is_chosen(run_on: RunOn) -> None:
+    text = "ev3.system.set_stop_button(Button.CENTER)\nwhile True:\n    ev3.buttons.pressed()\n    wait(10)"
+    done = run_on(HEAD + text, profile=PROFILE, presses=("enter@0.5-1",))
+    assert not done.errors
+    assert 450 <= done.ended.time_ns // 1_000_000 <= 600
+
+
+@pytest.mark.parametrize(
+    "text, lines",
+    [
+        ("from pybricks import version\nprint(version[:2])", ["('ev3', '4.0.0')"]),
+        ("from pybricks.hubs import ThisHub\nprint(ThisHub is EV3Brick)", ["True"]),
+        (
+            "ev3.speaker.volume(40)\nev3.speaker.beep(440, 200)\nev3.speaker.play_notes(['C4/4'], 240)\n"
+            "print(ev3.speaker.volume())",
+            ["40"],
+        ),
+        ("print(ev3.system.name(), ev3.system.info()['name'])", ["EV3 EV3"]),
+        ("watch = StopWatch()\nwatch.pause()\nprint(watch.running())", ["False"]),
+        ("from pybricks.tools import read_input_byte\nprint(read_input_byte())", ["None"]),
+        (
+            "from pybricks.parameters import Axis, Font, Image, ImageFile, Side\n"
+            "from pybricks.tools import Matrix, cross, vector\n"
+            "print(Side.TOP, cross(Axis.X, Axis.Y) == Axis.Z, Matrix([[1, 2]]).T.shape, vector(1, 2)[0])",
+            ["Side.TOP True (2, 1) 1.0"],
+        ),
+        (
+            "from pybricks.ev3devices import ColorSensor, GyroSensor\nfrom pybricks.parameters import Port\n"
+            "gyro = GyroSensor(Port.S4)\ngyro.calibrate()\nprint(gyro.angle(), ev3.buttons.pressed())",
+            ["0 set()"],
+        ),
+    ],
+)
+def test_its_own_names_work(run_on: RunOn, text: str, lines: list[str]) -> None:
+    done = run_on(HEAD + text, profile=PROFILE)
+    assert done.lines == lines, done.errors
+
+
+def test_buttons_of_the_remote_are_a_set(run_on: RunOn) -> None:
+    text = (
+        "from pybricks.ev3devices import InfraredSensor\nfrom pybricks.parameters import Port\n"
+        "remote = InfraredSensor(Port.S3)\nprint(remote.buttons(1), remote.keypad())"
+    )
+    assert run_on(HEAD + text, robot="eyes", profile=PROFILE).lines == ["set() set()"]
+
+
+def test_the_model_of_a_motor_is_refused(run_on: RunOn) -> None:
+    text = "from pybricks.ev3devices import Motor\nfrom pybricks.parameters import Port\nMotor(Port.B).model.state()"
+    errors = run_on(HEAD + text, profile=PROFILE).errors
+    assert errors[-1].startswith("NotSimulated: Motor.model.state: the model of a motor")
