@@ -48,7 +48,7 @@ def test_a_file_of_the_program_is_no_built_in_module(here: Command, tmp_path: Pa
 
 
 def test_the_interpreter_has_its_name_and_still_imports(here: Command, tmp_path: Path) -> None:
-    (tmp_path / "helper.py").write_text("import usys\nprint(usys.implementation.name)\n")
+    (tmp_path / "helper.py").write_text("import usys\nprint(usys.implementation[0])\n")
     (tmp_path / "main.py").write_text(
         "import pybricks, sys, helper\nprint(sys.implementation.cache_tag)"
     )

@@ -262,14 +262,17 @@ def _print_exception(error: BaseException, file: Any = None) -> None:
     import_module("traceback").print_exception(error, file=sys.stdout if file is None else file)
 
 
+class _Implementation(types.SimpleNamespace):
+    """What `sys` tells of the interpreter, by name or by place."""
+
+    def __getitem__(self, index: int) -> Any:
+        return (self.name, self.version)[index]
+
+
 SYSTEM: Mapping[str, Any] = {
     # The rest stays: Python's import needs it.
-    "implementation": types.SimpleNamespace(
-        **{
-            **vars(sys.implementation),
-            "name": "pybricks-micropython",
-            "version": (1, 11, 0),
-        }
+    "implementation": _Implementation(
+        **{**vars(sys.implementation), "name": "pybricks-micropython", "version": (1, 11, 0)}
     ),
     "print_exception": _print_exception,
 }
