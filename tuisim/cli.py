@@ -92,7 +92,7 @@ COMMANDS: Mapping[str, CommandEntry] = {
 _COMPLETE = "_TUISIM_COMPLETE"
 """The environment variable with which a completion script asks for words."""
 
-LEAST_OPEN_FILES = 64
+MIN_OPEN_FILES = 64
 """Open files that the app, a run and their libraries need, with some margin."""
 
 EXIT_OUR_MISTAKE = 70
@@ -128,13 +128,13 @@ def _check_open_files() -> None:
     """Raise HostError if the shell's limit of open files is too low; raise the soft limit if it can be raised."""
     import resource
 
-    allowed, most = resource.getrlimit(resource.RLIMIT_NOFILE)
-    if not 0 <= allowed < LEAST_OPEN_FILES:
+    allowed, hard_limit = resource.getrlimit(resource.RLIMIT_NOFILE)
+    if not 0 <= allowed < MIN_OPEN_FILES:
         return
     try:
-        resource.setrlimit(resource.RLIMIT_NOFILE, (LEAST_OPEN_FILES, most))
+        resource.setrlimit(resource.RLIMIT_NOFILE, (MIN_OPEN_FILES, hard_limit))
     except (OSError, ValueError):
-        hint = f"tuisim needs {LEAST_OPEN_FILES}: ulimit -n {LEAST_OPEN_FILES}"
+        hint = f"tuisim needs {MIN_OPEN_FILES}: ulimit -n {MIN_OPEN_FILES}"
         raise HostError(f"this shell allows no more than {allowed} open files", hint) from None
 
 
@@ -200,7 +200,7 @@ def _silence_stdout() -> None:
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
-def _flushed() -> bool:
+def _flush_stdout() -> bool:
     """Flush stdout; print an error and return False if that fails."""
     try:
         sys.stdout.flush()
@@ -228,7 +228,7 @@ def run_command(words: Sequence[str]) -> int:
             stream.reconfigure(errors="backslashreplace")
     try:
         code = _dispatch(words)
-        return code if _flushed() else max(code, TuisimError.exit_code)
+        return code if _flush_stdout() else max(code, TuisimError.exit_code)
     except TuisimError as error:
         print("tuisim:", " ".join(str(error).split("\n")), file=sys.stderr)
         return error.exit_code

@@ -16,7 +16,7 @@ import pytest
 from tests.cases import cases
 from tests.conftest import Command
 from tests.running import PATIENCE_S
-from tuisim.commands.echo import Progress, echo, echo_error, progress_hidden, tell
+from tuisim.commands.echo import Progress, echo, echo_error, hide_progress, tell
 
 
 class Terminal(io.StringIO):
@@ -94,7 +94,7 @@ def test_stdout_that_goes_elsewhere_does_not_hide_the_bar(show: Show) -> None:
     with Progress("working"):
         terminal.until("working")
         shown = terminal.getvalue().count("\x1b[?25l")
-        with progress_hidden(io.StringIO()):
+        with hide_progress(io.StringIO()):
             pass
         assert terminal.getvalue().count("\x1b[?25l") == shown
 

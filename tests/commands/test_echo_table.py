@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tuisim.commands.echo import table
+from tuisim.commands.echo import draw_table
 
 Table = tuple[tuple[str, ...], list[tuple[object, ...]]]
 """Heads and rows."""
@@ -68,22 +68,22 @@ def _terminal_of_80(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.parametrize("heads, rows", TABLES.values(), ids=list(TABLES))
 def test_a_table_fits(heads: tuple[str, ...], rows: list[tuple[object, ...]]) -> None:
-    assert max(map(len, table(heads, rows).split("\n"))) <= 80
+    assert max(map(len, draw_table(heads, rows).split("\n"))) <= 80
 
 
 @pytest.mark.parametrize("name", [name for name in TABLES if name != "long name"])
 def test_words_stay_whole(name: str) -> None:
     heads, rows = TABLES[name]
-    shown = table(heads, rows).split()
+    shown = draw_table(heads, rows).split()
     words = [word for row in [heads, *rows] for cell in row for word in str(cell).split()]
     assert sorted(shown) == sorted(words)
 
 
 def test_dates_stay_whole_where_a_name_is_too_long() -> None:
-    assert table(*LONG_NAME).splitlines()[1].endswith("x… 2026-11-23 16:35:43")
+    assert draw_table(*LONG_NAME).splitlines()[1].endswith("x… 2026-11-23 16:35:43")
 
 
 def test_a_pipe_gets_every_table_as_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("sys.stdout.isatty", lambda: False)
-    assert table(*BANDS).splitlines()[0].split("  ")[0] == "VARIABLE"
-    assert len(table(*WORDS).splitlines()) == 2
+    assert draw_table(*BANDS).splitlines()[0].split("  ")[0] == "VARIABLE"
+    assert len(draw_table(*WORDS).splitlines()) == 2

@@ -13,7 +13,7 @@ import click
 from tuisim import __version__
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ConfigError
-from tuisim.commands.listings import WORLD, names_of
+from tuisim.commands.listings import WORLD, list_names
 from tuisim.commands.log import COLUMNS, TELEMETRY
 from tuisim.settings.command_line import Arguments, WordType, argument, command, option
 from tuisim.settings.shared_options import build_shared_options
@@ -32,16 +32,16 @@ _WORLD = frozenset({"background", "robot", "obstacles"})
 
 
 OPENED: Sequence[click.Parameter] = (
-    argument("words", "[PROGRAM]", lambda: names_of("programs"), nargs=-1),
+    argument("words", "[PROGRAM]", lambda: list_names("programs"), nargs=-1),
     WORLD,
     option(
         "--goals",
         metavar="FILE",
-        type=WordType(names=lambda: names_of("goals")),
+        type=WordType(names=lambda: list_names("goals")),
         help="Judge the runs by a goals file, which may also precede the program.",
     ),
     option("--run", metavar="RUN", help="Open a stored run, see `tuisim runs`."),
-    *build_shared_options(names=names_of),
+    *build_shared_options(names=list_names),
 )
 """What the app opens, and how."""
 
@@ -63,19 +63,19 @@ def read_opened(arguments: Arguments) -> Opened | None:
     Raises:
         ConfigError: a program, a world, a run or an option is wrong.
     """
-    from tuisim.commands.notebooks import print_list, to_list
+    from tuisim.commands.notebooks import find_listed, print_list
     from tuisim.commands.resolve import check_arguments, prepare_app, prepare_replay
     from tuisim.settings.user_config import load_config
 
     check_arguments(arguments.words, arguments)
-    if listed := to_list(arguments.words):
+    if listed := find_listed(arguments.words):
         print_list(arguments.words[0], listed)
         return None
-    goals, config = _goals(arguments.goals), load_config()
+    goals, config = _load_goals(arguments.goals), load_config()
     if arguments.run is not None:
         replay, prepared = prepare_replay(arguments.run, arguments.words, arguments, config)
         return Opened(prepared, goals, replay)
-    prepared = prepare_app(_words(arguments, goals), arguments, config)
+    prepared = prepare_app(_list_words(arguments, goals), arguments, config)
     is_empty = (
         not arguments.words
         and not arguments.world
@@ -83,7 +83,10 @@ def read_opened(arguments: Arguments) -> Opened | None:
         and _WORLD.isdisjoint(arguments.settings)
     )
     return Opened(
-        prepared, goals or _goals_in(prepared.world, prepared.settings["mats"]), None, is_empty
+        prepared,
+        goals or _load_world_goals(prepared.world, prepared.settings["mats"]),
+        None,
+        is_empty,
     )
 
 
@@ -130,13 +133,13 @@ def open_app(**given: Any) -> int:
         autorun=settings["autorun"],
         from_config=prepared.from_config,
         decided=prepared.decided,
-        **_of_the_app(settings),
+        **_select_app_settings(settings),
     )
-    with _drawing_on_stdout():
+    with _draw_on_stdout():
         return run_app(app_settings)
 
 
-def _of_the_app(settings: Settings) -> dict[str, Any]:
+def _select_app_settings(settings: Settings) -> dict[str, Any]:
     """Return what the settings say about the app, by field of `AppSettings`."""
     return {
         "quiet": settings["quiet"],
@@ -167,8 +170,8 @@ def open_lesson_in_app(lesson: Lesson, folder: str | None) -> int:
     from tuisim.tasks.lessons.progress import prepare_program
 
     source = read_program(prepare_program(lesson))
-    found = program_settings(source, lesson.settings, below=load_config().layer(Section.APP))
-    settings = found.settings
+    effective = program_settings(source, lesson.settings, below=load_config().layer(Section.APP))
+    settings = effective.settings
     app_settings = AppSettings(
         spec=build_run_spec(settings),
         settings=settings,
@@ -178,25 +181,25 @@ def open_lesson_in_app(lesson: Lesson, folder: str | None) -> int:
         lessons_folder=folder,
         panels_on=frozenset(settings["panels_on"]) | {"lesson", "code"},
         panels_off=frozenset(settings["panels_off"]),
-        decided=found.decided,
-        **_of_the_app(settings),
+        decided=effective.decided,
+        **_select_app_settings(settings),
     )
-    with _drawing_on_stdout():
+    with _draw_on_stdout():
         return run_app(app_settings)
 
 
 def has_terminal() -> bool:
     """Return whether there is a terminal for the app, in a browser or not."""
-    return _in_browser() or (sys.stdin.isatty() and sys.stdout.isatty())
+    return _is_in_browser() or (sys.stdin.isatty() and sys.stdout.isatty())
 
 
-def _in_browser() -> bool:
+def _is_in_browser() -> bool:
     from tuisim.terminal.probe import is_in_browser
 
     return is_in_browser()
 
 
-def _goals(word: str | None) -> GoalsFile | None:
+def _load_goals(word: str | None) -> GoalsFile | None:
     if word is None:
         return None
     from tuisim.tasks.goals.files import load_goals
@@ -204,7 +207,7 @@ def _goals(word: str | None) -> GoalsFile | None:
     return load_goals(word)
 
 
-def _goals_in(world: WorldFile | None, mats: str | None) -> GoalsFile | None:
+def _load_world_goals(world: WorldFile | None, mats: str | None) -> GoalsFile | None:
     if world is None:
         return None
     from tuisim.tasks.goals.files import load_task
@@ -212,7 +215,7 @@ def _goals_in(world: WorldFile | None, mats: str | None) -> GoalsFile | None:
     return load_task(world.path, mats)[1]
 
 
-def _words(arguments: Arguments, goals: GoalsFile | None) -> tuple[str, ...]:
+def _list_words(arguments: Arguments, goals: GoalsFile | None) -> tuple[str, ...]:
     """Return the words of the command line; unless another world is named, with the goals file as the world."""
     from tuisim.settings.worlds import is_world_name
 
@@ -238,21 +241,21 @@ def analyse(**given: Any) -> int:
     Raises:
         ConfigError: the logs are wrong, or there is no terminal.
     """
-    from tuisim.commands.logs.sources import asked
+    from tuisim.commands.logs.sources import build_request
 
-    request = asked(Arguments(**given))
-    if not (_in_browser() or sys.stdout.isatty()):
+    request = build_request(Arguments(**given))
+    if not (_is_in_browser() or sys.stdout.isatty()):
         raise ConfigError("the analyser needs a terminal", "without one, use `tuisim log`")
     from tuisim.app.analyser.app import run_analyser
     from tuisim.logs.reader import STDIN
 
     if request.file == STDIN:
-        _keys_from_terminal()
-    with _drawing_on_stdout():
+        _read_terminal_keys()
+    with _draw_on_stdout():
         return run_analyser(request)
 
 
-def _keys_from_terminal() -> None:
+def _read_terminal_keys() -> None:
     """Read the log from the original standard input, and keys from the terminal."""
     try:
         terminal = os.open("/dev/tty", os.O_RDWR)
@@ -266,9 +269,9 @@ def _keys_from_terminal() -> None:
 
 
 @contextmanager
-def _drawing_on_stdout() -> Iterator[None]:
+def _draw_on_stdout() -> Iterator[None]:
     """Redirect stderr to the terminal of stdout: Textual draws on stderr, which may be redirected to a file."""
-    if _in_browser():
+    if _is_in_browser():
         yield
         return
     stderr = os.dup(2)

@@ -19,17 +19,17 @@ from tuisim.commands.batch_request import OPTIONS, Request, read_request
 from tuisim.commands.echo import (
     Figure,
     Progress,
+    draw_table,
     echo,
     echo_error,
     echo_json,
     echo_lines,
     echo_written,
-    finite,
-    table,
+    replace_infinite,
     tell,
 )
-from tuisim.commands.exit_status import Interrupted, signals_raise
-from tuisim.commands.listings import names_of
+from tuisim.commands.exit_status import Interrupted, raise_signals
+from tuisim.commands.listings import list_names
 from tuisim.engine.protocol import End
 from tuisim.logs.signals import QUANTILES
 from tuisim.settings.command_line import Arguments, command
@@ -40,14 +40,16 @@ if TYPE_CHECKING:
     import pandas as pd
 
 _SHARED = [
-    one for one in build_shared_options(hidden=(APP, PANEL), names=names_of) if one.name != "speed"
+    option
+    for option in build_shared_options(hidden=(APP, PANEL), names=list_names)
+    if option.name != "speed"
 ]
 """A batch runs as fast as possible."""
-MOST_LINES = 100
+MAX_LINES = 100
 """A summary has at most this many lines."""
-_MOST_REASONS = 5
+_MAX_REASONS = 5
 """Reasons of failures in a summary, the most frequent ones."""
-_MOST_OVERLAID = 4
+_MAX_OVERLAID = 4
 """Stored runs that an example names."""
 _ROUNDING = 1e-10
 """Poses, times and readings smaller than this are 0 but for rounding."""
@@ -101,7 +103,7 @@ class _Batch:
         plan, code = self.request.plan, 0
         with Progress(counted(len(plan), "run"), len(plan), in_lines=True):
             try:
-                with signals_raise():
+                with raise_signals():
                     self.sweep.run(self.request.workers, self._rate())
             except Interrupted as interrupted:
                 code = interrupted.exit_code
@@ -126,7 +128,7 @@ class _Batch:
         def tell_row(_: Row) -> None:
             done = len(self.rows)
             per_s = (done - before) / max(time.monotonic() - begun, 1e-9)
-            left = f"{per_s:.3g} per second, {_duration((total - done) / per_s)} left"
+            left = f"{per_s:.3g} per second, {_format_duration((total - done) / per_s)} left"
             tell(f"{done:,} of {counted(total, 'run')}, {left}", done, total)
 
         return tell_row
@@ -134,7 +136,7 @@ class _Batch:
     def _print(self, frame: pd.DataFrame) -> None:
         if self.as_json:
             for row in frame.to_dict("records"):
-                echo_json(finite(row))
+                echo_json(replace_infinite(row))
         elif self.rows:
             self._print_summary(frame)
 
@@ -148,7 +150,7 @@ class _Batch:
         reasons = Counter(
             str(row["summary"]) for row in self.rows.values() if _exit_code(row) and row["summary"]
         )
-        for reason, count in reasons.most_common(_MOST_REASONS):
+        for reason, count in reasons.most_common(_MAX_REASONS):
             echo(f"  {count:,} × {reason}")
         for name in [name for name in frame.columns if name.startswith(GOAL)]:
             met = int(frame[name].fillna(0).sum())
@@ -156,25 +158,27 @@ class _Batch:
                 f"{name.removeprefix(GOAL)}: met in {met:,} of {len(frame):,} ({100 * met / len(frame):.0f} %)"
             )
         lines = self.sweep.summarize(frame)
-        echo_lines(_summary_table(lines[:MOST_LINES], shutil.get_terminal_size().columns))
-        if len(lines) > MOST_LINES:
-            echo(f"and {len(lines) - MOST_LINES:,} more lines; --out FILE writes everything")
-        kept = [str(row[RUN_ID]) for row in self.rows.values() if RUN_ID in row]
-        if kept:
-            command = f"tuisim analyse {' '.join(kept[:_MOST_OVERLAID])}{' …' * (len(kept) > _MOST_OVERLAID)}"
-            echo(f"{counted(len(kept), 'run')} stored, in column {RUN_ID} of the table: {command}")
+        echo_lines(_format_summary(lines[:MAX_LINES], shutil.get_terminal_size().columns))
+        if len(lines) > MAX_LINES:
+            echo(f"and {len(lines) - MAX_LINES:,} more lines; --out FILE writes everything")
+        run_ids = [str(row[RUN_ID]) for row in self.rows.values() if RUN_ID in row]
+        if run_ids:
+            command = f"tuisim analyse {' '.join(run_ids[:_MAX_OVERLAID])}{' …' * (len(run_ids) > _MAX_OVERLAID)}"
+            echo(
+                f"{counted(len(run_ids), 'run')} stored, in column {RUN_ID} of the table: {command}"
+            )
 
     def _tell_interrupted(self) -> None:
         out = self.request.out
-        kept = f"; {out} has these rows, and --resume continues" if out and self.rows else ""
+        remark = f"; {out} has these rows, and --resume continues" if out and self.rows else ""
         echo_error(
-            f"tuisim: interrupted after {len(self.rows):,} of {counted(len(self.request.plan), 'run')}{kept}"
+            f"tuisim: interrupted after {len(self.rows):,} of {counted(len(self.request.plan), 'run')}{remark}"
         )
 
 
-def _summary_table(lines: Sequence[ColumnSummary], width: int) -> str:
+def _format_summary(lines: Sequence[ColumnSummary], width: int) -> str:
     """Return a summary as text; without the outer quantiles if it is wider than the terminal."""
-    found = ""
+    text = ""
     for quantiles in (QUANTILES, QUANTILES[1:-1], ()):
         heads = [
             "COLUMN",
@@ -189,26 +193,26 @@ def _summary_table(lines: Sequence[ColumnSummary], width: int) -> str:
         for line in lines:
             of = line.statistics
             chosen = [of.quantiles[QUANTILES.index(part)] for part in quantiles]
-            figures = map(_figure, (of.mean, of.std, of.min, *chosen, of.max))
+            figures = map(_round_figure, (of.mean, of.std, of.min, *chosen, of.max))
             cells.append([line.column, *line.group.values(), *figures])
-        found = table(heads, cells)
-        if max(map(len, found.split("\n"))) <= width:
+        text = draw_table(heads, cells)
+        if max(map(len, text.split("\n"))) <= width:
             break
-    return found
+    return text
 
 
 def _exit_code(row: Row) -> int:
     if not row["end"]:
         return exit_status.EXIT_BAD_OUTPUT
-    return exit_status.exit_code_of(End(row["end"]), row["exit_code"])
+    return exit_status.choose_exit_code(End(row["end"]), row["exit_code"])
 
 
-def _figure(value: float) -> Figure:
+def _round_figure(value: float) -> Figure:
     """Return a number with few digits; a mere rounding error is 0."""
     return Figure(0.0 if abs(value) < _ROUNDING else value, ".4g")
 
 
-def _duration(seconds: float) -> str:
+def _format_duration(seconds: float) -> str:
     """Return a time in words: `12 s`, `3 min 5 s`, `2 h 10 min`."""
     whole = math.ceil(seconds)
     minutes, rest = divmod(whole, 60)

@@ -12,7 +12,7 @@ from tuisim.tasks.task import MAX_JOBS, Keep
 _WORKERS = Whole(1, MAX_JOBS)
 
 
-def workers_option(flag: str, text: str, **how: Any) -> GroupedOption:
+def build_workers_option(flag: str, text: str, **how: Any) -> GroupedOption:
     """Return an option for a number of workers; 0 if it is not given."""
     return option(
         flag,
@@ -24,16 +24,18 @@ def workers_option(flag: str, text: str, **how: Any) -> GroupedOption:
     )
 
 
-def jobs_option(**how: Any) -> GroupedOption:
+def build_jobs_option(**how: Any) -> GroupedOption:
     """Return `--jobs N`."""
-    return workers_option("--jobs", "Number of worker processes (one for each processor).", **how)
+    return build_workers_option(
+        "--jobs", "Number of worker processes (one for each processor).", **how
+    )
 
 
 def keep_option(usual: Keep, group: str) -> GroupedOption:
     """Return `--keep all|failed|none`; None if it is not given, which means `usual`."""
     return choice(
         "--keep",
-        [one.value for one in Keep],
+        [kept_runs.value for kept_runs in Keep],
         group=group,
         help=f"Which runs to store ({usual.value}).",
     )

@@ -14,12 +14,12 @@ from tuisim.batch.batch_file import BatchFile, load_batch, means_batch
 from tuisim.batch.parameters import SEED, Choice, parse_seeds, parse_set
 from tuisim.batch.plan import Plan, Subject
 from tuisim.batch.sweep import Workers
-from tuisim.commands.batch_options import jobs_option, keep_option, workers_option
+from tuisim.commands.batch_options import build_jobs_option, build_workers_option, keep_option
 from tuisim.commands.echo import echo_error
-from tuisim.commands.listings import WORLD, names_of
+from tuisim.commands.listings import WORLD, list_names
 from tuisim.commands.notebooks import NotRun
 from tuisim.commands.resolve import check_arguments, prepare_runs
-from tuisim.commands.run_options import input_option, timeout_option
+from tuisim.commands.run_options import build_input_option, build_timeout_option
 from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.files import read_file
 from tuisim.engine.runs.handle import RunOptions
@@ -33,15 +33,15 @@ from tuisim.tasks.task import Keep
 
 _GRID, _RESULTS, _LIMITS = "Parameters", "Results", "Input and limits"
 OPTIONS = (
-    argument("programs", "PROGRAM…|SPEC.toml", lambda: names_of("programs"), nargs=-1),
+    argument("programs", "PROGRAM…|SPEC.toml", lambda: list_names("programs"), nargs=-1),
     WORLD,
-    jobs_option(),
+    build_jobs_option(),
     option(
         "--scheduler",
         metavar="ADDRESS",
         help="Use the Dask cluster of a scheduler, such as tcp://host:8786.",
     ),
-    workers_option("--workers", "Use a Dask cluster of this many workers on this machine."),
+    build_workers_option("--workers", "Use a Dask cluster of this many workers on this machine."),
     option(
         "--seeds", metavar="SEEDS", group=_GRID, help="One run for each seed: 0..199, or 1,5,9."
     ),
@@ -86,8 +86,8 @@ OPTIONS = (
         group=_RESULTS,
         help="Print one JSON object per run, not the summary.",
     ),
-    timeout_option(_LIMITS),
-    input_option(_LIMITS),
+    build_timeout_option(_LIMITS),
+    build_input_option(_LIMITS),
 )
 """The options of `tuisim batch` besides the shared ones."""
 
@@ -111,48 +111,50 @@ def read_request(arguments: Arguments) -> Request:
         ConfigError: a program, a parameter, a goal, an expression or an option is wrong.
         ExportError: the table cannot be written.
     """
-    file = _batch_file(arguments)
-    named = arguments.goals or file.goals or _world_with_goals(arguments)
+    file = _take_batch_file(arguments)
+    named = arguments.goals or file.goals or _find_goals_world(arguments)
     goals = load_goals(named) if named else None
-    subjects = _subjects(arguments, file, goals)
-    typed = _typed_choices(arguments)
-    kept = {name: choice for name, choice in file.choices.items() if name not in typed}
-    kept = {name: choice for name, choice in kept.items() if name not in arguments.settings}
-    choices = {**kept, **typed}
+    subjects = _prepare_subjects(arguments, file, goals)
+    typed = _parse_choices(arguments)
+    free_choices = {name: choice for name, choice in file.choices.items() if name not in typed}
+    free_choices = {
+        name: choice for name, choice in free_choices.items() if name not in arguments.settings
+    }
+    choices = {**free_choices, **typed}
     if SEED in choices:
         # Runs that differ in the seed only are neighbours.
         choices[SEED] = choices.pop(SEED)
     plan = Plan(
         subjects,
         choices,
-        file.path if kept.keys() - {SEED} else Path("--set"),
+        file.path if free_choices.keys() - {SEED} else Path("--set"),
         goals=goals.goals if goals else (),
         keep=Keep(arguments.keep or file.keep or Keep.NONE),
         options_of=lambda spec, settings: _run_options(spec, settings, arguments, goals),
     )
-    expressions = {**file.expressions, **dict(map(_expression, arguments.expressions))}
+    expressions = {**file.expressions, **dict(map(_parse_expression, arguments.expressions))}
     plan.check_expressions(expressions)
     out = arguments.out or file.out
     if arguments.resume and out is None:
         raise ConfigError("needs the table that it continues", "--out FILE", key="--resume")
     target = check_target(out) if out is not None else None
-    return Request(plan, expressions, target, _workers(arguments, file), arguments.resume)
+    return Request(plan, expressions, target, _choose_workers(arguments, file), arguments.resume)
 
 
-def _workers(arguments: Arguments, file: BatchFile) -> Workers:
-    given = {
+def _choose_workers(arguments: Arguments, file: BatchFile) -> Workers:
+    options = {
         "--jobs": arguments.jobs,
         "--scheduler": arguments.scheduler,
         "--workers": arguments.workers,
     }
-    named = [name for name, value in given.items() if value]
+    named = [name for name, value in options.items() if value]
     if len(named) > 1:
         raise ConfigError(f"cannot be combined with {named[0]}", "give one of them", key=named[1])
     jobs = arguments.jobs or (0 if named else file.jobs or 0)
     return Workers(jobs, arguments.scheduler or "", arguments.workers)
 
 
-def _world_with_goals(arguments: Arguments) -> str | None:
+def _find_goals_world(arguments: Arguments) -> str | None:
     """Return the world file that is named, if it has goals."""
     words: list[str] = [
         *filter(is_world_name, arguments.programs),
@@ -165,7 +167,7 @@ def _world_with_goals(arguments: Arguments) -> str | None:
     return None
 
 
-def _batch_file(arguments: Arguments) -> BatchFile:
+def _take_batch_file(arguments: Arguments) -> BatchFile:
     """Return the batch file among the programs, and leave it out of them; an empty one if there is none."""
     named = [word for word in arguments.programs if means_batch(word)]
     if len(named) > 1:
@@ -179,7 +181,7 @@ def _batch_file(arguments: Arguments) -> BatchFile:
     return file
 
 
-def _subjects(
+def _prepare_subjects(
     arguments: Arguments, file: BatchFile, goals: GoalsFile | None
 ) -> tuple[Subject, ...]:
     """Return the programs; without a world of its own, a batch takes place in that of its goals."""
@@ -192,39 +194,45 @@ def _subjects(
         world = replace(world, settings=settings, program=world.program or goals.program)
     # A notebook stands for all of its cells.
     arguments.all = True
-    found, refusals = [], []
-    for one in prepare_runs(arguments.programs, arguments, world, "batch"):
-        if isinstance(one, NotRun):
+    subjects, refusals = [], []
+    for prepared in prepare_runs(arguments.programs, arguments, world, "batch"):
+        if isinstance(prepared, NotRun):
             raise ConfigError(
-                one.error.message, one.error.hint, file="" if one.error.file else one.label
+                prepared.error.message,
+                prepared.error.hint,
+                file="" if prepared.error.file else prepared.label,
             )
-        assert one.program is not None
-        found.append(Subject(one.program, one.settings, frozenset(arguments.settings), one.label))
-        refusals += [one.decided.refusal] if one.decided.refusal else []
+        assert prepared.program is not None
+        subjects.append(
+            Subject(
+                prepared.program, prepared.settings, frozenset(arguments.settings), prepared.label
+            )
+        )
+        refusals += [prepared.decided.refusal] if prepared.decided.refusal else []
     for refusal in dict.fromkeys(refusals):
         echo_error(f"note: {refusal}")
-    return tuple(found)
+    return tuple(subjects)
 
 
-def _typed_choices(arguments: Arguments) -> dict[str, Choice]:
-    found: dict[str, Choice] = {}
+def _parse_choices(arguments: Arguments) -> dict[str, Choice]:
+    choices: dict[str, Choice] = {}
     for text in arguments.sets:
         name, values = parse_set(text)
-        if name in found:
+        if name in choices:
             raise ConfigError(
                 f"{name} is given twice", "name all of its values at once", key="--set"
             )
-        found[name] = values
+        choices[name] = values
     if arguments.seeds is not None:
-        if SEED in found:
+        if SEED in choices:
             raise ConfigError(
                 "cannot be combined with --set seed", "give one of them", key="--seeds"
             )
-        found[SEED] = parse_seeds(arguments.seeds)
-    return found
+        choices[SEED] = parse_seeds(arguments.seeds)
+    return choices
 
 
-def _expression(text: str) -> tuple[str, str]:
+def _parse_expression(text: str) -> tuple[str, str]:
     name, equals, expression = text.partition("=")
     if not equals or not name.strip() or not expression.strip():
         raise ConfigError(

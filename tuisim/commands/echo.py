@@ -34,11 +34,11 @@ def echo(line: str = "") -> None:
 
 def echo_wrapped(line: str) -> None:
     """Write one line to stdout, broken between words where a terminal is narrower."""
-    width = _columns() if sys.stdout.isatty() else len(line)
+    width = _measure_columns() if sys.stdout.isatty() else len(line)
     echo_lines("\n".join(wrap(line, max(width, 1), break_long_words=False, break_on_hyphens=False)))
 
 
-def _columns() -> int:
+def _measure_columns() -> int:
     """Return the width of the terminal."""
     # Imported on demand: what is not written to a terminal is as wide as it is.
     import shutil
@@ -53,33 +53,33 @@ def echo_lines(text: str) -> None:
 
 def echo_json(data: Any, *, flush: bool = False) -> None:
     """Write data to stdout as one line of JSON, with control characters escaped."""
-    with progress_hidden(sys.stdout):
-        print(_json(data), flush=flush)
+    with hide_progress(sys.stdout):
+        print(_encode_json(data), flush=flush)
 
 
 def echo_json_list(items: Iterable[Any]) -> None:
     """Write one JSON list to stdout, streamed item by item."""
-    with progress_hidden(sys.stdout):
+    with hide_progress(sys.stdout):
         _stream_json(items)
         sys.stdout.write("\n")
 
 
 def echo_json_head(key: str, items: Iterable[Any], rest: Mapping[str, Any]) -> None:
     """Write one JSON object to stdout: a list under a key, streamed item by item, then the other keys."""
-    with progress_hidden(sys.stdout):
+    with hide_progress(sys.stdout):
         sys.stdout.write(f'{{"{key}": ')
         _stream_json(items)
-        sys.stdout.write(", " + _json(rest).removeprefix("{") + "\n")
+        sys.stdout.write(", " + _encode_json(rest).removeprefix("{") + "\n")
 
 
 def _stream_json(items: Iterable[Any]) -> None:
     sys.stdout.write("[")
     for number, item in enumerate(items):
-        sys.stdout.write((", " if number else "") + _json(item))
+        sys.stdout.write((", " if number else "") + _encode_json(item))
     sys.stdout.write("]")
 
 
-def finite(row: Mapping[Any, Any]) -> dict[Any, Any]:
+def replace_infinite(row: Mapping[Any, Any]) -> dict[Any, Any]:
     """Return a row for JSON, which has no infinite numbers: they, and those that are missing, become None."""
     return {
         name: None if isinstance(value, float) and not math.isfinite(value) else value
@@ -87,7 +87,7 @@ def finite(row: Mapping[Any, Any]) -> dict[Any, Any]:
     }
 
 
-def _json(data: Any) -> str:
+def _encode_json(data: Any) -> str:
     return json.dumps(data).replace("\x7f", "\\u007f")
 
 
@@ -110,7 +110,7 @@ def echo_error_lines(text: str) -> None:
 
 
 def _print(lines: Iterable[str], stream: TextIO) -> None:
-    with progress_hidden(stream):
+    with hide_progress(stream):
         for line in lines:
             print(printable(line), file=stream, flush=stream is sys.stderr)
 
@@ -129,7 +129,7 @@ def echo_drawn(draw: Callable[[bool], Text], width: int) -> None:
     # Not printed by the console, which exits the process when a pipe is closed.
     with console.capture() as captured:
         console.print(draw(colors), soft_wrap=True)
-    with progress_hidden(sys.stdout):
+    with hide_progress(sys.stdout):
         sys.stdout.write(captured.get())
 
 
@@ -138,7 +138,7 @@ class CsvOut:
 
     def write(self, text: str) -> None:
         """Write text."""
-        with progress_hidden(sys.stdout):
+        with hide_progress(sys.stdout):
             sys.stdout.write(
                 "\n".join(map(printable, text.split("\n"))) if sys.stdout.isatty() else text
             )
@@ -160,27 +160,27 @@ class Figure(float):
         return "" if math.isnan(self) else format(float(self), self.how)
 
 
-_GOOD_CELLS, _LEAST_CELLS = 20, 8
+_GOOD_CELLS, _MIN_CELLS = 20, 8
 """Texts are broken into lines of so many characters at least, or, if there is no room, of so many."""
 
 
-def table(heads: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
-    """Return rows of text under their heads, as `table_lines` has them; columns of numbers are right-aligned."""
+def draw_table(heads: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
+    """Return rows of text under their heads, as `draw_table_lines` has them; columns of numbers are right-aligned."""
     columns = list(zip(*rows, strict=True)) if rows else [()] * len(heads)
     right = [
         bool(rows) and all(isinstance(cell, int | float) for cell in column) for column in columns
     ]
-    return "\n".join(table_lines(heads, [list(map(str, column)) for column in columns], right))
+    return "\n".join(draw_table_lines(heads, [list(map(str, column)) for column in columns], right))
 
 
 def echo_table(
     heads: Sequence[str], columns: Sequence[Sequence[str]], right: Sequence[bool]
 ) -> None:
-    """Write the lines of a table to stdout; the arguments are those of `table_lines`."""
-    _print(table_lines(heads, columns, right), sys.stdout)
+    """Write the lines of a table to stdout; the arguments are those of `draw_table_lines`."""
+    _print(draw_table_lines(heads, columns, right), sys.stdout)
 
 
-def table_lines(
+def draw_table_lines(
     heads: Sequence[str], columns: Sequence[Sequence[str]], right: Sequence[bool]
 ) -> Iterator[str]:
     """Yield columns of text under their heads, aligned.
@@ -198,35 +198,37 @@ def table_lines(
         column if "".join(column).isprintable() else list(map(printable, column))
         for column in columns
     ]
-    room = _columns() if sys.stdout.isatty() else None
-    above = _stacked(heads)
-    for lines, gap, least in (
+    room = _measure_columns() if sys.stdout.isatty() else None
+    above = _stack_heads(heads)
+    for lines, gap, min_widths in (
         ([[*heads]], "  ", _GOOD_CELLS),
         (above, "  ", _GOOD_CELLS),
-        (above, " ", _LEAST_CELLS),
+        (above, " ", _MIN_CELLS),
     ):
         cells = [
             [*head, *column] for head, column in zip(zip(*lines, strict=True), body, strict=True)
         ]
         widths = [max(map(len, column)) for column in cells]
-        if room is None or _total(widths, gap) <= room:
+        if room is None or _sum_widths(widths, gap) <= room:
             break
         figures = [all(cell.strip()[:1].isdecimal() for cell in column if cell) for column in body]
         longest = [
             max((len(word) for cell in column for word in cell.split()), default=0)
             for column in body
         ]
-        widths = _cut_to(room, widths, figures, gap, [max(least, length) for length in longest])
-        if least == _LEAST_CELLS:
-            widths = _cut_to(room, widths, figures, gap, [least] * len(heads))
+        widths = _narrow_columns(
+            room, widths, figures, gap, [max(min_widths, length) for length in longest]
+        )
+        if min_widths == _MIN_CELLS:
+            widths = _narrow_columns(room, widths, figures, gap, [min_widths] * len(heads))
         rows = zip(*cells, strict=True)
         cells = [
             [*column]
             for column in zip(
-                *(line for row in rows for line in _wrapped(row, widths)), strict=True
+                *(line for row in rows for line in _wrap_row(row, widths)), strict=True
             )
         ]
-        if _total(widths, gap) <= room:
+        if _sum_widths(widths, gap) <= room:
             break
     pads = [str.rjust if at_right else str.ljust for at_right in right]
     padded = [
@@ -236,18 +238,18 @@ def table_lines(
     return (line.rstrip() for line in map(gap.join, zip(*padded, strict=True)))
 
 
-def _stacked(heads: Sequence[str]) -> list[list[str]]:
+def _stack_heads(heads: Sequence[str]) -> list[list[str]]:
     """Return heads as lines of one word each, the last of them in the last line."""
     words = [head.split() for head in heads]
     count = max(map(len, words), default=0) or 1
-    return [[([""] * (count - len(word)) + word)[at] for word in words] for at in range(count)]
+    return [[([""] * (count - len(word)) + word)[row] for word in words] for row in range(count)]
 
 
-def _total(widths: Sequence[int], gap: str) -> int:
+def _sum_widths(widths: Sequence[int], gap: str) -> int:
     return sum(widths) + len(gap) * (len(widths) - 1)
 
 
-def _wrapped(row: Sequence[str], widths: Sequence[int]) -> Iterator[tuple[str, ...]]:
+def _wrap_row(row: Sequence[str], widths: Sequence[int]) -> Iterator[tuple[str, ...]]:
     """Yield the lines of a row whose texts are broken between words; a longer word is cut, and marked."""
     texts = [
         [
@@ -261,14 +263,16 @@ def _wrapped(row: Sequence[str], widths: Sequence[int]) -> Iterator[tuple[str, .
     yield from zip_longest(*texts, fillvalue="")
 
 
-def _cut_to(
-    room: int, widths: Sequence[int], figures: Sequence[bool], gap: str, least: Sequence[int]
+def _narrow_columns(
+    room: int, widths: Sequence[int], figures: Sequence[bool], gap: str, min_widths: Sequence[int]
 ) -> list[int]:
     """Return the widths of columns with the widest texts made narrower until they fit, as far as they can be."""
     widths = [*widths]
-    while _total(widths, gap) > room:
+    while _sum_widths(widths, gap) > room:
         texts = [
-            at for at, is_figure in enumerate(figures) if not is_figure and widths[at] > least[at]
+            column
+            for column, is_figure in enumerate(figures)
+            if not is_figure and widths[column] > min_widths[column]
         ]
         if not texts:
             break
@@ -297,10 +301,10 @@ _active: list[Progress] = []
 
 
 @contextmanager
-def progress_hidden(stream: TextIO) -> Iterator[None]:
+def hide_progress(stream: TextIO) -> Iterator[None]:
     """Hide the bar, if any, while text is written to a stream that may be the same terminal."""
     if _active and stream.isatty():
-        with _active[-1].away():
+        with _active[-1].hide():
             yield
     else:
         yield
@@ -360,7 +364,7 @@ class Progress:
         self._what, self._done, self._total = what, done, total
 
     @contextmanager
-    def away(self) -> Iterator[None]:
+    def hide(self) -> Iterator[None]:
         """Hide the bar while something else is written to the terminal."""
         with self._lock:
             self._hide()
@@ -390,7 +394,7 @@ class Progress:
 
     def _show(self) -> None:
         if self._bar is None:
-            self._bar = _bar()
+            self._bar = _build_bar()
             self._bar.add_task("")
             # The bar may have been hidden for a while.
             self._bar.tasks[0].start_time = self._bar.get_time() - (time.monotonic() - self._begun)
@@ -409,7 +413,7 @@ class Progress:
             self._bar = None
 
 
-def _bar() -> Bar:
+def _build_bar() -> Bar:
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
 

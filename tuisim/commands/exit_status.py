@@ -24,7 +24,7 @@ from tuisim.tasks.reasons.waited_words import describe_wait
 EXIT_RAISED, EXIT_BAD_OUTPUT, EXIT_LIMIT = 1, 2, 3
 
 
-def exit_code_of(end: End, exit_code: int) -> int:
+def choose_exit_code(end: End, exit_code: int) -> int:
     """Return the shell's exit code for the end of a run; `exit_code` is the program's own."""
     match end:
         case End.FINISHED:
@@ -37,7 +37,7 @@ def exit_code_of(end: End, exit_code: int) -> int:
             assert_never(end)
 
 
-def of_unstored(code: int) -> int:
+def choose_unstored_code(code: int) -> int:
     """Return the exit code of a run that could not be stored: how it ended may be a consequence."""
     return code if code > SIGNALLED else EXIT_BAD_OUTPUT
 
@@ -84,7 +84,7 @@ def describe(run: StoredRun, most_bytes: int | None = None) -> dict[str, Any]:
     }
 
 
-def last_state(facts: dict[str, Any]) -> str:
+def describe_last_state(facts: dict[str, Any]) -> str:
     """Return the status line of a run, from the result of `describe`."""
     state = facts["state"].replace("_", " ")
     what = state if facts["summary"] in ("", state) else f"{state}: {facts['summary']}"
@@ -113,7 +113,7 @@ def report(run: StoredRun, exit_code: int, *, as_json: bool) -> None:
         return
     if plugged := describe_plugged(run):
         echo_error(f"note: {plugged}")
-    echo_error(last_state(facts))
+    echo_error(describe_last_state(facts))
 
 
 class Interrupted(KeyboardInterrupt):
@@ -124,17 +124,17 @@ class Interrupted(KeyboardInterrupt):
         self.exit_code = SIGNALLED + number
 
 
-def signals_raise() -> AbstractContextManager[None]:
+def raise_signals() -> AbstractContextManager[None]:
     """Raise `Interrupted` in the block for SIGINT and SIGTERM."""
 
     def stop(number: int, frame: FrameType | None) -> None:
         raise Interrupted(number)
 
-    return signals_handled(stop)
+    return handle_signals(stop)
 
 
 @contextmanager
-def signals_handled(handler: Callable[[int, FrameType | None], None]) -> Iterator[None]:
+def handle_signals(handler: Callable[[int, FrameType | None], None]) -> Iterator[None]:
     """Let a function handle SIGINT and SIGTERM in the block."""
     before = {number: signal.signal(number, handler) for number in (signal.SIGINT, signal.SIGTERM)}
     try:

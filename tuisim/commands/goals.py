@@ -11,18 +11,18 @@ from typing import Any
 
 from tuisim.base.errors import ConfigError, counted, nearest
 from tuisim.batch.parameters import parse_seeds
-from tuisim.commands.batch_options import jobs_option
+from tuisim.commands.batch_options import build_jobs_option
 from tuisim.commands.echo import (
     Progress,
+    draw_table,
     echo,
     echo_error,
     echo_json,
     echo_lines,
     echo_wrapped,
-    table,
     tell,
 )
-from tuisim.commands.run_options import timeout_option
+from tuisim.commands.run_options import build_timeout_option
 from tuisim.engine.core.values import MAX_SEED
 from tuisim.engine.runs.presses import press_actions
 from tuisim.engine.runs.run_folder import StoredRun
@@ -73,25 +73,25 @@ def check(goals_path: str, words: Sequence[str], as_json: bool) -> int:
     all_met = True
     with Progress("goals check"):
         store = RunStore()
-        names = [name for word in words or ("last",) for name in _names(word, store)]
+        names = [name for word in words or ("last",) for name in _iterate_names(word, store)]
         documents = []
         for number, name in enumerate(names):
             tell(f"checking run {name}", number, len(names))
             run = store.load_run(name)
-            found = judge(file.goals, run)
-            all_met = all_met and all(each.is_good for each in found)
-            for note in (*run.notes, *_differences(file, run)):
+            judgements = judge(file.goals, run)
+            all_met = all_met and all(each.is_good for each in judgements)
+            for note in (*run.notes, *_find_differences(file, run)):
                 echo_error(f"note: {note}")
             if as_json:
-                documents.append(_plain(run, found))
+                documents.append(_convert_plain(run, judgements))
             else:
-                _show(file, run, found)
+                _show(file, run, judgements)
         if as_json:
             echo_json(documents)
     return 0 if all_met else 1
 
 
-def _names(word: str, store: RunStore) -> Iterator[str]:
+def _iterate_names(word: str, store: RunStore) -> Iterator[str]:
     """Yield the runs that a word names; of a range those that exist.
 
     Raises:
@@ -102,40 +102,40 @@ def _names(word: str, store: RunStore) -> Iterator[str]:
         yield word
         return
     first, last = int(limits[1]), int(limits[2])
-    found = [str(run.number) for run in store.runs() if first <= run.number <= last]
-    if not found:
+    numbers = [str(run.number) for run in store.runs() if first <= run.number <= last]
+    if not numbers:
         raise ConfigError(f"no runs {word}", "see `tuisim runs`", key="RUN")
-    yield from found
+    yield from numbers
 
 
-def _differences(file: GoalsFile, run: StoredRun) -> Iterator[str]:
+def _find_differences(file: GoalsFile, run: StoredRun) -> Iterator[str]:
     """Yield notes if a run is not one of the program alone, from the start that a goals file names."""
     presses = press_actions(merge_settings(file.settings)["press"], run.spec.profile.tick_hz)
     if run.actions and run.actions != presses:
         yield f"run {run.number} was changed while it ran: {counted(len(run.actions), 'action')} of the user"
     try:
-        found = extract_settings(run.spec)
+        settings = extract_settings(run.spec)
         # A mat of one's own is known by its path: the file may name it in another way. All else that moves the mat's
         # start is as it was in the run.
-        elsewhere = {path: value for path, value in found.items() if path not in _WHERE}
+        elsewhere = {path: value for path, value in settings.items() if path not in _WHERE}
         of_file = extract_settings(build_run_spec(merge_settings(elsewhere, file.settings)))
     except ConfigError:
         # A mat no longer exists.
         return
     # The mat that the file names has a start of its own.
-    starts = "background" in file.settings and of_file["background"] == found["background"]
+    starts = "background" in file.settings and of_file["background"] == settings["background"]
     named = [key for key in _WHERE if starts or key in file.settings]
-    given = {key: of_file[key] for key in named}
+    named_values = {key: of_file[key] for key in named}
     other = [
-        f"{path.removeprefix('start.')} {found[path]}, not {value}"
-        for path, value in given.items()
-        if found[path] != value
+        f"{path.removeprefix('start.')} {settings[path]}, not {value}"
+        for path, value in named_values.items()
+        if settings[path] != value
     ]
     if other:
         yield f"run {run.number} was not run in the world of {file.path.name}: {', '.join(other)}"
 
 
-def _plain(run: StoredRun, judgements: Sequence[Judgement]) -> dict[str, Any]:
+def _convert_plain(run: StoredRun, judgements: Sequence[Judgement]) -> dict[str, Any]:
     return {
         "run": run.number,
         "id": run.id,
@@ -160,21 +160,21 @@ def _plain(run: StoredRun, judgements: Sequence[Judgement]) -> dict[str, Any]:
 
 def _show(file: GoalsFile, run: StoredRun, judgements: Sequence[Judgement]) -> None:
     met = sum(each.is_good for each in judgements)
-    most = compute_max_points(each.goal for each in judgements)
+    max_points = compute_max_points(each.goal for each in judgements)
     title = f" · {file.title}" if file.title else ""
     echo(
         f"run {run.number}, {run.program.name}{title}: {met} of {counted(len(judgements), 'goal')}, "
-        f"{format_points(compute_points(judgements))} of {most:g} points"
+        f"{format_points(compute_points(judgements))} of {max_points:g} points"
     )
     for each in judgements:
         goal = each.goal
-        said = f": {goal.say}" if goal.say else ""
-        echo(f"  {_mark_of(each)} {goal.name} ({goal.points:g}){said}")
-        for line in _details(each):
+        text = f": {goal.say}" if goal.say else ""
+        echo(f"  {_choose_mark(each)} {goal.name} ({goal.points:g}){text}")
+        for line in _list_details(each):
             echo(f"      {line}")
 
 
-def _mark_of(judgement: Judgement) -> str:
+def _choose_mark(judgement: Judgement) -> str:
     """Return the mark before a goal; one that takes points off is at its best if it is missed."""
     is_decided = judgement.state in (GoalState.MET, GoalState.MISSED)
     is_penalty = judgement.goal.points < 0 and is_decided
@@ -185,7 +185,7 @@ def _mark_of(judgement: Judgement) -> str:
     )
 
 
-def _details(judgement: Judgement) -> Iterator[str]:
+def _list_details(judgement: Judgement) -> Iterator[str]:
     if judgement.goal.points < 0 and judgement.state is GoalState.MISSED:
         yield "did not happen"
         return
@@ -212,8 +212,8 @@ def _details(judgement: Judgement) -> Iterator[str]:
         group=_RUNS,
         help=f"Run each program with these seeds: 0..4, or 1,2,5 ({TRIAL_SEEDS}).",
     ),
-    timeout_option(_RUNS, TIME_LIMIT_S),
-    jobs_option(group=_RUNS),
+    build_timeout_option(_RUNS, TIME_LIMIT_S),
+    build_jobs_option(group=_RUNS),
     name="try",
     help="""Say how many points a program can earn without doing a task.
 
@@ -232,7 +232,7 @@ def try_task(goals_path: str, wrong: Sequence[str], seeds: str, timeout: float, 
     every_seed = parse_seeds(seeds, "--seeds")
     with Progress("goals try"):
         trial = run_trial(task, wrong, every_seed, time_limit_s=timeout, jobs=jobs)
-    echo_lines(table(("PROGRAM", "POINTS", "MEETS"), trial.rows))
+    echo_lines(draw_table(("PROGRAM", "POINTS", "MEETS"), trial.rows))
     for fault in trial.faults:
         echo_wrapped(f"{task.path.name}: {fault}")
     if not task.program:

@@ -17,18 +17,18 @@ from tuisim.settings.command_line import WordType, argument, command, option
 if TYPE_CHECKING:
     from tuisim.terminal.text_runs import Line
 
-_MOST_COLUMNS = 100
-_MOST_RESULTS = 5
+_MAX_COLUMNS = 100
+_MAX_RESULTS = 5
 
 
-def _names() -> Sequence[str]:
+def _list_names() -> Sequence[str]:
     from tuisim.guide.catalogue import load_pages
 
     return list(load_pages())
 
 
 @command(
-    argument("topic", "[TOPIC]", _names, required=False),
+    argument("topic", "[TOPIC]", _list_names, required=False),
     option(
         "--search",
         "words",
@@ -50,16 +50,16 @@ def guide(topic: str | None, words: str | None) -> int:
         raise ConfigError("TOPIC and --search cannot be combined", "give one of them", key="guide")
     if words is not None:
         return _search(words)
-    width = _width()
+    width = _measure_width()
     _show(draw_page(find_page(topic), width) if topic is not None else draw_contents(width))
     return 0
 
 
-def _width() -> int:
+def _measure_width() -> int:
     return (
-        min(_MOST_COLUMNS, shutil.get_terminal_size().columns)
+        min(_MAX_COLUMNS, shutil.get_terminal_size().columns)
         if sys.stdout.isatty()
-        else _MOST_COLUMNS
+        else _MAX_COLUMNS
     )
 
 
@@ -78,9 +78,9 @@ def _search(words: str) -> int:
     from tuisim.guide.search import search
     from tuisim.guide.text import NO_WORDS, draw_results
 
-    found = search(words)[:_MOST_RESULTS]
-    if not found:
+    results = search(words)[:_MAX_RESULTS]
+    if not results:
         echo(f"{NO_WORDS}: {words}. `tuisim guide` lists all pages.")
         return 1
-    _show(draw_results(found, _width()))
+    _show(draw_results(results, _measure_width()))
     return 0

@@ -17,7 +17,7 @@ from tuisim.base.atomic import replacing
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ConfigError
 from tuisim.base.folders import user_path
-from tuisim.commands.echo import echo, echo_json, echo_lines, table
+from tuisim.commands.echo import draw_table, echo, echo_json, echo_lines
 from tuisim.settings.command_line import AS_JSON, Group, command, option
 
 if TYPE_CHECKING:
@@ -55,7 +55,10 @@ def list_kernels(as_json: bool, **where: Any) -> int:
     """List the tuisim kernels that Jupyter finds."""
     manager, folder, name = _place(**where)
     folders = manager.kernel_dirs if folder is None else [folder]
-    _list([kernel for kernel in _kernels(folders) if name in (None, kernel.name)], as_json=as_json)
+    _list(
+        [kernel for kernel in _iterate_kernels(folders) if name in (None, kernel.name)],
+        as_json=as_json,
+    )
     return 0
 
 
@@ -90,15 +93,15 @@ def _place(
     user: bool, sys_prefix: bool, prefix: str | None, name: str | None
 ) -> tuple[KernelSpecManager, str | None, str | None]:
     """Return Jupyter's manager, the chosen kernel folder or None, and the chosen name or None."""
-    given = {"--user": user, "--sys-prefix": sys_prefix, "--prefix": prefix is not None}
-    places = [flag for flag, is_given in given.items() if is_given]
+    options = {"--user": user, "--sys-prefix": sys_prefix, "--prefix": prefix is not None}
+    places = [flag for flag, is_given in options.items() if is_given]
     if len(places) > 1:
         raise ConfigError(f"name one of {' and '.join(places)}", key="kernel")
     if name is not None and not _VALID_NAME.fullmatch(name):
         raise ConfigError(
             f"may contain only lower-case letters, digits and . _ -, got {name!r}", key="--name"
         )
-    manager = _manager()
+    manager = _build_manager()
     where = sys.prefix if sys_prefix else prefix
     if where is not None:
         return (
@@ -109,7 +112,7 @@ def _place(
     return manager, str(manager.user_kernel_dir) if user else None, name
 
 
-def _manager() -> KernelSpecManager:
+def _build_manager() -> KernelSpecManager:
     try:
         # The kernel itself.
         import ipykernel  # noqa: F401
@@ -120,7 +123,7 @@ def _manager() -> KernelSpecManager:
     return KernelSpecManager()
 
 
-def _kernels(folders: Sequence[str]) -> Iterator[InstalledKernel]:
+def _iterate_kernels(folders: Sequence[str]) -> Iterator[InstalledKernel]:
     for folder in dict.fromkeys(folders):
         for file in map(Path, sorted(glob(f"{escape(folder)}/*/{_SPEC_FILE}"))):
             spec = _read(file)
@@ -156,7 +159,7 @@ def _list(kernels: Sequence[InstalledKernel], *, as_json: bool) -> None:
             )
             for k in kernels
         ]
-        echo_lines(table(("NAME", "KERNEL", "PYTHON", "FOLDER"), rows))
+        echo_lines(draw_table(("NAME", "KERNEL", "PYTHON", "FOLDER"), rows))
 
 
 def _install(manager: KernelSpecManager, place: Path, name: str) -> None:
@@ -189,12 +192,12 @@ def _install(manager: KernelSpecManager, place: Path, name: str) -> None:
 
 
 def _remove(places: Sequence[str], name: str) -> None:
-    found = [kernel for kernel in _kernels(places) if kernel.name == name]
-    if not found:
+    kernels = [kernel for kernel in _iterate_kernels(places) if kernel.name == name]
+    if not kernels:
         hint = "see `tuisim kernel list`" if len(places) > 1 else f"looked in {places[0]}"
         raise ConfigError(f"no tuisim kernel {name!r} is installed", hint, key="--name")
     # Only the first, which Jupyter starts; others of that name come later on its path.
-    folder = Path(found[0].folder)
+    folder = Path(kernels[0].folder)
     try:
         folder.unlink() if folder.is_symlink() else shutil.rmtree(folder)
     except OSError as error:

@@ -9,7 +9,7 @@ import click
 
 from tuisim.base.errors import ConfigError, counted
 from tuisim.base.folders import user_path
-from tuisim.commands.echo import Progress, echo, echo_json, echo_lines, table, tell
+from tuisim.commands.echo import Progress, draw_table, echo, echo_json, echo_lines, tell
 from tuisim.engine.core.profile import Library
 from tuisim.settings.command_line import AS_JSON, Group, WordType, argument, choice, command, option
 from tuisim.tasks.lessons.catalogue import (
@@ -31,7 +31,7 @@ FOLDER = option(
 )
 
 
-def _names() -> Sequence[str]:
+def _list_names() -> Sequence[str]:
     try:
         return list(find_lesson_paths())
     except ConfigError:
@@ -39,11 +39,11 @@ def _names() -> Sequence[str]:
 
 
 @command(
-    argument("word", "[LESSON]", _names, required=False),
+    argument("word", "[LESSON]", _list_names, required=False),
     FOLDER,
     choice(
         "--library",
-        [one.value for one in Library],
+        [each.value for each in Library],
         help="Open the version of the lesson for this library.",
     ),
     option("--text", "as_text", is_flag=True, help="Print the lesson, even on a terminal."),
@@ -65,17 +65,17 @@ def open_lesson(word: str | None, folder: str | None, library: str | None, as_te
         return _list(folder, as_json=False)
     progress = load_progress()
     if not word:
-        lesson = _next_lesson(load_all(folder), progress)
+        lesson = _choose_next_lesson(load_all(folder), progress)
     else:
         path = find_lesson(word, folder, learn.listing)
         lesson = load_lesson(find_telling(path, Library(library), folder) if library else path)
     if not in_app:
-        echo_lines(text_of(lesson, progress.get(lesson.name, LessonProgress())))
+        echo_lines(format_lesson(lesson, progress.get(lesson.name, LessonProgress())))
         return 0
     return open_lesson_in_app(lesson, folder)
 
 
-def _next_lesson(lessons: Sequence[Lesson], progress: dict[str, LessonProgress]) -> Lesson:
+def _choose_next_lesson(lessons: Sequence[Lesson], progress: dict[str, LessonProgress]) -> Lesson:
     """Return the lesson to go on with: the one opened last if it is not over, else the first that is not."""
 
     def is_open(lesson: Lesson) -> bool:
@@ -86,7 +86,7 @@ def _next_lesson(lessons: Sequence[Lesson], progress: dict[str, LessonProgress])
     return next(iter([*again, *filter(is_open, lessons)]), lessons[0])
 
 
-def text_of(lesson: Lesson, progress: LessonProgress) -> str:
+def format_lesson(lesson: Lesson, progress: LessonProgress) -> str:
     """Return a lesson as plain text; the model answer only once every step is done."""
     parts = [
         f"{lesson.title}\n{'=' * len(lesson.title)}",
@@ -94,28 +94,28 @@ def text_of(lesson: Lesson, progress: LessonProgress) -> str:
         render_plain_text(f"On a real robot: {lesson.why}", _COLUMNS),
     ]
     if lesson.program:
-        parts.append(f"The program:\n\n{_indented(lesson.program)}")
+        parts.append(f"The program:\n\n{_indent_program(lesson.program)}")
     for number, step in enumerate(lesson.steps, start=1):
         title = f"{_MARKS[progress.of(step.name).state]} {number}. {step.title}"
         parts += [
             f"{title}\n{'-' * len(title)}",
             render_plain_text(step.text, _COLUMNS),
-            *_question(step),
+            *_format_question(step),
         ]
     if lesson.model_answer and progress.done(lesson) == len(lesson.steps):
-        parts.append(f"A model answer:\n\n{_indented(lesson.model_answer)}")
+        parts.append(f"A model answer:\n\n{_indent_program(lesson.model_answer)}")
     parts.append(f"`tuisim learn {lesson.name}` in a terminal checks each step while you work.")
     return "\n\n".join(part for part in parts if part)
 
 
-def _question(step: LessonStep) -> list[str]:
+def _format_question(step: LessonStep) -> list[str]:
     if not isinstance(step.check, QuestionCheck):
         return []
     choices = [f"  {number} {choice}" for number, choice in enumerate(step.check.choices, start=1)]
     return ["\n".join([render_plain_text(f"Question: {step.check.ask}", _COLUMNS), *choices])]
 
 
-def _indented(program: str) -> str:
+def _indent_program(program: str) -> str:
     return "\n".join(f"    {line}".rstrip() for line in program.rstrip("\n").split("\n"))
 
 
@@ -131,28 +131,28 @@ def _list(folder: str | None, *, as_json: bool) -> int:
         echo_json(
             [
                 {
-                    "name": one.name,
-                    "title": one.title,
-                    "minutes": one.minutes,
-                    "why": one.why,
-                    "steps": len(one.steps),
-                    "path": str(one.path),
+                    "name": lesson.name,
+                    "title": lesson.title,
+                    "minutes": lesson.minutes,
+                    "why": lesson.why,
+                    "steps": len(lesson.steps),
+                    "path": str(lesson.path),
                 }
-                for one in lessons
+                for lesson in lessons
             ]
         )
         return 0
     rows = [
         (
             number,
-            one.name,
-            one.title,
-            f"{one.minutes} min",
-            progress.get(one.name, LessonProgress()).words(one),
+            lesson.name,
+            lesson.title,
+            f"{lesson.minutes} min",
+            progress.get(lesson.name, LessonProgress()).words(lesson),
         )
-        for number, one in enumerate(lessons, start=1)
+        for number, lesson in enumerate(lessons, start=1)
     ]
-    echo_lines(table(("", "LESSON", "ABOUT", "TIME", "PROGRESS"), rows))
+    echo_lines(draw_table(("", "LESSON", "ABOUT", "TIME", "PROGRESS"), rows))
     echo("`tuisim learn LESSON` opens one; `tuisim learn` continues where you left off.")
     return 0
 
@@ -165,36 +165,38 @@ def status(folder: str | None, as_json: bool) -> int:
     skipped), when that was reached, wrong tries, and hints that were shown.
     """
     lessons, progress = load_all(folder), load_progress()
-    found = [(lesson, progress.get(lesson.name, LessonProgress())) for lesson in lessons]
+    states = [(lesson, progress.get(lesson.name, LessonProgress())) for lesson in lessons]
     if as_json:
-        echo_json([_plain(lesson, one) for lesson, one in found])
+        echo_json([_convert_plain(lesson, state) for lesson, state in states])
         return 0
-    for lesson, one in found:
-        echo(f"{lesson.name}: {one.words(lesson)}")
-        for step in lesson.steps if one.words(lesson) != "new" else ():
-            echo(f"  {_MARKS[one.of(step.name).state]} {step.title}{_details(one, step)}")
+    for lesson, state in states:
+        echo(f"{lesson.name}: {state.words(lesson)}")
+        for step in lesson.steps if state.words(lesson) != "new" else ():
+            echo(f"  {_MARKS[state.of(step.name).state]} {step.title}{_describe_step(state, step)}")
     return 0
 
 
-def _details(progress: LessonProgress, step: LessonStep) -> str:
-    one = progress.of(step.name)
-    words = [counted(one.tries, "wrong try", "wrong tries")] if one.tries else []
-    words += [counted(one.hints, "hint")] if one.hints else []
+def _describe_step(progress: LessonProgress, step: LessonStep) -> str:
+    step_progress = progress.of(step.name)
+    words = (
+        [counted(step_progress.tries, "wrong try", "wrong tries")] if step_progress.tries else []
+    )
+    words += [counted(step_progress.hints, "hint")] if step_progress.hints else []
     return f" ({', '.join(words)})" if words else ""
 
 
-def _plain(lesson: Lesson, progress: LessonProgress) -> dict[str, Any]:
+def _convert_plain(lesson: Lesson, progress: LessonProgress) -> dict[str, Any]:
     steps = []
     for step in lesson.steps:
-        one = progress.of(step.name)
+        step_progress = progress.of(step.name)
         steps.append(
             {
                 "name": step.name,
                 "title": step.title,
-                "state": one.state,
-                "at": one.at or None,
-                "tries": one.tries,
-                "hints": one.hints,
+                "state": step_progress.state,
+                "at": step_progress.at or None,
+                "tries": step_progress.tries,
+                "hints": step_progress.hints,
             }
         )
     return {
@@ -237,7 +239,7 @@ def check(paths: Sequence[str], no_runs: bool, strict: bool) -> int:
         for number, lesson in enumerate(lessons):
             tell(f"checking {lesson.name}", number, len(lessons))
             wrong, warned = [] if no_runs else find_faults(lesson), find_warnings(lesson)
-            for line in (*wrong, *(f"warning: {one}" for one in warned)):
+            for line in (*wrong, *(f"warning: {warning}" for warning in warned)):
                 echo(line)
             if not wrong:
                 contents = (
@@ -245,13 +247,13 @@ def check(paths: Sequence[str], no_runs: bool, strict: bool) -> int:
                 )
                 words = counted(len(warned), "warning") if warned else "all is well"
                 echo(
-                    f"{lesson.path if paths else lesson.name}: {contents}, {_ways(lesson)}: {words}"
+                    f"{lesson.path if paths else lesson.name}: {contents}, {_count_ways(lesson)}: {words}"
                 )
             is_bad |= bool(wrong or (strict and warned))
     return int(is_bad)
 
 
-def _ways(lesson: Lesson) -> str:
+def _count_ways(lesson: Lesson) -> str:
     """Return in words how many wrong ways are tried."""
     return counted(
         sum(len(step.wrong_programs) + len(step.wrong) for step in lesson.steps), "wrong way"

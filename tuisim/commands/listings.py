@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tuisim.base.errors import ConfigError, counted, listed
-from tuisim.commands.echo import echo, echo_error, echo_json, echo_lines, table
+from tuisim.commands.echo import draw_table, echo, echo_error, echo_json, echo_lines
 from tuisim.engine.core.profile import MS, PROFILES, MotorLaw, ProfileSpec
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, RobotSpec, RunSpec, WorldSpec
 from tuisim.engine.core.values import list_values
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from tuisim.engine.mats import Background, Taken
 
 
-def names_of(field: str) -> Iterable[str]:
+def list_names(field: str) -> Iterable[str]:
     """Return the names of programs, columns or goal files, or those that an option such as `background` accepts."""
     match field:
         case "programs":
@@ -53,7 +53,7 @@ def names_of(field: str) -> Iterable[str]:
     return ()
 
 
-COLUMN = WordType(names=lambda: names_of("columns"))
+COLUMN = WordType(names=lambda: list_names("columns"))
 """The value of an option in which the columns of a recording can be named."""
 WORLD = option(
     "--world",
@@ -85,16 +85,18 @@ def backgrounds(folder: str | None, use_originals: str | None, as_json: bool) ->
         taken, left = import_originals(user_path(use_originals))
         _show_taken(taken, left, own_folder(), as_json=as_json)
         return 0
-    found = mats(folder).values()
+    listed = mats(folder).values()
     if as_json:
-        echo_json([_plain(mat) for mat in found])
+        echo_json([_convert_plain(mat) for mat in listed])
     else:
         starts = [
-            f"{mat.start.x_mm:g}, {mat.start.y_mm:g}, {mat.start.heading_deg:g}°" for mat in found
+            f"{mat.start.x_mm:g}, {mat.start.y_mm:g}, {mat.start.heading_deg:g}°" for mat in listed
         ]
-        rows = [(mat.name, start, _shows(mat)) for mat, start in zip(found, starts, strict=True)]
-        echo_lines(table(("NAME", "START x, y, heading", "SHOWS"), rows))
-        if any(map(_is_missing, found)):
+        rows = [
+            (mat.name, start, _describe_mat(mat)) for mat, start in zip(listed, starts, strict=True)
+        ]
+        echo_lines(draw_table(("NAME", "START x, y, heading", "SHOWS"), rows))
+        if any(map(_is_missing, listed)):
             echo()
             echo(f"Put your own images into {own_folder()}")
     return 0
@@ -104,13 +106,13 @@ def _is_missing(mat: Background) -> bool:
     return not mat.shipped and not mat.is_own
 
 
-def _shows(mat: Background) -> str:
+def _describe_mat(mat: Background) -> str:
     if _is_missing(mat):
         return f"{mat.title} (no image: supply {mat.original})"
     return f"{mat.title} (your {mat.image.name})" if mat.is_own and mat.original else mat.title
 
 
-def _plain(mat: Background) -> dict[str, object]:
+def _convert_plain(mat: Background) -> dict[str, object]:
     return {
         "name": mat.name,
         "title": mat.title,
@@ -126,21 +128,24 @@ def _show_taken(
 ) -> None:
     if as_json:
         echo_json(
-            [{"name": one.name, "file": one.file, "size_px": list(one.size_px)} for one in taken]
+            [
+                {"name": image.name, "file": image.file, "size_px": list(image.size_px)}
+                for image in taken
+            ]
         )
     else:
-        rows = [(one.name, one.file, _size(one)) for one in taken]
-        echo_lines(table(("MAT", "PICTURE", "PIXELS"), rows))
+        rows = [(image.name, image.file, _format_size(image)) for image in taken]
+        echo_lines(draw_table(("MAT", "PICTURE", "PIXELS"), rows))
     echo_error(f"{counted(len(taken), 'image')} copied to {folder}; remove one there to undo it")
     if left:
         echo_error(f"skipped, not named like a mat: {listed(left)}")
 
 
-def _size(one: Taken) -> str:
-    width, height = one.size_px
+def _format_size(image: Taken) -> str:
+    width, height = image.size_px
     other = (
         ""
-        if one.size_px == (FIELD_WIDTH_MM, FIELD_HEIGHT_MM)
+        if image.size_px == (FIELD_WIDTH_MM, FIELD_HEIGHT_MM)
         else f", not {FIELD_WIDTH_MM} × {FIELD_HEIGHT_MM}"
     )
     return f"{width} × {height}{other}"
@@ -150,12 +155,12 @@ def _size(one: Taken) -> str:
 
 
 @command(
-    argument("robot", "[NAME|FILE]", lambda: names_of("robot"), required=False),
+    argument("robot", "[NAME|FILE]", lambda: list_names("robot"), required=False),
     option(
         "--from",
         "program",
         metavar="PROGRAM|RUN",
-        type=WordType(names=lambda: names_of("programs")),
+        type=WordType(names=lambda: list_names("programs")),
         help="Print the robot of a program for a real brick, with the line behind each part; or the robot of a "
         "run, by its number or `last`, with the parts that were plugged in.",
     ),
@@ -175,21 +180,21 @@ def robots(robot: str | None, program: str | None, out: str | None, as_json: boo
     if program is not None:
         if robot is not None:
             raise ConfigError(f"cannot be combined with {robot}", "name one", key="--from")
-        return _robot_from(program, out, as_json=as_json)
+        return _print_program_robot(program, out, as_json=as_json)
     if out is not None:
         raise ConfigError("needs a program", "tuisim robots --from PROGRAM --out FILE", key="--out")
     chosen = None if robot is None else load_robot(robot)
     if as_json:
-        echo_json([asdict(one) for one in ([chosen] if chosen else ROBOTS.values())])
+        echo_json([asdict(each) for each in ([chosen] if chosen else ROBOTS.values())])
     elif chosen:
         echo_lines("\n".join(format_robot_file(chosen)))
     else:
         heads = ("NAME", "WHEELS", "WEIGHT", "COLOUR SENSORS x, y, diameter", "PORTS")
-        echo_lines(table(heads, list(map(_robot_row, ROBOTS.values()))))
+        echo_lines(draw_table(heads, list(map(_build_robot_row, ROBOTS.values()))))
     return 0
 
 
-def _robot_from(program: str, out: str | None, *, as_json: bool) -> int:
+def _print_program_robot(program: str, out: str | None, *, as_json: bool) -> int:
     """Print or write the robot that a program talks about."""
     if program.isdecimal() or program == "last":
         return _print_robot_of_run(program, out, as_json=as_json)
@@ -221,12 +226,12 @@ def _print_robot_of_run(word: str, out: str | None, *, as_json: bool) -> int:
         save_robot(robot, Path(out))
         echo_error(f"{out}: the robot of run {run.number}; -r {out} takes it")
     else:
-        said = [f"# Plugged in while {run.program.name} ran: {parts}."] if parts else []
-        echo_lines("\n".join([*said, *format_robot_file(robot)]))
+        comments = [f"# Plugged in while {run.program.name} ran: {parts}."] if parts else []
+        echo_lines("\n".join([*comments, *format_robot_file(robot)]))
     return 0
 
 
-def _robot_row(robot: RobotSpec) -> tuple[str, ...]:
+def _build_robot_row(robot: RobotSpec) -> tuple[str, ...]:
     from tuisim.settings.robots import list_ports
 
     wheels = f"{robot.wheel_diameter_mm:g} mm, {robot.wheel_spacing_mm:g} mm apart"
@@ -235,7 +240,7 @@ def _robot_row(robot: RobotSpec) -> tuple[str, ...]:
     return robot.name, wheels, f"{robot.weight:g}", "; ".join(sensors), on_ports
 
 
-@command(argument("word", "[NAME|FILE]", lambda: names_of("obstacles"), required=False), AS_JSON)
+@command(argument("word", "[NAME|FILE]", lambda: list_names("obstacles"), required=False), AS_JSON)
 def obstacles(word: str | None, as_json: bool) -> int:
     """List the sets of obstacles, or print one in TOML as a starting point for your own."""
     from tuisim.engine.obstacles import OBSTACLES, load_obstacles, obstacle_file
@@ -259,7 +264,7 @@ def obstacles(word: str | None, as_json: bool) -> int:
             )
             for name, boxes in chosen.items()
         ]
-        echo_lines(table(("NAME", "BOXES x, y, width, height in mm"), rows))
+        echo_lines(draw_table(("NAME", "BOXES x, y, width, height in mm"), rows))
     return 0
 
 
@@ -272,11 +277,18 @@ def programs(as_json: bool) -> int:
     from tuisim.base.folders import programs_folder
     from tuisim.programs.program_file import programs as example_programs
 
-    found = example_programs()
+    examples = example_programs()
     if as_json:
-        echo_json([{"name": one.name, "title": one.title, "path": str(one.path)} for one in found])
+        echo_json(
+            [
+                {"name": example.name, "title": example.title, "path": str(example.path)}
+                for example in examples
+            ]
+        )
     else:
-        echo_lines(table(("NAME", "DOES"), [(one.name, one.title) for one in found]))
+        echo_lines(
+            draw_table(("NAME", "DOES"), [(example.name, example.title) for example in examples])
+        )
         echo(
             f"They are in {programs_folder()}; `tuisim NAME` opens one, `tuisim run NAME` runs it."
         )
@@ -289,30 +301,36 @@ def profiles(words: Sequence[str], as_json: bool) -> int:
     from tuisim.settings.profiles import load_profile
 
     chosen = [load_profile(word) for word in words] or PROFILES.values()
-    shown = [asdict(profile) for profile in chosen]
+    plain_profiles = [asdict(profile) for profile in chosen]
     if as_json:
-        echo_json(shown)
+        echo_json(plain_profiles)
         return 0
     echo_lines(
-        table(("PROFILE", "FOR"), [(profile["name"], profile["title"]) for profile in shown]) + "\n"
+        draw_table(
+            ("PROFILE", "FOR"), [(profile["name"], profile["title"]) for profile in plain_profiles]
+        )
+        + "\n"
     )
     rules = list_values(ProfileSpec)
     rows = [
         [
             key.removesuffix("_ns"),
-            *(_cost(key, profile[key]) for profile in shown),
+            *(_format_cost(key, profile[key]) for profile in plain_profiles),
             rules[key].source,
         ]
-        for key in shown[0]
+        for key in plain_profiles[0]
         if key not in ("name", "title")
     ]
-    echo_lines(table(("", *(profile["name"] for profile in shown), "SOURCE"), rows))
+    echo_lines(draw_table(("", *(profile["name"] for profile in plain_profiles), "SOURCE"), rows))
     if any(profile.motor_law is MotorLaw.EV3DEV for profile in chosen):
-        echo_lines("\n" + table(("MOTORS OF ev3dev", "large", "medium", "SOURCE"), _motor_rows()))
+        echo_lines(
+            "\n"
+            + draw_table(("MOTORS OF ev3dev", "large", "medium", "SOURCE"), _build_motor_rows())
+        )
     return 0
 
 
-def _motor_rows() -> list[tuple[str, ...]]:
+def _build_motor_rows() -> list[tuple[str, ...]]:
     from tuisim.engine.core.driver.figures import list_figures
 
     return [
@@ -321,7 +339,7 @@ def _motor_rows() -> list[tuple[str, ...]]:
     ]
 
 
-def _cost(key: str, value: object) -> str:
+def _format_cost(key: str, value: object) -> str:
     if isinstance(value, bool):
         return "yes" if value else "no"
     if key.endswith("_ns") and isinstance(value, int):

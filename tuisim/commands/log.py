@@ -27,7 +27,7 @@ from tuisim.settings.command_line import (
 )
 
 
-def _or_empty(_: object, __: object, word: str | None) -> str:
+def _replace_none(_: object, __: object, word: str | None) -> str:
     """Return the word of a choice, an empty one if nothing was chosen."""
     return word or ""
 
@@ -41,7 +41,7 @@ COLUMNS = (
         "--unit",
         tuple(SECONDS),
         group="Columns",
-        callback=_or_empty,
+        callback=_replace_none,
         help="Unit of the time column, if its name does not give it.",
     ),
     option(
@@ -78,14 +78,14 @@ COLUMNS = (
         "--separator",
         tuple(SIGNS),
         group="Text",
-        callback=_or_empty,
+        callback=_replace_none,
         help="Separator between the cells.",
     ),
     choice(
         "--decimal",
         DECIMAL_SIGNS,
         group="Text",
-        callback=_or_empty,
+        callback=_replace_none,
         help="Decimal sign.",
     ),
 )
@@ -252,8 +252,8 @@ SUBCOMMANDS: Mapping[str, Subcommand] = {
 def _load(name: str) -> Command:
     entry = SUBCOMMANDS[name]
 
-    def work(**given: object) -> int:
-        arguments = Arguments(action=name, **given)
+    def work(**options: object) -> int:
+        arguments = Arguments(action=name, **options)
         with Progress(" ".join(("log", name, *arguments.words))):
             return entry.load()(arguments)
 

@@ -22,20 +22,20 @@ from tuisim.base.errors import (
 from tuisim.base.faults import UNJUDGED, describe_fault, report_file
 from tuisim.base.source import source_lines
 from tuisim.batch.parameters import parse_seeds
-from tuisim.commands.batch_options import jobs_option, keep_option
+from tuisim.commands.batch_options import build_jobs_option, keep_option
 from tuisim.commands.echo import (
     Progress,
+    draw_table,
     echo,
     echo_error,
     echo_lines,
     echo_wrapped,
     echo_written,
-    table,
     tell,
 )
-from tuisim.commands.exit_status import Interrupted, signals_raise
-from tuisim.commands.listings import names_of
-from tuisim.commands.run_options import input_option, timeout_option
+from tuisim.commands.exit_status import Interrupted, raise_signals
+from tuisim.commands.listings import list_names
+from tuisim.commands.run_options import build_input_option, build_timeout_option
 from tuisim.engine.core.values import Whole
 from tuisim.engine.runs.child.isolation import MOST_BYTES, check_isolation
 from tuisim.logs.export import ALLOWED, EXPORTERS, check_place, check_target
@@ -66,9 +66,9 @@ _OPTIONS = (
         group=_RUNS,
         help=f"Run each program with these seeds: 0..19, or 1,2,5 ({DEFAULT_SEEDS}).",
     ),
-    timeout_option(_RUNS, TIME_LIMIT_S),
-    input_option(_RUNS),
-    jobs_option(group=_RUNS),
+    build_timeout_option(_RUNS, TIME_LIMIT_S),
+    build_input_option(_RUNS),
+    build_jobs_option(group=_RUNS),
     option(
         "--isolate",
         is_flag=True,
@@ -160,9 +160,9 @@ _OPTIONS = (
 @command(
     *_OPTIONS,
     *(
-        one
-        for one in build_shared_options(hidden=(APP, PANEL), names=names_of)
-        if one.name not in _LEFT_OUT
+        option
+        for option in build_shared_options(hidden=(APP, PANEL), names=list_names)
+        if option.name not in _LEFT_OUT
     ),
     help="""Mark the programs of a class.
 
@@ -203,7 +203,7 @@ def mark(**given: Any) -> int:
         roster=Path(arguments.roster) if arguments.roster else None,
         overrides=Path(arguments.overrides) if arguments.overrides else None,
         exports=tuple(map(Path, arguments.export)),
-        gradebooks=_gradebooks(arguments),
+        gradebooks=_list_gradebooks(arguments),
         goal_columns=arguments.goal_columns,
         movies=arguments.movies,
         feedback=Path(arguments.feedback) if arguments.feedback else None,
@@ -215,10 +215,10 @@ def mark(**given: Any) -> int:
 def _mark(marking: Marking, arguments: Arguments) -> int:
     _tell_strangers(marking, arguments.roster)
     marking.read_programs()
-    isolate = _isolates(arguments)
+    isolate = _should_isolate(arguments)
     with Progress("marking", in_lines=True):
         try:
-            with signals_raise():
+            with raise_signals():
                 marking.run(tell, isolate=isolate)
         except Interrupted as interrupted:
             _tell_so_far(marking)
@@ -250,8 +250,8 @@ def _tell_so_far(marking: Marking) -> None:
         f"tuisim: interrupted with {len(sheet.rows)} of {counted(len(marking.students), 'student')} marked, "
         "nothing exported;"
     )
-    kept = counted(sum(map(len, marking.outcomes.values())), "run")
-    echo_error(f"tuisim: {kept} stored: the same command with --resume continues")
+    runs = counted(sum(map(len, marking.outcomes.values())), "run")
+    echo_error(f"tuisim: {runs} stored: the same command with --resume continues")
 
 
 def _tell_notes(marking: Marking) -> None:
@@ -281,14 +281,14 @@ def _tell_missing(marking: Marking) -> int:
     missing = marking.missing
     if not missing:
         return 0
-    names = listed([f"{printable(name)} with seed {one.seed}" for name, one in missing])
+    names = listed([f"{printable(name)} with seed {outcome.seed}" for name, outcome in missing])
     echo_error(
         f"tuisim: this machine could not make {counted(len(missing), 'run')}; the marks do not include: {names}"
     )
     echo_error(
         f"tuisim: {missing[0][1].failure}; the same command with --resume runs what is missing"
     )
-    if any(UNJUDGED in one.failure for _, one in missing) and report_file().exists():
+    if any(UNJUDGED in outcome.failure for _, outcome in missing) and report_file().exists():
         echo_error(f"tuisim: the report of what went wrong is in {report_file()}")
     return 1
 
@@ -304,7 +304,7 @@ def _tell_unknown(marking: Marking) -> int:
     return 1 if unjudged else 0
 
 
-def _gradebooks(arguments: Arguments) -> dict[str, Path]:
+def _list_gradebooks(arguments: Arguments) -> dict[str, Path]:
     """Return the gradebooks' files by their kinds."""
     return {kind: Path(file) for kind in GRADEBOOKS if (file := vars(arguments)[kind])}
 
@@ -324,7 +324,7 @@ def _check(arguments: Arguments, task: GoalsFile) -> None:
         else:
             allowed = f"a file ends in .html, {ALLOWED}"
             raise ExportError(f"cannot write {target}: unknown format {target.suffix!r}", allowed)
-    gradebooks = _gradebooks(arguments).values()
+    gradebooks = _list_gradebooks(arguments).values()
     for target in gradebooks:
         check_place(target)
     places = [os.path.realpath(target) for target in (*targets, *gradebooks)]
@@ -375,12 +375,12 @@ _NARROWER = ((40, 60), (24, 20), (16, 10), (12, 6))
 def _print(sheet: Sheet) -> None:
     columns = shutil.get_terminal_size().columns if sys.stdout.isatty() else 0
     heads, rows = sheet.tabulate()
-    text = table(heads, rows)
-    if columns and _width(text) > columns:
+    text = draw_table(heads, rows)
+    if columns and _measure_width(text) > columns:
         for most_name, most_goal in _NARROWER:
             heads, rows = sheet.tabulate(most_name, most_goal)
-            text = table(heads[:-1], [row[:-1] for row in rows])
-            if _width(text) <= columns:
+            text = draw_table(heads[:-1], [row[:-1] for row in rows])
+            if _measure_width(text) <= columns:
                 break
         reasons = [f"{row[0]}: {row[-1]}" for row in rows if row[-1]]
         text = "\n".join([text, "", *reasons])
@@ -389,11 +389,11 @@ def _print(sheet: Sheet) -> None:
     echo_wrapped(sheet.summary)
 
 
-def _width(text: str) -> int:
+def _measure_width(text: str) -> int:
     return max(map(len, text.split("\n")))
 
 
-def _isolates(arguments: Arguments) -> bool:
+def _should_isolate(arguments: Arguments) -> bool:
     """Return whether programs are isolated; say so if they are not, and nobody has asked for that.
 
     Raises:

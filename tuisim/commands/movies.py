@@ -68,17 +68,17 @@ def movie(
     from tuisim.pictures.movies.files import MOVIE_SUFFIXES, Clip, save_movie
 
     run = RunStore().load_run(word)
-    path = Path(out or _default_name(run, "movie.gif"))
+    path = Path(out or _build_default_name(run, "movie.gif"))
     check_format(path, "movie", MOVIE_SUFFIXES)
     if speed is not None:
         _check_number(speed, 0.01, 1000, "--speed")
     _check_number(fps, 1, 50, "--fps")
-    shown, sides = _panels_of(panels), _size_of(size)
+    chosen, sides = _parse_panels(panels), _parse_size_option(size)
     with Progress(f"drawing {path.name}"):
-        recorded = _recorded(run)
+        recorded = _load_recorded(run)
         span_s = recorded.clip_span_s(start_s, stop_s)
         speed = speed or max(1, math.ceil((span_s[1] - span_s[0]) / _FAST_S))
-        clip = Clip(recorded, shown or _useful(recorded, sides), span_s, speed, fps, sides)
+        clip = Clip(recorded, chosen or _choose_panels(recorded, sides), span_s, speed, fps, sides)
         size_bytes = save_movie(clip, path, partial(tell, f"drawing {path.name}"))
     shots = clip.shots
     lasts_s = sum(shot.duration_ms for shot in shots) / 1000
@@ -104,24 +104,24 @@ def picture(word: str, out: str | None, time_s: float | None, panels: str | None
     from tuisim.pictures.movies.files import PICTURE_FORMATS, save_picture
 
     run = RunStore().load_run(word)
-    path = Path(out or _default_name(run, "picture.png"))
+    path = Path(out or _build_default_name(run, "picture.png"))
     check_format(path, "picture", PICTURE_FORMATS)
-    shown, sides = _panels_of(panels), _size_of(size)
+    chosen, sides = _parse_panels(panels), _parse_size_option(size)
     with Progress(f"drawing {path.name}"):
-        recorded = _recorded(run)
+        recorded = _load_recorded(run)
         at_s = recorded.end_s if time_s is None else time_s
         _check_number(at_s, 0, recorded.end_s, "--at")
-        save_picture(recorded, shown or _useful(recorded, sides), at_s, path, sides)
+        save_picture(recorded, chosen or _choose_panels(recorded, sides), at_s, path, sides)
     echo(str(path))
     return 0
 
 
-def _default_name(run: StoredRun, end: str) -> str:
+def _build_default_name(run: StoredRun, end: str) -> str:
     # Not the program's name alone: its mat may be called so.
     return f"{name_of(Path(run.program.name)).strip('-.') or 'run'}-{end}"
 
 
-def _recorded(run: StoredRun) -> Recorded:
+def _load_recorded(run: StoredRun) -> Recorded:
     from tuisim.engine.runs.frames import damage_note
     from tuisim.pictures.movies.clip import Recorded
 
@@ -137,7 +137,7 @@ def _check_number(value: float, low: float, high: float, key: str) -> None:
         raise ConfigError(f"must be from {low:g} to {high:g}, got {value:g}", key=key)
 
 
-def _useful(recorded: Recorded, size: Size | None) -> tuple[ClipPanel, ...]:
+def _choose_panels(recorded: Recorded, size: Size | None) -> tuple[ClipPanel, ...]:
     """Return the panels that have something to show, and room for it."""
     from tuisim.pictures.movies.clip import ClipPanel
 
@@ -146,7 +146,7 @@ def _useful(recorded: Recorded, size: Size | None) -> tuple[ClipPanel, ...]:
     return (ClipPanel.WORLD, ClipPanel.CHART) if has_chart else (ClipPanel.WORLD,)
 
 
-def _panels_of(text: str | None) -> tuple[ClipPanel, ...]:
+def _parse_panels(text: str | None) -> tuple[ClipPanel, ...]:
     """Return the named panels, in their order on the picture; none for None."""
     from tuisim.pictures.movies.clip import ClipPanel
 
@@ -161,7 +161,7 @@ def _panels_of(text: str | None) -> tuple[ClipPanel, ...]:
     return tuple(panel for panel in ClipPanel if panel in names)
 
 
-def _size_of(text: str) -> Size | None:
+def _parse_size_option(text: str) -> Size | None:
     from tuisim.pictures.charts.files import describe_limits, parse_size
     from tuisim.pictures.movies.painter import LEAST, MOST
 

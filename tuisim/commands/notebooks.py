@@ -9,7 +9,7 @@ from pathlib import Path
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ConfigError, counted
 from tuisim.commands import exit_status
-from tuisim.commands.echo import echo, echo_error, echo_json, echo_lines, table
+from tuisim.commands.echo import draw_table, echo, echo_error, echo_json, echo_lines
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.programs.notebook_file import (
     NotebookProgram,
@@ -21,7 +21,7 @@ from tuisim.programs.notebook_file import (
 NOT_RUN = "not_run"
 
 
-def to_list(words: Sequence[str], *, run_all: bool = False) -> list[NotebookProgram]:
+def find_listed(words: Sequence[str], *, run_all: bool = False) -> list[NotebookProgram]:
     """Return the programs of a notebook that is named without a cell; empty if there is only one."""
     if run_all or len(words) != 1 or not is_notebook(words[0]) or "#" in words[0]:
         return []
@@ -32,28 +32,33 @@ def to_list(words: Sequence[str], *, run_all: bool = False) -> list[NotebookProg
 def print_list(word: str, programs: Sequence[NotebookProgram]) -> None:
     """Print the programs of a notebook, and how to run one."""
     rows = [
-        (p.number, _titled(p), p.source.options.get("background", ""), p.source.program.prelude)
+        (
+            p.number,
+            _format_title(p),
+            p.source.options.get("background", ""),
+            p.source.program.prelude,
+        )
         for p in programs
     ]
-    echo_lines(table(("cell", "title", "mat", "names"), rows))
+    echo_lines(draw_table(("cell", "title", "mat", "names"), rows))
     echo()
     echo(
         f"tuisim '{word}#1' opens the first; tuisim run '{word}#1' runs it, tuisim run {word} --all runs all"
     )
 
 
-def _titled(program: NotebookProgram) -> str:
+def _format_title(program: NotebookProgram) -> str:
     needs = f"(needs {program.unknown} from the notebook)" if program.unknown else ""
     return " ".join(filter(None, (program.title, needs)))
 
 
-def known_programs(word: str) -> list[NotebookProgram]:
-    """Return the programs that a word names, `without_unknown`.
+def find_programs(word: str) -> list[NotebookProgram]:
+    """Return the programs that a word names, `drop_unknown`.
 
     Raises:
         ConfigError: there is no such notebook or program, or it runs in the notebook only.
     """
-    known = without_unknown(chosen_programs(word))
+    known = drop_unknown(chosen_programs(word))
     if not known:
         raise ConfigError(
             "has no program that runs outside the notebook", "run its cells in Jupyter", file=word
@@ -61,7 +66,7 @@ def known_programs(word: str) -> list[NotebookProgram]:
     return known
 
 
-def without_unknown(programs: Sequence[NotebookProgram]) -> list[NotebookProgram]:
+def drop_unknown(programs: Sequence[NotebookProgram]) -> list[NotebookProgram]:
     """Return the programs without those that run only in the notebook; those are noted on stderr."""
     known: list[NotebookProgram] = []
     for program in programs:
@@ -99,8 +104,8 @@ def check_folder(word: str, *, run_all: bool) -> list[Path]:
     Raises:
         ConfigError: there are none, or `--all` is missing.
     """
-    found = notebooks_in(Path(word))
-    if not found:
+    notebooks = notebooks_in(Path(word))
+    if not notebooks:
         main = os.path.join(word, "main.py")
         named = (
             f"its program {main}"
@@ -110,17 +115,17 @@ def check_folder(word: str, *, run_all: bool) -> list[Path]:
         raise ConfigError("is a folder without notebooks", f"name {named}", file=word)
     if not run_all:
         hint = f"tuisim run {word} --all runs them all"
-        raise ConfigError(f"is a folder of {counted(len(found), 'notebook')}", hint, file=word)
-    return found
+        raise ConfigError(f"is a folder of {counted(len(notebooks), 'notebook')}", hint, file=word)
+    return notebooks
 
 
 def print_results(results: Sequence[tuple[str, StoredRun | None]]) -> None:
     """Print a table with one row per label and run, None if it was not run: state, samples, simulated time, run."""
-    rows = [_row(label, run) for label, run in results]
-    echo_lines(table(("cell", "state", "samples", "time s", "run"), rows))
+    rows = [_build_row(label, run) for label, run in results]
+    echo_lines(draw_table(("cell", "state", "samples", "time s", "run"), rows))
 
 
-def _row(label: str, run: StoredRun | None) -> tuple[object, ...]:
+def _build_row(label: str, run: StoredRun | None) -> tuple[object, ...]:
     if run is None:
         return label, NOT_RUN, "", "", ""
     facts = exit_status.describe(run)

@@ -12,7 +12,7 @@ from typing import TextIO
 
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import EXIT_BROKEN_PIPE, SIGNALLED
-from tuisim.commands.echo import echo_error, progress_hidden, tell
+from tuisim.commands.echo import echo_error, hide_progress, tell
 from tuisim.engine.protocol import Ended, Message
 from tuisim.engine.runs.handle import RunHandle
 from tuisim.engine.runs.records import OutputRow, Stream, line_of
@@ -72,7 +72,7 @@ class Follower:
     lost: str = ""
     """Why printed lines could not be written; empty if they were."""
 
-    def to_the_end(self) -> Ended:
+    def follow_to_end(self) -> Ended:
         """Block until the run has ended, and return its end."""
         while True:
             events: list[Message] = []
@@ -82,7 +82,7 @@ class Follower:
                 self.handle.wait_for_event(POLL_S)
                 events = self.handle.pump()
                 ended = self.handle.ended
-            self._pass_on(self.handle.output.new_rows())
+            self._write_rows(self.handle.output.new_rows())
             self.tell(self.handle)
             for event in events:
                 if self.listen is not None:
@@ -90,17 +90,17 @@ class Follower:
             if ended:
                 return ended
 
-    def _pass_on(self, rows: Iterable[OutputRow]) -> None:
+    def _write_rows(self, rows: Iterable[OutputRow]) -> None:
         """Write rows to stdout and stderr in their original order."""
         for to_stdout, group in groupby(rows, key=lambda row: row.stream == Stream.STDOUT):
             if to_stdout:
-                with progress_hidden(self.out):
+                with hide_progress(self.out):
                     self._write("".join(row.text + "\n" for row in group))
                 continue
             for row in group:
                 # Printed text is passed on unchanged; speech becomes a line of tuisim's own.
                 if row.stream == Stream.STDERR:
-                    with progress_hidden(sys.stderr):
+                    with hide_progress(sys.stderr):
                         sys.stderr.write(row.text + "\n")
                 elif row.stream == Stream.SPEECH:
                     echo_error(line_of(row))
@@ -129,7 +129,7 @@ def is_piped() -> bool:
     return stat.S_ISFIFO(mode) or stat.S_ISREG(mode)
 
 
-def next_answer() -> str | None:
+def read_answer() -> str | None:
     """Return the next line of stdin, without its end; None after the last one."""
     line = sys.stdin.readline()
     return line.rstrip("\r\n") if line else None

@@ -18,7 +18,7 @@ from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ConfigError
 from tuisim.base.source import Program
 from tuisim.commands.echo import echo_error
-from tuisim.commands.notebooks import NotRun, check_folder, known_programs, without_unknown
+from tuisim.commands.notebooks import NotRun, check_folder, drop_unknown, find_programs
 from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.runs.run_folder import StoredRun, field_files
 from tuisim.engine.runs.store import RunStore
@@ -84,7 +84,7 @@ def check_arguments(words: Sequence[str], arguments: Arguments) -> None:
         )
 
 
-def _world(words: Sequence[str], arguments: Arguments) -> WorldFile | None:
+def _load_named_world(words: Sequence[str], arguments: Arguments) -> WorldFile | None:
     """Load the world that is named as a word or with `--world`, if any."""
     named = [word for word in words if is_world_name(word)]
     named += [] if arguments.world is None else [arguments.world]
@@ -93,7 +93,7 @@ def _world(words: Sequence[str], arguments: Arguments) -> WorldFile | None:
     return load_world(find_program(named[0]), arguments.settings.get("mats")) if named else None
 
 
-def _prepared(
+def _prepare_word(
     word: str | None, world: WorldFile | None, arguments: Arguments, config: UserConfig
 ) -> Prepared:
     in_world = world.settings if world else {}
@@ -103,20 +103,20 @@ def _prepared(
             raise ConfigError(
                 f"{named} names no program to pass arguments to", key=ARGUMENTS_FOLLOW
             )
-        settings = merge_settings(_defaults(world, config), in_world, arguments.settings)
-        spec = _spec(settings)
+        settings = merge_settings(_select_defaults(world, config), in_world, arguments.settings)
+        spec = _build_spec(settings)
         plain = merge_settings(arguments.settings)
-        said = _from_config(spec, world, config, plain, arguments.settings)
+        remarks = _find_effective_defaults(spec, world, config, plain, arguments.settings)
         decided = Decided(free=free_paths(settings))
-        return Prepared(None, settings, spec, world, from_config=said, decided=decided)
-    return _of_source(read_program(find_program(word)), world, arguments, config)
+        return Prepared(None, settings, spec, world, from_config=remarks, decided=decided)
+    return _prepare_source(read_program(find_program(word)), world, arguments, config)
 
 
-def _defaults(world: WorldFile | None, config: UserConfig) -> dict[str, Any]:
+def _select_defaults(world: WorldFile | None, config: UserConfig) -> dict[str, Any]:
     return config.layer(Section.APP) | ({} if world else config.layer(Section.SIMULATION))
 
 
-def _from_config(
+def _find_effective_defaults(
     spec: RunSpec,
     world: WorldFile | None,
     config: UserConfig,
@@ -124,34 +124,34 @@ def _from_config(
     *above: Mapping[str, Any],
 ) -> tuple[str, ...]:
     """Return the user's defaults that make the run another one than with the plain settings, in words."""
-    said = () if world else tuple(config.list_effective(*above))
+    remarks = () if world else tuple(config.list_effective(*above))
     try:
-        return said if said and build_run_spec(plain) != spec else ()
+        return remarks if remarks and build_run_spec(plain) != spec else ()
     except ConfigError:
         # Only with them the run exists, such as one on a mat of the user's own folder.
-        return said
+        return remarks
 
 
-def _of_source(
+def _prepare_source(
     file: ProgramSource, world: WorldFile | None, arguments: Arguments, config: UserConfig
 ) -> Prepared:
     layers = [*([world.settings] if world else []), arguments.settings]
-    said = partial(program_settings, file, *layers)
-    found = said(below=_defaults(world, config))
+    resolve_settings = partial(program_settings, file, *layers)
+    effective = resolve_settings(below=_select_defaults(world, config))
     try:
-        program, spec = found.applied_to(file.program), _spec(found.settings)
+        program, spec = effective.applied_to(file.program), _build_spec(effective.settings)
     except ConfigError as error:
-        wrong = wrong_mat(file.program.text, file.program.name, found.settings["mats"])
-        is_it = wrong is not None and found.settings["background"] == file.options["background"]
+        wrong = wrong_mat(file.program.text, file.program.name, effective.settings["mats"])
+        is_it = wrong is not None and effective.settings["background"] == file.options["background"]
         raise (wrong.error if wrong and is_it and not error.file else error) from None
-    above = (found.decided.layer, file.options, arguments.settings)
-    changed = _from_config(spec, world, config, said().settings, *above)
+    above = (effective.decided.layer, file.options, arguments.settings)
+    changed = _find_effective_defaults(spec, world, config, resolve_settings().settings, *above)
     return Prepared(
-        program, found.settings, spec, world, from_config=changed, decided=found.decided
+        program, effective.settings, spec, world, from_config=changed, decided=effective.decided
     )
 
 
-def _spec(settings: Settings) -> RunSpec:
+def _build_spec(settings: Settings) -> RunSpec:
     """Return the run specification; print warnings about the robot file on stderr."""
     robot = (
         settings["robot"]
@@ -163,11 +163,11 @@ def _spec(settings: Settings) -> RunSpec:
     return build_run_spec(settings.changed({"robot": robot}) if robot.notes else settings)
 
 
-def _of_cell(
+def _prepare_cell(
     file: ProgramSource, world: WorldFile | None, arguments: Arguments, config: UserConfig
 ) -> Prepared:
     try:
-        return _of_source(file, world, arguments, config)
+        return _prepare_source(file, world, arguments, config)
     except ConfigError as error:
         # An error about a mat or robot must also name the cell.
         raise ConfigError(
@@ -181,7 +181,7 @@ def prepare_app(words: Sequence[str], arguments: Arguments, config: UserConfig) 
     Raises:
         ConfigError: program, magic line, world or options are wrong, or there are two programs.
     """
-    world = _world(words, arguments)
+    world = _load_named_world(words, arguments)
     programs = [word for word in words if not is_world_name(word)]
     if len(programs) > 1:
         raise ConfigError(
@@ -189,12 +189,14 @@ def prepare_app(words: Sequence[str], arguments: Arguments, config: UserConfig) 
         )
     word = programs[0] if programs else world.program if world else None
     if word is not None and is_notebook(word):
-        return _of_cell(known_programs(word)[0].source, world, arguments, config)
+        return _prepare_cell(find_programs(word)[0].source, world, arguments, config)
     if word is None:
-        return _prepared(word, world, arguments, config)
+        return _prepare_word(word, world, arguments, config)
     source = read_program(find_program(word))
-    mats = merge_settings(_defaults(world, config), source.options, arguments.settings)["mats"]
-    return _of_source(without_wrong_mat(source, mats), world, arguments, config)
+    mats = merge_settings(_select_defaults(world, config), source.options, arguments.settings)[
+        "mats"
+    ]
+    return _prepare_source(without_wrong_mat(source, mats), world, arguments, config)
 
 
 def prepare_replay(
@@ -241,7 +243,7 @@ def prepare_runs(
     Raises:
         ConfigError: a program, magic line, world or option is wrong, or there is no program.
     """
-    world = _world(words, arguments) or usual_world
+    world = _load_named_world(words, arguments) or usual_world
     programs = [word for word in words if not is_world_name(word)]
     if not programs and world and world.program is not None:
         programs = [world.program]
@@ -251,49 +253,50 @@ def prepare_runs(
     prepared: list[Prepared | NotRun] = []
     for word in programs:
         if os.path.isdir(word):
-            prepared += _of_folder(word, world, arguments, config)
+            prepared += _prepare_folder(word, world, arguments, config)
         elif is_notebook(word):
             prepared += [
-                _checked(_of_cell(program.source, world, arguments, config))
-                for program in known_programs(word)
+                _check_mat(_prepare_cell(program.source, world, arguments, config))
+                for program in find_programs(word)
             ]
         else:
-            prepared.append(_checked(_prepared(word, world, arguments, config)))
+            prepared.append(_check_mat(_prepare_word(word, world, arguments, config)))
     return prepared
 
 
-def _of_folder(
+def _prepare_folder(
     word: str, world: WorldFile | None, arguments: Arguments, config: UserConfig
 ) -> list[Prepared | NotRun]:
     # Errors of the command line are raised once, not for each cell.
     build_run_spec(merge_settings(world.settings if world else {}, arguments.settings))
-    found: list[Prepared | NotRun] = []
+    prepared: list[Prepared | NotRun] = []
     for path in check_folder(word, run_all=arguments.all):
         label = os.path.relpath(path, word)
         try:
-            programs = without_unknown(notebook_programs(path))
+            programs = drop_unknown(notebook_programs(path))
         except ConfigError as error:
-            found.append(NotRun(label, error))
+            prepared.append(NotRun(label, error))
             continue
         for program in programs:
             cell = f"{label}#{program.number}"
             try:
-                found.append(
+                prepared.append(
                     replace(
-                        _checked(_of_source(program.source, world, arguments, config)), label=cell
+                        _check_mat(_prepare_source(program.source, world, arguments, config)),
+                        label=cell,
                     )
                 )
             except ConfigError as error:
-                found.append(NotRun(cell, error))
-    if not found:
+                prepared.append(NotRun(cell, error))
+    if not prepared:
         raise ConfigError(
             "has no notebook with a program", "program cells begin with %%sim_magic", file=word
         )
-    return found
+    return prepared
 
 
-def _checked(one: Prepared) -> Prepared:
+def _check_mat(prepared: Prepared) -> Prepared:
     """Read the image of a user's own mat, to detect a damaged file before the run."""
-    if os.path.isabs(one.spec.world.background):
-        field_files(one.spec)
-    return one
+    if os.path.isabs(prepared.spec.world.background):
+        field_files(prepared.spec)
+    return prepared

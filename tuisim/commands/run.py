@@ -18,12 +18,12 @@ from tuisim.base.errors import (
 from tuisim.base.source import source_lines
 from tuisim.commands import exit_status
 from tuisim.commands.echo import Progress, echo_error, echo_written, is_watched, tell
-from tuisim.commands.exit_status import signals_handled
-from tuisim.commands.listings import COLUMN, WORLD, names_of
-from tuisim.commands.notebooks import NotRun, print_list, print_results, to_list
-from tuisim.commands.relay import Follower, RelayInterrupts, is_piped, next_answer
+from tuisim.commands.exit_status import handle_signals
+from tuisim.commands.listings import COLUMN, WORLD, list_names
+from tuisim.commands.notebooks import NotRun, find_listed, print_list, print_results
+from tuisim.commands.relay import Follower, RelayInterrupts, is_piped, read_answer
 from tuisim.commands.resolve import Prepared, check_arguments, prepare_runs
-from tuisim.commands.run_options import input_option, timeout_option
+from tuisim.commands.run_options import build_input_option, build_timeout_option
 from tuisim.engine.breakpoints import check_line, parse_breakpoints, parse_watch
 from tuisim.engine.core.geometry import pose_in_words
 from tuisim.engine.core.profile import NS_PER_S
@@ -38,12 +38,12 @@ from tuisim.settings.options import APP, PANEL
 from tuisim.settings.shared_options import build_shared_options
 from tuisim.settings.user_config import FILE, Section, load_config
 
-MOST_CHARACTERS = 200
+MAX_CHARACTERS = 200
 GO, STOP = "go", "stop"
 
 _REPORTS, _BREAKPOINTS = "Data and limits", "Breakpoints"
 _OPTIONS = (
-    argument("programs", "PROGRAM…", lambda: names_of("programs"), nargs=-1),
+    argument("programs", "PROGRAM…", lambda: list_names("programs"), nargs=-1),
     WORLD,
     option(
         "--export",
@@ -60,8 +60,8 @@ _OPTIONS = (
         group=_REPORTS,
         help="Write the telemetry of a single program, one row per tick.",
     ),
-    timeout_option(_REPORTS),
-    input_option(_REPORTS),
+    build_timeout_option(_REPORTS),
+    build_input_option(_REPORTS),
     option(
         "--all",
         is_flag=True,
@@ -111,7 +111,7 @@ _OPTIONS = (
 
 @command(
     *_OPTIONS,
-    *build_shared_options(hidden=(APP, PANEL), names=names_of),
+    *build_shared_options(hidden=(APP, PANEL), names=list_names),
     passes_arguments=True,
     help="""Run programs without the app.
 
@@ -135,7 +135,7 @@ def run(**given: Any) -> int:
     """
     arguments = Arguments(**given)
     check_arguments(arguments.programs, arguments)
-    if listed := to_list(arguments.programs, run_all=arguments.all):
+    if listed := find_listed(arguments.programs, run_all=arguments.all):
         _check_only_listed(arguments, len(listed))
         print_list(arguments.programs[0], listed)
         return 0
@@ -145,11 +145,13 @@ def run(**given: Any) -> int:
         arguments,
         config=load_config().checked().keep_section(Section.SIMULATION),
     )
-    for said in dict.fromkeys(
-        one.from_config for one in prepared if isinstance(one, Prepared) and one.from_config
+    for remark in dict.fromkeys(
+        candidate.from_config
+        for candidate in prepared
+        if isinstance(candidate, Prepared) and candidate.from_config
     ):
-        echo_error(f"note: from {FILE}: {', '.join(said)}")
-    to_run = [one for one in prepared if isinstance(one, Prepared)]
+        echo_error(f"note: from {FILE}: {', '.join(remark)}")
+    to_run = [candidate for candidate in prepared if isinstance(candidate, Prepared)]
     _tell_notes(to_run, strict=arguments.strict)
     check_breaks(arguments.breaks, arguments.watches, to_run)
     telemetry = arguments.telemetry
@@ -157,7 +159,7 @@ def run(**given: Any) -> int:
     if telemetry is not None and len(prepared) > 1:
         raise ConfigError("takes one program", f"got {len(prepared)}", key="--telemetry")
     store, interrupts = RunStore(), RelayInterrupts()
-    with signals_handled(interrupts.handle), Progress(""):
+    with handle_signals(interrupts.handle), Progress(""):
         code, results = _run_all(prepared, arguments, store, interrupts)
         if done := [run for _, run in results if run is not None]:
             _export(done, arguments)
@@ -172,10 +174,12 @@ def _tell_notes(prepared: Sequence[Prepared], *, strict: bool) -> None:
     Raises:
         ConfigError: the brick would refuse a line, and `strict` makes that an error.
     """
-    decided = [one.decided for one in prepared]
-    if strict and (refused := next(filter(None, (one.refusal for one in decided)), "")):
+    decided = [program.decided for program in prepared]
+    if strict and (refused := next(filter(None, (program.refusal for program in decided)), "")):
         raise ConfigError(refused, "leave out --strict to run it")
-    for note in dict.fromkeys(note for one in decided for note in (one.note, one.refusal) if note):
+    for note in dict.fromkeys(
+        note for program in decided for note in (program.note, program.refusal) if note
+    ):
         echo_error(f"note: {note}")
 
 
@@ -247,7 +251,7 @@ class BreakpointReporter:
         lines += [f"    {variable.name} = {variable.value}" for variable in inspected.variables]
         lines += [f"    {watch.text} → {watch.value or watch.error}" for watch in inspected.watches]
         lines += [f"    {note}" for note in (inspected.waiting, inspected.note) if note]
-        return [lines[0], *(shortened(line, MOST_CHARACTERS) for line in lines[1:])]
+        return [lines[0], *(shortened(line, MAX_CHARACTERS) for line in lines[1:])]
 
 
 def _export(done: Sequence[StoredRun], arguments: Arguments) -> None:
@@ -296,23 +300,23 @@ def _run_all(
     """Run the programs in turn until done or interrupted; return the worst exit code, and (label, run) pairs."""
     results: list[tuple[str, StoredRun | None]] = []
     code = 0
-    for at, one in enumerate(prepared):
-        if isinstance(one, NotRun):
-            one.report(as_json=arguments.json)
-            results.append((one.label, None))
+    for number, program in enumerate(prepared):
+        if isinstance(program, NotRun):
+            program.report(as_json=arguments.json)
+            results.append((program.label, None))
             code = max(code, exit_status.EXIT_BAD_OUTPUT)
             continue
-        how_far = _how_far(at, len(prepared))
-        exit_code, handle = _run_one(one, arguments, store, interrupts, how_far)
+        how_far = _build_progress(number, len(prepared))
+        exit_code, handle = _run_one(program, arguments, store, interrupts, how_far)
         try:
             run = handle.stored()
         except LogError:
             echo_error(
                 f"tuisim: {handle.program.name}: run {handle.number} was not stored: {handle.unstored}"
             )
-            exit_code = exit_status.of_unstored(exit_code)
+            exit_code = exit_status.choose_unstored_code(exit_code)
         else:
-            results.append((one.label or run.program.name, run))
+            results.append((program.label or run.program.name, run))
             exit_status.report(run, exit_code, as_json=arguments.json)
         code = max(code, exit_code)
         if exit_code > SIGNALLED:
@@ -320,7 +324,7 @@ def _run_all(
     return code, results
 
 
-def _how_far(number: int, count: int) -> Callable[[RunHandle], None]:
+def _build_progress(number: int, count: int) -> Callable[[RunHandle], None]:
     """Return a callback that shows the progress of one of several runs."""
 
     def tell_run(handle: RunHandle) -> None:
@@ -336,17 +340,17 @@ def _how_far(number: int, count: int) -> Callable[[RunHandle], None]:
     return tell_run if is_watched() else lambda _: None
 
 
-def _options(one: Prepared, arguments: Arguments) -> RunOptions:
+def _choose_options(prepared: Prepared, arguments: Arguments) -> RunOptions:
     """Return how a program is run; without given answers, a pipe or a file on stdin answers `input()`."""
-    speed = one.settings["speed"] or 0.0
-    answers = arguments.input or (one.world.inputs if one.world else ())
+    speed = prepared.settings["speed"] or 0.0
+    answers = arguments.input or (prepared.world.inputs if prepared.world else ())
     asks_pipe = not answers and is_piped()
     return RunOptions(
         live=speed > 0,
         speed=speed,
         time_limit_s=arguments.timeout,
         answers=answers,
-        actions=press_actions(one.settings["press"], one.spec.profile.tick_hz),
+        actions=press_actions(prepared.settings["press"], prepared.spec.profile.tick_hz),
         breaks=arguments.breaks,
         asks_user=asks_pipe,
         time_waits=asks_pipe,
@@ -354,21 +358,21 @@ def _options(one: Prepared, arguments: Arguments) -> RunOptions:
 
 
 def _run_one(
-    one: Prepared,
+    prepared: Prepared,
     arguments: Arguments,
     store: RunStore,
     interrupts: RelayInterrupts,
     how_far: Callable[[RunHandle], None],
 ) -> tuple[int, RunHandle]:
-    assert one.program is not None
-    options = _options(one, arguments)
-    handle = start_run(one.program, one.spec, options, store)
+    assert prepared.program is not None
+    options = _choose_options(prepared, arguments)
+    handle = start_run(prepared.program, prepared.spec, options, store)
     interrupts.watch(handle)
     reporter = BreakpointReporter(handle, arguments.watches, stops=arguments.break_then == STOP)
 
     def listen(event: Message) -> None:
         if isinstance(event, InputWanted):
-            handle.send(Answer(next_answer()))
+            handle.send(Answer(read_answer()))
         else:
             reporter.handle(event)
 
@@ -376,15 +380,15 @@ def _run_one(
         out = sys.stderr if arguments.json else sys.stdout
         is_heard = options.breaks or options.asks_user
         follower = Follower(handle, out, listen if is_heard else None, how_far)
-        ended = follower.to_the_end()
+        ended = follower.follow_to_end()
     finally:
         handle.close()
     if follower.lost:
         echo_error(f"tuisim: {follower.lost} (run {handle.number} contains every line)")
-    ended_code = exit_status.exit_code_of(ended.end, ended.exit_code)
+    ended_code = exit_status.choose_exit_code(ended.end, ended.exit_code)
     if reporter.stopped:
         ended_code = exit_status.EXIT_LIMIT
     code = interrupts.exit_code or follower.cut or ended_code
     if handle.unstored:
-        code = exit_status.of_unstored(code)
+        code = exit_status.choose_unstored_code(code)
     return max(code, exit_status.EXIT_BAD_OUTPUT) if follower.lost else code, handle

@@ -12,7 +12,7 @@ MAX_TIME_LIMIT_S = 1e6
 _LIMIT = Number(0.001, MAX_TIME_LIMIT_S)
 
 
-def timeout_option(group: str, default_s: float = DEFAULT_TIME_LIMIT_S) -> GroupedOption:
+def build_timeout_option(group: str, default_s: float = DEFAULT_TIME_LIMIT_S) -> GroupedOption:
     """Return `--timeout S`, in simulated seconds."""
     return option(
         "--timeout",
@@ -24,7 +24,7 @@ def timeout_option(group: str, default_s: float = DEFAULT_TIME_LIMIT_S) -> Group
     )
 
 
-def input_option(group: str) -> GroupedOption:
+def build_input_option(group: str) -> GroupedOption:
     """Return `--input TEXT`: the answers of each run, in order."""
     return option(
         "--input",

@@ -17,6 +17,7 @@ from typing import Any
 from tuisim.base.errors import ConfigError, LogError, counted, shortened
 from tuisim.commands.echo import (
     Progress,
+    draw_table,
     echo,
     echo_error,
     echo_json,
@@ -24,10 +25,9 @@ from tuisim.commands.echo import (
     echo_lines,
     echo_written,
     size,
-    table,
     tell,
 )
-from tuisim.commands.exit_status import describe, last_state
+from tuisim.commands.exit_status import describe, describe_last_state
 from tuisim.commands.movies import movie, picture
 from tuisim.engine.core import tree
 from tuisim.engine.core.drift import draw_echo_bias_mm, draw_errors, draw_light_gain, find_drift
@@ -72,7 +72,7 @@ def _load(store: RunStore, words: Sequence[str]) -> list[StoredRun]:
     return [store.load_run(word) for word in words]
 
 
-def _needed(words: Sequence[str], action: str) -> Sequence[str]:
+def _require_words(words: Sequence[str], action: str) -> Sequence[str]:
     if not words:
         raise ConfigError("no run given", f"see `tuisim runs {action} --help`", key=action)
     return words
@@ -128,12 +128,12 @@ def list_runs(as_json: bool) -> int:
         )
         if sys.stdout.isatty() and shutil.get_terminal_size().columns < _ALL_COLUMNS:
             heads, rows = (
-                tuple(heads[at] for at in _FEWER),
-                [tuple(row[at] for at in _FEWER) for row in rows],
+                tuple(heads[index] for index in _FEWER),
+                [tuple(row[index] for index in _FEWER) for row in rows],
             )
             # The year and the seconds are left out, too.
             rows = [(number, str(created)[5:16], *rest) for number, created, *rest in rows]
-        echo_lines(table(heads, rows))
+        echo_lines(draw_table(heads, rows))
     return 0
 
 
@@ -149,12 +149,12 @@ def _cut(text: str) -> str:
 @command(_runs, AS_JSON)
 def show(words: Sequence[str], as_json: bool) -> int:
     """Show how a run ended, what it printed and when."""
-    for run in _load(RunStore(), _needed(words, "show")):
+    for run in _load(RunStore(), _require_words(words, "show")):
         _show(run, as_json=as_json)
     return 0
 
 
-def _plain(row: OutputRow) -> dict[str, object]:
+def _convert_plain(row: OutputRow) -> dict[str, object]:
     return {
         "time_s": row.time_ns / 1e9,
         "line": row.line,
@@ -163,15 +163,15 @@ def _plain(row: OutputRow) -> dict[str, object]:
     }
 
 
-def _values(run: StoredRun) -> dict[str, Any]:
+def _read_values(run: StoredRun) -> dict[str, Any]:
     """Return the values of a run that options and world files set, by path."""
     return {
-        path: toml_form(one.value, tree.get_value(run.spec, one.spec_path))
-        for path, one in RUN_VALUES.items()
+        path: toml_form(run_value.value, tree.get_value(run.spec, run_value.spec_path))
+        for path, run_value in RUN_VALUES.items()
     }
 
 
-def _files_read(run: StoredRun) -> tuple[FilesRead, tuple[str, ...]]:
+def _list_files_read(run: StoredRun) -> tuple[FilesRead, tuple[str, ...]]:
     """Return the files that the program has read, and a note if their list is damaged."""
     try:
         return read_reads(run.folder), ()
@@ -179,7 +179,7 @@ def _files_read(run: StoredRun) -> tuple[FilesRead, tuple[str, ...]]:
         return FilesRead(), (str(error),)
 
 
-def _drawn_words(spec: RunSpec) -> str:
+def _describe_drawn(spec: RunSpec) -> str:
     """Return the errors that the seed of a run with drift has drawn."""
     drift = find_drift(spec)
     drawn = draw_errors(drift, spec.seed)
@@ -201,13 +201,15 @@ def _show(run: StoredRun, *, as_json: bool) -> None:
     rows = (row for row in run.output.rows() if row.stream in STREAMS)
     if as_json:
         # The counts are known only after all rows have been read.
-        read, _ = _files_read(run)
+        read, _ = _list_files_read(run)
         files = {
             "files_read": [asdict(file) for file in read.files],
             "files_left_out": read.left_out,
         }
         echo_json_head(
-            "output", map(_plain, rows), describe(run) | {"values": _values(run)} | files
+            "output",
+            map(_convert_plain, rows),
+            describe(run) | {"values": _read_values(run)} | files,
         )
         return
     facts = describe(run, QUICK_BYTES)
@@ -215,18 +217,18 @@ def _show(run: StoredRun, *, as_json: bool) -> None:
         f"{facts['id']} · {facts['created']} · {facts['background']} · {facts['robot']} · {facts['profile']} · "
         f"seed {facts['seed']}"
     )
-    echo(last_state(facts))
+    echo(describe_last_state(facts))
     if chosen := [
         f"{path} {quote(value)}"
-        for path, value in _values(run).items()
+        for path, value in _read_values(run).items()
         if value != RUN_VALUES[path].default
     ]:
         echo(f"values: {', '.join(chosen)}")
     if not run.spec.world.drift.is_none:
-        echo(f"drawn: {_drawn_words(run.spec)}")
+        echo(f"drawn: {_describe_drawn(run.spec)}")
     if facts["arguments"]:
         echo(f"arguments: {shlex.join(facts['arguments'])}")
-    read, damage = _files_read(run)
+    read, damage = _list_files_read(run)
     for note in (*facts["notes"], *damage):
         echo(f"note: {note}")
     for file in read.files:
@@ -256,11 +258,11 @@ def rm(words: Sequence[str], older_than: str | None) -> int:
     with Progress("rm"):
         # All are looked up before the first is removed; one may be named twice.
         if older_than is None:
-            found = [store.find(word).id for word in _needed(words, "rm")]
+            run_ids = [store.find(word).id for word in _require_words(words, "rm")]
         else:
-            found = _older(store, words, older_than)
-        for number, run_id in enumerate(dict.fromkeys(found)):
-            tell("removing runs", number, len(found))
+            run_ids = _find_older(store, words, older_than)
+        for number, run_id in enumerate(dict.fromkeys(run_ids)):
+            tell("removing runs", number, len(run_ids))
             folder = store.folder(run_id)
             target = os.path.realpath(folder) if folder.is_symlink() else ""
             freed += 0 if target else bytes_in(folder)
@@ -268,11 +270,11 @@ def rm(words: Sequence[str], older_than: str | None) -> int:
             if target:
                 echo_error(f"note: run {run_id} was a link; its target was not removed: {target}")
     if older_than is not None:
-        echo(f"{counted(len(found), 'run')} removed, {size(freed)}")
+        echo(f"{counted(len(run_ids), 'run')} removed, {size(freed)}")
     return 0
 
 
-def _older(store: RunStore, words: Sequence[str], age: str) -> list[str]:
+def _find_older(store: RunStore, words: Sequence[str], age: str) -> list[str]:
     """Return the ids of finished runs older than an age such as `30d`."""
     if words:
         raise ConfigError("takes no run", f"got {' '.join(words)}", key="--older-than")
@@ -287,11 +289,11 @@ def _older(store: RunStore, words: Sequence[str], age: str) -> list[str]:
     return [
         run.id
         for run in store.runs()
-        if run.end is not Unended.RUNNING and _created_before(run.created, before)
+        if run.end is not Unended.RUNNING and _is_older(run.created, before)
     ]
 
 
-def _created_before(created: str, moment: datetime) -> bool:
+def _is_older(created: str, moment: datetime) -> bool:
     try:
         return datetime.fromisoformat(created) < moment
     except (ValueError, TypeError):
@@ -307,7 +309,8 @@ def rerun_runs(words: Sequence[str], as_json: bool) -> int:
     """
     with Progress("rerun"):
         return max(
-            _rerun(run, as_json=as_json) for run in _load(RunStore(), _needed(words, "rerun"))
+            _rerun(run, as_json=as_json)
+            for run in _load(RunStore(), _require_words(words, "rerun"))
         )
 
 
@@ -327,22 +330,25 @@ def _rerun(run: StoredRun, *, as_json: bool) -> int:
         finally:
             handle.close()
         tell(f"comparing run {run.number}")
-        found = same(run, scratch.load_run(handle.run_id))
+        comparison = same(run, scratch.load_run(handle.run_id))
     if as_json:
-        echo_json({"run": run.number, **found.to_plain(), "notes": list(notes)})
+        echo_json({"run": run.number, **comparison.to_plain(), "notes": list(notes)})
     else:
-        echo_lines(diff_text(found))
-    return 0 if found.same else 1
+        echo_lines(format_diff(comparison))
+    return 0 if comparison.same else 1
 
 
-def diff_text(found: RunDiff) -> str:
+def format_diff(comparison: RunDiff) -> str:
     """Return a comparison as readable text."""
-    recording, setup = recording_in_words(found), setup_in_words(found)
-    pairs = (*recording, *setup) if found.same else (*setup, *recording)
+    recording, setup = recording_in_words(comparison), setup_in_words(comparison)
+    pairs = (*recording, *setup) if comparison.same else (*setup, *recording)
     lines = [f"{label}: {words}" if label else words for label, words in pairs]
-    if found.divergence and not found.same:
-        rows = [[f"{at:.2f}", f"{mm:.3f}", f"{deg:.3f}"] for at, mm, deg in found.divergence.table]
-        lines.append(table(("SECONDS", "APART MM", "HEADING °"), rows))
+    if comparison.divergence and not comparison.same:
+        rows = [
+            [f"{time_s:.2f}", f"{mm:.3f}", f"{deg:.3f}"]
+            for time_s, mm, deg in comparison.divergence.table
+        ]
+        lines.append(draw_table(("SECONDS", "APART MM", "HEADING °"), rows))
     return "\n".join(lines)
 
 

@@ -38,7 +38,7 @@ def test_works_without_a_terminal(tmp_path: Path) -> None:
         "name": "terminal",
         "value": "none",
         "state": "advice",
-        "advice": diagnosis.no_terminal_finding().advice,
+        "advice": diagnosis.judge_no_terminal().advice,
     }
     assert not (tmp_path / "new").exists()
 

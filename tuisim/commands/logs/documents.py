@@ -13,7 +13,7 @@ from tuisim.analysis.model import Model
 from tuisim.analysis.source import LogRequest, OpenedLog, open_pieces
 from tuisim.base.errors import ConfigError, LogError, listed
 from tuisim.commands.echo import echo, echo_drawn, echo_error, echo_written
-from tuisim.commands.logs.sources import asked, names_of, the_source
+from tuisim.commands.logs.sources import build_request, choose_names, open_single
 from tuisim.logs.derived import add_named_columns
 from tuisim.logs.log import Log
 from tuisim.pictures.charts.files import (
@@ -26,7 +26,7 @@ from tuisim.pictures.charts.files import (
 )
 from tuisim.settings.command_line import Arguments
 
-_LEAST_COLUMNS, _ROWS = 20, (12, 32)
+_MIN_COLUMNS, _ROWS = 20, (12, 32)
 """Size of the chart in the shell: minimum width, and limits of its height."""
 
 
@@ -40,10 +40,12 @@ def plot(arguments: Arguments) -> int:
     """
     target = Path(arguments.out) if arguments.out else None
     kind = find_format(target) if target else CHART_FORMATS[".txt"]
-    size = _size(arguments.size, kind.smallest, kind.largest) if arguments.size else None
-    log = the_source(arguments)
-    model = _model(log, arguments)
-    view = View(arguments.facets, arguments.marks, against=_against(log, model, arguments))
+    size = (
+        _parse_option_size(arguments.size, kind.smallest, kind.largest) if arguments.size else None
+    )
+    log = open_single(arguments)
+    model = _build_model(log, arguments)
+    view = View(arguments.facets, arguments.marks, against=_choose_pair(log, model, arguments))
     _check_visible(model)
     if target:
         save_chart(partial(build_chart, model, view), target, size)
@@ -71,19 +73,19 @@ def _check_visible(model: Model) -> None:
         )
 
 
-def _size(text: str, least: Size, most: Size) -> Size:
-    size = parse_size(text, least, most)
+def _parse_option_size(text: str, smallest: Size, largest: Size) -> Size:
+    size = parse_size(text, smallest, largest)
     if size is None:
-        allowed = f"width and height, {describe_limits(least, most)}"
+        allowed = f"width and height, {describe_limits(smallest, largest)}"
         raise ConfigError(f"cannot draw a chart of {text!r}", allowed, key="--size")
     return size
 
 
-def _model(log: Log, arguments: Arguments) -> Model:
+def _build_model(log: Log, arguments: Arguments) -> Model:
     """Return the model of a log with the chosen variables and time range."""
     model = Model(OpenedLog(LogRequest(), log))
     if arguments.variable and not arguments.against:
-        names = names_of(log, arguments)
+        names = choose_names(log, arguments)
         for trace in model.traces:
             trace.on = trace.name in names
     start, stop = getattr(arguments, "from"), arguments.to
@@ -99,7 +101,7 @@ def _model(log: Log, arguments: Arguments) -> Model:
     return model
 
 
-def _against(log: Log, model: Model, arguments: Arguments) -> tuple[str, str] | None:
+def _choose_pair(log: Log, model: Model, arguments: Arguments) -> tuple[str, str] | None:
     if not arguments.against:
         return None
     if len(arguments.variable) > 1:
@@ -122,7 +124,7 @@ def _show(model: Model, view: View, size: Size | None) -> None:
 
     terminal = shutil.get_terminal_size()
     width, height = size or (
-        max(terminal.columns, _LEAST_COLUMNS),
+        max(terminal.columns, _MIN_COLUMNS),
         min(max(terminal.lines - 2, _ROWS[0]), _ROWS[1]),
     )
     finer = CHART_FORMATS[".txt"].finer
@@ -147,7 +149,7 @@ def report(arguments: Arguments) -> int:
         )
     if arguments.out:
         check_report(Path(arguments.out))
-    request = asked(arguments)
+    request = build_request(arguments)
     if arguments.telemetry and len(request.runs) > 1:
         raise ConfigError("takes one run", f"got {len(request.runs)}", key="--telemetry")
     if request.runs and (arguments.time is not None or arguments.value):
@@ -156,7 +158,7 @@ def report(arguments: Arguments) -> int:
         )
     *_, source = open_pieces(request)
     source = replace(source, log=add_named_columns(source.log, " ".join(arguments.variable)))
-    names = names_of(source.log, arguments) if arguments.variable else ()
+    names = choose_names(source.log, arguments) if arguments.variable else ()
     target = Path(arguments.out or build_default_name(source))
     write_report(source, target, names)
     echo(str(target))

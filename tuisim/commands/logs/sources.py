@@ -35,7 +35,7 @@ def is_file(word: str) -> bool:
     return word == STDIN or bool(path.suffix)
 
 
-def asked(arguments: Arguments) -> LogRequest:
+def build_request(arguments: Arguments) -> LogRequest:
     """Return the file or the runs that the arguments name, with the columns to use.
 
     Raises:
@@ -81,7 +81,7 @@ def open_sources(arguments: Arguments) -> Iterator[Log]:
     yield from _open_runs(runs, arguments)
 
 
-def the_source(arguments: Arguments) -> Log:
+def open_single(arguments: Arguments) -> Log:
     """Return the single named log.
 
     Raises:
@@ -99,7 +99,7 @@ def _open_runs(words: Sequence[str], arguments: Arguments) -> Iterator[Log]:
         return
     store = RunStore()
     runs = [store.load_run(word) for word in words]
-    for log in _logs_of(runs, arguments):
+    for log in _read_runs(runs, arguments):
         if not log.rows:
             damage = "; ".join(log.notes)
             if log.metadata.get("table") == "telemetry":
@@ -109,10 +109,10 @@ def _open_runs(words: Sequence[str], arguments: Arguments) -> Iterator[Log]:
             hint = "a program logs by printing lines such as `Colour: 50`; --telemetry uses every tick instead"
             raise LogError("no samples", damage or hint, file=log.title)
         layout = choose_columns(log.table, build_choices(arguments))
-        yield _ready(log.replace_layout(layout), arguments)
+        yield _prepare_log(log.replace_layout(layout), arguments)
 
 
-def _logs_of(runs: Sequence[StoredRun], arguments: Arguments) -> list[Log]:
+def _read_runs(runs: Sequence[StoredRun], arguments: Arguments) -> list[Log]:
     """Return the samples of some runs, or the telemetry of each, where that is asked for or has what is asked for."""
     if arguments.telemetry:
         _name_columns(arguments, (), runs)
@@ -159,10 +159,10 @@ def _open_file(word: str, arguments: Arguments) -> Log:
     if arguments.time is None and not log.metadata:
         hint = "--time COLUMN selects another, --time '' uses row numbers"
         echo_error(f"note: {log.title}: {time_in_words(log.layout)} ({hint})")
-    return _ready(log, arguments)
+    return _prepare_log(log, arguments)
 
 
-def _ready(log: Log, arguments: Arguments) -> Log:
+def _prepare_log(log: Log, arguments: Arguments) -> Log:
     """Tell the notes on a log; return it with the columns that must be asked for by name."""
     # The notes of a summary are its last lines.
     if arguments.action != "summary":
@@ -172,25 +172,25 @@ def _ready(log: Log, arguments: Arguments) -> Log:
     return add_named_columns(log, " ".join((*words, *(getattr(arguments, "variable", None) or ()))))
 
 
-def names_of(log: Log, arguments: Arguments) -> tuple[str, ...]:
+def choose_names(log: Log, arguments: Arguments) -> tuple[str, ...]:
     """Return the chosen variables, all by default; `A` also matches `A #1` and `A #2`.
 
     Raises:
         LogError: there is no such variable.
     """
-    wanted: Sequence[str] = arguments.variable
+    variables: Sequence[str] = arguments.variable
     with_rows = log.sampled_names
     if not with_rows:
         hint = f"its columns are {listed(log.table.column_names)}"
         raise LogError("no numeric column", hint, file=log.title)
-    if not wanted:
+    if not variables:
         return with_rows
-    found: list[str] = []
-    for word in wanted:
+    names: list[str] = []
+    for word in variables:
         matching = [name for name in with_rows if name == word or name.partition(" #")[0] == word]
         if not matching:
             run = read_spec(log.metadata)
             columns = () if run is None else list_column_names(run)
             raise LogError(f"no variable {word!r}", among(word, with_rows, columns), file=log.title)
-        found += matching
-    return tuple(dict.fromkeys(found))
+        names += matching
+    return tuple(dict.fromkeys(names))

@@ -28,10 +28,10 @@ from tuisim.commands.echo import (
     echo_table,
     echo_wrapped,
     echo_written,
-    finite,
+    replace_infinite,
     tell,
 )
-from tuisim.commands.logs.sources import is_file, names_of, open_sources, the_source
+from tuisim.commands.logs.sources import choose_names, is_file, open_single, open_sources
 from tuisim.engine.core.conditions import Operator
 from tuisim.engine.runs.arrays import FloatArray
 from tuisim.engine.runs.command_events import CommandIndex, parse_command_search
@@ -64,7 +64,7 @@ def summary(arguments: Arguments) -> int:
     notes: list[str] = []
     for log in open_sources(arguments):
         notes += [f"note: {log.title}: {note}" for note in log.notes]
-        for name in names_of(log, arguments):
+        for name in choose_names(log, arguments):
             series = log.series(name)
             figures = asdict(signals.compute_summary(series.values))
             quantiles = dict(zip(_QUANTILE_NAMES, figures.pop("quantiles"), strict=True))
@@ -87,7 +87,7 @@ def bands(arguments: Arguments) -> int:
     """Print the plateaus of every variable: level, name, times, width."""
     titles: list[str] = []
     reports: list[BandReport] = []
-    for title, report in _reports(arguments):
+    for title, report in _iterate_reports(arguments):
         titles += [title] * report.count
         reports.append(report)
     formats = {
@@ -104,7 +104,8 @@ def bands(arguments: Arguments) -> int:
         "width_mm": "",
     }
     columns = {
-        name: _joined([report.columns[name] for report in reports]) for name in reports[0].columns
+        name: _join_columns([report.columns[name] for report in reports])
+        for name in reports[0].columns
     }
     is_table = not arguments.json and not arguments.out
     if is_table:
@@ -118,14 +119,14 @@ def bands(arguments: Arguments) -> int:
     return 0
 
 
-def _reports(arguments: Arguments) -> Iterator[tuple[str, BandReport]]:
+def _iterate_reports(arguments: Arguments) -> Iterator[tuple[str, BandReport]]:
     """Yield the bands of every variable, with the title of its log."""
     for log in open_sources(arguments):
-        for name in names_of(log, arguments):
+        for name in choose_names(log, arguments):
             yield log.title, build_band_report(log, name)
 
 
-def _joined(columns: Sequence[Column]) -> Column:
+def _join_columns(columns: Sequence[Column]) -> Column:
     """Return columns one after the other."""
     if isinstance(columns[0], np.ndarray):
         return np.concatenate(columns)
@@ -134,25 +135,25 @@ def _joined(columns: Sequence[Column]) -> Column:
 
 def events(arguments: Arguments) -> int:
     """Print where each variable crosses the threshold, or what the programs of runs asked."""
-    threshold = _threshold_of(arguments)
+    threshold = _parse_threshold_option(arguments)
     if isinstance(threshold, CommandChoice):
         return _show_commands(arguments, threshold.words)
     if threshold.name:
         arguments.variable = (threshold.name,)
     rows: list[dict[str, Any]] = []
     for log in open_sources(arguments):
-        for name in names_of(log, arguments):
+        for name in choose_names(log, arguments):
             series = log.series(name)
-            for found in threshold.find_crossings(series):
-                direction = "rises" if found.rising else "falls"
-                row = int(series.rows[found.sample])
+            for crossing in threshold.find_crossings(series):
+                direction = "rises" if crossing.rising else "falls"
+                row = int(series.rows[crossing.sample])
                 rows.append(
                     {
                         "log": log.title,
                         "variable": name,
-                        "time_s": found.time_s,
+                        "time_s": crossing.time_s,
                         "crossing": direction,
-                        "value": found.value,
+                        "value": crossing.value,
                         "row": row,
                     }
                 )
@@ -187,7 +188,7 @@ def _show_commands(arguments: Arguments, words: str) -> int:
     return 0
 
 
-def _threshold_of(arguments: Arguments) -> EventChoice:
+def _parse_threshold_option(arguments: Arguments) -> EventChoice:
     """Return the threshold that is asked for; its name is empty for every variable.
 
     Raises:
@@ -209,13 +210,13 @@ def _threshold_of(arguments: Arguments) -> EventChoice:
     return replace(threshold, hysteresis=threshold.hysteresis or arguments.hysteresis)
 
 
-def _each(arguments: Arguments, column: str, change: Callable[[Series], FloatArray]) -> int:
+def _print_each(arguments: Arguments, column: str, change: Callable[[Series], FloatArray]) -> int:
     """Output a long frame with one more column, computed per variable."""
     import pandas as pd
 
-    log = the_source(arguments)
+    log = open_single(arguments)
     parts = []
-    for name in names_of(log, arguments):
+    for name in choose_names(log, arguments):
         series = log.series(name)
         columns = {
             "time": series.time_s,
@@ -230,7 +231,7 @@ def _each(arguments: Arguments, column: str, change: Callable[[Series], FloatArr
 
 def derive(arguments: Arguments) -> int:
     """Output the derivative of each variable, in units per second."""
-    return _each(
+    return _print_each(
         arguments,
         "derivative",
         lambda series: signals.compute_derivative(series.time_s, series.values),
@@ -239,7 +240,7 @@ def derive(arguments: Arguments) -> int:
 
 def integrate(arguments: Arguments) -> int:
     """Output the integral of each variable, in units times seconds."""
-    return _each(
+    return _print_each(
         arguments,
         "integral",
         lambda s: signals.compute_integral(s.time_s, s.values, arguments.between),
@@ -248,7 +249,7 @@ def integrate(arguments: Arguments) -> int:
 
 def average(arguments: Arguments) -> int:
     """Output the centred rolling mean of each variable."""
-    return _each(
+    return _print_each(
         arguments,
         "average",
         lambda series: signals.compute_moving_average(series.values, arguments.width),
@@ -257,10 +258,10 @@ def average(arguments: Arguments) -> int:
 
 def even(arguments: Arguments) -> int:
     """Output every variable resampled at a fixed period, one column each."""
-    log = the_source(arguments)
+    log = open_single(arguments)
     if arguments.period is None:
         raise ConfigError("no period given", "such as --period 0.1", key="resample")
-    all_series = [log.series(name) for name in names_of(log, arguments)]
+    all_series = [log.series(name) for name in choose_names(log, arguments)]
     start = min(float(series.time_s.min()) for series in all_series)
     stop = max(float(series.time_s.max()) for series in all_series)
     moments = signals.build_even_moments(start, stop, arguments.period)
@@ -274,7 +275,7 @@ def calculate(arguments: Arguments) -> int:
         raise ConfigError(
             "no expression given", "such as --expression '(left + right) / 2'", key="calc"
         )
-    log = the_source(arguments)
+    log = open_single(arguments)
     show_frame(build_computed_frame(log, arguments.expression), arguments)
     return 0
 
@@ -286,7 +287,7 @@ def reckon(arguments: Arguments) -> int:
         LogError: the log is no telemetry, or is empty.
     """
     arguments.telemetry = True
-    log = the_source(arguments)
+    log = open_single(arguments)
     computed = {series.name: series.values for series in build_reckoned_series(log)}
     frame = log.table.select(["time", *POSE]).to_pandas().assign(**computed)
     if arguments.out or arguments.json:
@@ -296,9 +297,9 @@ def reckon(arguments: Arguments) -> int:
         raise LogError("has no ticks", file=log.title)
     end, worst = frame.iloc[-1], frame.loc[frame["error_mm"].idxmax()]
     real, reckoned = ([end[f"{of}{name}"] for name in POSE] for of in ("", "reckoned_"))
-    error = [one - other for one, other in zip(reckoned, real, strict=True)]
+    error = [number - other for number, other in zip(reckoned, real, strict=True)]
     # By the shorter way round.
-    error = [round(one, 2) + 0.0 for one in (*error[:2], (error[2] + 180.0) % 360.0 - 180.0)]
+    error = [round(number, 2) + 0.0 for number in (*error[:2], (error[2] + 180.0) % 360.0 - 180.0)]
     rows = [("real", *real), ("reckoned", *reckoned), ("error", *error)]
     formats = dict(zip(("at_the_end", *POSE), ("", ".2f", ".2f", ".2f"), strict=True))
     show_rows([dict(zip(formats, row, strict=True)) for row in rows], arguments, formats)
@@ -317,8 +318,8 @@ def export(arguments: Arguments) -> int:
         _export_mcap(arguments)
         return 0
     check_target(arguments.out, (SUFFIX,))
-    log = the_source(arguments)
-    export_log(log, _chosen_part(log, arguments), arguments.out)
+    log = open_single(arguments)
+    export_log(log, _select_part(log, arguments), arguments.out)
     echo_written(arguments.out)
     return 0
 
@@ -326,8 +327,8 @@ def export(arguments: Arguments) -> int:
 def _export_mcap(arguments: Arguments) -> None:
     target = Path(arguments.out)
     load_writer()
-    log = the_source(arguments)
-    names = names_of(log, arguments)
+    log = open_single(arguments)
+    names = choose_names(log, arguments)
     has_pose = not arguments.variable or set(POSE) <= set(arguments.variable)
     infinite = export_mcap(
         log, names, target, lambda part: tell(f"writing {target}", part, 1.0), has_pose=has_pose
@@ -338,18 +339,18 @@ def _export_mcap(arguments: Arguments) -> None:
     echo_written(target)
 
 
-def _chosen_part(log: Log, arguments: Arguments) -> LogTable:
+def _select_part(log: Log, arguments: Arguments) -> LogTable:
     """Return the rows of the chosen variables; of a wide log, their columns and those that are not variables."""
     if not arguments.variable:
         return log.table
-    names = names_of(log, arguments)
+    names = choose_names(log, arguments)
     rows = np.unique(np.concatenate([log.series(name).rows for name in names]))
     part = log.table if len(rows) == log.rows else log.table.take(rows)
     if log.layout.variable:
         return part
-    wanted = {name.partition(" #")[0] for name in names}
+    variables = {name.partition(" #")[0] for name in names}
     return part.select(
-        [name for name in part.column_names if name in wanted or name not in log.layout.values]
+        [name for name in part.column_names if name in variables or name not in log.layout.values]
     )
 
 
@@ -364,17 +365,17 @@ def diff(arguments: Arguments) -> int:
     if len(words) != 2:
         raise ConfigError("takes two runs", f"got {len(words)}", key="diff")
     # Imported on demand: no other command here needs stored runs.
-    from tuisim.commands.runs import diff_text
+    from tuisim.commands.runs import format_diff
     from tuisim.engine.runs.diff import diff_runs
     from tuisim.engine.runs.store import RunStore
 
     store = RunStore()
-    found = diff_runs(*map(store.load_run, words))
+    difference = diff_runs(*map(store.load_run, words))
     if arguments.json:
-        echo_json(found.to_plain())
+        echo_json(difference.to_plain())
     else:
-        echo_lines(diff_text(found))
-    return 0 if found.same else 1
+        echo_lines(format_diff(difference))
+    return 0 if difference.same else 1
 
 
 # Output
@@ -409,12 +410,12 @@ def show_columns(
         write_frame(pd.DataFrame(columns), arguments)
     elif arguments.json:
         rows = zip(*map(unpack_column, columns.values()), strict=True)
-        echo_json_list(finite(dict(zip(columns, row, strict=True))) for row in rows)
+        echo_json_list(replace_infinite(dict(zip(columns, row, strict=True))) for row in rows)
     else:
         heads = [name.upper().replace("_", " ") for name in formats]
         echo_table(
             heads,
-            [_texts(columns[name], how) for name, how in formats.items()],
+            [_format_cells(columns[name], how) for name, how in formats.items()],
             [_are_numbers(columns[name]) for name in formats],
         )
 
@@ -433,7 +434,7 @@ def _print_json(frame: pd.DataFrame) -> None:
     """Print each row as a JSON object with numbers in full precision, which `DataFrame.to_json` does not keep."""
     names = [str(name) for name in frame.columns]
     for cells in zip(*(frame[name].tolist() for name in frame.columns), strict=True):
-        echo_json(finite(dict(zip(names, cells, strict=True))))
+        echo_json(replace_infinite(dict(zip(names, cells, strict=True))))
 
 
 def write_frame(frame: pd.DataFrame, arguments: Arguments) -> None:
@@ -449,11 +450,15 @@ def _are_numbers(column: Column) -> bool:
     return len(column) > 0 and all(isinstance(item, int | float) for item in column)
 
 
-def _texts(column: Column, how: str) -> list[str]:
+def _format_cells(column: Column, format_spec: str) -> list[str]:
     """Return the cells of a column; a number that is missing is empty."""
-    if not how:
+    if not format_spec:
         return list(map(str, unpack_column(column)))
     return [
-        str(item) if not isinstance(item, float) else "" if isnan(item) else format(item, how)
+        str(item)
+        if not isinstance(item, float)
+        else ""
+        if isnan(item)
+        else format(item, format_spec)
         for item in unpack_column(column)
     ]

@@ -40,7 +40,7 @@ class Finding:
     """What to do about it."""
 
 
-def terminal_finding(name: str, term: str, *, is_remote: bool) -> Finding:
+def judge_terminal(name: str, term: str, *, is_remote: bool) -> Finding:
     """Judge the terminal.
 
     Args:
@@ -56,13 +56,13 @@ def terminal_finding(name: str, term: str, *, is_remote: bool) -> Finding:
     return Finding("terminal", value)
 
 
-def no_terminal_finding() -> Finding:
+def judge_no_terminal() -> Finding:
     """Judge that there is no terminal."""
     advice = "The app needs a terminal; `tuisim run`, `batch`, `log` and notebooks do not"
     return Finding("terminal", "none", State.ADVICE, advice)
 
 
-def colors_finding(depth: str, *, is_remote: bool, is_fixed: bool = False) -> Finding:
+def judge_colors(depth: str, *, is_remote: bool, is_fixed: bool = False) -> Finding:
     """Judge the number of colours, one of `COLOR_DEPTHS` other than `auto`.
 
     Args:
@@ -95,13 +95,13 @@ _POINTS = {
 }
 
 
-def cells_finding(cells: CellSet, term: str = "", variable: str = "") -> Finding:
+def judge_cells(cells: CellSet, term: str = "", variable: str = "") -> Finding:
     """Judge the finest glyphs that the terminal is known to show.
 
     Args:
         cells: The glyphs.
         term: The variable TERM if it alone limits them, else empty.
-        variable: The variable that decides the locale, see `locale_finding`.
+        variable: The variable that decides the locale, see `judge_locale`.
     """
     value = f"{cells} ({_POINTS[cells]})"
     if cells is CellSet.ASCII:
@@ -118,7 +118,7 @@ def cells_finding(cells: CellSet, term: str = "", variable: str = "") -> Finding
     return Finding("cells", value)
 
 
-def graphics_finding(protocol: str, *, has_colors: bool = True) -> Finding:
+def judge_graphics(protocol: str, *, has_colors: bool = True) -> Finding:
     """Judge the protocol for real pixels.
 
     Args:
@@ -129,18 +129,21 @@ def graphics_finding(protocol: str, *, has_colors: bool = True) -> Finding:
     return Finding("graphics", protocol or f"none{why}: the world is drawn with glyphs")
 
 
-def size_finding(cols: int, rows: int) -> Finding:
+def judge_size(cols: int, rows: int) -> Finding:
     """Judge the size of the terminal in cells."""
     value = f"{cols} × {rows}"
-    for least, word in ((SMALLEST, "at least"), (COMFORTABLE, "better")):
-        if cols < least[0] or rows < least[1]:
+    for smallest, word in ((SMALLEST, "at least"), (COMFORTABLE, "better")):
+        if cols < smallest[0] or rows < smallest[1]:
             return Finding(
-                "size", value, State.ADVICE, f"Enlarge the window to {word} {least[0]} × {least[1]}"
+                "size",
+                value,
+                State.ADVICE,
+                f"Enlarge the window to {word} {smallest[0]} × {smallest[1]}",
             )
     return Finding("size", value)
 
 
-def locale_finding(variable: str, encoding: str) -> Finding:
+def judge_locale(variable: str, encoding: str) -> Finding:
     """Judge the locale.
 
     Args:
@@ -158,7 +161,7 @@ def _use_utf8(variable: str) -> str:
     return f"export {variable.partition('=')[0] or 'LANG'}=C.UTF-8"
 
 
-def latency_finding(latency_s: float | None) -> Finding:
+def judge_latency(latency_s: float | None) -> Finding:
     """Judge how long the terminal takes to answer; None if it does not answer."""
     if latency_s is None:
         advice = "It does not answer, so tuisim cannot know what it shows: choose with --cells and --pixels"
@@ -174,7 +177,7 @@ def latency_finding(latency_s: float | None) -> Finding:
     return Finding("latency", value)
 
 
-def python_finding(version: tuple[int, ...], path: str) -> Finding:
+def judge_python(version: tuple[int, ...], path: str) -> Finding:
     """Judge the version of Python."""
     value = f"{'.'.join(map(str, version))} ({path})"
     if version < OLDEST_PYTHON:
@@ -182,7 +185,7 @@ def python_finding(version: tuple[int, ...], path: str) -> Finding:
     return Finding("Python", value)
 
 
-def system_finding(system: str, release: str) -> Finding:
+def judge_system(system: str, release: str) -> Finding:
     """Judge the operating system, such as Linux."""
     value = f"{system} {release}"
     if system == "Linux":
@@ -219,29 +222,31 @@ def store_finding(count: int, size_bytes: int, free_bytes: int) -> Finding:
     return Finding("store", value)
 
 
-def assets_finding(why_not: str) -> Finding:
+def judge_assets(why_not: str) -> Finding:
     """Judge whether the mats and the examples are there; `why_not` is empty if they are."""
     if why_not:
         return Finding("mats", why_not, State.PROBLEM, "Install tuisim again, or fix TUISIM_ASSETS")
     return Finding("mats", "found")
 
 
-def dependency_findings(requirements: Iterable[tuple[str, str, str]]) -> list[Finding]:
+def judge_dependencies(requirements: Iterable[tuple[str, str, str]]) -> list[Finding]:
     """Judge the packages that tuisim needs: one finding for those that are all right, one for each other.
 
     Args:
         requirements: For each its name, the version that is required exactly or an empty text, and the installed
             version or an empty text.
     """
-    found = [_dependency(*one) for one in requirements]
-    good = ", ".join(f"{one.name} {one.value}" for one in found if one.state is State.OK)
+    findings = [_judge_dependency(*finding) for finding in requirements]
+    good = ", ".join(
+        f"{finding.name} {finding.value}" for finding in findings if finding.state is State.OK
+    )
     return [
         Finding("packages", good or "none"),
-        *(one for one in found if one.state is not State.OK),
+        *(finding for finding in findings if finding.state is not State.OK),
     ]
 
 
-def _dependency(name: str, pinned: str, installed: str) -> Finding:
+def _judge_dependency(name: str, pinned: str, installed: str) -> Finding:
     if not installed:
         return Finding(
             name,
@@ -256,7 +261,7 @@ def _dependency(name: str, pinned: str, installed: str) -> Finding:
     return Finding(name, installed)
 
 
-def simulator_findings(old_simulator: str) -> list[Finding]:
+def judge_simulator(old_simulator: str) -> list[Finding]:
     """Judge which `nbev3devsim` the notebooks of a course import: nothing to tell if it is tuisim's.
 
     Args:
@@ -272,7 +277,7 @@ def simulator_findings(old_simulator: str) -> list[Finding]:
 Version = tuple[int, ...]
 
 
-def textual_finding(
+def judge_textual(
     version: Version, tested: tuple[Version, Version], missing: Sequence[str]
 ) -> Finding:
     """Judge how the app can draw with the installed Textual.
@@ -288,8 +293,8 @@ def textual_finding(
         return Finding("Textual", installed)
     lacks = f", and lacks {', '.join(missing)}" if missing else ""
     value = f"{installed}: not a version that the app was tried with{lacks}. It draws half blocks, more slowly"
-    wanted = f"textual>={'.'.join(map(str, first))},<={'.'.join(map(str, last))}"
-    return Finding("Textual", value, State.ADVICE, f"For the rest: pip install '{wanted}'")
+    requirement = f"textual>={'.'.join(map(str, first))},<={'.'.join(map(str, last))}"
+    return Finding("Textual", value, State.ADVICE, f"For the rest: pip install '{requirement}'")
 
 
 def prevents_use(findings: Iterable[Finding]) -> bool:

@@ -52,10 +52,10 @@ def doctor(as_json: bool, reset: bool) -> int:
     if reset:
         _restore()
         return 0
-    findings = [*_terminal_findings(os.environ), *_machine_findings()]
+    findings = [*_check_terminal(os.environ), *_check_machine()]
     prevented = prevents_use(findings)
     if as_json:
-        facts = {"usable": not prevented, "findings": [asdict(one) for one in findings]}
+        facts = {"usable": not prevented, "findings": [asdict(finding) for finding in findings]}
         echo_json({"tuisim": __version__, **facts})
     else:
         _print(findings)
@@ -64,12 +64,15 @@ def doctor(as_json: bool, reset: bool) -> int:
 
 def _print(findings: list[Finding]) -> None:
     echo(f"tuisim {__version__}")
-    widest = max(len(one.name) for one in findings)
-    for one in findings:
-        first, *rest = wrap(one.value, _WIDTH - widest - 8, break_on_hyphens=False) or [""]
-        echo(f"{_MARKS[one.state]:4}  {one.name:{widest}}  {first}")
-        advice = wrap(one.advice, _WIDTH - widest - 11, break_on_hyphens=False)
-        for line in (*rest, *(f"{'  ' if at else '->'} {text}" for at, text in enumerate(advice))):
+    widest = max(len(finding.name) for finding in findings)
+    for finding in findings:
+        first, *rest = wrap(finding.value, _WIDTH - widest - 8, break_on_hyphens=False) or [""]
+        echo(f"{_MARKS[finding.state]:4}  {finding.name:{widest}}  {first}")
+        advice = wrap(finding.advice, _WIDTH - widest - 11, break_on_hyphens=False)
+        for line in (
+            *rest,
+            *(f"{'  ' if number else '->'} {text}" for number, text in enumerate(advice)),
+        ):
             echo(f"{'':{widest + 8}}{line}")
     echo(
         "Something prevents the use of tuisim: see FAIL."
@@ -79,7 +82,7 @@ def _print(findings: list[Finding]) -> None:
 
 
 @contextmanager
-def _terminal() -> Iterator[int | None]:
+def _open_terminal() -> Iterator[int | None]:
     """Open the terminal that this process belongs to, also if its output is redirected; None if there is none."""
     try:
         fd = os.open("/dev/tty", os.O_RDWR | os.O_NOCTTY)
@@ -97,79 +100,81 @@ def _restore() -> None:
     # On demand: this and the report are all that the command needs of the app.
     from tuisim.terminal.probe import restore_terminal
 
-    with _terminal() as fd:
+    with _open_terminal() as fd:
         if fd is None:
             raise ConfigError("there is no terminal to restore", key="--reset")
         restore_terminal(fd, os.environ.get("TERM", ""))
     echo("The terminal has been restored.")
 
 
-def _terminal_findings(environment: Mapping[str, str]) -> list[Finding]:
+def _check_terminal(environment: Mapping[str, str]) -> list[Finding]:
     is_remote = "SSH_CONNECTION" in environment or "SSH_TTY" in environment
-    with _terminal() as fd:
+    with _open_terminal() as fd:
         if fd is None:
-            return [diagnosis.no_terminal_finding(), _locale_finding(environment)]
-        return _asked_findings(fd, environment, is_remote)
+            return [diagnosis.judge_no_terminal(), _check_locale(environment)]
+        return _ask_terminal(fd, environment, is_remote)
 
 
-def _asked_findings(fd: int, environment: Mapping[str, str], is_remote: bool) -> list[Finding]:
+def _ask_terminal(fd: int, environment: Mapping[str, str], is_remote: bool) -> list[Finding]:
     from tuisim.terminal.picture_mode import describe_terminal
 
     report = describe_terminal(fd, environment)
     if report is None:
-        return [diagnosis.no_terminal_finding(), _locale_finding(environment)]
+        return [diagnosis.judge_no_terminal(), _check_locale(environment)]
     term, size = environment.get("TERM", ""), os.get_terminal_size(fd)
     return [
-        diagnosis.terminal_finding(report.name, term, is_remote=is_remote),
-        diagnosis.size_finding(size.columns, size.lines),
-        diagnosis.colors_finding(
+        diagnosis.judge_terminal(report.name, term, is_remote=is_remote),
+        diagnosis.judge_size(size.columns, size.lines),
+        diagnosis.judge_colors(
             report.colors, is_remote=is_remote, is_fixed=report.has_fixed_colors
         ),
-        diagnosis.cells_finding(
-            report.cells, term if report.is_limited else "", _locale_variable(report.environment)
+        diagnosis.judge_cells(
+            report.cells,
+            term if report.is_limited else "",
+            _find_locale_variable(report.environment),
         ),
-        diagnosis.graphics_finding(report.protocol, has_colors=report.has_colors),
-        *([diagnosis.latency_finding(report.latency_s)] if report.is_asked else []),
-        _locale_finding(environment),
+        diagnosis.judge_graphics(report.protocol, has_colors=report.has_colors),
+        *([diagnosis.judge_latency(report.latency_s)] if report.is_asked else []),
+        _check_locale(environment),
     ]
 
 
-def _locale_finding(environment: Mapping[str, str]) -> Finding:
-    return diagnosis.locale_finding(_locale_variable(environment), locale.getencoding())
+def _check_locale(environment: Mapping[str, str]) -> Finding:
+    return diagnosis.judge_locale(_find_locale_variable(environment), locale.getencoding())
 
 
-def _locale_variable(environment: Mapping[str, str]) -> str:
+def _find_locale_variable(environment: Mapping[str, str]) -> str:
     """Return the variable that decides the locale with its value; empty if none is set."""
     names = (name for name in ("LC_ALL", "LC_CTYPE", "LANG") if environment.get(name))
     return next((f"{name}={environment[name]}" for name in names), "")
 
 
-def _machine_findings() -> list[Finding]:
+def _check_machine() -> list[Finding]:
     home = home_folder()
-    why_not = _why_not_writable(home)
-    found = [
-        diagnosis.system_finding(platform.system(), platform.release()),
-        diagnosis.python_finding(sys.version_info[:3], sys.executable),
+    why_not = _explain_unwritable(home)
+    findings = [
+        diagnosis.judge_system(platform.system(), platform.release()),
+        diagnosis.judge_python(sys.version_info[:3], sys.executable),
         diagnosis.home_finding(str(home), why_not),
-        diagnosis.assets_finding(_why_no_assets()),
+        diagnosis.judge_assets(_explain_missing_assets()),
     ]
     if not why_not:
-        found.append(diagnosis.store_finding(*_store(home)))
+        findings.append(diagnosis.store_finding(*_store(home)))
     return [
-        *found,
-        _textual_finding(),
-        *diagnosis.dependency_findings(_requirements()),
-        *diagnosis.simulator_findings(str(find_old_simulator() or "")),
+        *findings,
+        _check_textual(),
+        *diagnosis.judge_dependencies(_list_requirements()),
+        *diagnosis.judge_simulator(str(find_old_simulator() or "")),
     ]
 
 
-def _textual_finding() -> Finding:
+def _check_textual() -> Finding:
     from tuisim.terminal.textual_internals import describe_textual
 
-    return diagnosis.textual_finding(*describe_textual())
+    return diagnosis.judge_textual(*describe_textual())
 
 
-def _why_not_writable(folder: Path) -> str:
+def _explain_unwritable(folder: Path) -> str:
     """Return why no file can be written in a folder, or a folder there; empty if it can."""
     place = folder
     while not place.exists() and place != place.parent:
@@ -181,7 +186,7 @@ def _why_not_writable(folder: Path) -> str:
         return f"cannot be written ({error.strerror or error})"
 
 
-def _why_no_assets() -> str:
+def _explain_missing_assets() -> str:
     try:
         backgrounds_folder()
         programs_folder()
@@ -202,7 +207,7 @@ def _store(home: Path) -> tuple[int, int, int]:
     return len(runs), sum(map(bytes_in, runs)), shutil.disk_usage(place).free
 
 
-def _requirements() -> list[tuple[str, str, str]]:
+def _list_requirements() -> list[tuple[str, str, str]]:
     """Return the name of each package that tuisim needs, the version that it must have, and the one that it has."""
     from importlib.metadata import PackageNotFoundError, requires
 
@@ -210,11 +215,13 @@ def _requirements() -> list[tuple[str, str, str]]:
         lines = requires("tuisim") or []
     except PackageNotFoundError:
         return [("tuisim", "", "")]
-    found = [match for line in lines if "extra ==" not in line and (match := _EXACTLY.match(line))]
-    return [(match[1], match[2] or "", _version(match[1])) for match in found]
+    matches = [
+        match for line in lines if "extra ==" not in line and (match := _EXACTLY.match(line))
+    ]
+    return [(match[1], match[2] or "", _read_version(match[1])) for match in matches]
 
 
-def _version(name: str) -> str:
+def _read_version(name: str) -> str:
     from importlib.metadata import PackageNotFoundError, version
 
     try:

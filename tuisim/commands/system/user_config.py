@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tuisim.base.errors import ConfigError
-from tuisim.commands.echo import echo, echo_json, echo_lines, table
+from tuisim.commands.echo import draw_table, echo, echo_json, echo_lines
 from tuisim.settings.command_line import AS_JSON, command, option
 from tuisim.settings.user_config import FILE, SETTINGS, UserConfig, load_config
 from tuisim.settings.user_config_file import write_template
@@ -36,36 +36,37 @@ def config(as_json: bool, init: bool) -> int:
             )
         echo(f"written: {write_template()}")
         return 0
-    found = load_config().checked()
-    _check_in_app(found)
+    settings = load_config().checked()
+    _check_in_app(settings)
     rows = [
-        (path, found.value(path), FILE if path in found.written else "default") for path in SETTINGS
+        (path, settings.value(path), FILE if path in settings.written else "default")
+        for path in SETTINGS
     ]
-    rows += [(f"keys.{name}", ", ".join(keys), FILE) for name, keys in found.keys.items()]
-    exists = found.path.exists()
+    rows += [(f"keys.{name}", ", ".join(keys), FILE) for name, keys in settings.keys.items()]
+    exists = settings.path.exists()
     if as_json:
         listed = [{"setting": path, "value": value, "from": source} for path, value, source in rows]
-        echo_json({"file": str(found.path), "exists": exists, "settings": listed})
+        echo_json({"file": str(settings.path), "exists": exists, "settings": listed})
         return 0
     echo(
-        str(found.path)
+        str(settings.path)
         if exists
-        else f"{found.path} does not exist: `tuisim config --init` writes it"
+        else f"{settings.path} does not exist: `tuisim config --init` writes it"
     )
     echo()
-    cells = [(path, _shown(value), source) for path, value, source in rows]
-    echo_lines(table(("setting", "value", "from"), cells))
+    cells = [(path, _format_value(value), source) for path, value, source in rows]
+    echo_lines(draw_table(("setting", "value", "from"), cells))
     return 0
 
 
-def _check_in_app(found: UserConfig) -> None:
+def _check_in_app(settings: UserConfig) -> None:
     """Check what only the app knows: the keys, and the name of the theme."""
     from tuisim.app.actions.keys import ACTIONS
     from tuisim.app.keymap import check_theme, with_keys
 
-    with_keys(ACTIONS, found)
-    check_theme(found)
+    with_keys(ACTIONS, settings)
+    check_theme(settings)
 
 
-def _shown(value: object) -> str:
+def _format_value(value: object) -> str:
     return str(value).lower() if isinstance(value, bool) else str(value)
