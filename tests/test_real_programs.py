@@ -19,7 +19,7 @@ from tests.conftest import ROOT, Command
 from tuisim.engine.core.spec import RobotSpec
 from tuisim.engine.runs.store import RunStore
 from tuisim.programs.program_file import read_program
-from tuisim.programs.program_settings import facts_of
+from tuisim.programs.program_settings import read_source_facts
 from tuisim.settings.robots import ROBOTS, list_ports
 
 USUAL = ROBOTS["Default_Robot"]
@@ -340,7 +340,7 @@ def test_every_program_is_in_the_table() -> None:
 
 @pytest.mark.parametrize("name", CASES)
 def test_the_robot_is_the_one_that_the_program_talks_about(name: str) -> None:
-    facts = facts_of(read_program(file_of(name)).program)
+    facts = read_source_facts(read_program(file_of(name)).program)
     assert (facts.library is not None, facts.of_course) == (True, False)
     case = CASES[name]
     assert (facts.robot is None) == (not case.ports and not case.mechanics)
