@@ -14,7 +14,7 @@ from tuisim.engine.core.profile import PROFILES, Library
 from tuisim.engine.runs.brick_state import ROW_BYTES, BrickState, face_after
 from tuisim.engine.runs.records import Stream
 from tuisim.engine.runs.store import load_run
-from tuisim.programs.program_file import programs, read_program
+from tuisim.programs.program_file import list_programs, read_program
 
 EXAMPLES: dict[str, dict[str, object]] = {
     "bumper.py": {"background": "Empty_Map", "lines": 2, "samples": 2},
@@ -44,13 +44,13 @@ RUNS = [
 
 
 def test_every_example_is_in_the_table() -> None:
-    assert sorted(EXAMPLES) == [program.name for program in programs()]
+    assert sorted(EXAMPLES) == [program.name for program in list_programs()]
 
 
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_example_introduces_itself(name: str) -> None:
     path = ROOT / "programs" / name
-    title = next(program.title for program in programs() if program.name == name)
+    title = next(program.title for program in list_programs() if program.name == name)
     assert title.endswith(".")
     assert len(title) < 80
     # The magic line tells the world, so that the example runs as it is.

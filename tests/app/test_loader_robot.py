@@ -11,7 +11,7 @@ from tests.app.app_help import lab, notices, open_lab, screen_text, until, until
 from tuisim.app.app import AppSettings, LabApp
 from tuisim.app.setup import next_run as plans
 from tuisim.programs.program_file import read_program
-from tuisim.programs.program_settings import PROGRAM_PATHS, Decided, program_settings
+from tuisim.programs.program_settings import PROGRAM_PATHS, Decided, build_program_settings
 from tuisim.settings.build import build_run_spec
 from tuisim.settings.options import Settings
 
@@ -28,7 +28,7 @@ def claw(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def opened(path: Path) -> AppSettings:
     """What the command makes of `tuisim PROGRAM`."""
     source = read_program(path)
-    found = program_settings(source)
+    found = build_program_settings(source)
     spec = build_run_spec(found.settings)
     return AppSettings(
         spec=spec, settings=found.settings, program=source.program, decided=found.decided

@@ -9,14 +9,14 @@ from tests.engine.shim.late_programs import LATE_PROGRAMS
 from tuisim.app.app import LabApp
 from tuisim.engine.core.sensors import list_column_names
 from tuisim.programs.program_file import parse_program
-from tuisim.programs.program_settings import program_settings
+from tuisim.programs.program_settings import build_program_settings
 from tuisim.settings.build import build_run_spec
 
 
 def begin(text: str) -> LabApp:
     """Return the app with a program as `tuisim open` reads it."""
     source = parse_program(text, "late.py")
-    found = program_settings(source)
+    found = build_program_settings(source)
     begun = settings(text, speed=16.0)
     return LabApp(
         replace(

@@ -203,7 +203,7 @@ def test_an_image_that_is_not_there(word: str, message: str, here: Path) -> None
 
 
 def test_programs_have_titles(root: Path) -> None:
-    found = program_file.programs()
+    found = program_file.list_programs()
     assert [each.path for each in found] == sorted((root / "programs").glob("*.py"))
     for name, path, title in found:
         docstring = ast.get_docstring(ast.parse(path.read_text(encoding="utf-8"))) or ""
@@ -224,14 +224,14 @@ def test_programs_have_titles(root: Path) -> None:
 )
 def test_program_title(text: str, title: str, given: Path) -> None:
     (given / "programs" / "turn.py").write_text(text, encoding="utf-8")
-    assert program_file.programs() == [("turn.py", given / "programs" / "turn.py", title)]
+    assert program_file.list_programs() == [("turn.py", given / "programs" / "turn.py", title)]
 
 
 def test_a_given_folder_needs_only_what_is_asked_for(given: Path) -> None:
     (given / "programs").rmdir()
     assert mats.background("Mine").title == "My own"
     with pytest.raises(ConfigError, match="TUISIM_ASSETS"):
-        program_file.programs()
+        program_file.list_programs()
 
 
 def test_an_installed_copy_is_found_in_the_package(tmp_path: Path, root: Path) -> None:

@@ -45,7 +45,7 @@ from tuisim.programs.attributes import AttributeCheck
     ],
 )
 def test_unknown_attributes(home: Path, text: str, messages: list[str]) -> None:
-    found = AttributeCheck(find_members).unknown_attributes(text, "prog.py")
+    found = AttributeCheck(find_members).find_unknown_attributes(text, "prog.py")
     assert [one.message for one in found] == messages
     lines = text.split("\n")
     assert all(lines[one.row][one.start : one.end] == one.name for one in found)
@@ -59,6 +59,8 @@ def test_an_object_is_asked_for_once() -> None:
         return frozenset({"on"})
 
     check = AttributeCheck(known)
-    assert not check.unknown_attributes("tank_drive.on()\ntank_drive.on()", "prog.py")
-    assert [one.row for one in check.unknown_attributes("\ntank_drive.onn()", "prog.py")] == [1]
+    assert not check.find_unknown_attributes("tank_drive.on()\ntank_drive.on()", "prog.py")
+    assert [one.row for one in check.find_unknown_attributes("\ntank_drive.onn()", "prog.py")] == [
+        1
+    ]
     assert asked == [(0, 10)]

@@ -7,7 +7,7 @@ import ast
 import pytest
 
 from tests.cases import cases
-from tuisim.programs.code_rows import code_rows
+from tuisim.programs.code_rows import split_rows
 from tuisim.tasks.lessons.catalogue import find_shipped_paths
 from tuisim.tasks.lessons.files import load_lesson
 
@@ -50,12 +50,12 @@ PROGRAMS = {
 
 @cases("program, rows", PROGRAMS)
 def test_long_lines_are_broken_between_words(program: str, rows: list[str]) -> None:
-    assert list(code_rows(program, 30)) == rows
+    assert list(split_rows(program, 30)) == rows
 
 
 @pytest.mark.parametrize("name", ANSWERS)
 def test_rows_of_a_model_answer_are_the_same_program(name: str) -> None:
     for width in (38, 43, 56):
-        rows = list(code_rows(ANSWERS[name], width))
+        rows = list(split_rows(ANSWERS[name], width))
         assert ast.dump(ast.parse("\n".join(rows))) == ast.dump(ast.parse(ANSWERS[name]))
         assert [row for row in rows if len(row) > width and '"""' not in row] == []

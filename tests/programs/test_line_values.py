@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import pytest
 
 from tuisim.engine.protocol import FrameState, Inspected, Variable
-from tuisim.programs.line_values import MODULE, line_values
+from tuisim.programs.line_values import MODULE, map_line_values
 
 TEXT = """\
 total = 0
@@ -45,7 +45,7 @@ def inspected(
 def shown(text: str, state: Inspected) -> dict[int, list[str]]:
     return {
         line: [f"{one.name}={one.value}" for one in found]
-        for line, found in line_values(text, state).items()
+        for line, found in map_line_values(text, state).items()
     }
 
 
@@ -85,4 +85,4 @@ def test_only_globals_while_a_module_beside_the_program_runs() -> None:
 
 @pytest.mark.parametrize("text", ["x = (", ""])
 def test_a_text_without_lines_has_no_values(text: str) -> None:
-    assert line_values(text, inspected([(MODULE, 1)], {"x": "1"})) == {}
+    assert map_line_values(text, inspected([(MODULE, 1)], {"x": "1"})) == {}

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import pytest
 
-from tuisim.programs.magic_mat import without_wrong_mat, wrong_mat
+from tuisim.programs.magic_mat import drop_wrong_mat, find_wrong_mat
 from tuisim.programs.program_file import parse_program
 
 WRONG = '"""A program."""\n# %%sim_magic_preloaded -b Grey_bandz -x 300\n'
 
 
 def test_a_wrong_mat_is_named_with_file_line_and_what_may_be_meant() -> None:
-    found = wrong_mat(WRONG, "mine.py", None)
+    found = find_wrong_mat(WRONG, "mine.py", None)
     assert found is not None
     assert found.line == 2
     assert found.words == "no such mat 'Grey_bandz', did you mean Grey_bands?"
@@ -22,8 +22,8 @@ def test_a_wrong_mat_is_named_with_file_line_and_what_may_be_meant() -> None:
     "words", ["", "# %%sim_magic -b Grey_bands", "# %%sim_magic -b mine.png", "# %%sim_magic -y ?"]
 )
 def test_other_magic_lines_have_no_wrong_mat(words: str) -> None:
-    assert wrong_mat(f"{words}\n", "mine.py", None) is None
+    assert find_wrong_mat(f"{words}\n", "mine.py", None) is None
 
 
 def test_a_program_opens_without_its_wrong_mat() -> None:
-    assert without_wrong_mat(parse_program(WRONG, "mine.py"), None).options == {"start.x_mm": 300}
+    assert drop_wrong_mat(parse_program(WRONG, "mine.py"), None).options == {"start.x_mm": 300}

@@ -7,13 +7,13 @@ from pathlib import Path
 import pytest
 
 from tests.conftest import ROOT
-from tuisim.programs.names import unknown_names
+from tuisim.programs.names import find_unknown_names
 
 PROGRAMS = sorted((ROOT / "programs").glob("*.py"))
 
 
 def found(text: str) -> list[tuple[int, int, int, str]] | None:
-    names = unknown_names(text, "prog.py")
+    names = find_unknown_names(text, "prog.py")
     return None if names is None else [(one.row, one.start, one.end, one.hint) for one in names]
 
 

@@ -9,7 +9,7 @@ import pytest
 
 from tests.cases import cases
 from tests.conftest import Command
-from tuisim.programs.notebook_file import notebook_programs
+from tuisim.programs.notebook_file import read_notebook_programs
 
 LESSON = [
     ("markdown", "# Lesson\n"),
@@ -132,7 +132,7 @@ def test_a_cell_with_a_variable_of_the_notebook_is_skipped(here: Command, tmp_pa
 def test_what_only_the_notebook_knows_is_left_out(
     words: str, unknown: str, settings: dict[str, object], tmp_path: Path
 ) -> None:
-    (found,) = notebook_programs(
+    (found,) = read_notebook_programs(
         write(tmp_path / "one.ipynb", [("code", f"%%sim_magic {words}\npass\n")])
     )
     assert (found.unknown, dict(found.source.options)) == (unknown, settings)
@@ -140,7 +140,7 @@ def test_what_only_the_notebook_knows_is_left_out(
 
 def test_files_in_magics_are_looked_for_beside_the_notebook(tmp_path: Path) -> None:
     cells = [("code", "%sim_magic -b ./maze.png"), ("code", "%%sim_magic -r bot.toml\npass\n")]
-    (found,) = notebook_programs(Path(write(tmp_path / "lesson.ipynb", cells)))
+    (found,) = read_notebook_programs(Path(write(tmp_path / "lesson.ipynb", cells)))
     wanted = {"background": str(tmp_path / "maze.png"), "robot": str(tmp_path / "bot.toml")}
     assert found.source.options == wanted
 

@@ -12,11 +12,11 @@ from tuisim.programs.program_file import (
     MAX_PROGRAM_BYTES,
     find_magic,
     find_program,
+    list_programs,
     parse_program,
     parse_unfinished,
-    programs,
     read_program,
-    with_mat,
+    replace_mat,
 )
 
 
@@ -24,7 +24,7 @@ def test_an_example_is_found_by_its_name_unless_a_file_has_it(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    example = programs()[0].path
+    example = list_programs()[0].path
     assert find_program(example.stem) == find_program(example.name) == example
     Path(example.name).write_text("")
     assert find_program(example.name) == Path(example.name)
@@ -108,7 +108,7 @@ MAGIC_MATS = {
 
 @cases("before, after", MAGIC_MATS)
 def test_a_mat_is_written_into_the_magic_line(before: str, after: str) -> None:
-    assert with_mat(before, "p.py", "Loop") == after
+    assert replace_mat(before, "p.py", "Loop") == after
 
 
 PLAIN = "import time\nprint(1)\n"

@@ -14,7 +14,7 @@ from tuisim.base.errors import ProfileError, RobotError
 from tuisim.base.source import FOR_SPIKE
 from tuisim.engine.core.profile import PROFILES
 from tuisim.programs.program_file import parse_program, read_program
-from tuisim.programs.program_settings import program_settings, require_library, robot_for
+from tuisim.programs.program_settings import build_program_settings, choose_robot, require_library
 from tuisim.settings.build import build_run_spec
 from tuisim.settings.options import Settings
 
@@ -28,7 +28,7 @@ MIDDLE = (1181.0, 571.5)
 MAT = (100.0, 800.0)
 LINE, LOOP = (280.0, 700.0), (500.0, 500.0)
 
-# The text, the arguments of `program_settings`; profile, the robot's name, and the place.
+# The text, the arguments of `build_program_settings`; profile, the robot's name, and the place.
 CASES: Mapping[str, tuple[str, dict[str, Any], tuple[str, str, tuple[float, float]]]] = {
     "a brick's program": (USUAL, {}, ("ev3", "Default_Robot", MIDDLE)),
     "with another robot": (CLAW, {}, ("ev3", "Robot of p.py", MIDDLE)),
@@ -181,7 +181,7 @@ def test_what_is_decided(case: str) -> None:
     text, given, (profile, robot, place) = CASES[case]
     above = [given["above"]] if "above" in given else []
     rest = {key: value for key, value in given.items() if key != "above"}
-    found = program_settings(parse_program(text, "p.py"), *above, **rest)
+    found = build_program_settings(parse_program(text, "p.py"), *above, **rest)
     spec = build_run_spec(found.settings)
     assert (spec.profile.name, spec.robot.name) == (profile, robot)
     assert (spec.world.start.x_mm, spec.world.start.y_mm) == place
@@ -216,7 +216,7 @@ MISFITS: Mapping[str, tuple[str, dict[str, Any], str]] = {
 def test_what_is_for_the_other_library_is_refused(case: str) -> None:
     text, above, told = MISFITS[case]
     with pytest.raises(ProfileError, match=told):
-        program_settings(parse_program(text, "p.py"), above)
+        build_program_settings(parse_program(text, "p.py"), above)
 
 
 SPIKE: Mapping[str, str] = {
@@ -229,14 +229,14 @@ SPIKE: Mapping[str, str] = {
 def test_nothing_that_cannot_help_is_advised_to_a_program_for_another_hub(case: str) -> None:
     source = parse_program(SPIKE[case], "p.py")
     told = f"p.py: it is {FOR_SPIKE}"
-    assert program_settings(source).decided.note == ""
+    assert build_program_settings(source).decided.note == ""
     with pytest.raises(RobotError, match=told):
-        robot_for(source, "it")
+        choose_robot(source, "it")
 
 
 def test_the_name_that_chooses_pybricks_4_is_said() -> None:
     source = parse_program(f"{BASE}base.straight(100, wait=False)\n", "p.py")
-    note = program_settings(source).decided.note
+    note = build_program_settings(source).decided.note
     assert "Pybricks 4, whose wait= of straight() it uses (profile pybricks4)" in note
 
 
@@ -248,7 +248,7 @@ def test_the_name_that_chooses_pybricks_4_is_said() -> None:
     ],
 )
 def test_a_program_for_a_hub_runs_on_a_robot_with_it(text: str) -> None:
-    settings = program_settings(parse_program(text, "p.py")).settings
+    settings = build_program_settings(parse_program(text, "p.py")).settings
     robot = settings["robot"].spec
     assert (settings["profile"], robot.hub, robot.gyro.port) == ("pybricks4", "PrimeHub", "inside")
     assert (robot.wheel_diameter_mm, robot.wheel_spacing_mm, robot.sensors) == (
@@ -262,8 +262,11 @@ def test_a_program_for_more_than_one_hub_is_one_for_the_brick() -> None:
     both = (
         f"{PYBRICKS}try:\n    from pybricks.hubs import PrimeHub\nexcept ImportError:\n    pass\n"
     )
-    assert program_settings(parse_program(both, "p.py")).settings["profile"] == "lego-micropython"
-    assert program_settings(parse_program(both, "p.py")).decided.note
+    assert (
+        build_program_settings(parse_program(both, "p.py")).settings["profile"]
+        == "lego-micropython"
+    )
+    assert build_program_settings(parse_program(both, "p.py")).decided.note
 
 
 def test_an_own_module_with_the_name_of_one_of_a_hub_is_no_sign_of_it(tmp_path: Path) -> None:
@@ -271,11 +274,16 @@ def test_an_own_module_with_the_name_of_one_of_a_hub_is_no_sign_of_it(tmp_path: 
         "from ev3dev2.motor import MediumMotor\narm = MediumMotor('outA')\n"
     )
     (tmp_path / "p.py").write_text("import motor\n")
-    assert "medium motor on outA" in program_settings(read_program(tmp_path / "p.py")).decided.note
+    assert (
+        "medium motor on outA"
+        in build_program_settings(read_program(tmp_path / "p.py")).decided.note
+    )
 
 
 def test_a_program_with_a_profile_for_the_other_library_can_be_opened() -> None:
-    found = program_settings(parse_program(PYBRICKS, "p.py"), {"profile": "ev3"}, insists=False)
+    found = build_program_settings(
+        parse_program(PYBRICKS, "p.py"), {"profile": "ev3"}, insists=False
+    )
     assert found.settings["profile"] == "lego-micropython"
 
 
@@ -304,7 +312,7 @@ def test_a_program_without_a_library_runs_by_any_rules() -> None:
 
 def test_a_course_program_has_the_settings_that_it_had() -> None:
     text = "tank_drive.on(5, 5)\nprint('A: 1')\n"
-    assert program_settings(parse_program(text, "p.py")).settings == Settings()
+    assert build_program_settings(parse_program(text, "p.py")).settings == Settings()
 
 
 def test_a_module_of_the_program_may_import_the_library_and_define_what_a_prelude_has(
@@ -315,7 +323,7 @@ def test_a_module_of_the_program_may_import_the_library_and_define_what_a_prelud
         "from hardware import *\nprint(gyro.position)\n", "p.py", str(tmp_path / "p.py")
     )
     assert source.program.prelude == "none"
-    found = program_settings(source)
+    found = build_program_settings(source)
     assert found.settings["profile"] == "ev3"
     assert "robot" in found.decided.layer
 
@@ -326,19 +334,19 @@ def test_a_course_program_may_have_a_module_that_imports_the_library(tmp_path: P
         "from hardware import *\ntank_drive.on(5, 5)\n", "p.py", str(tmp_path / "p.py")
     )
     assert source.program.prelude == "preloaded"
-    assert program_settings(source).settings == Settings()
+    assert build_program_settings(source).settings == Settings()
 
 
 def test_the_line_names_what_was_built_and_how_to_change_it() -> None:
     source = parse_program(CLAW, "my claw.py", "a folder/my claw.py")
-    assert program_settings(source).decided.note == (
+    assert build_program_settings(source).decided.note == (
         "my claw.py runs on a robot built from it: medium motor on outA; as on a brick (profile ev3). "
         "-r or --profile to change it; `tuisim robots --from 'a folder/my claw.py'` shows the robot"
     )
-    assert program_settings(source, {"robot": "Explorer"}).decided.note == (
+    assert build_program_settings(source, {"robot": "Explorer"}).decided.note == (
         "my claw.py runs as on a brick (profile ev3). --profile to change it"
     )
-    assert program_settings(replace(source, has_magic=True)).decided.hint.startswith(
+    assert build_program_settings(replace(source, has_magic=True)).decided.hint.startswith(
         "-r to change it"
     )
 
@@ -364,7 +372,7 @@ def test_sizes_and_sides_count_where_the_program_brings_its_rules(
     magic: str, above: Mapping[str, Any], is_built: bool
 ) -> None:
     source = parse_program(magic + ON_USUAL_PORTS, "program.py")
-    assert ("robot" in program_settings(source, above).decided.layer) is is_built
+    assert ("robot" in build_program_settings(source, above).decided.layer) is is_built
 
 
 FORMATTED = "from pybricks.tools import wait\nprint(f'{1}')\n"
@@ -387,7 +395,7 @@ FORMATTED = "from pybricks.tools import wait\nprint(f'{1}')\n"
 def test_lines_that_the_brick_refuses_are_told_of_its_programs(
     text: str, above: Mapping[str, Any], refusal: str
 ) -> None:
-    assert program_settings(parse_program(text, "p.py"), above).decided.refusal == refusal
+    assert build_program_settings(parse_program(text, "p.py"), above).decided.refusal == refusal
 
 
 TOUCH = "from ev3dev2.sensor.lego import TouchSensor\nTouchSensor('in1').wait_for_pressed()\n"
@@ -422,7 +430,7 @@ GROUNDS: Mapping[str, tuple[str, dict[str, Any], tuple[bool, bool]]] = {
 def test_a_program_for_a_brick_drives_on_a_floor_without_walls_that_it_cannot_tell(
     text: str, chosen: dict[str, Any], ground: tuple[bool, bool]
 ) -> None:
-    settings = program_settings(parse_program(text, "p.py"), chosen).settings
+    settings = build_program_settings(parse_program(text, "p.py"), chosen).settings
     world = build_run_spec(settings).world
     assert (world.floor, world.walls) == ground
     assert world.is_open == (ground == OPEN)

@@ -17,7 +17,7 @@ from tuisim.engine.core.spec import NoiseSpec, RunSpec
 from tuisim.engine.core.tree import dump_run
 from tuisim.notebook.lab import Lab
 from tuisim.programs.program_file import ProgramSource, read_program
-from tuisim.programs.program_settings import free_paths, program_settings
+from tuisim.programs.program_settings import build_program_settings, find_free_paths
 from tuisim.settings.build import build_run_spec
 from tuisim.settings.magic_line import parse_line
 from tuisim.settings.options import merge_settings
@@ -196,11 +196,11 @@ def runs_of(folder: Path, program: str, option: Option) -> dict[str, RunSpec]:
 
 def runs_in_app(source: ProgramSource, option: Option) -> dict[str, RunSpec]:
     """Return the run of a program in the app, if the option comes after it, and before."""
-    plain, before = program_settings(source), merge_settings(read_options(option.choices))
+    plain, before = build_program_settings(source), merge_settings(read_options(option.choices))
     opened = plans.first_plan(
         build_run_spec(plain.settings), plain.settings, plain.decided, source.program
     )
-    later, _ = plans.following(plans.plan_of(before, free_paths(before)), source)
+    later, _ = plans.following(plans.plan_of(before, find_free_paths(before)), source)
     return {"a key in the app": option.key(opened).spec, "opened in the app": later.spec}
 
 
@@ -213,7 +213,7 @@ def test_every_door_gives_the_same_run(program: str, option: str, folder: Path) 
     runs = runs_of(folder, program, OPTIONS[option])
     given_in_world = {"floor": False, **read_options(OPTIONS[option].choices)}
     source = read_program(folder / "p.py")
-    on_field = build_run_spec(program_settings(source, given_in_world).settings)
+    on_field = build_run_spec(build_program_settings(source, given_in_world).settings)
     given = {door: on_field if door in WITH_WORLD else runs["run"] for door in runs}
     assert [door for door, spec in runs.items() if spec != given[door]] == []
 

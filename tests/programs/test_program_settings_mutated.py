@@ -15,7 +15,7 @@ from tests.sources import ROOT
 from tuisim.base.errors import RobotError
 from tuisim.base.source import Program
 from tuisim.programs.program_file import parse_program
-from tuisim.programs.program_settings import facts_of, program_settings, robot_for
+from tuisim.programs.program_settings import build_program_settings, choose_robot, read_source_facts
 
 _FOLDERS = ("brick_programs", "pybricks_programs", "real_programs")
 _VALUES = (
@@ -74,7 +74,10 @@ def _mutants(count: int, seed: int) -> Iterator[str]:
 )
 def test_no_text_makes_the_reader_fail(count: int, seed: int, tmp_path: Path) -> None:
     path = str(tmp_path / "p.py")
-    read = [(text, facts_of(Program("p.py", text, path=path))) for text in _mutants(count, seed)]
+    read = [
+        (text, read_source_facts(Program("p.py", text, path=path)))
+        for text in _mutants(count, seed)
+    ]
     assert sum(facts.robot is not None for _, facts in read) > count / 4
     assert [(facts.unread, text) for text, facts in read if "failed" in facts.unread] == []
 
@@ -87,13 +90,13 @@ def test_a_failure_of_the_reader_gives_the_default_robot_and_a_sentence(
 
     monkeypatch.setattr("tuisim.programs.robot.assembly.build_robot", fail)
     source = parse_program("from ev3dev2.motor import MoveTank\n", "p.py")
-    decided = program_settings(source).decided
+    decided = build_program_settings(source).decided
     why = "tuisim failed to read the robot from its source (ZeroDivisionError)"
     assert decided.note.startswith(
         f"p.py runs as on a brick (profile ev3); {why}: it gets the default robot. "
     )
     with pytest.raises(RobotError, match="ZeroDivisionError"):
-        robot_for(source, "it")
+        choose_robot(source, "it")
 
 
 def test_an_impossible_size_gives_the_default_robot_and_a_sentence() -> None:
@@ -103,7 +106,7 @@ def test_an_impossible_size_gives_the_default_robot_and_a_sentence() -> None:
         "drive = MoveDifferential('outB', 'outC', EV3Tire, 12000)\n"
     )
     source = parse_program(text, "p.py")
-    decided = program_settings(source).decided
+    decided = build_program_settings(source).decided
     why = (
         "its source describes an impossible robot (wheel_spacing_mm: must be a number from 1 to 1000, "
         "got 12000.0)"
@@ -113,4 +116,4 @@ def test_an_impossible_size_gives_the_default_robot_and_a_sentence() -> None:
     )
     assert "robot" not in decided.layer
     with pytest.raises(RobotError, match="got 12000"):
-        robot_for(source, "it")
+        choose_robot(source, "it")

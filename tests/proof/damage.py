@@ -36,7 +36,7 @@ from tuisim.engine.runs.side_files import (
     read_reads,
     read_stop_tick,
 )
-from tuisim.programs.notebook_file import notebook_programs
+from tuisim.programs.notebook_file import read_notebook_programs
 from tuisim.settings.build import build_run_spec
 from tuisim.settings.options import Settings
 from tuisim.settings.preferences import find_preferences_file, get_preference
@@ -257,7 +257,7 @@ FORMATS: Mapping[str, Format] = {
     "config": Format("config.toml", _home(load_config, find_config_file)),
     "lesson": Format("lesson.md", _reads(load_lesson), Syntax.FRONT),
     "notebook": Format(
-        "notebook.ipynb", _reads(lambda path: notebook_programs(Path(path))), Syntax.JSON
+        "notebook.ipynb", _reads(lambda path: read_notebook_programs(Path(path))), Syntax.JSON
     ),
     "progress": Format(
         "progress.json",

@@ -23,7 +23,7 @@ from tests.proof.kind import FaultError, Kind, home
 from tests.proof.security_app import check_shown
 from tests.proof.web_attacks import ATTACKS, check_attack
 from tuisim.base.errors import TuisimError
-from tuisim.programs.notebook_file import notebook_programs
+from tuisim.programs.notebook_file import read_notebook_programs
 
 _RUNS = "__import__('os').mkdir('owned')"
 TEXTS = (
@@ -390,7 +390,7 @@ def _notebook(random: Random) -> None:
     )
     Path(name).write_text(text)
     with suppress(TuisimError):
-        notebook_programs(Path(name))
+        read_notebook_programs(Path(name))
     said(["run", name], on_terminal=True)
     _look_at_runs()
 

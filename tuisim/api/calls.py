@@ -16,8 +16,8 @@ from tuisim.engine.runs.presses import press_actions
 from tuisim.engine.runs.store import RunStore
 from tuisim.programs.function import read_function
 from tuisim.programs.plugged_words import describe_plugged
-from tuisim.programs.program_file import ProgramSource, find_program, program_of_text, read_program
-from tuisim.programs.program_settings import ProgramSettings, program_settings
+from tuisim.programs.program_file import ProgramSource, build_program, find_program, read_program
+from tuisim.programs.program_settings import ProgramSettings, build_program_settings
 from tuisim.settings.build import build_run_spec
 
 
@@ -28,7 +28,7 @@ def read_source(program: str | Path | Callable[[], object]) -> ProgramSource:
         ConfigError: there is no such program, or its first line is wrong.
     """
     if isinstance(program, str) and "\n" in program:
-        return program_of_text(program, None, "program")
+        return build_program(program, None, "program")
     if not isinstance(program, str | Path):
         return read_function(program)
     return read_program(find_program(str(program)))
@@ -42,8 +42,8 @@ def prepare_program(
     Raises:
         ConfigError: its settings do not fit it.
     """
-    settings = program_settings(source, *layers)
-    started = settings.applied_to(source.program)
+    settings = build_program_settings(source, *layers)
+    started = settings.apply(source.program)
     return replace(started, arguments=tuple(arguments)) if arguments else started, settings
 
 

@@ -22,8 +22,8 @@ from tuisim.engine.files import means_file
 from tuisim.engine.runs.run_folder import program_again
 from tuisim.engine.runs.standstill import standstill_words
 from tuisim.engine.runs.store import RunStore
-from tuisim.programs.magic_mat import without_wrong_mat
-from tuisim.programs.program_settings import Decided, free_paths
+from tuisim.programs.magic_mat import drop_wrong_mat
+from tuisim.programs.program_settings import Decided, find_free_paths
 from tuisim.settings.options import START, Settings, merge_settings
 
 if TYPE_CHECKING:
@@ -208,7 +208,7 @@ class Loader:
     def _open_source(self, source: ProgramSource) -> Decided:
         """Open a program with what its magic line asks for; return what its source decides."""
         program, said = _parts(source)
-        source = without_wrong_mat(source, self._run_controller.next_run.settings["mats"])
+        source = drop_wrong_mat(source, self._run_controller.next_run.settings["mats"])
         plan, before = self._run_controller.next_run, self._run_controller.program
         if before is not None and before.path != program.path:
             plan = plans.with_choices(plan, {"arguments": (), "press": ()})
@@ -424,9 +424,9 @@ class Loader:
         Raises:
             TuisimError: its magic line is wrong.
         """
-        from tuisim.programs.program_file import program_of_text
+        from tuisim.programs.program_file import build_program
 
-        self._apply_program(program_of_text(text, Path(path) if path else None, name))
+        self._apply_program(build_program(text, Path(path) if path else None, name))
 
     def take_cell(self, source: ProgramSource | None, settings: Mapping[str, Any]) -> None:
         """Take the world and the program of a notebook's cell; what it repeats stays as the user has set it since.
@@ -454,9 +454,9 @@ class Loader:
         Raises:
             TuisimError: its magic line is wrong.
         """
-        from tuisim.programs.program_file import program_of_text
+        from tuisim.programs.program_file import build_program
 
-        self._open_source(program_of_text(text, None, name))
+        self._open_source(build_program(text, None, name))
 
     def _apply_program(self, source: ProgramSource) -> None:
         """Apply another text of the open program, with the changes in its magic line, and in the robot it needs."""
@@ -527,16 +527,16 @@ def _in_world(
     source: ProgramSource | None, magic: Mapping[str, Any], world: Mapping[str, Any]
 ) -> tuple[NextRun, Decided]:
     """Return the plan of a program in a world, which replaces all earlier choices, and what the program decides."""
-    free = free_paths(merge_settings(magic, world))
+    free = find_free_paths(merge_settings(magic, world))
     plan = plans.with_choices(plans.with_choices(plans.plan_of(Settings(), free), magic), world)
     return plans.following(plan, source) if source else (plan, Decided())
 
 
 def _program_path(word: str) -> str:
     """Return the path of a program that a world file names: a path, or the name of an example."""
-    from tuisim.programs.program_file import programs
+    from tuisim.programs.program_file import list_programs
 
-    examples = {name: path for name, path, _ in programs()}
+    examples = {name: path for name, path, _ in list_programs()}
     return (
         word
         if os.path.exists(word)

@@ -164,13 +164,15 @@ def open_lesson_in_app(lesson: Lesson, folder: str | None) -> int:
     """
     from tuisim.app.app import AppSettings, run_app
     from tuisim.programs.program_file import read_program
-    from tuisim.programs.program_settings import program_settings
+    from tuisim.programs.program_settings import build_program_settings
     from tuisim.settings.build import build_run_spec
     from tuisim.settings.user_config import Section, load_config
     from tuisim.tasks.lessons.progress import prepare_program
 
     source = read_program(prepare_program(lesson))
-    effective = program_settings(source, lesson.settings, below=load_config().layer(Section.APP))
+    effective = build_program_settings(
+        source, lesson.settings, below=load_config().layer(Section.APP)
+    )
     settings = effective.settings
     app_settings = AppSettings(
         spec=build_run_spec(settings),

@@ -1,4 +1,4 @@
-"""`tuisim backgrounds`, `robots`, `obstacles`, `programs` and `profiles`: list what there is by name.
+"""`tuisim backgrounds`, `robots`, `obstacles`, `list_programs` and `profiles`: list what there is by name.
 
 Each imports only what it lists: reading mats or robots takes longer than the rest of the command.
 """
@@ -25,9 +25,9 @@ def list_names(field: str) -> Iterable[str]:
     """Return the names of programs, columns or goal files, or those that an option such as `background` accepts."""
     match field:
         case "programs":
-            from tuisim.programs.program_file import programs
+            from tuisim.programs.program_file import list_programs
 
-            return [program.name.removesuffix(".py") for program in programs()]
+            return [program.name.removesuffix(".py") for program in list_programs()]
         case "background":
             from tuisim.engine.mats import mats
 
@@ -199,9 +199,9 @@ def _print_program_robot(program: str, out: str | None, *, as_json: bool) -> int
     if program.isdecimal() or program == "last":
         return _print_robot_of_run(program, out, as_json=as_json)
     from tuisim.programs.program_file import find_program, read_program
-    from tuisim.programs.program_settings import robot_for
+    from tuisim.programs.program_settings import choose_robot
 
-    robot = robot_for(read_program(find_program(program)), program)
+    robot = choose_robot(read_program(find_program(program)), program)
     if as_json:
         echo_json([asdict(robot.spec)])
     elif out is not None:
@@ -275,7 +275,7 @@ def obstacles(word: str | None, as_json: bool) -> int:
 def programs(as_json: bool) -> int:
     """List the example programs."""
     from tuisim.base.folders import programs_folder
-    from tuisim.programs.program_file import programs as example_programs
+    from tuisim.programs.program_file import list_programs as example_programs
 
     examples = example_programs()
     if as_json:

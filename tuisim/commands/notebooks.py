@@ -13,9 +13,9 @@ from tuisim.commands.echo import draw_table, echo, echo_error, echo_json, echo_l
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.programs.notebook_file import (
     NotebookProgram,
-    chosen_programs,
+    choose_programs,
+    find_notebooks,
     is_notebook,
-    notebooks_in,
 )
 
 NOT_RUN = "not_run"
@@ -25,7 +25,7 @@ def find_listed(words: Sequence[str], *, run_all: bool = False) -> list[Notebook
     """Return the programs of a notebook that is named without a cell; empty if there is only one."""
     if run_all or len(words) != 1 or not is_notebook(words[0]) or "#" in words[0]:
         return []
-    programs = chosen_programs(words[0])
+    programs = choose_programs(words[0])
     return programs if len(programs) > 1 else []
 
 
@@ -58,7 +58,7 @@ def find_programs(word: str) -> list[NotebookProgram]:
     Raises:
         ConfigError: there is no such notebook or program, or it runs in the notebook only.
     """
-    known = drop_unknown(chosen_programs(word))
+    known = drop_unknown(choose_programs(word))
     if not known:
         raise ConfigError(
             "has no program that runs outside the notebook", "run its cells in Jupyter", file=word
@@ -104,7 +104,7 @@ def check_folder(word: str, *, run_all: bool) -> list[Path]:
     Raises:
         ConfigError: there are none, or `--all` is missing.
     """
-    notebooks = notebooks_in(Path(word))
+    notebooks = find_notebooks(Path(word))
     if not notebooks:
         main = os.path.join(word, "main.py")
         named = (

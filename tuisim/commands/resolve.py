@@ -22,10 +22,10 @@ from tuisim.commands.notebooks import NotRun, check_folder, drop_unknown, find_p
 from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.runs.run_folder import StoredRun, field_files
 from tuisim.engine.runs.store import RunStore
-from tuisim.programs.magic_mat import without_wrong_mat, wrong_mat
-from tuisim.programs.notebook_file import is_notebook, notebook_programs
+from tuisim.programs.magic_mat import drop_wrong_mat, find_wrong_mat
+from tuisim.programs.notebook_file import is_notebook, read_notebook_programs
 from tuisim.programs.program_file import ProgramSource, find_program, read_program
-from tuisim.programs.program_settings import Decided, free_paths, program_settings
+from tuisim.programs.program_settings import Decided, build_program_settings, find_free_paths
 from tuisim.settings.build import build_run_spec
 from tuisim.settings.command_line import ARGUMENTS_FOLLOW, Arguments
 from tuisim.settings.options import APP_PATHS, Settings, merge_settings
@@ -107,7 +107,7 @@ def _prepare_word(
         spec = _build_spec(settings)
         plain = merge_settings(arguments.settings)
         remarks = _find_effective_defaults(spec, world, config, plain, arguments.settings)
-        decided = Decided(free=free_paths(settings))
+        decided = Decided(free=find_free_paths(settings))
         return Prepared(None, settings, spec, world, from_config=remarks, decided=decided)
     return _prepare_source(read_program(find_program(word)), world, arguments, config)
 
@@ -136,12 +136,12 @@ def _prepare_source(
     file: ProgramSource, world: WorldFile | None, arguments: Arguments, config: UserConfig
 ) -> Prepared:
     layers = [*([world.settings] if world else []), arguments.settings]
-    resolve_settings = partial(program_settings, file, *layers)
+    resolve_settings = partial(build_program_settings, file, *layers)
     effective = resolve_settings(below=_select_defaults(world, config))
     try:
-        program, spec = effective.applied_to(file.program), _build_spec(effective.settings)
+        program, spec = effective.apply(file.program), _build_spec(effective.settings)
     except ConfigError as error:
-        wrong = wrong_mat(file.program.text, file.program.name, effective.settings["mats"])
+        wrong = find_wrong_mat(file.program.text, file.program.name, effective.settings["mats"])
         is_it = wrong is not None and effective.settings["background"] == file.options["background"]
         raise (wrong.error if wrong and is_it and not error.file else error) from None
     above = (effective.decided.layer, file.options, arguments.settings)
@@ -196,7 +196,7 @@ def prepare_app(words: Sequence[str], arguments: Arguments, config: UserConfig) 
     mats = merge_settings(_select_defaults(world, config), source.options, arguments.settings)[
         "mats"
     ]
-    return _prepare_source(without_wrong_mat(source, mats), world, arguments, config)
+    return _prepare_source(drop_wrong_mat(source, mats), world, arguments, config)
 
 
 def prepare_replay(
@@ -273,7 +273,7 @@ def _prepare_folder(
     for path in check_folder(word, run_all=arguments.all):
         label = os.path.relpath(path, word)
         try:
-            programs = drop_unknown(notebook_programs(path))
+            programs = drop_unknown(read_notebook_programs(path))
         except ConfigError as error:
             prepared.append(NotRun(label, error))
             continue

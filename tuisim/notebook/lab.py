@@ -303,7 +303,7 @@ class Lab:
         from tuisim.base.source import Program
         from tuisim.engine.runs.run_folder import field_files
         from tuisim.programs.program_file import ProgramSource
-        from tuisim.programs.program_settings import program_settings
+        from tuisim.programs.program_settings import build_program_settings
         from tuisim.settings.build import build_run_spec
         from tuisim.settings.magic_line import update_persistent
         from tuisim.settings.options import merge_settings
@@ -324,7 +324,7 @@ class Lab:
             source = ProgramSource(program, has_magic=True)
             # A line says what holds for the cells below it: the program above it has run already.
             insists = text is not None or settings["autorun"]
-            effective = program_settings(source, *layers, insists=insists)
+            effective = build_program_settings(source, *layers, insists=insists)
             settings = effective.settings
             program = replace(program, shown_ports=effective.decided.shown_ports)
             if text is not None and effective.decided.note:

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator, Sequence
 
 from tuisim.base.errors import did_you_mean
 from tuisim.base.meant import find_meant_names
-from tuisim.programs.names import UnknownName, column_of, readable_tree
+from tuisim.programs.names import UnknownName, count_column, parse_readable
 from tuisim.programs.program_file import parse_unfinished
 
 _IMPORTS = (ast.Import, ast.ImportFrom)
@@ -31,7 +31,7 @@ class AttributeCheck:
         self._members = members
         self._known: dict[tuple[str, ...], frozenset[str] | None] = {}
 
-    def unknown_attributes(self, text: str, path: str) -> tuple[UnknownName, ...]:
+    def find_unknown_attributes(self, text: str, path: str) -> tuple[UnknownName, ...]:
         """Return the unknown attributes of names that are given an object once, in the program or its prelude.
 
         Args:
@@ -39,66 +39,68 @@ class AttributeCheck:
             path: Its file, or its name.
         """
         program = parse_unfinished(text, path)
-        tree, _ = readable_tree(program.text)
+        tree, _ = parse_readable(program.text)
         if tree is None or _ASKS_FIRST.search(text):
             return ()
-        lines, definitions = program.text.split("\n"), _definitions(tree)
+        lines, definitions = program.text.split("\n"), _find_definitions(tree)
         around = (
             path,
             program.prelude,
             *(ast.unparse(node) for node in tree.body if isinstance(node, _IMPORTS)),
         )
-        found = []
-        for node, name in _uses(tree):
-            row, at_dot = _place_after(lines, name)
+        unknown = []
+        for node, name in _find_uses(tree):
+            row, at_dot = _find_end(lines, name)
             key = (name.id, definitions.get(name.id, ""), *around)
             if key not in self._known:
                 self._known[key] = self._members(text, path, row, at_dot)
             members = self._known[key]
             if members is None or node.attr in members:
                 continue
-            row, end = _place_after(lines, node)
+            row, end = _find_end(lines, node)
             start = end - len(node.attr)
             if lines[row][start:end] == node.attr:
-                hint = did_you_mean([f"`{one}`" for one in find_meant_names(node.attr, members)])
-                found.append(UnknownName(node.attr, row, start, end, hint, name.id))
-        return tuple(found)
+                hint = did_you_mean(
+                    [f"`{meant}`" for meant in find_meant_names(node.attr, members)]
+                )
+                unknown.append(UnknownName(node.attr, row, start, end, hint, name.id))
+        return tuple(unknown)
 
 
-def _place_after(lines: Sequence[str], node: ast.expr) -> tuple[int, int]:
+def _find_end(lines: Sequence[str], node: ast.expr) -> tuple[int, int]:
     """Return row and column of the end of a piece of code."""
     row = (node.end_lineno or 1) - 1
-    return row, column_of(lines[row], node.end_col_offset)
+    return row, count_column(lines[row], node.end_col_offset)
 
 
-def _definitions(tree: ast.Module) -> dict[str, str]:
+def _find_definitions(tree: ast.Module) -> dict[str, str]:
     """Return the statement that gives a name its object, by name, for those at the margin."""
-    found: dict[str, str] = {}
+    statements: dict[str, str] = {}
     for node in tree.body:
         match node:
             case ast.Assign(targets=[ast.Name(id=name)]):
-                found[name] = ast.unparse(node)
+                statements[name] = ast.unparse(node)
             case ast.Import(names=aliases) | ast.ImportFrom(names=aliases):
-                found.update((_name_of(alias), ast.unparse(node)) for alias in aliases)
-    return found
+                statements.update((_get_name(alias), ast.unparse(node)) for alias in aliases)
+    return statements
 
 
-def _uses(tree: ast.Module) -> Iterator[tuple[ast.Attribute, ast.Name]]:
+def _find_uses(tree: ast.Module) -> Iterator[tuple[ast.Attribute, ast.Name]]:
     """Yield what is read of names that are given one object, and no further attributes."""
     attributes = [node for node in ast.walk(tree) if isinstance(node, ast.Attribute)]
-    made = {node.attr for node in attributes if not isinstance(node.ctx, ast.Load)}
-    bound, definitions = Counter(_bound_names(tree)), _definitions(tree)
+    assigned = {node.attr for node in attributes if not isinstance(node.ctx, ast.Load)}
+    bound, definitions = Counter(_list_bound_names(tree)), _find_definitions(tree)
     for node in attributes:
         name = node.value
         if (
             isinstance(name, ast.Name)
-            and node.attr not in made
+            and node.attr not in assigned
             and bound[name.id] == (name.id in definitions)
         ):
             yield node, name
 
 
-def _bound_names(tree: ast.Module) -> Iterator[str]:
+def _list_bound_names(tree: ast.Module) -> Iterator[str]:
     """Yield each name as often as it is given an object, of whatever scope."""
     for node in ast.walk(tree):
         match node:
@@ -119,8 +121,8 @@ def _bound_names(tree: ast.Module) -> Iterator[str]:
             case ast.MatchMapping(rest=str(name)):
                 yield name
             case ast.alias():
-                yield _name_of(node)
+                yield _get_name(node)
 
 
-def _name_of(alias: ast.alias) -> str:
+def _get_name(alias: ast.alias) -> str:
     return alias.asname or alias.name.partition(".")[0]

@@ -73,13 +73,13 @@ class _Names:
 
 
 @lru_cache
-def _scope_prelude(prelude: str) -> Scope:
+def _build_prelude_scope(prelude: str) -> Scope:
     return scope_of(Module("", "", parse_module(PRELUDE_TEXTS.get(prelude, ""))))
 
 
 def _name_prelude(name: str, prelude: str) -> str:
     """Return what a name stands for in a prelude; itself if that does not define it."""
-    names = _Names(_scope_prelude(prelude))
+    names = _Names(_build_prelude_scope(prelude))
     return next(iter(names.list_meanings(ast.Name(name), names.prelude)))
 
 
@@ -97,7 +97,7 @@ def list_calls(tree: ast.Module, prelude: str, wanted: str) -> list[int]:
             `tank_drive.on`, or the name of a function or method alone. An object of the same class counts as well.
     """
     scopes = _list_scopes(scope_of(Module("", "", tree)))
-    names = _Names(_scope_prelude(prelude))
+    names = _Names(_build_prelude_scope(prelude))
     calls = [
         ({ast.unparse(call.func), *names.list_meanings(call.func, scope)}, call.lineno)
         for scope in scopes
@@ -109,21 +109,27 @@ def list_calls(tree: ast.Module, prelude: str, wanted: str) -> list[int]:
     # `sleep` alone is any function or method of that name.
     if not rest:
         return sorted(
-            {line for said, line in calls if any(wanted == one.rpartition(".")[2] for one in said)}
+            {
+                line
+                for meanings, line in calls
+                if any(wanted == meaning.rpartition(".")[2] for meaning in meanings)
+            }
         )
     meant = _name_prelude(head, _DEFAULT_PRELUDE)
     # `MoveTank.on` is also a method of an object of the class.
     owner, _, method = f"{meant}.{rest}".rpartition(".")
     whole = {wanted, f"{meant}.{rest}", f"{owner}().{method}"}
     # `DriveBase.straight` is one of the class that the program imports from Pybricks.
-    for own in {one for scope in scopes for one in names.list_meanings(ast.Name(head), scope)}:
+    for own in {
+        meaning for scope in scopes for meaning in names.list_meanings(ast.Name(head), scope)
+    }:
         if own.partition(".")[0] == PYBRICKS:
             whole |= {f"{own}.{rest}", f"{own}().{rest}"}
     # What is imported with everything else may be of any of these modules.
     whole |= {
-        one.removeprefix(f"{module}.")
+        meaning.removeprefix(f"{module}.")
         for module in (star for scope in scopes for star in scope.stars)
-        for one in whole
-        if one.startswith(f"{module}.")
+        for meaning in whole
+        if meaning.startswith(f"{module}.")
     }
-    return sorted({line for said, line in calls if said & whole})
+    return sorted({line for meanings, line in calls if meanings & whole})

@@ -13,7 +13,7 @@ from tuisim.base.source import source_lines
 
 _INDENT = "  "
 """What the further rows of a line are indented by."""
-_GOES_ON = " \\"
+_CONTINUATION = " \\"
 """Ends a row that goes on, outside of brackets."""
 _OPEN, _CLOSED = frozenset("([{"), frozenset(")]}")
 _LAYOUT = frozenset(
@@ -32,49 +32,49 @@ class _Breaks:
     """Column of a comment."""
 
 
-def code_rows(program: str, width: int) -> Iterator[str]:
+def split_rows(program: str, width: int) -> Iterator[str]:
     """Yield a program as rows of at most so many cells, as far as its words are not longer.
 
     Rows are broken between words, in brackets if possible; elsewhere they end in a backslash. A comment behind a long
     line comes before it. A program that Python cannot read keeps its lines.
     """
     try:
-        breaks = _breaks(program)
+        breaks = _find_breaks(program)
     except (tokenize.TokenError, SyntaxError):
         breaks = {}
     for number, line in enumerate(source_lines(program), start=1):
         if len(line) <= width or number not in breaks:
             yield line
         else:
-            yield from _rows(line, breaks[number], width)
+            yield from _split_line(line, breaks[number], width)
 
 
-def _breaks(program: str) -> Mapping[int, _Breaks]:
+def _find_breaks(program: str) -> Mapping[int, _Breaks]:
     """Return where the lines may be broken, by number: after a blank or an opening bracket, and before a dot."""
-    found: dict[int, _Breaks] = {}
+    breaks: dict[int, _Breaks] = {}
     depth = texts = 0
     before: tokenize.TokenInfo | None = None
     for token in tokenize.generate_tokens(io.StringIO(program).readline):
         line, column = token.start
-        at = found.setdefault(line, _Breaks())
+        line_breaks = breaks.setdefault(line, _Breaks())
         same_line = before is not None and before.end[0] == line and before.type not in _LAYOUT
         is_word = token.type not in _LAYOUT and not texts
         if token.type == tokenize.COMMENT:
-            at.comment = column
-        elif before and same_line and is_word and _may_break(before, token):
-            at.inside[column] = depth > 0
+            line_breaks.comment = column
+        elif before and same_line and is_word and _can_break(before, token):
+            line_breaks.inside[column] = depth > 0
         texts += (token.type == _TEXT_BEGINS) - (token.type == _TEXT_ENDS)
         if token.type == tokenize.OP:
             depth += (token.string in _OPEN) - (token.string in _CLOSED)
         before = token
-    return found
+    return breaks
 
 
-def _may_break(before: tokenize.TokenInfo, token: tokenize.TokenInfo) -> bool:
+def _can_break(before: tokenize.TokenInfo, token: tokenize.TokenInfo) -> bool:
     return before.end[1] < token.start[1] or before.string in _OPEN or token.string == "."
 
 
-def _rows(line: str, breaks: _Breaks, width: int) -> Iterator[str]:
+def _split_line(line: str, breaks: _Breaks, width: int) -> Iterator[str]:
     indent = line[: len(line) - len(line.lstrip())]
     if breaks.comment is not None:
         words, line = line[breaks.comment :].lstrip("#").strip(), line[: breaks.comment].rstrip()
@@ -91,7 +91,7 @@ def _rows(line: str, breaks: _Breaks, width: int) -> Iterator[str]:
     while line[start:]:
         room = width - len(indent) - len(lead)
         end = len(line) if len(line) - start <= room else _end(line, start, room, breaks.inside)
-        tail = _GOES_ON if end < len(line) and not breaks.inside[end] else ""
+        tail = _CONTINUATION if end < len(line) and not breaks.inside[end] else ""
         yield f"{indent}{lead}{line[start:end].rstrip()}{tail}"
         lead, start = _INDENT, end
 
@@ -102,7 +102,7 @@ def _end(line: str, start: int, room: int, inside: Mapping[int, bool]) -> int:
     fits = [
         column
         for column in later
-        if len(line[start:column].rstrip()) + (0 if inside[column] else len(_GOES_ON)) <= room
+        if len(line[start:column].rstrip()) + (0 if inside[column] else len(_CONTINUATION)) <= room
     ]
     words = [column for column in fits if line[column] != "."]
     in_brackets = [column for column in words if inside[column]]

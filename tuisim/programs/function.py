@@ -34,9 +34,10 @@ def read_function(function: Callable[[], object]) -> ProgramSource:
     if not isinstance(function, FunctionType) or function.__name__ == "<lambda>":
         raise ConfigError(f"{function!r} is no program", "name a file, or a function made by def")
     needed = [
-        one.name
-        for one in inspect.signature(function).parameters.values()
-        if one.default is one.empty and one.kind not in (one.VAR_POSITIONAL, one.VAR_KEYWORD)
+        parameter.name
+        for parameter in inspect.signature(function).parameters.values()
+        if parameter.default is parameter.empty
+        and parameter.kind not in (parameter.VAR_POSITIONAL, parameter.VAR_KEYWORD)
     ]
     if needed:
         message = f"{function.__name__} as a program takes no arguments: {', '.join(needed)}"

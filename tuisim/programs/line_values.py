@@ -17,7 +17,7 @@ _OWN_NAMES = (ast.Lambda, ast.ClassDef, ast.ListComp, ast.SetComp, ast.DictComp,
 """What has names that are not those of the code around it."""
 
 
-def line_values(text: str, inspected: Inspected) -> dict[int, tuple[Variable, ...]]:
+def map_line_values(text: str, inspected: Inspected) -> dict[int, tuple[Variable, ...]]:
     """Return the variables that each line of a program, from 1, has assigned.
 
     Of the lines that may have run, above the current line of the function or in a loop with it, only the one that has
@@ -33,42 +33,51 @@ def line_values(text: str, inspected: Inspected) -> dict[int, tuple[Variable, ..
     if tree is None:
         return {}
     outer = next(
-        (one for one in reversed(inspected.stack) if not one.file and one.function == MODULE), None
+        (
+            frame_
+            for frame_ in reversed(inspected.stack)
+            if not frame_.file and frame_.function == MODULE
+        ),
+        None,
     )
     if frame is None or (frame.function == MODULE and not frame.file):
-        return _values_in(tree, frame, inspected.variables)
-    found = _values_in(tree, outer, inspected.globals)
-    function = None if frame.file else _function_at(tree, frame)
-    return found if function is None else found | _values_in(function, frame, inspected.variables)
+        return _find_values(tree, frame, inspected.variables)
+    values = _find_values(tree, outer, inspected.globals)
+    function = None if frame.file else _find_function(tree, frame)
+    return (
+        values if function is None else values | _find_values(function, frame, inspected.variables)
+    )
 
 
-def _function_at(tree: ast.Module, frame: FrameState) -> _Function | None:
+def _find_function(tree: ast.Module, frame: FrameState) -> _Function | None:
     """Return the innermost function of a frame."""
-    found = [
+    functions = [
         node
         for node in ast.walk(tree)
         if isinstance(node, _Function)
         and node.name == frame.function
         and node.lineno <= frame.line <= (node.end_lineno or 0)
     ]
-    return max(found, key=lambda node: node.lineno, default=None)
+    return max(functions, key=lambda node: node.lineno, default=None)
 
 
-def _values_in(
+def _find_values(
     scope: ast.Module | _Function, frame: FrameState | None, variables: Sequence[Variable]
 ) -> dict[int, tuple[Variable, ...]]:
     """Return the variables that each line of a scope has assigned; without a frame, the scope has been left."""
     by_name = {variable.name: variable for variable in variables}
     here = frame.line if frame else 0
     loops = [
-        (node.lineno, node.end_lineno or 0) for node in _nodes(scope) if isinstance(node, _LOOPS)
+        (node.lineno, node.end_lineno or 0)
+        for node in _walk_scope(scope)
+        if isinstance(node, _LOOPS)
     ]
     # The outermost loop around the current line.
     first, last = min(
         ((start, end) for start, end in loops if start <= here <= end), default=(0, -1)
     )
     lines_of: dict[str, list[int]] = {}
-    for line, name, constant in _assignments(scope):
+    for line, name, constant in _list_assignments(scope):
         variable = by_name.get(name)
         is_past = not here or line < here or first <= line <= last
         if variable is not None and is_past and constant in (None, variable.value):
@@ -79,33 +88,46 @@ def _values_in(
         in_loop = first <= line <= last
         return (0 if in_loop and line < here else 1 if in_loop else 2), -line
 
-    found: dict[int, dict[str, Variable]] = {}
+    values: dict[int, dict[str, Variable]] = {}
     for name, lines in lines_of.items():
-        for line in {min(lines, key=rank_age), *(one for one in lines if one == here)}:
-            found.setdefault(line, {})[name] = by_name[name]
-    return {line: tuple(names.values()) for line, names in sorted(found.items())}
+        for line in {
+            min(lines, key=rank_age),
+            *(assigned_line for assigned_line in lines if assigned_line == here),
+        }:
+            values.setdefault(line, {})[name] = by_name[name]
+    return {line: tuple(names.values()) for line, names in sorted(values.items())}
 
 
-def _nodes(scope: ast.AST) -> Iterator[ast.AST]:
+def _walk_scope(scope: ast.AST) -> Iterator[ast.AST]:
     """Yield the nodes of a scope, without those of functions, classes and comprehensions in it."""
     for node in ast.iter_child_nodes(scope):
         if not isinstance(node, (*_OWN_NAMES, ast.FunctionDef, ast.AsyncFunctionDef)):
             yield node
-            yield from _nodes(node)
+            yield from _walk_scope(node)
 
 
-def _assignments(scope: ast.Module | _Function) -> Iterator[tuple[int, str, str | None]]:
+def _list_assignments(scope: ast.Module | _Function) -> Iterator[tuple[int, str, str | None]]:
     """Yield the line of each assignment in a scope, the name, and the text of the value if it is a constant."""
     if not isinstance(scope, ast.Module):
-        given = scope.args
-        parameters = [*given.posonlyargs, *given.args, given.vararg, *given.kwonlyargs, given.kwarg]
-        yield from ((one.lineno, one.arg, None) for one in parameters if one is not None)
+        arguments = scope.args
+        parameters = [
+            *arguments.posonlyargs,
+            *arguments.args,
+            arguments.vararg,
+            *arguments.kwonlyargs,
+            arguments.kwarg,
+        ]
+        yield from (
+            (parameter.lineno, parameter.arg, None)
+            for parameter in parameters
+            if parameter is not None
+        )
     constants: Mapping[ast.AST, str] = {
         target: repr(node.value.value)
-        for node in _nodes(scope)
+        for node in _walk_scope(scope)
         if isinstance(node, ast.Assign) and isinstance(node.value, ast.Constant)
         for target in node.targets
     }
-    for node in _nodes(scope):
+    for node in _walk_scope(scope):
         if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store):
             yield node.lineno, node.id, constants.get(node)

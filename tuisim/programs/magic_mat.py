@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from tuisim.base.errors import BackgroundError, ConfigError
 from tuisim.engine.mats import find_mat
-from tuisim.programs.program_file import ProgramSource, find_magic, names_file
+from tuisim.programs.program_file import ProgramSource, find_magic, is_file_name
 
 
 class WrongMat(NamedTuple):
@@ -22,11 +22,11 @@ class WrongMat(NamedTuple):
     @property
     def words(self) -> str:
         """What is wrong, with the mat that may be meant, in one line."""
-        guess, found, _ = self.error.hint.partition("?")
-        return f"{self.error.message.partition(': ')[2]}{f', {guess}?' if found else ''}"
+        guess, question, _ = self.error.hint.partition("?")
+        return f"{self.error.message.partition(': ')[2]}{f', {guess}?' if question else ''}"
 
 
-def wrong_mat(text: str, name: str, folder: str | None) -> WrongMat | None:
+def find_wrong_mat(text: str, name: str, folder: str | None) -> WrongMat | None:
     """Return what is wrong with the mat in a magic line; None if nothing is, or if it is an image beside the program.
 
     Args:
@@ -41,7 +41,7 @@ def wrong_mat(text: str, name: str, folder: str | None) -> WrongMat | None:
             magic
             and "background" in options
             and "mats" not in options
-            and not names_file(options["background"])
+            and not is_file_name(options["background"])
         ):
             find_mat(options["background"], folder)
     except BackgroundError as error:
@@ -55,9 +55,9 @@ def wrong_mat(text: str, name: str, folder: str | None) -> WrongMat | None:
     return None
 
 
-def without_wrong_mat(source: ProgramSource, folder: str | None) -> ProgramSource:
+def drop_wrong_mat(source: ProgramSource, folder: str | None) -> ProgramSource:
     """Return a program without the mat of its magic line if that is wrong, so that it can be opened and mended."""
-    if wrong_mat(source.program.text, source.program.name, folder) is None:
+    if find_wrong_mat(source.program.text, source.program.name, folder) is None:
         return source
     return replace(
         source,

@@ -8,7 +8,7 @@ import warnings
 
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import TuisimError
-from tuisim.programs.magic_mat import wrong_mat
+from tuisim.programs.magic_mat import find_wrong_mat
 from tuisim.programs.program_file import parse_program
 
 
@@ -52,5 +52,5 @@ def find_mistake(text: str, name: str, mats: str | None = None) -> Mistake | Non
     if fault := find_fault(source.program.text):
         message, line = fault
         return Mistake(line, f"line {line}: {message}" if line else message)
-    wrong = wrong_mat(text, name, mats)
+    wrong = find_wrong_mat(text, name, mats)
     return Mistake(wrong.line, f"line {wrong.line}: {wrong.words}") if wrong else None

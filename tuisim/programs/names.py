@@ -21,7 +21,7 @@ from tuisim.base.syntax_tree import parse_module
 from tuisim.programs.program_file import parse_unfinished
 from tuisim.programs.robot.course import global_names
 
-MOST_MENDED = 3
+MAX_MENDED = 3
 """Lines that are left out if they are not Python yet."""
 _LIKENESS = 0.7
 _LOADS = frozenset({"LOAD_NAME", "LOAD_GLOBAL", "LOAD_FROM_DICT_OR_GLOBALS"})
@@ -29,9 +29,7 @@ _STORES = frozenset({"STORE_NAME", "STORE_GLOBAL"})
 _READS_ANY_NAME = frozenset({"eval", "exec", "globals", "locals", "vars"})
 """Functions that may define names that do not appear in the program."""
 _BUILTINS = frozenset(dir(builtins))
-_OF_EVERY_MODULE = frozenset(
-    {"__file__", "__builtins__", "__annotations__", "__path__", "__cached__"}
-)
+_MODULE_NAMES = frozenset({"__file__", "__builtins__", "__annotations__", "__path__", "__cached__"})
 _WELL_KNOWN = ("time", "random", "math", "statistics", "threading", "datetime")
 """Modules of the standard library that programs for robots use, those first that a name is looked for in first."""
 _WORD = re.compile(r"[^\W\d]\w*")
@@ -64,7 +62,7 @@ class UnknownName:
 
 
 @dataclass(slots=True)
-class _Found:
+class _SeenNames:
     """Names in the code of a program."""
 
     loaded: dict[tuple[int, int, int], str] = field(default_factory=dict)
@@ -74,7 +72,7 @@ class _Found:
     """Local variables with a function that has them."""
 
 
-def unknown_names(text: str, name: str) -> tuple[UnknownName, ...] | None:
+def find_unknown_names(text: str, name: str) -> tuple[UnknownName, ...] | None:
     """Return the unknown names of a program; None if that cannot be told.
 
     Args:
@@ -82,59 +80,59 @@ def unknown_names(text: str, name: str) -> tuple[UnknownName, ...] | None:
         name: Of its file.
     """
     program = parse_unfinished(text, name)
-    tree, guessed = readable_tree(program.text)
-    if tree is None or _defines_unseen_names(tree):
+    tree, guessed = parse_readable(program.text)
+    if tree is None or _has_unseen_names(tree):
         return None
-    found = _Found()
+    seen = _SeenNames()
     with warnings.catch_warnings():
         # They are shown when the program runs.
         warnings.simplefilter("ignore")
         try:
-            _search(compile(tree, name, "exec", dont_inherit=True), found)
+            _search(compile(tree, name, "exec", dont_inherit=True), seen)
         except (SyntaxError, ValueError, RecursionError, MemoryError):
             return None
-    own = found.defined | guessed | _prelude_names(program.prelude)
+    own = seen.defined | guessed | _list_prelude_names(program.prelude)
     lines = program.text.split("\n")
-    known = own | _BUILTINS | _OF_EVERY_MODULE
+    known = own | _BUILTINS | _MODULE_NAMES
     unknown = []
-    for (line, *columns), word in sorted(found.loaded.items()):
-        start, end = (column_of(lines[line - 1], column) for column in columns)
+    for (line, *columns), word in sorted(seen.loaded.items()):
+        start, end = (count_column(lines[line - 1], column) for column in columns)
         if word not in known and lines[line - 1][start:end] == word:
-            hint = _hint(word, lines[line - 1][end : end + 1], own, found.within)
+            hint = _build_hint(word, lines[line - 1][end : end + 1], own, seen.within)
             unknown.append(UnknownName(word, line - 1, start, end, hint))
     return tuple(unknown)
 
 
-def readable_tree(text: str) -> tuple[ast.Module | None, set[str]]:
+def parse_readable(text: str) -> tuple[ast.Module | None, set[str]]:
     """Return the tree of a program, without lines that are not Python yet, and the words of these lines."""
     lines = source_lines(text)
-    kept, words = list(lines), set[str]()
-    for _ in range(MOST_MENDED + 1):
+    readable, words = list(lines), set[str]()
+    for _ in range(MAX_MENDED + 1):
         try:
-            return parse_module("\n".join(kept)), words
+            return parse_module("\n".join(readable)), words
         except SyntaxError as error:
-            at = (error.lineno or 0) - 1
-            if not 0 <= at < len(kept) or kept[at] != lines[at]:
+            index = (error.lineno or 0) - 1
+            if not 0 <= index < len(readable) or readable[index] != lines[index]:
                 break
-            words.update(_WORD.findall(kept[at]))
-            kept[at] = _substitute(kept, at)
+            words.update(_WORD.findall(readable[index]))
+            readable[index] = _replace_line(readable, index)
         except (ValueError, RecursionError, MemoryError):
             break
     return None, words
 
 
-def _substitute(lines: Sequence[str], at: int) -> str:
+def _replace_line(lines: Sequence[str], index: int) -> str:
     """Return a statement in place of a line: the head of a block if a block follows."""
-    indent = _indent(lines[at])
-    below = next((line for line in lines[at + 1 :] if line.strip()), "")
-    return indent + ("if True:" if len(_indent(below)) > len(indent) else "pass")
+    indent = _read_indent(lines[index])
+    below = next((line for line in lines[index + 1 :] if line.strip()), "")
+    return indent + ("if True:" if len(_read_indent(below)) > len(indent) else "pass")
 
 
-def _indent(line: str) -> str:
+def _read_indent(line: str) -> str:
     return line[: len(line) - len(line.lstrip())]
 
 
-def _defines_unseen_names(tree: ast.Module) -> bool:
+def _has_unseen_names(tree: ast.Module) -> bool:
     for node in ast.walk(tree):
         match node:
             case ast.ImportFrom(names=[ast.alias(name="*")]):
@@ -144,12 +142,12 @@ def _defines_unseen_names(tree: ast.Module) -> bool:
     return False
 
 
-def _search(code: types.CodeType, found: _Found, is_module: bool = True) -> None:
+def _search(code: types.CodeType, seen: _SeenNames, is_module: bool = True) -> None:
     """Note the names that code reads from its module and gives to it; those of a class are its own."""
     own = set[str]()
     for instruction in dis.get_instructions(code):
         if instruction.opname in _STORES:
-            to = found.defined if is_module or instruction.opname == "STORE_GLOBAL" else own
+            to = seen.defined if is_module or instruction.opname == "STORE_GLOBAL" else own
             to.add(instruction.argval)
     for instruction in dis.get_instructions(code):
         place = instruction.positions
@@ -159,28 +157,28 @@ def _search(code: types.CodeType, found: _Found, is_module: bool = True) -> None
             and place
             and place.lineno is not None
         ):
-            found.loaded[place.lineno, place.col_offset or 0, place.end_col_offset or 0] = (
+            seen.loaded[place.lineno, place.col_offset or 0, place.end_col_offset or 0] = (
                 instruction.argval
             )
     if not code.co_name.startswith("<"):
-        found.within.update(dict.fromkeys(code.co_varnames, code.co_name))
+        seen.within.update(dict.fromkeys(code.co_varnames, code.co_name))
     for inner in code.co_consts:
         if isinstance(inner, types.CodeType):
-            _search(inner, found, is_module=False)
+            _search(inner, seen, is_module=False)
 
 
-def column_of(line: str, byte: int | None) -> int:
+def count_column(line: str, byte: int | None) -> int:
     """Return the column in characters of a place that Python tells in bytes."""
     return len(line.encode()[:byte].decode(errors="ignore"))
 
 
 @cache
-def _prelude_names(prelude: str) -> frozenset[str]:
+def _list_prelude_names(prelude: str) -> frozenset[str]:
     return frozenset(global_names(PRELUDE_TEXTS[prelude])[1])
 
 
 @cache
-def _modules() -> Mapping[str, str]:
+def _map_modules() -> Mapping[str, str]:
     """Return the module of each name that a prelude imports."""
     tree = parse_module(PRELUDE_TEXTS["imports"])
     imports = (node for node in tree.body if isinstance(node, ast.ImportFrom))
@@ -188,14 +186,14 @@ def _modules() -> Mapping[str, str]:
 
 
 @cache
-def _functions() -> Mapping[str, str]:
+def _map_functions() -> Mapping[str, str]:
     """Return the module of each function of the standard library that programs for robots use."""
     modules = {name: import_module(name) for name in reversed(_WELL_KNOWN)}
     return {
         name: module
-        for module, made in modules.items()
-        for name in dir(made)
-        if _is_function(made, name)
+        for module, loaded in modules.items()
+        for name in dir(loaded)
+        if _is_function(loaded, name)
     }
 
 
@@ -208,24 +206,30 @@ def _is_function(module: types.ModuleType, name: str) -> bool:
     )
 
 
-def _hint(name: str, follows: str, own: set[str], within: Mapping[str, str]) -> str:
+def _build_hint(name: str, follows: str, own: set[str], within: Mapping[str, str]) -> str:
     """Return what may help with a name that is not defined; `follows` is the character after it."""
     if follows == "." and name in sys.stdlib_module_names:
         return f"`import {name}`"
     if function := within.get(name):
         return f"it exists only inside `{function}`"
-    if follows == "(" and (module := _functions().get(name)):
+    if follows == "(" and (module := _map_functions().get(name)):
         return f"did you mean `{module}.{name}`? `import {module}`"
-    if close := likely(name, own | within.keys()) or likely(name, _BUILTINS):
+    if close := guess_name(name, own | within.keys()) or guess_name(name, _BUILTINS):
         return did_you_mean([f"`{close}`"])
-    if module := _modules().get(name):
+    if module := _map_modules().get(name):
         return f"`from {module} import {name}`"
     return (
-        "put `# %%sim_magic_preloaded` into line 1" if name in _prelude_names("preloaded") else ""
+        "put `# %%sim_magic_preloaded` into line 1"
+        if name in _list_prelude_names("preloaded")
+        else ""
     )
 
 
-def likely(name: str, names: Set[str]) -> str:
+def guess_name(name: str, names: Set[str]) -> str:
     """Return the name that may have been meant, empty if there is none."""
-    known = (one for one in sorted(names) if not one.startswith("_") or name.startswith("_"))
+    known = (
+        candidate
+        for candidate in sorted(names)
+        if not candidate.startswith("_") or name.startswith("_")
+    )
     return next(iter(closest(name, known, 1, _LIKENESS)), "")

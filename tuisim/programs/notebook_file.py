@@ -13,7 +13,7 @@ from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ConfigError, nearest
 from tuisim.base.source import PRELUDES, Program, source_lines
 from tuisim.engine.files import read_bytes
-from tuisim.programs.program_file import ProgramSource, beside
+from tuisim.programs.program_file import ProgramSource, resolve_files
 from tuisim.settings.magic_line import parse_line, update_persistent
 
 MAX_NOTEBOOK_BYTES = 64 << 20
@@ -56,23 +56,23 @@ def is_notebook(word: str) -> bool:
     return word.partition("#")[0].endswith(SUFFIX)
 
 
-def notebooks_in(folder: Path) -> list[Path]:
+def find_notebooks(folder: Path) -> list[Path]:
     """Return the notebooks in a folder and its subfolders, in natural order: 2 comes before 10.
 
     Hidden folders are left out: Jupyter keeps former versions in them.
     """
-    found: list[Path] = []
+    notebooks: list[Path] = []
     for place, folders, files in os.walk(folder):
         folders[:] = [name for name in folders if not name.startswith(".")]
-        found += [
+        notebooks += [
             Path(place, name)
             for name in files
             if name.endswith(SUFFIX) and not name.startswith(".")
         ]
-    return sorted(found, key=lambda path: [_natural(part) for part in path.parts])
+    return sorted(notebooks, key=lambda path: [_build_sort_key(part) for part in path.parts])
 
 
-def _natural(name: str) -> list[tuple[int, str]]:
+def _build_sort_key(name: str) -> list[tuple[int, str]]:
     """Return a sort key for natural order."""
     return [
         (int(digits), "") if digits else (-1, text.lower())
@@ -80,60 +80,60 @@ def _natural(name: str) -> list[tuple[int, str]]:
     ]
 
 
-def _cells(path: Path) -> Iterator[tuple[str, str]]:
+def _read_cells(path: Path) -> Iterator[tuple[str, str]]:
     """Yield (cell type, text)."""
-    shown, missing = str(path), "there is no such notebook"
+    file_name, missing = str(path), "there is no such notebook"
     data = read_bytes(path, MAX_NOTEBOOK_BYTES, ConfigError, missing, folder=missing)
     if len(data) > MAX_NOTEBOOK_BYTES:
-        raise ConfigError(f"is larger than {MAX_NOTEBOOK_BYTES >> 20} MiB", file=shown)
+        raise ConfigError(f"is larger than {MAX_NOTEBOOK_BYTES >> 20} MiB", file=file_name)
     try:
         for cell in json.loads(data)["cells"]:
             source = cell["source"]
             yield str(cell["cell_type"]), source if isinstance(source, str) else "".join(source)
     except (ValueError, KeyError, TypeError, RecursionError):
         raise ConfigError(
-            "is not a readable notebook", "one of format 4, as Jupyter saves it", file=shown
+            "is not a readable notebook", "one of format 4, as Jupyter saves it", file=file_name
         ) from None
 
 
-def notebook_programs(path: Path) -> list[NotebookProgram]:
+def read_notebook_programs(path: Path) -> list[NotebookProgram]:
     """Return the programs in a notebook, from the top; what only the notebook knows is left out of their world.
 
     Raises:
         ConfigError: it cannot be read, is no notebook, or a magic line in it is wrong.
     """
-    found: list[NotebookProgram] = []
+    programs: list[NotebookProgram] = []
     title, persistent, notes = "", dict[str, Any](), list[str]()
     folder = os.path.dirname(os.path.abspath(path))
-    for place, (kind, text) in enumerate(_cells(path), 1):
+    for place, (kind, text) in enumerate(_read_cells(path), 1):
         if kind == "markdown":
             headings = [match[1] for line in source_lines(text) if (match := _HEADING.match(line))]
             title = headings[-1] if headings else title
         if kind != "code":
             continue
         where = f"{path}, cell {place}"
-        for words in _magics(text, where):
-            said = beside(path.parent, words.settings)
-            persistent = update_persistent(persistent, said)
+        for words in _parse_magics(text, where):
+            magic_options = resolve_files(path.parent, words.settings)
+            persistent = update_persistent(persistent, magic_options)
             if words.magic["cell"]:
-                number = len(found) + 1
+                number = len(programs) + 1
                 # The magic's line is left empty, so that line numbers are those of the cell.
-                at = text.index("%%")
-                body = "\n" * (text.count("\n", 0, at) + 1) + text[at:].partition("\n")[2]
-                prelude = str(said.get("preload", PRELUDES[words.magic["name"]]))
-                options = {**persistent, **said}
+                start = text.index("%%")
+                body = "\n" * (text.count("\n", 0, start) + 1) + text[start:].partition("\n")[2]
+                prelude = str(magic_options.get("preload", PRELUDES[words.magic["name"]]))
+                options = {**persistent, **magic_options}
                 cell = Program(f"{path.name}#{number}", body, prelude, module_folder=folder)
                 source = ProgramSource(cell, options, has_magic=True)
-                found.append(NotebookProgram(number, title, source, words.unknown, tuple(notes)))
+                programs.append(NotebookProgram(number, title, source, words.unknown, tuple(notes)))
                 notes.clear()
             elif words.unknown:
                 notes.append(
                     f"{where}: {words.unknown} is defined only in the notebook, and is ignored"
                 )
-    return found
+    return programs
 
 
-def _magics(text: str, where: str) -> Iterator[_Words]:
+def _parse_magics(text: str, where: str) -> Iterator[_Words]:
     """Yield each magic that sets the world, parsed; a cell magic is the first line of its cell."""
     stripped = text.lstrip()
     lines = source_lines(stripped)
@@ -148,34 +148,34 @@ def _magics(text: str, where: str) -> Iterator[_Words]:
             raise ConfigError(
                 f"no such magic %{match['cell'] or ''}{match['name']}", known, file=where
             )
-        line_words, unknown = _without_variables(match["words"])
+        line_words, unknown = _drop_variables(match["words"])
         try:
             yield _Words(match, parse_line(line_words, match["name"]).settings, unknown)
         except ConfigError as error:
             raise ConfigError(error.message, error.hint, file=where) from None
 
 
-def _without_variables(words: str) -> tuple[str, str]:
+def _drop_variables(words: str) -> tuple[str, str]:
     """Return a magic line without the words that contain variables and their options, and those variables."""
     unknown = ", ".join(_VARIABLE.findall(words))
-    kept: list[str] = []
+    constant: list[str] = []
     # A word may contain a variable with blanks in its braces.
     for word in re.findall(rf"(?:{_VARIABLE.pattern}|\S)+", words) if unknown else ():
         if not _VARIABLE.search(word):
-            kept.append(word)
-        elif not word.startswith("-") and kept and kept[-1].startswith("-"):
-            kept.pop()
-    return (" ".join(kept) if unknown else words), unknown
+            constant.append(word)
+        elif not word.startswith("-") and constant and constant[-1].startswith("-"):
+            constant.pop()
+    return (" ".join(constant) if unknown else words), unknown
 
 
-def chosen_programs(word: str) -> list[NotebookProgram]:
+def choose_programs(word: str) -> list[NotebookProgram]:
     """Return the programs that `FILE` or `FILE#number` names.
 
     Raises:
         ConfigError: there is no such notebook or program.
     """
     name, sharp, cell = word.partition("#")
-    programs = notebook_programs(Path(name))
+    programs = read_notebook_programs(Path(name))
     if not programs:
         raise ConfigError("has no program cells", "they begin with %%sim_magic", file=name)
     if not sharp:

@@ -16,8 +16,8 @@ def describe_plugged(run: StoredRun) -> str:
     if not parts:
         return ""
     words = f"plugged in {parts}{_name_remedy(run.plugged, run.spec)}"
-    shown = f"; `tuisim robots --from {run.number}` shows the robot" if run.number else ""
-    return f"{run.program.name} opened parts that its source does not show: {words}{shown}"
+    hint = f"; `tuisim robots --from {run.number}` shows the robot" if run.number else ""
+    return f"{run.program.name} opened parts that its source does not show: {words}{hint}"
 
 
 def _name_remedy(parts: Sequence[PluggedPart], spec: RunSpec) -> str:

@@ -80,7 +80,7 @@ class ProgramFile(NamedTuple):
     """First line of the program's docstring, empty if it has none."""
 
 
-def _title_of(path: Path) -> str:
+def _read_title(path: Path) -> str:
     try:
         lines = source_lines(read_regular(path, MAX_PROGRAM_BYTES, follow_links=True).decode())
         # A program may begin with a magic line, which is not Python.
@@ -90,19 +90,19 @@ def _title_of(path: Path) -> str:
     return (ast.get_docstring(module) or "").partition("\n")[0].strip()
 
 
-def programs() -> list[ProgramFile]:
+def list_programs() -> list[ProgramFile]:
     """Return the example programs by name.
 
     Raises:
         ConfigError: there is no folder of programs.
     """
     return [
-        ProgramFile(path.name, path, _title_of(path))
+        ProgramFile(path.name, path, _read_title(path))
         for path in sorted(programs_folder().glob("*.py"))
     ]
 
 
-def _head(lines: list[str]) -> Iterator[tuple[int, str]]:
+def _read_head(lines: list[str]) -> Iterator[tuple[int, str]]:
     """Yield (line number, text) of the lines before the first statement, without the docstring."""
     closing = ""
     for number, raw in enumerate(lines, start=1):
@@ -119,17 +119,17 @@ def _head(lines: list[str]) -> Iterator[tuple[int, str]]:
             return
 
 
-def beside(folder: Path, options: Mapping[str, Any]) -> dict[str, Any]:
+def resolve_files(folder: Path, options: Mapping[str, Any]) -> dict[str, Any]:
     """Return the options of a magic line, with file names resolved from the folder of the program or its notebook."""
-    found = dict(options)
-    for field_name in FILE_FIELDS & found.keys():
-        word = found[field_name]
-        if field_name == "mats" or names_file(word):
-            found[field_name] = str(folder / user_path(word))
-    return found
+    resolved = dict(options)
+    for field_name in FILE_FIELDS & resolved.keys():
+        word = resolved[field_name]
+        if field_name == "mats" or is_file_name(word):
+            resolved[field_name] = str(folder / user_path(word))
+    return resolved
 
 
-def names_file(word: str) -> bool:
+def is_file_name(word: str) -> bool:
     """Return whether the value of one of `FILE_FIELDS` names a file, and not something built in."""
     return os.sep in word or bool(Path(word).suffix)
 
@@ -140,7 +140,7 @@ def find_magic(text: str, name: str) -> Magic | None:
     Raises:
         ConfigError: the magic is not one of `PRELUDES`, or an option in it is wrong.
     """
-    for number, line in _head(source_lines(text)):
+    for number, line in _read_head(source_lines(text)):
         match = _MAGIC.fullmatch(line)
         if match is None:
             continue
@@ -158,7 +158,7 @@ def find_magic(text: str, name: str) -> Magic | None:
     return None
 
 
-def with_mat(text: str, name: str, mat: str) -> str:
+def replace_mat(text: str, name: str, mat: str) -> str:
     """Return a program whose magic line names a mat; if it has none, with a line for the preloaded prelude.
 
     Args:
@@ -172,28 +172,28 @@ def with_mat(text: str, name: str, mat: str) -> str:
     magic = find_magic(text, name)
     lines = text.split("\n")
     if magic is None:
-        at = _after_docstring(lines)
+        index = _find_docstring_end(lines)
         return "\n".join(
-            [*lines[:at], f"# %%sim_magic_preloaded -b {shlex.quote(mat)}", *lines[at:]]
+            [*lines[:index], f"# %%sim_magic_preloaded -b {shlex.quote(mat)}", *lines[index:]]
         )
     line = lines[magic.line - 1].rstrip()
-    wanted = {**magic.options, "background": mat}
+    new_options = {**magic.options, "background": mat}
     before, quoted = str(magic.options.get("background", "\n")), shlex.quote(mat)
     # Of several the last one counts.
     named = (line.rpartition(word) for word in (f'"{before}"', shlex.quote(before), before))
     for changed in (
-        *(f"{one[0]}{quoted}{one[2]}" for one in named if one[1]),
+        *(f"{part[0]}{quoted}{part[2]}" for part in named if part[1]),
         f"{line} -b {quoted}",
     ):
         lines[magic.line - 1] = changed
         with suppress(ConfigError):
-            found = find_magic("\n".join(lines), name)
-            if found is not None and dict(found.options) == wanted:
+            new_magic = find_magic("\n".join(lines), name)
+            if new_magic is not None and dict(new_magic.options) == new_options:
                 break
     return "\n".join(lines)
 
 
-def _after_docstring(lines: list[str]) -> int:
+def _find_docstring_end(lines: list[str]) -> int:
     """Return the index of the line after the docstring, or after the lines that Python wants to be first."""
     try:
         first = parse_module("\n".join(lines)).body[:1]
@@ -204,16 +204,16 @@ def _after_docstring(lines: list[str]) -> int:
         case [ast.Expr(value=ast.Constant(value=str()), end_lineno=int(last))]:
             return last
     return next(
-        (at for at, line in enumerate(lines[:2]) if not line.startswith(("#!", "# -*-"))), 0
+        (index for index, line in enumerate(lines[:2]) if not line.startswith(("#!", "# -*-"))), 0
     )
 
 
-def prelude_for(text: str, path: str = "") -> str:
+def choose_prelude(text: str, path: str = "") -> str:
     """Return the prelude of a program without a magic line, in a file or none.
 
     It is `none` if the program imports the library, or uses no name of a prelude.
     """
-    if imports_library(text):
+    if has_library_import(text):
         return "none"
     try:
         used, defined = global_names(text)
@@ -231,7 +231,7 @@ def prelude_for(text: str, path: str = "") -> str:
     return "preloaded"
 
 
-def imports_library(text: str) -> bool:
+def has_library_import(text: str) -> bool:
     """Return whether a program imports a library for a brick."""
     try:
         tree = parse_module(text)
@@ -257,7 +257,7 @@ def parse_program(text: str, name: str, path: str = "") -> ProgramSource:
     """
     magic = find_magic(text, name)
     if magic is None:
-        return ProgramSource(Program(name, text, prelude_for(text, path), path))
+        return ProgramSource(Program(name, text, choose_prelude(text, path), path))
     if not magic.comment:
         lines = source_lines(text)
         lines[magic.line - 1] = f"# {lines[magic.line - 1].strip()}"
@@ -273,7 +273,7 @@ def parse_unfinished(text: str, name: str) -> Program:
     except ConfigError:
         # Its magic line is not finished.
         return Program(name, text, "preloaded")
-    if source.has_magic or imports_library(text):
+    if source.has_magic or has_library_import(text):
         return source.program
     return replace(source.program, prelude="preloaded")
 
@@ -300,20 +300,22 @@ def read_program(path: Path, *, as_python: bool = False, alone: bool = False) ->
     Raises:
         ConfigError: it is missing, a directory, not Python text, too large, or its magic line is wrong.
     """
-    shown, hint = str(path), "name a Python file"
+    file_name, hint = str(path), "name a Python file"
     missing, folder = "there is no such program", "is a directory, not a program"
-    data = read_bytes(path, MAX_PROGRAM_BYTES, ConfigError, missing, folder, hint, _neighbours)
+    data = read_bytes(
+        path, MAX_PROGRAM_BYTES, ConfigError, missing, folder, hint, _suggest_neighbours
+    )
     if len(data) > MAX_PROGRAM_BYTES:
-        raise ConfigError(f"is larger than {MAX_PROGRAM_BYTES >> 20} MiB", hint, file=shown)
+        raise ConfigError(f"is larger than {MAX_PROGRAM_BYTES >> 20} MiB", hint, file=file_name)
     if path.suffix == ".ipynb":
-        raise ConfigError("is a notebook", hint, file=shown)
+        raise ConfigError("is a notebook", hint, file=file_name)
     if path.suffix.lower() in LOG_SUFFIXES:
-        opens = f"`tuisim analyse {shlex.quote(shown)}` opens it"
-        raise ConfigError("is a log, not a program", opens, file=shown)
-    text = _decode(data, shown, as_python)
+        opens = f"`tuisim analyse {shlex.quote(file_name)}` opens it"
+        raise ConfigError("is a log, not a program", opens, file=file_name)
+    text = _decode(data, file_name, as_python)
     if path.suffix.lower() == ".txt" and not _is_python(text):
-        raise ConfigError("is text, not a program", hint, file=shown)
-    return program_of_text(text, path, path.name, alone=alone)
+        raise ConfigError("is text, not a program", hint, file=file_name)
+    return build_program(text, path, path.name, alone=alone)
 
 
 def _is_python(text: str) -> bool:
@@ -324,9 +326,7 @@ def _is_python(text: str) -> bool:
     return True
 
 
-def program_of_text(
-    text: str, path: Path | None, name: str, *, alone: bool = False
-) -> ProgramSource:
+def build_program(text: str, path: Path | None, name: str, *, alone: bool = False) -> ProgramSource:
     """Like `read_program`, from a text; files in its magic line are looked up beside `path`.
 
     Args:
@@ -341,15 +341,19 @@ def program_of_text(
     # In a file, nothing can be found.
     where = path / name if path and alone else path
     source = parse_program(text, name, str(where) if where else "")
-    return replace(source, options=beside(path.parent if path else Path.cwd(), source.options))
+    return replace(
+        source, options=resolve_files(path.parent if path else Path.cwd(), source.options)
+    )
 
 
-def _decode(data: bytes, shown: str, as_python: bool) -> str:
+def _decode(data: bytes, file_name: str, as_python: bool) -> str:
     try:
-        text, _ = decode_source(data, shown)
+        text, _ = decode_source(data, file_name)
         if "\0" in text:
             raise ConfigError(
-                "is not Python text: it contains null characters", "name a Python file", file=shown
+                "is not Python text: it contains null characters",
+                "name a Python file",
+                file=file_name,
             )
     except ConfigError:
         if not as_python:
@@ -358,11 +362,11 @@ def _decode(data: bytes, shown: str, as_python: bool) -> str:
     return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
-def _neighbours(path: Path) -> str:
+def _suggest_neighbours(path: Path) -> str:
     """Return the hint for a missing file: similar names beside it, else similar examples, else how to list them."""
     close = close_beside(path, (".py",))
     if not close and path.parent == Path():
         # A word without a folder may also be meant as an example, which needs no suffix.
-        stems = [file.path.stem for file in programs()]
+        stems = [file.path.stem for file in list_programs()]
         close = [f"{stem}{path.suffix}" for stem in closest(path.stem, stems)]
     return did_you_mean(close) or "see `tuisim programs` for examples"

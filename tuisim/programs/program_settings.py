@@ -38,12 +38,12 @@ if TYPE_CHECKING:
 
 BRICK_PROFILE = "ev3"
 """The profile of programs that are for a real brick."""
-PROFILE_OF: Mapping[Library, str] = {
+PROFILES_BY_LIBRARY: Mapping[Library, str] = {
     Library.EV3DEV2: BRICK_PROFILE,
     Library.PYBRICKS: "lego-micropython",
 }
 """The profile with the rules of a real brick, by the library of the program."""
-OF_BRICKS = (*PROFILE_OF.values(), PYBRICKS_4.name)
+BRICK_PROFILES = (*PROFILES_BY_LIBRARY.values(), PYBRICKS_4.name)
 """All profiles with the rules of a real brick."""
 SHEBANG = "#!/usr/bin/env pybricks-micropython"
 """The first line of a program for LEGO's MicroPython."""
@@ -79,11 +79,11 @@ class SourceFacts:
     def brick_profile(self) -> str:
         """The profile with the rules of a real brick that it is for; it imports a library."""
         assert self.library is not None
-        return PYBRICKS_4.name if self.version_4_name else PROFILE_OF[self.library]
+        return PYBRICKS_4.name if self.version_4_name else PROFILES_BY_LIBRARY[self.library]
 
 
-OF_THE_GROUND = ("floor", "walls")
-PROGRAM_PATHS = ("robot", "profile", "for_brick", *OF_THE_GROUND)
+GROUND_PATHS = ("floor", "walls")
+PROGRAM_PATHS = ("robot", "profile", "for_brick", *GROUND_PATHS)
 """The paths of the settings that the source of a program may decide."""
 
 
@@ -127,7 +127,7 @@ class ProgramSettings:
     settings: Settings
     decided: Decided
 
-    def applied_to(self, program: Program) -> Program:
+    def apply(self, program: Program) -> Program:
         """Return a program with the prelude and the arguments that are chosen, and what its text shows."""
         prelude = self.settings["preload"] or program.prelude
         return replace(
@@ -138,12 +138,12 @@ class ProgramSettings:
         )
 
 
-def facts_of(program: Program) -> SourceFacts:
+def read_source_facts(program: Program) -> SourceFacts:
     """Return what the source of a program says; nothing if it is not Python, or too deeply nested to be read."""
     facts = SourceFacts()
     try:
         modules = read_modules(program)
-        library = _library_in(program, modules)
+        library = _find_library(program, modules)
         facts = SourceFacts(library)
         if library is Library.PYBRICKS:
             facts = replace(
@@ -154,7 +154,7 @@ def facts_of(program: Program) -> SourceFacts:
         if not modules or library is None:
             return replace(facts, unread=missing_module(program, modules))
         # Most programs are the course's, and need no reading of their own.
-        return _facts_in(program, modules, facts)
+        return _collect_facts(program, modules, facts)
     except (RecursionError, SyntaxError):
         # What is wrong with the program is said when it runs.
         return SourceFacts()
@@ -166,7 +166,7 @@ def facts_of(program: Program) -> SourceFacts:
     return replace(facts, unread=unread, shown_ports=() if facts.library else None)
 
 
-def _facts_in(program: Program, modules: dict[str, Module], facts: SourceFacts) -> SourceFacts:
+def _collect_facts(program: Program, modules: dict[str, Module], facts: SourceFacts) -> SourceFacts:
     from tuisim.programs.robot.assembly import build_robot, find_shown_ports
     from tuisim.programs.robot.brick_syntax import refused_lines
     from tuisim.programs.robot.library import SENSES_WALLS
@@ -183,12 +183,12 @@ def _facts_in(program: Program, modules: dict[str, Module], facts: SourceFacts) 
         refused=refused_lines(modules.values()) if facts.library is Library.PYBRICKS else (),
         unread=missing_module(program, modules),
         shown_ports=find_shown_ports(mentions, robot.choice.spec if robot else usual),
-        senses_walls=any(one.kind in SENSES_WALLS for one in mentions.devices),
+        senses_walls=any(device.kind in SENSES_WALLS for device in mentions.devices),
         hides_parts=hides_parts(mentions),
     )
 
 
-def _library_in(program: Program, modules: dict[str, Module]) -> Library | None:
+def _find_library(program: Program, modules: dict[str, Module]) -> Library | None:
     """Return the library for a brick that a program uses, by its imports, else by its first line; None for none."""
     library = library_of(modules)
     return Library.PYBRICKS if library is None and program.text.startswith(SHEBANG) else library
@@ -201,12 +201,12 @@ def require_library(program: Program, profile: ProfileSpec) -> None:
         ProfileError: it is for another one.
     """
     for_course = program.prelude != _NO_PRELUDE
-    library = Library.EV3DEV2 if for_course else _library_in(program, read_modules(program))
+    library = Library.EV3DEV2 if for_course else _find_library(program, read_modules(program))
     if library is not None and profile.motor_law.library is not library:
-        raise _misfit(program, library, profile)
+        raise _build_misfit_error(program, library, profile)
 
 
-def program_settings(
+def build_program_settings(
     source: ProgramSource,
     *above: Mapping[str, Any],
     below: Mapping[str, Any] | None = None,
@@ -229,14 +229,14 @@ def program_settings(
         _check_prelude(source.program)
     # A default of the user is no choice for this program.
     is_chosen = any(layer.get("profile") is not None for layer in (source.options, *above))
-    decided = decide(source, settings, free_paths(settings), insists=insists and is_chosen)
+    decided = decide(source, settings, find_free_paths(settings), insists=insists and is_chosen)
     return ProgramSettings(merge_settings(*layers, decided.layer), decided)
 
 
-def free_paths(settings: Settings) -> frozenset[str]:
+def find_free_paths(settings: Settings) -> frozenset[str]:
     """Return which of `PROGRAM_PATHS` nobody has chosen; who says whether there is a floor also decides on walls."""
     free = {path for path in PROGRAM_PATHS if settings.given.get(path) is None}
-    return frozenset(free if "floor" in free else free - {*OF_THE_GROUND})
+    return frozenset(free if "floor" in free else free - {*GROUND_PATHS})
 
 
 def decide(
@@ -255,16 +255,18 @@ def decide(
     """
     prelude = settings["preload"] or source.program.prelude
     for_course = prelude != _NO_PRELUDE
-    facts = SourceFacts(Library.EV3DEV2) if for_course else _facts_in_run(source)
+    facts = SourceFacts(Library.EV3DEV2) if for_course else _read_run_facts(source)
     layer: dict[str, Any] = {}
     if facts.robot and "robot" in free:
         layer["robot"] = facts.robot.choice
-    by_brick_rules = not for_course and _brings_rules(source, facts)
+    by_brick_rules = not for_course and _has_brick_rules(source, facts)
     if facts.library and by_brick_rules and "profile" in free:
         layer["profile"] = facts.brick_profile
-    elif facts.library and not _fits(settings, facts.library):
+    elif facts.library and not _is_fitting(settings, facts.library):
         if insists and settings.given.get("profile") is not None:
-            raise _misfit(source.program, facts.library, _profile(settings["profile"]))
+            raise _build_misfit_error(
+                source.program, facts.library, _load_profile(settings["profile"])
+            )
         layer["profile"] = DEFAULT_PROFILE if for_course or facts.of_course else facts.brick_profile
     profile = layer.get("profile", settings["profile"])
     has_rules = has_brick_rules(profile)
@@ -273,13 +275,15 @@ def decide(
     if by_brick_rules and has_rules:
         layer |= _decide_ground(facts, free)
     needed = facts.robot.choice if facts.robot else None
-    words, shown = _in_words(source.program, facts, layer), _find_shown(facts, free)
-    return Decided(layer, *words, needed, shown, frozenset(free), _find_refused(facts, profile))
+    words, unseen_parts = _describe_decision(source.program, facts, layer), _find_shown(facts, free)
+    return Decided(
+        layer, *words, needed, unseen_parts, frozenset(free), _find_refused(facts, profile)
+    )
 
 
 def has_brick_rules(profile: str | ProfileSpec) -> bool:
     """Return whether a profile, or the one of a name, has the rules of a real brick."""
-    return profile in OF_BRICKS or profile in [PROFILES[name] for name in OF_BRICKS]
+    return profile in BRICK_PROFILES or profile in [PROFILES[name] for name in BRICK_PROFILES]
 
 
 def _decide_ground(facts: SourceFacts, free: Collection[str]) -> dict[str, bool]:
@@ -290,7 +294,7 @@ def _decide_ground(facts: SourceFacts, free: Collection[str]) -> dict[str, bool]
 
 def _find_refused(facts: SourceFacts, profile: str | ProfileSpec) -> tuple[RefusedLine, ...]:
     """Return the lines that the Python of the simulated brick would refuse."""
-    law = _law(profile) if facts.refused else None
+    law = _find_law(profile) if facts.refused else None
     return facts.refused if law is MotorLaw.PYBRICKS else ()
 
 
@@ -309,25 +313,25 @@ def _check_prelude(program: Program) -> None:
         )
 
 
-def _law(named: str | ProfileSpec) -> MotorLaw | None:
+def _find_law(named: str | ProfileSpec) -> MotorLaw | None:
     """Return the motor law of a profile; None if there is no such profile, which is told later."""
     try:
-        return _profile(named).motor_law
+        return _load_profile(named).motor_law
     except ProfileError:
         return None
 
 
-def _fits(settings: Settings, library: Library) -> bool:
+def _is_fitting(settings: Settings, library: Library) -> bool:
     """Return whether the chosen profile is for a library; also if there is no such profile."""
-    law = _law(settings["profile"])
+    law = _find_law(settings["profile"])
     return law is None or law.library is library
 
 
-def _profile(named: str | ProfileSpec) -> ProfileSpec:
+def _load_profile(named: str | ProfileSpec) -> ProfileSpec:
     return named if isinstance(named, ProfileSpec) else load_profile(named)
 
 
-def _misfit(program: Program, library: Library, profile: ProfileSpec) -> ProfileError:
+def _build_misfit_error(program: Program, library: Library, profile: ProfileSpec) -> ProfileError:
     if is_for_other_hub(read_modules(program)):
         return ProfileError(f"it is {FOR_SPIKE}", file=program.name)
     fitting = [known for known, profile in PROFILES.items() if profile.motor_law.library is library]
@@ -338,7 +342,7 @@ def _misfit(program: Program, library: Library, profile: ProfileSpec) -> Profile
     )
 
 
-def robot_for(source: ProgramSource, name: str) -> ProgramRobot:
+def choose_robot(source: ProgramSource, name: str) -> ProgramRobot:
     """Return the robot on which a program runs without further options.
 
     Args:
@@ -350,7 +354,7 @@ def robot_for(source: ProgramSource, name: str) -> ProgramRobot:
     """
     from tuisim.programs.robot.report import ProgramRobot
 
-    facts = _facts_in_run(source)
+    facts = _read_run_facts(source)
     if facts.robot is None and (facts.unread or facts.hides_parts):
         raise RobotError(
             facts.unread or "creates its motors and sensors where tuisim cannot find their ports",
@@ -360,25 +364,27 @@ def robot_for(source: ProgramSource, name: str) -> ProgramRobot:
     return ProgramRobot(name, facts.robot)
 
 
-def _facts_in_run(source: ProgramSource) -> SourceFacts:
+def _read_run_facts(source: ProgramSource) -> SourceFacts:
     """Return what the source of a program says that counts in its run.
 
     What it says of sizes, sides and mountings counts only where it also brings its rules, as one for Pybricks always
     does. A program of the course keeps the default robot if that has every part on its port.
     """
-    facts = facts_of(source.program)
-    brings_rules = facts.library is Library.PYBRICKS or _brings_rules(source, facts)
+    facts = read_source_facts(source.program)
+    brings_rules = facts.library is Library.PYBRICKS or _has_brick_rules(source, facts)
     if facts.robot and facts.robot.keeps_ports and not brings_rules:
         return replace(facts, robot=None)
     return facts
 
 
-def _brings_rules(source: ProgramSource, facts: SourceFacts) -> bool:
+def _has_brick_rules(source: ProgramSource, facts: SourceFacts) -> bool:
     """Return whether a program is for a brick, and nothing marks it as one of the course's."""
     return facts.library is not None and not facts.of_course and not source.has_magic
 
 
-def _in_words(program: Program, facts: SourceFacts, layer: Mapping[str, Any]) -> tuple[str, str]:
+def _describe_decision(
+    program: Program, facts: SourceFacts, layer: Mapping[str, Any]
+) -> tuple[str, str]:
     """Return what the source of a program decided, and how to change it; both empty for nothing."""
     if facts.for_other_hub:
         # Nothing of that helps.
@@ -393,12 +399,12 @@ def _in_words(program: Program, facts: SourceFacts, layer: Mapping[str, Any]) ->
         runs_on = f"{program.name} runs on a robot built from it: {in_words(facts.robot)}"
         parts = [runs_on, *facts.robot.doubts, facts.unread]
         options = "-r or --profile" if rules else "-r"
-        shown = (
+        view_hint = (
             f"; `tuisim robots --from {shlex.quote(program.path)}` shows the robot"
             if program.path
             else ""
         )
-        return "; ".join(filter(None, [*parts, rules])), f"{options} to change it{shown}"
+        return "; ".join(filter(None, [*parts, rules])), f"{options} to change it{view_hint}"
     if rules:
         runs = f"{program.name} runs {rules}"
         return "; ".join(filter(None, [runs, facts.unread])), "--profile to change it"

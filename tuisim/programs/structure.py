@@ -10,7 +10,7 @@ _Function = ast.FunctionDef | ast.AsyncFunctionDef
 _BLOCKS = (ast.For, ast.While, ast.If, ast.With, ast.Try, _Function, ast.ClassDef)
 
 
-def _nodes(tree: ast.Module, *kinds: type[ast.AST]) -> list[ast.AST]:
+def _list_nodes(tree: ast.Module, *kinds: type[ast.AST]) -> list[ast.AST]:
     return [node for node in ast.walk(tree) if isinstance(node, kinds) and not _is_dead(node)]
 
 
@@ -24,7 +24,7 @@ def _is_dead(node: ast.AST) -> bool:
         return True
     # A `while` that does nothing waits.
     return isinstance(node, ast.For | ast.If | _Function) and all(
-        _is_idle(one) for one in node.body
+        _is_idle(statement) for statement in node.body
     )
 
 
@@ -34,12 +34,12 @@ def _is_idle(statement: ast.stmt) -> bool:
 
 
 def _count(*kinds: type[ast.AST]) -> Callable[[ast.Module], int]:
-    return partial(lambda tree, wanted: len(_nodes(tree, *wanted)), wanted=kinds)
+    return partial(lambda tree, wanted: len(_list_nodes(tree, *wanted)), wanted=kinds)
 
 
-def _functions(tree: ast.Module) -> int:
+def _count_functions(tree: ast.Module) -> int:
     """Return how many functions the program defines and names elsewhere."""
-    defined = _nodes(tree, _Function)  # type: ignore[arg-type]
+    defined = _list_nodes(tree, _Function)  # type: ignore[arg-type]
     named = [
         node.id if isinstance(node, ast.Name) else node.attr
         for node in ast.walk(tree)
@@ -50,13 +50,15 @@ def _functions(tree: ast.Module) -> int:
     )
 
 
-def _lines(tree: ast.Module) -> int:
+def _count_lines(tree: ast.Module) -> int:
     """Return how many lines have code, without comments and texts of documentation."""
-    found = (node for node in ast.walk(tree) if isinstance(node, ast.stmt) and not _is_idle(node))
-    return len({line for node in found for line in _span(node)})
+    statements = (
+        node for node in ast.walk(tree) if isinstance(node, ast.stmt) and not _is_idle(node)
+    )
+    return len({line for node in statements for line in _list_span(node)})
 
 
-def _span(statement: ast.stmt) -> Iterator[int]:
+def _list_span(statement: ast.stmt) -> Iterator[int]:
     """Yield the lines of a statement, of a block only its first."""
     is_block = isinstance(statement, _BLOCKS)
     yield from range(
@@ -64,9 +66,9 @@ def _span(statement: ast.stmt) -> Iterator[int]:
     )
 
 
-def _depth(node: ast.AST) -> int:
+def _measure_depth(node: ast.AST) -> int:
     """Return how deep blocks are nested."""
-    inner = max(map(_depth, ast.iter_child_nodes(node)), default=0)
+    inner = max(map(_measure_depth, ast.iter_child_nodes(node)), default=0)
     return inner + isinstance(node, _BLOCKS)
 
 
@@ -75,10 +77,10 @@ STRUCTURES: Mapping[str, Callable[[ast.Module], int]] = {
     "for": _count(ast.For),
     "while": _count(ast.While),
     "if": _count(ast.If),
-    "functions": _functions,
+    "functions": _count_functions,
     "classes": _count(ast.ClassDef),
     "try": _count(ast.Try),
-    "lines": _lines,
-    "depth": _depth,
+    "lines": _count_lines,
+    "depth": _measure_depth,
 }
 """What can be counted in a program's text, by name."""

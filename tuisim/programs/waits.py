@@ -182,14 +182,14 @@ def _find_end(
     if isinstance(value, ast.Name):
         name = value.id
         values = _find_values(name, tree)
-        inner = [value for line, value in values if loop.lineno <= line <= _last_line(loop)]
+        inner = [value for line, value in values if loop.lineno <= line <= _find_last_line(loop)]
         if inner:
             read_line, attribute = inner[-1].lineno, _find_attribute(inner[-1])
         if values and values[-1][0] < loop.lineno and _find_attribute(values[-1][1]):
             set_line = values[-1][0]
         is_silent = is_silent and bool(inner)
     if attribute or (name and not has_exit and (set_line or is_silent)):
-        lines = test.lineno, loop.lineno, _last_line(loop)
+        lines = test.lineno, loop.lineno, _find_last_line(loop)
         yield LoopEnd(*lines, ending, limit, attribute, read_line, name, set_line, is_silent)
 
 
@@ -213,7 +213,7 @@ def _has_any(loop: _Loop, *kinds: type[ast.AST]) -> bool:
     return any(isinstance(node, kinds) for node in ast.walk(loop))
 
 
-def _last_line(node: ast.stmt) -> int:
+def _find_last_line(node: ast.stmt) -> int:
     return node.end_lineno or node.lineno
 
 

@@ -10,7 +10,7 @@ from tuisim.base.data_class import dataclass
 
 _ANGLES = {"on_for_degrees": (45.0, 90.0, 180.0, 360.0), "on_for_rotations": (0.25,)}
 """What robots are turned by: a whole rotation is mostly one of the wheels."""
-_ON_THE_SPOT = 100.0
+_SPOT_STEERING = 100.0
 """The steering that turns the wheels against each other."""
 _DEGREES = {"on_for_degrees": 1.0, "on_for_rotations": 360.0}
 """The degrees of a unit that a method counts in."""
@@ -35,16 +35,16 @@ def list_wheel_turns(tree: ast.Module) -> Iterator[WheelTurn]:
                 func=ast.Attribute(attr=method), args=[first, second, amount, *_], keywords=[]
             ) if method in _DEGREES:
                 numbers = [_find_number(each) for each in (first, second, amount)]
-                if not _are_known(numbers):
+                if not _is_known(numbers):
                     continue
                 left, right, count = numbers
-                is_turn = abs(left) == _ON_THE_SPOT or left == -right
+                is_turn = abs(left) == _SPOT_STEERING or left == -right
                 if is_turn and abs(count) in _ANGLES[method]:
                     last_line, angle_deg = node.end_lineno, abs(count) * _DEGREES[method]
                     yield WheelTurn(node.lineno, last_line or node.lineno, method, angle_deg)
 
 
-def _are_known(numbers: list[float | None]) -> TypeGuard[list[float]]:
+def _is_known(numbers: list[float | None]) -> TypeGuard[list[float]]:
     return None not in numbers
 
 

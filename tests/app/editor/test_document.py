@@ -29,7 +29,7 @@ from tuisim.app.editor.area import CodeArea
 from tuisim.app.editor.text_file import find_draft, keep_draft
 from tuisim.app.panels.code import Code
 from tuisim.app.snapshot import RunPhase
-from tuisim.programs.program_file import programs, read_program
+from tuisim.programs.program_file import list_programs, read_program
 from tuisim.settings.build import build_run_spec
 from tuisim.settings.options import Settings
 
@@ -132,7 +132,7 @@ async def test_an_example_is_saved_to_another_place(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    example = programs()[0]
+    example = list_programs()[0]
     before = example.path.read_bytes()
     async with open_code(own(example.path)) as (pilot, app, code):
         await typed(pilot, code, "#", "enter", "ctrl+s")

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from tuisim.app.editor.syntax import Colouring, find_spans
-from tuisim.programs.program_file import programs
+from tuisim.programs.program_file import list_programs
 
 
 @pytest.mark.parametrize(
@@ -59,7 +59,9 @@ def test_an_edit_changes_the_colours_of_the_lines_below() -> None:
     assert colouring.color_line(lines, 2) == [(0, 5, "string")]
 
 
-@pytest.mark.parametrize("path", [pytest.param(each.path, id=each.name) for each in programs()])
+@pytest.mark.parametrize(
+    "path", [pytest.param(each.path, id=each.name) for each in list_programs()]
+)
 def test_every_example_is_coloured_in_order_and_without_overlap(path: Path) -> None:
     lines = path.read_text(encoding="utf-8").split("\n")
     colouring = Colouring()

@@ -20,7 +20,7 @@ from tuisim.app.editor.text_file import (
     write_text,
 )
 from tuisim.base.errors import ConfigError
-from tuisim.programs.program_file import programs
+from tuisim.programs.program_file import list_programs
 
 
 @pytest.mark.parametrize(
@@ -70,7 +70,7 @@ def test_a_link_stays_a_link(tmp_path: Path) -> None:
 
 
 def test_examples_are_protected_and_own_programs_are_not(tmp_path: Path) -> None:
-    assert is_protected(programs()[0].path)
+    assert is_protected(list_programs()[0].path)
     assert not is_protected(tmp_path / "p.py")
 
 

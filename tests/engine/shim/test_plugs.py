@@ -19,7 +19,7 @@ from tuisim.engine.runs.store import RunStore
 from tuisim.logs.export import export_telemetry
 from tuisim.programs.plugged_words import list_parts
 from tuisim.programs.program_file import find_program, read_program
-from tuisim.programs.program_settings import program_settings
+from tuisim.programs.program_settings import build_program_settings
 from tuisim.settings.build import build_run_spec
 from tuisim.tasks.execute import execute
 from tuisim.tasks.task import Keep, Task
@@ -86,8 +86,8 @@ def run_program(
     path = folder / "late.py"
     path.write_text(text, "utf-8")
     source = read_program(find_program(str(path)))
-    found = program_settings(source, {} if robot is None else {"robot": robot})
-    program, spec = found.applied_to(source.program), build_run_spec(found.settings)
+    found = build_program_settings(source, {} if robot is None else {"robot": robot})
+    program, spec = found.apply(source.program), build_run_spec(found.settings)
     program, how = in_surroundings(program), RunOptions(time_limit_s=60.0, **options)
     return over(RunHandle(program, spec, field_files(spec), how, RunStore(), of_many=of_many))
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tuisim.base.source import Program
-from tuisim.programs.program_settings import facts_of
+from tuisim.programs.program_settings import read_source_facts
 from tuisim.programs.robot.assembly import BuiltRobot
 from tuisim.settings.robots import ROBOTS, list_ports
 
@@ -27,7 +27,7 @@ from pybricks.media.ev3dev import SoundFile, ImageFile
 
 
 def built(text: str, head: str = HEAD) -> BuiltRobot | None:
-    return facts_of(Program("p.py", head + text)).robot
+    return read_source_facts(Program("p.py", head + text)).robot
 
 
 def changed(text: str, head: str = HEAD) -> str:

@@ -10,7 +10,7 @@ from tests.programs.robot.reading import HEAD
 from tuisim.base.errors import RobotError
 from tuisim.base.source import Program
 from tuisim.programs.program_file import read_program
-from tuisim.programs.program_settings import facts_of, program_settings, robot_for
+from tuisim.programs.program_settings import build_program_settings, choose_robot, read_source_facts
 
 _ROBOT = (
     f"{HEAD}\nclass Robot:\n    def __init__(self):\n        self.arm = MediumMotor(OUTPUT_D)\n"
@@ -28,7 +28,7 @@ def folder(tmp_path: Path) -> Path:
 
 
 def _ports(folder: Path, text: str) -> list[str]:
-    robot = facts_of(Program("main.py", text, path=str(folder / "main.py"))).robot
+    robot = read_source_facts(Program("main.py", text, path=str(folder / "main.py"))).robot
     return [motor.port for motor in robot.choice.spec.extra_motors] if robot else []
 
 
@@ -84,13 +84,13 @@ def test_folders_of_the_users_path(folder: Path, monkeypatch: pytest.MonkeyPatch
 
 
 def test_a_module_elsewhere_in_the_repository_is_named(folder: Path) -> None:
-    facts = facts_of(Program("main.py", _USE, path=str(folder / "main.py")))
+    facts = read_source_facts(Program("main.py", _USE, path=str(folder / "main.py")))
     assert facts.robot is None
     assert facts.unread == "it imports my_robot, which is in ../libs: PYTHONPATH=../libs finds it"
     (folder / "main.py").write_text(_USE)
     with pytest.raises(RobotError, match=r"PYTHONPATH=\.\./libs"):
-        robot_for(read_program(folder / "main.py"), "it")
-    decided = program_settings(read_program(folder / "main.py")).decided
+        choose_robot(read_program(folder / "main.py"), "it")
+    decided = build_program_settings(read_program(folder / "main.py")).decided
     assert decided.note.startswith("main.py: it imports my_robot, which is in ../libs")
 
 
@@ -98,6 +98,6 @@ def test_no_default_robot_stands_for_parts_that_are_not_found(folder: Path) -> N
     text = f"{HEAD}for kind in (LargeMotor, MediumMotor):\n    made = [build(kind, eval(one)) for one in PORTS]\n"
     (folder / "main.py").write_text(text)
     with pytest.raises(RobotError, match="where tuisim cannot find their ports"):
-        robot_for(read_program(folder / "main.py"), "it")
+        choose_robot(read_program(folder / "main.py"), "it")
     (folder / "main.py").write_text(f"{HEAD}print(1)\n")
-    assert robot_for(read_program(folder / "main.py"), "it").built is None
+    assert choose_robot(read_program(folder / "main.py"), "it").built is None

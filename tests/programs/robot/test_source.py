@@ -6,7 +6,7 @@ import os
 from pathlib import Path
 
 from tuisim.base.source import Program
-from tuisim.programs.program_settings import facts_of
+from tuisim.programs.program_settings import read_source_facts
 
 
 def test_modules_of_its_own_are_read_wherever_they_lie(tmp_path: Path) -> None:
@@ -20,7 +20,7 @@ def test_modules_of_its_own_are_read_wherever_they_lie(tmp_path: Path) -> None:
     (tmp_path / "main.py").write_text("import parts\nparts.arm.motor.on(5)\n")
     os.mkfifo(tmp_path / "pipe.py")
     text = (tmp_path / "main.py").read_text() + "import pipe, missing, json\n"
-    facts = facts_of(Program("main.py", text, path=str(tmp_path / "main.py")))
+    facts = read_source_facts(Program("main.py", text, path=str(tmp_path / "main.py")))
     assert facts.library is not None and facts.robot is not None
     assert [part.what for part in facts.robot.parts if part.changes] == ["medium motor on outA"]
     assert str(facts.robot.parts[-1].where) == "parts/deep/arm.py, line 4"

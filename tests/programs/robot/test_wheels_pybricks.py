@@ -10,7 +10,7 @@ import pytest
 from tests.programs.robot.reading import PYBRICKS_HEAD, USUAL, built
 from tuisim.base.source import Program
 from tuisim.engine.core.spec import RobotSpec
-from tuisim.programs.program_settings import facts_of
+from tuisim.programs.program_settings import read_source_facts
 
 # A program; the ports of the left and the right wheel, their diameter and their distance.
 DRIVE_BASES: Mapping[str, tuple[str, tuple[str, str, float, float]]] = {
@@ -124,7 +124,7 @@ def test_a_drive_base_in_a_module_of_the_program(tmp_path: Path) -> None:
         + "left = Motor(Port.A)\nright = Motor(Port.D)\nrobot = DriveBase(left, right, 43.2, 110)\n"
     )
     path = str(tmp_path / "main.py")
-    found = facts_of(
+    found = read_source_facts(
         Program("main.py", "from hardware import robot\nrobot.straight(100)\n", path=path)
     ).robot
     assert found is not None

@@ -14,7 +14,7 @@ from tests.conftest import ROOT, Command
 from tests.constants import print_constants
 from tuisim.engine.runs.records import Stream
 from tuisim.engine.runs.store import RunStore
-from tuisim.programs.program_file import programs
+from tuisim.programs.program_file import list_programs
 from tuisim.tasks.goals.files import load_goals
 
 PROGRAMS = ROOT / "programs"
@@ -66,7 +66,7 @@ def test_every_example_of_goals_is_complete() -> None:
     assert len(EXAMPLES) >= 10
     for name, path in EXAMPLES.items():
         file = load_goals(path)
-        assert Path(file.program or "").name in {program.name for program in programs()}, name
+        assert Path(file.program or "").name in {program.name for program in list_programs()}, name
         assert file.title
         assert all(goal.say.endswith(".") for goal in file.goals if goal.points)
         assert path.read_text(encoding="utf-8").isascii()

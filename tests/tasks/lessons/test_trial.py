@@ -10,7 +10,7 @@ import pytest
 from tuisim.cli import COMMANDS
 from tuisim.commands.learn import learn
 from tuisim.engine.runs.store import RunStore
-from tuisim.programs.program_file import programs
+from tuisim.programs.program_file import list_programs
 from tuisim.tasks.goals.spec import LogCondition
 from tuisim.tasks.lessons.catalogue import find_shipped_paths
 from tuisim.tasks.lessons.files import load_lesson
@@ -125,7 +125,7 @@ def test_a_hand_presses_in_a_trial_as_the_first_line_says() -> None:
 
 
 def test_names_are_not_those_of_commands_or_examples() -> None:
-    taken = {*COMMANDS, *learn.listing, *(file.path.stem for file in programs())}
+    taken = {*COMMANDS, *learn.listing, *(file.path.stem for file in list_programs())}
     assert set(LESSONS) & taken == set()
 
 

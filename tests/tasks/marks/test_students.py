@@ -12,7 +12,7 @@ import pytest
 from tests.cases import cases
 from tests.tasks.marks.the_class import CLASS, write_class
 from tuisim.base.errors import ConfigError
-from tuisim.programs.program_settings import program_settings
+from tuisim.programs.program_settings import build_program_settings
 from tuisim.tasks.marks import students
 from tuisim.tasks.marks.journal import Journal
 from tuisim.tasks.marks.outcome import GoalOutcome, Outcome
@@ -341,10 +341,10 @@ def test_a_program_that_is_a_file_gets_nothing_from_the_programs_beside_it(tmp_p
     )
     before = find_students([str(folder)]).students[0].source
     assert before
-    settings = program_settings(before)
+    settings = build_program_settings(before)
     (folder / "ben.py").write_text(
         "from ev3dev2.motor import *\ntank_drive = MoveTank(OUTPUT_A, OUTPUT_D)\n"
     )
     after = find_students([str(folder)]).students[0].source
     assert after and after.program.prelude == before.program.prelude
-    assert program_settings(after) == settings
+    assert build_program_settings(after) == settings

@@ -9,7 +9,7 @@ from tuisim.engine.runs.handle import RunOptions, start_run
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.engine.runs.store import RunStore
 from tuisim.programs.program_file import parse_program
-from tuisim.programs.program_settings import program_settings
+from tuisim.programs.program_settings import build_program_settings
 from tuisim.settings.build import build_run_spec
 
 PROGRAMS = Path(__file__).parents[3] / "programs"
@@ -20,7 +20,7 @@ LIMIT_S = 30.0
 def run_text(text: str, name: str = "task.py", answers: tuple[str, ...] = ()) -> StoredRun:
     """Run a program to its end, or to the time limit."""
     source = parse_program(text, name)
-    spec = build_run_spec(program_settings(source, {}, {}).settings)
+    spec = build_run_spec(build_program_settings(source, {}, {}).settings)
     run = start_run(source.program, spec, RunOptions(time_limit_s=LIMIT_S, answers=answers))
     assert run.wait(PATIENCE_S)
     return RunStore().load_run(run.run_id)

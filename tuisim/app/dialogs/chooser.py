@@ -326,12 +326,12 @@ def find_best_match(groups: Iterable[ChoiceGroup], typed: str) -> str:
 
 def build_program_chooser() -> Chooser:
     """Return the dialog for programs, worlds, goals and logs: those in the current folder, and the examples."""
-    from tuisim.programs.program_file import programs
+    from tuisim.programs.program_file import list_programs
     from tuisim.settings.worlds import load_world
     from tuisim.tasks.goals.files import list_examples as goals_examples
     from tuisim.tasks.goals.files import read_title
 
-    examples, goals = programs(), goals_examples()
+    examples, goals = list_programs(), goals_examples()
     known = {str(path.resolve()) for path in (*(path for _, path, _ in examples), *goals)}
     here = list_files([".py"])
     own = ChoiceGroup(here.title, [entry for entry in here.entries if entry[0] not in known])

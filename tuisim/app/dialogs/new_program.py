@@ -14,7 +14,7 @@ from textual.widgets import OptionList, Static
 from textual.widgets.option_list import Option
 
 from tuisim.app.dialogs.dialog import Dialog
-from tuisim.programs.program_file import with_mat
+from tuisim.programs.program_file import replace_mat
 
 
 class Skeleton(StrEnum):
@@ -119,14 +119,14 @@ def build_program_text(mat: str, sensor: str, skeleton: Skeleton) -> str:
         "drive": "tank_drive",
     }
     head = f'"""{_SAYS[skeleton].format(**words)}"""\n'
-    begins = with_mat(head, "", mat) + _EXPLAINS
+    begins = replace_mat(head, "", mat) + _EXPLAINS
     match skeleton:
         case Skeleton.EMPTY:
             return begins + "\n"
         case Skeleton.LIBRARY:
             # The course's own name for it is not in the library.
             words |= {"drive": "tank", "value": reading.value.removesuffix("_pc")}
-            magic = with_mat("# %%{} {}\n".format(*BRICK_MAGIC), "", mat) + _EXPLAINS_BRICK
+            magic = replace_mat("# %%{} {}\n".format(*BRICK_MAGIC), "", mat) + _EXPLAINS_BRICK
             return head + magic + "\nimport time\n\n" + (_LIBRARY + _LOG).format(**words)
         case Skeleton.LOG | Skeleton.UNTIL:
             body = _LOG if skeleton is Skeleton.LOG else _UNTIL

@@ -13,7 +13,7 @@ from tuisim.app.editor import completion
 from tuisim.app.editor.area import CodeArea
 from tuisim.app.editor.candidate_list import format_signature
 from tuisim.programs.attributes import AttributeCheck
-from tuisim.programs.names import UnknownName, unknown_names
+from tuisim.programs.names import UnknownName, find_unknown_names
 from tuisim.terminal.text_runs import cut
 
 CHECK_DELAY_S = 0.5
@@ -107,7 +107,7 @@ class Assistant:
         """Look for names that are not defined, and mark them."""
         if self._area.document.line_count > MAX_LINES:
             return
-        names = unknown_names(self._area.program_text, self._area.path)
+        names = find_unknown_names(self._area.program_text, self._area.path)
         if names is not None:
             self._names = names
             self._mark()
@@ -116,7 +116,9 @@ class Assistant:
 
     async def _check_attributes(self) -> None:
         text, path = self._area.program_text, self._area.path
-        attributes = await asyncio.to_thread(self._attribute_check.unknown_attributes, text, path)
+        attributes = await asyncio.to_thread(
+            self._attribute_check.find_unknown_attributes, text, path
+        )
         if (text, path) == (self._area.program_text, self._area.path):
             self._attributes = attributes
             self._mark()

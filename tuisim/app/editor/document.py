@@ -20,7 +20,7 @@ from tuisim.app.editor.text_file import (
 from tuisim.app.editor.text_lines import LineMap, count_differing_lines
 from tuisim.base.errors import ConfigError, TuisimError, counted
 from tuisim.base.source import source_lines
-from tuisim.programs.magic_mat import wrong_mat
+from tuisim.programs.magic_mat import find_wrong_mat
 from tuisim.settings.options import Settings
 
 if TYPE_CHECKING:
@@ -315,7 +315,7 @@ class Document:
         """Whether the program was opened without the mat of its magic line, and nobody has chosen another one."""
         settings = self._run_controller.next_run.settings
         is_usual = settings["background"] == Settings()["background"]
-        return is_usual and wrong_mat(self._text, self._name, settings["mats"]) is not None
+        return is_usual and find_wrong_mat(self._text, self._name, settings["mats"]) is not None
 
     @property
     def _is_applied(self) -> bool:
@@ -363,11 +363,11 @@ class Document:
 
     def write_mat(self, mat: str) -> None:
         """Write a mat into the magic line, and into the file unless that has to wait for other changes."""
-        from tuisim.programs.program_file import with_mat
+        from tuisim.programs.program_file import replace_mat
 
         was_dirty = self.dirty
         try:
-            self.handle_edit(with_mat(self._text, self._name, mat))
+            self.handle_edit(replace_mat(self._text, self._name, mat))
             self.show()
             self._apply_text()
         except TuisimError as error:

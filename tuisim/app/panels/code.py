@@ -29,7 +29,7 @@ from tuisim.app.panels.titles import build_title
 from tuisim.app.snapshot import PauseView, RunPhase, Snapshot
 from tuisim.base.data_class import dataclass
 from tuisim.base.source import source_lines
-from tuisim.programs.line_values import line_values
+from tuisim.programs.line_values import map_line_values
 from tuisim.terminal.text_runs import escape_markup
 
 LIT_GAP_S = 0.1
@@ -305,7 +305,7 @@ class Code(Vertical):
         pause, values = self._pause, {}
         # Those of another instant are not shown.
         if pause is not None and self._run_lines is not None and pause.paused.tick == self._tick:
-            of_run = line_values("\n".join(self._run_lines), pause.inspected)
+            of_run = map_line_values("\n".join(self._run_lines), pause.inspected)
             values = {
                 shown: found for line, found in of_run.items() if (shown := self._line_shown(line))
             }

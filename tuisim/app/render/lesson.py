@@ -11,7 +11,7 @@ from rich.style import Style
 from tuisim.app.panels import PANELS
 from tuisim.base import palette
 from tuisim.base.data_class import dataclass
-from tuisim.programs.code_rows import code_rows
+from tuisim.programs.code_rows import split_rows
 from tuisim.tasks.goals.judgement import GoalState, Judgement
 from tuisim.tasks.lessons.markdown import render_markdown
 from tuisim.tasks.lessons.progress import StepState
@@ -310,7 +310,7 @@ def _end(view: LessonView, width: int, away: Away) -> Iterator[Line]:
         )
     elif view.lesson.model_answer:
         yield from _wrapped("A model answer:", width, _NAME)
-        for row in code_rows(view.lesson.model_answer, width):
+        for row in split_rows(view.lesson.model_answer, width):
             yield [(cut(row, width), _CODE)]
 
 

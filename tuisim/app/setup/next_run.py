@@ -20,9 +20,9 @@ from tuisim.engine.core.spec import EMPTY_MAT, NoiseSpec, Obstacle, RobotSpec, R
 from tuisim.engine.obstacles import load_obstacles
 from tuisim.engine.protocol import UserAction
 from tuisim.engine.runs.presses import press_actions
-from tuisim.programs.program_file import ProgramSource, program_of_text
+from tuisim.programs.program_file import ProgramSource, build_program
 from tuisim.programs.program_settings import (
-    OF_THE_GROUND,
+    GROUND_PATHS,
     PROGRAM_PATHS,
     Decided,
     decide,
@@ -158,7 +158,7 @@ def read_first_line(program: Program | None) -> Mapping[str, Any]:
         return {}
     try:
         path = Path(program.path) if program.path else None
-        return program_of_text(program.text, path, program.name).options
+        return build_program(program.text, path, program.name).options
     except TuisimError:
         return {}
 
@@ -200,7 +200,7 @@ def with_choices(plan: NextRun, choices: Mapping[str, Any]) -> NextRun:
     ground = {
         key: value
         for key, value in plan.from_program.items()
-        if key in OF_THE_GROUND and plan.settings[key] in (None, value)
+        if key in GROUND_PATHS and plan.settings[key] in (None, value)
     }
     if "background" in said:
         said = {**dict.fromkeys(RESET_BY_MAT), **ground, **said}

@@ -13,7 +13,7 @@ from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.engine.runs.store import RunStore
 from tuisim.engine.runs.temporary import temporary_home
 from tuisim.programs.program_file import parse_program
-from tuisim.programs.program_settings import program_settings
+from tuisim.programs.program_settings import build_program_settings
 from tuisim.settings.build import build_run_spec
 from tuisim.settings.options import merge_settings
 from tuisim.tasks.goals.judgement import GoalState, Judgement
@@ -69,7 +69,7 @@ def build_task(
     """
     source = parse_program(text, f"{lesson.name}.py")
     world_settings = {**lesson.settings, **(other.settings if other else {})}
-    resolved = program_settings(source, world_settings, {"seed": seed})
+    resolved = build_program_settings(source, world_settings, {"seed": seed})
     spec, goals = (
         build_run_spec(resolved.settings),
         (*lesson.goals, *(other.own_goals if other else ())),

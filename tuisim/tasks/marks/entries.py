@@ -15,7 +15,7 @@ from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.mat_image import decode, read_file
 from tuisim.engine.mats import background
 from tuisim.programs.program_file import ProgramSource
-from tuisim.programs.program_settings import ProgramSettings, program_settings
+from tuisim.programs.program_settings import ProgramSettings, build_program_settings
 from tuisim.settings.build import build_run_spec
 from tuisim.settings.options import has_world_values, merge_settings
 from tuisim.tasks.goals.files import GoalsFile
@@ -92,10 +92,10 @@ def _resolve_settings(
     assert student.source is not None
     if has_world_values(world.settings):
         bare = replace(student.source, options={})
-        return program_settings(bare, world.settings, options)
+        return build_program_settings(bare, world.settings, options)
     if outside := find_outside_option(student):
         raise ConfigError("the first line names a file outside the folder", key=outside)
-    return program_settings(student.source, world.settings, options)
+    return build_program_settings(student.source, world.settings, options)
 
 
 def _check_background(spec: RunSpec) -> None:

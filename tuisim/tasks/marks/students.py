@@ -13,8 +13,8 @@ from tuisim.base.errors import ConfigError, listed, printable, see_page
 from tuisim.base.faults import describe_fault
 from tuisim.engine.runs.child.isolation import MOST_BYTES, MOST_FILES
 from tuisim.programs.notebook_file import SUFFIX as NOTEBOOK_SUFFIX
-from tuisim.programs.notebook_file import chosen_programs
-from tuisim.programs.program_file import FILE_FIELDS, ProgramSource, names_file, read_program
+from tuisim.programs.notebook_file import choose_programs
+from tuisim.programs.program_file import FILE_FIELDS, ProgramSource, is_file_name, read_program
 from tuisim.tasks.marks.files import LEFT_OUT, unpack_zip
 from tuisim.tasks.marks.hand_ins import GradebookKind, HandIn, gather_files, group_hand_ins
 
@@ -331,7 +331,7 @@ def find_outside_option(student: Student) -> str:
     own = _resolve_links(student.path.parent if is_file else student.path)
     for name in sorted(FILE_FIELDS & student.source.options.keys()):
         word = str(student.source.options[name])
-        if name == "mats" or names_file(word):
+        if name == "mats" or is_file_name(word):
             place = _resolve_links(Path(word))
             if is_file and (
                 place.parent != own or place.is_dir() or place.suffix.lower() == SUFFIX
@@ -372,9 +372,9 @@ def _read_program_cell(path: Path, cell: str) -> ProgramSource:
     Raises:
         ConfigError: it cannot be read, has none, or it is not clear which one it is.
     """
-    cells = chosen_programs(str(path))
+    cells = choose_programs(str(path))
     if len(cells) > 1 and cell:
-        cells = chosen_programs(f"{path}#{cell}")
+        cells = choose_programs(f"{path}#{cell}")
     if len(cells) > 1:
         hint = f'in the goals file: program = "{path.name}#{len(cells)}"'
         raise ConfigError(
