@@ -44,6 +44,9 @@ Vary: TypeAlias = _Value | Iterable[_Value] | None
 File: TypeAlias = str | Path
 """The name of something built in, or a file."""
 Program: TypeAlias = str | Path | Callable[[], object]
+Sizes: TypeAlias = str | Mapping[str, Any]
+Metrics: TypeAlias = Mapping[str, Callable[[Run], Any]]
+Keep: TypeAlias = Literal["all", "failed", "none"]
 '''
 
 WORLD_CLASS = '''
@@ -122,12 +125,16 @@ def experiment(
     program: Program | Sequence[Program],
     *,
     seeds: Iterable[int] = (),
+    constants: Mapping[str, Any] | None = None,
     parameters: Mapping[str, Any] | None = None,
+    metrics: Metrics | None = None,
+    columns: Sequence[str] = (),
     expressions: Mapping[str, str] | None = None,
     goals: File | None = None,
-    keep: Literal["all", "failed", "none"] = "none",
+    keep: Keep = "none",
     jobs: int = 0,
     scheduler: str = "",
+    out: File | None = None,
     arguments: Sequence[str] = (),
     answers: Sequence[str] = (),
     timeout_s: float = DEFAULT_TIME_LIMIT_S,
@@ -142,19 +149,26 @@ def experiment(
     Args:
         program: As for `simulate`; or several.
         seeds: The seeds, such as `range(200)`; without any, 0.
+        constants: Values of the program's constants, what it assigns to a name outside its functions:
+            `{{"GAIN": [0.2, 0.4]}}`.
         parameters: Values by key of a world or robot file: `{{"robot.wheel_diameter_mm": [54, 56]}}`; a text is read as
             after `--set`, such as `"latin(54, 58, 20)"`.
+        metrics: Further columns by name, as functions of a run: `{{"end_x_mm": lambda run: run.pose.x_mm}}`. What one
+            raises ends the experiment.
+        columns: Columns of the telemetry, such as `x_mm`: the table then has one row for each tick of each run.
         expressions: Further columns by name, such as `{{"error_mm": "hypot(x_mm - 750, y_mm - 850)"}}`.
         goals: A goals file; its world is used without a `world`, where no option says otherwise.
         keep: Which runs to store.
         jobs: Number of worker processes; 0 is one for each processor. The results do not depend on it.
+        out: A file for the table; an interrupted experiment that is called again goes on with the rows so far.
         scheduler: Address of a Dask scheduler whose workers run the programs, such as `tcp://host:8786`.
         arguments, answers, timeout_s, world: As for `simulate`.
 {help}
 
     Returns:
-        One row for each run: the seed varies fastest, before it `parameters`, options and programs. Columns as in
-        `tuisim batch`, and one for each option that varies.
+        One row for each run: the seed varies fastest, before it `parameters`, constants, options and programs. Columns
+        as in `tuisim batch`, and one for each constant and option that varies. With `columns`, one row for each tick:
+        `run`, what varies, `seed`, `time` in s, and the columns.
 
     Raises:
         ConfigError: a program, an option, a parameter, an expression or a goal is wrong; nothing was run.
@@ -178,12 +192,14 @@ def find_type(name: str, value: Value) -> str:
             return "bool"
         case Whole():
             return "int"
+        case Choice() if name in OPTIONS_BY_NAME:
+            return name.title().replace("_", "")
         case Choice():
             return f"Literal[{', '.join(map(repr, value.choices))}]"
         case Number():
             return "float"
         case NamedPart():
-            return "str | Mapping[str, Any]"
+            return "Sizes"
         case Color():
             return "str"
     raise LookupError(name)
@@ -217,6 +233,15 @@ def fill(template: str, names: Iterable[str], *, may_vary: bool = False) -> str:
     }
     return template.format(
         help=describe(helps), parameters=write_parameters(types, may_vary=may_vary)
+    )
+
+
+def write_aliases() -> str:
+    """Return the types of options that are one of a few."""
+    return "\n".join(
+        f"{find_type(name, option.value)}: TypeAlias = Literal[{', '.join(map(repr, option.value.choices))}]"
+        for name, option in OPTIONS_BY_NAME.items()
+        if isinstance(option.value, Choice)
     )
 
 
@@ -255,7 +280,7 @@ def write_face() -> str:
         ),
     )
     parts = [
-        HEAD,
+        HEAD + write_aliases(),
         robot,
         fill(WORLD_CLASS, [name for name in world if name != "robot"]),
         fill(SIMULATE, OPTIONS_BY_NAME),

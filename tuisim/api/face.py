@@ -25,6 +25,11 @@ Vary: TypeAlias = _Value | Iterable[_Value] | None
 File: TypeAlias = str | Path
 """The name of something built in, or a file."""
 Program: TypeAlias = str | Path | Callable[[], object]
+Sizes: TypeAlias = str | Mapping[str, Any]
+Metrics: TypeAlias = Mapping[str, Callable[[Run], Any]]
+Keep: TypeAlias = Literal["all", "failed", "none"]
+BackgroundFit: TypeAlias = Literal["stretch", "fit", "centre", "corner"]
+Preload: TypeAlias = Literal["none", "imports", "preloaded"]
 
 
 class Robot(RobotDescription):
@@ -42,8 +47,9 @@ class Robot(RobotDescription):
         left_reversed: Mounted the other way round: positive speeds turn the wheel backwards.
         right_reversed: Mounted the other way round: positive speeds turn the wheel backwards.
         gear_ratio: Motor turns per wheel turn.
-        mass_kg: With brick and battery; only where motors are as on the brick, in kg.
+        mass_kg: With brick and battery; only for motors as on the brick, in kg.
         battery_v: Without a load: it sets the highest speed, in V.
+        hub: The hub of Pybricks in place of the EV3, such as PrimeHub.
         parts: Further keys of a robot file, such as `{"left_sensor.diameter_mm": 20}`; tables are written with dots.
 
     Raises:
@@ -62,13 +68,19 @@ class Robot(RobotDescription):
         wheel_width_mm: float | None = None,
         back_mm: float | None = None,
         weight: float | str | None = None,
-        left_port: Literal["outA", "outB", "outC", "outD", "none"] | None = None,
-        right_port: Literal["outA", "outB", "outC", "outD", "none"] | None = None,
+        left_port: Literal["outA", "outB", "outC", "outD", "none", "A", "B", "C", "D", "E", "F"]
+        | None = None,
+        right_port: Literal["outA", "outB", "outC", "outD", "none", "A", "B", "C", "D", "E", "F"]
+        | None = None,
         left_reversed: bool | None = None,
         right_reversed: bool | None = None,
         gear_ratio: float | None = None,
         mass_kg: float | None = None,
         battery_v: float | None = None,
+        hub: Literal[
+            "", "PrimeHub", "InventorHub", "EssentialHub", "TechnicHub", "CityHub", "MoveHub"
+        ]
+        | None = None,
         parts: Mapping[str, Any] | None = None,
     ) -> None:
         self._take(locals())
@@ -112,14 +124,14 @@ class World(WorldDescription):
         obstacles: File | None = None,
         walls: bool | None = None,
         solid: bool | None = None,
-        background_fit: Literal["stretch", "fit", "centre", "corner"] | None = None,
+        background_fit: BackgroundFit | None = None,
         pen_marks: bool | None = None,
         x: float | None = None,
         y: float | None = None,
         angle: float | None = None,
         sensornoise: int | None = None,
         motornoise: int | None = None,
-        drift: str | Mapping[str, Any] | None = None,
+        drift: Sizes | None = None,
         pencolor: str | None = None,
         pen_width: float | None = None,
         pendown: bool | None = None,
@@ -141,21 +153,21 @@ def simulate(
     obstacles: File | None = None,
     walls: bool | None = None,
     solid: bool | None = None,
-    background_fit: Literal["stretch", "fit", "centre", "corner"] | None = None,
+    background_fit: BackgroundFit | None = None,
     pen_marks: bool | None = None,
     x: float | None = None,
     y: float | None = None,
     angle: float | None = None,
     sensornoise: int | None = None,
     motornoise: int | None = None,
-    drift: str | Mapping[str, Any] | None = None,
+    drift: Sizes | None = None,
     pencolor: str | None = None,
     pen_width: float | None = None,
     pendown: bool | None = None,
     profile: File | None = None,
     seed: int | None = None,
     press: Sequence[str] | None = None,
-    preload: Literal["none", "imports", "preloaded"] | None = None,
+    preload: Preload | None = None,
 ) -> Run:
     """Run a program as fast as possible, block until it ends, and return the run, which is stored.
 
@@ -203,12 +215,16 @@ def experiment(
     program: Program | Sequence[Program],
     *,
     seeds: Iterable[int] = (),
+    constants: Mapping[str, Any] | None = None,
     parameters: Mapping[str, Any] | None = None,
+    metrics: Metrics | None = None,
+    columns: Sequence[str] = (),
     expressions: Mapping[str, str] | None = None,
     goals: File | None = None,
-    keep: Literal["all", "failed", "none"] = "none",
+    keep: Keep = "none",
     jobs: int = 0,
     scheduler: str = "",
+    out: File | None = None,
     arguments: Sequence[str] = (),
     answers: Sequence[str] = (),
     timeout_s: float = DEFAULT_TIME_LIMIT_S,
@@ -219,20 +235,20 @@ def experiment(
     obstacles: Vary[File] = None,
     walls: Vary[bool] = None,
     solid: Vary[bool] = None,
-    background_fit: Vary[Literal["stretch", "fit", "centre", "corner"]] = None,
+    background_fit: Vary[BackgroundFit] = None,
     pen_marks: Vary[bool] = None,
     x: Vary[float] = None,
     y: Vary[float] = None,
     angle: Vary[float] = None,
     sensornoise: Vary[int] = None,
     motornoise: Vary[int] = None,
-    drift: Vary[str | Mapping[str, Any]] = None,
+    drift: Vary[Sizes] = None,
     pencolor: Vary[str] = None,
     pen_width: Vary[float] = None,
     pendown: Vary[bool] = None,
     profile: Vary[File] = None,
     press: Sequence[str] | None = None,
-    preload: Vary[Literal["none", "imports", "preloaded"]] = None,
+    preload: Vary[Preload] = None,
 ) -> pd.DataFrame:
     """Run a program with all combinations of what varies, block until they end, and return a table of the runs.
 
@@ -242,12 +258,18 @@ def experiment(
     Args:
         program: As for `simulate`; or several.
         seeds: The seeds, such as `range(200)`; without any, 0.
+        constants: Values of the program's constants, what it assigns to a name outside its functions:
+            `{"GAIN": [0.2, 0.4]}`.
         parameters: Values by key of a world or robot file: `{"robot.wheel_diameter_mm": [54, 56]}`; a text is read as
             after `--set`, such as `"latin(54, 58, 20)"`.
+        metrics: Further columns by name, as functions of a run: `{"end_x_mm": lambda run: run.pose.x_mm}`. What one
+            raises ends the experiment.
+        columns: Columns of the telemetry, such as `x_mm`: the table then has one row for each tick of each run.
         expressions: Further columns by name, such as `{"error_mm": "hypot(x_mm - 750, y_mm - 850)"}`.
         goals: A goals file; its world is used without a `world`, where no option says otherwise.
         keep: Which runs to store.
         jobs: Number of worker processes; 0 is one for each processor. The results do not depend on it.
+        out: A file for the table; an interrupted experiment that is called again goes on with the rows so far.
         scheduler: Address of a Dask scheduler whose workers run the programs, such as `tcp://host:8786`.
         arguments, answers, timeout_s, world: As for `simulate`.
         background: A mat from `tuisim backgrounds`, or an image file.
@@ -273,8 +295,9 @@ def experiment(
         preload: Names predefined for the program.
 
     Returns:
-        One row for each run: the seed varies fastest, before it `parameters`, options and programs. Columns as in
-        `tuisim batch`, and one for each option that varies.
+        One row for each run: the seed varies fastest, before it `parameters`, constants, options and programs. Columns
+        as in `tuisim batch`, and one for each constant and option that varies. With `columns`, one row for each tick:
+        `run`, what varies, `seed`, `time` in s, and the columns.
 
     Raises:
         ConfigError: a program, an option, a parameter, an expression or a goal is wrong; nothing was run.

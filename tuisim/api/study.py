@@ -4,22 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
+from importlib.metadata import version
 from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tuisim.api.calls import check_timeout, prepare_program, read_source
 from tuisim.api.descriptions import plain, read_options, read_world
+from tuisim.api.measures import Measures, Metric, show_progress
 from tuisim.base.errors import ConfigError
 from tuisim.batch.parameters import SEED, Choice, checked_seeds, parse_values
 from tuisim.batch.plan import Plan, Subject
-from tuisim.batch.sweep import Sweep, Workers
+from tuisim.batch.sweep import Sweep, Workers, is_interrupted
 from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.runs.handle import RunOptions
 from tuisim.engine.runs.presses import press_actions
+from tuisim.programs.constants import set_constants
 from tuisim.programs.program_file import ProgramSource
 from tuisim.settings.options import Settings
-from tuisim.tasks.goals.files import GoalsFile, load_goals
+from tuisim.tasks.goals.files import load_goals
 from tuisim.tasks.task import MAX_JOBS, Keep
 
 if TYPE_CHECKING:
@@ -33,74 +36,147 @@ def run_experiment(
     program: Any,
     *,
     seeds: Iterable[int],
-    parameters: Mapping[str, Any] | None,
+    constants: Mapping[str, Any] | None,
+    metrics: Mapping[str, Metric] | None,
+    columns: Sequence[str],
     expressions: Mapping[str, str] | None,
-    goals: str | Path | None,
     keep: str,
     jobs: int,
     scheduler: str,
-    arguments: Sequence[str],
-    answers: Sequence[str],
-    timeout_s: float,
-    world: Any,
-    **options: Any,
+    out: str | Path | None,
+    **how: Any,
 ) -> pd.DataFrame:
     """Run an experiment; arguments as of `tuisim.experiment`."""
-    check_timeout(timeout_s)
-    _check_choices(keep, jobs)
-    named = program if isinstance(program, list | tuple) else [program]
-    programs = [read_source(each) for each in named]
-    if not programs:
-        raise ConfigError("no program is named", key="program")
-    task = load_goals(goals) if goals is not None else None
-    variants = list_variants(options)
-    subjects = [
-        _build_subject(each, variant, world, task, arguments)
-        for each in programs
-        for variant in variants
-    ]
-    run_options = RunOptions(
-        time_limit_s=timeout_s, answers=tuple(answers) or (task.answers if task else ())
-    )
-
-    def build_options(spec: RunSpec, settings: Settings) -> RunOptions:
-        return replace(run_options, actions=press_actions(settings["press"], spec.profile.tick_hz))
-
-    plan = Plan(
-        tuple(subjects),
-        _read_parameters(parameters or {}, seeds),
-        Path("parameters"),
-        task.goals if task else (),
-        Keep(keep),
-        build_options,
-    )
-    plan.check_expressions(expressions or {})
-    sweep = Sweep(plan, expressions or {})
-    sweep.run(Workers(jobs, scheduler))
-    return _add_variants(sweep.build_frame(), variants, len(plan.grid), several=len(programs) > 1)
-
-
-def _build_subject(
-    source: ProgramSource,
-    variant: Mapping[str, Any],
-    world: Any,
-    task: GoalsFile | None,
-    arguments: Sequence[str],
-) -> Subject:
-    """Return a program with its settings, and a combination of options."""
-    chosen = read_options(variant)
-    in_world = read_world(world, chosen.get("mats"))
-    if task:
-        in_world = task.settings if world is None else {**in_world, **task.presses}
-    started, settings = prepare_program(source, arguments, in_world, chosen)
-    return Subject(started, settings.settings, frozenset(chosen))
-
-
-def _check_choices(keep: str, jobs: int) -> None:
-    if keep not in [*Keep]:
-        raise ConfigError(f"no such value {keep!r}", f"one of {', '.join(Keep)}", key="keep")
     if jobs not in range(MAX_JOBS + 1):
         raise ConfigError(f"must be a whole number from 0 to {MAX_JOBS}, got {jobs!r}", key="jobs")
+    if columns and (metrics or expressions or out):
+        hint = "without columns there is one row for each run"
+        raise ConfigError("go without metrics, expressions and out", hint, key="columns")
+    named = program if isinstance(program, list | tuple) else [program]
+    study = Study([read_source(each) for each in named], constants or {}, **how)
+    measures = Measures(metrics or {}, columns)
+    plan = study.build_plan(seeds, keep, returns_files=measures.needs_files)
+    plan.check_expressions(expressions or {})
+    measures.check(plan)
+    target = Path(out) if out is not None else None
+    resumes = target is not None and is_interrupted(target)
+    sweep = Sweep(plan, expressions or {}, target, version("tuisim"), resumes=resumes)
+    with show_progress(len(plan) - len(sweep.rows)) as tell:
+        sweep.run(Workers(jobs, scheduler), tell, measures.measure)
+    if columns:
+        return study.join_columns(sweep.build_frame(), measures.frames)
+    frame = study.add_variants(sweep.build_frame())
+    sweep.export(frame)
+    sweep.finish()
+    return frame
+
+
+class Study:
+    """The programs of an experiment, and what varies besides seeds and parameters.
+
+    Args:
+        programs: They.
+        constants: Values of the programs' constants, or several of each.
+        goals: The goals file; None for none.
+        world, arguments, answers, timeout_s: As of `tuisim.experiment`.
+        options: Values by the names of options, or several of each.
+
+    Raises:
+        ConfigError: one of them is wrong.
+    """
+
+    def __init__(
+        self,
+        programs: Sequence[ProgramSource],
+        constants: Mapping[str, Any],
+        *,
+        parameters: Mapping[str, Any] | None,
+        goals: str | Path | None,
+        world: Any,
+        arguments: Sequence[str],
+        answers: Sequence[str],
+        timeout_s: float,
+        **options: Any,
+    ) -> None:
+        check_timeout(timeout_s)
+        if not programs:
+            raise ConfigError("no program is named", key="program")
+        self._programs, self._constants, self._arguments = programs, constants, arguments
+        self._parameters = {
+            name: _read_choice(name, values) for name, values in (parameters or {}).items()
+        }
+        self._task = load_goals(goals) if goals is not None else None
+        self._world = world
+        self._options = RunOptions(
+            time_limit_s=timeout_s,
+            answers=tuple(answers) or (self._task.answers if self._task else ()),
+        )
+        self._variants = list_variants({**options, **constants})
+
+    def build_plan(self, seeds: Iterable[int], keep: str, *, returns_files: bool) -> Plan:
+        """Return all runs.
+
+        Raises:
+            ConfigError: a seed, a parameter or `keep` is wrong.
+        """
+        if keep not in [*Keep]:
+            raise ConfigError(f"no such value {keep!r}", f"one of {', '.join(Keep)}", key="keep")
+        self._plan = Plan(
+            tuple(
+                self._build_subject(program, variant)
+                for program in self._programs
+                for variant in self._variants
+            ),
+            {**self._parameters, **_read_seeds(seeds)},
+            Path("parameters"),
+            self._task.goals if self._task else (),
+            Keep(keep),
+            returns_files,
+            self._build_options,
+        )
+        return self._plan
+
+    def _build_options(self, spec: RunSpec, settings: Settings) -> RunOptions:
+        return replace(
+            self._options, actions=press_actions(settings["press"], spec.profile.tick_hz)
+        )
+
+    def _build_subject(self, source: ProgramSource, variant: Mapping[str, Any]) -> Subject:
+        """Return a program with its settings, and a combination of constants and options."""
+        options = {name: value for name, value in variant.items() if name not in self._constants}
+        values = {name: plain(value) for name, value in variant.items() if name not in options}
+        chosen = read_options(options)
+        in_world = read_world(self._world, chosen.get("mats"))
+        if task := self._task:
+            in_world = task.settings if self._world is None else {**in_world, **task.presses}
+        changed = set_constants(source, values)
+        started, settings = prepare_program(changed, self._arguments, in_world, chosen)
+        return Subject(started, settings.settings, frozenset(chosen))
+
+    def add_variants(self, frame: pd.DataFrame) -> pd.DataFrame:
+        """Return the table of the runs with a column for each constant and option that varies."""
+        variants = self._variants
+        names = [name for name in variants[0] if len({repr(one[name]) for one in variants}) > 1]
+        runs_of_each = len(self._plan.grid)
+        numbers = [(run - 1) // runs_of_each % len(variants) for run in frame["run"]]
+        for place, name in enumerate(names, start=1):
+            values = [variants[number][name] for number in numbers]
+            frame.insert(place, name, [_name_value(value) for value in values])
+        is_named = len(self._programs) > 1 or "program" not in frame
+        return frame if is_named else frame.drop(columns="program")
+
+    def join_columns(self, frame: pd.DataFrame, frames: Mapping[int, pd.DataFrame]) -> pd.DataFrame:
+        """Return the columns of all runs below each other, after what distinguishes each run."""
+        import pandas as pd
+
+        table = self.add_variants(frame)
+        table = table.loc[:, :"seed"].set_index(table["run"] - 1, drop=True)
+        order = sorted(frames)
+        repeated = table.loc[order].loc[
+            [index for index in order for _ in range(len(frames[index]))]
+        ]
+        joined = pd.concat([frames[index] for index in order], ignore_index=True)
+        return pd.concat([repeated.reset_index(drop=True), joined], axis=1)
 
 
 def list_variants(options: Mapping[str, Any]) -> list[dict[str, Any]]:
@@ -125,13 +201,11 @@ def _is_varied(name: str, value: object) -> bool:
     )
 
 
-def _read_parameters(parameters: Mapping[str, Any], seeds: Any) -> dict[str, Choice]:
-    varied = {name: _read_choice(name, values) for name, values in parameters.items()}
+def _read_seeds(seeds: Any) -> dict[str, Choice]:
     if isinstance(seeds, str) or not isinstance(seeds, Iterable):
         raise ConfigError(f"must be several, got {seeds!r}", "such as range(200)", key="seeds")
-    if chosen := checked_seeds([plain(seed) for seed in seeds], "seeds"):
-        varied[SEED] = chosen
-    return varied
+    chosen = checked_seeds([plain(seed) for seed in seeds], "seeds")
+    return {SEED: chosen} if chosen else {}
 
 
 def _read_choice(name: str, values: Any) -> Choice:
@@ -144,23 +218,7 @@ def _read_choice(name: str, values: Any) -> Choice:
     return tuple(map(plain, listed))
 
 
-def _add_variants(
-    frame: pd.DataFrame, variants: Sequence[Mapping[str, Any]], runs: int, *, several: bool
-) -> pd.DataFrame:
-    """Return the table of runs with a column for each option that varies.
-
-    Args:
-        runs: How many runs there are of each variant of a program.
-        several: Whether there are several programs.
-    """
-    names = [name for name in variants[0] if len({repr(one[name]) for one in variants}) > 1]
-    numbers = [(run - 1) // runs % len(variants) for run in frame["run"]]
-    for place, name in enumerate(names, start=1):
-        values = [variants[number][name] for number in numbers]
-        frame.insert(place, name, [_name_value(value) for value in values])
-    return frame if several or "program" not in frame else frame.drop(columns="program")
-
-
 def _name_value(value: object) -> object:
     """Return a value as a cell of a table."""
-    return value if isinstance(value, bool | int | float | str) else str(value)
+    cell = plain(value)
+    return cell if isinstance(cell, bool | int | float | str) else str(cell)

@@ -58,6 +58,8 @@ class Plan:
     """The file to blame for wrong parameters; paths in them are relative to its folder."""
     goals: tuple[Goal, ...] = ()
     keep: Keep = Keep.NONE
+    returns_files: bool = False
+    """Whether results have what their runs have recorded."""
     options_of: Callable[[RunSpec, Settings], RunOptions] = lambda *_: RunOptions()
     """Returns how a run is executed, by its specification and the settings of its program."""
     grid: Grid = field(init=False)
@@ -172,6 +174,7 @@ class Plan:
             goals=self.goals,
             parameters=values,
             keep=self.keep,
+            returns_files=self.returns_files,
         )
 
     def identity(self) -> dict[str, Any]:

@@ -52,6 +52,11 @@ class Workers:
         return run_on_cluster(tasks, self.scheduler, self.dask_workers)
 
 
+def is_interrupted(out: Path) -> bool:
+    """Return whether there are rows of an interrupted batch whose table would be written to a file."""
+    return os.path.exists(partial_of(out))
+
+
 class Sweep:
     """The runs of a plan: those that are done, and the table that they become.
 
@@ -99,7 +104,12 @@ class Sweep:
             raise ConfigError("holds the rows of an interrupted batch", hint, file=str(path))
         return partial.open(self.rows)
 
-    def run(self, workers: Workers, on_row: Callable[[Row], None] = lambda _: None) -> None:
+    def run(
+        self,
+        workers: Workers,
+        on_row: Callable[[Row], None] = lambda _: None,
+        measure: Callable[[Result], Row] = lambda _: {},
+    ) -> None:
         """Execute the tasks that are not done, and block until they are.
 
         An interrupt stops the tasks that are running and is raised; the rows of those that are done stay.
@@ -107,6 +117,7 @@ class Sweep:
         Args:
             workers: The processes that execute the tasks.
             on_row: Called with each new row.
+            measure: Returns further columns of a run by name.
 
         Raises:
             ConfigError, HostError: there is no such cluster, or it is lost.
@@ -121,7 +132,7 @@ class Sweep:
             with closing(workers.run(tasks)) as results:
                 for result in results:
                     label = plan.subject_at(result.index).label if several else ""
-                    row = row_of(result, label, plan.seed_at(result.index))
+                    row = row_of(result, label, plan.seed_at(result.index)) | measure(result)
                     self.rows[result.index] = row
                     if self._partial is not None:
                         self._partial.add(row)

@@ -3,6 +3,7 @@
 __all__ = [
     "attributes",
     "code_rows",
+    "constants",
     "facts",
     "function",
     "line_values",

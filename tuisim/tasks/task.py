@@ -50,6 +50,8 @@ class Task:
     """Whether it runs through bubblewrap, without network and without the user's files."""
     is_replayed: bool = False
     """Whether the run is worked out from the program's commands, and that is judged, not what its process recorded."""
+    returns_files: bool = False
+    """Whether the result has what the run has recorded."""
     real_time_limit_s: float = 0.0
     """Real seconds, without those in which it waits for a processor, after which it is stopped; 0 is no limit."""
 
@@ -96,3 +98,5 @@ class Result:
     """The parts that were plugged in, in words; see `programs.plugged_words`."""
     run_id: str = ""
     """Its id in the store; empty if it was not kept."""
+    files: Mapping[str, bytes] = field(default_factory=dict)
+    """What the run has recorded, by the names of the files in its folder, if the task wants it."""

@@ -133,7 +133,9 @@ def telemetry_frame(run: StoredRun, field: Field | None = None) -> pd.DataFrame:
     return pd.DataFrame(telemetry_columns(run, field))
 
 
-def telemetry_columns(run: StoredRun, field: Field | None = None) -> dict[str, Array]:
+def telemetry_columns(
+    run: StoredRun, field: Field | None = None, names: Sequence[str] = ()
+) -> dict[str, Array]:
     """Return one row per tick, including tick 0 (the start); damaged records are omitted, see `damage_note`.
 
     Columns: `time` in s, simulated; MOTION_COLUMNS; those of every mounted sensor, such as
@@ -142,14 +144,17 @@ def telemetry_columns(run: StoredRun, field: Field | None = None) -> dict[str, A
 
     Args:
         field: The mat; by default that of the run.
+        names: Some of `columns_of` the run, in place of those after `time`.
 
     Raises:
         LogError: a recording is damaged, or the mat no longer exists.
     """
     records = _sound(run.telemetry.array())
     mat = open_mat(run) if field is None else field
-    exported = list_measured_names(list_columns(run.spec))
+    exported = names or list_measured_names(list_columns(run.spec))
     values = column_values(exported, records, run, run.actions, mat)
+    if names:
+        return {"time": tick_times_s(records, run.spec), **{name: values[name] for name in names}}
     return {"time": tick_times_s(records, run.spec), **values, "line": records["line"].astype("i8")}
 
 

@@ -1,0 +1,116 @@
+"""Experiments from Python."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import tuisim
+from tests.cases import cases
+from tuisim.base.errors import ConfigError
+from tuisim.batch.sweep import Workers
+
+PROGRAM = """\
+GAIN = 1.2
+tank_drive.on_for_rotations(SpeedPercent(30), SpeedPercent(30 * GAIN), 0.5)
+print("Gain:", GAIN)
+"""
+
+
+def test_constants_vary_and_functions_measure_each_run() -> None:
+    frame = tuisim.experiment(
+        PROGRAM,
+        seeds=range(2),
+        motornoise=[0, 20],
+        constants={"GAIN": [0.5, np.float64(2)]},
+        metrics={"end_mm": lambda run: run.pose.x_mm, "ticks": lambda run: len(run.telemetry)},
+        jobs=2,
+    )
+    assert [*frame.columns[:4]] == ["run", "motornoise", "GAIN", "seed"]
+    assert frame["Gain_last"].tolist() == [0.5, 0.5, 2, 2] * 2
+    assert frame["end_mm"].equals(frame["x_mm"].rename("end_mm"))
+    assert frame["ticks"].dtype == np.int64 and (frame["ticks"] > 50).all()
+
+
+def test_columns_are_those_of_each_run_over_time() -> None:
+    columns = ["x_mm", "left_red"]
+    how: dict[str, Any] = {"background": "Grey_bands", "x": 100}
+    frame = tuisim.experiment(
+        PROGRAM, seeds=[4, 2], sensornoise=[0, 20], columns=columns, jobs=2, **how
+    )
+    assert [*frame.columns] == ["run", "sensornoise", "seed", "time", *columns]
+    for run, noise, seed in ((1, 0, 4), (2, 0, 2), (3, 20, 4), (4, 20, 2)):
+        single = tuisim.simulate(PROGRAM, seed=seed, sensornoise=noise, **how).telemetry
+        part = frame[frame["run"] == run].reset_index(drop=True)
+        assert part[["time", "x_mm"]].equals(single[["time", "x_mm"]])
+        assert {*part["sensornoise"]} == {noise} and {*part["seed"]} == {seed}
+        assert part["left_red"].equals(single["left_red"])
+
+
+def test_the_number_of_processes_does_not_matter() -> None:
+    first, second = (
+        tuisim.experiment(PROGRAM, seeds=range(6), motornoise=20, columns=["x_mm"], jobs=jobs)
+        for jobs in (1, 2)
+    )
+    pd.testing.assert_frame_equal(first, second, check_exact=True)
+
+
+def test_an_interrupted_experiment_goes_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    out, run = tmp_path / "runs.parquet", Workers.run
+
+    def stop_soon(workers: Workers, tasks: Any) -> Any:
+        for number, result in enumerate(run(workers, tasks)):
+            if number == 2:
+                raise KeyboardInterrupt
+            yield result
+
+    measured: list[int] = []
+
+    def call() -> pd.DataFrame:
+        return tuisim.experiment(
+            PROGRAM,
+            seeds=range(5),
+            metrics={"end_mm": lambda run: measured.append(1) or run.pose.x_mm},  # type: ignore[func-returns-value]
+            jobs=1,
+            out=out,
+        )
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Workers, "run", stop_soon)
+        with pytest.raises(KeyboardInterrupt):
+            call()
+    assert len(measured) == 2
+    frame = call()
+    assert (len(measured), len(frame)) == (5, 5)
+    assert frame["end_mm"].equals(frame["x_mm"].rename("end_mm"))
+    assert len(tuisim.read_log(out)) == 5
+
+
+@cases(
+    "given, words",
+    {
+        "column": ({"columns": ["x_m"]}, "this robot has no 'x_m'"),
+        "metric": ({"metrics": {"x_mm": len}}, "'x_mm' is a column already"),
+        "both": ({"columns": ["x_mm"], "metrics": {"n": len}}, "columns: go without metrics"),
+        "no values": ({"sensornoise": []}, "sensornoise: has no values"),
+        "constant": ({"constants": {"GAINS": 1}}, "has no constant GAINS"),
+        "keep": ({"keep": "some"}, "keep: no such value 'some'"),
+        "no program": ({"program": []}, "no program is named"),
+        "seeds": ({"seeds": "0..4"}, "seeds: must be several"),
+    },
+)
+def test_what_is_wrong_is_refused_before_anything_runs(given: dict[str, Any], words: str) -> None:
+    with pytest.raises(ConfigError, match=words):
+        tuisim.experiment(**{"program": PROGRAM, **given})
+
+
+def test_what_a_metric_raises_ends_the_experiment() -> None:
+    def fail(run: object) -> None:
+        raise LookupError("nothing there")
+
+    with pytest.raises(LookupError, match="nothing there"):
+        tuisim.experiment(PROGRAM, seeds=[0], metrics={"n": fail}, jobs=1)

@@ -1,0 +1,90 @@
+"""What an experiment takes of each run: metrics, and columns over time."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
+from typing import TYPE_CHECKING, Any
+
+from tuisim.api.descriptions import plain
+from tuisim.api.run import Run
+from tuisim.base.errors import ConfigError
+from tuisim.batch.plan import Plan
+from tuisim.batch.table import usual_columns
+from tuisim.engine.core.sensors import find_named_column
+from tuisim.engine.runs.frames import telemetry_columns
+from tuisim.engine.runs.run_folder import read_run
+from tuisim.engine.runs.temporary import temporary_home
+from tuisim.tasks.task import Result
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+Metric = Callable[[Run], Any]
+
+
+class Measures:
+    """Takes metrics and columns of the runs of an experiment, from what each has recorded.
+
+    Args:
+        metrics: Functions of a run by the names of their columns.
+        columns: Columns of telemetry.
+
+    Attributes:
+        frames: The columns of each run, by the index of its task.
+    """
+
+    def __init__(self, metrics: Mapping[str, Metric], columns: Sequence[str]) -> None:
+        self._metrics, self._columns = metrics, columns
+        self.frames: dict[int, pd.DataFrame] = {}
+
+    @property
+    def needs_files(self) -> bool:
+        """Whether results must have what their runs have recorded."""
+        return bool(self._metrics or self._columns)
+
+    def check(self, plan: Plan) -> None:
+        """Check names before anything is run.
+
+        Raises:
+            ConfigError: a run has no such column, or a metric is called like a column.
+        """
+        usual = usual_columns(plan.names, [goal.name for goal in plan.goals])
+        for name in self._metrics:
+            if name in usual:
+                raise ConfigError(f"{name!r} is a column already", key="metrics")
+        for subject in plan.subjects:
+            spec = plan.spec_of(subject, {})
+            self._columns = [find_named_column(name, spec) for name in self._columns]
+
+    def measure(self, result: Result) -> dict[str, Any]:
+        """Return the metrics of a run by name, and remember its columns."""
+        if not result.files:
+            return dict.fromkeys(self._metrics)
+        import pandas as pd
+
+        with temporary_home("tuisim-study-") as folder:
+            for name, data in result.files.items():
+                (folder / name).write_bytes(data)
+            run = Run(read_run(folder))
+            if self._columns:
+                columns = telemetry_columns(run.stored, names=self._columns)
+                self.frames[result.index] = pd.DataFrame(columns)
+            return {name: plain(metric(run)) for name, metric in self._metrics.items()}
+
+
+@contextmanager
+def show_progress(total: int) -> Iterator[Callable[[object], None]]:
+    """Show a bar on a terminal or in a notebook where tqdm is installed; the block tells it of each run."""
+    bar = None
+    with suppress(ImportError):
+        from tqdm.auto import tqdm
+
+        # By itself it is silent only where there is no terminal, as in a notebook.
+        bar = tqdm(total=total, unit="run", disable=False if "ipykernel" in sys.modules else None)
+    try:
+        yield lambda _: bar.update() if bar is not None else None
+    finally:
+        if bar is not None:
+            bar.close()
