@@ -70,7 +70,9 @@ def opened(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
     return found
 
 
-@pytest.mark.slow_cases("README", "experiments", "marking", "measuring-bands", "motion-and-drift")
+@pytest.mark.slow_cases(
+    "README", "experiments", "marking", "measuring-bands", "motion-and-drift", "python"
+)
 @pytest.mark.parametrize("name", WITH_BLOCKS)
 def test_each_block_runs(
     name: str, tmp_path: Path, here: Command, home: Path, opened: list[Any]
@@ -78,14 +80,17 @@ def test_each_block_runs(
     if prepare := PREPARED.get(name):
         prepare(tmp_path)
     names: dict[str, Any] = {}
-    for block in blocks(name):
+    for number, block in enumerate(blocks(name)):
         match block.kind:
             case "sh" | "sh app":
                 _run_commands(block, here)
             case "python" if block.file:
                 (tmp_path / block.file).write_text(block.code)
             case "python":
-                exec(block.code, names)
+                # In a file, as a notebook has it: functions keep their source.
+                file = tmp_path / f"block_{number}.py"
+                file.write_text(block.code)
+                exec(compile(block.code, file, "exec"), names)
     assert len(opened) == sum(block.kind == "sh app" for block in blocks(name))
 
 

@@ -173,3 +173,12 @@ def test_the_example_notebook_shows_chart_and_bands() -> None:
     assert kinds(ran[2]) == ["image/png", "text/plain", "text/html"]
     bands = ran[4].outputs[0].data["text/plain"]
     assert all(level in bands for level in ("100.0", "86.3", "82.7", "50.2"))
+
+
+@pytest.mark.slow
+def test_the_study_answers_its_question_with_a_table_and_figures() -> None:
+    notebook = nbformat.read(ROOT / "programs" / "python_study.ipynb", as_version=4)
+    cells = [cell.source for cell in notebook.cells if cell.cell_type == "code"]
+    *_, table, figure, paths = execute({text: text for text in cells}).values()
+    assert "motornoise SPEED" in str(table.outputs)
+    assert all("image/png" in kinds(cell) for cell in (figure, paths))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import sys
 from collections.abc import Callable
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -79,8 +80,7 @@ def test_a_function_of_another_file_goes_along(
         "from own_helpers import count\ndef go():\n    print('A:', count())\n"
     )
     monkeypatch.syspath_prepend(tmp_path)
-    import own_main  # type: ignore[import-not-found]
-
+    own_main = import_module("own_main")
     try:
         assert tuisim.simulate(own_main.go).output == "A: 4\n"
     finally:

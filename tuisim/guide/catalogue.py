@@ -52,6 +52,7 @@ CONTENTS: Mapping[GuidePart, tuple[str, ...]] = {
         "own-mats",
         "marking",
         "experiments",
+        "python",
         "when-it-goes-wrong",
     ),
     GuidePart.REFERENCE: (
