@@ -11,8 +11,10 @@ from textual.message import Message
 from textual.timer import Timer
 
 from tuisim.app.render.brick import BrickPicture, draw_brick
+from tuisim.app.render.hub import draw_hub
 from tuisim.app.snapshot import IN_RUN, RunPhase, Snapshot
 from tuisim.base.data_class import dataclass
+from tuisim.engine.core.hub_spec import HUBS_WITH_MATRIX
 from tuisim.engine.core.spec import BUTTONS, INPUT_PORTS
 from tuisim.terminal.cell_view import LinesPanel
 from tuisim.terminal.pacer import Throttle
@@ -97,10 +99,14 @@ class Brick(LinesPanel, can_focus=True):
         if self._snapshot is None or not size:
             return
         now = self._snapshot
-        bumpers = [sensor.port for sensor in now.spec.robot.touch_sensors]
-        self._picture = draw_brick(
-            now.face, now.pressed, max(1, size.width), max(1, size.height), bumpers
-        )
+        robot = now.spec.robot
+        bumpers = [sensor.port for sensor in robot.touch_sensors]
+        shown = now.face, now.pressed, max(1, size.width), max(1, size.height), bumpers
+        if robot.hub:
+            has_matrix = robot.hub in HUBS_WITH_MATRIX
+            self._picture = draw_hub(*shown, has_matrix=has_matrix)
+        else:
+            self._picture = draw_brick(*shown)
         self._text.set_lines(self._picture.lines)
 
     # Buttons

@@ -112,7 +112,7 @@ def draw_brick(
     heard: list[Run] = [(f"♪ {sound}"[:width] if sound else "", _CAPTION)]
     lines = [*screen, *pad]
     if bumper_rows:
-        line, boxes = _draw_bumpers(bumpers, pressed, width, len(lines))
+        line, boxes = draw_bumpers(bumpers, pressed, width, len(lines))
         lines.append(line)
         buttons += boxes
     return BrickPicture([*lines, *([heard] if sound_rows else [])], buttons)
@@ -272,7 +272,7 @@ def _pad(
     return lines, tuple(boxes)
 
 
-def _draw_bumpers(
+def draw_bumpers(
     ports: Sequence[str], pressed: Collection[str], width: int, row: int
 ) -> tuple[list[Run], tuple[ButtonBox, ...]]:
     """Return the row of the touch sensors' bumpers, as many as fit, and their areas."""

@@ -28,6 +28,8 @@ HUBS: Mapping[str, HubKind] = {
     "MoveHub": HubKind("ABCD", "interactive"),
 }
 """By the name of the class in `pybricks.hubs`."""
+HUBS_WITH_MATRIX = frozenset({"PrimeHub", "InventorHub"})
+"""Those with a matrix of lights, a speaker, and more than one button."""
 EV3_MOTORS = ("large", "medium")
 INSIDE = "inside"
 """In place of the port of a gyro that is in the hub."""

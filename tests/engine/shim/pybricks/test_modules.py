@@ -7,6 +7,7 @@ import ast
 import pytest
 
 from tests.conftest import ROOT
+from tuisim.engine.core.hub_spec import HUBS
 from tuisim.engine.shim.pybricks.modules import MODULES
 from tuisim.engine.shim.pybricks.unsimulated import IO_DEVICES, NXT_DEVICES
 
@@ -14,6 +15,7 @@ SEEN = ROOT / "tuisim/engine/shim/names"
 REFUSED = {"pybricks.iodevices": set(IO_DEVICES), "pybricks.nxtdevices": set(NXT_DEVICES)}
 BUILTINS = {"pybricks.tools": {"print"}}
 VERSION_4 = {
+    "pybricks.hubs": set(HUBS) - {"InventorHub"},
     "pybricks.parameters": {"Axis", "Font", "Image", "Side"},
     "pybricks.tools": {
         *("Axis", "Matrix", "cross", "multitask", "read_input_byte", "run_task", "vector")

@@ -72,7 +72,7 @@ def test_settings_change_while_it_drives(base: DriveBase) -> None:
 
 
 def test_tasks_run_side_by_side(base: DriveBase) -> None:
-    watch, told = StopWatch(), []
+    watch, told = StopWatch(), list[tuple[str, Any]]()
 
     async def drive() -> str:
         await call(base.straight, 100)
@@ -86,9 +86,10 @@ def test_tasks_run_side_by_side(base: DriveBase) -> None:
 
     async def main() -> Any:
         assert run_task()
-        return await multitask(drive(), blink())
+        told.append(("both", await multitask(drive(), blink())))
 
-    assert run_task(main()) == ("there", None)
+    assert run_task(main()) is None
+    assert told.pop() == ("both", ("there", None))
     assert [name for name, _ in told] == ["blinked", "driven"]
     assert [at for _, at in told] == pytest.approx([300, 875], abs=10)
     assert not run_task()
@@ -103,6 +104,8 @@ def test_a_race_ends_with_the_first(base: DriveBase) -> None:
     watch = StopWatch()
     run_task(main())
     assert watch.time() == 250
+    # The move of the task that was closed has ended, too.
+    assert arm.simulated.guide is None
     with pytest.raises(TypeError):
         run_task(5)
 

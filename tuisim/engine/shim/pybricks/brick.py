@@ -149,20 +149,28 @@ class Brick:
         return self.session.now // 1000
 
     def until_done(
-        self, done: Callable[[int], bool], end_us: Callable[[], int | None]
+        self,
+        done: Callable[[int], bool],
+        end_us: Callable[[], int | None],
+        stop: Callable[[], object] = lambda: None,
     ) -> Waiting[None]:
         """Wait until a move is done.
 
         Args:
             done: Whether it is, at a time.
             end_us: When its trajectory ends.
+            stop: Ends the move if the task that awaits it is closed.
         """
         begin = now = self.now_us
         while not done(now):
             until = max(end_us() or 0, now + 1)
             if any(motor.blocked_ticks for motor in self.built.motors.values()):
                 until = min(until, now + BLOCKED_POLL_US)
-            yield begin - (begin - until) // POLL_US * POLL_US
+            try:
+                yield begin - (begin - until) // POLL_US * POLL_US
+            except GeneratorExit:
+                stop()
+                raise
             now = self.now_us
 
     def finish(self, waiting: Waiting[Result]) -> Result:

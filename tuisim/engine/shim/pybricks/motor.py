@@ -242,7 +242,7 @@ class Motor(DCMotor):
         self._follow(ending_of(self.ENDINGS, then))
         if wait:
             done = self.brick.until_done(
-                lambda now_us: self._done(now_us, call), lambda: motor.control.end_us
+                lambda now_us: self._done(now_us, call), lambda: motor.control.end_us, self.stop
             )
             return self.brick.finish(done)
         return None

@@ -94,7 +94,7 @@ class DriveBase(Connected):
                 self.brick.say_stalled("the wheels are", call)
             return not base.active or base.done(now_us)
 
-        return self.brick.finish(self.brick.until_done(done, lambda: base.end_us))
+        return self.brick.finish(self.brick.until_done(done, lambda: base.end_us, self.stop))
 
     def drive(
         self,

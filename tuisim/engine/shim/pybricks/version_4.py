@@ -92,7 +92,7 @@ class Motor(motor.Motor):
         def passed(now_us: int) -> bool:
             return motor.guide is None or (motor.find_milli(now_us) - target) * rate >= 0
 
-        return self.brick.finish(self.brick.until_done(passed, lambda: None))
+        return self.brick.finish(self.brick.until_done(passed, lambda: None, self.stop))
 
     def speed(self, window: float = 100) -> int:
         """Return the speed in degrees per second, which is exact for any window."""
@@ -175,7 +175,7 @@ class DriveBase(robotics.DriveBase):
                 or abs(base.find_millis(now_us)[0 if by_way else 1] - begin) >= target
             )
 
-        return self.brick.finish(self.brick.until_done(passed, lambda: None))
+        return self.brick.finish(self.brick.until_done(passed, lambda: None, self.stop))
 
     def straight(self, distance: float, then: Stop = Stop.HOLD, wait: bool = True) -> None:
         """Drive a distance in mm."""
@@ -384,15 +384,16 @@ def _steps(task: Any) -> Waiting[Any]:
 
 
 def run_task(task: Any = None) -> Any:
-    """Run a task to its end, and return its result; without one, return whether a task runs."""
+    """Run a task to its end; without one, return whether a task runs."""
     brick = Connected.brick
     if task is None:
         return brick.in_task
     if brick.in_task:
-        raise RuntimeError("run_task() must not be used in a task")
+        raise RuntimeError("Run loop already active.")
     brick.in_task = True
     try:
-        return brick.block(_steps(task))
+        brick.block(_steps(task))
+        return None
     finally:
         brick.in_task = False
 

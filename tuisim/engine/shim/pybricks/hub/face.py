@@ -105,15 +105,4 @@ class Light:
         self._animation.play(self._shine, [(color, interval) for color in colors])
 
     def _shine(self, color: Any) -> None:
-        self._face.shine(*((0, 0, 0) if color is None else rgb_of(color)))
-
-
-def rgb_of(color: Any) -> tuple[int, int, int]:
-    """Return the channels, 0 to 255, of a colour with a hue, saturation and value."""
-    value, saturation, hue = max(0, color.v) / 100, color.s / 100, color.h % 360 / 60
-
-    def channel(offset: float) -> int:
-        place: float = (offset + hue) % 6
-        return int(0.5 + 255 * value * (1 - saturation * max(0.0, min(place, 4 - place, 1.0))))
-
-    return channel(5), channel(3), channel(1)
+        self._face.shine(*((0, 0, 0) if color is None else color.rgb))

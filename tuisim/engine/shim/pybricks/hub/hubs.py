@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from tuisim.engine.runs.readings import BUTTONS_PORT
 from tuisim.engine.shim.pybricks import hubs, speaker
-from tuisim.engine.shim.pybricks.brick import Connected, whole
+from tuisim.engine.shim.pybricks.brick import Connected, Waiting, invalid_argument, whole
+from tuisim.engine.shim.pybricks.hub.display import Display, Menu
 from tuisim.engine.shim.pybricks.hub.face import Face, Light
 from tuisim.engine.shim.pybricks.hub.imu import IMU
 from tuisim.engine.shim.pybricks.hub.parameters import Button
 from tuisim.engine.shim.pybricks.matrix import Axis
+from tuisim.engine.shim.tones import Tone, song_of, tones_heard
 
 BUTTON_NAMES: Mapping[str, Button] = {
     "left": Button.LEFT,
@@ -53,11 +55,25 @@ class Speaker(Connected):
 
     def beep(self, frequency: float = 500, duration: float = 100) -> None:
         """Play a tone of a frequency in Hz for a duration in ms."""
-        return self._tones.beep(frequency, duration)
+        if whole(duration) < 0:
+            return self._tones.beep(frequency, duration)
+        return self._play([Tone(max(0, whole(frequency)), whole(duration))])
 
     def play_notes(self, notes: Iterable[str], tempo: float = 120) -> None:
         """Play notes such as `C4/4`, in quarter notes per minute."""
-        return self._tones.play_notes(notes, tempo)
+        if whole(tempo) <= 0:
+            raise invalid_argument()
+        return self._play(
+            [speaker.note_of(note, speaker.WHOLE_NOTE_MS_AT_1 // whole(tempo)) for note in notes]
+        )
+
+    def _play(self, tones: Sequence[Tone]) -> None:
+        return self.brick.finish(self._sound(tones))
+
+    def _sound(self, tones: Sequence[Tone]) -> Waiting[None]:
+        heard = song_of([*tones]) if len(tones) != 1 else tones_heard(tones)
+        self.brick.session.speak(heard.text, 0, heard.tones_row, heard.file)
+        yield self.brick.now_us + heard.length_ns // 1000
 
 
 class Charger(Connected):
@@ -149,6 +165,8 @@ class PrimeHub(Hub):
     def __init__(self, *given: Any, **named: Any) -> None:
         super().__init__(*given, **named)
         self.speaker, self.charger = Speaker(), Charger()
+        self.display = Display(self._face)
+        Menu(self.display)
 
 
 class EssentialHub(Hub):

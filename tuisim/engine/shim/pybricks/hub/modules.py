@@ -7,7 +7,7 @@ from typing import Any
 
 from tuisim.engine.shim.pybricks import matrix, tools, version_4
 from tuisim.engine.shim.pybricks import parameters as common
-from tuisim.engine.shim.pybricks.hub import hubs, parameters, pupdevices
+from tuisim.engine.shim.pybricks.hub import display, hubs, parameters, pupdevices
 from tuisim.engine.shim.unsupported.modules import Hardware, refused_part
 
 _NO_DEVICE = "use Motor, ColorSensor, UltrasonicSensor and ForceSensor"
@@ -46,6 +46,7 @@ def find_names(hub: str) -> Mapping[str, Mapping[str, Any]]:
             "Direction": common.Direction,
             "Stop": version_4.Stop,
             "Color": version_4.Color,
+            "Icon": display.Icon,
             "Axis": matrix.Axis,
             "Side": matrix.Side,
         },
@@ -59,6 +60,7 @@ def find_names(hub: str) -> Mapping[str, Mapping[str, Any]]:
             "Matrix": matrix.Matrix,
             "vector": matrix.vector,
             "cross": matrix.cross,
+            "hub_menu": display.hub_menu,
             "run_task": version_4.run_task,
             "multitask": version_4.multitask,
         },

@@ -98,7 +98,7 @@ class ColorSensor(Sensor):
 
     def hsv(self, surface: bool = True) -> Any:
         """Return hue, saturation and value."""
-        return self._read("RGB-RAW", lambda: measure_hsv(*self._raw()))
+        return self._read("RGB-RAW", lambda: Color(*measure_hsv(*self._raw())))
 
     def color(self, surface: bool = True) -> Any:
         """Return the nearest of the detectable colours."""

@@ -1,0 +1,44 @@
+"""A hub as lines of text."""
+
+from __future__ import annotations
+
+import pytest
+
+from tuisim.app.render.hub import draw_hub
+from tuisim.engine.runs.brick_state import BrickState
+
+FACE = BrickState(leds={"red": 255, "green": 0, "blue": 0, "00": 255, "44": 120}, sound="[beep]")
+
+
+def read_texts(width: int, height: int, *, has_matrix: bool = True) -> list[str]:
+    picture = draw_hub(FACE, {"enter"}, width, height, ("F",), has_matrix=has_matrix)
+    return ["".join(text for text, _ in line).rstrip() for line in picture.lines]
+
+
+def test_lit_pixels_are_told_from_dark_ones_without_colours() -> None:
+    texts = read_texts(40, 12)
+    assert [text.split() for text in texts[:5]] == [
+        ["■", *"····"],
+        *[[*"·····"]] * 3,
+        [*"····", "■"],
+    ]
+    assert texts[5].split() == ["◀", "●", "▶", "B"]
+    assert texts[6].split() == ["F", "□"] and texts[7] == "♪ beep"
+
+
+@pytest.mark.parametrize(("height", "rows"), [(1, 1), (3, 3), (6, 6)])
+def test_the_buttons_stay_where_room_is_short(height: int, rows: int) -> None:
+    texts = read_texts(30, height)
+    assert len(texts) == rows
+    assert any("●" in text for text in texts)
+
+
+def test_a_hub_without_a_matrix_has_one_button() -> None:
+    picture = draw_hub(FACE, (), 30, 10, has_matrix=False)
+    assert [box.name for box in picture.buttons] == ["enter"]
+
+
+def test_a_click_finds_each_button() -> None:
+    picture = draw_hub(FACE, (), 30, 10)
+    assert [box.name for box in picture.buttons] == ["left", "enter", "right", "up"]
+    assert {box.row for box in picture.buttons} == {5}

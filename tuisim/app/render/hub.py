@@ -1,0 +1,83 @@
+"""A hub as lines of text: its matrix, its status light and its buttons."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from typing import Final
+
+from rich.color import Color
+from rich.style import Style
+
+from tuisim.app.render.brick import BrickPicture, ButtonBox, draw_bumpers
+from tuisim.base import palette
+from tuisim.engine.runs.brick_state import HUB_LIGHT_NAMES, PIXEL_NAMES, SIDE_PIXELS, BrickState
+from tuisim.terminal.text_runs import Run
+
+_PLAIN = Style()
+_CAPTION = Style(color=palette.LABEL)
+_BUTTON = Style(color=palette.LIGHT, bgcolor=palette.BUTTON, bold=True)
+_PRESSED = Style(color=palette.BLACK, bgcolor=palette.PRESSED, bold=True)
+_SYMBOLS: Final = {"left": "◀", "enter": "●", "right": "▶", "up": "B"}
+"""The buttons by their names in the session, from the left; the last one is that of Bluetooth."""
+_DARK, _LIT = 60, 255
+
+
+def draw_hub(
+    face: BrickState,
+    pressed: Collection[str],
+    width: int,
+    height: int,
+    bumpers: Sequence[str] = (),
+    *,
+    has_matrix: bool = True,
+) -> BrickPicture:
+    """Return the hub for a panel of that inner size.
+
+    Args:
+        face: What it shows.
+        pressed: Buttons that are held down.
+        width, height: Columns and rows, at least 1; the buttons have priority, then the matrix, bumpers and sound.
+        bumpers: Ports of the force sensors.
+        has_matrix: Whether it has a matrix, and more than one button.
+    """
+    rows = SIDE_PIXELS if has_matrix and height > SIDE_PIXELS else 0
+    lines = [_draw_pixels(face, row, width) for row in range(rows)]
+    names = [*_SYMBOLS] if has_matrix else ["enter"]
+    line, boxes = _draw_buttons(face, pressed, names, width, len(lines))
+    lines.append(line)
+    if bumpers and height > len(lines):
+        bumper_line, more = draw_bumpers(bumpers, pressed, width, len(lines))
+        lines.append(bumper_line)
+        boxes += more
+    if face.sound and height > len(lines):
+        sound = face.sound.strip("[]").removeprefix("♪ ")
+        lines.append([(f"♪ {sound}"[:width], _CAPTION)])
+    return BrickPicture(lines, boxes)
+
+
+def _draw_pixels(face: BrickState, row: int, width: int) -> list[Run]:
+    """Return one row of the matrix; the shape of a pixel is for terminals and users without colour."""
+    line: list[Run] = [(" " * max(0, (width - 3 * SIDE_PIXELS) // 2), _PLAIN)]
+    for name in PIXEL_NAMES[SIDE_PIXELS * row : SIDE_PIXELS * (row + 1)]:
+        level = face.leds.get(name, 0)
+        shade = round(_DARK + (_LIT - _DARK) * level / 255)
+        color = Color.from_rgb(shade, shade, shade if level < 1 else round(0.85 * shade))
+        line.append((" ■ " if level else " · ", Style(color=color)))
+    return line
+
+
+def _draw_buttons(
+    face: BrickState, pressed: Collection[str], names: Sequence[str], width: int, row: int
+) -> tuple[list[Run], tuple[ButtonBox, ...]]:
+    """Return the row of the buttons between two pieces of the status light, and their areas."""
+    levels = [face.leds.get(name, 0) for name in HUB_LIGHT_NAMES]
+    light = ("   ", Style(bgcolor=Color.from_rgb(*(max(_DARK // 2, level) for level in levels))))
+    first = max(0, (width - 4 * len(names) - 7) // 2)
+    line: list[Run] = [(" " * first, _PLAIN), light, (" ", _PLAIN)]
+    first += 4
+    boxes = []
+    for name in names:
+        line += [(f" {_SYMBOLS[name]} ", _PRESSED if name in pressed else _BUTTON), (" ", _PLAIN)]
+        boxes.append(ButtonBox(row, first, first + 3, name))
+        first += 4
+    return [*line, light], tuple(boxes)

@@ -1,0 +1,194 @@
+"""`hub.display`, the 5×5 matrix, with `Icon` and `hub_menu`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any
+
+from tuisim.engine.runs.brick_state import SIDE_PIXELS
+from tuisim.engine.runs.readings import BUTTONS_PORT
+from tuisim.engine.shim.pybricks.brick import Connected, Waiting, invalid_argument, text_of, whole
+from tuisim.engine.shim.pybricks.hub.face import DARK, Animation, Face, Pixels
+from tuisim.engine.shim.pybricks.hub.pictures import CHARACTERS, DIGITS, ICONS
+from tuisim.engine.shim.pybricks.matrix import Matrix, Side
+from tuisim.engine.shim.pybricks.tools import wait
+
+LAST = SIDE_PIXELS - 1
+MAX_NUMBER = 99
+POLL_MS = 10
+PLACES: Mapping[Side, Callable[[int, int], tuple[int, int]]] = {
+    Side.TOP: lambda row, column: (row, column),
+    Side.BOTTOM: lambda row, column: (LAST - row, LAST - column),
+    Side.LEFT: lambda row, column: (LAST - column, row),
+    Side.RIGHT: lambda row, column: (column, LAST - row),
+}
+"""Where a pixel of a picture is on the matrix, by the side that is up."""
+
+
+def _bits(picture: str, columns: int = SIDE_PIXELS) -> list[list[int]]:
+    """Return the rows of a picture of `pictures`: 0 or 100 for each pixel."""
+    rows = (int(digit, 32) for digit in picture)
+    return [[100 * (row >> columns - 1 - at & 1) for at in range(columns)] for row in rows]
+
+
+class Icon:
+    """Pictures for the matrix; `Icon(bits)` makes one from 25 bits, that of the upper left corner first."""
+
+    def __new__(cls, bits: int) -> Any:
+        """Return a picture."""
+        picture = ((bits >> SIDE_PIXELS * (LAST - row)) & 31 for row in range(SIDE_PIXELS))
+        return Matrix(
+            [[100 * (row >> LAST - at & 1) for at in range(SIDE_PIXELS)] for row in picture]
+        )
+
+
+for _name, _picture in ICONS.items():
+    setattr(Icon, _name, Matrix(_bits(_picture)))
+
+
+def _read_icon(icon: Any) -> Pixels:
+    rows = (
+        [[icon[row, column] for column in range(SIDE_PIXELS)] for row in range(SIDE_PIXELS)]
+        if isinstance(icon, Matrix) and icon.shape == (SIDE_PIXELS, SIDE_PIXELS)
+        else icon
+    )
+    if not isinstance(rows, Sequence) or [len(row) for row in rows] != [SIDE_PIXELS] * SIDE_PIXELS:
+        raise invalid_argument()
+    return tuple(max(0, min(100, whole(value))) for row in rows for value in row)
+
+
+class Display(Connected):
+    """The matrix of lights."""
+
+    def __init__(self, face: Face) -> None:
+        self._face, self._animation = face, Animation()
+        self._pixels, self._up = DARK, Side.TOP
+
+    def _show(self, pixels: Pixels) -> None:
+        self._animation.stop()
+        self._draw(pixels)
+
+    def _draw(self, pixels: Pixels) -> None:
+        self._pixels = pixels
+        turned = [*DARK]
+        for at, value in enumerate(pixels):
+            row, column = PLACES[self._up](*divmod(at, SIDE_PIXELS))
+            turned[SIDE_PIXELS * row + column] = value
+        self._face.draw(tuple(turned))
+
+    def orientation(self, up: Side) -> None:
+        """Say which side of the matrix is up."""
+        if up not in PLACES:
+            raise invalid_argument()
+        self._up = up
+        self._draw(self._pixels)
+
+    def on(self, brightness: float = 100) -> None:
+        """Turn all pixels on."""
+        self._show((whole(brightness),) * len(DARK))
+
+    def off(self) -> None:
+        """Turn all pixels off."""
+        self._show(DARK)
+
+    def pixel(self, row: int, column: int, brightness: float = 100) -> None:
+        """Turn one pixel on."""
+        if 0 <= whole(row) <= LAST and 0 <= whole(column) <= LAST:
+            pixels = [*self._pixels]
+            pixels[SIDE_PIXELS * whole(row) + whole(column)] = whole(brightness)
+            self._show(tuple(pixels))
+
+    def icon(self, icon: Any) -> None:
+        """Show a picture."""
+        self._show(_read_icon(icon))
+
+    def animate(self, icons: Iterable[Any], interval: int) -> None:
+        """Show pictures one after another, each for a time in ms."""
+        self._animation.play(self._draw, [(_read_icon(icon), interval) for icon in icons])
+
+    def char(self, char: str) -> None:
+        """Show a character."""
+        if len(text_of(char)) != 1 or not " " <= char <= "~":
+            raise invalid_argument()
+        rows = _bits(CHARACTERS[ord(char) - ord(" ")])
+        self._show(tuple(pixel for row in rows for pixel in row))
+
+    def number(self, number: int) -> None:
+        """Show a number of two digits; a negative one with a faint dot."""
+        value = whole(number)
+        if abs(value) > MAX_NUMBER:
+            self.char(">" if value > 0 else "<")
+            return
+        tens, ones = divmod(abs(value), 10)
+        left = _bits(DIGITS[tens], 2) if tens else [[0, 0]] * SIDE_PIXELS
+        rows = zip(left, _bits(DIGITS[ones], 2), strict=True)
+        pixels = [pixel for one, other in rows for pixel in (*one, 0, *other)]
+        if value < 0:
+            pixels[len(DARK) // 2] = 50
+        self._show(tuple(pixels))
+
+    def text(self, text: str, on: float = 500, off: float = 50) -> None:
+        """Show the characters of a text one after another, with a pause between them, in ms."""
+        return self.brick.finish(self._spell(text_of(text), whole(on), whole(off)))
+
+    def _spell(self, text: str, on_ms: int, off_ms: int) -> Waiting[None]:
+        for char in text:
+            self.char(char)
+            yield self.brick.now_us + 1000 * on_ms
+            self.off()
+            yield self.brick.now_us + 1000 * off_ms
+
+
+class Menu(Connected):
+    """A menu on the matrix.
+
+    Args:
+        display: Shows it.
+        pressed: Returns the pressed buttons by their names in the session.
+    """
+
+    current: Menu | None = None
+
+    def __init__(self, display: Display) -> None:
+        self._display = display
+        Menu.current = self
+
+    def _pressed(self) -> frozenset[str]:
+        self.brick.read("pressed", BUTTONS_PORT)
+        return self.brick.session.pressed & {"left", "right", "enter"}
+
+    def choose(self, symbols: Sequence[Any]) -> Any:
+        """Let the user choose a symbol by the buttons, and return it."""
+        before, self.brick.stop_buttons = self.brick.stop_buttons, frozenset()
+        at, held = 0, self._pressed()
+        self._show(symbols[at])
+        while True:
+            pressed = self._pressed()
+            if "enter" in held - pressed:
+                break
+            if step := len({"right"} & (pressed - held)) - len({"left"} & (pressed - held)):
+                at = (at + step) % len(symbols)
+                self._show(symbols[at])
+            held = pressed
+            wait(POLL_MS)
+        self._display.off()
+        self.brick.stop_buttons = before
+        return symbols[at]
+
+    def _show(self, symbol: Any) -> None:
+        show = self._display.char if isinstance(symbol, str) else self._display.number
+        show(symbol)
+
+
+def hub_menu(*symbols: Any) -> Any:
+    """Let the user choose a symbol, a character or a number, by the left, right and centre buttons.
+
+    Raises:
+        ValueError: there are fewer than two.
+        RuntimeError: a task runs, or there is no hub yet.
+    """
+    if Connected.brick.in_task or Menu.current is None:
+        raise RuntimeError("This can only be called before multitasking starts.")
+    if len(symbols) < 2:
+        raise invalid_argument()
+    return Menu.current.choose(symbols)
