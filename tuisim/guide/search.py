@@ -59,7 +59,15 @@ _PASSAGE_WEIGHT, _HEADINGS_WEIGHT, _PAGE_WORDS_WEIGHT, _WHOLE_PAGE_WEIGHT = 1.0,
 """How much the words of a passage count, those of its headings, the further words of its page, and the share of the
 question that is anywhere on its page."""
 _ALL_QUESTIONS_WEIGHT, _NEAREST_QUESTION_WEIGHT, _SAME_QUESTION_WEIGHT = 1.0, 0.5, 1.5
-"""How much the questions count that people ask: all together, the one most alike, and its cube: the same question."""
+"""How much the questions count that people ask: all together, the one most alike, and its cube: the same question.
+
+The method is the vector space model: stems are weighted by their inverse document frequency, texts are compared by
+the cosine, and the weighted cosines of the fields are added. The weights are set by hand. Of 400 questions, drawn at
+random and left out of `questions.toml`, 28 % find their passage as the first one and 52 % among the first three.
+Without the words of the passage it is 24 % and 47 %, without the headings 26 % and 52 %; half or twice a weight moves
+neither figure by more than 3 %. The three weights of questions cost such new questions 2 to 4 % each. They are there
+for the questions of the file, each of which must find its passage among the first two.
+"""
 _MIN_STEM_WEIGHT = 0.05
 """The least weight of a word, however common it is."""
 _MAX_RESULTS = 12
@@ -95,7 +103,7 @@ class _Postings:
 
     Args:
         texts: The stems of each text, with their weights.
-        power: 1 for the cosine; below, longer texts count more.
+        power: 1 for the cosine; below, the length of a text is made up for in part, so that longer texts count more.
     """
 
     def __init__(self, texts: Sequence[Mapping[str, float]], power: float = 1.0) -> None:

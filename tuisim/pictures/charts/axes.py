@@ -9,6 +9,8 @@ if TYPE_CHECKING:
     from tuisim.engine.runs.arrays import FloatArray
 
 _STEPS = (1.0, 2.0, 2.5, 5.0, 10.0)
+"""Steps that read well, as factors of a power of ten: those of Heckbert, "Nice numbers for graph labels" (Graphics
+Gems, 1990), and 2.5, without which a step of 2 is followed by one more than twice as long."""
 
 Limits = tuple[float, float]
 
@@ -147,11 +149,16 @@ _MIN_ROUND_ROWS = 7
 _MAX_PARTS = 6
 """More ticks are crowded."""
 _SPARSE = {2: 0.15, 3: 0.05}
-"""How much of the height few parts between ticks may save, to be better than more parts."""
+"""Penalty by number of parts, as a share of the span of the values: an axis of two or three parts must be so much
+shorter than one with more ticks to be taken instead of it. The numbers are set by eye."""
 
 
 def extend_limits(limits: Limits, rows: int) -> Limits:
     """Return limits, extended as little as possible, that have round ticks in the middle of rows, at equal distances.
+
+    For 2 to 6 parts, the axis begins at a multiple of the round step below the values; the rows between two ticks
+    are as many as fit. The shortest axis is the best one; `_SPARSE` is added to its length, and the whole span of
+    the values if its ticks are in neighbouring rows.
 
     Args:
         limits: Of the values.
