@@ -57,7 +57,7 @@ SPIKE_MODULES: Mapping[str, str] = {
 """Modules of LEGO's own Python for SPIKE and the Robot Inventor, and what Pybricks has in place of each."""
 HUB_DEVICES = "pybricks.pupdevices"
 """The module of Pybricks for motors and sensors of hubs other than the EV3."""
-FOR_SPIKE = "a program for SPIKE that tuisim does not run"
+FOR_SPIKE = "a program in LEGO's own Python for SPIKE, which tuisim does not run"
 """What is told about a program that imports one of these."""
 
 PRELUDES: Mapping[str, str] = {

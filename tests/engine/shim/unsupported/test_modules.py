@@ -194,6 +194,14 @@ def test_a_name_that_no_hub_has_is_missing(run: Run) -> None:
 
 
 @pytest.mark.parametrize(
+    "text", ["from pybricks.hubs import EV3Brick, PrimeHub", "import pybricks.pupdevices"]
+)
+def test_another_hub_is_refused_on_the_ev3(run: Run, text: str) -> None:
+    errors = run(text, profile="pybricks4", prelude="none").errors
+    assert "the robot of this run has an EV3" in errors[-1]
+
+
+@pytest.mark.parametrize(
     ("profile", "other"), [("ev3", "pybricks.hubs"), ("pybricks4", "ev3dev2.motor")]
 )
 def test_the_other_library_is_refused_without_advice_that_cannot_help(

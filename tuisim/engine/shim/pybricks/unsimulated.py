@@ -11,7 +11,6 @@ from tuisim.engine.core.hub_spec import HUBS
 from tuisim.engine.core.profile import Library
 from tuisim.engine.shim.unsupported.modules import (
     ON_THE_BRICK,
-    SPIKE,
     Hardware,
     refused_as,
     refused_part,
@@ -97,7 +96,8 @@ def refused_hub(name: str) -> NoReturn:
 
 
 def _refusal(name: str) -> Exception:
-    return refused_as(ImportError, f"{name}: {SPIKE.title} is not simulated", SPIKE.instead)
+    hint = "a program that uses no part of the EV3 gets the hub that it imports, unless -r names a robot"
+    return refused_as(ImportError, f"{name}: the robot of this run has an EV3", hint)
 
 
 def refused_classes(module: str, classes: Mapping[str, Hardware]) -> dict[str, Any]:

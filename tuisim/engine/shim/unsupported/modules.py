@@ -117,7 +117,6 @@ ON_THE_BRICK: Mapping[str, Hardware] = {
 _PI = Hardware("the Raspberry Pi", "this is an EV3: use {library}")
 _PI_CAMERA = Hardware("the camera of the Raspberry Pi", CAMERA)
 _BRICKPI = Hardware("the BrickPi", "this is an EV3: use {library}")
-SPIKE = Hardware("the SPIKE hub", "tuisim simulates the EV3")
 
 ELSEWHERE: Mapping[str, Hardware] = {
     "RPi": _PI,
