@@ -14,7 +14,7 @@ from functools import lru_cache
 from tuisim.base.data_class import dataclass
 from tuisim.base.source import PRELUDE_TEXTS, PYBRICKS
 from tuisim.base.syntax_tree import parse_module
-from tuisim.programs.robot.scopes import Binding, Bound, Imported, Scope, scope_of
+from tuisim.programs.robot.scopes import Binding, Bound, Imported, Scope, build_scope
 from tuisim.programs.robot.source import Module
 
 _MAX_MEANING = 200
@@ -74,7 +74,7 @@ class _Names:
 
 @lru_cache
 def _build_prelude_scope(prelude: str) -> Scope:
-    return scope_of(Module("", "", parse_module(PRELUDE_TEXTS.get(prelude, ""))))
+    return build_scope(Module("", "", parse_module(PRELUDE_TEXTS.get(prelude, ""))))
 
 
 def _name_prelude(name: str, prelude: str) -> str:
@@ -96,7 +96,7 @@ def list_calls(tree: ast.Module, prelude: str, wanted: str) -> list[int]:
         wanted: The call: a name such as `time.sleep`, a method of an object that the prelude defines such as
             `tank_drive.on`, or the name of a function or method alone. An object of the same class counts as well.
     """
-    scopes = _list_scopes(scope_of(Module("", "", tree)))
+    scopes = _list_scopes(build_scope(Module("", "", tree)))
     names = _Names(_build_prelude_scope(prelude))
     calls = [
         ({ast.unparse(call.func), *names.list_meanings(call.func, scope)}, call.lineno)

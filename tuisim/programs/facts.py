@@ -13,7 +13,7 @@ from tuisim.engine.core.spec import RobotSpec
 from tuisim.programs.calls import list_calls
 from tuisim.programs.mistakes import find_fault
 from tuisim.programs.questions import Question, QuestionReader, Word
-from tuisim.programs.robot.source import parsed
+from tuisim.programs.robot.source import parse
 from tuisim.programs.robot.thresholds import ProgramThreshold, find_light_read, find_thresholds
 from tuisim.programs.slips import find_idle_definition, list_slips
 from tuisim.programs.structure import STRUCTURES
@@ -60,7 +60,7 @@ class ProgramFacts:
     def _short_tree(self) -> ast.Module:
         """The program; without statements if it is not Python, or too long."""
         text = self._program.text
-        return (parsed(text) if len(text) <= MAX_TEXT else None) or ast.Module([], [])
+        return (parse(text) if len(text) <= MAX_TEXT else None) or ast.Module([], [])
 
     @cached_property
     def fault(self) -> tuple[str, int] | None:

@@ -16,7 +16,7 @@ from typing import Any
 from tuisim.base.errors import ConfigError
 from tuisim.base.source import LIBRARIES, PRELUDE_TEXTS
 from tuisim.programs.program_file import ProgramSource, parse_program
-from tuisim.programs.robot.course import global_names
+from tuisim.programs.robot.course import list_global_names
 
 _IMPORTED = {*LIBRARIES, *sys.stdlib_module_names}
 """Packages that a program imports, as the function's own file does."""
@@ -48,7 +48,7 @@ def read_function(function: Callable[[], object]) -> ProgramSource:
     path = file if os.path.isfile(file) else ""
     name = os.path.basename(path) or function.__name__
     source = parse_program(reader.write(function.__name__), name, path)
-    if reader.unknown.isdisjoint(global_names(PRELUDE_TEXTS["preloaded"])[1]):
+    if reader.unknown.isdisjoint(list_global_names(PRELUDE_TEXTS["preloaded"])[1]):
         return source
     return replace(source, program=replace(source.program, prelude="preloaded"))
 
@@ -79,7 +79,7 @@ class _Reader:
             raise ConfigError(f"the function {name} has no source", hint) from None
         text = dedent("".join(lines))
         self._place(text.rstrip().split("\n"), first)
-        used, defined = global_names(text)
+        used, defined = list_global_names(text)
         values = {**function.__globals__, **_read_closure(function)}
         self.unknown |= used - defined - values.keys()
         for other in sorted((used - defined) & values.keys()):

@@ -6,7 +6,7 @@ import ast
 from collections.abc import Iterator, Mapping, Sequence
 
 from tuisim.engine.protocol import FrameState, Inspected, Variable
-from tuisim.programs.robot.source import parsed
+from tuisim.programs.robot.source import parse
 
 MODULE = "<module>"
 """The function of a frame that is the program itself."""
@@ -28,7 +28,7 @@ def map_line_values(text: str, inspected: Inspected) -> dict[int, tuple[Variable
         text: The program that runs.
         inspected: Where it is paused. Of the selected function; those of the program itself stand beside its lines.
     """
-    tree = parsed(text)
+    tree = parse(text)
     frame = inspected.stack[inspected.frame] if inspected.frame < len(inspected.stack) else None
     if tree is None:
         return {}

@@ -19,7 +19,7 @@ from tuisim.base.errors import closest, did_you_mean
 from tuisim.base.source import PRELUDE_TEXTS, source_lines
 from tuisim.base.syntax_tree import parse_module
 from tuisim.programs.program_file import parse_unfinished
-from tuisim.programs.robot.course import global_names
+from tuisim.programs.robot.course import list_global_names
 
 MAX_MENDED = 3
 """Lines that are left out if they are not Python yet."""
@@ -174,7 +174,7 @@ def count_column(line: str, byte: int | None) -> int:
 
 @cache
 def _list_prelude_names(prelude: str) -> frozenset[str]:
-    return frozenset(global_names(PRELUDE_TEXTS[prelude])[1])
+    return frozenset(list_global_names(PRELUDE_TEXTS[prelude])[1])
 
 
 @cache

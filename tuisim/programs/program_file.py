@@ -26,8 +26,8 @@ from tuisim.base.source import (
 )
 from tuisim.base.syntax_tree import parse_module
 from tuisim.engine.files import close_beside, read_bytes
-from tuisim.programs.robot.course import global_names, uses_course_names
-from tuisim.programs.robot.source import library_of, read_modules
+from tuisim.programs.robot.course import has_course_names, list_global_names
+from tuisim.programs.robot.source import find_library, read_modules
 from tuisim.settings.shared_options import parse_words
 
 MAX_PROGRAM_BYTES = 4 << 20
@@ -216,17 +216,17 @@ def choose_prelude(text: str, path: str = "") -> str:
     if has_library_import(text):
         return "none"
     try:
-        used, defined = global_names(text)
+        used, defined = list_global_names(text)
     # Errors of the program are reported when it runs; here a search must do.
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         return "preloaded"
-    _, ready = global_names(PRELUDE_TEXTS["preloaded"])
+    _, ready = list_global_names(PRELUDE_TEXTS["preloaded"])
     if not (used - defined) & (ready | _READS_ANY_NAME):
         return "none"
     if "import *" in text:
         # The names may be those of a module of its own, which imports the library.
         modules = read_modules(Program("", text, path=path))
-        if library_of(modules) is not None and not uses_course_names(modules, text):
+        if find_library(modules) is not None and not has_course_names(modules, text):
             return "none"
     return "preloaded"
 

@@ -17,14 +17,14 @@ from tuisim.base.errors import ProfileError, RobotError
 from tuisim.base.source import FOR_SPIKE, Program
 from tuisim.engine.core.profile import PROFILES, PYBRICKS_4, Library, MotorLaw, ProfileSpec
 from tuisim.programs.program_file import ProgramSource
-from tuisim.programs.robot.course import uses_course_names
+from tuisim.programs.robot.course import has_course_names
 from tuisim.programs.robot.pybricks_version import find_version_4_name
 from tuisim.programs.robot.source import (
     Module,
     find_hub,
+    find_library,
+    find_missing_module,
     is_for_other_hub,
-    library_of,
-    missing_module,
     read_modules,
 )
 from tuisim.settings.options import Settings, merge_settings
@@ -152,7 +152,7 @@ def read_source_facts(program: Program) -> SourceFacts:
         if is_for_other_hub(modules):
             return replace(facts, unread=f"it is {FOR_SPIKE}", for_other_hub=True)
         if not modules or library is None:
-            return replace(facts, unread=missing_module(program, modules))
+            return replace(facts, unread=find_missing_module(program, modules))
         # Most programs are the course's, and need no reading of their own.
         return _collect_facts(program, modules, facts)
     except (RecursionError, SyntaxError):
@@ -168,29 +168,29 @@ def read_source_facts(program: Program) -> SourceFacts:
 
 def _collect_facts(program: Program, modules: dict[str, Module], facts: SourceFacts) -> SourceFacts:
     from tuisim.programs.robot.assembly import build_robot, find_shown_ports
-    from tuisim.programs.robot.brick_syntax import refused_lines
+    from tuisim.programs.robot.brick_syntax import find_refused_lines
     from tuisim.programs.robot.library import SENSES_WALLS
-    from tuisim.programs.robot.mentions import mentions_in
-    from tuisim.programs.robot.report import find_usual, hides_parts
+    from tuisim.programs.robot.mentions import read_mentions
+    from tuisim.programs.robot.report import find_usual, has_hidden_parts
 
-    mentions = mentions_in(modules)
+    mentions = read_mentions(modules)
     usual = find_usual(mentions.hub)
     robot = build_robot(mentions, program.name, usual)
     return replace(
         facts,
-        of_course=uses_course_names(modules, program.text),
+        of_course=has_course_names(modules, program.text),
         robot=robot,
-        refused=refused_lines(modules.values()) if facts.library is Library.PYBRICKS else (),
-        unread=missing_module(program, modules),
+        refused=find_refused_lines(modules.values()) if facts.library is Library.PYBRICKS else (),
+        unread=find_missing_module(program, modules),
         shown_ports=find_shown_ports(mentions, robot.choice.spec if robot else usual),
         senses_walls=any(device.kind in SENSES_WALLS for device in mentions.devices),
-        hides_parts=hides_parts(mentions),
+        hides_parts=has_hidden_parts(mentions),
     )
 
 
 def _find_library(program: Program, modules: dict[str, Module]) -> Library | None:
     """Return the library for a brick that a program uses, by its imports, else by its first line; None for none."""
-    library = library_of(modules)
+    library = find_library(modules)
     return Library.PYBRICKS if library is None and program.text.startswith(SHEBANG) else library
 
 
@@ -305,7 +305,7 @@ def _find_shown(facts: SourceFacts, free: Collection[str]) -> tuple[str, ...] | 
 
 def _check_prelude(program: Program) -> None:
     """Check that a program with a prelude, which uses ev3dev2, does not use Pybricks itself."""
-    if Library.PYBRICKS in program.text and library_of(read_modules(program)) is Library.PYBRICKS:
+    if Library.PYBRICKS in program.text and find_library(read_modules(program)) is Library.PYBRICKS:
         raise ProfileError(
             f"{program.name} uses {Library.PYBRICKS}, and its predefined names are of {Library.EV3DEV2}",
             "use %%sim_magic, or --preload none",
@@ -394,9 +394,9 @@ def _describe_decision(
     version = uses if profile == PYBRICKS_4.name else ""
     rules = f"as on a brick{version} (profile {profile})" if profile else ""
     if facts.robot and "robot" in layer:
-        from tuisim.programs.robot.report import in_words
+        from tuisim.programs.robot.report import describe_robot
 
-        runs_on = f"{program.name} runs on a robot built from it: {in_words(facts.robot)}"
+        runs_on = f"{program.name} runs on a robot built from it: {describe_robot(facts.robot)}"
         parts = [runs_on, *facts.robot.doubts, facts.unread]
         options = "-r or --profile" if rules else "-r"
         view_hint = (

@@ -6,12 +6,14 @@ import ast
 
 import pytest
 
-from tuisim.programs.robot.brick_syntax import refused_lines
+from tuisim.programs.robot.brick_syntax import find_refused_lines
 from tuisim.programs.robot.source import Module
 
 
 def found(text: str) -> list[tuple[int, str]]:
-    return [(one.line, one.what) for one in refused_lines([Module("", "p.py", ast.parse(text))])]
+    return [
+        (one.line, one.what) for one in find_refused_lines([Module("", "p.py", ast.parse(text))])
+    ]
 
 
 @pytest.mark.parametrize(
@@ -58,7 +60,7 @@ def test_the_lines_are_told_in_order_with_their_file() -> None:
         Module("", "p.py", ast.parse("x = f''\n\ny: int = f''")),
         Module("m", "m.py", ast.parse("f''")),
     ]
-    assert [str(one) for one in refused_lines(modules)] == [
+    assert [str(one) for one in find_refused_lines(modules)] == [
         "p.py:1: the brick's Python would refuse this line (f-string)",
         "p.py:3: the brick's Python would refuse this line (annotation of a variable)",
         "p.py:3: the brick's Python would refuse this line (f-string)",

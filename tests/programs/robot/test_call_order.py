@@ -7,7 +7,7 @@ import ast
 from tests.cases import cases
 from tuisim.base.source import Program
 from tuisim.programs.robot.call_order import CallOrder
-from tuisim.programs.robot.mentions import mentions_in
+from tuisim.programs.robot.mentions import read_mentions
 from tuisim.programs.robot.source import read_modules
 
 ORDERS = {
@@ -28,7 +28,7 @@ ORDERS = {
 @cases("text, order", ORDERS)
 def test_lines_are_in_the_order_of_the_calls(text: str, order: str) -> None:
     program = Program("p.py", "from ev3dev2.motor import *\n" + text)
-    mentions = mentions_in(read_modules(program))
+    mentions = read_mentions(read_modules(program))
     assert mentions.evaluation is not None
     calls = CallOrder(mentions.evaluation.calls)
     orders = {
@@ -43,7 +43,7 @@ def test_lines_are_in_the_order_of_the_calls(text: str, order: str) -> None:
 def test_many_calls_of_calls_take_no_time() -> None:
     lines = "".join(f"def f{n}():\n    f{n + 1}()\n    f{n + 1}()\n" for n in range(60))
     program = Program("p.py", f"from ev3dev2.motor import *\n{lines}def f60():\n    a()\nf0()\n")
-    mentions = mentions_in(read_modules(program))
+    mentions = read_mentions(read_modules(program))
     assert mentions.evaluation is not None
     (scope,) = (one for one in mentions.scopes if getattr(one.node, "name", "") == "f60")
     order = CallOrder(mentions.evaluation.calls).find_order(1, scope)

@@ -18,29 +18,29 @@ from tuisim.engine.core.spec import (
 )
 from tuisim.programs.robot.end_stops import Mechanics
 from tuisim.programs.robot.library import PAIRS, DeviceKind
-from tuisim.programs.robot.mechanics import mechanics_in
+from tuisim.programs.robot.mechanics import read_mechanics
 from tuisim.programs.robot.mentions import Mention, Mentions, Pair, Where
 from tuisim.programs.robot.places import (
     KINDS,
     NewSensors,
-    fields_of,
+    add_sides,
+    build_fields,
     find_path,
-    mounted,
+    mount,
     name_sensor,
     on_port,
-    places_for,
+    place_sensors,
     say_other_sides,
-    with_sides,
 )
 from tuisim.programs.robot.wheels import (
     Size,
     WheelMotors,
-    sizes_in,
-    wheels_of,
-    with_others,
-    with_tools,
+    add_others,
+    add_tools,
+    find_sizes,
+    find_wheels,
 )
-from tuisim.programs.robot.words import side_of
+from tuisim.programs.robot.words import find_side
 from tuisim.settings.robots import RobotChoice
 
 MOTOR_KINDS_SHOWN = {"large": DeviceKind.LARGE, "medium": DeviceKind.MEDIUM} | dict.fromkeys(
@@ -93,18 +93,18 @@ def build_robot(mentions: Mentions, name: str, usual: RobotSpec) -> BuiltRobot |
     Raises:
         RobotError: what the program says is impossible, such as a wheel of 0 mm.
     """
-    builder = _Builder(mentions, mechanics_in(mentions), usual)
+    builder = _Builder(mentions, read_mechanics(mentions), usual)
     if usual.hub:
         builder.parts.append(RobotPart(usual.hub, "hub"))
     motors = builder.motors()
     # A wrong size is told as such, not as the wrong place of a sensor beside the wheels.
     replace(usual, **motors)
-    changes = builder.with_presses({**motors, **builder.sensors(motors)})
-    changes |= builder.said_sizes(motors)
+    changes = builder.add_presses({**motors, **builder.sensors(motors)})
+    changes |= builder.find_sizes(motors)
     if not usual.hub and all(getattr(usual, key) == value for key, value in changes.items()):
         return None
-    shown = "".join(letter if letter.isprintable() else "?" for letter in name)[:_MAX_NAME]
-    spec = replace(usual, name=f"Robot of {shown}", **changes)
+    readable = "".join(letter if letter.isprintable() else "?" for letter in name)[:_MAX_NAME]
+    spec = replace(usual, name=f"Robot of {readable}", **changes)
     own_places = {sensor.name for sensor in spec.color_sensors} > {
         sensor.name for sensor in usual.color_sensors
     }
@@ -117,21 +117,21 @@ def build_robot(mentions: Mentions, name: str, usual: RobotSpec) -> BuiltRobot |
 def find_shown_ports(mentions: Mentions, robot: RobotSpec) -> tuple[str, ...]:
     """Return the ports of the parts that a program shows on its robot, also of those that it takes on any port."""
     pairs = [port for pair in mentions.pairs for port in (pair.left, pair.right)]
-    shown = {one.port for one in mentions.devices} | {*pairs}
-    taken_anywhere = {one.kind for one in mentions.devices if one.is_any}
+    ports = {device.port for device in mentions.devices} | {*pairs}
+    taken_anywhere = {device.kind for device in mentions.devices if device.is_any}
     kinds = {motor.port: MOTOR_KINDS_SHOWN[motor.kind] for motor in robot.motors}
     kinds |= {sensor.port: KINDS[type(sensor)] for sensor in robot.sensors}
     return tuple(
         port
         for port in dict.fromkeys((*robot.input_ports, *robot.output_ports))
-        if port in shown or kinds.get(port) in taken_anywhere
+        if port in ports or kinds.get(port) in taken_anywhere
     )
 
 
 def _on_ports(robot: RobotSpec) -> dict[str, object]:
     """Return the kind of the part on each port."""
     return {motor.port: motor.kind for motor in robot.motors} | {
-        one.port: type(one) for one in robot.sensors
+        sensor.port: type(sensor) for sensor in robot.sensors
     }
 
 
@@ -147,25 +147,27 @@ class _Builder:
 
     def motors(self) -> dict[str, Any]:
         """Return the fields of the robot that are about motors and wheels."""
-        motors = (one for one in self.mentions.devices if one.kind.is_motor)
-        kinds = with_tools(self._kinds([*self._of_pairs(), *motors]), self.mentions)
+        motors = (device for device in self.mentions.devices if device.kind.is_motor)
+        kinds = add_tools(self._find_kinds([*self._list_pairs(), *motors]), self.mentions)
         where = {
-            one.port: one.where for one in (*self.mentions.devices, *self._of_pairs()) if one.port
+            device.port: device.where
+            for device in (*self.mentions.devices, *self._list_pairs())
+            if device.port
         }
-        wheels = wheels_of(self.mentions, kinds, self.usual, self.mechanics.driven_to_stops)
+        wheels = find_wheels(self.mentions, kinds, self.usual, self.mechanics.driven_to_stops)
         left, right = (
             self._motor_kind(kinds.get(port, DeviceKind.LARGE))
             for port in (wheels.left, wheels.right)
         )
         changes: dict[str, Any] = {"left_port": wheels.left, "right_port": wheels.right}
         changes |= {"left_motor": left, "right_motor": right}
-        changes |= self._sizes(wheels.pair)
+        changes |= self._read_sizes(wheels.pair)
         further = [port for port in sorted(kinds) if port not in (wheels.left, wheels.right)]
-        further_kinds = with_others({port: kinds[port] for port in further}, self.mentions)
-        self._free_motors(further_kinds, (wheels.left, wheels.right))
+        further_kinds = add_others({port: kinds[port] for port in further}, self.mentions)
+        self._add_motors(further_kinds, (wheels.left, wheels.right))
         self._tell_wheels(wheels, changes)
-        changes |= self._reversed(wheels) | self._geared(wheels)
-        extra = [self._further(port, kind) for port, kind in further_kinds.items()]
+        changes |= self._find_reversed(wheels) | self._find_gears(wheels)
+        extra = [self._build_motor(port, kind) for port, kind in further_kinds.items()]
         changes["extra_motors"] = tuple(extra)
         for motor in extra:
             ends = [f"{end:g}°" for end in (motor.low_deg, motor.high_deg) if end is not None]
@@ -174,27 +176,27 @@ class _Builder:
                 if ends
                 else ""
             )
-            said = where.get(motor.port) or self._first(further_kinds[motor.port])
+            place = where.get(motor.port) or self._find(further_kinds[motor.port])
             self.parts.append(
                 RobotPart(
-                    f"{motor.kind} motor on {motor.port}{stops}", f"motors.{motor.port}", said
+                    f"{motor.kind} motor on {motor.port}{stops}", f"motors.{motor.port}", place
                 )
             )
         if wheels.doubt:
             self.doubts.append(wheels.doubt)
         return changes
 
-    def _further(self, port: str, kind: DeviceKind) -> MotorSpec:
+    def _build_motor(self, port: str, kind: DeviceKind) -> MotorSpec:
         """Return a motor that drives no wheel, with the end stops that the program relies on."""
-        known = any(one.port == port for one in self.mentions.devices)
-        low_deg, high_deg = self.mechanics.range_of(port if known else "")
+        known = any(device.port == port for device in self.mentions.devices)
+        low_deg, high_deg = self.mechanics.find_range(port if known else "")
         return MotorSpec(port, self._motor_kind(kind), low_deg, high_deg)
 
     def _motor_kind(self, kind: DeviceKind) -> str:
         usual = "medium" if kind is DeviceKind.MEDIUM else "large"
         return HUBS[self.usual.hub].motor if self.usual.hub else usual
 
-    def _reversed(self, wheels: WheelMotors) -> dict[str, bool]:
+    def _find_reversed(self, wheels: WheelMotors) -> dict[str, bool]:
         """Return which wheels the program says to be mounted the other way round."""
         turned = self.mechanics.reversed
         sides = [
@@ -210,10 +212,12 @@ class _Builder:
             )
         return {f"{side}_reversed": True for side in sides}
 
-    def _geared(self, wheels: WheelMotors) -> dict[str, float]:
+    def _find_gears(self, wheels: WheelMotors) -> dict[str, float]:
         """Return the gears between the wheels and their motors; a robot has the same on both sides."""
         motors = [
-            motor for port in (wheels.left, wheels.right) if (motor := self.mentions.motor_on(port))
+            motor
+            for port in (wheels.left, wheels.right)
+            if (motor := self.mentions.find_motor(port))
         ]
         ratios = {motor.gear_ratio for motor in motors}
         if len(motors) < 2 or ratios == {self.usual.gear_ratio}:
@@ -229,45 +233,49 @@ class _Builder:
         )
         return {"gear_ratio": ratio}
 
-    def with_presses(self, changes: dict[str, Any]) -> dict[str, Any]:
+    def add_presses(self, changes: dict[str, Any]) -> dict[str, Any]:
         """Return the changes with the touch sensors that a motor presses at its end."""
         motors = {motor.port: motor for motor in changes["extra_motors"]}
         touches = list(changes["touch_sensors"])
         for press in self.mechanics.presses:
             motor = motors.get(press.motor or next(iter(motors), ""))
-            at = next((at for at, one in enumerate(touches) if press.touch in ("", one.port)), None)
+            i = next(
+                (i for i, touch in enumerate(touches) if press.touch in ("", touch.port)), None
+            )
             end = "high" if press.stop.forwards else "low"
             if (
                 motor is None
                 or getattr(motor, f"{end}_deg") is None
-                or at is None
-                or touches[at].pressed_by
+                or i is None
+                or touches[i].pressed_by
             ):
                 continue
-            touches[at] = replace(touches[at], pressed_by=motor.port, pressed_at=end)
-            what = f"{DeviceKind.TOUCH} on {touches[at].port} pressed by {motor.port}"
-            path = find_path(touches[at])
+            touches[i] = replace(touches[i], pressed_by=motor.port, pressed_at=end)
+            what = f"{DeviceKind.TOUCH} on {touches[i].port} pressed by {motor.port}"
+            path = find_path(touches[i])
             self.parts[:] = [part for part in self.parts if part.path != path]
             self.parts.append(RobotPart(what, path, press.stop.where))
         return {**changes, "touch_sensors": tuple(touches)}
 
-    def _of_pairs(self) -> list[Mention]:
+    def _list_pairs(self) -> list[Mention]:
         return [
             Mention(pair.kind, port, pair.where)
             for pair in self.mentions.pairs
             for port in (pair.left, pair.right)
         ]
 
-    def _first(self, kind: DeviceKind) -> Where | None:
-        return next((one.where for one in self.mentions.devices if one.kind is kind), None)
+    def _find(self, kind: DeviceKind) -> Where | None:
+        return next((device.where for device in self.mentions.devices if device.kind is kind), None)
 
-    def _free_motors(self, kinds: dict[str, DeviceKind], wheels: tuple[str, str]) -> None:
+    def _add_motors(self, kinds: dict[str, DeviceKind], wheels: tuple[str, str]) -> None:
         """Add the motors that the program makes without saying the port, on free ports."""
         unknown = sum(
-            one.kind is DeviceKind.MEDIUM and not one.port and not one.is_any
-            for one in self.mentions.devices
+            device.kind is DeviceKind.MEDIUM and not device.port and not device.is_any
+            for device in self.mentions.devices
         )
-        has_any = any(one.kind is DeviceKind.MEDIUM and one.is_any for one in self.mentions.devices)
+        has_any = any(
+            device.kind is DeviceKind.MEDIUM and device.is_any for device in self.mentions.devices
+        )
         medium = DeviceKind.MEDIUM in kinds.values()
         missing = unknown + (1 if has_any and not medium and not unknown else 0)
         for port in ("outA", "outD", "outB", "outC"):
@@ -275,38 +283,38 @@ class _Builder:
                 kinds[port] = DeviceKind.MEDIUM
                 missing -= 1
 
-    def _sizes(self, pair: Pair | None) -> dict[str, float]:
+    def _read_sizes(self, pair: Pair | None) -> dict[str, float]:
         """Return what the class of the wheels says about them, if it differs from those of the usual robot."""
-        found: dict[str, float] = {}
+        sizes: dict[str, float] = {}
         if pair and pair.wheel_mm and pair.wheel_mm[0] != self.usual.wheel_diameter_mm:
-            found["wheel_diameter_mm"], width_mm = pair.wheel_mm
-            found["wheel_width_mm"] = self.usual.wheel_width_mm if width_mm is None else width_mm
+            sizes["wheel_diameter_mm"], width_mm = pair.wheel_mm
+            sizes["wheel_width_mm"] = self.usual.wheel_width_mm if width_mm is None else width_mm
         if pair and pair.spacing_mm is not None and pair.spacing_mm != self.usual.wheel_spacing_mm:
-            found["wheel_spacing_mm"] = pair.spacing_mm
-        return found
+            sizes["wheel_spacing_mm"] = pair.spacing_mm
+        return sizes
 
-    def said_sizes(self, motors: Mapping[str, Any]) -> dict[str, float]:
+    def find_sizes(self, motors: Mapping[str, Any]) -> dict[str, float]:
         """Return what constants of the program say about the wheels, where their class says nothing."""
-        said = self._said_sizes(motors)
+        sizes = self._find_sizes(motors)
         self._tell_sizes(
-            {key: size.mm for key, size in said.items()},
-            {key: size.where for key, size in said.items()},
+            {key: size.mm for key, size in sizes.items()},
+            {key: size.where for key, size in sizes.items()},
         )
-        return {key: size.mm for key, size in said.items()}
+        return {key: size.mm for key, size in sizes.items()}
 
-    def _said_sizes(self, motors: Mapping[str, Any]) -> dict[str, Size]:
-        said = sizes_in(self.mentions)
-        sizes = {"wheel_diameter_mm": said.wheel, "wheel_spacing_mm": said.spacing}
+    def _find_sizes(self, motors: Mapping[str, Any]) -> dict[str, Size]:
+        named = find_sizes(self.mentions)
+        sizes = {"wheel_diameter_mm": named.wheel, "wheel_spacing_mm": named.spacing}
         return {
             key: size
             for key, size in sizes.items()
             if size
             and motors["left_port"] != NO_PORT
-            and key not in {*motors, *self._exact()}
+            and key not in {*motors, *self._list_exact()}
             and size.mm != getattr(self.usual, key)
         }
 
-    def _exact(self) -> Iterator[str]:
+    def _list_exact(self) -> Iterator[str]:
         """Yield the sizes that a `DriveBase` says, also if they are as usual."""
         for pair in self.mentions.pairs:
             if PAIRS[pair.class_name].takes_motors:
@@ -334,22 +342,22 @@ class _Builder:
         self.parts.append(RobotPart(what, "left_port", wheels.where, is_told))
         self._tell_sizes(changes, dict.fromkeys(changes, wheels.where))
 
-    def _kinds(self, mentions: Iterable[Mention]) -> dict[str, DeviceKind]:
+    def _find_kinds(self, mentions: Iterable[Mention]) -> dict[str, DeviceKind]:
         """Return the kind of device on each port that is named; of several the one that is named most often."""
         votes: dict[str, Counter[DeviceKind]] = {}
-        for one in mentions:
-            if one.port:
-                votes.setdefault(one.port, Counter())[one.kind] += (
-                    0 if one.kind in (DeviceKind.MOTOR, DeviceKind.SENSOR) else 1
+        for mention in mentions:
+            if mention.port:
+                votes.setdefault(mention.port, Counter())[mention.kind] += (
+                    0 if mention.kind in (DeviceKind.MOTOR, DeviceKind.SENSOR) else 1
                 )
-        found = {}
+        kinds = {}
         for port, count in votes.items():
             (kind, _), *others = count.most_common()
-            found[port] = kind
-            said = [other for other, number in others if number]
-            if said:
-                self.doubts.append(f"{port} is taken for a {kind}, not a {said[0]}")
-        return found
+            kinds[port] = kind
+            rivals = [other for other, number in others if number]
+            if rivals:
+                self.doubts.append(f"{port} is taken for a {kind}, not a {rivals[0]}")
+        return kinds
 
     # Sensors
 
@@ -359,56 +367,60 @@ class _Builder:
         Args:
             motors: The fields that are about motors and wheels.
         """
-        mentions = with_sides([one for one in self.mentions.devices if not one.kind.is_motor])
-        kinds = self._kinds(mentions)
+        mentions = add_sides(
+            [device for device in self.mentions.devices if not device.kind.is_motor]
+        )
+        kinds = self._find_kinds(mentions)
         usual = {sensor.port: sensor for sensor in self.usual.sensors}
         by_port = {
-            port: next(one for one in mentions if one.port == port and one.kind is kinds[port])
+            port: next(
+                device for device in mentions if device.port == port and device.kind is kinds[port]
+            )
             for port in kinds
         }
         by_side = say_other_sides(by_port, usual)
         placed = {
-            port: mounted(sensor, by_port[port])
+            port: mount(sensor, by_port[port])
             for port, sensor in usual.items()
             if _is_there(sensor, by_port.get(port), by_side=by_side)
         }
         waiting = {
-            port: one
-            for port, one in by_port.items()
-            if port not in placed and one.kind is not DeviceKind.SENSOR
+            port: device
+            for port, device in by_port.items()
+            if port not in placed and device.kind is not DeviceKind.SENSOR
         }
-        wanted = [
+        missing = [
             *waiting.items(),
-            *self._without_port(mentions, kinds, placed, {*placed, *waiting}),
+            *self._find_portless(mentions, kinds, placed, {*placed, *waiting}),
         ]
         if by_side:
-            wanted.sort(key=lambda one: not side_of(one[1].names))
+            missing.sort(key=lambda device: not find_side(device[1].names))
         left = [sensor for sensor in self.usual.sensors if sensor.port not in placed]
         new = NewSensors()
-        for port, mention in wanted:
+        for port, mention in missing:
             alike = [sensor for sensor in left if KINDS[type(sensor)] is mention.kind]
-            if by_side and mention.kind is DeviceKind.COLOR and (side := side_of(mention.names)):
+            if by_side and mention.kind is DeviceKind.COLOR and (side := find_side(mention.names)):
                 alike = [sensor for sensor in alike if sensor.name == side]
             if alike:
                 chosen = new.likeliest(alike, mention)
                 left.remove(chosen)
-                placed[port] = mounted(on_port(chosen, port), mention)
+                placed[port] = mount(on_port(chosen, port), mention)
             else:
                 new.add(port, mention)
-        placed |= places_for(new, placed, self._body(motors), self.doubts)
+        placed |= place_sensors(new, placed, self._build_body(motors), self.doubts)
         self._stay(left, placed)
         self._tell_sensors(placed, by_port, mentions)
-        return fields_of(placed, self.usual)
+        return build_fields(placed, self.usual)
 
-    def _body(self, motors: Mapping[str, Any]) -> Body:
-        said = {**{key: size.mm for key, size in self._said_sizes(motors).items()}, **motors}
+    def _build_body(self, motors: Mapping[str, Any]) -> Body:
+        values = {**{key: size.mm for key, size in self._find_sizes(motors).items()}, **motors}
         spacing_mm, width_mm = (
-            said.get(key, getattr(self.usual, key))
+            values.get(key, getattr(self.usual, key))
             for key in ("wheel_spacing_mm", "wheel_width_mm")
         )
         return Body((spacing_mm + width_mm) / 2, self.usual.back_mm)
 
-    def _without_port(
+    def _find_portless(
         self,
         mentions: list[Mention],
         kinds: Mapping[str, DeviceKind],
@@ -416,26 +428,28 @@ class _Builder:
         taken: set[str],
     ) -> list[tuple[str, Mention]]:
         """Return the sensors that a program makes without saying the port, with ports for them."""
-        found: list[tuple[str, Mention]] = []
+        ported: list[tuple[str, Mention]] = []
         for kind in dict.fromkeys(
-            one.kind for one in mentions if not one.port and one.kind is not DeviceKind.SENSOR
+            device.kind
+            for device in mentions
+            if not device.port and device.kind is not DeviceKind.SENSOR
         ):
-            of_kind = [one for one in mentions if one.kind is kind and not one.port]
-            unknown = [one for one in of_kind if not one.is_any]
+            of_kind = [device for device in mentions if device.kind is kind and not device.port]
+            unknown = [device for device in of_kind if not device.is_any]
             needed = unknown or ([] if kind in kinds.values() else of_kind[:1])
             usual = [
                 sensor.port
                 for sensor in self.usual.sensors
                 if KINDS[type(sensor)] is kind and sensor not in placed.values()
             ]
-            for one in needed:
+            for device in needed:
                 ports = [*usual, _USUAL_PORTS[kind], *reversed(self.usual.input_ports)]
                 if port := next((port for port in ports if port not in taken), ""):
                     taken.add(port)
-                    found.append((port, one))
+                    ported.append((port, device))
                 else:
                     self.doubts.append(f"no port is free for the {kind}")
-        return found
+        return ported
 
     def _stay(self, left: list[SensorSpec], placed: dict[str, SensorSpec]) -> None:
         """Keep the usual sensors that the program does not name where a port is free for them."""
@@ -456,7 +470,7 @@ class _Builder:
         mentions: Iterable[Mention],
     ) -> None:
         usual = {sensor.port: sensor for sensor in self.usual.sensors}
-        first = {one.kind: one.where for one in reversed([*mentions])}
+        first = {mention.kind: mention.where for mention in reversed([*mentions])}
         for port, sensor in sorted(placed.items()):
             kind = KINDS[type(sensor)]
             where = (
@@ -487,4 +501,4 @@ def _is_there(sensor: SensorSpec, mention: Mention | None, *, by_side: bool) -> 
     if mention is None or mention.kind not in (KINDS[type(sensor)], DeviceKind.SENSOR):
         return False
     is_moved = by_side and mention.kind is DeviceKind.COLOR
-    return not is_moved or side_of(mention.names) == sensor.name
+    return not is_moved or find_side(mention.names) == sensor.name

@@ -22,22 +22,22 @@ class RefusedLine:
         return f"{self.file}:{self.line}: the brick's Python would refuse this line ({self.what})"
 
 
-def refused_lines(modules: Iterable[Module]) -> tuple[RefusedLine, ...]:
+def find_refused_lines(modules: Iterable[Module]) -> tuple[RefusedLine, ...]:
     """Return the lines of a program that the brick refuses, in the order of its files and their lines."""
     return tuple(
         RefusedLine(module.file, line, what)
         for module in modules
-        for line, what in sorted({*_refused_in(module.tree)})
+        for line, what in sorted({*_find_refused(module.tree)})
     )
 
 
-def _refused_in(tree: ast.Module) -> Iterator[tuple[int, str]]:
+def _find_refused(tree: ast.Module) -> Iterator[tuple[int, str]]:
     for node in ast.walk(tree):
-        if what := _refused(node):
+        if what := _name_refused(node):
             yield getattr(node, "lineno", 0), what
 
 
-def _refused(node: ast.AST) -> str:
+def _name_refused(node: ast.AST) -> str:
     """Return what a node is that the brick refuses; empty if it takes it."""
     match node:
         case ast.JoinedStr():
@@ -61,13 +61,13 @@ def _refused(node: ast.AST) -> str:
             | ast.Tuple(ctx=ast.Load(), elts=parts)
             | ast.Set(elts=parts)
         ):
-            return "* in a list, tuple or set" if _stars(parts) else ""
+            return "* in a list, tuple or set" if _has_stars(parts) else ""
         case ast.Dict(keys=keys):
             return "** in a dictionary" if None in keys else ""
         case ast.Call(args=given):
-            return "something after * in a call" if _stars(given[:-1]) else ""
+            return "something after * in a call" if _has_stars(given[:-1]) else ""
     return ""
 
 
-def _stars(parts: Iterable[ast.expr]) -> bool:
+def _has_stars(parts: Iterable[ast.expr]) -> bool:
     return any(isinstance(part, ast.Starred) for part in parts)

@@ -18,19 +18,19 @@ class Call:
     """Whether the first parameter, such as `self`, is not among the arguments."""
 
 
-def argument_node(call: Call, name: str, at: int | None) -> ast.expr | None:
+def find_argument_node(call: Call, name: str, position: int | None) -> ast.expr | None:
     """Return the expression that a call gives for a parameter; None if it gives none by itself."""
     for keyword in call.node.keywords:
         if keyword.arg == name:
             return keyword.value
     args = call.node.args
     if (
-        at is None
-        or at < 0
-        or any(isinstance(argument, ast.Starred) for argument in args[: at + 1])
+        position is None
+        or position < 0
+        or any(isinstance(argument, ast.Starred) for argument in args[: position + 1])
     ):
         return None
-    return args[at] if at < len(args) else None
+    return args[position] if position < len(args) else None
 
 
 def find_default(function: Function, name: str) -> ast.expr | None:

@@ -14,7 +14,7 @@ _ATTRIBUTES = frozenset({"reflected_light_intensity_pc", "full_reflected_light_i
 """What the course adds to colour sensors."""
 
 
-def uses_course_names(modules: Mapping[str, Module], text: str) -> bool:
+def has_course_names(modules: Mapping[str, Module], text: str) -> bool:
     """Return whether a program uses the course's own names.
 
     Args:
@@ -26,18 +26,18 @@ def uses_course_names(modules: Mapping[str, Module], text: str) -> bool:
     if any(
         name == COURSE_MODULE or (name in _ATTRIBUTES - defined)
         for tree in trees
-        for name in _used(tree)
+        for name in _list_used(tree)
     ):
         return True
-    _, ready = global_names(PRELUDE_TEXTS["preloaded"])
-    used, known = global_names(text)
+    _, ready = list_global_names(PRELUDE_TEXTS["preloaded"])
+    used, known = list_global_names(text)
     if any(_is_star(node) for node in ast.walk(modules[""].tree)):
         # What a library or a module of the program may have defined is not the course's.
         ready = {name for name in ready - defined if name[0].islower()}
     return bool((used - known) & ready)
 
 
-def _used(tree: ast.Module) -> Iterator[str]:
+def _list_used(tree: ast.Module) -> Iterator[str]:
     """Yield the attributes and the modules that a module uses."""
     for node in ast.walk(tree):
         match node:
@@ -66,7 +66,7 @@ def _is_star(node: ast.AST) -> bool:
     return isinstance(node, ast.ImportFrom) and any(alias.name == "*" for alias in node.names)
 
 
-def global_names(text: str) -> tuple[set[str], set[str]]:
+def list_global_names(text: str) -> tuple[set[str], set[str]]:
     """Return the global names that a text uses, and those that it defines."""
     used: set[str] = set()
     defined: set[str] = set()

@@ -13,7 +13,7 @@ from tuisim.programs.robot.scopes import Scope
 _USUAL_REACH_DEG = 180.0
 _MARGIN_DEG = 45.0
 """How far the end stop, at which a motor finds its place, is from where it is at the start."""
-_MOST_REACH_DEG = 20_000.0
+_MAX_REACH_DEG = 20_000.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,26 +69,26 @@ class Mechanics:
     closed: set[str] = field(default_factory=set)
     """The motors that the program drives against an end stop in both directions."""
 
-    def stop_of(self, port: str) -> EndStop | None:
+    def find_stop(self, port: str) -> EndStop | None:
         """Return the end stop of a motor; None if it has none."""
         pressed = (press.stop for press in self.presses if press.motor == port)
         return self.stops.get(port) or next(pressed, None)
 
-    def range_of(self, port: str) -> tuple[float | None, float | None]:
+    def find_range(self, port: str) -> tuple[float | None, float | None]:
         """Return the end stops of a motor, from its position at the start; None for a side without one."""
-        stop = self.stop_of(port)
+        stop = self.find_stop(port)
         if stop is None:
             return None, None
         reach = (
-            max(_USUAL_REACH_DEG, min(self.reach_deg.get(port, 0.0), _MOST_REACH_DEG)) + _MARGIN_DEG
+            max(_USUAL_REACH_DEG, min(self.reach_deg.get(port, 0.0), _MAX_REACH_DEG)) + _MARGIN_DEG
         )
         if stop.forwards is None:
             return -reach, reach
         far = None if port in self.endless - self.closed else reach
         back_deg, ahead_deg = self.targets_deg.get(port, (0.0, 0.0))
         if stop.forwards:
-            return (-far if far else None), min(ahead_deg, _MOST_REACH_DEG) + _MARGIN_DEG
-        return max(back_deg, -_MOST_REACH_DEG) - _MARGIN_DEG, far
+            return (-far if far else None), min(ahead_deg, _MAX_REACH_DEG) + _MARGIN_DEG
+        return max(back_deg, -_MAX_REACH_DEG) - _MARGIN_DEG, far
 
     def note_turn(self, port: str, turn: Target) -> None:
         """Note a turn of a motor from where it stands."""
@@ -103,13 +103,15 @@ class Mechanics:
                 count from the end stop.
         """
         far = max(
-            (abs(one.deg - place) for one in targets for place in places or (0.0,)), default=0
+            (abs(target.deg - place) for target in targets for place in places or (0.0,)), default=0
         )
         self.reach_deg[port] = max(self.reach_deg.get(port, 0.0), far)
-        stop = self.stop_of(port)
-        first = [one.deg for one in targets if not places or self._is_before(one, stop)]
+        stop = self.find_stop(port)
+        first = [target.deg for target in targets if not places or self._is_before(target, stop)]
         # Which way they lead is not known.
-        turned_deg = sum(one.deg for one in self.turns.get(port, ()) if self._is_before(one, stop))
+        turned_deg = sum(
+            target.deg for target in self.turns.get(port, ()) if self._is_before(target, stop)
+        )
         self.targets_deg[port] = min((0.0, *first)) - turned_deg, max((0.0, *first)) + turned_deg
 
     def _is_before(self, target: Target, stop: EndStop | None) -> bool:
@@ -117,7 +119,7 @@ class Mechanics:
         if stop is None:
             return False
         before, driven = (
-            self.order.find_order(one.where.line, one.scope) for one in (target, stop)
+            self.order.find_order(event.where.line, event.scope) for event in (target, stop)
         )
         return before < driven
 

@@ -9,7 +9,7 @@ from dataclasses import field, replace
 from tuisim.base.data_class import dataclass
 from tuisim.base.source import LIBRARIES
 from tuisim.programs.robot import library
-from tuisim.programs.robot.calls import Call, argument_node, find_default
+from tuisim.programs.robot.calls import Call, find_argument_node, find_default
 from tuisim.programs.robot.scopes import (
     FUNCTIONS,
     Bound,
@@ -63,25 +63,25 @@ class Evaluation:
             return ()
         self._open.add(key)
         try:
-            found = _distinct(self._of(node, scope))
+            values = _drop_repeated(self._of(node, scope))
         finally:
             self._open.discard(key)
         if not self._open:
             # Inside another evaluation it may lack what that one is about to find.
-            self._known[key] = found
-        return found
+            self._known[key] = values
+        return values
 
     def _of(self, node: ast.expr, scope: Scope) -> Iterator[Value]:
         match node:
             case ast.Constant(value=str() | int() | float() | None as constant):
                 yield constant
             case ast.Name(id=name):
-                yield from self._named(name, scope)
+                yield from self._read_name(name, scope)
             case ast.Attribute(value=base, attr=name):
                 for value in self.values(base, scope):
                     yield from self.attribute(value, name)
             case ast.Subscript(value=base, slice=index):
-                yield from self._item(base, index, scope)
+                yield from self._read_item(base, index, scope)
             case ast.List() | ast.Tuple() | ast.Set() | ast.Dict():
                 yield SourceCollection(node, scope)
             case ast.IfExp(body=one, orelse=other):
@@ -100,12 +100,12 @@ class Evaluation:
                     if isinstance(value, int | float)
                 )
             case ast.BinOp(left=left, op=sign, right=right):
-                yield from self._computed(left, sign, right, scope)
+                yield from self._compute(left, sign, right, scope)
             case ast.ListComp(elt=item) | ast.SetComp(elt=item) | ast.GeneratorExp(elt=item):
                 # Its items are alike: one stands for all.
                 yield SourceCollection(ast.List([item]), scope)
             case ast.Call():
-                yield from self._called(node, scope)
+                yield from self._call(node, scope)
 
     def within(self, function: Function, call: Call) -> Evaluation:
         """Return the expressions of the same program as they are while one call of a function runs."""
@@ -113,55 +113,55 @@ class Evaluation:
 
     # Names
 
-    def _named(self, name: str, scope: Scope) -> Iterator[Value]:
+    def _read_name(self, name: str, scope: Scope) -> Iterator[Value]:
         bindings = scope.find_bindings(name)
         for binding in bindings:
-            yield from self._bound(binding)
+            yield from self._read_binding(binding)
         if not bindings:
-            yield from self._from_stars(scope.top, name)
+            yield from self._read_stars(scope.top, name)
 
-    def _from_stars(self, scope: Scope, name: str) -> Iterator[Value]:
+    def _read_stars(self, scope: Scope, name: str) -> Iterator[Value]:
         for module in scope.stars:
-            yield from self._in_module(module, name)
+            yield from self._read_imported(module, name)
 
-    def _bound(self, binding: Bound | Defined | Imported | Parameter) -> Iterator[Value]:
+    def _read_binding(self, binding: Bound | Defined | Imported | Parameter) -> Iterator[Value]:
         match binding:
             case Bound():
-                yield from self._in_bound(binding)
+                yield from self._read_bound(binding)
             case Defined(node=node, scope=scope):
                 inner = scope.inner[node]
                 yield (
                     OwnClass(inner) if isinstance(node, ast.ClassDef) else OwnFunction(node, inner)
                 )
             case Imported(module=module, name=name):
-                yield from self._in_module(module, name) if name else self._module(module)
+                yield from self._read_imported(module, name) if name else self._read_module(module)
             case Parameter():
                 for value, _ in self.arguments(binding):
                     yield value
 
-    def _in_bound(self, bound: Bound) -> Iterator[Value]:
+    def _read_bound(self, bound: Bound) -> Iterator[Value]:
         for value in self.values(bound.node, bound.scope):
-            found: list[Value] = [value]
+            values: list[Value] = [value]
             if bound.is_item:
-                found = list(self._items(value))
-            for at in bound.path:
-                found = [inside for one in found for inside in self._at(one, at)]
-            yield from found
+                values = list(self._list_items(value))
+            for index in bound.path:
+                values = [inside for outer in values for inside in self._pick(outer, index)]
+            yield from values
 
-    def _module(self, name: str) -> Iterator[Value]:
+    def _read_module(self, name: str) -> Iterator[Value]:
         if name in self.modules:
             yield SourceModule(name)
         elif name.split(".")[0] in LIBRARIES:
             yield LibraryModule(name)
 
-    def _in_module(self, module: str, name: str) -> Iterator[Value]:
+    def _read_imported(self, module: str, name: str) -> Iterator[Value]:
         key = ("module", module, name)
         if key in self._open:
             return
         self._open.add(key)
         try:
-            for found in self._module(module):
-                yield from self.attribute(found, name)
+            for own in self._read_module(module):
+                yield from self.attribute(own, name)
             if f"{module}.{name}" in self.modules:
                 yield SourceModule(f"{module}.{name}")
             elif not module and name in self.modules:
@@ -182,19 +182,19 @@ class Evaluation:
             case SourceModule(name=module):
                 scope = self.modules[module]
                 if name in scope.names:
-                    yield from self._named(name, scope)
+                    yield from self._read_name(name, scope)
                 elif f"{module}.{name}" in self.modules:
                     yield SourceModule(f"{module}.{name}")
                 else:
-                    yield from self._from_stars(scope, name)
+                    yield from self._read_stars(scope, name)
             case OwnClass(scope=scope):
-                yield from self._of_class(scope, name, is_bound=False)
+                yield from self._read_class(scope, name, is_bound=False)
             case Instance(of=OwnClass(scope=scope), call=call):
-                yield from _made_by(call, self._of_class(scope, name, is_bound=True))
+                yield from _add_call(call, self._read_class(scope, name, is_bound=True))
             case Parent(of=scope):
                 for base in self.bases(scope):
                     if isinstance(base, OwnClass):
-                        yield from self._of_class(base.scope, name, is_bound=True)
+                        yield from self._read_class(base.scope, name, is_bound=True)
             case LibraryClass(name=enumeration) if name in library.MEMBERS.get(enumeration, ()):
                 yield library.MEMBERS[enumeration][name]
             case Instance(of=LibraryClass()) | LibraryClass() if name in library.CONSTANTS:
@@ -203,10 +203,10 @@ class Evaluation:
                 # Of an enumeration: its members are taken to be their values.
                 yield value
 
-    def _of_class(self, scope: Scope, name: str, *, is_bound: bool) -> Iterator[Value]:
+    def _read_class(self, scope: Scope, name: str, *, is_bound: bool) -> Iterator[Value]:
         bindings = [*scope.names.get(name, ()), *scope.attributes.get(name, ())]
         for binding in bindings:
-            for value in self._bound(binding):
+            for value in self._read_binding(binding):
                 match value:
                     case OwnFunction():
                         yield replace(value, is_bound=is_bound)
@@ -215,18 +215,18 @@ class Evaluation:
         if not bindings:
             for base in self.bases(scope):
                 if isinstance(base, OwnClass):
-                    yield from self._of_class(base.scope, name, is_bound=is_bound)
+                    yield from self._read_class(base.scope, name, is_bound=is_bound)
                 elif isinstance(base, LibraryClass):
                     yield from self.attribute(base, name)
 
     def bases(self, scope: Scope) -> list[Value]:
         """Return the classes that a class is based on."""
         assert isinstance(scope.node, ast.ClassDef) and scope.outer is not None
-        found: list[Value] = []
+        bases: list[Value] = []
         for base in scope.node.bases:
             # One that is based on itself ends here.
-            found += [value for value in self.values(base, scope.outer) if value != OwnClass(scope)]
-        return found
+            bases += [value for value in self.values(base, scope.outer) if value != OwnClass(scope)]
+        return bases
 
     def method(self, scope: Scope, name: str) -> OwnFunction | LibraryClass | None:
         """Return the method that a class has or inherits; the class of the library that has it instead."""
@@ -248,14 +248,16 @@ class Evaluation:
 
     # Parts of values
 
-    def _items(self, value: Value) -> Iterator[Value]:
+    def _list_items(self, value: Value) -> Iterator[Value]:
         if isinstance(value, SourceCollection):
             keys = [key for key in value.keys if key is not None]
             for item in keys or value.items:
                 for inside in self.values(item, value.scope):
-                    yield from self._items(inside) if isinstance(item, ast.Starred) else (inside,)
+                    yield from (
+                        self._list_items(inside) if isinstance(item, ast.Starred) else (inside,)
+                    )
 
-    def _at(self, value: Value, index: int) -> Iterator[Value]:
+    def _pick(self, value: Value, index: int) -> Iterator[Value]:
         if isinstance(value, SourceCollection) and not value.keys:
             items = value.items
             if isinstance(value.node, ast.List) and len(items) == 1 and index:
@@ -263,50 +265,54 @@ class Evaluation:
             if -len(items) <= index < len(items):
                 yield from self.values(items[index], value.scope)
 
-    def _item(self, base: ast.expr, index: ast.expr, scope: Scope) -> Iterator[Value]:
-        wanted = self.values(index, scope)
+    def _read_item(self, base: ast.expr, index: ast.expr, scope: Scope) -> Iterator[Value]:
+        keys = self.values(index, scope)
         for value in self.values(base, scope):
             match value:
                 case SourceCollection():
-                    yield from self.looked_up(value, wanted)
+                    yield from self.look_up(value, keys)
                 case OwnClass(scope=inner):
                     # An enumeration by name.
-                    for name in wanted:
+                    for name in keys:
                         if isinstance(name, str):
-                            yield from self._of_class(inner, name, is_bound=False)
+                            yield from self._read_class(inner, name, is_bound=False)
 
-    def looked_up(self, table: SourceCollection, wanted: Sequence[Value]) -> Iterator[Value]:
+    def look_up(self, table: SourceCollection, wanted_keys: Sequence[Value]) -> Iterator[Value]:
         """Yield what is in a table under one of these keys; everything if they are unknown."""
         keys = table.keys
         for key, item in zip(keys or range(len(table.items)), table.items, strict=True):
             of_key = (
                 self.values(key, table.scope)
                 if isinstance(key, ast.expr)
-                else (key, _from_end(key, table))
+                else (key, _count_index(key, table))
             )
-            if not wanted or not of_key or any(one in of_key for one in wanted):
+            if (
+                not wanted_keys
+                or not of_key
+                or any(wanted_key in of_key for wanted_key in wanted_keys)
+            ):
                 yield from self.values(item, table.scope)
 
     # Computed values
 
-    def _computed(
+    def _compute(
         self, left: ast.expr, sign: ast.operator, right: ast.expr, scope: Scope
     ) -> Iterator[Value]:
-        for one in self.values(left, scope):
+        for first in self.values(left, scope):
             for other in self.values(right, scope):
-                match one, other:
+                match first, other:
                     case (str(), str()) if isinstance(sign, ast.Add):
-                        yield one + other
+                        yield first + other
                     case (int() | float(), int() | float()) if type(sign) in OPERATORS and (
                         other or not isinstance(sign, ast.Div)
                     ):
-                        yield OPERATORS[type(sign)](one, other)
+                        yield OPERATORS[type(sign)](first, other)
                     case (str(), str() | int()) if (
-                        isinstance(sign, ast.Mod) and one.count("%") == 1
+                        isinstance(sign, ast.Mod) and first.count("%") == 1
                     ):
-                        yield one.replace("%s", str(other)).replace("%d", str(other))
+                        yield first.replace("%s", str(other)).replace("%d", str(other))
 
-    def _called(self, node: ast.Call, scope: Scope) -> Iterator[Value]:
+    def _call(self, node: ast.Call, scope: Scope) -> Iterator[Value]:
         match node.func:
             case ast.Name(id="super") if scope.owner is not None:
                 yield Parent(scope.owner)
@@ -315,24 +321,24 @@ class Evaluation:
                 yield from self.values(node.args[0], scope)
                 return
             case ast.Attribute(value=base, attr="get") if node.args:
-                yield from self._of_get(base, node, scope)
+                yield from self._call_get(base, node, scope)
         for value in self.values(node.func, scope):
             match value:
                 case LibraryClass() | OwnClass():
                     yield Instance(value, node)
                 case OwnFunction():
-                    yield from _made_by(node, self.returned(value))
+                    yield from _add_call(node, self.find_returned(value))
 
-    def _of_get(self, base: ast.expr, node: ast.Call, scope: Scope) -> Iterator[Value]:
+    def _call_get(self, base: ast.expr, node: ast.Call, scope: Scope) -> Iterator[Value]:
         """Yield what `get` of a dict returns, or of `os.environ`."""
         owners = self.values(base, scope)
         tables = [value for value in owners if isinstance(value, SourceCollection)]
         for table in tables:
-            yield from self.looked_up(table, self.values(node.args[0], scope))
+            yield from self.look_up(table, self.values(node.args[0], scope))
         if len(node.args) > 1 and (tables or not owners):
             yield from self.values(node.args[1], scope)
 
-    def returned(self, function: OwnFunction) -> Iterator[Value]:
+    def find_returned(self, function: OwnFunction) -> Iterator[Value]:
         """Yield what a function of the program can return or yield."""
         for node in function.scope.body:
             if isinstance(node, ast.Return | ast.Yield) and node.value is not None:
@@ -340,11 +346,11 @@ class Evaluation:
 
     # Arguments
 
-    def find_argument(self, call: Call, name: str, at: int | None) -> Sequence[Value] | None:
+    def find_argument(self, call: Call, name: str, position: int | None) -> Sequence[Value] | None:
         """Return what a call gives for a parameter; None if nothing, empty if unknown, as it is with `*…` and `**…`."""
-        if (node := argument_node(call, name, at)) is not None:
+        if (node := find_argument_node(call, name, position)) is not None:
             return self.values(node, call.scope)
-        is_unpacked = any(isinstance(one, ast.Starred) for one in call.node.args) or any(
+        is_unpacked = any(isinstance(argument, ast.Starred) for argument in call.node.args) or any(
             keyword.arg is None for keyword in call.node.keywords
         )
         return () if is_unpacked else None
@@ -362,28 +368,30 @@ class Evaluation:
             return []
         self._open.add(key)
         try:
-            return self._arguments(parameter, names)
+            return self._find_arguments(parameter, names)
         finally:
             self._open.discard(key)
 
-    def _arguments(self, parameter: Parameter, names: list[str]) -> list[tuple[Value, Call | None]]:
+    def _find_arguments(
+        self, parameter: Parameter, names: list[str]
+    ) -> list[tuple[Value, Call | None]]:
         name, owner = parameter.argument.arg, parameter.scope.outer
         default = find_default(parameter.function, name)
         usual: list[tuple[Value, Call | None]] = []
         if default is not None and owner is not None:
             usual = [(value, None) for value in self.values(default, owner)]
-        found: list[tuple[Value, Call | None]] = []
+        values: list[tuple[Value, Call | None]] = []
         for call in self.calls.get(parameter.function, ()):
-            at = names.index(name) - (1 if call.is_bound else 0) if name in names else None
-            given = self.find_argument(call, name, at)
-            if given is None:
-                found += [(value, call) for value, _ in usual]
+            position = names.index(name) - (1 if call.is_bound else 0) if name in names else None
+            arguments = self.find_argument(call, name, position)
+            if arguments is None:
+                values += [(value, call) for value, _ in usual]
             else:
-                found += [(value, call) for value in given]
-        return found or usual
+                values += [(value, call) for value in arguments]
+        return values or usual
 
 
-def _made_by(call: ast.Call | None, values: Iterable[Value]) -> Iterator[Value]:
+def _add_call(call: ast.Call | None, values: Iterable[Value]) -> Iterator[Value]:
     """Yield values with the call that makes them, where none nearer to them is known."""
     for value in values:
         yield (
@@ -391,16 +399,16 @@ def _made_by(call: ast.Call | None, values: Iterable[Value]) -> Iterator[Value]:
         )
 
 
-def _from_end(index: object, table: SourceCollection) -> int:
+def _count_index(index: object, table: SourceCollection) -> int:
     return index - len(table.items) if isinstance(index, int) else 0
 
 
-def _distinct(values: Iterable[Value]) -> tuple[Value, ...]:
-    found: list[Value] = []
+def _drop_repeated(values: Iterable[Value]) -> tuple[Value, ...]:
+    distinct: list[Value] = []
     for value in values:
         # 1, 1.0 and True are equal, and stand for the same here.
-        if value not in found:
-            found.append(value)
-        if len(found) >= MAX_VALUES:
+        if value not in distinct:
+            distinct.append(value)
+        if len(distinct) >= MAX_VALUES:
             break
-    return tuple(found)
+    return tuple(distinct)

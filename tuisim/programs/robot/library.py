@@ -122,7 +122,7 @@ WHEEL_DIAMETER, AXLE_TRACK = "wheel_diameter", "axle_track"
 POLARITY = "polarity"
 """Argument of a class that turns the polarity of its motors, after the ports."""
 MOTOR_CLASS = "motor_class"
-MOTOR_CLASS_AT: Mapping[str, int] = {
+MOTOR_CLASS_INDEX: Mapping[str, int] = {
     "MoveTank": 3,
     "MoveSteering": 3,
     "MoveJoystick": 3,
@@ -254,18 +254,18 @@ _MODES: Mapping[str, DeviceKind] = {
 _PORT = re.compile(r"(?:ev3-ports:)?(out[A-F]|in[1-4])")
 
 
-def port_of(text: object) -> str:
+def parse_port(text: object) -> str:
     """Return the short name of a port, such as `outA`, from the text that a program gives; empty for other texts."""
     match = _PORT.fullmatch(text.strip()) if isinstance(text, str) else None
     return match[1] if match else ""
 
 
-def kind_of_driver(text: object) -> DeviceKind | None:
+def find_driver_kind(text: object) -> DeviceKind | None:
     """Return the kind of device that a driver is for; None if it is not simulated."""
     return _DRIVERS.get(text) if isinstance(text, str) else None
 
 
-def kind_of_mode(text: object) -> DeviceKind | None:
+def find_mode_kind(text: object) -> DeviceKind | None:
     """Return the kind of sensor that has a mode."""
     if not isinstance(text, str):
         return None
@@ -274,10 +274,10 @@ def kind_of_mode(text: object) -> DeviceKind | None:
 
 def list_names(node: ast.AST) -> tuple[str, ...]:
     """Return the names in an expression, such as that of the constant for a port."""
-    found = []
+    names = []
     for inner in ast.walk(node):
         match inner:
             case ast.Name(id=name) | ast.Attribute(attr=name) | ast.Constant(value=str(name)):
-                if name not in CONSTANTS and not port_of(name):
-                    found.append(name)
-    return tuple(found)
+                if name not in CONSTANTS and not parse_port(name):
+                    names.append(name)
+    return tuple(names)

@@ -15,16 +15,16 @@ from tuisim.programs.robot.library import INVERSED, NORMAL, DeviceKind, Moves
 from tuisim.programs.robot.mentions import Mentions, Pair, Where
 from tuisim.programs.robot.scopes import FUNCTIONS, Bound, Scope
 from tuisim.programs.robot.values import Instance, OwnClass, OwnFunction, Value
-from tuisim.programs.robot.words import means_forwards
+from tuisim.programs.robot.words import is_forwards
 
 
-def mechanics_in(mentions: Mentions) -> Mechanics:
+def read_mechanics(mentions: Mentions) -> Mechanics:
     """Return what a program says about how its motors are mounted."""
     if mentions.evaluation is None:
         return Mechanics()
     evaluation, moves = mentions.evaluation, library.MOVES[mentions.library]
-    found = Mechanics(CallOrder(evaluation.calls))
-    return _MechanicsReader(mentions, evaluation, moves, found).read()
+    mechanics = Mechanics(CallOrder(evaluation.calls))
+    return _MechanicsReader(mentions, evaluation, moves, mechanics).read()
 
 
 @dataclass(slots=True)
@@ -54,10 +54,10 @@ class _MechanicsReader:
         for scope in self.mentions.scopes:
             for node in scope.body:
                 self._read(node, scope)
-            for block in _blocks(scope):
+            for block in _list_blocks(scope):
                 for before, statement in zip([None, *block], block, strict=False):
                     self._read_press([*([before] if before else []), statement], scope)
-            if isinstance(scope.node, FUNCTIONS) and means_forwards(scope.node.name):
+            if isinstance(scope.node, FUNCTIONS) and is_forwards(scope.node.name):
                 self._read_forwards(scope)
         for port in self.normal:
             # A program that turns the polarity to and fro tries it out.
@@ -69,7 +69,7 @@ class _MechanicsReader:
         for port in {**self.targets, **self.found.turns}:
             self.found.note_targets(port, self.targets.get(port, ()), self.places.get(port, ()))
         for port in {*self.found.reach_deg, *self.found.targets_deg}:
-            if mention := self.mentions.motor_on(port):
+            if mention := self.mentions.find_motor(port):
                 self.found.turn_motor(port, mention.gear_ratio, is_turned=mention.is_turned)
         return self.found
 
@@ -81,11 +81,11 @@ class _MechanicsReader:
                         self._read_assigned(target, value, scope)
             case ast.Call(func=ast.Attribute(value=base, attr="set_polarity"), args=[value, *_]):
                 for text in self.evaluation.values(value, scope):
-                    self._turn(self._known_motors(base, scope), text, _where(node, scope))
+                    self._turn(self._known_motors(base, scope), text, _find_where(node, scope))
             case ast.Attribute(value=base, attr="is_stalled"):
                 self._stall(base, scope, node)
             case ast.While(test=ast.Compare(left=left, ops=[ast.Gt() | ast.GtE() | ast.NotEq()])):
-                motor = _speed_of(left)
+                motor = _find_motor(left)
                 if motor is not None and self._only_moves_endlessly(motor, scope):
                     self._stall(motor, scope, node)
             case ast.Compare(left=left, comparators=[ast.Attribute(value=base, attr="state")]):
@@ -122,7 +122,9 @@ class _MechanicsReader:
         match target.attr:
             case "polarity":
                 for text in self.evaluation.values(value, scope):
-                    self._turn(self._known_motors(target.value, scope), text, _where(target, scope))
+                    self._turn(
+                        self._known_motors(target.value, scope), text, _find_where(target, scope)
+                    )
             case "position":
                 self._note_places(target.value, value, scope)
             case "position_sp":
@@ -143,15 +145,15 @@ class _MechanicsReader:
                 continue
             if any(
                 length < 0
-                for one in self._lengths(node, node.func.attr, scope)
-                for length in self._numbers(one, scope)
+                for length_node in self._lengths(node, node.func.attr, scope)
+                for length in self._numbers(length_node, scope)
             ):
                 return
             for port in self._known_motors(node.func.value, scope):
                 speeds.setdefault(port, []).extend(self._speeds(node, scope))
-                where.setdefault(port, _where(node, scope))
-        for port, found in speeds.items():
-            if found and max(found) < 0:
+                where.setdefault(port, _find_where(node, scope))
+        for port, port_speeds in speeds.items():
+            if port_speeds and max(port_speeds) < 0:
                 self.backwards[port] = where[port]
 
     def _speeds(self, call: ast.Call, scope: Scope) -> Iterator[float]:
@@ -162,20 +164,20 @@ class _MechanicsReader:
         if any(pair.class_name == "MoveSteering" for pair in pairs):
             first, last = 1, 2
         names = (*self.moves.speeds, "left_speed", "right_speed")
-        given = [keyword.value for keyword in call.keywords if keyword.arg in names]
-        for node in (*given, *call.args[first:last]):
+        named = [keyword.value for keyword in call.keywords if keyword.arg in names]
+        for node in (*named, *call.args[first:last]):
             yield from self._numbers(
                 node.args[0] if isinstance(node, ast.Call) and node.args else node, scope
             )
 
     def _lengths(self, call: ast.Call, name: str, scope: Scope) -> list[ast.expr]:
         """Return what a call of a movement gives for its length or its end."""
-        given = [keyword.value for keyword in call.keywords if keyword.arg in self.moves.lengths]
+        named = [keyword.value for keyword in call.keywords if keyword.arg in self.moves.lengths]
         if name not in self.moves.length_at:
-            return given
+            return named
         assert isinstance(call.func, ast.Attribute)
-        at = self.moves.length_at[name] + (1 if self._pairs(call.func.value, scope) else 0)
-        return given + call.args[at : at + 1]
+        first = self.moves.length_at[name] + (1 if self._pairs(call.func.value, scope) else 0)
+        return named + call.args[first : first + 1]
 
     def _numbers(self, node: ast.expr, scope: Scope) -> list[float]:
         return [
@@ -190,7 +192,7 @@ class _MechanicsReader:
                 self.normal.add(port)
 
     def _stall(
-        self, base: ast.expr, scope: Scope, node: ast.AST, said: Sequence[bool] = ()
+        self, base: ast.expr, scope: Scope, node: ast.AST, ways: Sequence[bool] = ()
     ) -> None:
         """Note an end stop of a motor.
 
@@ -198,15 +200,15 @@ class _MechanicsReader:
             said: Whether the motor turns forwards there, for each time; empty if its movements say it.
         """
         for port in self._motors(base, scope):
-            forwards = next(iter(said or self._directions(scope.body, [port], scope)), None)
-            stop = EndStop(_where(node, scope), self._as_mounted(port, forwards), scope)
+            forwards = next(iter(ways or self._directions(scope.body, [port], scope)), None)
+            stop = EndStop(_find_where(node, scope), self._as_mounted(port, forwards), scope)
             known = self.found.stops.setdefault(port, stop)
-            if any(self._as_mounted(port, way) != known.forwards for way in said):
+            if any(self._as_mounted(port, way) != known.forwards for way in ways):
                 self.found.closed.add(port)
 
     def _as_mounted(self, port: str, forwards: bool | None) -> bool | None:
         """Return a direction of the program as that of a motor."""
-        mention = self.mentions.motor_on(port)
+        mention = self.mentions.find_motor(port)
         return not forwards if forwards is not None and mention and mention.is_turned else forwards
 
     # Movements
@@ -214,14 +216,14 @@ class _MechanicsReader:
     def _calls(
         self, nodes: Iterable[ast.AST], ports: Iterable[str], names: Iterable[str], scope: Scope
     ) -> list[ast.Call]:
-        wanted, known = {*ports}, {*names}
+        moved, known = {*ports}, {*names}
         return [
             node
             for node in nodes
             if isinstance(node, ast.Call)
             and isinstance(node.func, ast.Attribute)
             and node.func.attr in known
-            and wanted & {*self._motors(node.func.value, scope)}
+            and moved & {*self._motors(node.func.value, scope)}
         ]
 
     def _moves(self, scope: Scope, ports: Iterable[str], names: Iterable[str]) -> bool:
@@ -240,12 +242,12 @@ class _MechanicsReader:
         """Yield whether the movements without an end among some nodes are forwards."""
         ports = [*ports]
         for call in self._calls(nodes, ports, self.moves.endless, scope):
-            given = [keyword.value for keyword in call.keywords if keyword.arg in self.moves.speeds]
-            for node in (*given, *call.args[:1]):
+            named = [keyword.value for keyword in call.keywords if keyword.arg in self.moves.speeds]
+            for node in (*named, *call.args[:1]):
                 inside = node.args[0] if isinstance(node, ast.Call) and node.args else node
                 yield from (value > 0 for value in self._numbers(inside, scope) if value)
-        for one in nodes:
-            match one:
+        for statement in nodes:
+            match statement:
                 case ast.Assign(targets=[ast.Attribute(value=base, attr=name)], value=speed) if (
                     name in self.moves.speeds
                 ):
@@ -261,7 +263,7 @@ class _MechanicsReader:
             lengths = self._numbers(node, scope)
             self.found.endless.update(() if lengths else ports)
             for length in lengths:
-                turn = Target(abs(length) * turns, _where(node, scope), scope)
+                turn = Target(abs(length) * turns, _find_where(node, scope), scope)
                 for port in ports:
                     self.found.note_turn(port, turn)
 
@@ -271,7 +273,7 @@ class _MechanicsReader:
             self.found.endless.update(ports)
             return
         for port in ports:
-            where = _where(node, scope)
+            where = _find_where(node, scope)
             self.targets.setdefault(port, []).extend(Target(deg, where, scope) for deg in targets)
 
     # Touch sensors
@@ -308,7 +310,7 @@ class _MechanicsReader:
         if len(moved) == 1 and touches:
             forwards = next(self._directions([*nodes, *scope.body], moved, scope), None)
             motor = moved.pop()
-            stop = EndStop(_where(last, scope), self._as_mounted(motor, forwards), scope)
+            stop = EndStop(_find_where(last, scope), self._as_mounted(motor, forwards), scope)
             self.found.presses.append(StopPress(touches[0], motor, stop))
 
     # Devices
@@ -321,7 +323,9 @@ class _MechanicsReader:
             if isinstance(value, Instance)
         ]
         in_turn = any(
-            sum(one.call is call for one in self.mentions.devices) > 1 for call in calls if call
+            sum(device.call is call for device in self.mentions.devices) > 1
+            for call in calls
+            if call
         )
         return [] if in_turn else self._motors(node, scope)
 
@@ -334,39 +338,39 @@ class _MechanicsReader:
             pairs = self._pairs(node.value, scope)
             if pairs:
                 return [pair.left if node.attr == "left_motor" else pair.right for pair in pairs]
-        found = [port for pair in self._pairs(node, scope) for port in (pair.left, pair.right)]
+        ports = [port for pair in self._pairs(node, scope) for port in (pair.left, pair.right)]
         for value in self._values(node, scope):
             if isinstance(value, Instance):
-                found += [
-                    one.port
-                    for one in self.mentions.devices
-                    if one.kind in kinds and one.makes(value)
+                ports += [
+                    device.port
+                    for device in self.mentions.devices
+                    if device.kind in kinds and device.makes(value)
                 ]
-        return list(dict.fromkeys(found))
+        return list(dict.fromkeys(ports))
 
     def _values(self, node: ast.expr, scope: Scope) -> Sequence[Value]:
         """Return what an expression can be at its place: by the nearest assignment above, and in its own object."""
         match node:
             case ast.Name(id=name):
                 known = [
-                    one
-                    for one in scope.names.get(name, ())
-                    if isinstance(one, Bound) and one.scope is scope
+                    bound
+                    for bound in scope.names.get(name, ())
+                    if isinstance(bound, Bound) and bound.scope is scope
                 ]
                 above = [
-                    one
-                    for one in known
-                    if one.node.lineno < node.lineno and not (one.path or one.is_item)
+                    bound
+                    for bound in known
+                    if bound.node.lineno < node.lineno and not (bound.path or bound.is_item)
                 ]
                 if len(known) > 1 and above:
-                    return self._values(max(above, key=lambda one: one.node.lineno).node, scope)
+                    return self._values(max(above, key=lambda bound: bound.node.lineno).node, scope)
             case ast.Attribute(value=base, attr=name):
                 of = self._values(base, scope)
-                if any(isinstance(one, Instance) for one in of):
+                if any(isinstance(bound, Instance) for bound in of):
                     return [
                         value
-                        for one in of
-                        for value in self._evaluation_in(one).attribute(one, name)
+                        for bound in of
+                        for value in self._evaluation_in(bound).attribute(bound, name)
                     ]
         return self.evaluation.values(node, scope)
 
@@ -377,25 +381,25 @@ class _MechanicsReader:
                 if call not in self.inside:
                     self.inside[call] = self.evaluation
                     if isinstance(init := self.evaluation.method(scope, "__init__"), OwnFunction):
-                        for made in self.evaluation.calls.get(init.node, ()):
-                            if made.node is call:
-                                self.inside[call] = self.evaluation.within(init.node, made)
+                        for init_call in self.evaluation.calls.get(init.node, ()):
+                            if init_call.node is call:
+                                self.inside[call] = self.evaluation.within(init.node, init_call)
                 return self.inside[call]
         return self.evaluation
 
     def _pairs(self, node: ast.expr, scope: Scope) -> list[Pair]:
-        found = []
+        pairs = []
         for value in self.evaluation.values(node, scope):
             if isinstance(value, Instance):
-                found += [pair for pair in self.mentions.pairs if pair.makes(value)]
-        return found
+                pairs += [pair for pair in self.mentions.pairs if pair.makes(value)]
+        return pairs
 
 
-def _speed_of(node: ast.expr) -> ast.expr | None:
+def _find_motor(node: ast.expr) -> ast.expr | None:
     """Return the motor whose speed an expression is, or the amount of its speed; None if it is no speed."""
     match node:
         case ast.Call(func=ast.Name(id="abs"), args=[inner]):
-            return _speed_of(inner)
+            return _find_motor(inner)
         case (
             ast.Attribute(value=base, attr="speed")
             | ast.Call(func=ast.Attribute(value=base, attr="speed"))
@@ -404,11 +408,11 @@ def _speed_of(node: ast.expr) -> ast.expr | None:
     return None
 
 
-def _where(node: ast.AST, scope: Scope) -> Where:
+def _find_where(node: ast.AST, scope: Scope) -> Where:
     return Where(scope.module.file, getattr(node, "lineno", 0))
 
 
-def _blocks(scope: Scope) -> Iterator[list[ast.stmt]]:
+def _list_blocks(scope: Scope) -> Iterator[list[ast.stmt]]:
     """Yield every sequence of statements of a scope."""
     yield scope.node.body
     for node in scope.body:

@@ -9,12 +9,12 @@ from dataclasses import field, replace
 from tuisim.base.data_class import dataclass
 from tuisim.engine.core.profile import Library
 from tuisim.programs.robot import library
-from tuisim.programs.robot.calls import Call, argument_node
+from tuisim.programs.robot.calls import Call, find_argument_node
 from tuisim.programs.robot.evaluation import Evaluation
 from tuisim.programs.robot.library import DeviceKind, PairClass
-from tuisim.programs.robot.reach import reachable, skipped
-from tuisim.programs.robot.scopes import FUNCTIONS, Function, Parameter, Scope, scope_of
-from tuisim.programs.robot.source import Module, find_hub, library_of
+from tuisim.programs.robot.reach import find_reachable, find_skipped
+from tuisim.programs.robot.scopes import FUNCTIONS, Function, Parameter, Scope, build_scope
+from tuisim.programs.robot.source import Module, find_hub, find_library
 from tuisim.programs.robot.values import (
     Instance,
     LibraryClass,
@@ -68,7 +68,7 @@ class Mention:
 
     def makes(self, value: Instance) -> bool:
         """Return whether this makes an instance: itself, or from the `__init__` of its class."""
-        return _makes(self.call, self.owner, value)
+        return _is_maker(self.call, self.owner, value)
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,7 +96,7 @@ class Pair:
 
     def makes(self, value: Instance) -> bool:
         """Return whether this makes an instance: itself, or from the `__init__` of its class."""
-        return _makes(self.call, self.owner, value)
+        return _is_maker(self.call, self.owner, value)
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,20 +114,25 @@ class Mentions:
     hub: str = ""
     """The hub that it is for, one of `HUBS`, on whose ports it names motors and sensors; empty for the EV3."""
 
-    def motor_on(self, port: str) -> Mention | None:
+    def find_motor(self, port: str) -> Mention | None:
         """Return the first motor that the program makes on a port."""
-        return next((one for one in self.devices if one.port == port and one.kind.is_motor), None)
+        return next(
+            (device for device in self.devices if device.port == port and device.kind.is_motor),
+            None,
+        )
 
 
-def mentions_in(modules: dict[str, Module]) -> Mentions:
+def read_mentions(modules: dict[str, Module]) -> Mentions:
     """Return what a program, with its own modules, says about its robot."""
-    scopes, hub = {name: scope_of(module) for name, module in modules.items()}, find_hub(modules)
-    found = _Reader(scopes, hub).read()
+    scopes, hub = {name: build_scope(module) for name, module in modules.items()}, find_hub(modules)
+    mentions = _Reader(scopes, hub).read()
     if hub:
-        devices = tuple(replace(one, port=one.port[-1:]) for one in found.devices)
-        pairs = tuple(replace(one, left=one.left[-1:], right=one.right[-1:]) for one in found.pairs)
-        found = replace(found, devices=devices, pairs=pairs, hub=hub)
-    return replace(found, library=library_of(modules) or found.library)
+        devices = tuple(replace(part, port=part.port[-1:]) for part in mentions.devices)
+        pairs = tuple(
+            replace(part, left=part.left[-1:], right=part.right[-1:]) for part in mentions.pairs
+        )
+        mentions = replace(mentions, devices=devices, pairs=pairs, hub=hub)
+    return replace(mentions, library=find_library(modules) or mentions.library)
 
 
 @dataclass(slots=True)
@@ -146,26 +151,26 @@ class _Reader:
     """The call of the function that is being read, if it has several."""
 
     def read(self) -> Mentions:
-        self.scopes = reachable(self.modules)
-        calls = [Call(node, scope) for scope in self.scopes for node in _calls_in(scope)]
+        self.scopes = find_reachable(self.modules)
+        calls = [Call(node, scope) for scope in self.scopes for node in _list_calls(scope)]
         self.evaluation = Evaluation(self.modules)
         for _ in range(_ROUNDS):
-            found: dict[Function, list[Call]] = {}
+            sorted_calls: dict[Function, list[Call]] = {}
             self.made = []
             for call in calls:
-                self._sort(call, found)
-            if found == self.evaluation.calls:
+                self._sort(call, sorted_calls)
+            if sorted_calls == self.evaluation.calls:
                 break
-            self.evaluation = Evaluation(self.modules, found)
+            self.evaluation = Evaluation(self.modules, sorted_calls)
         self.parts = {call.node for _, call in self.made}
         for scope in self.scopes:
             self._note_names(scope)
         devices: list[Mention] = []
         pairs: list[Pair] = []
         whole = self.evaluation
-        of_ports = [one for one in self.made if not _takes_motors(one[0])]
+        of_ports = [pair for pair in self.made if not _needs_motors(pair[0])]
         # Its motors are known by then.
-        for name, call in (*of_ports, *(one for one in self.made if _takes_motors(one[0]))):
+        for name, call in (*of_ports, *(pair for pair in self.made if _needs_motors(pair[0]))):
             for inside, via in self._ways(name, call, whole):
                 self.evaluation, self.via = inside, via
                 if name in library.PAIRS:
@@ -177,8 +182,8 @@ class _Reader:
                     devices += self._devices(name, call)
         self.evaluation = whole
         # What is known in one call of a function may not be in another one, such as that in itself.
-        known = {one.call for one in devices if one.port}
-        devices = [one for one in devices if one.port or one.is_any or one.call not in known]
+        known = {pair.call for pair in devices if pair.port}
+        devices = [pair for pair in devices if pair.port or pair.is_any or pair.call not in known]
         return Mentions(
             tuple(dict.fromkeys(devices)), tuple(dict.fromkeys(pairs)), self.scopes, whole
         )
@@ -194,33 +199,33 @@ class _Reader:
             return
         for via in calls:
             inside = whole.within(function, via)
-            made = inside.values(call.node.func, call.scope)
+            values = inside.values(call.node.func, call.scope)
             # A class that is given to the function is another one in another call.
             if (
-                not any(isinstance(value, LibraryClass) for value in made)
-                or LibraryClass(name) in made
+                not any(isinstance(value, LibraryClass) for value in values)
+                or LibraryClass(name) in values
             ):
                 yield inside, via
 
     # Calls
 
-    def _sort(self, call: Call, found: dict[Function, list[Call]]) -> None:
+    def _sort(self, call: Call, calls: dict[Function, list[Call]]) -> None:
         """Note what a call calls: a function of the program, or a class of the library."""
         match call.node.func:
             case ast.Attribute(value=base, attr="__init__"):
                 for value in self.evaluation.values(base, call.scope):
-                    self._sort_init(value, call, found)
+                    self._sort_init(value, call, calls)
                 return
         for value in self.evaluation.values(call.node.func, call.scope):
             match value:
                 case LibraryClass(name=name):
                     self.made.append((name, call))
                 case OwnClass(scope=scope):
-                    self._sort_class(scope, call, found)
+                    self._sort_class(scope, call, calls)
                 case OwnFunction(node=node, is_bound=is_bound):
-                    found.setdefault(node, []).append(replace(call, is_bound=is_bound))
+                    calls.setdefault(node, []).append(replace(call, is_bound=is_bound))
 
-    def _sort_init(self, value: Value, call: Call, found: dict[Function, list[Call]]) -> None:
+    def _sort_init(self, value: Value, call: Call, calls: dict[Function, list[Call]]) -> None:
         """Note a call of `super().__init__` or `Base.__init__`."""
         match value:
             case Parent(of=scope):
@@ -228,7 +233,7 @@ class _Reader:
                     if isinstance(base, LibraryClass):
                         self.made.append((base.name, call))
                     elif isinstance(base, OwnClass):
-                        self._sort_class(base.scope, call, found)
+                        self._sort_class(base.scope, call, calls)
             case LibraryClass() | OwnClass() if call.node.args:
                 node = ast.copy_location(
                     ast.Call(call.node.func, call.node.args[1:], call.node.keywords), call.node
@@ -237,12 +242,12 @@ class _Reader:
                 if isinstance(value, LibraryClass):
                     self.made.append((value.name, rest))
                 else:
-                    self._sort_class(value.scope, rest, found)
+                    self._sort_class(value.scope, rest, calls)
 
-    def _sort_class(self, scope: Scope, call: Call, found: dict[Function, list[Call]]) -> None:
+    def _sort_class(self, scope: Scope, call: Call, calls: dict[Function, list[Call]]) -> None:
         match self.evaluation.method(scope, "__init__"):
             case OwnFunction(node=node):
-                found.setdefault(node, []).append(replace(call, is_bound=True))
+                calls.setdefault(node, []).append(replace(call, is_bound=True))
             case LibraryClass(name=name):
                 self.made.append((name, call))
 
@@ -282,8 +287,8 @@ class _Reader:
                 ast.Tuple(elts=targets) | ast.List(elts=targets),
                 ast.Tuple(elts=values) | ast.List(elts=values),
             ):
-                for one, inside in zip(targets, values, strict=False):
-                    self._note(one, inside)
+                for part, inside in zip(targets, values, strict=False):
+                    self._note(part, inside)
             case ((ast.Name(id=name) | ast.Attribute(attr=name)), _):
                 self._hint(value, name)
 
@@ -306,17 +311,17 @@ class _Reader:
     # Devices
 
     def _devices(self, name: str, call: Call) -> Iterator[Mention]:
-        kind, where = library.DEVICES[name], _where(call)
+        kind, where = library.DEVICES[name], _find_where(call)
         driver = self.evaluation.find_argument(call, "driver_name", None)
         if driver:
-            told = [library.kind_of_driver(one) for one in self._flat(driver)]
-            if not told or told[0] is None:
+            kinds = [library.find_driver_kind(one) for one in self._flat(driver)]
+            if not kinds or kinds[0] is None:
                 return
-            kind = told[0]
+            kind = kinds[0]
         elif kind is DeviceKind.SENSOR:
             kind = self._kind_by_mode(call) or kind
         names = self._called(call)
-        made = Mention(
+        device = Mention(
             kind,
             "",
             where,
@@ -336,12 +341,12 @@ class _Reader:
         )
         if not ports and not any(isinstance(value, str) for value in self._given(call, word)):
             # A text that is no port of the brick names something that is not simulated.
-            yield replace(made, is_any=self._takes_any(call, word))
+            yield replace(device, is_any=self._takes_any(call, word))
         for port, called in dict(ports).items():
             if port and not self.hub and port.startswith("out") != kind.is_motor:
                 continue
-            found = replace(made, port=port, names=called, is_any=not port)
-            yield self._mounted(found, call) if kind.is_motor else found
+            placed = replace(device, port=port, names=called, is_any=not port)
+            yield self._mounted(placed, call) if kind.is_motor else placed
 
     def _mounted(self, motor: Mention, call: Call) -> Mention:
         """Return a motor with the direction and the gears that the call says."""
@@ -358,7 +363,7 @@ class _Reader:
         ] or [parts]
         ratio = 1.0
         for train in trains:
-            teeth = [one for one in train if isinstance(one, int | float) and one > 0]
+            teeth = [count for count in train if isinstance(count, int | float) and count > 0]
             if len(teeth) > 1:
                 ratio *= teeth[-1] / teeth[0]
         return ratio
@@ -372,39 +377,39 @@ class _Reader:
         return self.evaluation.find_argument(call, word, 0) or ()
 
     def _takes_any(self, call: Call, word: str) -> bool:
-        node = argument_node(call, word, 0)
+        node = find_argument_node(call, word, 0)
         return node is None or (isinstance(node, ast.Constant) and node.value is None)
 
     def _ports(
-        self, call: Call, name: str, at: int, names: tuple[str, ...]
+        self, call: Call, name: str, position: int, names: tuple[str, ...]
     ) -> Iterator[tuple[str, tuple[str, ...]]]:
         """Yield the ports that an argument can be, each with what the program calls the device."""
-        node = argument_node(call, name, at)
+        node = find_argument_node(call, name, position)
         if node is None:
-            given: Iterable[Value] = self.evaluation.find_argument(call, name, at) or ()
-            yield from ((port, names) for value in given if (port := library.port_of(value)))
+            values: Iterable[Value] = self.evaluation.find_argument(call, name, position) or ()
+            yield from ((port, names) for value in values if (port := library.parse_port(value)))
             return
         own = library.list_names(node)
         parameters = (
-            [one for one in call.scope.names.get(node.id, ()) if isinstance(one, Parameter)]
+            [bound for bound in call.scope.names.get(node.id, ()) if isinstance(bound, Parameter)]
             if isinstance(node, ast.Name)
             else []
         )
         if parameters:
             for value, via in self.evaluation.arguments(parameters[0]):
-                if port := library.port_of(value):
-                    said = self._said_in(via, parameters[0]) if via else ()
-                    yield port, (*names, *own, *said)
+                if port := library.parse_port(value):
+                    further = self._said_in(via, parameters[0]) if via else ()
+                    yield port, (*names, *own, *further)
             return
         for value in self.evaluation.values(node, call.scope):
-            if port := library.port_of(value):
+            if port := library.parse_port(value):
                 yield port, (*names, *own)
 
     def _said_in(self, call: Call, parameter: Parameter) -> tuple[str, ...]:
         names = [argument.arg for argument in parameter.function.args.args]
         name = parameter.argument.arg
-        at = names.index(name) - (1 if call.is_bound else 0) if name in names else None
-        node = argument_node(call, name, at)
+        position = names.index(name) - (1 if call.is_bound else 0) if name in names else None
+        node = find_argument_node(call, name, position)
         return (
             *self.hints.get(call.node, ()),
             *(library.list_names(node) if node is not None else ()),
@@ -433,22 +438,22 @@ class _Reader:
                         value=mode,
                     ) if name in names:
                         for value in self.evaluation.values(mode, scope):
-                            if kind := library.kind_of_mode(value):
+                            if kind := library.find_mode_kind(value):
                                 return kind
         return None
 
     def _motor_set(self, call: Call) -> Iterator[Mention]:
-        owner, where = call.scope.owner, _where(call)
+        owner, where = call.scope.owner, _find_where(call)
         for table in self.evaluation.find_argument(call, "motor_specs", 0) or ():
             if isinstance(table, SourceCollection) and isinstance(table.node, ast.Dict):
                 for key, item in zip(table.keys, table.items, strict=True):
                     ports = self.evaluation.values(key, table.scope) if key is not None else ()
                     kinds = [
                         kind
-                        for one in self.evaluation.values(item, table.scope)
-                        if (kind := _motor_of(one))
+                        for value in self.evaluation.values(item, table.scope)
+                        if (kind := _find_motor_kind(value))
                     ]
-                    for port in map(library.port_of, ports):
+                    for port in map(library.parse_port, ports):
                         if port and kinds:
                             names = library.list_names(key) if key is not None else ()
                             yield Mention(
@@ -472,14 +477,14 @@ class _Reader:
         polarities = [
             str(value) for value in self.evaluation.find_argument(call, library.POLARITY, 2) or ()
         ]
-        for one, other in self._ends(known, call, names, devices):
-            if one != other and one.startswith("out") and other.startswith("out"):
+        for left, other in self._ends(known, call, names, devices):
+            if left != other and left.startswith("out") and other.startswith("out"):
                 yield Pair(
-                    one,
+                    left,
                     other,
                     self._motor_kind(name, known, call),
                     known.rank,
-                    _where(call),
+                    _find_where(call),
                     name,
                     *self._sizes(known, call),
                     names,
@@ -502,9 +507,9 @@ class _Reader:
                 left, right = left[:1], left[1:]
         else:
             # The ports of a balancing robot come last.
-            at = (10, 11) if known.usual[0] else (0, 1)
-            left = [port for port, _ in self._ports(call, known.left, at[0], names)]
-            right = [port for port, _ in self._ports(call, known.right, at[1], names)]
+            places = (10, 11) if known.usual[0] else (0, 1)
+            left = [port for port, _ in self._ports(call, known.left, places[0], names)]
+            right = [port for port, _ in self._ports(call, known.right, places[1], names)]
         left = left or ([known.usual[0]] if known.usual[0] else [])
         right = right or ([known.usual[1]] if known.usual[1] else [])
         if len(left) != len(right):
@@ -513,20 +518,22 @@ class _Reader:
 
     def _driven(self, call: Call, name: str, at: int, devices: Sequence[Mention]) -> list[str]:
         """Return the ports of the motors that an argument can be."""
-        given = [
+        instances = [
             one
             for one in self.evaluation.find_argument(call, name, at) or ()
             if isinstance(one, Instance)
         ]
-        made = [
+        makers = [
             (one, value)
-            for value in given
+            for value in instances
             for one in devices
             if one.kind.is_motor and one.makes(value)
         ]
         return list(
             dict.fromkeys(
-                one.port for one, value in made if value.via is None or one.via in (None, value.via)
+                one.port
+                for one, value in makers
+                if value.via is None or one.via in (None, value.via)
             )
         )
 
@@ -544,20 +551,22 @@ class _Reader:
             else (None, None)
         )
 
-    def _size(self, call: Call, name: str, at: int) -> float | None:
-        given = self.evaluation.find_argument(call, name, at) or ()
-        return next((float(value) for value in given if isinstance(value, int | float)), None)
+    def _size(self, call: Call, name: str, position: int) -> float | None:
+        values = self.evaluation.find_argument(call, name, position) or ()
+        return next((float(value) for value in values if isinstance(value, int | float)), None)
 
     def _motor_kind(self, name: str, known: PairClass, call: Call) -> DeviceKind:
-        given = self.evaluation.find_argument(
-            call, library.MOTOR_CLASS, library.MOTOR_CLASS_AT.get(name)
+        values = self.evaluation.find_argument(
+            call, library.MOTOR_CLASS, library.MOTOR_CLASS_INDEX.get(name)
         )
-        return next((kind for value in given or () if (kind := _motor_of(value))), known.kind)
+        return next(
+            (kind for value in values or () if (kind := _find_motor_kind(value))), known.kind
+        )
 
     def _wheel(self, call: Call) -> tuple[float, float] | None:
         for value in self.evaluation.find_argument(call, library.WHEEL_CLASS, 2) or ():
-            if found := self._size_of(value, ()):
-                return found
+            if size := self._size_of(value, ()):
+                return size
         return None
 
     def _size_of(self, wheel: Value, seen: tuple[Value, ...]) -> tuple[float, float] | None:
@@ -569,34 +578,34 @@ class _Reader:
                     if name == library.WHEEL and call.scope.owner is scope:
                         sizes = [
                             [
-                                one
-                                for one in self.evaluation.find_argument(call, key, at) or ()
-                                if is_number(one)
+                                number
+                                for number in self.evaluation.find_argument(call, key, place) or ()
+                                if is_number(number)
                             ]
-                            for at, key in enumerate(("diameter_mm", "width_mm"))
+                            for place, key in enumerate(("diameter_mm", "width_mm"))
                         ]
                         if all(sizes):
                             return float(str(sizes[0][0])), float(str(sizes[1][0]))
                 for base in self.evaluation.bases(scope):
-                    if found := self._size_of(base, (*seen, wheel)):
-                        return found
+                    if size := self._size_of(base, (*seen, wheel)):
+                        return size
         return None
 
     def _needs(self, name: str, call: Call) -> Iterator[Mention]:
         for kind in library.PAIRS[name].needs:
-            yield Mention(kind, "", _where(call), is_any=True)
+            yield Mention(kind, "", _find_where(call), is_any=True)
 
 
-def _calls_in(scope: Scope) -> list[ast.Call]:
-    left_out = skipped(scope)
+def _list_calls(scope: Scope) -> list[ast.Call]:
+    left_out = find_skipped(scope)
     return [node for node in scope.body if isinstance(node, ast.Call) and node not in left_out]
 
 
-def _takes_motors(name: str) -> bool:
+def _needs_motors(name: str) -> bool:
     return name in library.PAIRS and library.PAIRS[name].takes_motors
 
 
-def _makes(call: ast.Call | None, owner: Scope | None, value: Instance) -> bool:
+def _is_maker(call: ast.Call | None, owner: Scope | None, value: Instance) -> bool:
     """Return whether a call in a class makes an instance."""
     if value.call is not None and value.call is call:
         return True
@@ -606,11 +615,11 @@ def _makes(call: ast.Call | None, owner: Scope | None, value: Instance) -> bool:
     return from_init and isinstance(value.of, OwnClass) and value.of.scope is owner
 
 
-def _where(call: Call) -> Where:
+def _find_where(call: Call) -> Where:
     return Where(call.scope.module.file, call.node.lineno)
 
 
-def _motor_of(value: Value) -> DeviceKind | None:
+def _find_motor_kind(value: Value) -> DeviceKind | None:
     """Return the kind of motor that a class of the library is for."""
     kind = library.DEVICES.get(value.name) if isinstance(value, LibraryClass) else None
     return kind if kind and kind.is_motor else None

@@ -19,20 +19,27 @@ from tuisim.engine.core.spec import (
 )
 from tuisim.programs.robot.library import DeviceKind
 from tuisim.programs.robot.mentions import Mention
-from tuisim.programs.robot.words import Side, means_aside, side_of
+from tuisim.programs.robot.words import Side, find_side, is_aside
 
 _ASIDE = (Side.LEFT, Side.RIGHT, Side.BACK)
 _ROW = (Side.LEFT, Side.MIDDLE, Side.RIGHT)
 
 
-def with_sides(mentions: Sequence[Mention]) -> list[Mention]:
+def add_sides(mentions: Sequence[Mention]) -> list[Mention]:
     """Return mentions with the sides of three colour sensors that one line makes: in a row, from left to right."""
-    calls = [one.call for one in mentions if one.kind is DeviceKind.COLOR and one.port]
+    calls = [
+        mention.call for mention in mentions if mention.kind is DeviceKind.COLOR and mention.port
+    ]
     rows = [call for call in calls if call is not None and calls.count(call) == len(_ROW)]
-    unsaid = [one for one in mentions if one.call in rows and side_of(one.names) is Side.NONE]
+    unsaid = [
+        mention
+        for mention in mentions
+        if mention.call in rows and find_side(mention.names) is Side.NONE
+    ]
     sides = dict(zip(unsaid, _ROW, strict=True)) if len(unsaid) == len(_ROW) else {}
     return [
-        replace(one, names=(sides[one], *one.names)) if one in sides else one for one in mentions
+        replace(mention, names=(sides[mention], *mention.names)) if mention in sides else mention
+        for mention in mentions
     ]
 
 
@@ -43,13 +50,15 @@ def say_other_sides(mentions: Mapping[str, Mention], usual: Mapping[str, SensorS
         mentions: What the program makes, by port.
         usual: The sensors of the usual robot, by port.
     """
-    colors = {port: one for port, one in mentions.items() if one.kind is DeviceKind.COLOR}
+    colors = {
+        port: mention for port, mention in mentions.items() if mention.kind is DeviceKind.COLOR
+    }
     known = {
         port: usual[port].name for port in colors if isinstance(usual.get(port), ColorSensorSpec)
     }
-    said = {port: side_of(colors[port].names) for port in known}
+    sides = {port: find_side(colors[port].names) for port in known}
     return len(known) < len(colors) and any(
-        side and side != known[port] for port, side in said.items()
+        side and side != known[port] for port, side in sides.items()
     )
 
 
@@ -66,25 +75,27 @@ class NewSensors:
     @staticmethod
     def likeliest(sensors: list[SensorSpec], mention: Mention) -> SensorSpec:
         """Return the one of some sensors that a program means, by its name for it."""
-        side = side_of(mention.names)
+        side = find_side(mention.names)
         return next((sensor for sensor in sensors if sensor.name == side), sensors[0])
 
 
-def places_for(
+def place_sensors(
     new: NewSensors, placed: Mapping[str, SensorSpec], body: Body, doubts: list[str]
 ) -> dict[str, SensorSpec]:
     """Return new sensors by port, at places and with names that no other sensor has."""
-    found: dict[str, SensorSpec] = {}
+    sensors: dict[str, SensorSpec] = {}
     for kind, spec in SENSOR_SPECS.items():
-        mentions = {port: one for port, one in sorted(new.by_port.items()) if one.kind is kind}
-        known = [*placed.values(), *found.values()]
+        mentions = {
+            port: mention for port, mention in sorted(new.by_port.items()) if mention.kind is kind
+        }
+        known = [*placed.values(), *sensors.values()]
         names = {sensor.name for sensor in known}
         if kind is DeviceKind.GYRO:
             mounted = any(isinstance(sensor, GyroSpec) for sensor in known)
             for port in list(mentions)[0 if mounted else 1 :]:
                 doubts.append(f"a robot has one gyro: that on {port} is not built")
                 del mentions[port]
-        sides = _sides(
+        sides = _choose_sides(
             mentions,
             first_free=not any(isinstance(sensor, spec) for sensor in known),
             kind=kind,
@@ -92,8 +103,8 @@ def places_for(
         for port, side in sides.items():
             sensor = SENSOR_MAKERS[spec](port, side, names, body)
             names.add(sensor.name)
-            found[port] = sensor
-    return found
+            sensors[port] = sensor
+    return sensors
 
 
 SENSOR_SPECS: Mapping[DeviceKind, type[SensorSpec]] = {
@@ -106,23 +117,23 @@ SENSOR_SPECS: Mapping[DeviceKind, type[SensorSpec]] = {
 """The class of spec of each kind of sensor."""
 
 
-def _sides(
+def _choose_sides(
     mentions: Mapping[str, Mention], *, first_free: bool, kind: DeviceKind
 ) -> dict[str, Side]:
     """Return the side of each sensor: that of its name, else the next one that is free."""
-    found = {port: side_of(mention.names) for port, mention in mentions.items()}
-    if kind is DeviceKind.TOUCH and first_free and len(found) == 1 and Side.NONE in found.values():
-        return dict.fromkeys(found, Side.FRONT)
+    sides = {port: find_side(mention.names) for port, mention in mentions.items()}
+    if kind is DeviceKind.TOUCH and first_free and len(sides) == 1 and Side.NONE in sides.values():
+        return dict.fromkeys(sides, Side.FRONT)
     orders = [Side(side) for side in ORDERS[SENSOR_SPECS[kind]]]
-    taken = {*found.values()} | (
+    taken = {*sides.values()} | (
         set() if first_free or kind in (DeviceKind.TOUCH, DeviceKind.COLOR) else {Side.FRONT}
     )
-    for port, side in found.items():
-        if side is Side.NONE or [*found.values()].count(side) > 1:
-            free = [one for one in orders if one not in taken]
-            found[port] = free[0] if free else orders[-1]
-            taken.add(found[port])
-    return found
+    for port, side in sides.items():
+        if side is Side.NONE or [*sides.values()].count(side) > 1:
+            free = [other for other in orders if other not in taken]
+            sides[port] = free[0] if free else orders[-1]
+            taken.add(sides[port])
+    return sides
 
 
 def on_port(sensor: Any, port: str) -> SensorSpec:
@@ -131,34 +142,35 @@ def on_port(sensor: Any, port: str) -> SensorSpec:
     return moved
 
 
-def mounted(sensor: SensorSpec, mention: Mention) -> SensorSpec:
+def mount(sensor: SensorSpec, mention: Mention) -> SensorSpec:
     """Return a sensor that looks ahead, or aside or back if the program's name for it says so."""
-    side = side_of(mention.names) or (Side.RIGHT if means_aside(mention.names) else Side.NONE)
+    side = find_side(mention.names) or (Side.RIGHT if is_aside(mention.names) else Side.NONE)
     if not isinstance(sensor, UltrasonicSpec | InfraredSpec) or side not in _ASIDE:
         return sensor
     x_mm, y_mm, angle_deg = LOOKS[side]
     return replace(sensor, x_mm=x_mm, y_mm=y_mm, angle_deg=angle_deg)
 
 
-def fields_of(placed: Mapping[str, SensorSpec], usual: RobotSpec) -> dict[str, Any]:
+def build_fields(placed: Mapping[str, SensorSpec], usual: RobotSpec) -> dict[str, Any]:
     """Return the sensors as fields of a robot, those of the usual robot first and in its order."""
     order = [sensor.name for sensor in usual.sensors]
     sensors = sorted(
-        placed.values(), key=lambda one: order.index(one.name) if one.name in order else len(order)
+        placed.values(),
+        key=lambda part: order.index(part.name) if part.name in order else len(order),
     )
-    colors = [one for one in sensors if isinstance(one, ColorSensorSpec)]
-    ultrasonics = [one for one in sensors if isinstance(one, UltrasonicSpec)]
-    infrareds = [one for one in sensors if isinstance(one, InfraredSpec)]
-    front = next((one for one in ultrasonics if one.name == UltrasonicSpec().name), None)
-    infrared = next((one for one in infrareds if one.name == InfraredSpec().name), None)
+    colors = [part for part in sensors if isinstance(part, ColorSensorSpec)]
+    ultrasonics = [part for part in sensors if isinstance(part, UltrasonicSpec)]
+    infrareds = [part for part in sensors if isinstance(part, InfraredSpec)]
+    front = next((part for part in ultrasonics if part.name == UltrasonicSpec().name), None)
+    infrared = next((part for part in infrareds if part.name == InfraredSpec().name), None)
     return {
         "color_sensors": tuple(colors),
         "ultrasonic": front,
-        "gyro": next((one for one in sensors if isinstance(one, GyroSpec)), None),
-        "extra_ultrasonics": tuple(one for one in ultrasonics if one is not front),
-        "touch_sensors": tuple(one for one in sensors if isinstance(one, TouchSpec)),
+        "gyro": next((part for part in sensors if isinstance(part, GyroSpec)), None),
+        "extra_ultrasonics": tuple(part for part in ultrasonics if part is not front),
+        "touch_sensors": tuple(part for part in sensors if isinstance(part, TouchSpec)),
         "infrared": infrared,
-        "extra_infrareds": tuple(one for one in infrareds if one is not infrared),
+        "extra_infrareds": tuple(part for part in infrareds if part is not infrared),
     }
 
 

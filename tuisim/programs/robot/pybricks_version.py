@@ -42,11 +42,11 @@ def find_version_4_name(modules: Iterable[Module]) -> str:
     """Return a name in a program for Pybricks that only version 4 of it has; empty for none."""
     trees = [module.tree for module in modules]
     own = {name for tree in trees for name in find_definitions(tree)}
-    names = (name for tree in trees for node in ast.walk(tree) for name in _names_in(node, own))
+    names = (name for tree in trees for node in ast.walk(tree) for name in _list_names(node, own))
     return next(names, "")
 
 
-def _names_in(node: ast.AST, own: set[str]) -> Iterator[str]:
+def _list_names(node: ast.AST, own: set[str]) -> Iterator[str]:
     """Yield the names of version 4 in one node of a syntax tree.
 
     Args:
@@ -61,10 +61,10 @@ def _names_in(node: ast.AST, own: set[str]) -> Iterator[str]:
             if name in MEMBERS.get(part, ()) and not own & {part, name}:
                 yield f"{part}.{name}"
         case ast.Call(func=ast.Attribute(attr=name) | ast.Name(id=name)) if name not in own:
-            yield from _names_in_call(node, name)
+            yield from _list_call_names(node, name)
 
 
-def _names_in_call(call: ast.Call, name: str) -> Iterator[str]:
+def _list_call_names(call: ast.Call, name: str) -> Iterator[str]:
     """Yield the names of version 4 in a call of a function or method that the program does not define."""
     known = ARGUMENTS.get(name, frozenset())
     yield from (f"{keyword.arg}= of {name}()" for keyword in call.keywords if keyword.arg in known)

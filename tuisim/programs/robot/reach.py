@@ -9,38 +9,38 @@ from tuisim.programs.robot.library import CLASSES
 from tuisim.programs.robot.scopes import Scope
 
 
-def reachable(modules: Mapping[str, Scope]) -> list[Scope]:
+def find_reachable(modules: Mapping[str, Scope]) -> list[Scope]:
     """Return the scopes that can run, those of the program itself first.
 
     A function counts as soon as its name is used anywhere in what can run; the body of a class runs in any case.
     """
-    found: list[Scope] = []
+    scopes: list[Scope] = []
     names: set[str] = set()
     waiting = list(modules.values())
     left: list[Scope] = []
     while waiting:
         for scope in waiting:
-            found.append(scope)
-            names.update(_names(scope))
+            scopes.append(scope)
+            names.update(_list_names(scope))
             left += scope.inner.values()
         waiting = [scope for scope in left if _is_used(scope, names)]
         left = [scope for scope in left if scope not in waiting]
-    return found
+    return scopes
 
 
-def skipped(scope: Scope) -> set[ast.AST]:
+def find_skipped(scope: Scope) -> set[ast.AST]:
     """Return the nodes of a module that do not run because it is imported: those below `if __name__ == …`."""
-    found: set[ast.AST] = set()
+    nodes: set[ast.AST] = set()
     if scope.outer is None and scope.module.name:
         for node in scope.module.tree.body:
             match node:
                 case ast.If(test=ast.Compare(left=ast.Name(id="__name__"))):
-                    found.update(inner for statement in node.body for inner in ast.walk(statement))
-    return found
+                    nodes.update(inner for statement in node.body for inner in ast.walk(statement))
+    return nodes
 
 
-def _names(scope: Scope) -> Iterator[str]:
-    left_out = skipped(scope)
+def _list_names(scope: Scope) -> Iterator[str]:
+    left_out = find_skipped(scope)
     for node in scope.body:
         if node in left_out:
             continue

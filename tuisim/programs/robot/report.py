@@ -39,7 +39,7 @@ def find_usual(hub: str) -> RobotSpec:
     return replace(hub_robot, hub=hub, left_motor=motor, right_motor=motor, left_reversed=False)
 
 
-def hides_parts(mentions: Mentions) -> bool:
+def has_hidden_parts(mentions: Mentions) -> bool:
     """Return whether a program uses classes of motors or sensors, and its text shows no part that it makes."""
     if mentions.devices or mentions.pairs:
         return False
@@ -52,7 +52,7 @@ def hides_parts(mentions: Mentions) -> bool:
     return False
 
 
-def in_words(built: BuiltRobot) -> str:
+def describe_robot(built: BuiltRobot) -> str:
     """Return how a robot differs from the default one, in words."""
     return ", ".join(part.what for part in built.parts if part.changes)
 
@@ -92,12 +92,12 @@ class ProgramRobot:
         lines += [f"# Another reading is possible: {doubt}." for doubt in built.doubts]
         same = [part for part in built.parts if not part.changes and part.where]
         lines += [f"# As in {base}: {part.what} ({part.where})." for part in same]
-        changed = _difference(_table(built.choice.spec), _table(ROBOTS[base]))
-        said = {
+        changed = _compare(_build_table(built.choice.spec), _build_table(ROBOTS[base]))
+        comments = {
             part.path: f"{part.where}: {part.what}" if part.where else part.what
             for part in built.parts
         }
-        return [*lines, "", top, *_lines(changed, "", said)]
+        return [*lines, "", top, *_format_lines(changed, "", comments)]
 
     def save(self, path: Path) -> None:
         """Write the robot atomically to a robot file; comments in an existing file stay.
@@ -105,44 +105,44 @@ class ProgramRobot:
         Raises:
             RobotError: the file cannot be written, or is no robot file.
         """
-        at = Location(str(path), RobotError)
+        location = Location(str(path), RobotError)
         name = self.spec.name
         save_toml(
             path,
             self.list_lines(),
-            at,
-            lambda data: parse_robot(data, name, at).spec,
+            location,
+            lambda data: parse_robot(data, name, location).spec,
             self.spec,
         )
 
 
-def _table(spec: RobotSpec) -> dict[str, Any]:
+def _build_table(spec: RobotSpec) -> dict[str, Any]:
     """Return the robot as a file has it, with every value."""
     return tomllib.loads("\n".join(format_robot(spec)))
 
 
-def _difference(robot: Mapping[str, Any], usual: Mapping[str, Any]) -> dict[str, Any]:
-    found: dict[str, Any] = {}
+def _compare(robot: Mapping[str, Any], usual: Mapping[str, Any]) -> dict[str, Any]:
+    changes: dict[str, Any] = {}
     for key, value in robot.items():
         before = usual.get(key)
         if isinstance(value, dict) and isinstance(before, dict):
-            if inside := _difference(value, before):
-                found[key] = inside
+            if inside := _compare(value, before):
+                changes[key] = inside
         elif value != before:
-            found[key] = value
-    return found
+            changes[key] = value
+    return changes
 
 
-def _lines(table: Mapping[str, Any], place: str, said: Mapping[str, str]) -> Iterator[str]:
+def _format_lines(table: Mapping[str, Any], place: str, notes: Mapping[str, str]) -> Iterator[str]:
     values = {key: value for key, value in table.items() if not isinstance(value, dict)}
     under = f"{place}." if place else ""
     known = list_table_values(place)
     comments = {
-        key: said.get(f"{under}{key}", known[key].help if key in known else "") for key in values
+        key: notes.get(f"{under}{key}", known[key].help if key in known else "") for key in values
     }
     if values and place:
-        yield from ("", *([f"# {said[place]}"] if place in said else []), f"[{place}]")
+        yield from ("", *([f"# {notes[place]}"] if place in notes else []), f"[{place}]")
     yield from toml_lines(values, comments)
     for key, value in table.items():
         if isinstance(value, dict):
-            yield from _lines(value, f"{under}{toml_key(key)}", said)
+            yield from _format_lines(value, f"{under}{toml_key(key)}", notes)

@@ -97,7 +97,7 @@ class Scope:
         return self if self.outer is None else self.outer.top
 
 
-def scope_of(module: Module) -> Scope:
+def build_scope(module: Module) -> Scope:
     """Return the scopes of a module."""
     top = Scope(module, module.tree, None)
     _fill(top, module.tree.body)
@@ -107,7 +107,7 @@ def scope_of(module: Module) -> Scope:
 def _fill(scope: Scope, body: list[ast.stmt]) -> None:
     declared: set[str] = set()
     for statement in body:
-        for node in _nodes(statement):
+        for node in _walk(statement):
             scope.body.append(node)
             if isinstance(node, ast.Global):
                 declared.update(node.names)
@@ -122,7 +122,7 @@ def _fill(scope: Scope, body: list[ast.stmt]) -> None:
             scope.top.names.setdefault(name, []).extend(scope.names.pop(name))
 
 
-def _nodes(node: ast.AST) -> Iterator[ast.AST]:
+def _walk(node: ast.AST) -> Iterator[ast.AST]:
     """Yield a node and those inside it in the order of the text, without the bodies of functions and classes."""
     yield node
     if isinstance(node, FUNCTIONS):
@@ -138,7 +138,7 @@ def _nodes(node: ast.AST) -> Iterator[ast.AST]:
     else:
         children = list(ast.iter_child_nodes(node))
     for child in children:
-        yield from _nodes(child)
+        yield from _walk(child)
 
 
 def _bind_parameters(scope: Scope, function: Function) -> None:
@@ -193,8 +193,8 @@ def _bind_target(scope: Scope, target: ast.expr, bound: Bound) -> None:
         case ast.Attribute(value=ast.Name(id="self" | "cls"), attr=name) if scope.owner is not None:
             scope.owner.attributes.setdefault(name, []).append(bound)
         case ast.Tuple(elts=parts) | ast.List(elts=parts):
-            for at, part in enumerate(parts):
+            for index, part in enumerate(parts):
                 inside = part.value if isinstance(part, ast.Starred) else part
                 _bind_target(
-                    scope, inside, Bound(bound.node, scope, (*bound.path, at), bound.is_item)
+                    scope, inside, Bound(bound.node, scope, (*bound.path, index), bound.is_item)
                 )

@@ -21,13 +21,13 @@ def own_folder(program: Program) -> str:
     return program.module_folder or os.path.dirname(program.path) or os.curdir
 
 
-def first_folders(program: Program) -> list[str]:
+def list_first_folders(program: Program) -> list[str]:
     """Return the folders in which a program finds its modules before it changes `sys.path`."""
     path = program.python_path if program.working_directory else user_python_path()
     return [own_folder(program), *path]
 
 
-def added_folders(tree: ast.Module, file: str) -> list[str]:
+def find_added_folders(tree: ast.Module, file: str) -> list[str]:
     """Return the folders that a module puts into `sys.path`.
 
     Args:
@@ -42,27 +42,27 @@ def added_folders(tree: ast.Module, file: str) -> list[str]:
         if isinstance(target, ast.Name)
     }
     folders = _Folders(assigned, file)
-    return list(dict.fromkeys(filter(None, map(folders.path, _added(tree)))))
+    return list(dict.fromkeys(filter(None, map(folders.path, _find_added(tree)))))
 
 
-def _added(tree: ast.Module) -> Iterator[ast.expr]:
+def _find_added(tree: ast.Module) -> Iterator[ast.expr]:
     """Yield the expressions of the folders that a module puts into `sys.path`."""
     for node in ast.walk(tree):
         match node:
             case ast.Call(func=ast.Attribute(value=base, attr="append"), args=[folder]):
-                given = [folder]
+                folders = [folder]
             case ast.Call(func=ast.Attribute(value=base, attr="insert"), args=[_, folder]):
-                given = [folder]
+                folders = [folder]
             case ast.Call(
-                func=ast.Attribute(value=base, attr="extend"), args=[ast.List(elts=given)]
+                func=ast.Attribute(value=base, attr="extend"), args=[ast.List(elts=folders)]
             ):
                 pass
-            case ast.AugAssign(target=base, value=ast.List(elts=given)):
+            case ast.AugAssign(target=base, value=ast.List(elts=folders)):
                 pass
             case _:
                 continue
         if isinstance(base, ast.Attribute) and base.attr == "path" and _is_name(base.value, "sys"):
-            yield from given
+            yield from folders
 
 
 def _is_name(node: ast.expr, name: str) -> bool:
@@ -97,14 +97,14 @@ class _Folders:
             case ast.Attribute(attr="pardir"):
                 return os.pardir
             case ast.Attribute(value=base, attr="parent"):
-                return _above(inside.path(base), 1)
+                return _climb(inside.path(base), 1)
             case ast.Subscript(
                 value=ast.Attribute(value=base, attr="parents"),
                 slice=ast.Constant(value=int(steps)),
             ):
-                return _above(inside.path(base), steps + 1)
+                return _climb(inside.path(base), steps + 1)
             case ast.BinOp(left=left, op=ast.Div(), right=right):
-                return _joined(inside.path(left), inside.path(right))
+                return _join(inside.path(left), inside.path(right))
             case ast.BinOp(left=left, op=ast.Add(), right=right):
                 parts = inside.path(left), inside.path(right)
                 return "".join(parts) if all(parts) else ""
@@ -118,21 +118,21 @@ class _Folders:
             case ast.Call(func=ast.Attribute(attr="getcwd" | "cwd")):
                 return os.path.dirname(self.file) or os.curdir
             case ast.Call(func=ast.Attribute(attr="join"), args=args):
-                return _joined(*map(self.path, args))
+                return _join(*map(self.path, args))
             case ast.Call(func=ast.Attribute(value=base, attr="joinpath"), args=args):
-                return _joined(*map(self.path, [base, *args]))
+                return _join(*map(self.path, [base, *args]))
             case ast.Call(func=ast.Attribute(attr="dirname"), args=[part]):
-                return _above(self.path(part), 1)
+                return _climb(self.path(part), 1)
             case ast.Call(func=ast.Name(id=name) | ast.Attribute(attr=name), args=[*args]) if (
                 args and name in (*_PATHS, *_SAME)
             ):
-                return _joined(*map(self.path, args if name in _PATHS else args[:1]))
+                return _join(*map(self.path, args if name in _PATHS else args[:1]))
             case ast.Call(func=ast.Attribute(value=base, attr=name)) if name in _SAME:
                 return self.path(base)
         return ""
 
 
-def _above(path: str, steps: int) -> str:
+def _climb(path: str, steps: int) -> str:
     """Return the folder some steps above a path; empty if that is not known."""
     if not path:
         return ""
@@ -142,5 +142,5 @@ def _above(path: str, steps: int) -> str:
     return path
 
 
-def _joined(*parts: str) -> str:
+def _join(*parts: str) -> str:
     return os.path.join(*parts) if parts and all(parts) else ""

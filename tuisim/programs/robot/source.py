@@ -27,7 +27,7 @@ from tuisim.engine.brick_home import place_folder
 from tuisim.engine.core.hub_spec import HUBS
 from tuisim.engine.core.profile import Library
 from tuisim.engine.files import read_bytes
-from tuisim.programs.robot.search_path import added_folders, first_folders, own_folder
+from tuisim.programs.robot.search_path import find_added_folders, list_first_folders, own_folder
 
 SIGNS: Mapping[type[ast.cmpop], str] = {
     ast.Lt: "<",
@@ -67,12 +67,12 @@ class Module:
         if not level:
             return name or ""
         parts = self.name.split(".") if self.name else []
-        kept = parts[: len(parts) - level + (1 if self.is_package else 0)]
-        return ".".join([*kept, *([name] if name else [])])
+        parents = parts[: len(parts) - level + (1 if self.is_package else 0)]
+        return ".".join([*parents, *([name] if name else [])])
 
 
 @lru_cache(16)
-def parsed(text: str) -> ast.Module | None:
+def parse(text: str) -> ast.Module | None:
     """Return the syntax tree of a text, which nobody changes; None if it is not Python."""
     try:
         with warnings.catch_warnings():
@@ -86,28 +86,28 @@ def parsed(text: str) -> ast.Module | None:
 
 def read_modules(program: Program) -> dict[str, Module]:
     """Return a program and its own modules by name, the program first; empty if it is not Python."""
-    tree = parsed(program.text)
+    tree = parse(program.text)
     if tree is None:
         return {}
     search = _Search(program)
     search.extend(tree, program.file)
-    found = {"": Module("", program.name, tree)}
-    waiting = [found[""]]
-    while waiting and len(found) < MAX_MODULES:
+    modules = {"": Module("", program.name, tree)}
+    waiting = [modules[""]]
+    while waiting and len(modules) < MAX_MODULES:
         module = waiting.pop()
-        for name in _imported(module):
-            if name in found or name.split(".")[0] in LIBRARIES:
+        for name in _list_imported(module):
+            if name in modules or name.split(".")[0] in LIBRARIES:
                 continue
             if (read := search.module(name)) is not None:
-                found[name] = read
+                modules[name] = read
                 waiting.append(read)
-    return found
+    return modules
 
 
-def missing_module(program: Program, modules: dict[str, Module]) -> str:
+def find_missing_module(program: Program, modules: dict[str, Module]) -> str:
     """Return how to find a module that a program imports and that lies elsewhere in its repository; empty for none."""
     known = {"", *modules, *LIBRARIES, *SPIKE_MODULES, *sys.stdlib_module_names}
-    named = (name.split(".")[0] for module in modules.values() for name in _imported(module))
+    named = (name.split(".")[0] for module in modules.values() for name in _list_imported(module))
     for name in dict.fromkeys(named):
         if name not in known and (folder := find_module_folder(name, own_folder(program))):
             return f"it imports {name}, which is in {folder}: PYTHONPATH={folder} finds it"
@@ -123,13 +123,13 @@ class _Search:
 
     def __init__(self, program: Program) -> None:
         self._own = own_folder(program)
-        self._folders = first_folders(program)
+        self._folders = list_first_folders(program)
 
     def extend(self, tree: ast.Module, file: str) -> None:
         """Add the folders that a module puts into `sys.path`; a relative one is beside the program, as on the brick."""
         if os.path.isdir(self._own):
             own = os.path.abspath(self._own)
-            places = (place_folder(folder, own) for folder in added_folders(tree, file))
+            places = (place_folder(folder, own) for folder in find_added_folders(tree, file))
             self._folders += [os.path.join(own, place) for place in places]
 
     def module(self, name: str) -> Module | None:
@@ -137,8 +137,8 @@ class _Search:
         if not all(part.isidentifier() for part in name.split(".")):
             return None
         for folder in self._folders:
-            if (found := self._read(Path(folder), name)) is not None:
-                return found
+            if (module := self._read(Path(folder), name)) is not None:
+                return module
         return None
 
     def _read(self, folder: Path, name: str) -> Module | None:
@@ -149,7 +149,7 @@ class _Search:
                 text, _ = decode_source(data[:MAX_MODULE_BYTES], str(path))
             except ConfigError:
                 continue
-            if (tree := parsed(text)) is None:
+            if (tree := parse(text)) is None:
                 return None
             self.extend(tree, str(path))
             return Module(name, os.path.relpath(path, self._own), tree, is_package)
@@ -157,7 +157,7 @@ class _Search:
         return Module(name, name, ast.Module([], []), is_package=True) if place.is_dir() else None
 
 
-def _imported(module: Module) -> Iterator[str]:
+def _list_imported(module: Module) -> Iterator[str]:
     """Yield the names that may be modules in the imports of a module, packages before what is in them."""
     for node in ast.walk(module.tree):
         match node:
@@ -174,28 +174,32 @@ def _imported(module: Module) -> Iterator[str]:
 
 def is_for_other_hub(modules: dict[str, Module]) -> bool:
     """Return whether a program, or one of its own modules, imports what only LEGO's Python for SPIKE hubs has."""
-    names = {name for module in modules.values() for name in _imported(module)} - {*modules}
-    return bool(names & {*SPIKE_MODULES}) and not names & {*OF_EV3, HUB_DEVICES, "pybricks.hubs"}
+    names = {name for module in modules.values() for name in _list_imported(module)} - {*modules}
+    return bool(names & {*SPIKE_MODULES}) and not names & {
+        *EV3_MODULES,
+        HUB_DEVICES,
+        "pybricks.hubs",
+    }
 
 
-OF_EV3 = frozenset({"pybricks.hubs.EV3Brick", "pybricks.ev3devices", "ev3dev2", "ev3dev"})
+EV3_MODULES = frozenset({"pybricks.hubs.EV3Brick", "pybricks.ev3devices", "ev3dev2", "ev3dev"})
 """What only programs for the EV3 import."""
 
 
 def find_hub(modules: dict[str, Module]) -> str:
     """Return which of `HUBS` a program, with its own modules, is for; empty for the EV3, or none."""
-    names = {name: None for module in modules.values() for name in _imported(module)}
-    if not names.keys().isdisjoint(OF_EV3):
+    names = {name: None for module in modules.values() for name in _list_imported(module)}
+    if not names.keys().isdisjoint(EV3_MODULES):
         return ""
     named = [hub for name in names if (hub := name.removeprefix("pybricks.hubs.")) in HUBS]
     return named[0] if named else "PrimeHub" if HUB_DEVICES in names else ""
 
 
-def library_of(modules: dict[str, Module]) -> Library | None:
+def find_library(modules: dict[str, Module]) -> Library | None:
     """Return the library for a brick that a program imports, in itself or in its own modules; None for none."""
-    names = {name.split(".")[0] for module in modules.values() for name in _imported(module)} & {
-        *LIBRARIES
-    }
+    names = {
+        name.split(".")[0] for module in modules.values() for name in _list_imported(module)
+    } & {*LIBRARIES}
     if PYBRICKS in names:
         return Library.PYBRICKS
     return Library.EV3DEV2 if names else None

@@ -15,9 +15,9 @@ from tuisim.engine.core.conditions import COMPARE
 from tuisim.engine.core.sensors.color import LightRead
 from tuisim.engine.core.spec import RobotSpec
 from tuisim.programs.robot.library import DeviceKind
-from tuisim.programs.robot.mentions import Mention, Mentions, mentions_in
+from tuisim.programs.robot.mentions import Mention, Mentions, read_mentions
 from tuisim.programs.robot.scopes import Bound, Scope
-from tuisim.programs.robot.source import SIGNS, TURNED, Module, parsed, read_modules
+from tuisim.programs.robot.source import SIGNS, TURNED, Module, parse, read_modules
 from tuisim.programs.robot.values import Instance
 
 AIM = "-"
@@ -25,7 +25,7 @@ AIM = "-"
 _KEPT = {"int", "float", "round", "abs", "max", "min"}
 """Functions of a reading that is then still compared."""
 _READS = {str(read): read for read in LightRead}
-_MOST_STEPS = 4
+_MAX_STEPS = 4
 """Most variables between a reading and its comparison."""
 _PRELUDE = "*prelude"
 
@@ -54,8 +54,8 @@ class ProgramThreshold:
     @property
     def words(self) -> str:
         """The comparison without the reading, such as `> 90`, `== Red`, `aim 50`."""
-        shown = COLOR_NAMES[int(self.value)] if self.read.is_color else f"{self.value:g}"
-        return f"{'aim' if self.is_aim else self.sign} {shown}"
+        number = COLOR_NAMES[int(self.value)] if self.read.is_color else f"{self.value:g}"
+        return f"{'aim' if self.is_aim else self.sign} {number}"
 
 
 _READ = re.compile("|".join(rf"\.{read}\b" for read in LightRead if not read.is_color))
@@ -63,8 +63,8 @@ _READ = re.compile("|".join(rf"\.{read}\b" for read in LightRead if not read.is_
 
 def find_light_read(text: str) -> LightRead:
     """Return what the text of a program reads first of a colour sensor as a number; percent if it reads none."""
-    found = _READ.search(text)
-    return LightRead(found[0][1:]) if found else LightRead.PERCENT
+    match = _READ.search(text)
+    return LightRead(match[0][1:]) if match else LightRead.PERCENT
 
 
 @lru_cache(maxsize=4)
@@ -77,29 +77,35 @@ def find_thresholds(
     a program that is not Python, or too deeply nested to be read.
     """
     try:
-        return _found(program, robot)
+        return _find_thresholds(program, robot)
     except RecursionError:
         return {}
 
 
-def _found(program: Program, robot: RobotSpec) -> Mapping[str, tuple[ProgramThreshold, ...]]:
+def _find_thresholds(
+    program: Program, robot: RobotSpec
+) -> Mapping[str, tuple[ProgramThreshold, ...]]:
     modules = read_modules(program)
     if not modules:
         return {}
-    if prelude := parsed(PRELUDE_TEXTS[program.prelude]):
+    if prelude := parse(PRELUDE_TEXTS[program.prelude]):
         modules[_PRELUDE] = Module(_PRELUDE, _PRELUDE, prelude)
         star = ast.ImportFrom(_PRELUDE, [ast.alias("*")], 0)
         tree = modules[""].tree
         modules[""] = replace(modules[""], tree=ast.Module([star, *tree.body], tree.type_ignores))
-    found: dict[str, list[ProgramThreshold]] = {sensor.name: [] for sensor in robot.color_sensors}
-    for port, threshold in _compared(mentions_in(modules)):
+    thresholds: dict[str, list[ProgramThreshold]] = {
+        sensor.name: [] for sensor in robot.color_sensors
+    }
+    for port, threshold in _find_comparisons(read_mentions(modules)):
         for sensor in robot.color_sensors:
-            if port in ("", sensor.port) and threshold not in found[sensor.name]:
-                found[sensor.name].append(threshold)
-    return {name: tuple(sorted(some, key=lambda one: one.line)) for name, some in found.items()}
+            if port in ("", sensor.port) and threshold not in thresholds[sensor.name]:
+                thresholds[sensor.name].append(threshold)
+    return {
+        name: tuple(sorted(some, key=lambda one: one.line)) for name, some in thresholds.items()
+    }
 
 
-def _compared(mentions: Mentions) -> Iterator[tuple[str, ProgramThreshold]]:
+def _find_comparisons(mentions: Mentions) -> Iterator[tuple[str, ProgramThreshold]]:
     """Yield each comparison of a reading with a constant, with the sensor's port, empty if that is unknown."""
     for scope in mentions.scopes:
         if scope.module.name:
@@ -109,36 +115,38 @@ def _compared(mentions: Mentions) -> Iterator[tuple[str, ProgramThreshold]]:
                 case ast.Compare(left=left, ops=signs, comparators=others):
                     for sign, right in zip(signs, others, strict=True):
                         if word := SIGNS.get(type(sign)):
-                            yield from _pair(mentions, scope, left, word, right)
-                            yield from _pair(mentions, scope, right, TURNED.get(word, word), left)
+                            yield from _build_pair(mentions, scope, left, word, right)
+                            yield from _build_pair(
+                                mentions, scope, right, TURNED.get(word, word), left
+                            )
                         left = right
                 case ast.BinOp(left=left, op=ast.Sub(), right=right):
-                    yield from _pair(mentions, scope, left, AIM, right)
-                    yield from _pair(mentions, scope, right, AIM, left)
+                    yield from _build_pair(mentions, scope, left, AIM, right)
+                    yield from _build_pair(mentions, scope, right, AIM, left)
 
 
-def _pair(
+def _build_pair(
     mentions: Mentions, scope: Scope, reading: ast.expr, sign: str, other: ast.expr
 ) -> Iterator[tuple[str, ProgramThreshold]]:
-    for port, read in dict.fromkeys(_reads(mentions, scope, reading, 0)):
-        values = _numbers(mentions, scope, other, read)
+    for port, read in dict.fromkeys(_find_reads(mentions, scope, reading, 0)):
+        values = _find_numbers(mentions, scope, other, read)
         # What a reading drives toward is one number.
         if values and (sign != AIM or (len(values) == 1 and not read.is_color)):
             yield port, ProgramThreshold(read, sign, values[0], reading.lineno)
 
 
-def _numbers(mentions: Mentions, scope: Scope, node: ast.expr, read: LightRead) -> list[float]:
+def _find_numbers(mentions: Mentions, scope: Scope, node: ast.expr, read: LightRead) -> list[float]:
     """Return the numbers that an expression can be, the likeliest first; for a colour its code."""
     assert mentions.evaluation is not None
-    found = mentions.evaluation.values(node, scope)
+    values = mentions.evaluation.values(node, scope)
     if not read.is_color:
-        return [value for value in found if isinstance(value, int | float)]
-    names = [_color(node), *(value for value in found if isinstance(value, str))]
-    codes = [value for value in found if isinstance(value, int) and 0 <= value < len(COLOR_NAMES)]
+        return [value for value in values if isinstance(value, int | float)]
+    names = [_parse_color(node), *(value for value in values if isinstance(value, str))]
+    codes = [value for value in values if isinstance(value, int) and 0 <= value < len(COLOR_NAMES)]
     return [*(COLOR_NAMES.index(name) for name in names if name in COLOR_NAMES), *codes]
 
 
-def _color(node: ast.expr) -> str | None:
+def _parse_color(node: ast.expr) -> str | None:
     """Return the name of a colour that is written as `Color.RED` or `ColorSensor.COLOR_RED`."""
     match node:
         case ast.Attribute(attr=name) | ast.Name(id=name):
@@ -147,7 +155,7 @@ def _color(node: ast.expr) -> str | None:
     return None
 
 
-def _reads(
+def _find_reads(
     mentions: Mentions, scope: Scope, node: ast.expr, steps: int
 ) -> Iterator[tuple[str, LightRead]]:
     """Yield the ports and reads of colour sensors that an expression may be."""
@@ -156,24 +164,24 @@ def _reads(
             ast.Attribute(value=base, attr=name)
             | ast.Call(func=ast.Attribute(value=base, attr=name))
         ) if name in _READS:
-            if (sensor := _sensor(mentions, scope, base)) is not None:
+            if (sensor := _find_sensor(mentions, scope, base)) is not None:
                 yield sensor.port, _READS[name]
         case ast.Call(func=ast.Name(id=name), args=args) if name in _KEPT:
             for part in args:
-                yield from _reads(mentions, scope, part, steps)
+                yield from _find_reads(mentions, scope, part, steps)
         case ast.NamedExpr(value=value):
-            yield from _reads(mentions, scope, value, steps)
-        case ast.Name(id=name) if steps < _MOST_STEPS:
+            yield from _find_reads(mentions, scope, value, steps)
+        case ast.Name(id=name) if steps < _MAX_STEPS:
             for binding in scope.find_bindings(name):
                 if isinstance(binding, Bound) and not binding.path and not binding.is_item:
-                    yield from _reads(mentions, binding.scope, binding.node, steps + 1)
+                    yield from _find_reads(mentions, binding.scope, binding.node, steps + 1)
 
 
-def _sensor(mentions: Mentions, scope: Scope, node: ast.expr) -> Mention | None:
+def _find_sensor(mentions: Mentions, scope: Scope, node: ast.expr) -> Mention | None:
     assert mentions.evaluation is not None
     for value in mentions.evaluation.values(node, scope):
         if isinstance(value, Instance):
-            for one in mentions.devices:
-                if one.kind is DeviceKind.COLOR and one.makes(value):
-                    return one
+            for device in mentions.devices:
+                if device.kind is DeviceKind.COLOR and device.makes(value):
+                    return device
     return None

@@ -30,7 +30,7 @@ _SIDES = {
     Side.BACK: "back rear behind hinten heck arriere atras achter",
     Side.MIDDLE: "middle mid center centre mitte milieu centro",
 }
-_SIDE_OF = {word: side for side, words in _SIDES.items() for word in words.split()}
+_SIDES_BY_WORD = {word: side for side, words in _SIDES.items() for word in words.split()}
 _LONG = {side.value: side for side in (Side.LEFT, Side.RIGHT)}
 
 _TOOL_WORDS = (
@@ -42,61 +42,63 @@ _TOOL_WORDS = (
 _TOOLS = frozenset(_TOOL_WORDS.split())
 
 
-def _words(text: str) -> frozenset[str]:
+def _split_words(text: str) -> frozenset[str]:
     return frozenset(text.split())
 
 
-_LARGE = _words(
+_LARGE = _split_words(
     "large big groß großer große großes gross grosser grosse grosses grande gran gros groot grote stor duzy"
 )
-_FORWARDS = _words(
+_FORWARDS = _split_words(
     "forward forwards ahead vorwaerts vorwärts geradeaus avancer avance adelante avanzar avanti vooruit frente framat "
     "naprzod"
 )
-_BACKWARDS = _words(
+_BACKWARDS = _split_words(
     "back backward backwards reverse zurueck zurück reculer atras atrás indietro achteruit"
 )
-_WHEEL = _words("wheel wheels tire tyre reifen raddurchmesser radumfang roue rueda roda ruota wiel")
-_DIAMETER = _words(
+_WHEEL = _split_words(
+    "wheel wheels tire tyre reifen raddurchmesser radumfang roue rueda roda ruota wiel"
+)
+_DIAMETER = _split_words(
     "diameter diam dia d durchmesser raddurchmesser diametre diamètre diametro diámetro mm cm"
 )
-_RADIUS = _words("radius rad r radio rayon raio raggio")
-_GIRTH = _words("circumference circ umfang radumfang circonference circunferencia perimeter")
-_TRACK = _words("track wheelbase spurweite achsabstand radabstand")
-_APART = _words("distance spacing separation gap base track apart")
+_RADIUS = _split_words("radius rad r radio rayon raio raggio")
+_GIRTH = _split_words("circumference circ umfang radumfang circonference circunferencia perimeter")
+_TRACK = _split_words("track wheelbase spurweite achsabstand radabstand")
+_APART = _split_words("distance spacing separation gap base track apart")
 _UNITS_MM = {"mm": 1.0, "cm": 10.0}
 
 
-def _parts(name: str) -> list[str]:
+def _split_name(name: str) -> list[str]:
     return [part.lower() for part in _PART.findall(name)]
 
 
-def side_of(names: Iterable[str]) -> Side:
+def find_side(names: Iterable[str]) -> Side:
     """Return the side that one of some names says, the first first."""
     for name in names:
-        for part in _parts(name):
-            if part in _SIDE_OF:
-                return _SIDE_OF[part]
+        for part in _split_name(name):
+            if part in _SIDES_BY_WORD:
+                return _SIDES_BY_WORD[part]
             for word, side in _LONG.items():
                 if word in part and part != "bright":
                     return side
     return Side.NONE
 
 
-def means_aside(names: Iterable[str]) -> bool:
+def is_aside(names: Iterable[str]) -> bool:
     """Return whether names say that a part looks aside, whatever the side."""
-    return any(part in ("side", "aside") for name in names for part in _parts(name))
+    return any(part in ("side", "aside") for name in names for part in _split_name(name))
 
 
-def means_diameter(name: str) -> bool:
+def is_diameter(name: str) -> bool:
     """Return whether a number of that name is the diameter of a wheel."""
-    parts = {*_parts(name)}
+    parts = {*_split_name(name)}
     return parts <= _WHEEL | _DIAMETER and bool(parts & _WHEEL) and bool(parts & _DIAMETER)
 
 
-def means_radius(name: str) -> bool:
+def is_radius(name: str) -> bool:
     """Return whether a number of that name is the radius of a wheel."""
-    parts = {*_parts(name)}
+    parts = {*_split_name(name)}
     return (
         parts <= _WHEEL | _RADIUS | _UNITS_MM.keys()
         and bool(parts & _WHEEL)
@@ -104,9 +106,9 @@ def means_radius(name: str) -> bool:
     )
 
 
-def means_girth(name: str) -> bool:
+def is_girth(name: str) -> bool:
     """Return whether a number of that name is the circumference of a wheel."""
-    parts = {*_parts(name)}
+    parts = {*_split_name(name)}
     return (
         parts <= _WHEEL | _GIRTH | _UNITS_MM.keys()
         and bool(parts & _WHEEL)
@@ -114,30 +116,30 @@ def means_girth(name: str) -> bool:
     )
 
 
-def means_spacing(name: str) -> bool:
+def is_spacing(name: str) -> bool:
     """Return whether a number of that name is how far the wheels are apart."""
-    parts = {*_parts(name)} - {"axle", "width"}
+    parts = {*_split_name(name)} - {"axle", "width"}
     if not parts <= _WHEEL | _TRACK | _APART | _UNITS_MM.keys():
         return False
     return bool(parts & _TRACK) or (bool(parts & _WHEEL) and bool(parts & _APART))
 
 
-def unit_mm(name: str) -> float:
+def parse_unit_mm(name: str) -> float:
     """Return the unit that a name ends with, in mm; 0 if it says none."""
-    return next((_UNITS_MM[part] for part in _parts(name) if part in _UNITS_MM), 0.0)
+    return next((_UNITS_MM[part] for part in _split_name(name) if part in _UNITS_MM), 0.0)
 
 
-def means_forwards(name: str) -> bool:
+def is_forwards(name: str) -> bool:
     """Return whether a function's name says that it drives forwards."""
-    parts = {*_parts(name)}
+    parts = {*_split_name(name)}
     return bool(parts & _FORWARDS) and not parts & _BACKWARDS
 
 
-def means_large(names: Iterable[str]) -> bool:
+def is_large(names: Iterable[str]) -> bool:
     """Return whether names say that a motor is a large one."""
-    return any(part in _LARGE for name in names for part in _parts(name))
+    return any(part in _LARGE for name in names for part in _split_name(name))
 
 
-def means_tool(names: Iterable[str]) -> bool:
+def is_tool(names: Iterable[str]) -> bool:
     """Return whether names say that a motor moves something else than a wheel."""
-    return any(part in _TOOLS for name in names for part in _parts(name))
+    return any(part in _TOOLS for name in names for part in _split_name(name))

@@ -73,7 +73,7 @@ class Experiment:
         self.lab.until_ns = self.recorded["n"] * TICK_NS + TICK_NS // 2
         self.lab.looks.append(self._look)
         self.seen: list[tuple[int, list[tuple[int, int] | None]]] = []
-        self.returned: list[tuple[str, int, Any]] = []
+        self.find_returned: list[tuple[str, int, Any]] = []
         robotics.DriveBase.current = None
         library = version_4 if key.startswith("v4") else VERSION_2
         direction = Direction.COUNTERCLOCKWISE if "ccw" in key else Direction.CLOCKWISE
@@ -124,7 +124,7 @@ class Experiment:
             named["then"] = version_4.Stop(named["then"])
         getattr(owner, name)(*args, **named)
         state = self.base.state() if self.base else self.motor.angle()
-        self.returned.append((name, self.lab.now // 1_000_000, state))
+        self.find_returned.append((name, self.lab.now // 1_000_000, state))
 
     def references(self) -> Iterator[tuple[int, list[Any], list[Any]]]:
         """Yield the times, what was recorded, and what is now; each a position and a rate for each controller."""
@@ -176,7 +176,7 @@ def ends_ms(key: str) -> Iterator[tuple[int, int]]:
     experiment = Experiment(key).run()
     blocking = [
         at
-        for name, at, _ in experiment.returned
+        for name, at, _ in experiment.find_returned
         if name not in ("drive", "run", "stop", "brake", "dc")
     ]
     yield from zip([at for _, at, _ in experiment.recorded["returned"]], blocking, strict=True)
@@ -252,7 +252,7 @@ def test_it_runs_until_it_is_stalled(key: str) -> None:
     experiment = Experiment(key, stop_deg=125.0).run()
     (_, recorded_ms, recorded), (_, now_ms, now) = (
         experiment.recorded["returned"][0],
-        experiment.returned[0],
+        experiment.find_returned[0],
     )
     assert abs(now) == 125 and abs(recorded[0]) in range(122, 130)
     assert abs(now_ms - recorded_ms) <= 110
@@ -308,7 +308,7 @@ OF_VERSION_4 = [key for key in RECORDED if key.startswith("v4") and RECORDED[key
 def test_version_4_moves_within_the_bands_of_its_own_tests(key: str) -> None:
     experiment = Experiment(key, stop_deg=125.0 if "stalled" in key else None).run()
     for (_, recorded_ms, state), (_, now_ms, found) in zip(
-        experiment.recorded["returned"], experiment.returned, strict=True
+        experiment.recorded["returned"], experiment.find_returned, strict=True
     ):
         assert abs(recorded_ms - now_ms) <= 60 + recorded_ms // 100
         for recorded, now in zip(

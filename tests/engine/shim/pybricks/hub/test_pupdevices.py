@@ -48,7 +48,7 @@ class Experiment:
             MotorLaw.PYBRICKS_4, kinds, min(stops), hub="PrimeHub", robot=recorded.get("true_robot")
         )
         self.lab.until_ns = recorded["final"][0] * TICK_NS // 10 + TICK_NS // 2
-        self.returned: list[tuple[str, int | None, Any]] = []
+        self.find_returned: list[tuple[str, int | None, Any]] = []
         self.references: dict[int, list[int]] = {}
         self.lab.looks.append(self._look)
         robotics.DriveBase.current = None
@@ -100,7 +100,7 @@ class Experiment:
         names = {"left_motor": self.motors[0], "Stop": version_4.Stop, "self": owner}
         result = eval(call if call.startswith("left") else f"self.{call}", names)
         if any(after == call for after, *_ in self.recorded["returned"]):
-            self.returned.append((call, self.lab.now // 1_000_000, self.place, result))  # type: ignore[arg-type]
+            self.find_returned.append((call, self.lab.now // 1_000_000, self.place, result))  # type: ignore[arg-type]
 
     @property
     def place(self) -> list[float]:
@@ -124,9 +124,9 @@ def find_wrong_ends(experiment: Experiment) -> list[str]:
     recorded, misses = experiment.recorded, []
     places = [3, 2] if experiment.base else [2]
     returned = [one for one in recorded["returned"] if one[1] is not None]
-    if len(returned) != len(experiment.returned):
-        misses.append(f"{len(returned)} calls return, here {len(experiment.returned)}")
-    for (call, at_ms, place), one in zip(returned, experiment.returned, strict=False):
+    if len(returned) != len(experiment.find_returned):
+        misses.append(f"{len(returned)} calls return, here {len(experiment.find_returned)}")
+    for (call, at_ms, place), one in zip(returned, experiment.find_returned, strict=False):
         if not EARLIEST_MS <= at_ms - one[1] <= LATEST_MS:
             misses.append(f"{call} returns at {at_ms}, here {one[1]}")
         if any(abs(a - b) > band + 2 for a, b, band in zip(place, one[2], places, strict=True)):
