@@ -47,11 +47,11 @@ def _of_run(app: LabApp) -> dict[str, list[str]]:
 
 def _move_all(plan: NextRun, profile: str) -> NextRun:
     """Return a plan with other settings in everything."""
-    plan = plans.with_robot(plans.with_profile(plan, profile), "Small_Robot")
-    plan = plans.at_pose(plans.with_obstacle_set(plan, "Wall"), Pose(900.0, 700.0, 45.0))
-    plan = plans.with_noise(plan, NoiseSpec(light=74, motor=30))
-    plan = plans.with_values(plan, {"drift": DriftSpec(light_pc=9.0, echo_bias_mm=5.0)})
-    return plans.with_pen(plans.with_seed(plan, 7), True)
+    plan = plans.change_robot(plans.change_profile(plan, profile), "Small_Robot")
+    plan = plans.move_start(plans.change_obstacle_set(plan, "Wall"), Pose(900.0, 700.0, 45.0))
+    plan = plans.change_noise(plan, NoiseSpec(light=74, motor=30))
+    plan = plans.change_values(plan, {"drift": DriftSpec(light_pc=9.0, echo_bias_mm=5.0)})
+    return plans.change_pen(plans.change_seed(plan, 7), True)
 
 
 async def _open_again(pilot: Pilot[None], app: LabApp) -> None:

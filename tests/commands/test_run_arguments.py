@@ -18,7 +18,7 @@ from tuisim.app.app import AppSettings
 from tuisim.app.branch import Branch
 from tuisim.app.run_controller import RunController
 from tuisim.app.setup.fields import find
-from tuisim.app.setup.next_run import plan_of_run
+from tuisim.app.setup.next_run import plan_rerun
 from tuisim.base.source import Program
 from tuisim.engine.core.profile import PROFILES
 from tuisim.engine.runs.handle import RunHandle
@@ -197,7 +197,7 @@ def test_a_branch_has_the_arguments_and_modules_of_its_run(stored: Path) -> None
     run = RunStore().load_run("last")
     edited = Program("uses.py", "# edited\n" + USES, path=run.program.path)
     branch = Branch(Recording(run), 0, edited, None, goes_on=False)
-    runs = RunController(None, plan_of_run(run.spec), 0.0)
+    runs = RunController(None, plan_rerun(run.spec), 0.0)
     runs.branch(branch)
     assert runs.run is not None
     with closing(runs.run) as handle:

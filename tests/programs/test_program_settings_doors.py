@@ -77,7 +77,7 @@ def mat(name: str) -> Option:
         f"-b {name}",
         {"background": name},
         f'background = "{name}"',
-        lambda plan: plans.with_mat(plan, name),
+        lambda plan: plans.change_mat(plan, name),
         ("world.background", "world.start", "world.obstacles", "robot.color_sensors"),
     )
 
@@ -87,20 +87,20 @@ def profile(name: str) -> Option:
         f"--profile {name}",
         {"profile": name},
         f'profile = "{name}"',
-        lambda plan: plans.with_profile(plan, name),
+        lambda plan: plans.change_profile(plan, name),
         ("profile", "world.solid", *(GROUND if name in ("robolab", "nbev3devsim") else ())),
     )
 
 
 def moved(**values: float) -> Change:
     def key(plan: NextRun) -> NextRun:
-        return plans.at_pose(plan, replace(plan.spec.world.start, **values))
+        return plans.move_start(plan, replace(plan.spec.world.start, **values))
 
     return key
 
 
 def noise(**values: int) -> Change:
-    return lambda plan: plans.with_noise(plan, NoiseSpec(**values))
+    return lambda plan: plans.change_noise(plan, NoiseSpec(**values))
 
 
 OPTIONS: Mapping[str, Option] = {
@@ -122,13 +122,13 @@ OPTIONS: Mapping[str, Option] = {
             "-o Square_posts",
             {"obstacles": "Square_posts"},
             'obstacles = "Square_posts"',
-            lambda plan: plans.with_obstacle_set(plan, "Square_posts"),
+            lambda plan: plans.change_obstacle_set(plan, "Square_posts"),
             ("world.obstacles",),
         ),
         Option("-N 20", {"sensornoise": 20}, "noise.light = 20", noise(light=20), ("world.noise",)),
         Option("-M 20", {"motornoise": 20}, "noise.motor = 20", noise(motor=20), ("world.noise",)),
         Option(
-            "--seed 4", {"seed": 4}, "seed = 4", lambda plan: plans.with_seed(plan, 4), ("seed",)
+            "--seed 4", {"seed": 4}, "seed = 4", lambda plan: plans.change_seed(plan, 4), ("seed",)
         ),
     )
 }
@@ -197,10 +197,10 @@ def runs_of(folder: Path, program: str, option: Option) -> dict[str, RunSpec]:
 def runs_in_app(source: ProgramSource, option: Option) -> dict[str, RunSpec]:
     """Return the run of a program in the app, if the option comes after it, and before."""
     plain, before = build_program_settings(source), merge_settings(read_options(option.choices))
-    opened = plans.first_plan(
+    opened = plans.build_first_plan(
         build_run_spec(plain.settings), plain.settings, plain.decided, source.program
     )
-    later, _ = plans.following(plans.plan_of(before, find_free_paths(before)), source)
+    later, _ = plans.follow_program(plans.build_plan(before, find_free_paths(before)), source)
     return {"a key in the app": option.key(opened).spec, "opened in the app": later.spec}
 
 

@@ -170,7 +170,7 @@ class LabApp(PanelMessages):
         self.settings = settings
         self._config_problems = self._take_config(load_config())
         self.pixels = settings.pixels
-        first = plans.first_plan(
+        first = plans.build_first_plan(
             settings.spec, settings.settings, settings.decided, settings.program
         )
         self.run_controller = RunController(settings.program, first, settings.speed)

@@ -54,11 +54,13 @@ def find_copied(panel: str, widget: Widget) -> Copied:
 
 def describe_world(now: Snapshot, mat: str, rows: Sequence[str]) -> Copied | None:
     """Return the picture of the world with the readings below it; None without a picture."""
-    from tuisim.app.panels.instrumentation import lines
+    from tuisim.app.panels.instrumentation import build_lines
 
     if not rows:
         return None
-    readings = ("".join(text for text, _ in line).rstrip() for line in lines(now, _READING_COLS, 3))
+    readings = (
+        "".join(text for text, _ in line).rstrip() for line in build_lines(now, _READING_COLS, 3)
+    )
     text = "\n".join([f"{mat}, {now.time_s:.2f} s", *rows, *readings])
     return Copied("Picture and readings", text)
 

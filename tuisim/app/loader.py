@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any
 from tuisim.app import background
 from tuisim.app.file_watch import FileWatch
 from tuisim.app.setup import next_run as plans
-from tuisim.app.setup.mat import SOON, Mat, blank_mat, mat_key, prepare_mat, prepare_mat_of
-from tuisim.app.setup.next_run import NextRun, plan_of_run, read_first_line
+from tuisim.app.setup.mat import SOON, Mat, make_blank_mat, mat_key, prepare_mat, prepare_stored_mat
+from tuisim.app.setup.next_run import NextRun, plan_rerun, read_first_line
 from tuisim.app.snapshot import end_label
 from tuisim.base.errors import LogError, TuisimError
 from tuisim.base.folders import user_path
@@ -180,7 +180,7 @@ class Loader:
         """Change the mat; the robot goes to its start."""
         try:
             self._load(
-                plans.with_mat(self._run_controller.next_run, name), self._run_controller.program
+                plans.change_mat(self._run_controller.next_run, name), self._run_controller.program
             )
         except TuisimError as error:
             self._app.complain(error)
@@ -211,8 +211,8 @@ class Loader:
         source = drop_wrong_mat(source, self._run_controller.next_run.settings["mats"])
         plan, before = self._run_controller.next_run, self._run_controller.program
         if before is not None and before.path != program.path:
-            plan = plans.with_choices(plan, {"arguments": (), "press": ()})
-        plan, decided = plans.following(plans.with_choices(plan, source.options), source)
+            plan = plans.apply_choices(plan, {"arguments": (), "press": ()})
+        plan, decided = plans.follow_program(plans.apply_choices(plan, source.options), source)
         self._note_program(program, said)
         self._load(plan, program)
         self._apply_app_settings({}, said)
@@ -308,7 +308,7 @@ class Loader:
         if self._run_controller.in_run:
             self._app.say(NOT_NOW)
             return
-        plan = plan_of_run(run.spec, run.program)
+        plan = plan_rerun(run.spec, run.program)
         self.lay_out(plan, program_of(run), mat)
         self._run_controller.replay(run)
         end_s = max(0, run.telemetry.count - 1) / run.spec.profile.tick_hz
@@ -406,7 +406,7 @@ class Loader:
             if means_file(word) and user_path(word) == path
         ]
         for field in fields:
-            self.set_next_run(plans.with_choices(plan, {field: plan.words[field]}))
+            self.set_next_run(plans.apply_choices(plan, {field: plan.words[field]}))
         if path in self._world_refers and str(path) == plan.spec.world.background:
             self._run_controller.mat = None
             self._loaded()
@@ -501,9 +501,9 @@ class Loader:
             source: The same, if its text has changed.
             gone: The settings that it no longer has.
         """
-        plan, decided = plans.with_choices(self._run_controller.next_run, differences), Decided()
+        plan, decided = plans.apply_choices(self._run_controller.next_run, differences), Decided()
         if source is not None:
-            plan, decided = plans.following(plans.with_free(plan, gone), source)
+            plan, decided = plans.follow_program(plans.free_settings(plan, gone), source)
         if differences.keys() & {"background", *START}:
             self._load(plan, program)
         else:
@@ -528,8 +528,10 @@ def _in_world(
 ) -> tuple[NextRun, Decided]:
     """Return the plan of a program in a world, which replaces all earlier choices, and what the program decides."""
     free = find_free_paths(merge_settings(magic, world))
-    plan = plans.with_choices(plans.with_choices(plans.plan_of(Settings(), free), magic), world)
-    return plans.following(plan, source) if source else (plan, Decided())
+    plan = plans.apply_choices(
+        plans.apply_choices(plans.build_plan(Settings(), free), magic), world
+    )
+    return plans.follow_program(plan, source) if source else (plan, Decided())
 
 
 def _program_path(word: str) -> str:
@@ -584,9 +586,9 @@ def _prepare_run(word: str | StoredRun) -> tuple[StoredRun, Mat, TuisimError | N
             file=str(run.folder),
         )
     try:
-        return run, prepare_mat_of(run), None
+        return run, prepare_stored_mat(run), None
     except TuisimError as error:
-        return run, blank_mat(run.spec), error
+        return run, make_blank_mat(run.spec), error
 
 
 def _title(run: StoredRun) -> str:

@@ -17,14 +17,14 @@ from tuisim.app.layout.arrangement import (
     Preset,
     arrange,
     arrange_beside_world,
-    core_panels,
+    choose_panels,
+    find_core_panels,
     load_layout,
+    make_room,
     save_layout,
-    stacked,
-    wanted_panels,
-    with_room,
+    stack_panels,
 )
-from tuisim.app.layout.forms import is_single, size_class
+from tuisim.app.layout.forms import classify_size, is_single
 from tuisim.app.layout.tree import PanelLayout
 from tuisim.app.panels import PANELS, NextRunPanel, Panel, TerminalSize
 from tuisim.app.panels.titles import build_title
@@ -190,7 +190,7 @@ class PanelArea(Container):
     def next_panel(self, by: int) -> str:
         """Return the panel after the one with the focus; where there is room for one only, show it."""
         if self.is_single:
-            usual = wanted_panels(self.preset, self._asked, self.size.width, self.size.height)
+            usual = choose_panels(self.preset, self._asked, self.size.width, self.size.height)
             panels = list(dict.fromkeys([*usual[0], *usual[1], self.front]))
             self.front = panels[(panels.index(self.front) + by) % len(panels)]
             self.lay_out()
@@ -242,7 +242,7 @@ class PanelArea(Container):
         self.alone, self._roomy, self.front = (
             "",
             None,
-            (*core_panels(self.preset, *self.size), "world")[0],
+            (*find_core_panels(self.preset, *self.size), "world")[0],
         )
         self.lay_out()
         return self.preset
@@ -264,7 +264,7 @@ class PanelArea(Container):
         save_layout(self._size_class(), KeptLayout(self.preset, self._chosen))
 
     def _size_class(self) -> TerminalSize:
-        return size_class(self.size.width, self.size.height + 1)
+        return classify_size(self.size.width, self.size.height + 1)
 
     def _load(self) -> None:
         """Take up what was kept for this size."""
@@ -313,12 +313,12 @@ class PanelArea(Container):
         """Return the ids of the panels to show, by priority, and those for what space is left."""
         width, height = self.size
         self.is_stacked = self.is_beside = False
-        wanted, fill = wanted_panels(self.preset, self._asked, width, height)
+        wanted, fill = choose_panels(self.preset, self._asked, width, height)
         if self._roomy:
             panel, columns, rows = self._roomy
             keeps_lesson = "lesson" in wanted and panel != "lesson" and height >= _STACKED_ROWS
             asked_for = wanted
-            wanted = with_room(panel, wanted, (columns, rows), (width, height), self.preset)
+            wanted = make_room(panel, wanted, (columns, rows), (width, height), self.preset)
             if wanted == [panel] and arrange_beside_world(panel, asked_for, width, height):
                 self.alone, self.is_beside = "", True
                 return [panel, *asked_for], []
@@ -337,7 +337,7 @@ class PanelArea(Container):
         if self.is_beside and (layout := arrange_beside_world(wanted[0], wanted[1:], *self.size)):
             return layout
         if self.is_stacked:
-            return stacked(wanted[0], wanted[1], self.size.width, self.size.height)
+            return stack_panels(wanted[0], wanted[1], self.size.width, self.size.height)
         return arrange(wanted, self.size.width, self.size.height, fill, self.preset)
 
     def lay_out(self, keeps: str = "") -> None:

@@ -14,7 +14,7 @@ from tuisim.app.host import LabHost
 from tuisim.app.layout.arrangement import EDITOR_COLS
 from tuisim.app.layout.forms import DISCS_COLS
 from tuisim.app.panel_area import PanelArea
-from tuisim.app.setup.next_run import with_obstacles
+from tuisim.app.setup.next_run import change_obstacles
 from tuisim.base.errors import TuisimError
 
 if TYPE_CHECKING:
@@ -171,7 +171,7 @@ class PanelMessages(LabHost):
 
     def on_obstacles_edited(self, message: Obstacles.Edited) -> None:
         self.context.loader.attempt(
-            lambda plan: with_obstacles(plan, message.change(plan.spec.world.obstacles))
+            lambda plan: change_obstacles(plan, message.change(plan.spec.world.obstacles))
         )
 
     def on_obstacles_marked(self) -> None:
@@ -187,7 +187,7 @@ class PanelMessages(LabHost):
     def on_world_boxes_dragged(self, message: World.BoxesDragged) -> None:
         panel = self.context.panels.obstacles
         if (
-            self.context.loader.attempt(lambda plan: with_obstacles(plan, message.obstacles))
+            self.context.loader.attempt(lambda plan: change_obstacles(plan, message.obstacles))
             and panel
         ):
             panel.mark(message.index)

@@ -357,7 +357,7 @@ class RunController:
         RunStore().tag(run.run_id, branch.tags)
         self._show_run(run, branch.of.answers)
         # The noise of the current run is that of the next one, as if chosen now.
-        self.next_run = plans.with_noise(self.next_run, noise)
+        self.next_run = plans.change_noise(self.next_run, noise)
         self._branch = branch
 
     def _branch_arrived(self, paused: protocol.Paused | None = None) -> Branch | None:
@@ -438,7 +438,7 @@ class RunController:
             self.propose(protocol.SetPen(down))
             return
         self._act(protocol.SetPen(down))
-        self.next_run = plans.with_pen(self.next_run, down)
+        self.next_run = plans.change_pen(self.next_run, down)
 
     def press(self, buttons: frozenset[str]) -> None:
         """Hold down these of `PRESSABLE`, and no others."""
@@ -455,14 +455,14 @@ class RunController:
             return
         if noise == self.next_run.spec.world.noise:
             return
-        self.next_run = plans.with_noise(self.next_run, noise)
+        self.next_run = plans.change_noise(self.next_run, noise)
         self._still = replace(self._still, noise=noise)
         if self.in_run:
             self._act(protocol.SetNoise(noise.light, noise.motor))
 
     def set_seed(self, seed: int) -> None:
         """Choose the seed of the next run."""
-        self.next_run = plans.with_seed(self.next_run, seed)
+        self.next_run = plans.change_seed(self.next_run, seed)
         self._still = replace(self._still, seed=seed)
 
     def place(self, pose: Pose) -> None:
@@ -479,7 +479,7 @@ class RunController:
         self._start_at(pose)
 
     def _start_at(self, pose: Pose) -> None:
-        self.next_run = plans.at_pose(self.next_run, pose)
+        self.next_run = plans.move_start(self.next_run, pose)
         self._still = self._at_rest(pose)
         self._moved = True
 

@@ -15,10 +15,10 @@ from tuisim.base.data_class import dataclass
 from tuisim.guide.catalogue import Page
 
 TABLES: Mapping[str, str] = {
-    "keys": "app.guide.key_tables:app_keys",
-    "editor-keys": "app.guide.key_tables:editor_keys",
-    "analyser-keys": "app.guide.key_tables:analyser_keys",
-    "panels": "app.guide.key_tables:panels",
+    "keys": "app.guide.key_tables:list_app_keys",
+    "editor-keys": "app.guide.key_tables:list_editor_keys",
+    "analyser-keys": "app.guide.key_tables:list_analyser_keys",
+    "panels": "app.guide.key_tables:list_panels",
     "commands": "guide.command_tables:list_commands",
     "command-options": "guide.command_tables:list_command_options",
     "options": "guide.code_tables:list_options",

@@ -26,7 +26,7 @@ from tuisim.app.app import LabApp
 from tuisim.app.dialogs.question import BranchQuestion
 from tuisim.app.form import Slider
 from tuisim.app.panels.chart import Chart
-from tuisim.app.setup.next_run import with_obstacles
+from tuisim.app.setup.next_run import change_obstacles
 from tuisim.app.snapshot import RunPhase
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.spec import NoiseSpec, Obstacle
@@ -227,7 +227,9 @@ async def test_what_is_changed_for_the_next_run_is_seen_also_from_the_past() -> 
         await until_state(pilot, RunPhase.ENDED)
         go_to_tick(app.context, 10)
         assert app.run_controller.in_past
-        assert app.loader.attempt(lambda plan: with_obstacles(plan, (Obstacle(100, 100, 50, 50),)))
+        assert app.loader.attempt(
+            lambda plan: change_obstacles(plan, (Obstacle(100, 100, 50, 50),))
+        )
         assert app.run_controller.snapshot().spec.world.obstacles == (Obstacle(100, 100, 50, 50),)
 
 

@@ -9,7 +9,7 @@ import pytest
 
 from tests.engine.runs.run_recorder import begun
 from tuisim.analysis.source import LogRequest, OpenedLog
-from tuisim.app.analyser.world import has_poses, world_at
+from tuisim.app.analyser.world import has_poses, load_world
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.profile import ROBOLAB
 from tuisim.engine.core.spec import RobotSpec, RunSpec, WorldSpec
@@ -57,13 +57,13 @@ def run(home: Path) -> StoredRun:
 )
 def test_a_file_has_a_world_if_it_says_which(log: OpenedLog, has: bool) -> None:
     assert has_poses(log) is has
-    assert (world_at(log, 0) is not None) is has
+    assert (load_world(log, 0) is not None) is has
 
 
 def test_the_pose_of_a_file_is_that_of_its_row(home: Path) -> None:
-    world = world_at(opened({"runs": [dump_run(SPEC)]}, **POSES), 0)
+    world = load_world(opened({"runs": [dump_run(SPEC)]}, **POSES), 0)
     assert world is not None
-    assert [world.at(float(row), row).instant.pose for row in (0, 1)] == [
+    assert [world.find_snapshot(float(row), row).instant.pose for row in (0, 1)] == [
         Pose(1, 3, 5),
         Pose(2, 4, 0),
     ]
@@ -74,10 +74,13 @@ def test_of_a_stored_run_every_instant_is_known(run: StoredRun) -> None:
     log = OpenedLog(
         LogRequest(runs=(run.id,)), Log("run", table, guess_columns(table)), runs=(run,)
     )
-    world = world_at(log, 0)
+    world = load_world(log, 0)
     assert world is not None and has_poses(log)
-    assert [world.at(time_s, 0).line for time_s in (0.1, 0.4)] == [3, 4]
-    assert world.at(0.1, 0).instant.pose.x_mm < world.at(0.4, 0).instant.pose.x_mm
+    assert [world.find_snapshot(time_s, 0).line for time_s in (0.1, 0.4)] == [3, 4]
+    assert (
+        world.find_snapshot(0.1, 0).instant.pose.x_mm
+        < world.find_snapshot(0.4, 0).instant.pose.x_mm
+    )
     # Before the first and after the last tick stand the ends.
-    assert world.at(-5.0, 0).instant.pose == SPEC.world.start
-    assert world.at(99.0, 0).instant.tick == 50
+    assert world.find_snapshot(-5.0, 0).instant.pose == SPEC.world.start
+    assert world.find_snapshot(99.0, 0).instant.tick == 50

@@ -12,7 +12,7 @@ from tuisim.app.layout.arrangement import (
     Preset,
     arrange,
     arrange_beside_world,
-    wanted_panels,
+    choose_panels,
 )
 from tuisim.app.layout.tree import EDGES, PanelBox
 from tuisim.app.panels import PANELS
@@ -57,7 +57,7 @@ def test_any_panels_fill_the_screen(width: int, height: int) -> None:
 )
 def test_what_is_shown_unless_asked_otherwise(size: tuple[int, int], expected: set[str]) -> None:
     width, height = size[0], size[1] - 1
-    placed = arrange(wanted_panels(Preset.STANDARD, {}, width, height)[0], width, height)
+    placed = arrange(choose_panels(Preset.STANDARD, {}, width, height)[0], width, height)
     assert set(placed.boxes) == expected
     assert not placed.left_out
 
@@ -70,7 +70,7 @@ def test_the_most_wanted_panel_gets_the_room() -> None:
 
 @pytest.mark.parametrize("width, height", [(200, 59), (220, 64), (237, 70), (300, 99)])
 def test_a_wide_screen_shows_whole_lines_of_code_beside_a_chart(width: int, height: int) -> None:
-    panels, fill = wanted_panels(Preset.STANDARD, {}, width, height)
+    panels, fill = choose_panels(Preset.STANDARD, {}, width, height)
     boxes = arrange(panels, width, height, fill).boxes
     assert boxes["chart"].width >= 74 and boxes["code"].width >= 80
     assert boxes["output"].width >= PANELS["output"].min_cols
@@ -82,7 +82,7 @@ def test_a_wide_screen_shows_whole_lines_of_code_beside_a_chart(width: int, heig
 def test_the_world_is_on_top_of_a_phone_in_the_whole_width(
     panel: str, width: int, height: int
 ) -> None:
-    panels, fill = wanted_panels(Preset.STANDARD, {panel: True}, width, height)
+    panels, fill = choose_panels(Preset.STANDARD, {panel: True}, width, height)
     placed = arrange(panels, width, height, fill)
     world = placed.boxes["world"]
     assert (world.x, world.y, world.width) == (0, 0, width)
@@ -130,7 +130,7 @@ def test_the_settings_leave_room_for_all_readings_in_a_small_terminal() -> None:
 
 @pytest.mark.parametrize("size", [(100, 29), (112, 33), (120, 39), (150, 45)], ids=str)
 def test_the_board_shows_a_chart_that_can_be_read(size: tuple[int, int]) -> None:
-    boxes = arrange(wanted_panels(Preset.STANDARD, {}, *size)[0], *size).boxes
+    boxes = arrange(choose_panels(Preset.STANDARD, {}, *size)[0], *size).boxes
     assert boxes["chart"].width >= 50 and boxes["chart"].height >= 10
     assert boxes["instrumentation"].height >= 8 and boxes["output"].height >= 3
     assert ("code" in boxes) is (size[0] >= 120)
@@ -139,14 +139,14 @@ def test_the_board_shows_a_chart_that_can_be_read(size: tuple[int, int]) -> None
 @pytest.mark.parametrize("size", [(100, 29), (112, 39)], ids=str)
 def test_a_stop_at_a_line_shows_code_and_variables(size: tuple[int, int]) -> None:
     asked = {"code": True, "debug": True}
-    placed = arrange(wanted_panels(Preset.STANDARD, asked, *size)[0], *size)
+    placed = arrange(choose_panels(Preset.STANDARD, asked, *size)[0], *size)
     assert set(placed.boxes) == {"world", "instrumentation", "output", "code", "debug"}
     assert placed.boxes["code"].width == size[0]
 
 
 @pytest.mark.parametrize("width, height", [(65, 57), (60, 60), (72, 50)])
 def test_code_and_chart_fill_a_tall_terminal(width: int, height: int) -> None:
-    wanted, fill = wanted_panels(Preset.STANDARD, {}, width, height)
+    wanted, fill = choose_panels(Preset.STANDARD, {}, width, height)
     boxes = arrange(wanted, width, height, fill).boxes
     assert {"code", "chart"} <= boxes.keys() and not {"positioning", "noise"} & boxes.keys()
     assert boxes["code"].height >= 9 and boxes["chart"].height >= 10
@@ -183,7 +183,7 @@ def test_a_narrow_and_high_area_shows_the_world_above_what_was_asked_for(width: 
 def test_three_rows_of_the_output_stay_beside_a_panel_that_is_asked_for(
     size: tuple[int, int], asked: str
 ) -> None:
-    wanted, fill = wanted_panels(Preset.STANDARD, {asked: True}, *size)
+    wanted, fill = choose_panels(Preset.STANDARD, {asked: True}, *size)
     boxes = arrange(wanted, *size, fill).boxes
     assert boxes["output"].height - EDGES >= 3
     assert asked in boxes

@@ -11,7 +11,13 @@ from tests.app.app_help import (
     until,
 )
 from tests.cases import for_each
-from tuisim.app.layout.arrangement import Preset, arrange, core_panels, mat_cells, wanted_panels
+from tuisim.app.layout.arrangement import (
+    Preset,
+    arrange,
+    choose_panels,
+    find_core_panels,
+    measure_mat,
+)
 from tuisim.app.layout.tree import PanelLayout
 from tuisim.app.panels import PANELS
 
@@ -23,14 +29,14 @@ in_each_size_and_preset = for_each(size=SIZES, preset=Preset)
 
 
 def layout_of(preset: Preset, width: int, height: int) -> PanelLayout:
-    wanted, fill = wanted_panels(preset, {}, width, height - 1)
+    wanted, fill = choose_panels(preset, {}, width, height - 1)
     return arrange(wanted, width, height - 1, fill, preset)
 
 
 @in_each_size_and_preset
 def test_a_preset_shows_what_it_is_made_for(preset: Preset, size: tuple[int, int]) -> None:
     layout = layout_of(preset, *size)
-    assert set(core_panels(preset, size[0], size[1] - 1)) <= set(layout.boxes)
+    assert set(find_core_panels(preset, size[0], size[1] - 1)) <= set(layout.boxes)
     assert not layout.left_out
     for panel, box in layout.boxes.items():
         assert box.height >= PANELS[panel].min_rows and box.width >= 24, panel
@@ -41,7 +47,7 @@ def test_a_preset_shows_what_it_is_made_for(preset: Preset, size: tuple[int, int
 def test_no_third_of_a_panel_is_empty(preset: Preset, size: tuple[int, int]) -> None:
     for panel, box in layout_of(preset, *size).boxes.items():
         if panel == "world":
-            assert mat_cells(box) > 2 / 3 * (box.width - 2) * (box.height - 3)
+            assert measure_mat(box) > 2 / 3 * (box.width - 2) * (box.height - 3)
         elif not PANELS[panel].grows:
             # Those that grow show more in more rows; the others need the rows of their text.
             assert box.height - 2 < 1.5 * (PANELS[panel].good_rows - 2), panel
@@ -69,7 +75,7 @@ async def test_a_key_shows_a_preset_and_again_the_standard_layout(preset: Preset
     async with open_lab(LOGS, size=(80, 24)) as (pilot, app):
         standard = set(app.panel_area.arrangement.boxes)
         await pilot.press(key)
-        core = core_panels(preset, 80, 23)
+        core = find_core_panels(preset, 80, 23)
         assert set(core) == set(app.panel_area.arrangement.boxes)
         await until(
             pilot, lambda: all(f" {PANELS[panel].title}" in screen_text(app) for panel in core)
@@ -103,8 +109,8 @@ async def test_one_key_goes_round_the_presets_that_differ(
 @in_each_size
 def test_the_world_stays_with_every_panel_asked_for(size: tuple[int, int]) -> None:
     width, height = size[0], size[1] - 1
-    wanted, fill = wanted_panels(Preset.STANDARD, dict.fromkeys(PANELS, True), width, height)
+    wanted, fill = choose_panels(Preset.STANDARD, dict.fromkeys(PANELS, True), width, height)
     box = arrange(wanted, width, height, fill).boxes["world"]
     # Two rows of panels below it leave it narrower than its panel in a low terminal.
     least = 2 / 3 if height >= 39 else 0.4
-    assert mat_cells(box) > least * (box.width - 2) * (box.height - 3)
+    assert measure_mat(box) > least * (box.width - 2) * (box.height - 3)

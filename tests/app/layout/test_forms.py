@@ -4,8 +4,16 @@ from __future__ import annotations
 
 import pytest
 
-from tuisim.app.layout.forms import build_board, build_under, build_wide, count_tight_rows
-from tuisim.app.layout.tree import Axis, PanelBox, PanelLayout, Split, least_rows, panels_of, place
+from tuisim.app.layout.forms import build_below, build_board, build_wide, count_tight_rows
+from tuisim.app.layout.tree import (
+    Axis,
+    PanelBox,
+    PanelLayout,
+    Split,
+    count_min_rows,
+    list_panels,
+    place,
+)
 
 BOARD = ("world", "instrumentation", "arrays", "output", "chart")
 
@@ -48,9 +56,9 @@ def test_a_lesson_keeps_its_column_beside_a_panel_that_it_asks_for(
 def test_a_column_gives_each_panel_the_rows_in_which_it_is_read() -> None:
     panels = ("world", "instrumentation", "arrays", "output", "code", "chart")
     rows = count_tight_rows(panels, 65)
-    node = build_under(panels, 65, sum(rows))
+    node = build_below(panels, 65, sum(rows))
     assert isinstance(node, Split) and node.axis is Axis.ROWS
     assert {name: box.height for name, box in boxes_of(node, 65, sum(rows)).items()} == dict(
-        zip(panels_of(node), count_tight_rows(panels_of(node), 65), strict=True)
+        zip(list_panels(node), count_tight_rows(list_panels(node), 65), strict=True)
     )
-    assert least_rows(build_under(panels, 65, sum(rows) - 1)) < sum(rows)
+    assert count_min_rows(build_below(panels, 65, sum(rows) - 1)) < sum(rows)

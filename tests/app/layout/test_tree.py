@@ -8,12 +8,12 @@ from tuisim.app.layout.tree import (
     Axis,
     PanelLayout,
     Split,
-    fair_rows,
-    ideal_rows,
-    joined,
-    least_columns,
-    least_rows,
-    panels_of,
+    compute_ideal_rows,
+    count_fair_rows,
+    count_min_columns,
+    count_min_rows,
+    join_nodes,
+    list_panels,
 )
 from tuisim.app.panels import PANELS
 
@@ -22,29 +22,29 @@ ABOVE = Split(Axis.ROWS, ("world", BESIDE))
 
 
 def test_a_single_part_stays_as_it_is() -> None:
-    assert joined(Axis.ROWS, ["chart"]) == "chart"
+    assert join_nodes(Axis.ROWS, ["chart"]) == "chart"
 
 
 def test_parts_side_by_side_get_shares_by_their_weights() -> None:
-    node = joined(Axis.COLUMNS, ["world", "chart"])
+    node = join_nodes(Axis.COLUMNS, ["world", "chart"])
     assert isinstance(node, Split)
     world, chart = PANELS["world"].weight, PANELS["chart"].weight
     assert node.shares == pytest.approx((world / (world + chart), chart / (world + chart)))
 
 
 def test_what_a_node_needs_is_added_along_its_axis() -> None:
-    assert panels_of(ABOVE) == ("world", "chart", "output")
+    assert list_panels(ABOVE) == ("world", "chart", "output")
     assert (
-        least_columns(ABOVE)
-        == least_columns(BESIDE)
+        count_min_columns(ABOVE)
+        == count_min_columns(BESIDE)
         == PANELS["chart"].min_cols + PANELS["output"].min_cols
     )
     deepest = max(PANELS["chart"].min_rows, PANELS["output"].min_rows)
-    assert least_rows(ABOVE) == PANELS["world"].min_rows + deepest
+    assert count_min_rows(ABOVE) == PANELS["world"].min_rows + deepest
 
 
 def test_the_world_is_shown_well_in_the_shape_of_the_mat() -> None:
-    assert fair_rows(ABOVE, 80) == ideal_rows(80) + max(
+    assert count_fair_rows(ABOVE, 80) == compute_ideal_rows(80) + max(
         PANELS["chart"].fair_rows, PANELS["output"].fair_rows
     )
 

@@ -98,7 +98,7 @@ async def test_a_run_may_end_while_a_pressed_button_is_about_to_be_released() ->
         panel.action_tap("down")
         panel.release_all()
         # As the timer does that had fired already.
-        panel._tap_over("down", 0.0)
+        panel._release_tapped("down", 0.0)
         assert panel.held == frozenset()
 
 

@@ -10,7 +10,7 @@ import pytest
 from tests.app.app_help import program
 from tests.app.panel_help import SPEC, PanelApp, moment, screen_text
 from tests.cases import cases
-from tuisim.app.panels.instrumentation import Instrumentation, lines
+from tuisim.app.panels.instrumentation import Instrumentation, build_lines
 from tuisim.app.snapshot import RunPhase, Snapshot
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.sensors.color import ColorReading
@@ -49,7 +49,7 @@ FURTHER = moment(
 
 
 def text(now: Snapshot, width: int, height: int) -> list[str]:
-    return ["".join(part for part, _ in line) for line in lines(now, width, height)]
+    return ["".join(part for part, _ in line) for line in build_lines(now, width, height)]
 
 
 @pytest.mark.parametrize(
@@ -262,7 +262,7 @@ def test_further_parts() -> None:
     ],
 )
 def test_in_few_lines_the_readings_stand_side_by_side(width: int, height: int, shown: str) -> None:
-    text = lines(moment(), width, height)
+    text = build_lines(moment(), width, height)
     assert len(text) == height
     assert all(sum(len(part) for part, _ in line) <= width for line in text)
     words = {part.strip() for line in text for part, _ in line}
@@ -273,7 +273,7 @@ def test_readings_side_by_side_do_not_move_with_their_values() -> None:
     low, high = (
         [
             [len(part) for part, _ in line]
-            for line in lines(moment(ultrasonic_mm=far, gyro_deg=angle), 78, 2)
+            for line in build_lines(moment(ultrasonic_mm=far, gyro_deg=angle), 78, 2)
         ]
         for far, angle in ((90, 5), (2550, -180))
     )

@@ -19,9 +19,9 @@ from tests.app.app_help import (
     until_shown,
 )
 from tuisim.app.app import LabApp
-from tuisim.app.panels.obstacles import BoxGrip, Obstacles, box_at
+from tuisim.app.panels.obstacles import BoxGrip, Obstacles, find_box
 from tuisim.app.panels.world import WorldView
-from tuisim.app.setup.next_run import with_obstacles
+from tuisim.app.setup.next_run import change_obstacles
 from tuisim.engine.core.spec import Obstacle
 from tuisim.engine.obstacles import OBSTACLES, load_obstacles
 
@@ -135,7 +135,7 @@ async def test_one_is_drawn_and_moved_with_the_mouse() -> None:
 async def test_a_click_chooses_and_the_mouse_draws_only_while_the_panel_is_shown() -> None:
     async with open_obstacles() as (pilot, app):
         app.loader.set_next_run(
-            with_obstacles(app.run_controller.next_run, OBSTACLES["Square_posts"])
+            change_obstacles(app.run_controller.next_run, OBSTACLES["Square_posts"])
         )
         await pilot.pause()
         await pilot.click(WorldView, offset=cell(app, 550, 250))
@@ -149,7 +149,7 @@ async def test_a_click_chooses_and_the_mouse_draws_only_while_the_panel_is_shown
 @pytest.mark.slow
 async def test_the_box_at_hand_is_marked_in_the_world() -> None:
     async with open_obstacles() as (pilot, app):
-        app.loader.set_next_run(with_obstacles(app.run_controller.next_run, OBSTACLES["Wall"]))
+        app.loader.set_next_run(change_obstacles(app.run_controller.next_run, OBSTACLES["Wall"]))
         view = app.query_one(WorldView)
         await until(pilot, lambda: view._scene is not None and view._scene.marked == 0)
         before = view._cells.copy()
@@ -185,7 +185,7 @@ BOXES = (Obstacle(100, 100, 200, 200), Obstacle(200, 200, 200, 200), Obstacle(90
     ids=["one", "the upper of two", "beside the lower", "a thin one nearby", "none"],
 )
 def test_which_box_is_under_the_mouse(point: tuple[float, float], index: int | None) -> None:
-    assert box_at(BOXES, *point, slack_mm=15) == index
+    assert find_box(BOXES, *point, slack_mm=15) == index
 
 
 @pytest.mark.parametrize(
@@ -201,12 +201,12 @@ def test_which_box_is_under_the_mouse(point: tuple[float, float], index: int | N
 def test_what_a_drag_draws(
     start: tuple[float, float], end: tuple[float, float], drawn: Obstacle | None
 ) -> None:
-    made = BoxGrip((), None, *start).dragged_to(*end)
+    made = BoxGrip((), None, *start).drag_boxes(*end)
     assert made == (None if drawn is None else ((drawn,), 0))
 
 
 def test_a_box_stays_within_reach() -> None:
-    moved = BoxGrip(BOXES, 0, 150, 150).dragged_to(-5000, 9000)
+    moved = BoxGrip(BOXES, 0, 150, 150).drag_boxes(-5000, 9000)
     assert moved is not None
     assert moved[0][0] == Obstacle(-100, 1043, 200, 200)
     assert moved[0][1:] == BOXES[1:]

@@ -7,7 +7,7 @@ from textual.app import App, ComposeResult
 from textual.widget import Widget
 
 from tests.app.app_help import until
-from tuisim.app.panels.output import KEPT_LINES, MAX_LINE_CHARS, Log, shown_lines
+from tuisim.app.panels.output import KEPT_LINES, MAX_LINE_CHARS, Log, split_row
 from tuisim.engine.runs.records import OutputRow, Stream
 
 
@@ -68,13 +68,11 @@ def lines(app: App[None]) -> list[str]:
     ],
 )
 def test_a_row_as_lines(text: str, stream: Stream, width: int, expected: list[str]) -> None:
-    assert shown_lines(row(text, stream), width) == expected
+    assert split_row(row(text, stream), width) == expected
 
 
 def test_an_endless_line_is_cut_and_says_so() -> None:
-    assert "".join(shown_lines(row("y" * (MAX_LINE_CHARS + 7)), 80)).endswith(
-        "… (7 more characters)"
-    )
+    assert "".join(split_row(row("y" * (MAX_LINE_CHARS + 7)), 80)).endswith("… (7 more characters)")
 
 
 async def test_the_newest_line_is_followed_until_scrolled_up() -> None:

@@ -24,9 +24,9 @@ def test_a_drag_ends_at_the_edge_of_the_field_but_on_a_floor(
     on_floor: bool, to_mm: tuple[float, float], at_mm: tuple[float, float]
 ) -> None:
     grip = PoseGrip(START, 1010.0, 510.0, turns=False, on_floor=on_floor)
-    assert grip.dragged_to(*to_mm) == Pose(*at_mm, 30.0)
+    assert grip.drag_pose(*to_mm) == Pose(*at_mm, 30.0)
 
 
 def test_a_drag_that_turns_leaves_the_place() -> None:
     grip = PoseGrip(START, 1100.0, 500.0, turns=True, on_floor=True)
-    assert grip.dragged_to(1000.0, 900.0) == Pose(1000.0, 500.0, 120.0)
+    assert grip.drag_pose(1000.0, 900.0) == Pose(1000.0, 500.0, 120.0)

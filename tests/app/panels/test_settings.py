@@ -24,7 +24,7 @@ from tests.app.app_help import (
 )
 from tuisim.app.app import LabApp
 from tuisim.app.form import Choice, Row
-from tuisim.app.setup.next_run import with_robot
+from tuisim.app.setup.next_run import change_robot
 from tuisim.app.snapshot import RunPhase
 from tuisim.settings.robots import ROBOTS, load_robot
 
@@ -104,7 +104,7 @@ async def test_values_are_checked_and_entered_also_where_a_field_is_left_or_a_ch
         await pilot.press("tab")
         await until(pilot, lambda: app.run_controller.next_run.spec.robot.back_mm == -99)
 
-        app.loader.attempt(lambda plan: with_robot(plan, "Default_Robot"))
+        app.loader.attempt(lambda plan: change_robot(plan, "Default_Robot"))
         choice = row(app, "preset").entry
         assert isinstance(choice, Choice)
         await until(pilot, lambda: choice.value == "Default_Robot")
@@ -199,7 +199,7 @@ async def test_a_profile_is_chosen_and_seen_in_the_controls() -> None:
 async def test_what_a_robots_file_has_that_means_nothing_here_is_said(tmp_path: Path) -> None:
     (tmp_path / "mine.json").write_text('{"owner": "Ann"}')
     async with open_lab() as (pilot, app):
-        app.loader.attempt(lambda plan: with_robot(plan, str(tmp_path / "mine.json")))
+        app.loader.attempt(lambda plan: change_robot(plan, str(tmp_path / "mine.json")))
         await until(
             pilot,
             lambda: sum("ignored unknown keys: owner" in notice for notice in notices(app)) == 1,

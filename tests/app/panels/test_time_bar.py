@@ -8,7 +8,7 @@ import pytest
 from textual.message import Message
 
 from tests.app.panel_help import PanelApp, moment
-from tuisim.app.panels.time_bar import BarTimes, TimeBar, bar_cells, mark_cells, words
+from tuisim.app.panels.time_bar import BarTimes, TimeBar, build_bar, format_times, mark_cells
 from tuisim.app.snapshot import RunPhase
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.state import Instant
@@ -22,24 +22,24 @@ BAR = BarTimes(tick=200, newest=1000, tick_hz=100, past=True, over=True)
     [(80, " 2.00 of 10.00 s", "         10.00 s"), (50, " 2.00 s", "10.00 s")],
 )
 def test_the_words_are_as_wide_in_the_past_as_now(width: int, past: str, now: str) -> None:
-    assert (words(BAR, width), words(replace(BAR, past=False), width)) == (past, now)
+    assert (format_times(BAR, width), format_times(replace(BAR, past=False), width)) == (past, now)
 
 
 def test_the_bar_has_cursor_and_marks() -> None:
     bar = replace(BAR, newest=400)
     marks = mark_cells(bar, [(0, Mark.SAMPLE), (399, Mark.ERROR), (400, Mark.SAMPLE)], 21)
-    text = "".join(run for run, _ in bar_cells(bar, marks, 21))
+    text = "".join(run for run, _ in build_bar(bar, marks, 21))
     assert text == "┷" + "━" * 9 + "▮" + "─" * 9 + "✗"
     marks = mark_cells(bar, [(0, Mark.COMMAND), (400, Mark.COMMAND), (400, Mark.ACTION)], 21)
     assert {column: sign for column, (sign, _) in marks.items()} == {0: "╷", 20: "◆"}
-    assert bar_cells(bar, marks, 21)[0][0] == "┯"
-    assert [bar.tick_at(column, 21) for column in (0, 10, 20, 99)] == [0, 200, 400, 400]
+    assert build_bar(bar, marks, 21)[0][0] == "┯"
+    assert [bar.find_tick(column, 21) for column in (0, 10, 20, 99)] == [0, 200, 400, 400]
 
 
 def test_the_bar_of_a_run_at_work_ends_at_a_round_time() -> None:
     running = replace(BAR, past=False, over=False, tick=400, newest=400)
     assert running.end_s == 5.0
-    assert "".join(run for run, _ in bar_cells(running, {}, 11)) == "━" * 9 + "··"
+    assert "".join(run for run, _ in build_bar(running, {}, 11)) == "━" * 9 + "··"
 
 
 class ScrubApp(PanelApp[TimeBar]):

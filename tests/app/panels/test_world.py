@@ -17,7 +17,7 @@ from tests.app.app_help import LOGS, open_lab, until, until_state
 from tests.app.panel_help import PanelApp, moment, white_mat
 from tuisim.app.layout.tree import TIME_BAR_ROWS
 from tuisim.app.panels.world import TURN_STEP_DEG, World, WorldView
-from tuisim.app.render.world_text import legend
+from tuisim.app.render.world_text import build_legend
 from tuisim.app.snapshot import RunPhase, Snapshot
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.spec import FIELD_WIDTH_MM
@@ -88,7 +88,7 @@ _ASTRAY = Pose(-4000.0, 500.0, 0.0)
 def test_the_frame_says_what_the_other_robots_are(
     now_pose: Pose | None, earlier_pose: Pose | None, width: int, words: str
 ) -> None:
-    assert legend(moment(now_pose=now_pose, earlier_pose=earlier_pose), width) == words
+    assert build_legend(moment(now_pose=now_pose, earlier_pose=earlier_pose), width) == words
 
 
 async def test_it_is_blank_until_the_mat_is_there() -> None:

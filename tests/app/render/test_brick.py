@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tuisim.app.render.brick import draw_brick, led_name
+from tuisim.app.render.brick import draw_brick, name_led
 from tuisim.engine.core.spec import BUTTONS
 from tuisim.engine.runs.brick_state import (
     DISPLAY_HEIGHT,
@@ -118,7 +118,7 @@ def test_a_pressed_button_stands_out() -> None:
     ],
 )
 def test_lamps_have_names(red: int, green: int, name: str) -> None:
-    assert led_name(red, green) == name
+    assert name_led(red, green) == name
     leds = {"left red": red, "left green": green, "right red": 0, "right green": 0}
     assert any(name in line for line in text_of(BrickState(leds=leds), 60, 20))
 

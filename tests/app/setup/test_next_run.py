@@ -11,7 +11,7 @@ import pytest
 from tests.cases import cases
 from tuisim.app.setup import next_run as plans
 from tuisim.app.setup.fields import find
-from tuisim.app.setup.next_run import NextRun, plan_of, plan_of_spec, with_robot_edited
+from tuisim.app.setup.next_run import NextRun, build_plan, edit_robot, plan_spec
 from tuisim.base.errors import ConfigError
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.spec import NO_PORT, NoiseSpec, Obstacle, RobotSpec
@@ -34,41 +34,41 @@ def edited(plan: NextRun, field: str, text: str) -> NextRun:
 
 # What is done after starting on Grey_bands, and where the sensors are then.
 WAYS: dict[str, tuple[list[Callable[[NextRun], NextRun]], list[float]]] = {
-    "a mat moves the sensors": ([lambda p: plans.with_mat(p, "Radial_grey")], [-60, 60]),
+    "a mat moves the sensors": ([lambda p: plans.change_mat(p, "Radial_grey")], [-60, 60]),
     "and they go back": (
-        [lambda p: plans.with_mat(p, "Radial_grey"), lambda p: plans.with_mat(p, "Loop")],
+        [lambda p: plans.change_mat(p, "Radial_grey"), lambda p: plans.change_mat(p, "Loop")],
         [-20, 20],
     ),
     "another preset meanwhile": (
         [
-            lambda p: plans.with_mat(p, "Radial_grey"),
-            lambda p: plans.with_robot(p, "Small_Robot"),
-            lambda p: plans.with_mat(p, "Loop"),
+            lambda p: plans.change_mat(p, "Radial_grey"),
+            lambda p: plans.change_robot(p, "Small_Robot"),
+            lambda p: plans.change_mat(p, "Loop"),
         ],
         [-10, 10],
     ),
     "an edit of another field": (
         [
-            lambda p: plans.with_mat(p, "Radial_grey"),
+            lambda p: plans.change_mat(p, "Radial_grey"),
             lambda p: edited(p, "wheel_diameter_mm", "40"),
-            lambda p: plans.with_mat(p, "Loop"),
+            lambda p: plans.change_mat(p, "Loop"),
         ],
         [-20, 20],
     ),
     "a sensor that was placed there stays": (
         [
-            lambda p: plans.with_mat(p, "Radial_grey"),
+            lambda p: plans.change_mat(p, "Radial_grey"),
             lambda p: edited(p, "left.x_mm", "-33"),
-            lambda p: plans.with_mat(p, "Loop"),
+            lambda p: plans.change_mat(p, "Loop"),
         ],
         [-33, 60],
     ),
     "until the robot is reset": (
         [
-            lambda p: plans.with_mat(p, "Radial_grey"),
+            lambda p: plans.change_mat(p, "Radial_grey"),
             lambda p: edited(p, "left.x_mm", "-33"),
-            lambda p: plans.with_mat(p, "Loop"),
-            plans.with_robot_as_chosen,
+            lambda p: plans.change_mat(p, "Loop"),
+            plans.undo_robot_edits,
         ],
         [-20, 20],
     ),
@@ -79,7 +79,7 @@ WAYS: dict[str, tuple[list[Callable[[NextRun], NextRun]], list[float]]] = {
 def test_sensor_places_never_leak(
     steps: list[Callable[[NextRun], NextRun]], expected: list[float]
 ) -> None:
-    plan = plan_of(Settings({"background": "Grey_bands"}))
+    plan = build_plan(Settings({"background": "Grey_bands"}))
     for step in steps:
         plan = step(plan)
     assert sensor_xs_mm(plan) == expected
@@ -87,64 +87,64 @@ def test_sensor_places_never_leak(
 
 @pytest.mark.parametrize("name", list(ROBOTS))
 def test_a_preset_leaves_nothing_behind(name: str) -> None:
-    plan = plans.with_robot(plan_of(Settings()), name)
+    plan = plans.change_robot(build_plan(Settings()), name)
     assert plan.spec.robot == ROBOTS[name]
-    assert plans.with_robot(plan, "Default_Robot").spec == plan_of(Settings()).spec
+    assert plans.change_robot(plan, "Default_Robot").spec == build_plan(Settings()).spec
 
 
 def test_a_mat_brings_its_own_obstacles_start_and_fit() -> None:
-    plan = plans.with_obstacles(plan_of(Settings({"background_fit": "fit"})), BOX)
-    plan = plans.at_pose(plan, Pose(7, 8, 9))
-    assert plans.with_mat(plan, "Obstacles_Test").spec == build_run_spec(
+    plan = plans.change_obstacles(build_plan(Settings({"background_fit": "fit"})), BOX)
+    plan = plans.move_start(plan, Pose(7, 8, 9))
+    assert plans.change_mat(plan, "Obstacles_Test").spec == build_run_spec(
         Settings({"background": "Obstacles_Test"})
     )
 
 
 def test_a_profile_decides_again_what_is_solid() -> None:
-    plan = plans.with_values(plan_of(Settings()), {"solid": True})
-    assert plans.with_profile(plan, "nbev3devsim").spec.world.solid is False
-    assert plans.with_profile(plan, "ev3").spec.world.solid is True
+    plan = plans.change_values(build_plan(Settings()), {"solid": True})
+    assert plans.change_profile(plan, "nbev3devsim").spec.world.solid is False
+    assert plans.change_profile(plan, "ev3").spec.world.solid is True
 
 
 @pytest.mark.parametrize(
     "change",
     [
-        lambda plan: plans.at_pose(plan, Pose(7, 8, 9)),
-        lambda plan: plans.with_noise(plan, NoiseSpec(3, 4)),
-        lambda plan: plans.with_seed(plan, 99),
-        lambda plan: plans.with_pen(plan, True),
-        lambda plan: plans.with_obstacles(plan, BOX),
+        lambda plan: plans.move_start(plan, Pose(7, 8, 9)),
+        lambda plan: plans.change_noise(plan, NoiseSpec(3, 4)),
+        lambda plan: plans.change_seed(plan, 99),
+        lambda plan: plans.change_pen(plan, True),
+        lambda plan: plans.change_obstacles(plan, BOX),
     ],
     ids=["pose", "noise", "seed", "pen", "obstacles"],
 )
 def test_what_is_changed_quickly_is_what_would_be_built(
     change: Callable[[NextRun], NextRun],
 ) -> None:
-    plan = change(plan_of(Settings({"background": "Radial_grey", "noise.light": 1})))
+    plan = change(build_plan(Settings({"background": "Radial_grey", "noise.light": 1})))
     assert plan.spec == build_run_spec(plan.settings)
 
 
 def test_a_robot_file_says_its_motor_noise_until_the_user_does(tmp_path: Path) -> None:
     (tmp_path / "old.json").write_text('{"wheelNoise": 12}')
-    plan = plans.with_robot(plan_of(Settings()), str(tmp_path / "old.json"))
+    plan = plans.change_robot(build_plan(Settings()), str(tmp_path / "old.json"))
     assert plan.spec.world.noise.motor == 12
-    lit = plans.with_noise(plan, NoiseSpec(5, 12))
-    assert plans.with_robot(lit, "Small_Robot").spec.world.noise == NoiseSpec(5, 0)
-    loud = plans.with_noise(plan, NoiseSpec(0, 80))
-    assert plans.with_robot(loud, "Small_Robot").spec.world.noise.motor == 80
+    lit = plans.change_noise(plan, NoiseSpec(5, 12))
+    assert plans.change_robot(lit, "Small_Robot").spec.world.noise == NoiseSpec(5, 0)
+    loud = plans.change_noise(plan, NoiseSpec(0, 80))
+    assert plans.change_robot(loud, "Small_Robot").spec.world.noise.motor == 80
 
 
 def test_no_later_change_reads_a_file_again(tmp_path: Path) -> None:
     path = tmp_path / "mine.toml"
     path.write_text("wheel_diameter_mm = 77\n")
-    plan = plans.with_robot(plan_of(Settings()), str(path))
+    plan = plans.change_robot(build_plan(Settings()), str(path))
     path.write_text("wheel_diameter_mm = 'oops'\n")
-    assert plans.with_mat(plan, "Loop").spec.robot.wheel_diameter_mm == 77
+    assert plans.change_mat(plan, "Loop").spec.robot.wheel_diameter_mm == 77
 
 
 def test_a_saved_robot_is_not_as_the_mat_has_changed_it(tmp_path: Path) -> None:
-    plan = plans.with_mat(plan_of(Settings({"pen.color": "teal"})), "Radial_grey")
-    save_robot(plans.robot_to_save(plan), tmp_path / "mine.toml")
+    plan = plans.change_mat(build_plan(Settings({"pen.color": "teal"})), "Radial_grey")
+    save_robot(plans.build_saved_robot(plan), tmp_path / "mine.toml")
     saved = load_robot(str(tmp_path / "mine.toml"))
     assert saved == replace(RobotSpec(), pen=replace(RobotSpec().pen, color="teal"))
 
@@ -153,9 +153,9 @@ def test_a_plan_of_a_run_of_which_nothing_else_is_known() -> None:
     spec = build_run_spec(
         Settings({"background": "Radial_grey", "start.x_mm": 5, "noise.light": 3})
     )
-    plan = plan_of_spec(spec)
+    plan = plan_spec(spec)
     assert plan.spec == spec
-    assert sensor_xs_mm(plans.with_mat(plan, "Loop")) == [-20, 20]
+    assert sensor_xs_mm(plans.change_mat(plan, "Loop")) == [-20, 20]
 
 
 # Field, what is typed, and what is said.
@@ -178,14 +178,14 @@ def test_a_wrong_value_is_refused(field: str, typed: str, said: str) -> None:
     from tuisim.app.form import format_error
 
     with pytest.raises(ConfigError) as caught:
-        edited(plan_of(Settings()), field, typed)
+        edited(build_plan(Settings()), field, typed)
     assert format_error(caught.value).startswith(said)
 
 
 def test_a_robot_without_wheels_gets_none_in_the_form() -> None:
     standing = replace(ROBOTS["Default_Robot"], left_port=NO_PORT, right_port=NO_PORT)
     with pytest.raises(ConfigError, match="has no wheels"):
-        edited(with_robot_edited(plan_of(Settings()), standing), "left_port", "outA")
+        edited(edit_robot(build_plan(Settings()), standing), "left_port", "outA")
 
 
 # Field, what is entered, and what the specification says then.
@@ -238,7 +238,7 @@ RIGHT: list[tuple[str, str, Callable[[NextRun], object], object]] = [
 def test_a_right_value_is_taken(
     field: str, entered: str, look: Callable[[NextRun], object], expected: object
 ) -> None:
-    plan = edited(plan_of(Settings()), field, entered)
+    plan = edited(build_plan(Settings()), field, entered)
     assert look(plan) == expected
     again = find(plan, field)
     assert again is not None
@@ -246,7 +246,7 @@ def test_a_right_value_is_taken(
 
 
 def test_a_sensor_switched_off_comes_back_as_it_was() -> None:
-    first = plan_of(Settings())
+    first = build_plan(Settings())
     for field in ("left.used", "ultrasonic.used", "gyro.used"):
         off = edited(first, field, "off")
         assert off.spec != first.spec
@@ -254,10 +254,10 @@ def test_a_sensor_switched_off_comes_back_as_it_was() -> None:
 
 
 def test_labels_fit_beside_their_fields() -> None:
-    from tuisim.app.setup.fields import MAX_LABEL, sections
+    from tuisim.app.setup.fields import MAX_LABEL, build_sections
 
-    for section in sections(plan_of(Settings())):
+    for section in build_sections(build_plan(Settings())):
         for edit in section.edits:
             assert len(edit.label) <= MAX_LABEL
             if edit.choices and edit.id != "preset":
-                assert edit.read(plan_of(Settings())) in edit.choices
+                assert edit.read(build_plan(Settings())) in edit.choices

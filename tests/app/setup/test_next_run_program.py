@@ -26,22 +26,22 @@ Step = str | Callable[[NextRun], NextRun]
 
 def done(steps: list[Step], free: tuple[str, ...] = PROGRAM_PATHS) -> NextRun:
     """The plan after programs were opened, and changes were made, in turn."""
-    plan = plans.plan_of(Settings(), free)
+    plan = plans.build_plan(Settings(), free)
     for step in steps:
         if isinstance(step, str):
             source = parse_program(step, "p.py")
-            plan, _ = plans.following(plans.with_choices(plan, source.options), source)
+            plan, _ = plans.follow_program(plans.apply_choices(plan, source.options), source)
         else:
             plan = step(plan)
     return plan
 
 
 def robot(name: str) -> Step:
-    return lambda plan: plans.with_robot(plan, name)
+    return lambda plan: plans.change_robot(plan, name)
 
 
 def mat(name: str) -> Step:
-    return lambda plan: plans.with_mat(plan, name)
+    return lambda plan: plans.change_mat(plan, name)
 
 
 # What is done; then the motor ports besides the wheels, the robot's name, and the profile.
@@ -53,25 +53,25 @@ WAYS: Mapping[str, tuple[list[Step], tuple[list[str], str, str]]] = {
     "a robot chosen before": ([robot("Explorer"), CLAW], (["outA"], "Explorer", "ev3")),
     "a robot chosen after": ([CLAW, robot("Explorer"), LIFT], (["outA"], "Explorer", "ev3")),
     "and the program's again": (
-        [CLAW, robot("Explorer"), plans.with_program_robot, LIFT],
+        [CLAW, robot("Explorer"), plans.follow_program_robot, LIFT],
         (["outD"], "Robot of p.py", "ev3"),
     ),
     "a profile chosen": (
-        [CLAW, lambda plan: plans.with_profile(plan, "robolab"), LIFT],
+        [CLAW, lambda plan: plans.change_profile(plan, "robolab"), LIFT],
         (["outD"], "Robot of p.py", "robolab"),
     ),
     "a mat chosen after": ([CLAW, mat("Loop"), LIFT], (["outD"], "Robot of p.py", "ev3")),
     "an edited robot": (
-        [CLAW, lambda plan: plans.with_robot_edited(plan, plan.robot.spec), LIFT],
+        [CLAW, lambda plan: plans.edit_robot(plan, plan.robot.spec), LIFT],
         (["outD"], "Robot of p.py", "ev3"),
     ),
     "and back": ([PYBRICKS, LIFT], (["outD"], "Robot of p.py", "ev3")),
     "a fitting profile chosen": (
-        [PYBRICKS, lambda plan: plans.with_profile(plan, "pybricks4"), PYBRICKS],
+        [PYBRICKS, lambda plan: plans.change_profile(plan, "pybricks4"), PYBRICKS],
         (["outA"], "Robot of p.py", "pybricks4"),
     ),
     "a profile chosen that does not fit the next one": (
-        [CLAW, lambda plan: plans.with_profile(plan, "robolab"), PYBRICKS],
+        [CLAW, lambda plan: plans.change_profile(plan, "robolab"), PYBRICKS],
         (["outA"], "Robot of p.py", "lego-micropython"),
     ),
     "the other library on a mat": (
@@ -96,7 +96,7 @@ PLACES: Mapping[str, tuple[list[Step], tuple[float, float]]] = {
     "a brick's program": ([CLAW], (1181, 571.5)),
     "then one of the course": ([CLAW, COURSE], (100, 800)),
     "a robot that was moved": (
-        [CLAW, lambda plan: plans.at_pose(plan, Pose(300, 400, 0)), LIFT],
+        [CLAW, lambda plan: plans.move_start(plan, Pose(300, 400, 0)), LIFT],
         (300, 400),
     ),
     "a mat with a line": ([CLAW, mat("Loop"), LIFT], (280, 700)),
@@ -118,9 +118,9 @@ GROUNDS: Mapping[str, tuple[list[Step], tuple[bool, bool]]] = {
     "then one of the course": ([CLAW, COURSE], (False, True)),
     "a mat": ([CLAW, mat("Loop")], (True, False)),
     "a mat, then another program": ([TOUCH, mat("Loop"), CLAW], (True, False)),
-    "walls": ([CLAW, lambda plan: plans.with_choices(plan, {"walls": True}), LIFT], (True, True)),
+    "walls": ([CLAW, lambda plan: plans.apply_choices(plan, {"walls": True}), LIFT], (True, True)),
     "no walls, then a mat": (
-        [TOUCH, lambda plan: plans.with_choices(plan, {"walls": False}), mat("Loop")],
+        [TOUCH, lambda plan: plans.apply_choices(plan, {"walls": False}), mat("Loop")],
         (True, False),
     ),
 }
@@ -144,6 +144,6 @@ def test_nothing_follows_where_everything_was_chosen() -> None:
 
 def test_what_is_decided_is_told_only_if_it_is_new() -> None:
     plan = done([CLAW])
-    again, same = plans.following(plan, parse_program(CLAW + "# more\n", "p.py"))
-    _, other = plans.following(again, parse_program(LIFT, "p.py"))
+    again, same = plans.follow_program(plan, parse_program(CLAW + "# more\n", "p.py"))
+    _, other = plans.follow_program(again, parse_program(LIFT, "p.py"))
     assert (same.said, "outD" in other.said) == ("", True)

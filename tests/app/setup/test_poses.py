@@ -16,14 +16,21 @@ from tests.app.app_help import (
     until_shown,
 )
 from tests.cases import for_each
-from tuisim.app.setup.next_run import plan_of
-from tuisim.app.setup.poses import delete_pose, fits, load_poses, poses_file, random_pose, save_pose
+from tuisim.app.setup.next_run import build_plan
+from tuisim.app.setup.poses import (
+    choose_random_pose,
+    delete_pose,
+    find_poses_file,
+    has_room,
+    load_poses,
+    save_pose,
+)
 from tuisim.base.errors import ConfigError
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.spec import Obstacle
 from tuisim.settings.options import Settings
 
-SPEC = plan_of(Settings()).spec
+SPEC = build_plan(Settings()).spec
 POSTS = tuple(Obstacle(x, y, 150, 150) for x in range(200, 2300, 500) for y in (150, 500, 850))
 
 
@@ -45,22 +52,22 @@ def test_where_the_outline_fits(
     pose: Pose, obstacles: tuple[Obstacle, ...], solid: bool, fit: bool
 ) -> None:
     spec = replace(SPEC, world=replace(SPEC.world, obstacles=obstacles, solid=solid))
-    assert fits(spec, pose) is fit
+    assert has_room(spec, pose) is fit
 
 
 @for_each(seed=range(20))
 def test_a_random_place_is_a_free_one(seed: int) -> None:
     spec = replace(SPEC, world=replace(SPEC.world, obstacles=POSTS, solid=True))
-    pose = random_pose(spec, random.Random(seed))
+    pose = choose_random_pose(spec, random.Random(seed))
     assert pose is not None
-    assert fits(spec, pose)
+    assert has_room(spec, pose)
 
 
 def test_no_free_place_is_told() -> None:
     spec = replace(
         SPEC, world=replace(SPEC.world, obstacles=(Obstacle(0, 0, 2362, 1143),), solid=True)
     )
-    assert random_pose(spec, random.Random(1)) is None
+    assert choose_random_pose(spec, random.Random(1)) is None
 
 
 def test_poses_are_kept_replaced_and_deleted() -> None:
@@ -75,14 +82,14 @@ def test_poses_are_kept_replaced_and_deleted() -> None:
 
 
 def test_saving_a_pose_keeps_the_users_comments() -> None:
-    poses_file().write_text(
+    find_poses_file().write_text(
         "# My poses\n[poses.a]  # the door\nx_mm = 1\ny_mm = 2\nheading_deg = 0\n"
     )
     save_pose("b", Pose(1, 2, 3))
-    assert poses_file().read_text().startswith("# My poses\n[poses.a]  # the door\nx_mm = 1\n")
+    assert find_poses_file().read_text().startswith("# My poses\n[poses.a]  # the door\nx_mm = 1\n")
     delete_pose("a")
     delete_pose("b")
-    assert (load_poses(), poses_file().read_text()[:10]) == ({}, "# My poses")
+    assert (load_poses(), find_poses_file().read_text()[:10]) == ({}, "# My poses")
 
 
 @pytest.mark.parametrize(
@@ -91,7 +98,7 @@ def test_saving_a_pose_keeps_the_users_comments() -> None:
 def test_a_pose_needs_a_name(name: str) -> None:
     with pytest.raises(ConfigError, match="a pose needs a name"):
         save_pose(name, Pose(0, 0, 0))
-    assert not poses_file().exists()
+    assert not find_poses_file().exists()
 
 
 @pytest.mark.parametrize(
@@ -104,10 +111,10 @@ def test_a_pose_needs_a_name(name: str) -> None:
     ],
 )
 def test_a_wrong_file_of_poses_is_told_and_left_alone(text: str, said: str) -> None:
-    poses_file().write_text(text)
+    find_poses_file().write_text(text)
     with pytest.raises(ConfigError, match=said):
         save_pose("b", Pose(0, 0, 0))
-    assert poses_file().read_text() == text
+    assert find_poses_file().read_text() == text
 
 
 async def test_saved_poses_in_the_app() -> None:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from tests.running import over
 from tuisim.app.editor.text_file import drop_draft, keep_draft
-from tuisim.app.setup.recent import Kind, recent
+from tuisim.app.setup.recent import Kind, list_recent
 from tuisim.base.source import Program
 from tuisim.engine.runs.handle import RunOptions, start_run
 from tuisim.settings.build import build_run_spec
@@ -14,7 +14,7 @@ from tuisim.settings.options import Settings
 
 
 def kinds() -> list[tuple[Kind, str]]:
-    return [(one.kind, one.name) for one in recent("new.py")]
+    return [(one.kind, one.name) for one in list_recent("new.py")]
 
 
 def test_nothing_at_first() -> None:

@@ -13,7 +13,7 @@ import pytest
 from tests.cases import cases
 from tests.engine.runtime.debugging import Driver
 from tuisim.app.setup.fields import find
-from tuisim.app.setup.next_run import plan_of_spec
+from tuisim.app.setup.next_run import plan_spec
 from tuisim.app.snapshot import RunPhase, Snapshot
 from tuisim.base.source import Program
 from tuisim.engine.core.geometry import Pose
@@ -100,7 +100,7 @@ def test_a_robots_file_says_all_of_it_and_may_leave_it_out(mount: Mount, tmp_pat
 @each_mount
 def test_the_settings_have_a_field_for_each_of_its_numbers(mount: Mount) -> None:
     sensor = sensor_of(mount)
-    plan = plan_of_spec(run_of(robot_with(mount, sensor)))
+    plan = plan_spec(run_of(robot_with(mount, sensor)))
     for field in fields(sensor):
         edit = find(plan, f"{sensor.name}.{field.name}")
         if field.name == "port" or field.type == "float":

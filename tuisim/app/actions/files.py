@@ -91,7 +91,7 @@ EXAMPLE = "log_greys.py"
 
 def greet(context: ActionContext) -> None:
     """Show the welcome at the first start, and at later ones if there is something to go on with."""
-    from tuisim.app.setup.recent import recent
+    from tuisim.app.setup.recent import list_recent
 
     if not get_preference(_WELCOMED_PREFERENCE):
         show_welcome(context)
@@ -101,14 +101,14 @@ def greet(context: ActionContext) -> None:
         if entries:
             _push_welcome(context, lambda: entries)
 
-    background.run(context.panels, partial(recent, NEW_NAME), show_entries, group="welcome")
+    background.run(context.panels, partial(list_recent, NEW_NAME), show_entries, group="welcome")
 
 
 def show_welcome(context: ActionContext) -> None:
     """Show the ways to begin, and what there is to go on with."""
-    from tuisim.app.setup.recent import recent
+    from tuisim.app.setup.recent import list_recent
 
-    _push_welcome(context, partial(recent, NEW_NAME))
+    _push_welcome(context, partial(list_recent, NEW_NAME))
 
 
 def _push_welcome(context: ActionContext, find: Callable[[], list[Recent]]) -> None:
@@ -156,7 +156,7 @@ def save_robot(context: ActionContext) -> None:
 
     runs = context.runs
     name = f"{runs.next_run.robot_choice.spec.name}.toml"
-    _save(context, "robot", name, lambda path: write(plans.robot_to_save(runs.next_run), path))
+    _save(context, "robot", name, lambda path: write(plans.build_saved_robot(runs.next_run), path))
 
 
 def save_obstacles(context: ActionContext) -> None:

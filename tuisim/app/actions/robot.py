@@ -57,9 +57,9 @@ def clear_trace(context: ActionContext) -> None:
 def place_randomly(context: ActionContext) -> None:
     """Put the robot at a random place on the field."""
 
-    from tuisim.app.setup.poses import random_pose
+    from tuisim.app.setup.poses import choose_random_pose
 
-    if pose := random_pose(context.runs.spec, Random()):
+    if pose := choose_random_pose(context.runs.spec, Random()):
         _move(context, pose)
     else:
         context.app.say(
@@ -122,14 +122,14 @@ def choose(context: ActionContext, what: str) -> None:
     from tuisim.app.dialogs.robots import PROGRAM_ROBOT, build_robot_picker
 
     chooser, change = {
-        "robot": (build_robot_picker, plans.with_robot),
-        "profile": (build_profile_chooser, plans.with_profile),
-        "obstacles": (build_obstacle_chooser, plans.with_obstacle_set),
+        "robot": (build_robot_picker, plans.change_robot),
+        "profile": (build_profile_chooser, plans.change_profile),
+        "obstacles": (build_obstacle_chooser, plans.change_obstacle_set),
     }[what]
 
     def handle_choice(word: str | None) -> None:
         if word == PROGRAM_ROBOT:
-            context.loader.attempt(plans.with_program_robot)
+            context.loader.attempt(plans.follow_program_robot)
         elif word:
             context.loader.attempt(lambda plan: change(plan, word))
 
@@ -139,7 +139,7 @@ def choose(context: ActionContext, what: str) -> None:
 def reset_robot(context: ActionContext) -> None:
     """Undo the edits of the robot."""
     if context.runs.next_run.robot_is_edited:
-        context.loader.attempt(plans.with_robot_as_chosen)
+        context.loader.attempt(plans.undo_robot_edits)
     else:
         context.app.say("The robot has no changes to undo")
 

@@ -35,11 +35,11 @@ if TYPE_CHECKING:
     from tuisim.analysis.traces import LogTrace
 
 _EVENTS = Style(color=palette.EVENT, bold=True)
-_MOST_BANDS = 100
+_MAX_BANDS = 100
 """More are too narrow to be told apart."""
-_LEAST_FACET_ROWS = 6
+_MIN_FACET_ROWS = 6
 """Minimum height of the chart of one variable."""
-FACETS_ROWS = 2 * _LEAST_FACET_ROWS
+FACETS_ROWS = 2 * _MIN_FACET_ROWS
 """Below this height there is one chart for all variables."""
 
 
@@ -103,7 +103,7 @@ class LogChart(LinesPanel):
             return
         if self.options.against and model.log.rows:
             self._pictures = []
-            self._text.set_lines(self._against(model, self.options.against, width, height))
+            self._text.set_lines(self._draw_against(model, self.options.against, width, height))
             return
         self._text.draw(partial(self._paint, model))
         self._read(self._pointed_s)
@@ -117,12 +117,12 @@ class LogChart(LinesPanel):
                 model.find_x_limits(), width * (MAX_POINTS if is_blank else 1), self.options.hold
             )
         unit = "mm" if model.alignment == DISTANCE else "s"
-        measured = _measured(model, unit, width)
+        measured = _build_measure_line(model, unit, width)
         marked = 1 if model.events.thresholds and model.log.rows else 0
         height -= len(measured) + marked
         ticked = model.traces.list_ticked()
         facets = ticked if self.options.facets and len(ticked) > 1 and height >= FACETS_ROWS else []
-        facets = _around_selected(facets, model.selected, height // _LEAST_FACET_ROWS)
+        facets = _select_facets(facets, model.selected, height // _MIN_FACET_ROWS)
         state = ChartState(
             model.selected,
             model.cursor_s if model.log.rows else None,
@@ -138,7 +138,7 @@ class LogChart(LinesPanel):
         spans = {
             report.variable: build_spans(report.bands)
             for report in model.list_reports()
-            if model.alignment == TIME and report.count <= _MOST_BANDS
+            if model.alignment == TIME and report.count <= _MAX_BANDS
         }
         self._pictures = []
         lines: list[list[Run]] = []
@@ -147,18 +147,20 @@ class LogChart(LinesPanel):
             state = replace(
                 state, margins=measure_margins(parts, state, width, height // len(parts))
             )
-        for at, part in enumerate(parts):
-            rows = height // len(parts) + (at < height % len(parts))
-            painter = self._painters.setdefault(facets[at].name if facets else "", ChartPainter())
-            shown = replace(
-                state, spans=spans.get(facets[at].name if facets else model.selected, ())
+        for index, part in enumerate(parts):
+            rows = height // len(parts) + (index < height % len(parts))
+            painter = self._painters.setdefault(
+                facets[index].name if facets else "", ChartPainter()
             )
-            picture = painter.paint(part, shown, width, rows, is_blank=is_blank)
+            part_state = replace(
+                state, spans=spans.get(facets[index].name if facets else model.selected, ())
+            )
+            picture = painter.paint(part, part_state, width, rows, is_blank=is_blank)
             self._pictures.append((len(lines), picture))
             lines += [*picture.lines, *[[] for _ in range(rows - len(picture.lines))]]
-        return [*lines, *(self._event_marks(model) if marked else []), *measured], self._pictures
+        return [*lines, *(self._mark_events(model) if marked else []), *measured], self._pictures
 
-    def _event_marks(self, model: Model) -> list[list[Run]]:
+    def _mark_events(self, model: Model) -> list[list[Run]]:
         """Return the line below the charts with a marker for each threshold crossing."""
         _, picture = self._pictures[-1]
         if not picture.columns:
@@ -172,7 +174,7 @@ class LogChart(LinesPanel):
             ]
         ]
 
-    def _against(
+    def _draw_against(
         self, model: Model, names: tuple[str, str], width: int, height: int
     ) -> list[list[Run]]:
         trace = model.trace
@@ -224,24 +226,24 @@ class LogChart(LinesPanel):
             if model is not None and model.log.rows and not self.options.against
             else []
         )
-        said = ""
+        words = ""
         if model is not None and drawn:
             unit = "mm" if model.alignment == DISTANCE else "s"
             time_s = model.cursor_s if time_s is None else time_s
-            said = escape_markup(format_values(drawn, time_s, unit, self.size.width - 4))
+            words = escape_markup(format_values(drawn, time_s, unit, self.size.width - 4))
         # Each assignment draws the panel again.
-        if said != self.border_subtitle:
-            self.border_subtitle = said
+        if words != self.border_subtitle:
+            self.border_subtitle = words
 
 
-def _around_selected(facets: list[LogTrace], selected: str, most: int) -> list[LogTrace]:
+def _select_facets(facets: list[LogTrace], selected: str, max_count: int) -> list[LogTrace]:
     """Return as many facets as fit, the selected one among them."""
-    at = next((at for at, trace in enumerate(facets) if trace.name == selected), 0)
-    first = min(max(at - most + 1, 0), max(len(facets) - most, 0))
-    return facets[first : first + most]
+    index = next((index for index, trace in enumerate(facets) if trace.name == selected), 0)
+    first = min(max(index - max_count + 1, 0), max(len(facets) - max_count, 0))
+    return facets[first : first + max_count]
 
 
-def _measured(model: Model, unit: str, width: int) -> list[list[Run]]:
+def _build_measure_line(model: Model, unit: str, width: int) -> list[list[Run]]:
     """Return the line with the differences between the two cursors."""
     if model.mark_s is None or not model.log.rows:
         return []

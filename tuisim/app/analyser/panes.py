@@ -24,8 +24,8 @@ from tuisim.app.analyser.table_pane import (
     HERE,
     MAX_CELL,
     PLAIN,
+    build_table_lines,
     count_rows,
-    table_lines,
 )
 from tuisim.app.snapshot import end_label
 from tuisim.base import palette
@@ -45,14 +45,14 @@ Cells = tuple[str, ...]
 
 _GAP = 2
 """Columns between those of a table."""
-_MOST_BELOW = 20
+_MAX_BELOW = 20
 """Lines below the rows of a pane at most, if there is room for all."""
 _MEASURED = 1000
 """In panes with more rows than this, the visible ones determine it."""
 SEARCHED_AT_ONCE = 20_000
 """Up to this many rows, the search for bands takes a few hundredths of a second."""
 
-_LEAST_ROWS = 10
+_MIN_ROWS = 10
 """A pane with few rows leaves the rest of its lines to the chart, but these."""
 
 EMPTY = ("This log is empty. T shows the telemetry of a run.",)
@@ -73,7 +73,7 @@ class Pane:
     """Whether its last column is prose, which wraps instead of being cut."""
 
 
-def _figure(value: float, digits: str = ".4g") -> str:
+def _format_figure(value: float, digits: str = ".4g") -> str:
     return f"{value:{digits}}" if isfinite(value) else "–"
 
 
@@ -101,7 +101,7 @@ class _LazyRows(Sequence[Cells], Generic[Item]):
         )
 
 
-def _band(band: Band) -> Cells:
+def _format_band(band: Band) -> Cells:
     return (
         band.variable,
         str(band.number),
@@ -115,7 +115,7 @@ def _band(band: Band) -> Cells:
     )
 
 
-def _event(event: Event | CommandRow) -> Cells:
+def _format_event(event: Event | CommandRow) -> Cells:
     if isinstance(event, CommandRow):
         command = event.event
         part = f"{command.part} #{event.run}" if event.run else command.part
@@ -125,14 +125,14 @@ def _event(event: Event | CommandRow) -> Cells:
         event.variable,
         "above" if crossing.rising else "below",
         f"{crossing.time_s:.3f}",
-        _figure(event.since_s, ".3f"),
-        _figure(crossing.value),
+        _format_figure(event.since_s, ".3f"),
+        _format_figure(crossing.value),
         f"{event.row + 1:,}",
         str(event.threshold),
     )
 
 
-def _statistics(model: Model) -> list[Cells]:
+def _list_statistics(model: Model) -> list[Cells]:
     rows = []
     # A short log is processed faster than it is drawn.
     missing = model.list_unsummed() if model.log.rows > FAST_ROWS else []
@@ -140,19 +140,19 @@ def _statistics(model: Model) -> list[Cells]:
         if trace.name in missing:
             rows.append((trace.name, "…", *[""] * (4 + len(QUANTILES))))
             continue
-        found = model.build_summary(trace.name)
+        summary = model.build_summary(trace.name)
         figures = (
-            found.min,
-            found.mean,
-            found.max,
-            found.std,
-            *(found.quantiles or (nan,) * len(QUANTILES)),
+            summary.min,
+            summary.mean,
+            summary.max,
+            summary.std,
+            *(summary.quantiles or (nan,) * len(QUANTILES)),
         )
-        rows.append((trace.name, f"{found.count:,}", *map(_figure, figures)))
+        rows.append((trace.name, f"{summary.count:,}", *map(_format_figure, figures)))
     return rows
 
 
-def _between(model: Model) -> list[str]:
+def _describe_interval(model: Model) -> list[str]:
     span = model.find_measured_span()
     if span is None:
         return []
@@ -174,10 +174,10 @@ def _notes(model: Model) -> list[Cells]:
     ]
 
 
-def _runs(model: Model) -> list[Cells]:
+def _list_runs(model: Model) -> list[Cells]:
     return [
         (
-            f"#{at}" if len(model.opened.runs) > 1 else "",
+            f"#{number}" if len(model.opened.runs) > 1 else "",
             str(run.number or run.id),
             run.program.name,
             run.spec.world.background,
@@ -186,7 +186,7 @@ def _runs(model: Model) -> list[Cells]:
             run.spec.profile.name,
             str(run.spec.seed),
         )
-        for at, run in enumerate(model.opened.runs, 1)
+        for number, run in enumerate(model.opened.runs, 1)
     ]
 
 
@@ -194,14 +194,14 @@ PANES: Mapping[str, Pane] = {
     "table": Pane("Table", lambda _: (), ()),
     "bands": Pane(
         "Bands",
-        lambda model: _LazyRows(model.bands(), _band),
+        lambda model: _LazyRows(model.bands(), _format_band),
         ("variable", "#", "level", "name", "from s", "to s", "n", "mm", "std"),
         Model.describe_bands,
         "No bands: no variable shown stays at a level",
     ),
     "statistics": Pane(
         "Statistics",
-        _statistics,
+        _list_statistics,
         (
             "variable",
             "count",
@@ -211,12 +211,12 @@ PANES: Mapping[str, Pane] = {
             "std",
             *(f"{100 * part:g} %" for part in QUANTILES),
         ),
-        _between,
+        _describe_interval,
         empty="No variable is shown: v selects one, space shows it",
     ),
     "events": Pane(
         "Events",
-        lambda model: _LazyRows(model.events.list_events(model.log), _event),
+        lambda model: _LazyRows(model.events.list_events(model.log), _format_event),
         ("variable", "comes", "at s", "after s", "value", "row", "event"),
         empty="No events: c asks for a threshold, such as Colour < 50, or for commands",
         wraps=True,
@@ -230,7 +230,7 @@ PANES: Mapping[str, Pane] = {
     ),
     "runs": Pane(
         "Runs",
-        _runs,
+        _list_runs,
         ("", "run", "program", "mat", "end", "s", "profile", "seed"),
         empty="This log is a file. R opens stored runs instead; several share one chart",
     ),
@@ -238,7 +238,7 @@ PANES: Mapping[str, Pane] = {
 """The panes by name."""
 
 
-def pane_frame(name: str, model: Model) -> pd.DataFrame:
+def build_frame(name: str, model: Model) -> pd.DataFrame:
     """Return the rows of a pane other than the table; bands with all their properties."""
     import pandas as pd
 
@@ -268,47 +268,53 @@ def pane_lines(name: str, model: Model, chosen: int, width: int, height: int) ->
     if not model.log.rows and name != "runs":
         return [[(text, PLAIN)] for text in EMPTY]
     if name == "table":
-        return table_lines(model, width, height)
+        return build_table_lines(model, width, height)
     pane = PANES[name]
     rows = pane.rows(model)
     if not rows:
         searching = name == "bands" and model.list_unsearched()
         text = "Searching for bands …" if searching else pane.empty
-        return [[(line, DIM)] for line in _wrapped([text], width, height)]
-    below, room = _below(pane, model, width, height)
+        return [[(line, DIM)] for line in _wrap_texts([text], width, height)]
+    below, room = _split_below(pane, model, width, height)
     first = find_first_row(chosen, len(rows), room)
     measured = rows if len(rows) <= _MEASURED else rows[first : first + room]
     widths = [max(map(len, column)) for column in zip(pane.heads, *measured, strict=True)]
-    used, gap = _columns_of(measured, widths, width)
-    head = _row([pane.heads[at] for at in used], [widths[at] for at in used], gap, HEAD)
-    over = [at for at in range(used[-1] + 1, len(widths)) if any(row[at] for row in measured)]
+    used, gap = _choose_columns(measured, widths, width)
+    head = _build_row(
+        [pane.heads[index] for index in used], [widths[index] for index in used], gap, HEAD
+    )
+    over = [
+        index for index in range(used[-1] + 1, len(widths)) if any(row[index] for row in measured)
+    ]
     more = (
-        _continued(pane.heads, rows, over, widths, width, height - 1 - len(rows) - len(below))
+        _build_continuation(
+            pane.heads, rows, over, widths, width, height - 1 - len(rows) - len(below)
+        )
         if over
         else []
     )
     if over and not more:
         head = [(f"{cut(head[0][0], width - 2):{width - 1}}…", HEAD)]
-    shown: list[Line] = []
+    lines: list[Line] = []
     start = stop = 0
     for number, row in enumerate(rows[first : first + room], first):
         style = HERE if number == chosen else PLAIN
-        texts, wide = [row[at] for at in used], [widths[at] for at in used]
-        made = (
-            _rows_of(texts, wide, gap, style, width)
+        texts, wide = [row[index] for index in used], [widths[index] for index in used]
+        row_lines = (
+            _build_rows(texts, wide, gap, style, width)
             if pane.wraps
-            else [_row(texts, wide, gap, style)]
+            else [_build_row(texts, wide, gap, style)]
         )
         if number == chosen:
-            start, stop = len(shown), len(shown) + len(made)
-            made = [[*line, (" " * width, HERE)] for line in made]
-        shown += made
+            start, stop = len(lines), len(lines) + len(row_lines)
+            row_lines = [[*line, (" " * width, HERE)] for line in row_lines]
+        lines += row_lines
     # With rows of several lines, the selected one stays visible.
     start = max(min(start, stop - room), 0)
-    return [head, *shown[start : start + room], *more, *([(text, DIM)] for text in below)]
+    return [head, *lines[start : start + room], *more, *([(text, DIM)] for text in below)]
 
 
-def _continued(
+def _build_continuation(
     heads: Cells,
     rows: Sequence[Cells],
     columns: Sequence[int],
@@ -317,29 +323,31 @@ def _continued(
     height: int,
 ) -> list[Line]:
     """Return the columns that do not fit as a table below the others, with the first one; none without room for all."""
-    shown = [0, *columns]
-    wide = [widths[at] for at in shown]
+    columns_below = [0, *columns]
+    wide = [widths[index] for index in columns_below]
     if height < 1 + len(rows) or sum(wide) + _GAP * (len(wide) - 1) > width:
         return []
     return [
-        _row([row[at] for at in shown], wide, _GAP, HEAD if row is heads else PLAIN)
+        _build_row(
+            [row[index] for index in columns_below], wide, _GAP, HEAD if row is heads else PLAIN
+        )
         for row in (heads, *rows)
     ]
 
 
-def _wanted_rows(name: str, model: Model, width: int) -> int:
+def _count_rows(name: str, model: Model, width: int) -> int:
     """Return the number of lines that show all of a pane."""
     if name == "table":
         return 1 + len(model.rows)
     rows, below = PANES[name].rows(model), PANES[name].below(model)
     return (
-        1 + len(rows) + len(_wrapped(below, width, _MOST_BELOW))
+        1 + len(rows) + len(_wrap_texts(below, width, _MAX_BELOW))
         if not PANES[name].wraps
         else _MEASURED
     )
 
 
-def _below(pane: Pane, model: Model, width: int, height: int) -> tuple[list[str], int]:
+def _split_below(pane: Pane, model: Model, width: int, height: int) -> tuple[list[str], int]:
     """Return the lines below the rows of a pane, and the number of rows for which there is room.
 
     All rows come first, if they fit; among many, a sixth of the lines is for what is below them. No line is for what
@@ -347,59 +355,61 @@ def _below(pane: Pane, model: Model, width: int, height: int) -> tuple[list[str]
     """
     spare = height - 1 - len(pane.rows(model))
     texts = pane.below(model)
-    below = _wrapped(texts, width, spare if spare >= 0 else height // 6)
+    below = _wrap_texts(texts, width, spare if spare >= 0 else height // 6)
     if len(below) == 1 and below != [*texts]:
         below = []
     return below, max(height - 1 - len(below), 1)
 
 
-def place_in(name: str, model: Model, chosen: int, width: int, height: int) -> str:
+def describe_place(name: str, model: Model, chosen: int, width: int, height: int) -> str:
     """Return which row of a pane other than the table is selected, where not all of them fit; else nothing."""
     count = len(PANES[name].rows(model))
-    fits = count <= _below(PANES[name], model, width, height)[1]
+    fits = count <= _split_below(PANES[name], model, width, height)[1]
     return "" if fits else f"↑↓ row {chosen + 1:,} of {count:,}"
 
 
-def _columns_of(rows: Sequence[Cells], widths: Sequence[int], width: int) -> tuple[list[int], int]:
+def _choose_columns(
+    rows: Sequence[Cells], widths: Sequence[int], width: int
+) -> tuple[list[int], int]:
     """Return the columns that are shown, and the gap between them.
 
     Where they do not all fit, the gap is smaller, and a first column that is the same in all rows is left out.
     """
-    filled = [at for at in range(len(widths)) if any(row[at] for row in rows)]
+    filled = [index for index in range(len(widths)) if any(row[index] for row in rows)]
     rest = filled[1:] if len({row[0] for row in rows}) == 1 else filled
     for columns, gap in ((filled, _GAP), (rest, _GAP), (rest, 1)):
-        if sum(widths[at] + gap for at in columns) - gap <= width:
+        if sum(widths[index] + gap for index in columns) - gap <= width:
             return columns, gap
-    return _fitting_whole(filled, widths, width), _GAP
+    return _fit_columns(filled, widths, width), _GAP
 
 
-def _rows_of(
+def _build_rows(
     texts: Sequence[str], widths: Sequence[int], gap: int, style: Style, width: int
 ) -> list[Line]:
     """Return a row as lines: one, or as many as the last text needs in that width."""
     margin = sum(widths[:-1]) + gap * (len(widths) - 1)
     if margin + len(texts[-1]) <= width:
-        return [_row(texts, widths, gap, style)]
+        return [_build_row(texts, widths, gap, style)]
     first, *rest = wrap(texts[-1], max(width - margin, 10)) or [""]
     return [
-        _row([*texts[:-1], first], widths, gap, style),
+        _build_row([*texts[:-1], first], widths, gap, style),
         *([(" " * margin + text, style)] for text in rest),
     ]
 
 
-def _fitting_whole(columns: Sequence[int], widths: Sequence[int], width: int) -> list[int]:
+def _fit_columns(columns: Sequence[int], widths: Sequence[int], width: int) -> list[int]:
     """Return the first column, those that fit, and the last one if it is a text that may be cut."""
     left = width
     seen: list[int] = []
-    for at in columns:
-        if seen and widths[at] > left and (widths[at] <= MAX_CELL or left < MAX_CELL // 2):
+    for index in columns:
+        if seen and widths[index] > left and (widths[index] <= MAX_CELL or left < MAX_CELL // 2):
             break
-        left -= widths[at] + _GAP
-        seen.append(at)
+        left -= widths[index] + _GAP
+        seen.append(index)
     return seen
 
 
-def _row(texts: Sequence[str], widths: Sequence[int], gap: int, style: Style) -> Line:
+def _build_row(texts: Sequence[str], widths: Sequence[int], gap: int, style: Style) -> Line:
     parts = (
         text.rjust(width) if text[:1].isdigit() or text[:1] == "-" else text.ljust(width)
         for text, width in zip(texts, widths, strict=True)
@@ -407,17 +417,20 @@ def _row(texts: Sequence[str], widths: Sequence[int], gap: int, style: Style) ->
     return [((" " * gap).join(parts), style)]
 
 
-def _wrapped(texts: Sequence[str], width: int, most: int) -> list[str]:
+def _wrap_texts(texts: Sequence[str], width: int, max_lines: int) -> list[str]:
     """Return the first lines of wrapped texts, the last one with an ellipsis if there is more.
 
     Only the visible part of each is wrapped.
     """
     wide = max(width, 10)
-    seen = (text[: (most + 1) * wide] for text in texts)
+    seen = (text[: (max_lines + 1) * wide] for text in texts)
     lines = [line for text in seen for line in wrap(text, wide, subsequent_indent="  ")]
-    if len(lines) <= most or not most:
-        return lines[:most]
-    return [*lines[: most - 1], f"{wrap(lines[most - 1], wide - 2, subsequent_indent='  ')[0]} …"]
+    if len(lines) <= max_lines or not max_lines:
+        return lines[:max_lines]
+    return [
+        *lines[: max_lines - 1],
+        f"{wrap(lines[max_lines - 1], wide - 2, subsequent_indent='  ')[0]} …",
+    ]
 
 
 class PaneView(LinesPanel):
@@ -469,11 +482,11 @@ class PaneView(LinesPanel):
         width, height = self._text.size
         if width and height and self.display:
             if not is_table:
-                self.border_subtitle = place_in(self.name_shown, model, self.chosen, width, height)
+                self.border_subtitle = describe_place(
+                    self.name_shown, model, self.chosen, width, height
+                )
             self._text.set_lines(pane_lines(self.name_shown, model, self.chosen, width, height))
-            self.styles.max_height = (
-                max(_wanted_rows(self.name_shown, model, width), _LEAST_ROWS) + 2
-            )
+            self.styles.max_height = max(_count_rows(self.name_shown, model, width), _MIN_ROWS) + 2
 
     def _compute(self, model: Model, pane: str) -> None:
         """Compute the missing content of a pane, once at a time; that of a small log at once."""
@@ -493,13 +506,13 @@ class PaneView(LinesPanel):
             background.run(
                 self,
                 work,
-                lambda _: self._computed(pane),
+                lambda _: self._show_computed(pane),
                 self._complain,
                 group=pane,
                 exclusive=True,
             )
 
-    def _computed(self, pane: str) -> None:
+    def _show_computed(self, pane: str) -> None:
         self._busy.pop(pane, None)
         self._redraw()
 
@@ -510,10 +523,10 @@ class PaneView(LinesPanel):
 
 def find_bands(model: Model, names: Sequence[str]) -> None:
     """Search variables for bands; for a log of more rows than `SEARCHED_AT_ONCE`, call it in a worker."""
-    model.find_bands(names, band_search(model.log.rows))
+    model.find_bands(names, build_band_search(model.log.rows))
 
 
-def band_search(rows: int) -> Search:
+def build_band_search(rows: int) -> Search:
     """Return the search for bands in so many rows: of many, in another process, until this worker is cancelled."""
     if rows <= SEARCHED_AT_ONCE:
         return find_plateaus

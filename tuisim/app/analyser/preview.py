@@ -35,7 +35,7 @@ _FIELDS = {
     "unit": "Unit",
 }
 """The choices by name, with their labels, whose first letters are their keys."""
-_OF_COLUMNS = ("header", "separator")
+_COLUMN_CHOICES = ("header", "separator")
 """Choices that change which columns there are."""
 
 _EXAMPLES = {".": "1.5", ",": "1,5"}
@@ -74,7 +74,7 @@ class PreviewDialog(Dialog[ReadChoices]):
                 for name in names:
                     yield Label(_FIELDS[name], markup=False)
                     yield Select(
-                        self._offers(name),
+                        self._list_offers(name),
                         id=name,
                         value=getattr(self._choices, name),
                         allow_blank=False,
@@ -111,7 +111,7 @@ class PreviewDialog(Dialog[ReadChoices]):
             return
         self.query_one("#rows").focus()
         self._choices = replace(self._choices, **{name: chosen})
-        if name in _OF_COLUMNS:
+        if name in _COLUMN_CHOICES:
             self._choices = replace(self._choices, time=None, value=())
         self._read()
 
@@ -125,7 +125,7 @@ class PreviewDialog(Dialog[ReadChoices]):
         self.query_one("#table", Static).update(_build_rows(self._log))
         self.say(self._notes())
         for name in _FIELDS:
-            field, offers = self.query_one(f"#{name}", Select), self._offers(name)
+            field, offers = self.query_one(f"#{name}", Select), self._list_offers(name)
             field.set_options(offers)
             field.value, field.disabled = getattr(self._choices, name), self._is_idle(name)
             # The widget shows another word only for another value.
@@ -146,10 +146,10 @@ class PreviewDialog(Dialog[ReadChoices]):
     def _notes(self) -> str:
         return "\n".join(self._log.notes)
 
-    def _offers(self, name: str) -> Offers:
+    def _list_offers(self, name: str) -> Offers:
         """Return what can be chosen; the first is to find it."""
         chosen = getattr(self._choices, name)
-        offers = self._words(name)
+        offers = self._list_words(name)
         usual = getattr(NO_CHOICES, name)
         if chosen not in (usual, *dict(offers).values()):
             # It was named in the shell.
@@ -158,13 +158,16 @@ class PreviewDialog(Dialog[ReadChoices]):
         label = f"found: {self._find_word(name) or 'none'}" if is_found else "find it"
         return [(label, usual), *offers]
 
-    def _words(self, name: str) -> Offers:
+    def _list_words(self, name: str) -> Offers:
         match name:
             case "header":
                 return [(f"{row}: {text[:_MAX_LINE]}", row) for row, text in self._lines]
             case "time":
                 names = time_columns(self._log.table)
-                return [*((shortened(one, _MAX_CELL), one) for one in names), ("row numbers", ROW)]
+                return [
+                    *((shortened(column, _MAX_CELL), column) for column in names),
+                    ("row numbers", ROW),
+                ]
             case _:
                 return [(_EXAMPLES.get(word, word), word) for word in WORDS[name]]
 
@@ -191,15 +194,15 @@ def _build_rows(log: Log) -> Table:
     names = log.table.column_names[:_COLUMNS]
     for name in names:
         heading = Text(f"{shortened(name, _MAX_CELL)}\n", Style(color=palette.WHITE, bold=True))
-        heading.append(_role(log, name), Style(color=palette.YELLOW, bold=False))
+        heading.append(_describe_role(log, name), Style(color=palette.YELLOW, bold=False))
         numeric = is_numeric(log.table.schema.field(name).type)
         rows.add_column(heading, no_wrap=True, justify="right" if numeric else "left")
     for cells in zip(*(log.table.column(name)[:_ROWS].to_pylist() for name in names), strict=True):
-        rows.add_row("", *(Text(_cell(cell)) for cell in cells))
+        rows.add_row("", *(Text(_format_cell(cell)) for cell in cells))
     return rows
 
 
-def _role(log: Log, name: str) -> str:
+def _describe_role(log: Log, name: str) -> str:
     """Return what a column was taken for, empty for values."""
     layout = log.layout
     if name == layout.time:
@@ -208,6 +211,6 @@ def _role(log: Log, name: str) -> str:
     return roles.get(name) or ("" if name in layout.values else "not drawn")
 
 
-def _cell(value: object) -> str:
+def _format_cell(value: object) -> str:
     text = f"{value:.6g}" if isinstance(value, float) else "" if value is None else str(value)
     return shortened(text, _MAX_CELL)

@@ -50,7 +50,7 @@ _PATIENCE = 10.0
 Made = TypeVar("Made")
 
 
-def expression_words(log: Log) -> Iterator[str]:
+def list_expression_words(log: Log) -> Iterator[str]:
     """Yield the words allowed in an expression: variables, columns, functions."""
     known = dict.fromkeys(
         (
@@ -172,7 +172,7 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         self.request = request
         self._reading, self._began_s = True, monotonic()
         self._show_title("opening …")
-        work, failed = partial(self._open, request, asks), partial(self._failed, request)
+        work, failed = partial(self._open, request, asks), partial(self._report_failure, request)
         background.run(self, work, lambda _: None, failed, group="log", exclusive=True)
 
     def _open(self, request: LogRequest, asks: bool) -> None:
@@ -189,7 +189,7 @@ class LogScreen(ActionHost, ClosesOnce[None]):
             model.traces.find_span_s()
             background.call(self.app, self.set_model, model)
 
-    def _failed(self, request: LogRequest, error: TuisimError) -> None:
+    def _report_failure(self, request: LogRequest, error: TuisimError) -> None:
         if request is not self.request:
             return
         self._reading = False
@@ -235,7 +235,7 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         """Read on when the log has grown; the longer a reading takes, the less often."""
         model = self._model
         if self.job is not None:
-            self._show_title(self._progress())
+            self._show_title(self._describe_progress())
         if (
             model is None
             or not model.opened.done
@@ -260,7 +260,7 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         """Update the views that have changed."""
         if self._model is None:
             return
-        self._show_title(self._progress())
+        self._show_title(self._describe_progress())
         now = self.situation()
         self.key_footer.show(
             [action for action in self.ACTIONS.values() if not action.why_not(now)]
@@ -292,7 +292,7 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         if not self.pane.display:
             self.lay_out(chart=True, pane=True)
 
-    def _progress(self) -> str:
+    def _describe_progress(self) -> str:
         opened = self._model.opened if self._model else None
         if opened is None or opened.done:
             return ""
@@ -376,7 +376,7 @@ class LogScreen(ActionHost, ClosesOnce[None]):
             do(text)
             self.update()
 
-        words = tuple(expression_words(self.model.log)) if completes else ()
+        words = tuple(list_expression_words(self.model.log)) if completes else ()
         self.app.push_screen(LinePrompt(title, apply, value, forms, words))
 
     def ask_choices(self) -> None:
@@ -411,7 +411,7 @@ class LogScreen(ActionHost, ClosesOnce[None]):
 
     # Background work
 
-    def work(
+    def run_task(
         self, word: str, rows: int, do: Callable[[TableTask], Made], then: Callable[[Made], None]
     ) -> None:
         """Run a function and pass on its result; newer work replaces older work.
@@ -433,7 +433,7 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         background.run(
             self,
             partial(do, task),
-            lambda made: self.end(task, partial(then, made)),
+            lambda result: self.end(task, partial(then, result)),
             lambda error: self.end(task, partial(self.complain, error)),
             group="work",
         )

@@ -21,7 +21,7 @@ _SAMPLED = 40
 """Number of rows that determine the width of a table's column, besides the visible ones."""
 
 
-def table_lines(model: Model, width: int, height: int) -> list[Line]:
+def build_table_lines(model: Model, width: int, height: int) -> list[Line]:
     """Return the rows of the table around the cursor, with as many columns as fit."""
     rows = model.rows
     if not len(rows):
@@ -29,11 +29,11 @@ def table_lines(model: Model, width: int, height: int) -> list[Line]:
     place = rows.place(model.row)
     room = max(height - 1, 1)
     first = find_first_row(place, len(rows), room)
-    shown = [rows.row(at) for at in range(first, min(first + room, len(rows)))]
-    number_width = max(len(f"{shown[-1] + 1:,}"), len(f"{shown[0] + 1:,}"))
-    columns, widths = _fitting(model, shown, width - number_width - 2)
-    lines = [_head_line(model, columns, widths, number_width)]
-    for row in shown:
+    shown_rows = [rows.row(index) for index in range(first, min(first + room, len(rows)))]
+    number_width = max(len(f"{shown_rows[-1] + 1:,}"), len(f"{shown_rows[0] + 1:,}"))
+    columns, widths = _fit_columns(model, shown_rows, width - number_width - 2)
+    lines = [_build_head_line(model, columns, widths, number_width)]
+    for row in shown_rows:
         style = HERE if row == model.row else PLAIN
         line: Line = [(f"{row + 1:>{number_width},}  ", HERE if row == model.row else DIM)]
         for column, wide in zip(columns, widths, strict=True):
@@ -51,7 +51,7 @@ def table_lines(model: Model, width: int, height: int) -> list[Line]:
     return lines
 
 
-def _head_line(
+def _build_head_line(
     model: Model, columns: Sequence[str], widths: Sequence[int], number_width: int
 ) -> Line:
     rows = model.rows
@@ -70,12 +70,12 @@ def _is_number(text: str) -> bool:
     return text[:1].isdigit() or (text[:1] == "-" and text[1:2].isdigit())
 
 
-def _fitting(model: Model, shown: list[int], width: int) -> tuple[list[str], list[int]]:
+def _fit_columns(model: Model, shown_rows: list[int], width: int) -> tuple[list[str], list[int]]:
     """Return the columns shown and their widths: the frozen ones, then those up to the selected one."""
     rows = model.rows
-    seen = shown[:_SAMPLED]
+    seen = shown_rows[:_SAMPLED]
 
-    def wide(column: str) -> int:
+    def measure_column(column: str) -> int:
         widths = [
             len(build_heading(model, column)) + 1,
             *(len(rows.text(row, column)) for row in seen),
@@ -83,14 +83,14 @@ def _fitting(model: Model, shown: list[int], width: int) -> tuple[list[str], lis
         return min(max(widths), MAX_CELL)
 
     frozen = rows.columns[: rows.frozen]
-    widths = {column: wide(column) for column in frozen}
+    widths = {column: measure_column(column) for column in frozen}
     left = width - sum(widths.values()) - 2 * len(frozen)
     others = rows.columns[rows.frozen :]
-    at = max(rows.column - rows.frozen, 0)
+    index = max(rows.column - rows.frozen, 0)
     # First leftwards from the selected column until the width is used up, then on to its right.
     chosen: list[str] = []
-    for column in [*reversed(others[: at + 1]), *others[at + 1 :]]:
-        need = wide(column) + 2
+    for column in [*reversed(others[: index + 1]), *others[index + 1 :]]:
+        need = measure_column(column) + 2
         if need > left and chosen:
             break
         widths[column], left = min(need, max(left, 3)) - 2, left - need

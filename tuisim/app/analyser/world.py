@@ -16,7 +16,7 @@ from tuisim.app import background
 from tuisim.app.panels import PANELS
 from tuisim.app.panels.arrays import Arrays
 from tuisim.app.panels.world import WorldView
-from tuisim.app.setup.mat import Mat, blank_mat, prepare_mat, prepare_mat_of
+from tuisim.app.setup.mat import Mat, make_blank_mat, prepare_mat, prepare_stored_mat
 from tuisim.app.snapshot import RunPhase, Snapshot
 from tuisim.base import palette
 from tuisim.base.errors import TuisimError, printable
@@ -47,7 +47,7 @@ _BESIDE_COLS = 60
 NO_POSES = "This log has no robot positions"
 
 
-class WorldAt:
+class RunWorld:
     """The world of one run, at any time of it.
 
     Args:
@@ -64,17 +64,17 @@ class WorldAt:
         self.text = run.program.text if run is not None else ""
         """The program, empty if unknown."""
 
-    def at(self, time_s: float, row: int) -> Snapshot:
+    def find_snapshot(self, time_s: float, row: int) -> Snapshot:
         """Return the snapshot at a time.
 
         Args:
             time_s: Simulated time.
             row: The row of the log at that time.
         """
-        found = self._recorded(time_s) if self._recording is not None else None
-        return found or self._logged(time_s, row)
+        snapshot = self._find_recorded(time_s) if self._recording is not None else None
+        return snapshot or self._build_logged(time_s, row)
 
-    def _recorded(self, time_s: float) -> Snapshot | None:
+    def _find_recorded(self, time_s: float) -> Snapshot | None:
         recording = self._recording
         if recording is None or recording.newest < 0:
             return None
@@ -83,9 +83,9 @@ class WorldAt:
         instant = instant_of(record, self.spec, recording.noise_at(record))
         field = recording.field_at(tick, self.mat.field) if self.mat.field else None
         pen = bool(record.flags & FLAG_PEN_DOWN)
-        return self._snapshot(instant, field, record.line, pen)
+        return self._build_snapshot(instant, field, record.line, pen)
 
-    def _logged(self, time_s: float, row: int) -> Snapshot:
+    def _build_logged(self, time_s: float, row: int) -> Snapshot:
         table = self._log.table
         x_mm, y_mm, heading_deg = (table.column(name)[row].as_py() for name in _POSE)
         pose = Pose(float(x_mm or 0.0), float(y_mm or 0.0), float(heading_deg or 0.0))
@@ -101,9 +101,9 @@ class WorldAt:
             seed=spec.seed,
         )
         line = table.column("line")[row].as_py() if "line" in table.column_names else 0
-        return self._snapshot(instant, self.mat.field, int(line or 0), False)
+        return self._build_snapshot(instant, self.mat.field, int(line or 0), False)
 
-    def _snapshot(
+    def _build_snapshot(
         self, instant: Instant, field: Field | None, line: int, pen_down: bool
     ) -> Snapshot:
         return Snapshot(
@@ -119,7 +119,7 @@ def has_poses(opened: OpenedLog) -> bool:
     return named and read_spec(opened.log.metadata) is not None
 
 
-def world_at(opened: OpenedLog, run: int) -> WorldAt | None:
+def load_world(opened: OpenedLog, run: int) -> RunWorld | None:
     """Return the world of a run of a log, None if it is unknown. Blocks, long the first time for each mat.
 
     Args:
@@ -129,18 +129,18 @@ def world_at(opened: OpenedLog, run: int) -> WorldAt | None:
     if run < len(opened.runs):
         stored = opened.runs[run]
         try:
-            mat = prepare_mat_of(stored)
+            mat = prepare_stored_mat(stored)
         except TuisimError:
-            mat = blank_mat(stored.spec)
-        return WorldAt(stored.spec, mat, stored, opened.log)
+            mat = make_blank_mat(stored.spec)
+        return RunWorld(stored.spec, mat, stored, opened.log)
     spec = read_spec(opened.log.metadata, run)
     if spec is None or not set(_POSE) <= set(opened.log.table.column_names):
         return None
     try:
         mat = prepare_mat(spec)
     except TuisimError:
-        mat = blank_mat(spec)
-    return WorldAt(spec, mat, None, opened.log)
+        mat = make_blank_mat(spec)
+    return RunWorld(spec, mat, None, opened.log)
 
 
 class WorldPane(Vertical):
@@ -163,10 +163,10 @@ class WorldPane(Vertical):
         self._source = LinesView()
         self._arrays = Arrays()
         self._arrays.border_title = PANELS["arrays"].title
-        self._worlds: dict[int, WorldAt | None] = {}
+        self._worlds: dict[int, RunWorld | None] = {}
         self._requested: set[int] = set()
         self._model: Model | None = None
-        self._shown: WorldAt | None = None
+        self._shown: RunWorld | None = None
 
     def compose(self) -> ComposeResult:
         for title, view in (("World", self._world), ("Source", self._source)):
@@ -204,41 +204,41 @@ class WorldPane(Vertical):
         run = model.find_run(model.row)
         if run not in self._requested:
             self._requested.add(run)
-            work = partial(world_at, model.opened, run)
-            background.run(self, work, partial(self._prepared, model, run), group="worlds")
+            work = partial(load_world, model.opened, run)
+            background.run(self, work, partial(self._show_prepared, model, run), group="worlds")
         world = self._worlds.get(run)
         if world is None:
             note = NO_POSES if run in self._worlds else "Preparing the mat …"
             self._source.set_lines([[(note, _DIM)]])
             return
-        snapshot = world.at(model.find_time_s(model.row), model.row)
+        snapshot = world.find_snapshot(model.find_time_s(model.row), model.row)
         if world is not self._shown:
             self._shown = world
             self._world.set_mat(world.mat.pixels)
         self._world.show(snapshot)
         if self._arrays.display:
             self._arrays.show(snapshot)
-        self._source.set_lines(self._lines(world, model.find_printed_line() or snapshot.line))
+        self._source.set_lines(self._list_lines(world, model.find_printed_line() or snapshot.line))
 
-    def _prepared(self, model: Model, run: int, world: WorldAt | None) -> None:
+    def _show_prepared(self, model: Model, run: int, world: RunWorld | None) -> None:
         if model is self._model:
             self._worlds[run] = world
             self.show(model)
 
-    def _lines(self, world: WorldAt, line: int) -> list[list[Run]]:
+    def _list_lines(self, world: RunWorld, line: int) -> list[list[Run]]:
         """Return the program around a line, with that line in the middle."""
         texts = source_lines(world.text)
         height, width = self._source.size.height, self._source.size.width
         if not texts or not height:
             return [[(f"line {line}", _PLAIN)]]
         first = find_first_row(line - 1, len(texts), height)
-        shown: list[list[Run]] = []
+        lines: list[list[Run]] = []
         for number, text in enumerate(texts[first : first + height], first + 1):
             here = number == line
-            shown.append(
+            lines.append(
                 [
                     (f"{number:>3} ", _HERE if here else _DIM),
                     (printable(text).ljust(width), _HERE if here else _PLAIN),
                 ]
             )
-        return shown
+        return lines

@@ -20,7 +20,7 @@ _FIRST_LINES, _LINES = 11, ((9, 1), (6, 1), (3, 1), (3, 0))
 """Lines of the best answer; of each other, with those between two: as many as leave all in sight, else the fewest."""
 _EDGES = 3
 """Columns beside the text: a space at each side, and the scroll bar."""
-_LEAST_COLUMNS = 20
+_MIN_COLUMNS = 20
 _ITEM = "• "
 STANDS_OUT = Style(bold=True, color=palette.WHITE)
 """A word of the question."""
@@ -39,7 +39,7 @@ class AnswerList(OptionList):
         self._found: Sequence[SearchResult] = ()
         self._asked: re.Pattern[str] | None = None
 
-    def show(self, question: str, found: Sequence[SearchResult], size: Size) -> None:
+    def show(self, question: str, results: Sequence[SearchResult], size: Size) -> None:
         """Show other answers, the first one highlighted.
 
         Args:
@@ -47,33 +47,33 @@ class AnswerList(OptionList):
             found: The best one first.
             size: Columns and rows of the list.
         """
-        self._found, self._asked = found, compile_pattern(question)
+        self._found, self._asked = results, compile_pattern(question)
         self.fit(size)
-        self.highlighted = 0 if found else None
+        self.highlighted = 0 if results else None
         self.scroll_home(animate=False)
 
     def fit(self, size: Size) -> None:
         """Draw the answers for a number of columns and rows."""
-        columns, at = max(size.width - _EDGES, _LEAST_COLUMNS), self.highlighted
+        columns, index = max(size.width - _EDGES, _MIN_COLUMNS), self.highlighted
         for lines, gap in _LINES:
-            drawn = list(self._drawn(columns, lines, gap))
+            drawn = list(self._draw_answers(columns, lines, gap))
             if sum(len(text.plain.split("\n")) for text in drawn) <= size.height + gap:
                 break
         self.clear_options()
         self.add_options(Option(text) for text in drawn)
-        self.highlighted = at if at is not None and at < len(self._found) else None
+        self.highlighted = index if index is not None and index < len(self._found) else None
 
-    def _drawn(self, columns: int, lines: int, gap: int) -> Iterator[Text]:
+    def _draw_answers(self, columns: int, lines: int, gap: int) -> Iterator[Text]:
         """Yield the answers; a gap is below each, so that the highlight begins with it."""
         above = ("", "")
-        for row, one in enumerate(self._found):
-            section = one.name, one.heading
-            text = _passage_of(one, columns, lines if row else _FIRST_LINES, self._asked)
+        for row, answer in enumerate(self._found):
+            section = answer.name, answer.heading
+            text = _build_passage(answer, columns, lines if row else _FIRST_LINES, self._asked)
             if self._asked:
                 text.highlight_regex(self._asked, STANDS_OUT)
             # A section is named once above the answers in it that follow each other.
-            shown = text if section == above else _named(one, columns).append_text(text)
-            yield shown.append("\n" * gap)
+            item = text if section == above else _build_heading(answer, columns).append_text(text)
+            yield item.append("\n" * gap)
             above = section
 
     @property
@@ -82,20 +82,25 @@ class AnswerList(OptionList):
         return self._found[self.highlighted] if self.highlighted is not None else None
 
 
-def name_of(one: SearchResult) -> tuple[str, str]:
+def name_answer(answer: SearchResult) -> tuple[str, str]:
     """Return the names of the section and the page of an answer; the second is empty at the beginning of a page."""
-    title = load_pages()[one.name].title
-    return (one.heading, title) if one.heading else (title, "")
+    title = load_pages()[answer.name].title
+    return (answer.heading, title) if answer.heading else (title, "")
 
 
-def _named(one: SearchResult, columns: int) -> Text:
-    section, page = name_of(one)
+def _build_heading(answer: SearchResult, columns: int) -> Text:
+    section, page = name_answer(answer)
     names = Text.assemble((section, _SECTION), (f" · {page}" if page else "", _PAGE), no_wrap=True)
     names.truncate(columns, overflow="ellipsis")
     return names.append("\n")
 
 
-def _passage_of(one: SearchResult, columns: int, most: int, asked: re.Pattern[str] | None) -> Text:
+def _build_passage(
+    answer: SearchResult, columns: int, max_rows: int, search: re.Pattern[str] | None
+) -> Text:
     """Return what is shown of an answer, as an item of a list."""
-    lines = [Text.assemble(*line) for line in draw_excerpt(one, columns - len(_ITEM), most, asked)]
+    lines = [
+        Text.assemble(*line)
+        for line in draw_excerpt(answer, columns - len(_ITEM), max_rows, search)
+    ]
     return Text(_ITEM, _TEXT, no_wrap=True).append_text(Text(f"\n{' ' * len(_ITEM)}").join(lines))

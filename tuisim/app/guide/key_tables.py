@@ -38,56 +38,59 @@ def own_keys(widgets: Iterable[DOMNode]) -> list[KeyWord]:
         for bound in [bound for kind in kinds for bound in kind.__dict__.get("BINDINGS", ())]:
             assert isinstance(bound, Binding)
             keys.setdefault(bound.description, []).extend(map(label_of_key, bound.key.split(",")))
-    return [*fields, *((_listed(labels), does) for does, labels in keys.items())]
+    return [*fields, *((_join_keys(labels), does) for does, labels in keys.items())]
 
 
-def _listed(keys: Sequence[str]) -> str:
+def _join_keys(keys: Sequence[str]) -> str:
     return " ".join(keys) if len(keys) <= _FEW else f"{keys[0]} … {keys[-1]}"
 
 
-def _keys(actions: Iterable[Action[Any, Any]]) -> list[tuple[str, ...]]:
+def _list_keys(actions: Iterable[Action[Any, Any]]) -> list[tuple[str, ...]]:
     return [(code(action.key_label), action.title, action.group) for action in actions]
 
 
-def _actions(module: str) -> Mapping[str, Action[Any, Any]]:
+def _load_actions(module: str) -> Mapping[str, Action[Any, Any]]:
     # Both tables name the key that opens this guide.
-    found: Mapping[str, Action[Any, Any]] = import_module(module).ACTIONS
-    return found
+    table: Mapping[str, Action[Any, Any]] = import_module(module).ACTIONS
+    return table
 
 
-def app_keys() -> Table:
+def list_app_keys() -> Table:
     """Return the keys of the app, with the user's own."""
-    actions = _actions("tuisim.app.actions.keys")
+    actions = _load_actions("tuisim.app.actions.keys")
     # The app and `tuisim config` tell what is wrong.
     with suppress(ConfigError):
         actions = with_keys(actions, load_config())
-    rows = [(*row, code(name)) for row, name in zip(_keys(actions.values()), actions, strict=True)]
+    rows = [
+        (*row, code(name)) for row, name in zip(_list_keys(actions.values()), actions, strict=True)
+    ]
     everywhere = [(code(key), does, "Everywhere", "") for key, does in EVERYWHERE]
     return Table(("key", "does", "group", "id"), [*rows, *everywhere])
 
 
-def analyser_keys() -> Table:
+def list_analyser_keys() -> Table:
     """Return the keys of the analyser."""
     return Table(
-        ("key", "does", "group"), _keys(_actions("tuisim.app.analyser.actions.keys").values())
+        ("key", "does", "group"),
+        _list_keys(_load_actions("tuisim.app.analyser.actions.keys").values()),
     )
 
 
-def editor_keys() -> Table:
+def list_editor_keys() -> Table:
     """Return the keys of the code panel."""
     return Table(
         ("key", "does"), [(" ".join(map(code, keys.split())), does) for keys, does in EDITOR_KEYS]
     )
 
 
-def panels() -> Table:
+def list_panels() -> Table:
     """Return the panels, their keys and from which size of terminal they are shown at the start."""
     rows = [
         (
-            code(label_of_key(one.key)),
-            one.title,
-            f"from a {one.sizes[0]} terminal" if one.sizes else "when you open it",
+            code(label_of_key(panel.key)),
+            panel.title,
+            f"from a {panel.sizes[0]} terminal" if panel.sizes else "when you open it",
         )
-        for one in PANELS.values()
+        for panel in PANELS.values()
     ]
     return Table(("key", "panel", "shown"), rows)

@@ -19,7 +19,7 @@ from textual.widgets.tree import TreeNode
 from tuisim.app import background
 from tuisim.app.action import KeyWord, key_table
 from tuisim.app.dialogs.dialog import Dialog
-from tuisim.app.guide.answers import AnswerList, name_of
+from tuisim.app.guide.answers import AnswerList, name_answer
 from tuisim.base import palette
 from tuisim.base.data_class import dataclass
 from tuisim.guide.catalogue import CONTENTS, load_pages
@@ -94,12 +94,12 @@ Place: TypeAlias = tuple[str, str]
 KEYS: Place = ("", "")
 
 
-def _text_of(lines: list[Line], found: range = range(0)) -> Text:
+def _build_text(lines: list[Line], matches: range = range(0)) -> Text:
     """Return lines as a text; those that a search has found stand out."""
     text = Text(no_wrap=True)
     for row, line in enumerate(lines):
         for part, style in line:
-            text.append(part, style + _FOUND if row in found else style)
+            text.append(part, style + _FOUND if row in matches else style)
         text.append("\n")
     return text
 
@@ -145,11 +145,11 @@ class _Contents(Tree[Place | None]):
 
     def walk(self) -> list[TreeNode[Place | None]]:
         """Return every node below the root, those on top first."""
-        found, level = [], list(self.root.children)
+        nodes, level = [], list(self.root.children)
         while level:
-            found += level
+            nodes += level
             level = [child for node in level for child in node.children]
-        return found
+        return nodes
 
 
 class _Page(VerticalScroll):
@@ -180,9 +180,13 @@ class _Page(VerticalScroll):
         if self.scrollable_content_region.width != self.drawn_columns:
             self._draw()
 
-    def show(self, place: Place, found: SearchResult | None = None) -> None:
+    def show(self, place: Place, matches: SearchResult | None = None) -> None:
         """Show another page or section, or what a search has found there."""
-        self.place, self._with_keys, self._passage = place, False, found.passage if found else ""
+        self.place, self._with_keys, self._passage = (
+            place,
+            False,
+            matches.passage if matches else "",
+        )
         self._draw()
 
     def _draw(self) -> None:
@@ -200,7 +204,7 @@ class _Page(VerticalScroll):
             return
         lines = draw_page(load_pages()[name], width)
         top, row = find_rows(lines, heading, self._passage)
-        drawn = _text_of(lines, range(row, find_passage_end(lines, row, self._passage)))
+        drawn = _build_text(lines, range(row, find_passage_end(lines, row, self._passage)))
         groups = {
             group: self._keys.groups[group] for group in self._topic.groups if self._with_keys
         }
@@ -332,7 +336,7 @@ class GuideScreen(Dialog[None]):
 
     def _title_of(self, one: SearchResult) -> str:
         """Return the names of an answer's page and section, the last of them if there is no room for all."""
-        names = [self.TITLE_TEXT, *filter(None, reversed(name_of(one)))]
+        names = [self.TITLE_TEXT, *filter(None, reversed(name_answer(one)))]
         titles = [" · ".join(names[first:]) for first in range(len(names))]
         return next(
             (title for title in titles if len(title) <= self._room.width - _CORNERS), titles[-1]

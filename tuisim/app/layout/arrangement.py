@@ -16,15 +16,15 @@ from tuisim.app.layout.forms import (
     MAX_TAKEN_ROWS,
     MIN_LARGE_COLS,
     Form,
+    build_below,
     build_board,
     build_halves,
     build_low,
-    build_under,
+    classify_size,
     count_tight_rows,
     is_single,
     is_tall,
     select_panels,
-    size_class,
 )
 from tuisim.app.layout.tree import (
     EDGES,
@@ -33,11 +33,11 @@ from tuisim.app.layout.tree import (
     Node,
     PanelBox,
     PanelLayout,
-    fair_rows,
-    joined,
-    least_columns,
-    least_rows,
-    panels_of,
+    count_fair_rows,
+    count_min_columns,
+    count_min_rows,
+    join_nodes,
+    list_panels,
     place,
 )
 from tuisim.app.panels import PANELS, PanelPlace, TerminalSize
@@ -45,18 +45,18 @@ from tuisim.base.data_class import dataclass
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 from tuisim.settings.preferences import get_preference, keep
 
-_CODE_FROM_COLS = 120
+_MIN_CODE_COLS = 120
 """From this width on, code is shown beside them."""
-_EDITOR_FROM_COLS = 110
+_MIN_EDITOR_COLS = 110
 """From this width on, the code that is typed in stands beside the world."""
-_STRIP_FROM_COLS = 190
+_MIN_STRIP_COLS = 190
 """From this width on, the world may give rows to what is below it."""
 EDITOR_COLS = 86
 """Columns in which lines of 79 characters are whole."""
 _MAX_WASTE = 0.3
 """A panel with more empty space beside its mat counts as a poor form."""
 _POOR = 0.7
-_LEAST_FILLED = 0.6
+_MIN_FILLED = 0.6
 """A form other than the first of a preset is not chosen if the mat fills less of the world's panel."""
 
 
@@ -74,7 +74,9 @@ def is_low(preset: Preset, width: int, height: int) -> bool:
 
     A lower area shows one panel only.
     """
-    shows_board = preset == Preset.STANDARD and size_class(width, height + 1) != TerminalSize.SMALL
+    shows_board = (
+        preset == Preset.STANDARD and classify_size(width, height + 1) != TerminalSize.SMALL
+    )
     is_small = width < LOW_COLS and height < LOW_ROWS and not is_tall(width, height)
     return is_small and not shows_board
 
@@ -102,7 +104,7 @@ _PLANS: Mapping[Preset, _Plan] = {
     Preset.STANDARD: _Plan(
         (),
         _SHOWN,
-        (build_board, build_under),
+        (build_board, build_below),
         ("world", "instrumentation", "output"),
         compact=False,
     ),
@@ -113,7 +115,7 @@ _PLANS: Mapping[Preset, _Plan] = {
             build_halves(
                 ("world", "positioning", "output"), ("instrumentation", "arrays", "controls"), 0.0
             ),
-            build_under,
+            build_below,
         ),
         ("world", "instrumentation", "output"),
         beside=("arrays", "output"),
@@ -133,14 +135,14 @@ _PLANS: Mapping[Preset, _Plan] = {
 }
 
 
-def core_panels(preset: Preset, width: int, height: int) -> tuple[str, ...]:
+def find_core_panels(preset: Preset, width: int, height: int) -> tuple[str, ...]:
     """Return the panels that a preset is made for, in an area of that size; none for the standard of a large one."""
     plan = _PLANS[preset]
     return plan.low if is_low(preset, width, height) else plan.core
 
 
-def wanted_panels(
-    preset: Preset, asked: Mapping[str, bool], width: int, height: int
+def choose_panels(
+    preset: Preset, switched: Mapping[str, bool], width: int, height: int
 ) -> tuple[list[str], list[str]]:
     """Return the panels to show, by priority, and those for what space is left.
 
@@ -150,70 +152,70 @@ def wanted_panels(
         width: Columns of the area.
         height: Rows of the area.
     """
-    plan, size = _PLANS[preset], size_class(width, height + 1)
+    plan, size = _PLANS[preset], classify_size(width, height + 1)
     columns = max(0, width // COLUMN_COLS - len(plan.core) + 1)
     usual = plan.core + plan.beside[:columns] or tuple(
         panel
         for panel in _SHOWN
-        if size in PANELS[panel].sizes and not _gives_way(panel, asked, width)
+        if size in PANELS[panel].sizes and not _gives_way(panel, switched, width)
     )
     if is_low(preset, width, height):
         usual = plan.low
-    latest = [panel for panel, on in reversed(list(asked.items())) if on]
-    rest = [panel for panel in usual if panel not in asked]
+    latest = [panel for panel, on in reversed(list(switched.items())) if on]
+    rest = [panel for panel in usual if panel not in switched]
     # A lesson and the world keep their places, however many panels are asked for.
     places = {"lesson": 0, "world": 1}
-    wanted = sorted(latest + rest, key=lambda panel: places.get(panel, 2))
-    fill = [panel for panel in plan.fill if panel not in asked and panel not in wanted]
+    panels = sorted(latest + rest, key=lambda panel: places.get(panel, 2))
+    fill = [panel for panel in plan.fill if panel not in switched and panel not in panels]
     if preset == Preset.STANDARD and is_tall(width, height):
         fill.sort(key=lambda panel: [*_READ_FIRST, panel].index(panel))
     if is_low(preset, width, height):
-        return wanted, []
+        return panels, []
     if preset == Preset.STANDARD and not is_tall(width, height):
         # The strip below a wide world gets no fuller: its panels would be too narrow. A board has no room beside it.
-        is_board = size == TerminalSize.MEDIUM and "chart" in wanted
+        is_board = size == TerminalSize.MEDIUM and "chart" in panels
         fill = [] if is_board else select_panels(fill, PanelPlace.SIDE)
-    return wanted, fill
+    return panels, fill
 
 
 _READ_FIRST = ("code", "chart", "arrays")
 """Panels that fill a tall terminal before those that set up a run."""
 
 
-def _gives_way(panel: str, asked: Mapping[str, bool], width: int) -> bool:
+def _gives_way(panel: str, switched: Mapping[str, bool], width: int) -> bool:
     """Return whether a panel leaves its room to others: to code and variables in a narrow terminal, to a lesson."""
-    is_narrow = width < _CODE_FROM_COLS
+    is_narrow = width < _MIN_CODE_COLS
     match panel:
         case "code":
             return is_narrow
-        case "chart" if asked.get("lesson", False):
+        case "chart" if switched.get("lesson", False):
             return width < MIN_LARGE_COLS
         case "chart" | "arrays":
-            return is_narrow and asked.get("debug", False)
+            return is_narrow and switched.get("debug", False)
         case _:
             return False
 
 
-def _kept(
+def _fit_panels(
     form: Form, panels: Sequence[str], fill: Sequence[str], width: int, height: int
 ) -> list[str]:
     """Return the panels that fit: the wanted ones with what they need, the others where all are shown well."""
-    kept: list[str] = []
+    fitting: list[str] = []
     for panel in panels:
-        node = form([*kept, panel], width, height)
-        if least_rows(node) <= height and least_columns(node) <= width:
-            kept.append(panel)
+        node = form([*fitting, panel], width, height)
+        if count_min_rows(node) <= height and count_min_columns(node) <= width:
+            fitting.append(panel)
     for panel in fill:
-        node = form([*kept, panel], width, height)
-        rows = fair_rows(node, width)
+        node = form([*fitting, panel], width, height)
+        rows = count_fair_rows(node, width)
         if panel in _READ_FIRST and is_tall(width, height) and width < 2 * COLUMN_COLS:
-            rows = sum(count_tight_rows([*kept, panel], width))
-        if rows <= height and least_columns(node) <= width:
-            kept.append(panel)
-    return kept
+            rows = sum(count_tight_rows([*fitting, panel], width))
+        if rows <= height and count_min_columns(node) <= width:
+            fitting.append(panel)
+    return fitting
 
 
-def mat_cells(box: PanelBox) -> float:
+def measure_mat(box: PanelBox) -> float:
     """Return the area of the mat in a world panel, in cells."""
     width, height = box.width - EDGES, box.height - EDGES - TIME_BAR_ROWS
     return (
@@ -224,16 +226,16 @@ def mat_cells(box: PanelBox) -> float:
     )
 
 
-def _fills(layout: PanelLayout, share: float) -> bool:
+def _is_filled(layout: PanelLayout, share: float) -> bool:
     """Return whether the mat fills this share of the world's panel."""
     box = layout.boxes.get("world")
-    return box is None or mat_cells(box) >= share * (box.width - EDGES) * (box.height - EDGES)
+    return box is None or measure_mat(box) >= share * (box.width - EDGES) * (box.height - EDGES)
 
 
-def _score(layout: PanelLayout, wanted: int, crowded: bool) -> tuple[int, float]:
+def _score(layout: PanelLayout, panel_count: int, crowded: bool) -> tuple[int, float]:
     box = layout.boxes.get("world")
-    cells = mat_cells(box) if box else 0.0
-    return wanted, cells * (1.0 if _fills(layout, 1 - _MAX_WASTE) else _POOR) * (
+    cells = measure_mat(box) if box else 0.0
+    return panel_count, cells * (1.0 if _is_filled(layout, 1 - _MAX_WASTE) else _POOR) * (
         _POOR**2 if crowded else 1.0
     )
 
@@ -262,14 +264,14 @@ def arrange(
         boxes = {panel: PanelBox(0, 0, width, height) for panel in panels}
         return PanelLayout(boxes, left_out=left_out)
     best: tuple[tuple[int, float], Node] | None = None
-    for score, node in _scored(panels, fill, preset, width, height):
+    for score, node in _score_forms(panels, fill, preset, width, height):
         if best is None or score > best[0]:
             best = score, node
     if best is None:
         return PanelLayout(left_out=tuple(panels))
-    shown = panels_of(best[1])
+    placed = list_panels(best[1])
     layout = PanelLayout(
-        left_out=tuple(panel for panel in panels if panel not in shown), wanted=panels
+        left_out=tuple(panel for panel in panels if panel not in placed), wanted=panels
     )
     place(best[1], PanelBox(0, 0, width, height), layout)
     return layout
@@ -282,17 +284,17 @@ _STEPPED = ("world", "instrumentation", "debug", "output", "code")
 def _is_cramped(width: int, height: int) -> bool:
     """Return whether code and variables have no room below a world in the whole width, nor beside it."""
     fits_below = is_tall(width, height) and sum(count_tight_rows(_STEPPED, width)) <= height
-    return width < _CODE_FROM_COLS and not fits_below
+    return width < _MIN_CODE_COLS and not fits_below
 
 
-def _scored(
+def _score_forms(
     panels: Sequence[str], fill: Sequence[str], preset: Preset, width: int, height: int
 ) -> Iterator[tuple[tuple[int, float], Node]]:
     """Yield the tree in each form, and how good that is."""
     plan = _PLANS[preset]
     is_standard = preset == Preset.STANDARD
     is_cramped = is_standard and "debug" in panels and _is_cramped(width, height)
-    is_medium = size_class(width, height + 1) == TerminalSize.MEDIUM
+    is_medium = classify_size(width, height + 1) == TerminalSize.MEDIUM
     if is_cramped or is_low(preset, width, height):
         forms: tuple[Form, ...] = (build_low,)
     elif is_standard and is_medium and "chart" in panels and not is_tall(width, height):
@@ -301,19 +303,19 @@ def _scored(
     else:
         forms = plan.forms
     for form in forms:
-        if not (kept := _kept(form, panels, fill, width, height)):
+        if not (fitting := _fit_panels(form, panels, fill, width, height)):
             continue
-        node = form(kept, width, height)
+        node = form(fitting, width, height)
         layout = PanelLayout(wanted=panels)
         place(node, PanelBox(0, 0, width, height), layout)
-        if form is not forms[0] and not _fills(layout, _LEAST_FILLED):
+        if form is not forms[0] and not _is_filled(layout, _MIN_FILLED):
             continue
-        room = height + (MAX_TAKEN_ROWS if width >= _STRIP_FROM_COLS else 0)
-        crowded = not plan.compact and fair_rows(node, width) > room
-        yield _score(layout, sum(panel in kept for panel in panels), crowded), node
+        room = height + (MAX_TAKEN_ROWS if width >= _MIN_STRIP_COLS else 0)
+        crowded = not plan.compact and count_fair_rows(node, width) > room
+        yield _score(layout, sum(panel in fitting for panel in panels), crowded), node
 
 
-def stacked(upper: str, lower: str, width: int, height: int) -> PanelLayout:
+def stack_panels(upper: str, lower: str, width: int, height: int) -> PanelLayout:
     """Place two panels one above the other; the upper one is a little higher."""
     rows = height * 11 // 20
     boxes = {upper: PanelBox(0, 0, width, rows), lower: PanelBox(0, rows, width, height - rows)}
@@ -331,27 +333,29 @@ def arrange_beside_world(
         width: Columns.
         height: Rows.
     """
-    if width < _EDITOR_FROM_COLS or "world" not in panels or "lesson" in panels:
+    if width < _MIN_EDITOR_COLS or "world" not in panels or "lesson" in panels:
         return None
     wide = min(EDITOR_COLS, width - DISCS_COLS)
     right = ["world"]
     for other in ("output", "instrumentation", "arrays", "chart"):
         if (
             other in panels
-            and fair_rows(joined(Axis.ROWS, [*right, other]), width - wide) <= height
+            and count_fair_rows(join_nodes(Axis.ROWS, [*right, other]), width - wide) <= height
         ):
             right.append(other)
     share = wide / width
-    node = joined(Axis.COLUMNS, [panel, joined(Axis.ROWS, right)], shares=(share, 1 - share))
+    node = join_nodes(
+        Axis.COLUMNS, [panel, join_nodes(Axis.ROWS, right)], shares=(share, 1 - share)
+    )
     layout = PanelLayout(wanted=(panel, *right))
     place(node, PanelBox(0, 0, width, height), layout)
     return layout
 
 
-def with_room(
+def make_room(
     panel: str,
     panels: Sequence[str],
-    least: tuple[int, int],
+    min_size: tuple[int, int],
     size: tuple[int, int],
     preset: Preset = Preset.STANDARD,
 ) -> list[str]:
@@ -368,7 +372,7 @@ def with_room(
     elsewhere = [other for other in others if PANELS[other].place != PANELS[panel].place]
     for beside in (others, elsewhere):
         box = arrange([panel, *beside], *size, preset=preset).boxes[panel]
-        if box.width >= least[0] and box.height >= least[1]:
+        if box.width >= min_size[0] and box.height >= min_size[1]:
             return [panel, *beside]
     return [panel]
 
@@ -387,12 +391,12 @@ class KeptLayout:
 
 def load_layout(size: TerminalSize) -> KeptLayout:
     """Return what was kept for a size; what is damaged or unknown is left out."""
-    found = _table(get_preference(_NAME)).get(size)
-    kept = _table(found)
+    size_table = _check_table(get_preference(_NAME)).get(size)
+    layout_table = _check_table(size_table)
     layout = KeptLayout()
     with suppress(ValueError):
-        layout.preset = Preset(str(kept.get("preset", "")))
-    rows = kept.get("panels")
+        layout.preset = Preset(str(layout_table.get("preset", "")))
+    rows = layout_table.get("panels")
     for row in rows if isinstance(rows, list) else []:
         match row:
             case [str(panel), bool(on)] if panel in PANELS:
@@ -410,11 +414,11 @@ def save_layout(size: TerminalSize, layout: KeptLayout) -> None:
         keep(
             _NAME,
             {
-                **_table(get_preference(_NAME)),
+                **_check_table(get_preference(_NAME)),
                 size: {"preset": layout.preset.value, "panels": panels},
             },
         )
 
 
-def _table(value: object) -> dict[str, Any]:
+def _check_table(value: object) -> dict[str, Any]:
     return value if isinstance(value, dict) else {}

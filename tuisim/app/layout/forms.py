@@ -9,12 +9,12 @@ from tuisim.app.layout.tree import (
     Axis,
     Node,
     Split,
-    fair_rows,
-    ideal_columns,
-    ideal_rows,
-    joined,
-    least_rows,
-    panels_of,
+    compute_ideal_columns,
+    compute_ideal_rows,
+    count_fair_rows,
+    count_min_rows,
+    join_nodes,
+    list_panels,
 )
 from tuisim.app.panels import PANELS, PanelPlace, TerminalSize
 
@@ -56,7 +56,7 @@ Form = Callable[[Sequence[str], int, int], Node]
 """Returns the tree of some panels for a number of columns and rows."""
 
 
-def size_class(width: int, height: int) -> TerminalSize:
+def classify_size(width: int, height: int) -> TerminalSize:
     """Return the size of a terminal: small, medium or large."""
     if width >= MIN_LARGE_COLS and height >= _MIN_LARGE_ROWS:
         return TerminalSize.LARGE
@@ -75,7 +75,7 @@ def is_tall(width: int, height: int) -> bool:
     return height * 1.6 >= width
 
 
-def side_width(width: int, panels: Sequence[str] = ()) -> int:
+def measure_side(width: int, panels: Sequence[str] = ()) -> int:
     """Return the width of the side column: two sensor discs fit side by side from 112 columns on.
 
     Args:
@@ -94,19 +94,19 @@ def select_panels(panels: Sequence[str], where: PanelPlace) -> list[str]:
     return [info.id for info in PANELS.values() if info.place == where and info.id in panels]
 
 
-def _stacks(columns: Sequence[Sequence[str]], fixed: Mapping[int, int], width: int) -> Node:
+def _build_stacks(columns: Sequence[Sequence[str]], fixed: Mapping[int, int], width: int) -> Node:
     """Return columns of stacked panels; those in `fixed` get that many columns, the others the rest."""
-    nodes = [joined(Axis.ROWS, column) for column in columns if column]
-    free = [at for at in range(len(nodes)) if at not in fixed]
+    nodes = [join_nodes(Axis.ROWS, column) for column in columns if column]
+    free = [index for index in range(len(nodes)) if index not in fixed]
     if not free or len(nodes) == 1:
-        return joined(Axis.COLUMNS, nodes, shares=[1 / len(nodes)] * len(nodes))
+        return join_nodes(Axis.COLUMNS, nodes, shares=[1 / len(nodes)] * len(nodes))
     rest = 1 - sum(fixed.values()) / width
-    weights = {at: max(PANELS[panel].weight for panel in columns[at]) for at in free}
+    weights = {index: max(PANELS[panel].weight for panel in columns[index]) for index in free}
     shares = [
-        fixed[at] / width if at in fixed else rest * weights[at] / sum(weights.values())
-        for at in range(len(nodes))
+        fixed[index] / width if index in fixed else rest * weights[index] / sum(weights.values())
+        for index in range(len(nodes))
     ]
-    return joined(Axis.COLUMNS, nodes, shares=shares)
+    return join_nodes(Axis.COLUMNS, nodes, shares=shares)
 
 
 def _strip(panels: Sequence[str], width: int, height: int) -> list[Node]:
@@ -120,17 +120,18 @@ def _strip(panels: Sequence[str], width: int, height: int) -> list[Node]:
     others = [panel for panel in panels if panel != "code"]
     if others != panels and others and width < columns * _CODE_COLS:
         stacked = ["code", *_strip(others, width, height)]
-        if sum(fair_rows(node, width) for node in stacked) <= height:
+        if sum(count_fair_rows(node, width) for node in stacked) <= height:
             return [
                 Split(Axis.ROWS, tuple(stacked), least=(0, *(_ERROR_ROWS for _ in stacked[1:])))
             ]
     if _needs_stack(panels, width, height):
-        return [_stack_output(width)]
+        return [_build_output_stack(width)]
     count = ceil(len(panels) / columns)
     stacks = [
-        joined(Axis.ROWS, panels[first : first + count]) for first in range(0, len(panels), count)
+        join_nodes(Axis.ROWS, panels[first : first + count])
+        for first in range(0, len(panels), count)
     ]
-    return [joined(Axis.COLUMNS, stacks, _find_strip_shares(stacks, width))]
+    return [join_nodes(Axis.COLUMNS, stacks, _find_strip_shares(stacks, width))]
 
 
 def _needs_stack(panels: Sequence[str], width: int, height: int) -> bool:
@@ -143,11 +144,11 @@ def _needs_stack(panels: Sequence[str], width: int, height: int) -> bool:
     )
 
 
-def _stack_output(width: int) -> Node:
+def _build_output_stack(width: int) -> Node:
     """Return code beside the chart, with the output below that."""
     code = max(_LINE_COLS, width - _CHART_COLS) / width
     stack = Split(Axis.ROWS, ("chart", "output"), least=_STACKED_ROWS)
-    return joined(Axis.COLUMNS, ["code", stack], shares=(code, 1 - code))
+    return join_nodes(Axis.COLUMNS, ["code", stack], shares=(code, 1 - code))
 
 
 def _find_strip_shares(stacks: Sequence[Node], width: int) -> list[float]:
@@ -155,7 +156,7 @@ def _find_strip_shares(stacks: Sequence[Node], width: int) -> list[float]:
     if not {"chart", "code"}.issubset(stacks) or not {"chart", "code", "output"}.issuperset(stacks):
         return []
     columns = {"chart": _CHART_COLS, "output": PANELS["output"].min_cols}
-    weights = {panel: PANELS[panel].weight for panel in panels_of(joined(Axis.ROWS, stacks))}
+    weights = {panel: PANELS[panel].weight for panel in list_panels(join_nodes(Axis.ROWS, stacks))}
     rest = width - sum(columns[panel] for panel in weights if panel in columns)
     is_wide = width * weights["chart"] >= _CHART_COLS * sum(weights.values())
     if is_wide or rest < _LEAST_CODE_COLS:
@@ -165,13 +166,13 @@ def _find_strip_shares(stacks: Sequence[Node], width: int) -> list[float]:
 
 def _split_side(side: Sequence[str], height: int) -> tuple[list[str], list[str]]:
     """Return the panels of the side column, and those that leave it because a lesson needs its rows."""
-    kept: list[str] = []
+    side_panels: list[str] = []
     for panel in side:
-        rows = sum(PANELS[one].fair_rows for one in (*kept, panel))
+        rows = sum(PANELS[one].fair_rows for one in (*side_panels, panel))
         fits = panel == "instrumentation" and rows <= height
         if "lesson" not in side or panel == "lesson" or fits:
-            kept.append(panel)
-    return kept, [panel for panel in side if panel not in kept]
+            side_panels.append(panel)
+    return side_panels, [panel for panel in side if panel not in side_panels]
 
 
 def build_wide(panels: Sequence[str], width: int, height: int) -> Node:
@@ -180,12 +181,12 @@ def build_wide(panels: Sequence[str], width: int, height: int) -> Node:
         select_panels(panels, where)
         for where in (PanelPlace.SIDE, PanelPlace.BOTTOM, PanelPlace.MAIN)
     )
-    kept, lowered = _split_side(side, height)
+    side_panels, lowered = _split_side(side, height)
     if main and lowered:
-        world_cols = width - side_width(width, kept)
+        world_cols = width - measure_side(width, side_panels)
         below = _strip([*strip, *lowered], world_cols, height)
-        if 3 * ideal_rows(world_cols) // 4 + sum(map(least_rows, below)) <= height:
-            side, strip = kept, [*strip, *lowered]
+        if 3 * compute_ideal_rows(world_cols) // 4 + sum(map(count_min_rows, below)) <= height:
+            side, strip = side_panels, [*strip, *lowered]
     return _place_wide(side, strip, main, width, height)
 
 
@@ -193,16 +194,16 @@ def _place_wide(
     side: Sequence[str], strip: Sequence[str], main: Sequence[str], width: int, height: int
 ) -> Node:
     if not strip and not main:
-        return joined(Axis.ROWS, side)
-    beside = side_width(width, side) if side else 0
+        return join_nodes(Axis.ROWS, side)
+    beside = measure_side(width, side) if side else 0
     wide = width - beside
-    left = joined(
-        Axis.ROWS, [*main, *_strip(strip, wide, height - (ideal_rows(wide) if main else 0))]
+    left = join_nodes(
+        Axis.ROWS, [*main, *_strip(strip, wide, height - (compute_ideal_rows(wide) if main else 0))]
     )
     if not side:
         return left
     shares = (1 - beside / width, beside / width)
-    return joined(Axis.COLUMNS, [left, joined(Axis.ROWS, side)], shares=shares)
+    return join_nodes(Axis.COLUMNS, [left, join_nodes(Axis.ROWS, side)], shares=shares)
 
 
 _STRIP_ROWS, _LOW_CODE_STRIP_ROWS, _CODE_STRIP_ROWS = 12, 13, 16
@@ -219,23 +220,25 @@ def build_board(panels: Sequence[str], width: int, height: int) -> Node:
     """The world with readings beside it, and below both a strip with the chart; the wide form without these three."""
     side, main = select_panels(panels, PanelPlace.SIDE), select_panels(panels, PanelPlace.MAIN)
     roomy = [panel for panel in ("code", "brick") if panel in panels]
-    fits = size_class(width, height + 1) == TerminalSize.MEDIUM and width >= MIN_STRIP_COLS * (
+    fits = classify_size(width, height + 1) == TerminalSize.MEDIUM and width >= MIN_STRIP_COLS * (
         len(roomy) + 1
     )
     if not (fits and main and side and "chart" in panels and "lesson" not in panels):
         return build_wide(panels, width, height)
     world_cols = width - DISCS_COLS
     share = world_cols / width
-    above = joined(Axis.COLUMNS, [*main, joined(Axis.ROWS, side)], shares=(share, 1 - share))
+    above = join_nodes(
+        Axis.COLUMNS, [*main, join_nodes(Axis.ROWS, side)], shares=(share, 1 - share)
+    )
     below = _build_board_strip(roomy, "output" in panels, height)
-    highest = ideal_rows(world_cols) + _MAX_EMPTY_ROWS
+    highest = compute_ideal_rows(world_cols) + _MAX_EMPTY_ROWS
     rows = min(
-        max(ideal_rows(world_cols), fair_rows(above, width)),
+        max(compute_ideal_rows(world_cols), count_fair_rows(above, width)),
         height - _find_strip_rows(height) if roomy else height - _STRIP_ROWS,
         highest,
     )
-    rows = max(rows, least_rows(above))
-    if rows > highest or rows + least_rows(below) > height:
+    rows = max(rows, count_min_rows(above))
+    if rows > highest or rows + count_min_rows(below) > height:
         return build_wide(panels, width, height)
     return Split(Axis.ROWS, (above, below), least=(rows, height - rows))
 
@@ -249,12 +252,12 @@ def _build_board_strip(roomy: Sequence[str], has_output: bool, height: int) -> N
     """Return the chart with the output beside it, or below it if there are panels that need the width."""
     if not roomy:
         parts = ["chart", "output"] if has_output else ["chart"]
-        return joined(Axis.COLUMNS, parts, shares=(_CHART_SHARE, 1 - _CHART_SHARE))
+        return join_nodes(Axis.COLUMNS, parts, shares=(_CHART_SHARE, 1 - _CHART_SHARE))
     chart_rows = _CHART_ROWS if height >= 3 * _STRIP_ROWS else 0
     last: Node = (
         Split(Axis.ROWS, ("chart", "output"), least=(chart_rows, 0)) if has_output else "chart"
     )
-    return joined(Axis.COLUMNS, [*roomy, last])
+    return join_nodes(Axis.COLUMNS, [*roomy, last])
 
 
 _TIGHT_ROWS: Mapping[str, int] = {
@@ -270,7 +273,9 @@ _TIGHT_ROWS: Mapping[str, int] = {
 def count_tight_rows(panels: Sequence[str], width: int) -> list[int]:
     """Return the rows in which each panel is read on a narrow and high screen."""
     return [
-        ideal_rows(width) if panel == "world" else _TIGHT_ROWS.get(panel, PANELS[panel].fair_rows)
+        compute_ideal_rows(width)
+        if panel == "world"
+        else _TIGHT_ROWS.get(panel, PANELS[panel].fair_rows)
         for panel in panels
     ]
 
@@ -279,39 +284,48 @@ def _build_column(panels: Sequence[str], width: int, height: int) -> Node:
     """Return panels one above the other, each with the rows in which it is read if there are so many."""
     tight = count_tight_rows(panels, width)
     if len(panels) == 1 or sum(tight) > height:
-        return joined(Axis.ROWS, panels)
+        return join_nodes(Axis.ROWS, panels)
     return Split(Axis.ROWS, tuple(panels), least=tuple(tight))
 
 
-def build_under(panels: Sequence[str], width: int, height: int) -> Node:
+def build_below(panels: Sequence[str], width: int, height: int) -> Node:
     """The world in the whole width, and everything else in columns below it."""
     side, strip, main = (
         select_panels(panels, where)
         for where in (PanelPlace.SIDE, PanelPlace.BOTTOM, PanelPlace.MAIN)
     )
-    most = width // COLUMN_COLS
-    if most <= 1 or not side + strip:
+    max_columns = width // COLUMN_COLS
+    if max_columns <= 1 or not side + strip:
         return _build_column([*main, *side, *strip], width, height)
-    high = max(height - (ideal_rows(width) if main else 0), 1)
+    high = max(height - (compute_ideal_rows(width) if main else 0), 1)
     packed: list[list[str]] = []
     for panel in side:
-        column = next((one for one in packed if _fair([*one, panel]) <= high), None)
+        column = next(
+            (
+                column_panels
+                for column_panels in packed
+                if _sum_fair_rows([*column_panels, panel]) <= high
+            ),
+            None,
+        )
         if column is None:
             packed.append([panel])
         else:
             column.append(panel)
     growing = [[panel] for panel in strip]
-    if growing and packed and len(packed[-1]) == 1 and 3 * _fair(packed[-1]) < 2 * high:
+    if growing and packed and len(packed[-1]) == 1 and 3 * _sum_fair_rows(packed[-1]) < 2 * high:
         growing[0] = [*packed.pop(), *growing[0]]
     for columns in (growing, packed):
-        while len(columns) > 1 and len(growing) + len(packed) > most:
+        while len(columns) > 1 and len(growing) + len(packed) > max_columns:
             columns[-2:] = [columns[-2] + columns[-1]]
     columns = growing + packed
-    fixed = min(side_width(width, side), width // len(columns))
-    below = _stacks(
-        columns, {len(growing) + at: fixed for at in range(len(packed))} if growing else {}, width
+    fixed = min(measure_side(width, side), width // len(columns))
+    below = _build_stacks(
+        columns,
+        {len(growing) + index: fixed for index in range(len(packed))} if growing else {},
+        width,
     )
-    return joined(Axis.ROWS, [*main, below])
+    return join_nodes(Axis.ROWS, [*main, below])
 
 
 _LINE_ROWS = 5
@@ -335,57 +349,62 @@ def build_low(panels: Sequence[str], width: int, height: int) -> Node:
     main = select_panels(panels, PanelPlace.MAIN)
     if not roomy:
         if not main or not beside:
-            return joined(Axis.ROWS, main or beside)
-        return Split(Axis.ROWS, (*main, _line_of(beside, width)), least=(0, _LINE_ROWS))
+            return join_nodes(Axis.ROWS, main or beside)
+        return Split(Axis.ROWS, (*main, _build_line(beside, width)), least=(0, _LINE_ROWS))
     fair = _find_roomy_rows(roomy, beside, height)
     above = height - fair
     if not main or not beside:
-        top: list[Node] = [*main] or ([joined(Axis.ROWS, beside)] if beside else [])
+        top: list[Node] = [*main] or ([join_nodes(Axis.ROWS, beside)] if beside else [])
     else:
         share = (
-            min(max(ideal_columns(above), PANELS["world"].min_cols), width - MIN_STRIP_COLS) / width
+            min(max(compute_ideal_columns(above), PANELS["world"].min_cols), width - MIN_STRIP_COLS)
+            / width
         )
-        top = [joined(Axis.COLUMNS, [*main, _with_pose(beside, above)], shares=(share, 1 - share))]
-    below = joined(Axis.ROWS, roomy)
+        top = [
+            join_nodes(
+                Axis.COLUMNS, [*main, _stack_readings(beside, above)], shares=(share, 1 - share)
+            )
+        ]
+    below = join_nodes(Axis.ROWS, roomy)
     if not top:
         return below
-    is_fair = height >= _FAIR_ROWS or least_rows(top[0]) <= above
+    is_fair = height >= _FAIR_ROWS or count_min_rows(top[0]) <= above
     return Split(Axis.ROWS, (*top, below), least=(0, fair) if is_fair else ())
 
 
 def _find_roomy_rows(roomy: Sequence[str], beside: Sequence[str], height: int) -> int:
     """Return the rows of the panels that get the whole width, below the world with others beside it."""
-    fair = max(_fair(roomy), height // 2)
+    fair = max(_sum_fair_rows(roomy), height // 2)
     rows = sum(PANELS[panel].min_rows for panel in beside)
     return max(fair - _MAX_YIELDED_ROWS, min(fair, height - rows))
 
 
-def _with_pose(panels: Sequence[str], height: int) -> Node:
+def _stack_readings(panels: Sequence[str], height: int) -> Node:
     """Return stacked panels; the readings get a row more than they need, if there is one, for the pose."""
-    column = joined(Axis.ROWS, panels)
-    if isinstance(column, str) or least_rows(column) >= height:
+    column = join_nodes(Axis.ROWS, panels)
+    if isinstance(column, str) or count_min_rows(column) >= height:
         return column
-    least = tuple(PANELS[panel].min_rows + (panel == "instrumentation") for panel in panels)
-    return Split(Axis.ROWS, column.parts, least=least)
+    min_rows = tuple(PANELS[panel].min_rows + (panel == "instrumentation") for panel in panels)
+    return Split(Axis.ROWS, column.parts, least=min_rows)
 
 
-def _line_of(panels: Sequence[str], width: int) -> Node:
+def _build_line(panels: Sequence[str], width: int) -> Node:
     """Return output and readings side by side, the output where notices appear."""
     share = max(1 / 2, min(_READINGS_COLS, width - _TEXT_COLS) / width)
     order = [panel for panel in ("output", "instrumentation") if panel in panels]
-    return joined(Axis.COLUMNS, order, shares=(1 - share, share))
+    return join_nodes(Axis.COLUMNS, order, shares=(1 - share, share))
 
 
-def _fair(panels: Sequence[str]) -> int:
+def _sum_fair_rows(panels: Sequence[str]) -> int:
     return sum(PANELS[panel].fair_rows for panel in panels)
 
 
 def build_halves(first: Sequence[str], second: Sequence[str], share: float) -> Form:
     """Return the form with two columns, of these panels in this order; further ones go below them."""
 
-    def form(panels: Sequence[str], width: int, height: int) -> Node:
+    def build_form(panels: Sequence[str], width: int, height: int) -> Node:
         if is_tall(width, height) and width < 2 * COLUMN_COLS:
-            return joined(
+            return join_nodes(
                 Axis.ROWS,
                 [
                     panel
@@ -400,18 +419,18 @@ def build_halves(first: Sequence[str], second: Sequence[str], share: float) -> F
         right = [panel for panel in second if panel in panels] + select_panels(
             rest, PanelPlace.SIDE
         )
-        wide = share or 1 - side_width(width, right) / width
+        wide = share or 1 - measure_side(width, right) / width
         columns = [
-            joined(Axis.ROWS, _paired(column, round((1 - wide) * width)))
+            join_nodes(Axis.ROWS, _pair_panels(column, round((1 - wide) * width)))
             for column in (left, right)
             if column
         ]
-        return joined(Axis.COLUMNS, columns, shares=(wide, 1 - wide)[: len(columns)])
+        return join_nodes(Axis.COLUMNS, columns, shares=(wide, 1 - wide)[: len(columns)])
 
-    return form
+    return build_form
 
 
-def _paired(panels: Sequence[str], width: int) -> list[Node]:
+def _pair_panels(panels: Sequence[str], width: int) -> list[Node]:
     """Return stacked panels, with small ones that follow each other side by side if there is room."""
     nodes: list[Node] = []
     for panel in panels:
@@ -420,10 +439,10 @@ def _paired(panels: Sequence[str], width: int) -> list[Node]:
             isinstance(last, str)
             and _is_small(last)
             and _is_small(panel)
-            and width >= 2 * side_width(112)
+            and width >= 2 * measure_side(112)
         )
         if pair and last is not None:
-            nodes[-1] = joined(Axis.COLUMNS, [last, panel])
+            nodes[-1] = join_nodes(Axis.COLUMNS, [last, panel])
         else:
             nodes.append(panel)
     return nodes

@@ -65,12 +65,12 @@ class PanelLayout:
 
     def rank(self, node: Node) -> int:
         """Return the place of a node in the order in which rows are given."""
-        panels = panels_of(node)
+        panels = list_panels(node)
         ranks = [self.wanted.index(panel) for panel in panels if panel in self.wanted]
         return -1 if "world" in panels else min(ranks, default=len(self.wanted))
 
 
-def ideal_rows(width: int) -> int:
+def compute_ideal_rows(width: int) -> int:
     """Return the rows that a world panel of this width needs, so that the mat fills it."""
     return (
         round((width - EDGES) * FIELD_HEIGHT_MM / FIELD_WIDTH_MM / _CELL_ASPECT)
@@ -79,112 +79,116 @@ def ideal_rows(width: int) -> int:
     )
 
 
-def ideal_columns(rows: int) -> int:
+def compute_ideal_columns(rows: int) -> int:
     """Return the columns that a world panel of this height needs, so that the mat fills it."""
     inside = rows - EDGES - TIME_BAR_ROWS
     return round(inside * _CELL_ASPECT * FIELD_WIDTH_MM / FIELD_HEIGHT_MM) + EDGES
 
 
-def joined(axis: Axis, parts: Sequence[Node], shares: Sequence[float] = ()) -> Node:
+def join_nodes(axis: Axis, parts: Sequence[Node], shares: Sequence[float] = ()) -> Node:
     """Return parts as one node; a single part stays as it is."""
     if len(parts) == 1:
         return parts[0]
     if axis == Axis.COLUMNS and not shares:
-        weights = [_weight(part) for part in parts]
+        weights = [_find_weight(part) for part in parts]
         shares = [weight / sum(weights) for weight in weights]
     return Split(axis, tuple(parts), tuple(shares))
 
 
-def panels_of(node: Node) -> tuple[str, ...]:
+def list_panels(node: Node) -> tuple[str, ...]:
     """Return the panels in a node."""
     return (
         (node,)
         if isinstance(node, str)
-        else tuple(panel for part in node.parts for panel in panels_of(part))
+        else tuple(panel for part in node.parts for panel in list_panels(part))
     )
 
 
-def _weight(node: Node) -> int:
-    return max(PANELS[panel].weight for panel in panels_of(node))
+def _find_weight(node: Node) -> int:
+    return max(PANELS[panel].weight for panel in list_panels(node))
 
 
-def _grows(node: Node) -> bool:
-    return any(PANELS[panel].grows for panel in panels_of(node))
+def _can_grow(node: Node) -> bool:
+    return any(PANELS[panel].grows for panel in list_panels(node))
 
 
-def least_columns(node: Node) -> int:
+def count_min_columns(node: Node) -> int:
     """Return the columns that a node needs at least."""
     if isinstance(node, str):
         return PANELS[node].min_cols
-    needed = [least_columns(part) for part in node.parts]
+    needed = [count_min_columns(part) for part in node.parts]
     return sum(needed) if node.axis == Axis.COLUMNS else max(needed)
 
 
-def least_rows(node: Node) -> int:
+def count_min_rows(node: Node) -> int:
     """Return the rows that a node needs at least."""
     if isinstance(node, str):
         return PANELS[node].min_rows
-    needed = _least_of_each(node)
+    needed = _list_min_rows(node)
     return sum(needed) if node.axis == Axis.ROWS else max(needed)
 
 
-def _least_of_each(split: Split) -> list[int]:
-    needed = [least_rows(part) for part in split.parts]
+def _list_min_rows(split: Split) -> list[int]:
+    needed = [count_min_rows(part) for part in split.parts]
     return [max(rows) for rows in zip(needed, split.least, strict=True)] if split.least else needed
 
 
-def fair_rows(node: Node, width: int) -> int:
+def count_fair_rows(node: Node, width: int) -> int:
     """Return the rows with which everything in a node is shown well."""
-    return _wished(node, width, lambda panel: PANELS[panel].fair_rows)
+    return _count_wished_rows(node, width, lambda panel: PANELS[panel].fair_rows)
 
 
-def _good_rows(node: Node, width: int) -> int:
-    return _wished(node, width, lambda panel: PANELS[panel].good_rows)
+def _count_good_rows(node: Node, width: int) -> int:
+    return _count_wished_rows(node, width, lambda panel: PANELS[panel].good_rows)
 
 
-def _wished(node: Node, width: int, rows_of: Callable[[str], int]) -> int:
+def _count_wished_rows(node: Node, width: int, rows_of: Callable[[str], int]) -> int:
     if isinstance(node, str):
-        return ideal_rows(width) if node == "world" else rows_of(node)
+        return compute_ideal_rows(width) if node == "world" else rows_of(node)
     if node.axis == Axis.ROWS:
-        return sum(_wished(part, width, rows_of) for part in node.parts)
-    parts = zip(node.parts, _columns(node, width), strict=True)
-    return max(_wished(part, columns, rows_of) for part, columns in parts)
+        return sum(_count_wished_rows(part, width, rows_of) for part in node.parts)
+    parts = zip(node.parts, _divide_columns(node, width), strict=True)
+    return max(_count_wished_rows(part, columns, rows_of) for part, columns in parts)
 
 
-def _columns(split: Split, width: int) -> list[int]:
+def _divide_columns(split: Split, width: int) -> list[int]:
     ends = [round(share * width) for share in accumulate(split.shares)]
     return [end - start for start, end in zip([0, *ends[:-1]], ends, strict=True)]
 
 
-def _rows(split: Split, width: int, height: int, rank: Callable[[Node], int]) -> list[int]:
+def _divide_rows(split: Split, width: int, height: int, rank: Callable[[Node], int]) -> list[int]:
     """Divide rows: what each part needs, the world's shape, what is fair, what is good; the rest to what grows most."""
-    rows = _least_of_each(split)
+    rows = _list_min_rows(split)
     spare = height - sum(rows)
-    order = sorted(range(len(rows)), key=lambda at: rank(split.parts[at]))
-    for wish in (fair_rows, _good_rows):
-        for at in order:
-            more = max(0, min(spare, wish(split.parts[at], width) - rows[at]))
-            rows[at] += more
+    order = sorted(range(len(rows)), key=lambda index: rank(split.parts[index]))
+    for wish in (count_fair_rows, _count_good_rows):
+        for index in order:
+            more = max(0, min(spare, wish(split.parts[index], width) - rows[index]))
+            rows[index] += more
             spare -= more
-    growing = [at for at in order if _grows(split.parts[at])] or order
-    most = max(_weight(split.parts[at]) for at in growing)
-    growing = [at for at in growing if _weight(split.parts[at]) == most]
-    for count, at in enumerate(growing):
+    growing = [index for index in order if _can_grow(split.parts[index])] or order
+    max_weight = max(_find_weight(split.parts[index]) for index in growing)
+    growing = [index for index in growing if _find_weight(split.parts[index]) == max_weight]
+    for count, index in enumerate(growing):
         more = spare // (len(growing) - count)
-        rows[at] += more
+        rows[index] += more
         spare -= more
     return rows
 
 
-def _sizes(split: Split, box: PanelBox, rank: Callable[[Node], int]) -> list[int]:
+def _divide_extent(split: Split, box: PanelBox, rank: Callable[[Node], int]) -> list[int]:
     """Return the extent of each part, which is at least what it needs."""
     rows = split.axis == Axis.ROWS
-    needs = _least_of_each(split) if rows else [least_columns(part) for part in split.parts]
+    needs = _list_min_rows(split) if rows else [count_min_columns(part) for part in split.parts]
     extent = box.height if rows else box.width
-    natural = _rows(split, box.width, box.height, rank) if rows else _columns(split, box.width)
+    natural = (
+        _divide_rows(split, box.width, box.height, rank)
+        if rows
+        else _divide_columns(split, box.width)
+    )
     ends = [0]
-    for at, end in enumerate(accumulate(natural[:-1])):
-        ends.append(min(max(end, ends[-1] + needs[at]), extent - sum(needs[at + 1 :])))
+    for index, end in enumerate(accumulate(natural[:-1])):
+        ends.append(min(max(end, ends[-1] + needs[index]), extent - sum(needs[index + 1 :])))
     return [end - start for start, end in pairwise([*ends, extent])]
 
 
@@ -200,7 +204,7 @@ def place(node: Node, box: PanelBox, layout: PanelLayout) -> None:
         layout.boxes[node] = box
         return
     x, y = box.x, box.y
-    for part, size in zip(node.parts, _sizes(node, box, layout.rank), strict=True):
+    for part, size in zip(node.parts, _divide_extent(node, box, layout.rank), strict=True):
         if node.axis == Axis.COLUMNS:
             place(part, PanelBox(x, y, size, box.height), layout)
             x += size

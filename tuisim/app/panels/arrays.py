@@ -8,7 +8,7 @@ from textual.app import ComposeResult
 from textual.widget import Widget
 
 from tuisim.app.panels.titles import name_sensors
-from tuisim.app.render.arrays import Arrangement, arranged, face_lines, names_in_border
+from tuisim.app.render.arrays import Arrangement, arrange_discs, build_face_lines, list_border_names
 from tuisim.pictures.scene.discs import RIM_16_RGB, RIM_RGB, DiscFace, draw_disc, list_disc_faces
 from tuisim.terminal.cell_view import LinesView, PixelView
 from tuisim.terminal.text_runs import Line
@@ -73,7 +73,7 @@ class _Disc(Widget):
         lines: list[Line] = []
         if face is not None and (where := self._where) is not None:
             width = min(where.text_cols - where.below, self._text.size.width or where.text_cols)
-            lines = face_lines(face, width, where.text_rows, has_limits=has_limits)
+            lines = build_face_lines(face, width, where.text_rows, has_limits=has_limits)
         self._text.set_lines(lines)
 
 
@@ -129,13 +129,13 @@ class Arrays(Widget):
         has_limits = any(face.thresholds for face in faces)
         self._arrange(faces)
         names = [face.name for face in faces]
-        usual = names_in_border(names, self._where, has_limits=has_limits) if self._where else ""
+        usual = list_border_names(names, self._where, has_limits=has_limits) if self._where else ""
         self.border_subtitle = name_sensors(now, self.size.width) or usual
         for disc, face in zip(self._discs, faces, strict=True):
             disc.show(face, has_limits=has_limits)
 
     def _arrange(self, faces: list[DiscFace]) -> None:
-        where = arranged(len(faces), self.size.width, self.size.height)
+        where = arrange_discs(len(faces), self.size.width, self.size.height)
         if where == self._where and len(faces) == len(self._discs):
             return
         self._where = where

@@ -127,7 +127,7 @@ class Brick(LinesPanel, can_focus=True):
         self.post_message(self.Pressed(frozenset({name})))
         return False
 
-    def _changed(self, before: frozenset[str]) -> None:
+    def _post_pressed(self, before: frozenset[str]) -> None:
         if self.held != before:
             self.post_message(self.Pressed(self.held))
 
@@ -139,21 +139,21 @@ class Brick(LinesPanel, can_focus=True):
         if timer := self._tapped.get(name):
             timer.stop()
         self._tapped[name] = self.set_timer(
-            TAP_S, partial(self._tap_over, name, self._time_s + SEEN_S)
+            TAP_S, partial(self._release_tapped, name, self._time_s + SEEN_S)
         )
-        self._changed(before)
+        self._post_pressed(before)
 
     @property
     def _time_s(self) -> float:
         return self._snapshot.time_s if self._snapshot else 0.0
 
-    def _tap_over(self, name: str, seen_s: float) -> None:
+    def _release_tapped(self, name: str, seen_s: float) -> None:
         """Release a button, but not before the program has had time to read it, however slow the run is."""
         if name not in self._tapped:
             # The run ended after the timer had fired.
             return
         if self._time_s < seen_s:
-            self._tapped[name] = self.set_timer(TAP_S, partial(self._tap_over, name, seen_s))
+            self._tapped[name] = self.set_timer(TAP_S, partial(self._release_tapped, name, seen_s))
         else:
             self._let_go(name)
 
@@ -161,14 +161,14 @@ class Brick(LinesPanel, can_focus=True):
         before = self.held
         for name in names:
             self._tapped.pop(name).stop()
-        self._changed(before)
+        self._post_pressed(before)
 
     def action_latch(self, name: str) -> None:
         if not self._has_program(name):
             return
         before = self.held
         self._latched ^= {name}
-        self._changed(before)
+        self._post_pressed(before)
 
     def release_all(self) -> None:
         """Release every button: the run in which they were pressed is over."""
@@ -176,9 +176,9 @@ class Brick(LinesPanel, can_focus=True):
         self._latched.clear()
         self._clicked = ""
         self._let_go(*self._tapped)
-        self._changed(before)
+        self._post_pressed(before)
 
-    def _button_at(self, event: events.MouseEvent) -> str:
+    def _find_button(self, event: events.MouseEvent) -> str:
         spot = event.get_content_offset(self._text)
         if spot is None:
             return ""
@@ -189,7 +189,7 @@ class Brick(LinesPanel, can_focus=True):
 
     def on_mouse_down(self, event: events.MouseDown) -> None:
         """Press the button under the mouse; the right mouse button holds it until the next click."""
-        name = self._button_at(event)
+        name = self._find_button(event)
         if not name:
             return
         event.stop()
@@ -202,18 +202,18 @@ class Brick(LinesPanel, can_focus=True):
         before = self.held
         self._clicked = name
         self.capture_mouse()
-        self._changed(before)
+        self._post_pressed(before)
 
     def on_mouse_up(self, event: events.MouseUp) -> None:
         if self._clicked:
-            self._unclick()
+            self._release_clicked()
             self.release_mouse()
 
     def on_mouse_release(self) -> None:
         """Release the button: a dialog has captured the mouse."""
         if self._clicked:
-            self._unclick()
+            self._release_clicked()
 
-    def _unclick(self) -> None:
+    def _release_clicked(self) -> None:
         before, self._clicked = self.held, ""
-        self._changed(before)
+        self._post_pressed(before)

@@ -90,7 +90,7 @@ class Chart(LinesPanel, can_focus=True):
             logged: Whether the program has printed them.
         """
         self._traces.append(name, times_s, values, logged)
-        self._changed()
+        self._schedule_drawing()
 
     def clear(self) -> None:
         """Remove all traces; one that gets points again is ticked as before."""
@@ -98,7 +98,7 @@ class Chart(LinesPanel, can_focus=True):
         self._state = replace(self._state, x_limits=None)
         self._read(None)
         self.action_drop_cursor()
-        self._changed()
+        self._schedule_drawing()
 
     def show(self, snapshot: Snapshot) -> None:
         """Draw new data; at most a few updates per second."""
@@ -115,7 +115,7 @@ class Chart(LinesPanel, can_focus=True):
             self._dirty = True
             self._throttle.ask()
 
-    def _changed(self) -> None:
+    def _schedule_drawing(self) -> None:
         self._dirty = True
         if self.display:
             self._throttle.ask()
@@ -135,7 +135,7 @@ class Chart(LinesPanel, can_focus=True):
         self._text.draw(partial(self._paint, state))
         self._read(self._pointed_s)
 
-    def _chosen(self) -> Trace | None:
+    def _find_chosen(self) -> Trace | None:
         """Return the selected trace, or the first one that is shown; None if none is."""
         drawn = self._traces.list_drawn()
         return next(
@@ -145,7 +145,7 @@ class Chart(LinesPanel, can_focus=True):
 
     def _find_bands(self) -> None:
         """Find the bands of the chosen trace, or of the first one that has several, while nothing is added."""
-        chosen = self._chosen()
+        chosen = self._find_chosen()
         if chosen is None or not self._is_at_rest:
             self._spanned = None
             spans: tuple[Span, ...] = ()
@@ -158,9 +158,9 @@ class Chart(LinesPanel, can_focus=True):
             if key == self._spanned:
                 return
             self._spanned = key
-            found = (find_spans(trace, self._light) for trace in traces)
+            candidates = (find_spans(trace, self._light) for trace in traces)
             spans = next(
-                (spans for spans in found if len(spans) > 1), find_spans(chosen, self._light)
+                (spans for spans in candidates if len(spans) > 1), find_spans(chosen, self._light)
             )
         self._state = replace(self._state, spans=spans)
 
@@ -187,8 +187,8 @@ class Chart(LinesPanel, can_focus=True):
     def action_select(self, step: int) -> None:
         names = [trace.name for trace in self._traces]
         if names:
-            at = names.index(self._state.selected) + step if self._state.selected in names else 0
-            self._state = replace(self._state, selected=names[at % len(names)])
+            index = names.index(self._state.selected) + step if self._state.selected in names else 0
+            self._state = replace(self._state, selected=names[index % len(names)])
             self._redraw()
 
     def action_tick(self, number: int = 0) -> None:
@@ -254,7 +254,7 @@ class Chart(LinesPanel, can_focus=True):
         if picture.find_time_s(column, row) is not None:
             self._dragging = True
             self.capture_mouse()
-            self._put_cursor(*self._clicked(self._time_of(column, picture), picture))
+            self._put_cursor(*self._find_sample(self._compute_time(column, picture), picture))
 
     def on_mouse_move(self, event: events.MouseMove) -> None:
         picture = self._picture
@@ -262,7 +262,7 @@ class Chart(LinesPanel, can_focus=True):
             return
         column, row = self.find_cell(event)
         if self._dragging:
-            self._put_cursor(self._time_of(column, picture))
+            self._put_cursor(self._compute_time(column, picture))
         else:
             self._read(picture.find_time_s(column, row))
 
@@ -275,14 +275,14 @@ class Chart(LinesPanel, can_focus=True):
         time_s = self._state.cursor_s if time_s is None else time_s
         drawn = self._traces.list_drawn()
         if time_s is None or not drawn:
-            said = self.FROZEN if self._state.x_limits else ""
+            words = self.FROZEN if self._state.x_limits else ""
         else:
-            said = escape_markup(
+            words = escape_markup(
                 format_values(drawn, time_s, self._state.unit, self.size.width - 4)
             )
         # Each assignment draws the panel again.
-        if said != self.border_subtitle:
-            self.border_subtitle = said
+        if words != self.border_subtitle:
+            self.border_subtitle = words
 
     def copy_text(self) -> Copied | None:
         """Return the values of all traces at the pointer, or at the cursor; without both, None."""
@@ -302,7 +302,7 @@ class Chart(LinesPanel, can_focus=True):
         """Stop dragging: a dialog has captured the mouse."""
         self._dragging = False
 
-    def _clicked(self, time_s: float, picture: ChartPicture) -> tuple[float, str]:
+    def _find_sample(self, time_s: float, picture: ChartPicture) -> tuple[float, str]:
         """Return the time and the name of the sample at a time, or nearest to it in its band; else the time only."""
         span = next((span for span in self._state.spans if span.start <= time_s <= span.stop), None)
         of_span = (
@@ -310,7 +310,7 @@ class Chart(LinesPanel, can_focus=True):
             for trace in self._traces.list_drawn()
             if span is not None and trace.name == span.name
         )
-        trace = next(of_span, self._chosen())
+        trace = next(of_span, self._find_chosen())
         if trace is None or not trace.logged:
             return time_s, ""
         low, high = picture.x_limits
@@ -319,5 +319,5 @@ class Chart(LinesPanel, can_focus=True):
         return (found_s, trace.name) if is_here or span is not None else (time_s, "")
 
     @staticmethod
-    def _time_of(column: int, picture: ChartPicture) -> float:
+    def _compute_time(column: int, picture: ChartPicture) -> float:
         return axes.find_column_value(column - picture.left, picture.x_limits, picture.columns)

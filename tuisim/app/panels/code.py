@@ -181,7 +181,7 @@ class Code(Vertical):
         title, edited = self._said
         self.border_title = title + edited
         words = fitting(self._error_words, self.size.width - _FRAME) if self.error_line else ""
-        told = words or ("running text differs" if self.differs else self._break_words)
+        title_words = words or ("running text differs" if self.differs else self._break_words)
         helped = Text() if words else self._assistant.describe_cursor(self.size.width - _FRAME)
         if self._area.is_completing:
             helped = Text("looking up …")
@@ -189,7 +189,7 @@ class Code(Vertical):
             helped = Text(
                 f"no name begins with {word}" if word else "nothing known follows the dot"
             )
-        self.border_subtitle = helped if helped else escape_markup(told)
+        self.border_subtitle = helped if helped else escape_markup(title_words)
 
     def on_resize(self) -> None:
         """Say as much as there is room for."""
@@ -225,7 +225,7 @@ class Code(Vertical):
             line: From 1, in the text of the run.
             words: What is wrong, see `mark_error`.
         """
-        self.mark_error(self._line_shown(line), words)
+        self.mark_error(self._find_shown_line(line), words)
 
     @property
     def error_line(self) -> int:
@@ -275,19 +275,19 @@ class Code(Vertical):
             return
         self._lit_at_s, self._stands = now, stands
         self.show_line(line)
-        if (lit := self._line_shown(line)) and not self.typing and stands:
+        if (lit := self._find_shown_line(line)) and not self.typing and stands:
             # From here the arrow keys go on.
             self._area.move_to_code(lit)
 
     def show_line(self, line: int) -> None:
         """Highlight a line of the run's text, 0 for none, at its place in the text shown."""
         self._line = line
-        lit = self._line_shown(line)
+        lit = self._find_shown_line(line)
         self._area.light(lit)
         if lit and not self.typing:
             self._area.scroll_to_line(lit)
 
-    def _line_shown(self, line: int) -> int:
+    def _find_shown_line(self, line: int) -> int:
         """Return where a line of the run's text is in the text shown, 0 if it no longer exists."""
         if self._run_lines is None:
             return line
@@ -307,7 +307,9 @@ class Code(Vertical):
         if pause is not None and self._run_lines is not None and pause.paused.tick == self._tick:
             of_run = map_line_values("\n".join(self._run_lines), pause.inspected)
             values = {
-                shown: found for line, found in of_run.items() if (shown := self._line_shown(line))
+                shown_line: variables
+                for line, variables in of_run.items()
+                if (shown_line := self._find_shown_line(line))
             }
         self._area.set_values(values)
 
@@ -431,20 +433,20 @@ class Code(Vertical):
         event.stop()
         self._area.focus()
 
-    def _find(self, wanted: str, by: int) -> None:
-        found = find_matches(self._area.document.lines, wanted)
-        if not found:
-            self._bar.say("not found" if wanted else "")
+    def _find(self, search: str, by: int) -> None:
+        matches = find_matches(self._area.document.lines, search)
+        if not matches:
+            self._bar.say("not found" if search else "")
             return
         here = self._area.selection.start if by else min(self._area.selection)
         if by > 0:
-            at = bisect_right(found, here)
+            index = bisect_right(matches, here)
         elif by < 0:
-            at = bisect_left(found, here) - 1
+            index = bisect_left(matches, here) - 1
         else:
-            at = bisect_left(found, here)
-        at %= len(found)
-        row, column = found[at]
-        self._area.selection = Selection((row, column), (row, column + len(wanted)))
+            index = bisect_left(matches, here)
+        index %= len(matches)
+        row, column = matches[index]
+        self._area.selection = Selection((row, column), (row, column + len(search)))
         self._area.scroll_cursor_visible(center=True)
-        self._bar.say(f"{at + 1} of {len(found)}")
+        self._bar.say(f"{index + 1} of {len(matches)}")

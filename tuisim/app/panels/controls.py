@@ -35,23 +35,23 @@ class Controls(ActionWords, can_focus=False):
 
     def show(self, snapshot: Snapshot) -> None:
         """Show a moment."""
-        shown = (
+        parts = (
             (snapshot.state, snapshot.end, snapshot.speed, snapshot.pen_down),
             (snapshot.spec, snapshot.instant.noise, snapshot.past and snapshot.time_s),
         )
-        if shown != self._shown:
-            self._shown, self._snapshot = shown, snapshot
+        if parts != self._shown:
+            self._shown, self._snapshot = parts, snapshot
             self.refresh()
 
-    def _button(self, text: str, action: str, works: bool) -> Text:
+    def _build_button(self, text: str, action: str, works: bool) -> Text:
         name = "controls--button" if works else "controls--off"
         style = self.get_component_rich_style(name, partial=True)
         return Text(f" {text} ", style + Style(meta={ACT: action}))
 
-    def _key(self, action: str) -> str:
+    def _find_key(self, action: str) -> str:
         return with_keys_of(self.app, f"{{{action}}}")
 
-    def _line(self, label: str, *parts: str | Text) -> Text:
+    def _build_line(self, label: str, *parts: str | Text) -> Text:
         line = Text()
         line.append(
             f"{label:<{_LABEL_CELLS}}",
@@ -61,11 +61,11 @@ class Controls(ActionWords, can_focus=False):
             line.append(part)
         return line
 
-    def _state(self, now: Snapshot) -> Text:
+    def _describe_state(self, now: Snapshot) -> Text:
         style = (
             self.get_component_rich_style("controls--failed", partial=True) if now.failed else ""
         )
-        return Text(_state_label(now), style)
+        return Text(_label_state(now), style)
 
     def render(self) -> Text:
         now = self._snapshot
@@ -74,30 +74,37 @@ class Controls(ActionWords, can_focus=False):
         in_run = now.state in IN_RUN
         buttons = Text(" ").join(
             (
-                self._button(f"{self._key('run')} Run", "run", bool(self.program) and not in_run),
-                self._button(f"{self._key('stop')} Stop", "stop", in_run),
-                self._button(
+                self._build_button(
+                    f"{self._find_key('run')} Run", "run", bool(self.program) and not in_run
+                ),
+                self._build_button(f"{self._find_key('stop')} Stop", "stop", in_run),
+                self._build_button(
                     "Resume" if now.state == RunPhase.PAUSED else "Pause", "pause", in_run
                 ),
             )
         )
         spec = now.spec
         slower, faster = (
-            self._button(key, to, True)
-            for key, to in ((self._key("slower"), "slower"), (self._key("faster"), "faster"))
+            self._build_button(key, to, True)
+            for key, to in (
+                (self._find_key("slower"), "slower"),
+                (self._find_key("faster"), "faster"),
+            )
         )
         noise, drift = now.instant.noise, "" if spec.world.drift.is_none else ", drift"
         lines = [
             buttons,
             Text(),
-            self._line("State", self._state(now)),
-            self._line("Speed", slower, f" {speed_label(now.speed):^4} ", faster),
-            self._line("Program", self.program or f"none: {self._key('open')} opens one"),
-            self._line("Mat", Path(spec.world.background).name),
-            self._line("Robot", spec.robot.name),
-            self._line("Profile", f"{spec.profile.name}, seed {spec.seed}"),
-            self._line("Pen", f"{'down' if now.pen_down else 'up'}, {spec.robot.pen.color}"),
-            self._line("Noise", f"light ±{noise.light}, motor ±{noise.motor}{drift}"),
+            self._build_line("State", self._describe_state(now)),
+            self._build_line("Speed", slower, f" {speed_label(now.speed):^4} ", faster),
+            self._build_line(
+                "Program", self.program or f"none: {self._find_key('open')} opens one"
+            ),
+            self._build_line("Mat", Path(spec.world.background).name),
+            self._build_line("Robot", spec.robot.name),
+            self._build_line("Profile", f"{spec.profile.name}, seed {spec.seed}"),
+            self._build_line("Pen", f"{'down' if now.pen_down else 'up'}, {spec.robot.pen.color}"),
+            self._build_line("Noise", f"light ±{noise.light}, motor ±{noise.motor}{drift}"),
         ]
         if self.size.height < len(lines):
             del lines[1]
@@ -107,7 +114,7 @@ class Controls(ActionWords, can_focus=False):
         return Text("\n", no_wrap=True).join(lines[: self.size.height])
 
 
-def _state_label(now: Snapshot) -> str:
+def _label_state(now: Snapshot) -> str:
     if now.past:
         return f"past {now.time_s:.2f} s"
     match now.state:

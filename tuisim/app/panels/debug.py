@@ -79,7 +79,7 @@ class Debug(LinesPanel, can_focus=True):
         if view is None:
             self._content = DebugView(busy=is_busy)
         else:
-            source = _line_of(view.paused)
+            source = _read_module_line(view.paused)
             self._content = DebugView(
                 self._state, view.paused, view.inspected, view.past, is_busy, source
             )
@@ -114,7 +114,7 @@ class Debug(LinesPanel, can_focus=True):
         self.action_scroll_lines(-2)
 
 
-def _line_of(paused: Paused) -> str:
+def _read_module_line(paused: Paused) -> str:
     """Return the line of a module beside the program; empty for the program itself, or if it cannot be read."""
     if not paused.file:
         return ""

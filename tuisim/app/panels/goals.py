@@ -9,7 +9,7 @@ from textual.binding import Binding, BindingType
 
 from tuisim.app.panels import PANELS
 from tuisim.app.panels.titles import build_title
-from tuisim.app.render.goals import GoalsPicture, GoalsView, current_goal, draw_goals
+from tuisim.app.render.goals import GoalsPicture, GoalsView, draw_goals, find_current_goal
 from tuisim.terminal.cell_view import LinesPanel
 
 if TYPE_CHECKING:
@@ -71,10 +71,12 @@ class Goals(LinesPanel, can_focus=True):
         return self._past[0] if self._past else None
 
     @property
-    def _at(self) -> int:
+    def _index(self) -> int:
         """Index of the goal that is shown in detail."""
         return (
-            current_goal(self._content.states(self._tick)) if self._chosen is None else self._chosen
+            find_current_goal(self._content.states(self._tick))
+            if self._chosen is None
+            else self._chosen
         )
 
     def _redraw(self) -> None:
@@ -84,7 +86,7 @@ class Goals(LinesPanel, can_focus=True):
         states = self._content.states(self._tick)
         self._drawn = self._content, states
         self._picture = draw_goals(
-            self._content, states, self._at, self._first, size.width, size.height
+            self._content, states, self._index, self._first, size.width, size.height
         )
         below = f" ↓{self._picture.below}" if self._picture.below else ""
         self.border_title = build_title(self.app, _INFO.id) + below
@@ -106,7 +108,7 @@ class Goals(LinesPanel, can_focus=True):
 
     def action_select(self, by: int) -> None:
         if self._content.goals:
-            self._choose(max(0, min(self._at + by, len(self._content.goals) - 1)))
+            self._choose(max(0, min(self._index + by, len(self._content.goals) - 1)))
 
     def on_click(self, event: events.Click) -> None:
         """Show the goal under the mouse in detail."""

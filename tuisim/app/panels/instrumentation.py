@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tuisim.app.panels.light_lines import (
-    LONGEST_NAME,
+    MAX_NAME_CELLS,
     build_color_cell,
     build_sensor_line,
     build_sensor_lines,
@@ -21,10 +21,10 @@ from tuisim.app.panels.reading_runs import (
     VALUE,
     WARNING,
     fit_line,
-    label_run,
-    unit_run,
-    value_run,
-    value_runs,
+    format_label,
+    format_unit,
+    format_value,
+    format_values,
 )
 from tuisim.app.panels.titles import build_title, name_setup
 from tuisim.app.snapshot import RunPhase, Snapshot, end_label
@@ -58,11 +58,11 @@ class Instrumentation(LinesPanel):
             if title != self.border_title:
                 self.border_title = title
             self._text.set_lines(
-                lines(self._snapshot, self._text.size.width, self._text.size.height)
+                build_lines(self._snapshot, self._text.size.width, self._text.size.height)
             )
 
 
-def lines(now: Snapshot, width: int, height: int) -> list[Line]:
+def build_lines(now: Snapshot, width: int, height: int) -> list[Line]:
     """Return the text of a moment for a panel of that inner size.
 
     Args:
@@ -70,19 +70,24 @@ def lines(now: Snapshot, width: int, height: int) -> list[Line]:
         width: Columns, 18 or more for whole words.
         height: Rows; with fewer than 6, the readings stand side by side.
     """
-    if tall := _lines_with_drivers(now, width, height):
+    if tall := _build_tall_lines(now, width, height):
         return tall
     motors = add_states(build_wheel_lines(now, width), now, width)
     sensors = list_seen(now, "Sensor")
-    further = [*build_extra_motor_lines(now, width), *_further_sensors(now, width)]
+    further = [*build_extra_motor_lines(now, width), *_build_sensor_lines(now, width)]
     small = height < 7 + len(sensors) + len(further)
     if small:
         short = [build_sensor_line(name, seen, width) for name, seen in sensors]
-        whole = [*motors, *short, _distance_and_angle(now, width), _place_and_time(now, width)]
+        whole = [*motors, *short, _build_ranging_line(now, width), _place_and_time(now, width)]
         whole += further
-        return whole if len(whole) <= height else _side_by_side(now, width, max(height, 1))
-    ranging = [_ultrasonic(now, width), _gyro(now, width), *further]
-    rest = [*ranging, _pose(now, width), _clock(now, width), _state(now, width)]
+        return whole if len(whole) <= height else _build_columns_text(now, width, max(height, 1))
+    ranging = [_build_ultrasonic_line(now, width), _build_gyro_line(now, width), *further]
+    rest = [
+        *ranging,
+        _build_pose_line(now, width),
+        _build_clock_line(now, width),
+        _build_state_line(now, width),
+    ]
     if height < 7 + 2 * len(sensors) + len(further):
         return [*motors, *(build_sensor_line(name, seen, width) for name, seen in sensors), *rest]
     full = [line for name, seen in sensors for line in build_sensor_lines(name, seen, width)]
@@ -91,11 +96,11 @@ def lines(now: Snapshot, width: int, height: int) -> list[Line]:
     return [*motors, [], *full, [], *ranging, [], *rest[len(ranging) :]]
 
 
-def _further_sensors(now: Snapshot, width: int) -> list[Line]:
-    return [_further(column, value, width) for column, value in now.further.items()]
+def _build_sensor_lines(now: Snapshot, width: int) -> list[Line]:
+    return [_build_further_line(column, value, width) for column, value in now.further.items()]
 
 
-def _lines_with_drivers(now: Snapshot, width: int, height: int) -> list[Line]:
+def _build_tall_lines(now: Snapshot, width: int, height: int) -> list[Line]:
     """Return all lines, those of motors with what their drivers know; none if that is nothing, or they do not fit."""
     drivers = [build_driver_line(values, width) for values in now.instant.motors]
     if not drivers:
@@ -109,12 +114,16 @@ def _lines_with_drivers(now: Snapshot, width: int, height: int) -> list[Line]:
             for line in build_sensor_lines(name, seen, width)
         ],
         [
-            _ultrasonic(now, width),
-            _gyro(now, width),
+            _build_ultrasonic_line(now, width),
+            _build_gyro_line(now, width),
             *(line for pair in zip(extra, drivers[2:], strict=False) for line in pair),
-            *_further_sensors(now, width),
+            *_build_sensor_lines(now, width),
         ],
-        [_pose(now, width), _clock(now, width), _state(now, width)],
+        [
+            _build_pose_line(now, width),
+            _build_clock_line(now, width),
+            _build_state_line(now, width),
+        ],
     ]
     free = height - sum(map(len, groups))
     if free < 0:
@@ -124,34 +133,34 @@ def _lines_with_drivers(now: Snapshot, width: int, height: int) -> list[Line]:
     return [line for group in groups for line in group]
 
 
-def _further(column: str, value: float, width: int) -> Line:
+def _build_further_line(column: str, value: float, width: int) -> Line:
     """Return the line of a sensor that not every robot has, by its telemetry column."""
     name, _, what = column.rpartition("_")
     if what == "pressed":
-        shown, unit = "pressed" if value else "released", ""
+        value_text, unit = "pressed" if value else "released", ""
     else:
         sign = parse_unit(column).sign
-        shown, unit = f"{value:.0f}", sign if sign == "°" else f" {sign}".rstrip()
+        value_text, unit = f"{value:.0f}", sign if sign == "°" else f" {sign}".rstrip()
     label = name.capitalize()
     return fit_line(
         width,
         (
-            label_run(cut(label, COLUMN - 1)),
-            value_run(shown if what == "pressed" else f"{shown:>6}"),
-            unit_run(unit),
+            format_label(cut(label, COLUMN - 1)),
+            format_value(value_text if what == "pressed" else f"{value_text:>6}"),
+            format_unit(unit),
         ),
-        (label_run(cut(label, 8), 9), value_run(shown), unit_run(unit)),
+        (format_label(cut(label, 8), 9), format_value(value_text), format_unit(unit)),
     )
 
 
-def _side_by_side(now: Snapshot, width: int, height: int) -> list[Line]:
+def _build_columns_text(now: Snapshot, width: int, height: int) -> list[Line]:
     """Return the readings in columns: with speeds and colour names if all fit, then as many as there are.
 
     The pose goes before names of colours, speeds go before the pose.
     """
     for detail, with_pose in ((2, True), (1, True), (2, False), (1, False), (0, False)):
-        columns, sensing = _columns(now, height, detail)
-        widths = [max(_length(cell) for cell in column) for column in columns]
+        columns, sensing = _arrange_cells(now, height, detail)
+        widths = [max(_measure_line(cell) for cell in column) for column in columns]
         needed = widths if with_pose else widths[:sensing]
         if sum(needed) + _GAP * (len(needed) - 1) <= width:
             break
@@ -163,32 +172,32 @@ def _side_by_side(now: Snapshot, width: int, height: int) -> list[Line]:
         for row, line in enumerate(lines):
             cell = cells[row] if row < len(cells) else []
             line += [
-                unit_run(" " * _GAP * bool(used)),
+                format_unit(" " * _GAP * bool(used)),
                 *cell,
-                unit_run(" " * (column - _length(cell))),
+                format_unit(" " * (column - _measure_line(cell))),
             ]
         used += column + _GAP * bool(used)
     if detail < 2 and (below := max(map(len, columns))) < height:
-        lines[below] = _names_of_colors(now, width)
+        lines[below] = _build_color_names(now, width)
     return lines
 
 
-def _names_of_colors(now: Snapshot, width: int) -> Line:
+def _build_color_names(now: Snapshot, width: int) -> Line:
     """Return the names of colours in a line, as many as fit."""
     line: Line = []
-    for at, sensor in enumerate(now.spec.robot.color_sensors, 1):
+    for number, sensor in enumerate(now.spec.robot.color_sensors, 1):
         seen = now.colors.get(sensor.name)
         more = [
-            label_run(f"S{at}", 3),
-            value_run(f"{seen.name if seen else '–':<{LONGEST_NAME}}"),
-            unit_run(" " * _GAP),
+            format_label(f"S{number}", 3),
+            format_value(f"{seen.name if seen else '–':<{MAX_NAME_CELLS}}"),
+            format_unit(" " * _GAP),
         ]
-        if _length(line) + _length(more) - _GAP <= width:
+        if _measure_line(line) + _measure_line(more) - _GAP <= width:
             line += more
     return line
 
 
-def _columns(now: Snapshot, height: int, detail: int) -> tuple[list[list[Line]], int]:
+def _arrange_cells(now: Snapshot, height: int, detail: int) -> tuple[list[list[Line]], int]:
     """Return cells in columns of that height, and how many columns motors and sensors take.
 
     Args:
@@ -201,85 +210,90 @@ def _columns(now: Snapshot, height: int, detail: int) -> tuple[list[list[Line]],
     sensors = [build_color_cell(name, seen, detail > 1) for name, seen in list_seen(now, "S")]
     ranging: list[Line] = []
     if now.ultrasonic_mm is not None:
-        ranging.append([label_run("US", 3), *value_runs(f"{now.ultrasonic_mm / 10:5.1f}", "cm")])
+        ranging.append(
+            [format_label("US", 3), *format_values(f"{now.ultrasonic_mm / 10:5.1f}", "cm")]
+        )
     if robot.gyro is not None:
-        ranging.append([label_run("Gyro", 5), *value_runs(f"{now.gyro_deg:4d}", "°")])
-    ranging += [_further(column, value, _CELL) for column, value in now.further.items()]
+        ranging.append([format_label("Gyro", 5), *format_values(f"{now.gyro_deg:4d}", "°")])
+    ranging += [_build_further_line(column, value, _CELL) for column, value in now.further.items()]
     pose = now.instant.pose
-    heading = [unit_run("h"), *value_runs(f"{shown_heading_deg(pose.heading_deg):4.0f}", "°")]
+    heading = [format_unit("h"), *format_values(f"{shown_heading_deg(pose.heading_deg):4.0f}", "°")]
     places: list[Line] = [
-        [unit_run("x "), value_run(f"{pose.x_mm:4.0f}")],
-        [unit_run("y "), value_run(f"{pose.y_mm:4.0f}")],
+        [format_unit("x "), format_value(f"{pose.x_mm:4.0f}")],
+        [format_unit("y "), format_value(f"{pose.y_mm:4.0f}")],
     ]
     groups = [motors + ranging[:1], sensors + ranging[1:]]
     if not motors or not sensors or max(map(len, groups)) > height:
         cells = motors + sensors + ranging
-        groups = [cells[at : at + height] for at in range(0, len(cells), height)]
+        groups = [cells[start : start + height] for start in range(0, len(cells), height)]
     last = [*places, heading]
     return [group for group in groups if group] + [
-        last[at : at + height] for at in range(0, 3, height)
+        last[start : start + height] for start in range(0, 3, height)
     ], len(groups)
 
 
-def _length(line: Line) -> int:
+def _measure_line(line: Line) -> int:
     return sum(len(text) for text, _ in line)
 
 
-def _ultrasonic(now: Snapshot, width: int) -> Line:
+def _build_ultrasonic_line(now: Snapshot, width: int) -> Line:
     if now.ultrasonic_mm is None:
-        return [label_run("Ultrasonic"), unit_run("none")]
+        return [format_label("Ultrasonic"), format_unit("none")]
     centimetres = f"{now.ultrasonic_mm / 10:.1f}"
     return fit_line(
         width,
         (
-            label_run("Ultrasonic"),
-            *value_runs(f"{centimetres:>6}", " cm", f"{now.ultrasonic_mm:8d}", " mm"),
+            format_label("Ultrasonic"),
+            *format_values(f"{centimetres:>6}", " cm", f"{now.ultrasonic_mm:8d}", " mm"),
         ),
         (
-            label_run("Ultrasonic", 11),
-            *value_runs(f"{centimetres:>5}", "cm", f"{now.ultrasonic_mm:5d}", "mm"),
+            format_label("Ultrasonic", 11),
+            *format_values(f"{centimetres:>5}", "cm", f"{now.ultrasonic_mm:5d}", "mm"),
         ),
-        (label_run("Ultrasonic", 11), value_run(centimetres), unit_run("cm")),
+        (format_label("Ultrasonic", 11), format_value(centimetres), format_unit("cm")),
     )
 
 
-def _gyro(now: Snapshot, width: int) -> Line:
+def _build_gyro_line(now: Snapshot, width: int) -> Line:
     if now.spec.robot.gyro is None:
-        return [label_run("Gyro"), unit_run("none")]
+        return [format_label("Gyro"), format_unit("none")]
     return fit_line(
         width,
         (
-            label_run("Gyro"),
-            *value_runs(f"{now.gyro_deg:6d}", "°   rate", f"{now.gyro_rate_dps:6d}", " °/s"),
+            format_label("Gyro"),
+            *format_values(f"{now.gyro_deg:6d}", "°   rate", f"{now.gyro_rate_dps:6d}", " °/s"),
         ),
         (
-            label_run("Gyro", 7),
-            *value_runs(f"{now.gyro_deg}", "° rate ", f"{now.gyro_rate_dps}", "°/s"),
+            format_label("Gyro", 7),
+            *format_values(f"{now.gyro_deg}", "° rate ", f"{now.gyro_rate_dps}", "°/s"),
         ),
-        (label_run("Gyro", 5), *value_runs(f"{now.gyro_deg}", "° ", f"{now.gyro_rate_dps}", "°/s")),
+        (
+            format_label("Gyro", 5),
+            *format_values(f"{now.gyro_deg}", "° ", f"{now.gyro_rate_dps}", "°/s"),
+        ),
     )
 
 
-def _pose(now: Snapshot, width: int) -> Line:
+def _build_pose_line(now: Snapshot, width: int) -> Line:
     pose = now.instant.pose
     shown_deg = shown_heading_deg(pose.heading_deg)
     x, y, heading = f"{pose.x_mm:.1f}", f"{pose.y_mm:.1f}", f"{shown_deg:.1f}"
     return fit_line(
         width,
         (
-            label_run("Pose"),
-            unit_run("x"),
-            *value_runs(f"{x:>7}", "  y", f"{y:>7}", "  heading", f"{heading:>7}", "°"),
+            format_label("Pose"),
+            format_unit("x"),
+            *format_values(f"{x:>7}", "  y", f"{y:>7}", "  heading", f"{heading:>7}", "°"),
         ),
         (
-            label_run("Pose"),
-            unit_run("x"),
-            *value_runs(f"{x:>7}", " y", f"{y:>7}", " h", f"{heading:>7}", "°"),
+            format_label("Pose"),
+            format_unit("x"),
+            *format_values(f"{x:>7}", " y", f"{y:>7}", " h", f"{heading:>7}", "°"),
         ),
-        (unit_run("x "), *value_runs(x, " y ", y, " ", heading, "°")),
+        (format_unit("x "), *format_values(x, " y ", y, " ", heading, "°")),
         (
-            *value_runs(f"{pose.x_mm:.0f}", ",", f"{pose.y_mm:.0f}"),
-            *value_runs(f" {shown_deg:.0f}", "°"),
+            *format_values(f"{pose.x_mm:.0f}", ",", f"{pose.y_mm:.0f}"),
+            *format_values(f" {shown_deg:.0f}", "°"),
         ),
     )
 
@@ -288,22 +302,32 @@ def _speed(now: Snapshot) -> str:
     return f"{now.speed:g}×" if now.speed else "max"
 
 
-def _clock(now: Snapshot, width: int) -> Line:
+def _build_clock_line(now: Snapshot, width: int) -> Line:
     time_s = f"{now.time_s:.2f}"
     return fit_line(
         width,
         (
-            label_run("Clock"),
-            value_run(f"{time_s:>8}"),
-            unit_run(" s   speed "),
-            value_run(_speed(now)),
+            format_label("Clock"),
+            format_value(f"{time_s:>8}"),
+            format_unit(" s   speed "),
+            format_value(_speed(now)),
         ),
-        (label_run("Clock", 6), value_run(time_s), unit_run(" s  speed "), value_run(_speed(now))),
-        (label_run("Clock", 6), value_run(time_s), unit_run("s "), value_run(_speed(now))),
+        (
+            format_label("Clock", 6),
+            format_value(time_s),
+            format_unit(" s  speed "),
+            format_value(_speed(now)),
+        ),
+        (
+            format_label("Clock", 6),
+            format_value(time_s),
+            format_unit("s "),
+            format_value(_speed(now)),
+        ),
     )
 
 
-def _state_word(now: Snapshot) -> Run:
+def _describe_state(now: Snapshot) -> Run:
     if now.past:
         return "past", VALUE
     if now.placed:
@@ -312,54 +336,66 @@ def _state_word(now: Snapshot) -> Run:
     return word, WARNING if now.failed else VALUE
 
 
-def _state(now: Snapshot, width: int) -> Line:
+def _build_state_line(now: Snapshot, width: int) -> Line:
     state, profile, pen = (
-        _state_word(now),
+        _describe_state(now),
         now.spec.profile.name,
         "pen down" if now.pen_down else "pen up",
     )
     return fit_line(
         width,
         (
-            label_run("State"),
+            format_label("State"),
             (f"{state[0]:<9}", state[1]),
-            unit_run(" "),
-            value_run(pen.ljust(9)),
-            unit_run(" "),
-            value_run(profile),
+            format_unit(" "),
+            format_value(pen.ljust(9)),
+            format_unit(" "),
+            format_value(profile),
         ),
         (
-            label_run("State", 6),
+            format_label("State", 6),
             state,
-            unit_run(" · "),
-            value_run(pen),
-            unit_run(" · "),
-            value_run(profile),
+            format_unit(" · "),
+            format_value(pen),
+            format_unit(" · "),
+            format_value(profile),
         ),
-        (label_run("State"), state, unit_run(" · "), value_run(profile)),
-        (label_run("State", 6), state, unit_run(" · "), value_run(profile)),
-        (state, unit_run("·"), value_run(profile)),
+        (format_label("State"), state, format_unit(" · "), format_value(profile)),
+        (format_label("State", 6), state, format_unit(" · "), format_value(profile)),
+        (state, format_unit("·"), format_value(profile)),
         (state,),
     )
 
 
-def _distance_and_angle(now: Snapshot, width: int) -> Line:
+def _build_ranging_line(now: Snapshot, width: int) -> Line:
     centimetres = "–" if now.ultrasonic_mm is None else f"{now.ultrasonic_mm / 10:.1f}"
     angle = "–" if now.spec.robot.gyro is None else f"{now.gyro_deg}"
-    far = value_run(f"{centimetres:>6}")
+    far = format_value(f"{centimetres:>6}")
     return fit_line(
         width,
         (
-            label_run("Ultrasonic"),
+            format_label("Ultrasonic"),
             far,
-            unit_run(" cm   Gyro"),
-            value_run(f"{angle:>5}"),
-            unit_run("°"),
+            format_unit(" cm   Gyro"),
+            format_value(f"{angle:>5}"),
+            format_unit("°"),
         ),
-        (label_run("Ultrasonic", 10), far, unit_run("cm Gyro "), value_run(angle), unit_run("°")),
-        (label_run("Ultrasonic", 10), far, unit_run("cm G "), value_run(angle), unit_run("°")),
-        (label_run("US", 2), far, unit_run("cm G "), value_run(angle), unit_run("°")),
-        (label_run("US", 2), far, unit_run("cm")),
+        (
+            format_label("Ultrasonic", 10),
+            far,
+            format_unit("cm Gyro "),
+            format_value(angle),
+            format_unit("°"),
+        ),
+        (
+            format_label("Ultrasonic", 10),
+            far,
+            format_unit("cm G "),
+            format_value(angle),
+            format_unit("°"),
+        ),
+        (format_label("US", 2), far, format_unit("cm G "), format_value(angle), format_unit("°")),
+        (format_label("US", 2), far, format_unit("cm")),
     )
 
 
@@ -370,24 +406,24 @@ def _place_and_time(now: Snapshot, width: int) -> Line:
         f"{pose.y_mm:.0f}",
         f"{shown_heading_deg(pose.heading_deg):.0f}",
     )
-    at = unit_run("x "), value_run(x), unit_run(" y "), value_run(y)
+    position = format_unit("x "), format_value(x), format_unit(" y "), format_value(y)
     where, named = (
-        (*at, unit_run(" "), value_run(heading), unit_run("°")),
-        (*at, unit_run(" h "), value_run(heading), unit_run("°")),
+        (*position, format_unit(" "), format_value(heading), format_unit("°")),
+        (*position, format_unit(" h "), format_value(heading), format_unit("°")),
     )
     return fit_line(
         width,
-        (*named, value_run(f"  {now.time_s:.2f}"), unit_run(" s  "), _state_word(now)),
-        (*where, value_run(f"  {now.time_s:.2f}"), unit_run(" s  "), _state_word(now)),
-        (*where, value_run(f" {now.time_s:.2f}"), unit_run("s")),
+        (*named, format_value(f"  {now.time_s:.2f}"), format_unit(" s  "), _describe_state(now)),
+        (*where, format_value(f"  {now.time_s:.2f}"), format_unit(" s  "), _describe_state(now)),
+        (*where, format_value(f" {now.time_s:.2f}"), format_unit("s")),
         (
-            value_run(x),
-            unit_run(","),
-            value_run(y),
-            value_run(f" {heading}"),
-            unit_run("° "),
-            value_run(f"{now.time_s:.1f}"),
-            unit_run("s"),
+            format_value(x),
+            format_unit(","),
+            format_value(y),
+            format_value(f" {heading}"),
+            format_unit("° "),
+            format_value(f"{now.time_s:.1f}"),
+            format_unit("s"),
         ),
-        (value_run(f"{now.time_s:.2f}"), unit_run(" s")),
+        (format_value(f"{now.time_s:.2f}"), format_unit(" s")),
     )

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from tuisim.app.panels.reading_runs import fit_line, label_run, unit_run, value_run
-from tuisim.app.render.arrays import swatch_of
+from tuisim.app.panels.reading_runs import fit_line, format_label, format_unit, format_value
+from tuisim.app.render.arrays import build_swatch
 from tuisim.app.snapshot import Snapshot
 from tuisim.base.data_class import dataclass
 from tuisim.engine.core.sensors.color import ColorReading, LightRead
 from tuisim.programs.facts import read_facts
 from tuisim.terminal.text_runs import Line
 
-LONGEST_NAME = 7
+MAX_NAME_CELLS = 7
 """So that readings do not move when a sensor sees another colour."""
 
 
@@ -51,20 +51,20 @@ def list_seen(now: Snapshot, word: str) -> list[tuple[str, LightSeen | None]]:
 def build_color_cell(name: str, seen: LightSeen | None, with_name: bool) -> Line:
     """Return a sensor as a cell of a column."""
     if seen is None:
-        return [label_run(name, 3), unit_run("–")]
+        return [format_label(name, 3), format_unit("–")]
     cell: Line = [
-        label_run(name, 3),
-        value_run(seen.value),
-        unit_run(f"{seen.unit:<{7 - len(seen.value)}}"),
-        swatch_of(seen.color),
+        format_label(name, 3),
+        format_value(seen.value),
+        format_unit(f"{seen.unit:<{7 - len(seen.value)}}"),
+        build_swatch(seen.color),
     ]
-    return [*cell, value_run(f" {seen.color.name:<{LONGEST_NAME}}")] if with_name else cell
+    return [*cell, format_value(f" {seen.color.name:<{MAX_NAME_CELLS}}")] if with_name else cell
 
 
 def build_sensor_lines(name: str, seen: LightSeen | None, width: int) -> tuple[Line, Line]:
     """Return a sensor in two lines, the second one with its channels and its colour."""
     if seen is None:
-        return [label_run(name), unit_run("–")], []
+        return [format_label(name), format_unit("–")], []
     color = seen.color
     red, red_unit, mean = f"{color.red_percent:5.1f}", " %", f"{color.mean_percent:5.1f}"
     if seen.read is LightRead.REFLECTED:
@@ -76,40 +76,50 @@ def build_sensor_lines(name: str, seen: LightSeen | None, width: int) -> tuple[L
     first = fit_line(
         width,
         (
-            label_run(name),
-            unit_run("red "),
-            value_run(red),
-            unit_run(f"{red_unit}  mean "),
-            value_run(mean),
-            unit_run(" %"),
+            format_label(name),
+            format_unit("red "),
+            format_value(red),
+            format_unit(f"{red_unit}  mean "),
+            format_value(mean),
+            format_unit(" %"),
         ),
         (
-            label_run(name, 8),
-            unit_run("red"),
-            value_run(short_red),
-            unit_run(" mean"),
-            value_run(short_mean),
+            format_label(name, 8),
+            format_unit("red"),
+            format_value(short_red),
+            format_unit(" mean"),
+            format_value(short_mean),
         ),
-        (label_run(name, 8), value_run(short_red), unit_run(" mean"), value_run(short_mean)),
         (
-            label_run(name[:1] + name[-1:], 3),
-            value_run(short_red),
-            unit_run(" mean"),
-            value_run(short_mean),
+            format_label(name, 8),
+            format_value(short_red),
+            format_unit(" mean"),
+            format_value(short_mean),
+        ),
+        (
+            format_label(name[:1] + name[-1:], 3),
+            format_value(short_red),
+            format_unit(" mean"),
+            format_value(short_mean),
         ),
     )
     channels = [f"{channel}" for channel in color.rgb]
     wide, narrow = f"({', '.join(channels)})", f"({','.join(channels)})"
     second = fit_line(
         width,
-        (label_run(""), value_run(wide.ljust(16)), swatch_of(color), value_run(f" {color.name}")),
         (
-            label_run("", 2),
-            value_run(narrow.ljust(14)),
-            swatch_of(color),
-            value_run(f" {color.name}"),
+            format_label(""),
+            format_value(wide.ljust(16)),
+            build_swatch(color),
+            format_value(f" {color.name}"),
         ),
-        (swatch_of(color), value_run(f" {narrow}")),
+        (
+            format_label("", 2),
+            format_value(narrow.ljust(14)),
+            build_swatch(color),
+            format_value(f" {color.name}"),
+        ),
+        (build_swatch(color), format_value(f" {narrow}")),
     )
     return first, second
 
@@ -119,19 +129,21 @@ def build_sensor_line(name: str, seen: LightSeen | None, width: int) -> Line:
     short = name[:1] + name[-1:]
     if seen is None:
         return fit_line(
-            width, (label_run(name, 9), unit_run("–")), (label_run(short, 3), unit_run("–"))
+            width,
+            (format_label(name, 9), format_unit("–")),
+            (format_label(short, 3), format_unit("–")),
         )
     what = "mean " if seen.read is LightRead.MEAN else "red "
-    after = (swatch_of(seen.color), value_run(f" {seen.color.name}"))
+    after = (build_swatch(seen.color), format_value(f" {seen.color.name}"))
     return fit_line(
         width,
         (
-            label_run(name),
-            unit_run(what),
-            value_run(seen.value),
-            unit_run(f"{seen.unit:>2}  "),
+            format_label(name),
+            format_unit(what),
+            format_value(seen.value),
+            format_unit(f"{seen.unit:>2}  "),
             *after,
         ),
-        (label_run(name, 9), value_run(seen.value), unit_run(f"{seen.unit} "), *after),
-        (label_run(short, 3), value_run(seen.value), unit_run(f"{seen.unit} "), *after),
+        (format_label(name, 9), format_value(seen.value), format_unit(f"{seen.unit} "), *after),
+        (format_label(short, 3), format_value(seen.value), format_unit(f"{seen.unit} "), *after),
     )

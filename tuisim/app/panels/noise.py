@@ -66,20 +66,20 @@ class Noise(EntryPanel):
             return
         self._past = snapshot.past
         noise = snapshot.instant.noise if snapshot.past else snapshot.planned.world.noise
-        shown = noise, snapshot.planned.seed
-        if shown == self._shown:
+        settings = noise, snapshot.planned.seed
+        if settings == self._shown:
             return
-        before, self._shown = self._shown, shown
+        before, self._shown = self._shown, settings
         for kind in _KINDS:
             value = getattr(noise, kind)
             if before is None or getattr(before[0], kind) != value:
                 self.query_one(f"#{kind}", Slider).value = value
                 self.query_one(f"#{kind}-number", Static).update(str(value))
-        if before is None or before[1] != shown[1]:
-            self.query_one("#seed", Input).value = str(shown[1])
+        if before is None or before[1] != settings[1]:
+            self.query_one("#seed", Input).value = str(settings[1])
 
     @on(Slider.Changed)
-    def _slid(self, event: Slider.Changed) -> None:
+    def _post_noise(self, event: Slider.Changed) -> None:
         event.stop()
         self.query_one(f"#{event.slider.id}-number", Static).update(str(event.value))
         self.say("")

@@ -31,20 +31,20 @@ _NEW_SIZE_MM = 200.0
 _NONE = "none: + or drag adds one"
 
 
-def box_label(number: int, box: Obstacle) -> str:
+def label_box(number: int, box: Obstacle) -> str:
     """Return the list entry of an obstacle."""
     return f"{number:>2}  {box.width_mm:g}×{box.height_mm:g} at {box.x_mm:g}, {box.y_mm:g}"
 
 
-def _with_another(boxes: Boxes) -> Boxes:
+def _add_box(boxes: Boxes) -> Boxes:
     middle = ((FIELD_WIDTH_MM - _NEW_SIZE_MM) // 2, (FIELD_HEIGHT_MM - _NEW_SIZE_MM) // 2)
     # A box on top of another would be invisible.
     shift = 20.0 * len(boxes)
     return (*boxes, Obstacle(middle[0] + shift, middle[1], _NEW_SIZE_MM, _NEW_SIZE_MM))
 
 
-def _replaced(at: int, by: Boxes, boxes: Boxes) -> Boxes:
-    return (*boxes[:at], *by, *boxes[at + 1 :])
+def _replace_box(index: int, by: Boxes, boxes: Boxes) -> Boxes:
+    return (*boxes[:index], *by, *boxes[index + 1 :])
 
 
 class Obstacles(EntryPanel):
@@ -122,7 +122,10 @@ class Obstacles(EntryPanel):
         listed = self.query_one(OptionList)
         listed.clear_options()
         listed.add_options(
-            [Option(box_label(at, box), id=str(at)) for at, box in enumerate(self._boxes, start=1)]
+            [
+                Option(label_box(number, box), id=str(number))
+                for number, box in enumerate(self._boxes, start=1)
+            ]
         )
         if not self._boxes:
             listed.add_option(Option(_NONE, disabled=True))
@@ -138,7 +141,7 @@ class Obstacles(EntryPanel):
         self.say("")
 
     @on(OptionList.OptionHighlighted)
-    def _highlighted(self, event: OptionList.OptionHighlighted) -> None:
+    def _mark_highlighted(self, event: OptionList.OptionHighlighted) -> None:
         event.stop()
         if self._boxes and event.option_index != self.at:
             self.at = event.option_index
@@ -146,7 +149,7 @@ class Obstacles(EntryPanel):
             self.post_message(self.Marked(self.at))
 
     @on(OptionList.OptionSelected)
-    def _selected(self, event: OptionList.OptionSelected) -> None:
+    def _edit_selected(self, event: OptionList.OptionSelected) -> None:
         event.stop()
         self.query_one("#x_mm", Input).focus()
 
@@ -161,29 +164,29 @@ class Obstacles(EntryPanel):
             entry.add_class("wrong")
             self.say(f"{_FIELDS[entry.id or '']} {format_error(error)}")
             return
-        self.post_message(self.Edited(partial(_replaced, self.at, (box,))))
+        self.post_message(self.Edited(partial(_replace_box, self.at, (box,))))
 
     def action_add(self) -> None:
-        self.post_message(self.Edited(_with_another))
+        self.post_message(self.Edited(_add_box))
 
     def action_remove(self) -> None:
         if self.at is None:
             self.say("No obstacle to remove")
             return
-        self.post_message(self.Edited(partial(_replaced, self.at, ())))
+        self.post_message(self.Edited(partial(_replace_box, self.at, ())))
 
 
 GRID_MM = 5.0
 """Positions and sizes set with the mouse are multiples of this."""
-LEAST_MM = 20.0
+MIN_BOX_MM = 20.0
 """A drag smaller than this is a click."""
 
 
-def _to_grid(value_mm: float) -> float:
+def _snap_mm(value_mm: float) -> float:
     return round(value_mm / GRID_MM) * GRID_MM
 
 
-def box_at(boxes: Sequence[Obstacle], x_mm: float, y_mm: float, slack_mm: float) -> int | None:
+def find_box(boxes: Sequence[Obstacle], x_mm: float, y_mm: float, slack_mm: float) -> int | None:
     """Return the index of the topmost box at a point, None for none.
 
     Args:
@@ -214,28 +217,28 @@ class BoxGrip:
     x_mm: float
     y_mm: float
 
-    def dragged_to(self, x_mm: float, y_mm: float) -> tuple[tuple[Obstacle, ...], int] | None:
+    def drag_boxes(self, x_mm: float, y_mm: float) -> tuple[tuple[Obstacle, ...], int] | None:
         """Return the boxes with the mouse at a point, and the index of the dragged one; None if nothing has changed."""
         if self.index is None:
-            box = self._drawn(x_mm, y_mm)
+            box = self._draw_box(x_mm, y_mm)
             return None if box is None else ((*self.boxes, box), len(self.boxes))
         box = self.boxes[self.index]
         x = min(
-            max(_to_grid(box.x_mm + x_mm - self.x_mm), -box.width_mm / 2),
+            max(_snap_mm(box.x_mm + x_mm - self.x_mm), -box.width_mm / 2),
             FIELD_WIDTH_MM - box.width_mm / 2,
         )
         y = min(
-            max(_to_grid(box.y_mm + y_mm - self.y_mm), -box.height_mm / 2),
+            max(_snap_mm(box.y_mm + y_mm - self.y_mm), -box.height_mm / 2),
             FIELD_HEIGHT_MM - box.height_mm / 2,
         )
         moved = replace(box, x_mm=x, y_mm=y)
         return (*self.boxes[: self.index], moved, *self.boxes[self.index + 1 :]), self.index
 
-    def _drawn(self, x_mm: float, y_mm: float) -> Obstacle | None:
-        left, right = sorted(_to_grid(min(max(x, 0.0), FIELD_WIDTH_MM)) for x in (self.x_mm, x_mm))
+    def _draw_box(self, x_mm: float, y_mm: float) -> Obstacle | None:
+        left, right = sorted(_snap_mm(min(max(x, 0.0), FIELD_WIDTH_MM)) for x in (self.x_mm, x_mm))
         lower, upper = sorted(
-            _to_grid(min(max(y, 0.0), FIELD_HEIGHT_MM)) for y in (self.y_mm, y_mm)
+            _snap_mm(min(max(y, 0.0), FIELD_HEIGHT_MM)) for y in (self.y_mm, y_mm)
         )
-        if right - left < LEAST_MM or upper - lower < LEAST_MM:
+        if right - left < MIN_BOX_MM or upper - lower < MIN_BOX_MM:
             return None
         return Obstacle(left, lower, right - left, upper - lower)

@@ -29,7 +29,7 @@ from tuisim.base.errors import counted
 from tuisim.engine.runs.records import OutputRow, Stream, line_of
 
 _INFO = PANELS["output"]
-BEFORE_A_RUN = "What the program prints appears here: {run} runs it"
+IDLE_WORDS = "What the program prints appears here: {run} runs it"
 
 
 class Answer(Input):
@@ -103,7 +103,7 @@ class Output(Vertical):
     def ask(self, prompt: str) -> None:
         """Show the field for an answer, with the program's prompt before it."""
         self.asking = True
-        words = plain(prompt).strip() or "The program waits for input"
+        words = replace_controls(prompt).strip() or "The program waits for input"
         answer = Answer(placeholder="Enter sends, ctrl+d ends", compact=True)
         self.mount(Static(words, classes="prompt", markup=False), answer)
         answer.focus()
@@ -114,7 +114,7 @@ class Output(Vertical):
         self.query(".prompt, Answer").remove()
 
     @on(Input.Submitted)
-    def _submitted(self, event: Input.Submitted) -> None:
+    def _post_answer(self, event: Input.Submitted) -> None:
         event.stop()
         # The field is removed when the run reports that it no longer waits.
         self.post_message(self.Answered(event.value))
@@ -127,7 +127,7 @@ class Output(Vertical):
     def show(self, snapshot: Snapshot) -> None:
         """Say before the first run what appears here; rows arrive through `add`."""
         self._log.say_if_empty(
-            with_keys_of(self.app, BEFORE_A_RUN) if snapshot.state is RunPhase.IDLE else ""
+            with_keys_of(self.app, IDLE_WORDS) if snapshot.state is RunPhase.IDLE else ""
         )
 
 
@@ -152,32 +152,32 @@ Line = tuple[str, Stream]
 """Text and stream."""
 
 
-def plain(text: str) -> str:
+def replace_controls(text: str) -> str:
     """Return a text without control characters: tabs become spaces, others a dot."""
     if text.isprintable():
         return text
     return "".join(char if char.isprintable() else "·" for char in text.expandtabs(4))
 
 
-def shown_lines(row: OutputRow, width: int) -> list[str]:
+def split_row(row: OutputRow, width: int) -> list[str]:
     """Return a row as lines of at most `width` cells, at least one."""
     text = line_of(row)
     if len(text) > MAX_LINE_CHARS:
         text = (
             f"{text[:MAX_LINE_CHARS]} … ({counted(len(text) - MAX_LINE_CHARS, 'more character')})"
         )
-    text = plain(text)
+    text = replace_controls(text)
     if cell_len(text) != len(text):
         return chop_cells(text, max(width, 2)) or [""]
     lines = []
     while len(text) > width:
-        cut = _break_in(text, width)
+        cut = _find_break(text, width)
         lines.append(text[:cut])
         text = text[cut:]
     return [*lines, text]
 
 
-def _break_in(text: str, width: int) -> int:
+def _find_break(text: str, width: int) -> int:
     """Return where a text of more letters breaks.
 
     Behind a blank or a separator, if no half of the row stays empty; else before a word that has room in one row.
@@ -238,7 +238,7 @@ class Log(Widget, can_focus=True):
     @property
     def text(self) -> str:
         """The rows that are kept, whole."""
-        return "\n".join(plain(line_of(row)) for row in self._rows)
+        return "\n".join(replace_controls(line_of(row)) for row in self._rows)
 
     def clear(self) -> None:
         """Remove every line."""
@@ -263,7 +263,7 @@ class Log(Widget, can_focus=True):
         if width < 1:
             return
         for row in rows:
-            lines = shown_lines(row, width)
+            lines = split_row(row, width)
             points = row.stream is Stream.STDERR and _CARETS.fullmatch(row.text)
             if not points or (not self._has_broken and len(lines) == 1):
                 self._lines.extend((line, row.stream) for line in lines)
@@ -287,14 +287,14 @@ class Log(Widget, can_focus=True):
         """Return the number of lines to scroll through; the first one may stand for rows no longer kept."""
         return len(self._lines) + (1 if self._count > len(self._rows) else 0)
 
-    def _line(self, at: int) -> Line:
+    def _find_line(self, index: int) -> Line:
         hidden = self._count - len(self._rows)
         if hidden:
-            if at == 0:
+            if index == 0:
                 text = f"… {counted(hidden, 'earlier line is', 'earlier lines are')} in the log"
                 return text[: self.size.width - 1], Stream.NOTE
-            at -= 1
-        return self._lines[at] if 0 <= at < len(self._lines) else ("", Stream.STDOUT)
+            index -= 1
+        return self._lines[index] if 0 <= index < len(self._lines) else ("", Stream.STDOUT)
 
     def _update(self) -> None:
         height = self.size.height
@@ -305,22 +305,22 @@ class Log(Widget, can_focus=True):
         thumb = range(0)
         if last_top:
             size = max(1, height * height // self._all)
-            at = round((height - size) * top / last_top)
-            thumb = range(at, at + size)
-        shown = [(self._line(top + y), y in thumb) for y in range(height)]
-        if (line := shown[0][0])[1] is Stream.STDERR and _CARETS.fullmatch(line[0]):
+            start = round((height - size) * top / last_top)
+            thumb = range(start, start + size)
+        rows = [(self._find_line(top + y), y in thumb) for y in range(height)]
+        if (line := rows[0][0])[1] is Stream.STDERR and _CARETS.fullmatch(line[0]):
             # It points at nothing.
-            shown[0] = ("", Stream.STDERR), shown[0][1]
+            rows[0] = ("", Stream.STDERR), rows[0][1]
         if not self._all and self._empty_words:
-            words = shown_lines(
+            words = split_row(
                 OutputRow(self._empty_words, 0, 0, 0, Stream.NOTE), max(1, self.size.width - 1)
             )
-            shown[: len(words)] = [((text, Stream.NOTE), False) for text in words[:height]]
-        before, self._shown = self._shown, shown
+            rows[: len(words)] = [((text, Stream.NOTE), False) for text in words[:height]]
+        before, self._shown = self._shown, rows
         if len(before) != height:
             self.refresh()
             return
-        changed = [Region(0, y, self.size.width, 1) for y in range(height) if shown[y] != before[y]]
+        changed = [Region(0, y, self.size.width, 1) for y in range(height) if rows[y] != before[y]]
         if changed:
             self.refresh(*changed)
 

@@ -24,7 +24,7 @@ class PoseGrip:
     on_floor: bool
     """Whether it may lead off the field."""
 
-    def dragged_to(self, x_mm: float, y_mm: float) -> Pose:
+    def drag_pose(self, x_mm: float, y_mm: float) -> Pose:
         """Return the pose with the mouse at a point."""
         start = self.pose
         if self.turns:

@@ -33,11 +33,11 @@ def parse_field(field: str, text: str) -> float:
     """
     value = _FIELDS[field]
     try:
-        found: float = value.parse_text(text.strip().replace(",", "."))
+        number: float = value.parse_text(text.strip().replace(",", "."))
     except WrongValue:
-        shown = text.strip()[:12] or "nothing"
-        raise ValueError(f"{value.label}: {value.allowed}, not {shown!r}") from None
-    return found
+        typed = text.strip()[:12] or "nothing"
+        raise ValueError(f"{value.label}: {value.allowed}, not {typed!r}") from None
+    return number
 
 
 class Positioning(FormPanel, can_focus=True):
@@ -82,14 +82,14 @@ class Positioning(FormPanel, can_focus=True):
             text = f"{value:.1f}".removesuffix(".0")
             text = "0" if text == "-0" else text
             for entry in self.query(f"#{field}").results(Input):
-                if self._shown[field] != text and not self._typing(entry):
+                if self._shown[field] != text and not self._is_typing(entry):
                     self._shown[field] = entry.value = text
                     entry.remove_class("wrong")
                     if entry.has_focus:
                         # What is typed replaces the number, as in a field that gets the focus with it.
                         entry.action_select_all()
 
-    def _typing(self, entry: Input) -> bool:
+    def _is_typing(self, entry: Input) -> bool:
         # A field with text that `show` did not put there stays unchanged until it is applied.
         return entry.has_focus and entry.value != self._shown[entry.id or ""]
 

@@ -25,21 +25,23 @@ def fit_line(width: int, *variants: Sequence[Run]) -> Line:
     return list(variants[-1])
 
 
-def label_run(text: str, column: int = COLUMN) -> Run:
+def format_label(text: str, column: int = COLUMN) -> Run:
     """Return a label."""
     return text.ljust(column), LABEL
 
 
-def value_run(text: str) -> Run:
+def format_value(text: str) -> Run:
     """Return a value."""
     return text, VALUE
 
 
-def unit_run(text: str) -> Run:
+def format_unit(text: str) -> Run:
     """Return a unit, or other words between values."""
     return text, UNIT
 
 
-def value_runs(*texts: str) -> list[Run]:
+def format_values(*texts: str) -> list[Run]:
     """Return values, each with the unit after it."""
-    return [unit_run(text) if at % 2 else value_run(text) for at, text in enumerate(texts)]
+    return [
+        format_unit(text) if index % 2 else format_value(text) for index, text in enumerate(texts)
+    ]

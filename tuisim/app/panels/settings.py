@@ -14,7 +14,7 @@ from textual.widgets import Static
 
 from tuisim.app.action import KeyWord, action_link
 from tuisim.app.form import Choice, Row
-from tuisim.app.setup.fields import FieldGroup, FormField, find, sections, step
+from tuisim.app.setup.fields import FieldGroup, FormField, build_sections, find, step
 from tuisim.app.setup.next_run import NextRun
 from tuisim.app.snapshot import Snapshot
 from tuisim.base.data_class import dataclass
@@ -72,7 +72,7 @@ class Settings(VerticalScroll, can_focus=False):
     def show_next_run(self, plan: NextRun) -> None:
         """Show the plan of the next run."""
         self._plan = plan
-        parts = sections(plan)
+        parts = build_sections(plan)
         edits = {edit.id: edit for part in parts for edit in part.edits}
         if list(edits) != self._fields:
             self._fields = list(edits)
@@ -87,13 +87,13 @@ class Settings(VerticalScroll, can_focus=False):
 
         Rows of fields that stay are kept, so that the focus stays, too, and no key is lost.
         """
-        wanted = {edit.id for part in parts for edit in part.edits}
+        field_ids = {edit.id for part in parts for edit in part.edits}
         rows = {row.field: row for row in self.query(Row)}
-        gone = [row for field, row in rows.items() if field not in wanted]
+        gone = [row for field, row in rows.items() if field not in field_ids]
         form: list[Widget] = []
         for part in parts:
             form.append(Static(part.title, classes="form heading", markup=False))
-            form += [rows.get(edit.id) or _new_row(edit) for edit in part.edits]
+            form += [rows.get(edit.id) or _build_row(edit) for edit in part.edits]
         with self.app.batch_update():
             await self.remove_children([*self.query(".heading"), *gone])
             await self.mount_all([widget for widget in form if not widget.is_attached])
@@ -112,14 +112,14 @@ class Settings(VerticalScroll, can_focus=False):
             choice.focus()
 
     @on(Row.Entered)
-    def _entered(self, event: Row.Entered) -> None:
+    def _handle_entry(self, event: Row.Entered) -> None:
         event.stop()
         edit = find(self._plan, event.row.field) if self._plan else None
         if edit is not None:
             self.post_message(self.Edited(event.row, edit, event.text, event.by))
 
 
-def _new_row(edit: FormField) -> Row:
+def _build_row(edit: FormField) -> Row:
     row = Row(edit.id, edit.label, bool(edit.choices))
     row.add_class("form")
     return row

@@ -65,7 +65,7 @@ class BarTimes:
         """Return the column of a tick in a bar of that length."""
         return min(columns - 1, round(tick / self.tick_hz / self.end_s * (columns - 1)))
 
-    def tick_at(self, column: int, columns: int) -> int:
+    def find_tick(self, column: int, columns: int) -> int:
         """Return the tick at a column, at most the newest one."""
         share = min(max(column, 0), columns - 1) / max(columns - 1, 1)
         return min(self.newest, round(share * self.end_s * self.tick_hz))
@@ -77,39 +77,39 @@ def _round_end_s(now_s: int) -> float:
     return time_limits(now_s)[1]
 
 
-def words(times: BarTimes, width: int) -> str:
+def format_times(times: BarTimes, width: int) -> str:
     """Return the text beside the bar: as wide in the past as now, so that the columns of the bar keep their times.
 
     Args:
         times: What the bar shows.
         width: Of bar and text.
     """
-    at, now = (f"{tick / times.tick_hz:.2f}" for tick in (times.tick, times.newest))
-    both = f"{at:>{len(now)}} of {now} s"
+    time_s, now = (f"{tick / times.tick_hz:.2f}" for tick in (times.tick, times.newest))
+    both = f"{time_s:>{len(now)}} of {now} s"
     if width - len(both) - 1 >= MIN_BAR_COLS:
         return both if times.past else f"{now} s".rjust(len(both))
-    return f"{at if times.past else now:>{len(now)}} s"
+    return f"{time_s if times.past else now:>{len(now)}} s"
 
 
 def mark_cells(times: BarTimes, marks: Iterable[tuple[int, Mark]], columns: int) -> dict[int, Run]:
     """Return the markers by column."""
     order = list(_MARKS)
-    found: dict[int, int] = {}
+    kinds: dict[int, int] = {}
     for tick, kind in marks:
-        at = times.column(tick, columns)
-        found[at] = min(found.get(at, len(order)), order.index(kind))
-    return {at: _MARKS[order[kind_at]] for at, kind_at in found.items()}
+        column = times.column(tick, columns)
+        kinds[column] = min(kinds.get(column, len(order)), order.index(kind))
+    return {column: _MARKS[order[kind_at]] for column, kind_at in kinds.items()}
 
 
-def bar_cells(times: BarTimes, marks: Mapping[int, Run], columns: int) -> list[Run]:
+def build_bar(times: BarTimes, marks: Mapping[int, Run], columns: int) -> list[Run]:
     """Return the cells of the bar."""
     here, now = times.column(times.tick, columns), times.column(times.newest, columns)
     cells: list[Run] = [
-        ("━", _PAST) if at <= here else ("─", _LATER) if at <= now else ("·", _BEYOND)
-        for at in range(columns)
+        ("━", _PAST) if column <= here else ("─", _LATER) if column <= now else ("·", _BEYOND)
+        for column in range(columns)
     ]
-    for at, (sign, style) in marks.items():
-        cells[at] = _ON_LINE.get((sign, cells[at][0]), sign), style
+    for column, (sign, style) in marks.items():
+        cells[column] = _ON_LINE.get((sign, cells[column][0]), sign), style
     if times.past:
         cells[here] = "▮", _CURSOR
     return cells
@@ -159,7 +159,7 @@ class TimeBar(LinesView):
         if self._times is None or not self.size:
             return
         times = self._times
-        text = words(times, self.size.width)
+        text = format_times(times, self.size.width)
         self._columns = columns = max(1, self.size.width - len(text) - 1)
         marks = self.marks()
         key = (len(marks), marks[0] if marks else None, columns, times.end_s)
@@ -167,13 +167,13 @@ class TimeBar(LinesView):
             self._marked = key, mark_cells(times, marks, columns)
         style = _STRONG if times.past else _WORDS
         self.set_lines(
-            [[*bar_cells(times, self._marked[1], columns), (" ", _WORDS), (text, style)]]
+            [[*build_bar(times, self._marked[1], columns), (" ", _WORDS), (text, style)]]
         )
 
     def _choose(self, event: events.MouseEvent) -> None:
         event.stop()
         if self._times is not None:
-            tick = self._times.tick_at(int(event.screen_x) - self.region.x, self._columns)
+            tick = self._times.find_tick(int(event.screen_x) - self.region.x, self._columns)
             self.post_message(self.Scrubbed(None if tick >= self._times.newest else tick))
 
     def on_mouse_down(self, event: events.MouseDown) -> None:

@@ -52,8 +52,8 @@ def name_sensors(now: Snapshot, width: int) -> str:
     prelude = PRELUDE_TEXTS.get(now.program.prelude, "") if now.program else ""
     predefined = {f"in{port}": name for name, port in _PREDEFINED.findall(prelude)}
     sensors = [
-        (f"Sensor{at}", sensor.name, sensor.port, *filter(None, [predefined.get(sensor.port)]))
-        for at, sensor in enumerate(now.spec.robot.color_sensors, 1)
+        (f"Sensor{number}", sensor.name, sensor.port, *filter(None, [predefined.get(sensor.port)]))
+        for number, sensor in enumerate(now.spec.robot.color_sensors, 1)
     ]
     wordings = (
         " │ ".join(mark.join(names[:count]) for names in sensors)

@@ -14,11 +14,11 @@ from textual.message import Message
 from textual.widget import Widget
 
 from tuisim.app.clipboard import Copied, describe_world
-from tuisim.app.panels.obstacles import BoxGrip, box_at
+from tuisim.app.panels.obstacles import BoxGrip, find_box
 from tuisim.app.panels.pose_grip import PoseGrip
 from tuisim.app.panels.time_bar import TimeBar
 from tuisim.app.panels.titles import build_title, name_mat
-from tuisim.app.render.world_text import draw_signs, draw_world_text, legend
+from tuisim.app.render.world_text import build_legend, draw_signs, draw_world_text
 from tuisim.app.snapshot import AT_REST, Snapshot
 from tuisim.base.data_class import dataclass
 from tuisim.engine.core.geometry import Pose
@@ -145,7 +145,7 @@ class World(Widget, can_focus=True):
         words = "drag to draw or move an obstacle" if self._edits_boxes else ""
         if (now := self._snapshot) is not None and not words:
             room = self.size.width - _FRAME
-            words = describe_off_field(now.instant.pose, room) or legend(now, room)
+            words = describe_off_field(now.instant.pose, room) or build_legend(now, room)
         if self.border_subtitle != words:
             self.border_subtitle = words
 
@@ -282,7 +282,7 @@ class WorldView(PixelView):
     def _draw(self) -> None:
         if self._snapshot is None or self._mat is None or not self.size or not self.is_mounted:
             return
-        scene = self._scene_of(self._snapshot)
+        scene = self._build_scene(self._snapshot)
         graphics = self.graphics
         cell = self.choose_cell(graphics)
         width_px, height_px = cell.cols * self.size.width, cell.rows * self.size.height
@@ -331,7 +331,7 @@ class WorldView(PixelView):
         return draw_world_text(
             mat,
             trace,
-            self._scene_of(now),
+            self._build_scene(now),
             self.size,
             self.cell_set,
             self.zoom,
@@ -343,7 +343,7 @@ class WorldView(PixelView):
         self._painter = None
         self.repaint_scene()
 
-    def _scene_of(self, snapshot: Snapshot) -> SceneState:
+    def _build_scene(self, snapshot: Snapshot) -> SceneState:
         spec = snapshot.spec
         pose = self._held or snapshot.instant.pose
         boxes = spec.world.obstacles if self._draft is None else self._draft
@@ -369,12 +369,12 @@ class WorldView(PixelView):
             last is not None
             and last.rays
             and last.rays_from is not None
-            and not self._rays_are_old(last, snapshot)
+            and not self._has_old_rays(last, snapshot)
         ):
             return replace(scene, rays=last.rays, rays_from=last.rays_from)
         return replace(scene, rays=snapshot.rays, rays_from=snapshot.instant.pose)
 
-    def _rays_are_old(self, last: SceneState, snapshot: Snapshot) -> bool:
+    def _has_old_rays(self, last: SceneState, snapshot: Snapshot) -> bool:
         cast, now = last.rays_from, snapshot.instant.pose
         if cast is None or self._port is None or len(last.rays) != len(snapshot.rays):
             return True
@@ -395,7 +395,7 @@ class WorldView(PixelView):
         """The width of a cell."""
         return self._port.mm_per_px * self._port.cell.cols if self._port else 0.0
 
-    def _at(self, event: events.MouseEvent) -> tuple[float, float]:
+    def _locate_mouse(self, event: events.MouseEvent) -> tuple[float, float]:
         """Return the world position under the mouse: the cell centre, or finer if the terminal supports it."""
         assert self._port is not None
         col, row = event.pointer_x, event.pointer_y
@@ -408,17 +408,17 @@ class WorldView(PixelView):
         if event.button != 1 or self._port is None or self._snapshot is None:
             return
         if not self._grip_robot(event) and self._edits_boxes:
-            x_mm, y_mm = self._at(event)
+            x_mm, y_mm = self._locate_mouse(event)
             boxes = self._snapshot.spec.world.obstacles
             self._box_grip = BoxGrip(
-                boxes, box_at(boxes, x_mm, y_mm, self._cell_mm / 2), x_mm, y_mm
+                boxes, find_box(boxes, x_mm, y_mm, self._cell_mm / 2), x_mm, y_mm
             )
             self.capture_mouse()
             event.stop()
 
     def _is_over_robot(self, event: events.MouseEvent, pose: Pose) -> bool:
         assert self._port is not None and self._snapshot is not None
-        x_mm, y_mm = self._at(event)
+        x_mm, y_mm = self._locate_mouse(event)
         robot = self._snapshot.spec.robot
         half_mm = robot.wheel_spacing_mm / 2
         reach_mm = half_mm * choose_scale(build_outline(robot), self._port) + 1.5 * self._cell_mm
@@ -433,7 +433,7 @@ class WorldView(PixelView):
             return False
         self._grip = PoseGrip(
             pose,
-            *self._at(event),
+            *self._locate_mouse(event),
             turns=event.shift or event.ctrl,
             on_floor=self._snapshot.spec.world.is_open,
         )
@@ -444,13 +444,13 @@ class WorldView(PixelView):
     def on_mouse_move(self, event: events.MouseMove) -> None:
         if self._box_grip is not None:
             event.stop()
-            dragged = self._box_grip.dragged_to(*self._at(event))
+            dragged = self._box_grip.drag_boxes(*self._locate_mouse(event))
             self._draft, self._marked = dragged or (None, self._marked)
             self._draw()
         if self._grip is None or self._port is None:
             return
         event.stop()
-        pose = self._grip.dragged_to(*self._at(event))
+        pose = self._grip.drag_pose(*self._locate_mouse(event))
         if pose != self._held:
             self._held = pose
             self.post_message(World.PoseDragged(pose, done=False))
@@ -487,12 +487,12 @@ class WorldView(PixelView):
             self.post_message(World.BoxesDragged(grip.boxes, grip.index))
 
     def on_mouse_scroll_up(self, event: events.MouseScrollUp) -> None:
-        self._zoom_by(event, 1) if event.ctrl else self._turn(event, TURN_STEP_DEG)
+        self._post_zoom(event, 1) if event.ctrl else self._turn(event, TURN_STEP_DEG)
 
     def on_mouse_scroll_down(self, event: events.MouseScrollDown) -> None:
-        self._zoom_by(event, -1) if event.ctrl else self._turn(event, -TURN_STEP_DEG)
+        self._post_zoom(event, -1) if event.ctrl else self._turn(event, -TURN_STEP_DEG)
 
-    def _zoom_by(self, event: events.MouseEvent, steps: int) -> None:
+    def _post_zoom(self, event: events.MouseEvent, steps: int) -> None:
         event.stop()
         self.post_message(World.ZoomAsked(steps))
 

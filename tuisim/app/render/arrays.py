@@ -16,7 +16,7 @@ from tuisim.terminal.text_runs import Line, Run, cut
 FULL_COLS, LARGE_COLS = 20, 40
 """Columns of a disc of one or two cells a mm; sizes between them show no more."""
 _LEAST_TEXT_COLS, _MOST_TEXT_COLS = 13, 24
-_MOST_LINES = 5
+_MAX_LINES = 5
 _FAIR_ROWS = 6
 """A disc is not made lower than this for a second line of text."""
 
@@ -48,7 +48,7 @@ class Arrangement(NamedTuple):
     text_rows: int
 
 
-def arranged(count: int, cols: int, rows: int) -> Arrangement:
+def arrange_discs(count: int, cols: int, rows: int) -> Arrangement:
     """Return the arrangement with the largest discs, side by side if there is a choice.
 
     Args:
@@ -57,36 +57,41 @@ def arranged(count: int, cols: int, rows: int) -> Arrangement:
         rows: Its rows.
     """
     count = max(count, 1)
-    found = []
+    arrangements = []
     for across in (True, False):
         wide, high = (cols // count, rows) if across else (cols, rows // count)
-        lines = _lines_below(wide, high)
-        found.append(Arrangement(across, True, _disc_cols(wide, 2 * (high - lines)), wide, lines))
+        lines = _count_lines_below(wide, high)
+        arrangements.append(
+            Arrangement(across, True, _count_disc_columns(wide, 2 * (high - lines)), wide, lines)
+        )
         text = min(max(wide - 1 - 2 * high, _LEAST_TEXT_COLS), _MOST_TEXT_COLS)
-        beside = _disc_cols(wide - 1 - text, 2 * high)
-        found.append(
+        beside = _count_disc_columns(wide - 1 - text, 2 * high)
+        arrangements.append(
             Arrangement(across, False, beside, min(wide - 1 - beside, _MOST_TEXT_COLS), high)
         )
-    return max(found, key=lambda one: (one.disc_cols, one.text_rows * one.below))
+    return max(
+        arrangements,
+        key=lambda arrangement: (arrangement.disc_cols, arrangement.text_rows * arrangement.below),
+    )
 
 
-def _disc_cols(cols: int, high_cols: int) -> int:
+def _count_disc_columns(cols: int, high_cols: int) -> int:
     """Return the columns of a disc in a place of some columns and twice as many rows as given."""
     side = max(min(cols, high_cols), 0)
     return LARGE_COLS if side >= LARGE_COLS else min(side, FULL_COLS)
 
 
-def _lines_below(cols: int, rows: int) -> int:
-    if rows < _LEAST_ROWS:
+def _count_lines_below(cols: int, rows: int) -> int:
+    if rows < _MIN_ROWS:
         return 0
     spare = rows - (min(cols, FULL_COLS) + 1) // 2
-    return min(max(rows - _FAIR_ROWS, spare, 1), _MOST_LINES)
+    return min(max(rows - _FAIR_ROWS, spare, 1), _MAX_LINES)
 
 
-_LEAST_ROWS = 4
+_MIN_ROWS = 4
 
 
-def face_lines(face: DiscFace, width: int, rows: int, *, has_limits: bool) -> list[Line]:
+def build_face_lines(face: DiscFace, width: int, rows: int, *, has_limits: bool) -> list[Line]:
     """Return the lines of a sensor, the most useful ones if there are few rows.
 
     Args:
@@ -95,7 +100,7 @@ def face_lines(face: DiscFace, width: int, rows: int, *, has_limits: bool) -> li
         rows: Most lines.
         has_limits: Whether there is a line for thresholds, those of any sensor.
     """
-    lines = [_value_line(face, width), _scale_line(face, width)]
+    lines = [_build_value_line(face, width), _scale_line(face, width)]
     lines += [[(cut(face.limit_words(width), width), _LIMIT)]] if has_limits else []
     rings = _ring_lines(face, width)
     # The label is of no use without its numbers.
@@ -103,9 +108,9 @@ def face_lines(face: DiscFace, width: int, rows: int, *, has_limits: bool) -> li
     return [[(cut(face.name, width), _LABEL)], *lines] if rows > len(lines) else lines[:rows]
 
 
-def _value_line(face: DiscFace, width: int) -> Line:
+def _build_value_line(face: DiscFace, width: int) -> Line:
     value, name = face.value_words, face.seen.name
-    swatch = swatch_of(face.seen)
+    swatch = build_swatch(face.seen)
     if len(value) + len(name) + 4 <= width:
         return [(value, _VALUE), (" ", _UNIT), swatch, (f" {name}", _VALUE)]
     close = value.replace(" %", "%").replace("mean ", "")
@@ -116,7 +121,7 @@ def _value_line(face: DiscFace, width: int) -> Line:
     return [(next(fits, cut(short, width)), _VALUE)]
 
 
-def swatch_of(seen: ColorReading) -> Run:
+def build_swatch(seen: ColorReading) -> Run:
     """Return two cells in a colour that is seen, with a line below that is seen where the panel has that colour."""
     return "  ", Style(color=palette.LABEL, bgcolor=Color.from_rgb(*seen.rgb), underline=True)
 
@@ -124,7 +129,7 @@ def swatch_of(seen: ColorReading) -> Run:
 def _scale_line(face: DiscFace, width: int) -> Line:
     """Return a scale from black to white, filled up to what the program gets, with the thresholds on it."""
     filled = round(min(max(face.share, 0), 1) * width)
-    cells = [("━", _FILLED) if at < filled else ("─", _REST) for at in range(width)]
+    cells = [("━", _FILLED) if column < filled else ("─", _REST) for column in range(width)]
     for share in face.limit_shares:
         cells[min(int(share * width), width - 1)] = "┃", _LIMIT
     return cells
@@ -145,8 +150,8 @@ def _ring_lines(face: DiscFace, width: int) -> list[Line]:
     )
 
 
-def names_in_border(names: Sequence[str], where: Arrangement, *, has_limits: bool) -> str:
+def list_border_names(names: Sequence[str], where: Arrangement, *, has_limits: bool) -> str:
     """Return what the frame says where the lines do not name the sensors."""
-    if len(names) < 2 or where.text_rows > _MOST_LINES - 2 + has_limits:
+    if len(names) < 2 or where.text_rows > _MAX_LINES - 2 + has_limits:
         return UP_WORDS
     return (" │ " if where.across else " above ").join(names)

@@ -102,7 +102,7 @@ def draw_brick(
     bumper_rows = 1 if bumpers and height > pad_rows else 0
     sound_rows = 1 if height >= pad_rows + bumper_rows + 3 else 0
     rows = max(0, height - pad_rows - bumper_rows - sound_rows)
-    screen = _screen(face, width, rows) if rows else []
+    screen = _draw_screen(face, width, rows) if rows else []
     pad, buttons = _pad(face, pressed, width, pad_rows, len(screen))
     sound = (
         face.sound.removeprefix("[").removeprefix("♪ ").removesuffix("]")
@@ -121,13 +121,13 @@ def draw_brick(
 # The display
 
 
-def _screen(face: BrickState, width: int, rows: int) -> list[list[Run]]:
+def _draw_screen(face: BrickState, width: int, rows: int) -> list[list[Run]]:
     if face.shows_text and face.text is not None:
-        return _text_screen(face.text, width, rows)
+        return _draw_text_screen(face.text, width, rows)
     return _display(face.picture, width, rows)
 
 
-def _text_screen(screen: TextScreen, width: int, rows: int) -> list[list[Run]]:
+def _draw_text_screen(screen: TextScreen, width: int, rows: int) -> list[list[Run]]:
     """Return the text screen in the terminal's own font; the rest is cut."""
     columns = min(width, screen.columns)
     left, top = (width - columns) // 2, max(0, (rows - screen.rows) // 2)
@@ -136,8 +136,8 @@ def _text_screen(screen: TextScreen, width: int, rows: int) -> list[list[Run]]:
         spans = [(start, end) for line, start, end in screen.inverse if line == row]
         cells = text.ljust(screen.columns)[:columns]
         line: list[Run] = [(" " * left, _PLAIN)]
-        for at, char in enumerate(cells):
-            style = _INVERSE if any(start <= at < end for start, end in spans) else _PAPER
+        for column, char in enumerate(cells):
+            style = _INVERSE if any(start <= column < end for start, end in spans) else _PAPER
             if line[-1][1] is style:
                 line[-1] = (line[-1][0] + char, style)
             else:
@@ -159,28 +159,30 @@ def _display(picture: bytes, width: int, rows: int) -> list[list[Run]]:
     high = max(per_row, round(fine * DISPLAY_HEIGHT) // per_row * per_row)
     across = max(2, round(fine * DISPLAY_WIDTH) // 2 * 2)
     shares = shrink_pixels(ink, min(high, DISPLAY_HEIGHT), min(across, DISPLAY_WIDTH))
-    drawn = _in_dots(shares, min(_DOT_SHARE, _LINE_PX * fine)) if dots else _in_half_blocks(shares)
+    drawn = (
+        _draw_dots(shares, min(_DOT_SHARE, _LINE_PX * fine)) if dots else _draw_half_blocks(shares)
+    )
     left = (width - sum(len(text) for text, _ in drawn[0])) // 2
     lines: list[list[Run]] = [[(" " * left, _PLAIN), *line] for line in drawn]
     top = max(0, (rows - len(lines)) // 2)
     return ([[] for _ in range(top)] + lines + [[] for _ in range(rows)])[:rows]
 
 
-def _in_dots(shares: NDArray[np.float64], least: float) -> list[list[Run]]:
-    dark = shares >= least
+def _draw_dots(shares: NDArray[np.float64], min_share: float) -> list[list[Run]]:
+    dark = shares >= min_share
     rows, columns = dark.shape[0] // 4, dark.shape[1] // 2
     fields = dark[: rows * 4, : columns * 2].reshape(rows, 4, columns, 2)
     codes = (fields * _DOT_BITS[None, :, None, :]).sum(axis=(1, 3))
     return [[("".join(chr(0x2800 + code) for code in row), _PAPER)] for row in codes.tolist()]
 
 
-def _in_half_blocks(shares: NDArray[np.float64]) -> list[list[Run]]:
+def _draw_half_blocks(shares: NDArray[np.float64]) -> list[list[Run]]:
     shades = np.rint(shares * (_SHADES - 1)).astype(int)
     lines = []
     for upper, lower in zip(shades[::2].tolist(), shades[1::2].tolist(), strict=True):
         line: list[Run] = []
         for pair in zip(upper, lower, strict=True):
-            style = _pair_style(*pair)
+            style = _find_pair_style(*pair)
             char = " " if pair[0] == pair[1] else "▀"
             if line and line[-1][1] is style and line[-1][0][-1] == char:
                 line[-1] = (line[-1][0] + char, style)
@@ -191,11 +193,11 @@ def _in_half_blocks(shares: NDArray[np.float64]) -> list[list[Run]]:
 
 
 @lru_cache(maxsize=_SHADES * _SHADES)
-def _pair_style(upper: int, lower: int) -> Style:
-    return Style(color=_shade(upper), bgcolor=_shade(lower))
+def _find_pair_style(upper: int, lower: int) -> Style:
+    return Style(color=_find_shade(upper), bgcolor=_find_shade(lower))
 
 
-def _shade(step: int) -> Color:
+def _find_shade(step: int) -> Color:
     part = step / (_SHADES - 1)
     return Color.from_rgb(
         *(round(p + (i - p) * part) for p, i in zip(_PAPER_RGB, _INK_RGB, strict=True))
@@ -205,7 +207,7 @@ def _shade(step: int) -> Color:
 # Lights and buttons
 
 
-def led_rgb(red: int, green: int) -> Rgb:
+def mix_led_rgb(red: int, green: int) -> Rgb:
     """Return the colour of a pair of lights with brightness 0 to 255: red and green mix to amber."""
     if not red and not green:
         return _DARK_LED_RGB
@@ -216,7 +218,7 @@ def led_rgb(red: int, green: int) -> Rgb:
     return levels[0], levels[1], 20
 
 
-def led_name(red: int, green: int) -> str:
+def name_led(red: int, green: int) -> str:
     """Return the name of the colour of a pair of lights."""
     if not red and not green:
         return "off"
@@ -226,7 +228,7 @@ def led_name(red: int, green: int) -> str:
     return "green" if not red else "yellow" if share < 0.5 else "amber" if share < 1.5 else "orange"
 
 
-def _lamps(face: BrickState) -> list[tuple[int, int]]:
+def _list_lamps(face: BrickState) -> list[tuple[int, int]]:
     if not face.leds:
         return [(0, 255), (0, 255)]
     return [
@@ -235,12 +237,12 @@ def _lamps(face: BrickState) -> list[tuple[int, int]]:
     ]
 
 
-def _lamp(lamp: tuple[int, int], named: bool, columns: int) -> Run:
+def _build_lamp(lamp: tuple[int, int], named: bool, columns: int) -> Run:
     """Return one row of a pair of lights; the word is for terminals and users without colour."""
-    red, green, blue = led_rgb(*lamp)
+    red, green, blue = mix_led_rgb(*lamp)
     ink = palette.BLACK if 3 * red + 6 * green > 1000 else palette.INK
     style = Style(color=ink, bgcolor=Color.from_rgb(red, green, blue))
-    name = led_name(*lamp) if named else ""
+    name = name_led(*lamp) if named else ""
     if len(name) > columns:
         name = f"{name[: columns - 1]}…" if columns > 1 else ""
     return name.center(columns), style
@@ -253,13 +255,13 @@ def _pad(
     columns = _PAD_COLUMNS if rows > 1 else 4 * len(_SYMBOLS) - 1
     led_columns = max(0, min(_LED_COLUMNS, (width - columns) // 2 - 1))
     left = max(0, (width - columns - 2 * led_columns - 2) // 2) + led_columns + 1
-    lamps = _lamps(face)
+    lamps = _list_lamps(face)
     lines: list[list[Run]] = []
     boxes = []
     for row in range(rows):
         named = row == rows // 2
         indent = (" " * max(0, left - led_columns - 1), _PLAIN)
-        line: list[Run] = [indent, _lamp(lamps[0], named, led_columns), (" ", _PLAIN)]
+        line: list[Run] = [indent, _build_lamp(lamps[0], named, led_columns), (" ", _PLAIN)]
         at = 0
         for name, (button_row, column) in sorted(places.items(), key=lambda place: place[1]):
             if button_row == row:
@@ -267,7 +269,7 @@ def _pad(
                 line += [(" " * (column - at), _PLAIN), (f" {_SYMBOLS[name]} ", style)]
                 at = column + _BUTTON_COLUMNS
                 boxes.append(ButtonBox(top + row, left + column, left + at, name))
-        line += [(" " * (columns - at + 1), _PLAIN), _lamp(lamps[1], named, led_columns)]
+        line += [(" " * (columns - at + 1), _PLAIN), _build_lamp(lamps[1], named, led_columns)]
         lines.append(line)
     return lines, tuple(boxes)
 

@@ -64,7 +64,7 @@ class DebugView:
         return self.now is not None and self.paused is not None and self.now[0] != self.paused.tick
 
 
-def reason_label(reason: PauseReason) -> str:
+def label_reason(reason: PauseReason) -> str:
     """Return in words why a run has paused."""
     match reason:
         case PauseReason.ASKED:
@@ -89,8 +89,8 @@ def debug_lines(view: DebugView, width: int) -> list[Line]:
     """Return the text for a panel of that inner width."""
     if view.paused is None or view.inspected is None:
         if view.busy:
-            return _text("", ("computing this instant …",), width)
-        return _hint(view.state, width)
+            return _build_text("", ("computing this instant …",), width)
+        return _build_hint(view.state, width)
     lines = _known(view, view.paused, view.inspected, width)
     if view.is_elsewhere and view.now:
         # The known data belongs to another instant: it is dimmed until that of this one has arrived.
@@ -100,29 +100,29 @@ def debug_lines(view: DebugView, width: int) -> list[Line]:
     return lines
 
 
-def _hint(state: RunPhase, width: int) -> list[Line]:
+def _build_hint(state: RunPhase, width: int) -> list[Line]:
     match state:
         case RunPhase.RUNNING:
-            return _text("running", ("space  pauses    n  pauses at the next line",), width)
+            return _build_text("running", ("space  pauses    n  pauses at the next line",), width)
         case RunPhase.WAITING:
-            return _text("waiting", ("Answer in the Output panel.",), width)
+            return _build_text("waiting", ("Answer in the Output panel.",), width)
         case RunPhase.ENDED:
-            return _text("", _OVER, width)
+            return _build_text("", _OVER, width)
         case RunPhase.IDLE:
-            return _text("", ("The program has not started.", *_KEYS), width)
+            return _build_text("", ("The program has not started.", *_KEYS), width)
         case RunPhase.STARTING:
-            return _text("", ("The program is starting.", *_KEYS), width)
+            return _build_text("", ("The program is starting.", *_KEYS), width)
         case RunPhase.PAUSED:
-            return _text("paused", ("reading the variables …", *_KEYS), width)
+            return _build_text("paused", ("reading the variables …", *_KEYS), width)
         case _:
             assert_never(state)
 
 
 def _known(view: DebugView, paused: Paused, inspected: Inspected, width: int) -> list[Line]:
-    lines = [_where(view, paused, width)]
+    lines = [_describe_place(view, paused, width)]
     if view.source:
         lines.append([(cut(f"  {view.source.strip()}", width), _VALUE)])
-    why = reason_label(paused.reason) + (f" {paused.detail}" if paused.detail else "")
+    why = label_reason(paused.reason) + (f" {paused.detail}" if paused.detail else "")
     if paused.value:
         why += f": {paused.value}"
     if not view.past and paused.reason not in (PauseReason.ASKED, PauseReason.INSTANT):
@@ -140,12 +140,12 @@ def _known(view: DebugView, paused: Paused, inspected: Inspected, width: int) ->
                     for text in textwrap.wrap(f"{watch.text}: {watch.error}", width - 2)
                 ]
             else:
-                lines.append(_pair(watch.text, watch.value, _NAME, _VALUE, width))
+                lines.append(_build_pair(watch.text, watch.value, _NAME, _VALUE, width))
     frame = inspected.stack[inspected.frame] if inspected.frame < len(inspected.stack) else None
-    lines += _variables(_title(frame), inspected.variables, width)
+    lines += _list_variables(_describe_frame(frame), inspected.variables, width)
     if inspected.globals:
-        lines += _variables("Globals", inspected.globals, width)
-    lines += _stack(inspected, width)
+        lines += _list_variables("Globals", inspected.globals, width)
+    lines += _list_frames(inspected, width)
     if len(inspected.threads) > 1:
         lines.append([("Threads", _HEAD)])
         for thread in inspected.threads:
@@ -161,7 +161,7 @@ def _known(view: DebugView, paused: Paused, inspected: Inspected, width: int) ->
     return lines
 
 
-def _text(head: str, texts: Sequence[str], width: int) -> list[Line]:
+def _build_text(head: str, texts: Sequence[str], width: int) -> list[Line]:
     """Return a text for an otherwise empty panel; in a narrow one, each key has a line of its own."""
     if max(map(len, texts)) > width:
         parts = [part for text in texts for part in re.split(" {3,}", text)]
@@ -169,11 +169,11 @@ def _text(head: str, texts: Sequence[str], width: int) -> list[Line]:
     return [*([[(head, _HEAD)]] if head else []), *([(text, _PALE)] for text in texts)]
 
 
-def _where(view: DebugView, paused: Paused, width: int) -> Line:
-    at = f"line {paused.line}" if paused.line else "no line"
+def _describe_place(view: DebugView, paused: Paused, width: int) -> Line:
+    words = f"line {paused.line}" if paused.line else "no line"
     if paused.file:
-        at += f" of {Path(paused.file).name}"
-    text = f"{at} · {paused.time_ns / 1e9:.2f} s"
+        words += f" of {Path(paused.file).name}"
+    text = f"{words} · {paused.time_ns / 1e9:.2f} s"
     tail = " …" if view.busy else " past" if view.past else ""
     # The time says as much as the tick, which is left out rather than cut in two.
     if len(whole := f"{text} · tick {paused.tick}") <= width - len(tail):
@@ -181,13 +181,13 @@ def _where(view: DebugView, paused: Paused, width: int) -> Line:
     return [(cut(text, width - len(tail)), _HEAD), (tail, _CHANGED)]
 
 
-def _title(frame: FrameState | None) -> str:
+def _describe_frame(frame: FrameState | None) -> str:
     if frame is None:
         return "Variables"
     return "Variables" if frame.function == "<module>" else f"Variables of {frame.function}"
 
 
-def _variables(title: str, variables: Sequence[Variable], width: int) -> list[Line]:
+def _list_variables(title: str, variables: Sequence[Variable], width: int) -> list[Line]:
     lines: list[Line] = [[(cut(title, width), _HEAD)]]
     if not variables:
         lines.append([("  none", _PALE)])
@@ -195,33 +195,38 @@ def _variables(title: str, variables: Sequence[Variable], width: int) -> list[Li
     for variable in sorted(variables, key=lambda one: one.name.isupper()):
         style = _CHANGED if variable.changed else _VALUE
         lines.append(
-            _pair(
+            _build_pair(
                 variable.name, variable.value, _NAME, style, width, "•" if variable.changed else " "
             )
         )
     return lines
 
 
-def _stack(inspected: Inspected, width: int) -> list[Line]:
+def _list_frames(inspected: Inspected, width: int) -> list[Line]:
     if len(inspected.stack) < 2:
         return []
     lines: list[Line] = [[("Calls", _HEAD)]]
-    for at, frame in enumerate(inspected.stack):
+    for depth, frame in enumerate(inspected.stack):
         where = f"{frame.line} of {Path(frame.file).name}" if frame.file else f"{frame.line}"
         module = "module" if frame.file else "program"
         name = module if frame.function == "<module>" else f"{frame.function}()"
-        style = _CHOSEN if at == inspected.frame else _PLAIN
+        style = _CHOSEN if depth == inspected.frame else _PLAIN
         lines.append(
-            [(cut(f"{'▸' if at == inspected.frame else ' '} {name} line {where}", width), style)]
+            [(cut(f"{'▸' if depth == inspected.frame else ' '} {name} line {where}", width), style)]
         )
     return lines
 
 
-def _pair(
+def _build_pair(
     name: str, value: str, name_style: Style, style: Style, width: int, mark: str = " "
 ) -> Line:
     column = min(_NAME_COLUMN, max(6, width // 2 - 2), max(6, len(name)))
-    shown = cut(name, column).ljust(column)
+    name_text = cut(name, column).ljust(column)
     room = width - column - 3
     text = short_value(" ".join(value.split("\n")))
-    return [(f"{mark} ", _CHANGED), (shown, name_style), (" ", _PLAIN), (cut(text, room), style)]
+    return [
+        (f"{mark} ", _CHANGED),
+        (name_text, name_style),
+        (" ", _PLAIN),
+        (cut(text, room), style),
+    ]

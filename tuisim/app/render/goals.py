@@ -76,11 +76,11 @@ class GoalsPicture:
     """Number of rows of the detail that do not fit."""
 
 
-def current_goal(states: tuple[GoalState, ...]) -> int:
+def find_current_goal(states: tuple[GoalState, ...]) -> int:
     """Return the index of the goal to show in detail unless the user chooses one: the first missed, else open, one."""
-    for wanted in (GoalState.MISSED, GoalState.OPEN):
-        if wanted in states:
-            return states.index(wanted)
+    for state in (GoalState.MISSED, GoalState.OPEN):
+        if state in states:
+            return states.index(state)
     return 0
 
 
@@ -100,25 +100,25 @@ def draw_goals(
         height: Rows.
     """
     if not view.goals:
-        return GoalsPicture(list(_wrapped(NO_GOALS, width, _PALE)))
+        return GoalsPicture(list(_wrap_text(NO_GOALS, width, _PALE)))
     reached = sum_points(
         goal.points
         for goal, state in zip(view.goals, states, strict=True)
         if state is GoalState.MET
     )
     total = f"{reached:g} of {compute_max_points(view.goals):g} points"
-    lines = list(_wrapped(view.title, width, _NAME)) if height >= _TITLED_ROWS else []
+    lines = list(_wrap_text(view.title, width, _NAME)) if height >= _TITLED_ROWS else []
     lines.append([(total, _HEAD)])
     listed = [
         (line, at)
         for at, (goal, state) in enumerate(zip(view.goals, states, strict=True))
-        for line in _header(goal, state, width)
+        for line in _build_header(goal, state, width)
     ]
     room = height - len(lines) - 1
-    most = max(1, room - max(_DETAIL_ROWS, room // 2))
+    max_rows = max(1, room - max(_DETAIL_ROWS, room // 2))
     # Where the list is cut, the rule below it tells the number of goals.
-    number = f" {chosen + 1} of {len(view.goals)} ─" if len(listed) > most else ""
-    listed = _around(listed, chosen, most)
+    number = f" {chosen + 1} of {len(view.goals)} ─" if len(listed) > max_rows else ""
+    listed = _select_rows(listed, chosen, max_rows)
     rows = (*(None for _ in lines), *(at for _, at in listed))
     lines += [line for line, _ in listed]
     name = cut(view.goals[chosen].name, width - 4 - len(number))
@@ -139,14 +139,16 @@ def draw_goals(
     )
 
 
-def _around(listed: list[tuple[Line, int]], chosen: int, most: int) -> list[tuple[Line, int]]:
+def _select_rows(
+    listed: list[tuple[Line, int]], chosen: int, max_rows: int
+) -> list[tuple[Line, int]]:
     """Return at most so many lines of a list, with those of the chosen goal."""
-    begins = next(row for row, (_, at) in enumerate(listed) if at == chosen)
-    first = max(0, min(begins - most // 2, len(listed) - most))
-    return listed[first : first + most]
+    begins = next(row for row, (_, index) in enumerate(listed) if index == chosen)
+    first = max(0, min(begins - max_rows // 2, len(listed) - max_rows))
+    return listed[first : first + max_rows]
 
 
-def _header(goal: Goal, state: GoalState, width: int) -> Iterator[Line]:
+def _build_header(goal: Goal, state: GoalState, width: int) -> Iterator[Line]:
     """Yield sign, word, name and points; a long name goes on in further lines."""
     # What takes points off is at its best if it is missed.
     good = (
@@ -172,25 +174,25 @@ def _detail(judgement: Judgement, state: GoalState, width: int) -> Iterator[Line
     line = f", line {judgement.line}" if judgement.line else ""
     match state:
         case GoalState.OPEN:
-            yield from _wrapped(goal.say, width, _PLAIN)
+            yield from _wrap_text(goal.say, width, _PLAIN)
         case GoalState.MET:
-            yield from _wrapped(f"met {_when(judgement)}{line}", width, _PALE)
-            yield from _wrapped(goal.say, width, _PLAIN)
+            yield from _wrap_text(f"met {_describe_moment(judgement)}{line}", width, _PALE)
+            yield from _wrap_text(goal.say, width, _PLAIN)
         case GoalState.UNKNOWN:
-            yield from _wrapped("It could not be judged.", width, _PALE)
-            yield from _wrapped(judgement.reason, width, _PLAIN)
+            yield from _wrap_text("It could not be judged.", width, _PALE)
+            yield from _wrap_text(judgement.reason, width, _PLAIN)
         case GoalState.MISSED if goal.points < 0:
-            yield from _wrapped(f"It did not happen: {goal.say or goal.name}", width, _PLAIN)
+            yield from _wrap_text(f"It did not happen: {goal.say or goal.name}", width, _PLAIN)
         case GoalState.MISSED:
-            yield from _wrapped(f"missed {_when(judgement)}{line}", width, _PALE)
-            yield from _wrapped(judgement.reason, width, _PLAIN)
-            yield from _wrapped(f"Hint: {goal.hint}" if goal.hint else "", width, _HINT)
-            yield from _wrapped(goal.say, width, _PALE)
+            yield from _wrap_text(f"missed {_describe_moment(judgement)}{line}", width, _PALE)
+            yield from _wrap_text(judgement.reason, width, _PLAIN)
+            yield from _wrap_text(f"Hint: {goal.hint}" if goal.hint else "", width, _HINT)
+            yield from _wrap_text(goal.say, width, _PALE)
         case _:
             assert_never(state)
 
 
-def _when(judgement: Judgement) -> str:
+def _describe_moment(judgement: Judgement) -> str:
     """Return when and where a goal was decided."""
     if all(part.KIND is ConditionKind.FIXED for part in judgement.goal.parts):
         return "by the program's text"
@@ -199,6 +201,6 @@ def _when(judgement: Judgement) -> str:
     return f"at {event.time_s:.2f} s, x {event.x_mm:.0f}, y {event.y_mm:.0f} mm"
 
 
-def _wrapped(text: str, width: int, style: Style) -> Iterator[Line]:
+def _wrap_text(text: str, width: int, style: Style) -> Iterator[Line]:
     for row in textwrap.wrap(text, max(1, width)):
         yield [(row, style)]

@@ -125,15 +125,17 @@ def draw_lesson(
         away: Where the keys go: in the editor and in a log, the app's keys work only after escape.
     """
     if view.lesson is None:
-        return LessonPicture(list(_wrapped(NO_LESSON, width, _PALE)))
+        return LessonPicture(list(_wrap_text(NO_LESSON, width, _PALE)))
     text = list(
-        _end(view, width, away) if page >= view.last_page else _page(view, page, width, away)
+        _end(view, width, away) if page >= view.last_page else _build_page(view, page, width, away)
     )
-    head = [_head(view, page, width)]
+    head = [_build_head(view, page, width)]
     room = max(0, height - len(head))
     if first < 0:
         titles = (
-            at for at, line in enumerate(text) if line and line[0][0].startswith(f"{page + 1}. ")
+            index
+            for index, line in enumerate(text)
+            if line and line[0][0].startswith(f"{page + 1}. ")
         )
         first = next(titles, 0)
     first = max(0, min(first, len(text) - room))
@@ -142,58 +144,58 @@ def draw_lesson(
     )
 
 
-def _head(view: LessonView, page: int, width: int) -> Line:
+def _build_head(view: LessonView, page: int, width: int) -> Line:
     """Return the title with a mark for each step; the step on the page is underlined."""
     assert view.lesson is not None
     marks: Line = []
-    for at, state in enumerate(view.states):
-        mark, style = ("●", _HINT) if at == view.at else _MARKS[state]
-        marks.append((mark, style + Style(underline=at == page)))
+    for index, state in enumerate(view.states):
+        mark, style = ("●", _HINT) if index == view.at else _MARKS[state]
+        marks.append((mark, style + Style(underline=index == page)))
     title = cut(view.lesson.title, max(1, width - len(marks) - 1))
     return [(title, _NAME), (" " * (width - len(title) - len(marks)), _PLAIN), *marks]
 
 
-def _page(view: LessonView, page: int, width: int, away: Away) -> Iterator[Line]:
+def _build_page(view: LessonView, page: int, width: int, away: Away) -> Iterator[Line]:
     """Yield a step: first what the last run has shown, then the text, the question, and the hints."""
     assert view.lesson is not None
     lesson, step = view.lesson, view.lesson.steps[page]
     is_current = page == view.at
     if is_current and view.done and not view.judgements:
-        yield from _done(view.done, view.story, width, away)
+        yield from _describe_done(view.done, view.story, width, away)
     if page == 0 and not (is_current and view.judgements):
         yield from render_markdown(lesson.intro, width)
         yield []
-    yield from _wrapped(f"{page + 1}. {step.title}", width, _NAME)
+    yield from _wrap_text(f"{page + 1}. {step.title}", width, _NAME)
     if is_current:
-        yield from _result(view, step, width, away)
+        yield from _build_result(view, step, width, away)
         if view.remark:
-            yield from _wrapped(view.remark, width, _BAD)
+            yield from _wrap_text(view.remark, width, _BAD)
             yield []
     yield from render_markdown(step.text, width)
     if isinstance(step.check, QuestionCheck):
         yield []
-        yield from _question(step.check, width)
+        yield from _build_question(step.check, width)
     if not is_current:
         state = view.states[page]
         yield []
         words = "Not yet: an earlier step is not done" if state is StepState.OPEN else f"{state}"
-        yield from _wrapped(
+        yield from _wrap_text(
             f"{words}: {step.why}" if state is StepState.DONE and step.why else words, width, _PALE
         )
-        yield from _wrapped("← → show the other steps.", width, _PALE)
+        yield from _wrap_text("← → show the other steps.", width, _PALE)
         return
     yield []
     for number, hint in enumerate(step.hints[: view.hints], start=1):
-        yield from _wrapped(f"Hint {number}: {hint}", width, _HINT)
-    yield from _wrapped(_to_do(view, step, away), width, _PALE)
+        yield from _wrap_text(f"Hint {number}: {hint}", width, _HINT)
+    yield from _wrap_text(_describe_task(view, step, away), width, _PALE)
     if view.hints < len(step.hints):
-        yield from _wrapped(
+        yield from _wrap_text(
             f"{_escape(away)}Y shows hint {view.hints + 1} of {len(step.hints)}.", width, _PALE
         )
     if page == 0 and not view.judgements and not view.hints:
         # Last: in a low terminal, the task stays in view.
         yield []
-        yield from _wrapped(f"On a real robot: {lesson.why}", width, _PALE)
+        yield from _wrap_text(f"On a real robot: {lesson.why}", width, _PALE)
 
 
 _RUN_KEYS = {
@@ -207,29 +209,29 @@ def _escape(away: Away) -> str:
     return "" if away is Away.NO else "escape, then "
 
 
-def _done(step: LessonStep, story: str, width: int, away: Away) -> Iterator[Line]:
+def _describe_done(step: LessonStep, story: str, width: int, away: Away) -> Iterator[Line]:
     """Yield that a step has just been done, by what, why that was right, and how to read it again."""
-    yield from _wrapped(f"✓ {step.title}", width, _GOOD)
-    yield from _wrapped(story, width, _PALE)
-    yield from _wrapped(step.why, width, _PLAIN)
-    yield from _wrapped(f"{_escape(away)}M shows earlier steps again.", width, _PALE)
+    yield from _wrap_text(f"✓ {step.title}", width, _GOOD)
+    yield from _wrap_text(story, width, _PALE)
+    yield from _wrap_text(step.why, width, _PLAIN)
+    yield from _wrap_text(f"{_escape(away)}M shows earlier steps again.", width, _PALE)
     yield []
 
 
-def _question(question: QuestionCheck, width: int) -> Iterator[Line]:
-    yield from _wrapped(question.ask, width, _NAME)
+def _build_question(question: QuestionCheck, width: int) -> Iterator[Line]:
+    yield from _wrap_text(question.ask, width, _NAME)
     for number, choice in enumerate(question.choices, start=1):
-        yield from _wrapped(f"{number}  {choice}", width, _PLAIN, "   ")
+        yield from _wrap_text(f"{number}  {choice}", width, _PLAIN, "   ")
 
 
-def _result(view: LessonView, step: LessonStep, width: int, away: Away) -> Iterator[Line]:
+def _build_result(view: LessonView, step: LessonStep, width: int, away: Away) -> Iterator[Line]:
     """Yield how the last run did on the goals of a step."""
     if not isinstance(step.check, RunCheck) or not view.judgements:
         return
     if view.elsewhere and not step.check.anywhere:
-        yield from _wrapped(view.elsewhere, width, _BAD)
+        yield from _wrap_text(view.elsewhere, width, _BAD)
     if view.error:
-        yield from _wrapped(f"The program stopped with an error: {view.error}.", width, _BAD)
+        yield from _wrap_text(f"The program stopped with an error: {view.error}.", width, _BAD)
     by_name = {each.goal.name: each for each in view.judgements}
     # What was missed comes first: in a low terminal, the reason is in view.
     for name in sorted(
@@ -239,18 +241,18 @@ def _result(view: LessonView, step: LessonStep, width: int, away: Away) -> Itera
         # After an error, what is missing says nothing: the error is what there is to mend.
         is_told = judgement.state is not GoalState.MISSED or not view.error
         mark, style = _GOAL_MARKS[judgement.state if is_told else GoalState.OPEN]
-        for at, row in enumerate(textwrap.wrap(judgement.goal.say or name, max(1, width - 2))):
-            yield [(mark if not at else "  ", style), (row, _PLAIN)]
+        for index, row in enumerate(textwrap.wrap(judgement.goal.say or name, max(1, width - 2))):
+            yield [(mark if not index else "  ", style), (row, _PLAIN)]
         if judgement.state is GoalState.MISSED and is_told:
-            yield from _wrapped(judgement.reason, width, _BAD, "  ", "  ")
+            yield from _wrap_text(judgement.reason, width, _BAD, "  ", "  ")
             if judgement.goal.hint:
-                yield from _wrapped(judgement.goal.hint, width, _HINT, "  ", "  ")
+                yield from _wrap_text(judgement.goal.hint, width, _HINT, "  ", "  ")
     if view.error or any(by_name[name].state is GoalState.MISSED for name in step.check.goals):
-        yield from _wrapped(f"{_escape(away)}! goes to where it went wrong.", width, _PALE)
+        yield from _wrap_text(f"{_escape(away)}! goes to where it went wrong.", width, _PALE)
     yield []
 
 
-def _to_do(view: LessonView, step: LessonStep, away: Away) -> str:
+def _describe_task(view: LessonView, step: LessonStep, away: Away) -> str:
     """Return what the step waits for, or the keys that do it."""
     match step.check:
         case RunCheck(times=times, seeds=seeds):
@@ -283,13 +285,13 @@ def _end(view: LessonView, width: int, away: Away) -> Iterator[Line]:
     skipped = sum(state is StepState.SKIPPED for state in view.states)
     still_open = sum(state is StepState.OPEN for state in view.states)
     if still_open:
-        yield from _wrapped(
+        yield from _wrap_text(
             "The end of the lesson: a model answer appears here when every step is done.",
             width,
             _PALE,
         )
         return
-    yield from _wrapped(
+    yield from _wrap_text(
         "✓ The lesson is done." if not skipped else "The end of the lesson.", width, _GOOD
     )
     following = (
@@ -298,23 +300,23 @@ def _end(view: LessonView, width: int, away: Away) -> Iterator[Line]:
         else "This was the last lesson."
     )
     # Early: in a low terminal, the way on is in view.
-    yield from _wrapped(following, width, _HINT)
+    yield from _wrap_text(following, width, _HINT)
     yield []
     if view.done:
-        yield from _done(view.done, view.story, width, away)
-    yield from _wrapped(f"On a real robot: {view.lesson.why}", width, _PLAIN)
+        yield from _describe_done(view.done, view.story, width, away)
+    yield from _wrap_text(f"On a real robot: {view.lesson.why}", width, _PLAIN)
     yield []
     if skipped:
-        yield from _wrapped(
+        yield from _wrap_text(
             "Steps were skipped: the model answer appears when every step is done.", width, _PALE
         )
     elif view.lesson.model_answer:
-        yield from _wrapped("A model answer:", width, _NAME)
+        yield from _wrap_text("A model answer:", width, _NAME)
         for row in split_rows(view.lesson.model_answer, width):
             yield [(cut(row, width), _CODE)]
 
 
-def _wrapped(
+def _wrap_text(
     text: str, width: int, style: Style, indent: str = "", first: str = ""
 ) -> Iterator[Line]:
     for row in textwrap.wrap(text, max(10, width), initial_indent=first, subsequent_indent=indent):

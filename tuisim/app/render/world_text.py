@@ -57,7 +57,7 @@ def draw_world_text(
     return draw_mono_rows(painter.paint(view, scene), dots)
 
 
-def legend(now: Snapshot, width: int) -> str:
+def build_legend(now: Snapshot, width: int) -> str:
     """Return what the robots are that are drawn beside the one in view, in words that fit."""
     drawn = (
         now.now_pose is not None and not describe_off_field(now.now_pose),

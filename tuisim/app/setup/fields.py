@@ -14,11 +14,11 @@ from typing import Any
 
 from tuisim.app.setup.next_run import (
     NextRun,
-    with_arguments,
-    with_profile,
-    with_robot,
-    with_robot_edited,
-    with_values,
+    change_arguments,
+    change_profile,
+    change_robot,
+    change_values,
+    edit_robot,
 )
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ConfigError, RobotError
@@ -66,31 +66,33 @@ class FieldGroup:
     edits: tuple[FormField, ...]
 
 
-def sections(plan: NextRun) -> list[FieldGroup]:
+def build_sections(plan: NextRun) -> list[FieldGroup]:
     """Return every field of a plan; the fields depend on the sensors of its robot."""
     sensors = {
         sensor.name: sensor
         for sensor in (*plan.robot.spec.color_sensors, *plan.robot_choice.spec.color_sensors)
     }
     return [
-        FieldGroup("Program", (FormField("arguments", "Arguments", _arguments, _with_arguments),)),
-        FieldGroup("Robot", _body_fields()),
+        FieldGroup(
+            "Program", (FormField("arguments", "Arguments", _format_arguments, _change_arguments),)
+        ),
+        FieldGroup("Robot", _build_body_fields()),
         *(
-            FieldGroup(f"Sensor {name}", _color_sensor_fields(name, sensor, plan))
+            FieldGroup(f"Sensor {name}", _build_color_sensor_fields(name, sensor, plan))
             for name, sensor in sensors.items()
         ),
-        FieldGroup("Ultrasonic", _single_fields(plan, "ultrasonic", UltrasonicSpec)),
-        FieldGroup("Gyro", _single_fields(plan, "gyro", GyroSpec)),
+        FieldGroup("Ultrasonic", _build_single_fields(plan, "ultrasonic", UltrasonicSpec)),
+        FieldGroup("Gyro", _build_single_fields(plan, "gyro", GyroSpec)),
         *(
-            FieldGroup(part.name.capitalize(), _sensor_fields(part))
+            FieldGroup(part.name.capitalize(), _build_sensor_fields(part))
             for part in plan.robot_choice.spec.further_sensors
         ),
-        FieldGroup("Pen", _pen_fields()),
-        FieldGroup("World", _world_fields()),
+        FieldGroup("Pen", _build_pen_fields()),
+        FieldGroup("World", _build_world_fields()),
     ]
 
 
-def _parsed(value: Value, text: str) -> Any:
+def _parse_value(value: Value, text: str) -> Any:
     """Return what was typed or chosen as a value; a comma may stand for the point of a number."""
     one_number = isinstance(value, Number) and not isinstance(value, Numbers)
     try:
@@ -102,7 +104,7 @@ def _parsed(value: Value, text: str) -> Any:
 # The robot. The fields show the robot on its mat, and edit the robot as it was chosen.
 
 
-def _robot_field(
+def _build_robot_field(
     edit_id: str,
     label: str,
     read: Callable[[RobotSpec], str],
@@ -110,12 +112,12 @@ def _robot_field(
     choices: tuple[str, ...] = (),
 ) -> FormField:
     def write(plan: NextRun, text: str) -> NextRun:
-        return with_robot_edited(plan, change(plan.robot_choice.spec, text))
+        return edit_robot(plan, change(plan.robot_choice.spec, text))
 
     return FormField(edit_id, label, lambda plan: read(plan.spec.robot), write, choices)
 
 
-def _value_field(edit_id: str, value: Value, path: Callable[[RobotSpec], str]) -> FormField:
+def _build_value_field(edit_id: str, value: Value, path: Callable[[RobotSpec], str]) -> FormField:
     """Return the field of a value of the robot.
 
     Args:
@@ -124,16 +126,16 @@ def _value_field(edit_id: str, value: Value, path: Callable[[RobotSpec], str]) -
 
     def change(robot: RobotSpec, text: str) -> RobotSpec:
         is_none = value.optional and not text.strip()
-        return tree.put(robot, path(robot), None if is_none else _parsed(value, text))
+        return tree.put(robot, path(robot), None if is_none else _parse_value(value, text))
 
     def read(robot: RobotSpec) -> str:
         known = tree.get_value(robot, path(robot))
         return "" if known is None else value.format_text(known)
 
-    return _robot_field(edit_id, value.label, read, change, value.choices)
+    return _build_robot_field(edit_id, value.label, read, change, value.choices)
 
 
-def _motor_port_field(key: str, value: Value) -> FormField:
+def _build_motor_port_field(key: str, value: Value) -> FormField:
     """Return the field for the port of a wheel's motor; a motor that already uses the port gets the freed one."""
     other = "right_port" if key == "left_port" else "left_port"
 
@@ -143,37 +145,37 @@ def _motor_port_field(key: str, value: Value) -> FormField:
         swapped = getattr(robot, key) if getattr(robot, other) == port else getattr(robot, other)
         return replace(robot, **{key: port, other: swapped})
 
-    return _robot_field(
+    return _build_robot_field(
         key, value.label, lambda robot: str(getattr(robot, key)), change, OUTPUT_PORTS
     )
 
 
-def _robot_word(plan: NextRun) -> str:
+def _describe_robot(plan: NextRun) -> str:
     word = Path(plan.words.get("robot", plan.robot.spec.name)).name
     return f"{word}, edited" if plan.robot_is_edited else word
 
 
-def _body_fields() -> tuple[FormField, ...]:
-    def field_of(key: str, value: Value) -> FormField:
+def _build_body_fields() -> tuple[FormField, ...]:
+    def build_field(key: str, value: Value) -> FormField:
         if key.endswith("_port"):
-            return _motor_port_field(key, value)
-        return _value_field(key, value, lambda _: key)
+            return _build_motor_port_field(key, value)
+        return _build_value_field(key, value, lambda _: key)
 
-    shown = {key: value for key, value in list_values(RobotSpec).items() if value.label}
+    labelled = {key: value for key, value in list_values(RobotSpec).items() if value.label}
     return (
-        FormField("preset", "", _robot_word, with_robot, tuple(ROBOTS)),
-        *(field_of(key, value) for key, value in shown.items()),
+        FormField("preset", "", _describe_robot, change_robot, tuple(ROBOTS)),
+        *(build_field(key, value) for key, value in labelled.items()),
     )
 
 
 # Sensors
 
 
-def _sensors(robot: RobotSpec) -> dict[str, SensorSpec]:
+def _collect_sensors(robot: RobotSpec) -> dict[str, SensorSpec]:
     return {sensor.name: sensor for sensor in robot.sensors}
 
 
-def _path_of(robot: RobotSpec, name: str, key: str) -> str:
+def _find_path(robot: RobotSpec, name: str, key: str) -> str:
     """Return the path of a value of a sensor."""
     for mount in MOUNTS:
         for sensor in robot.list_sensors(mount):
@@ -182,86 +184,90 @@ def _path_of(robot: RobotSpec, name: str, key: str) -> str:
     raise LookupError(name)
 
 
-def _with_sensors(robot: RobotSpec, *parts: SensorSpec) -> RobotSpec:
+def _replace_sensors(robot: RobotSpec, *parts: SensorSpec) -> RobotSpec:
     """Return the robot with some sensors replaced, all at once because two may have swapped ports."""
     changed = {part.name: part for part in parts}
-    found: dict[str, Any] = {}
+    by_field: dict[str, Any] = {}
     for mount in MOUNTS:
         sensors = tuple(changed.get(part.name, part) for part in robot.list_sensors(mount))
-        found[mount.field] = sensors if mount.many else next(iter(sensors), None)
-    return replace(robot, **found)
+        by_field[mount.field] = sensors if mount.many else next(iter(sensors), None)
+    return replace(robot, **by_field)
 
 
-def _sensor_fields(part: SensorSpec) -> tuple[FormField, ...]:
+def _build_sensor_fields(part: SensorSpec) -> tuple[FormField, ...]:
     """Return the fields of a sensor that is mounted."""
 
-    def field_of(key: str, value: Value) -> FormField:
+    def build_field(key: str, value: Value) -> FormField:
         if key == "port":
-            return _sensor_port_field(part.name)
-        return _value_field(
-            f"{part.name}.{key}", value, lambda robot: _path_of(robot, part.name, key)
+            return _build_sensor_port_field(part.name)
+        return _build_value_field(
+            f"{part.name}.{key}", value, lambda robot: _find_path(robot, part.name, key)
         )
 
     return tuple(
-        field_of(key, value) for key, value in list_values(type(part)).items() if value.label
+        build_field(key, value) for key, value in list_values(type(part)).items() if value.label
     )
 
 
-def _sensor_port_field(name: str) -> FormField:
+def _build_sensor_port_field(name: str) -> FormField:
     """Return the field for a sensor's port; a sensor that already uses the port gets the freed one."""
 
     def change(robot: RobotSpec, port: str) -> RobotSpec:
-        parts = _sensors(robot)
+        parts = _collect_sensors(robot)
         swapped = [
             replace(part, port=parts[name].port) for part in parts.values() if part.port == port
         ]
-        return _with_sensors(robot, *swapped, replace(parts[name], port=port))
+        return _replace_sensors(robot, *swapped, replace(parts[name], port=port))
 
-    return _robot_field(
-        f"{name}.port", "Port", lambda robot: _sensors(robot)[name].port, change, INPUT_PORTS
+    return _build_robot_field(
+        f"{name}.port",
+        "Port",
+        lambda robot: _collect_sensors(robot)[name].port,
+        change,
+        INPUT_PORTS,
     )
 
 
-def _presence_field(name: str, change: Callable[[RobotSpec, str], RobotSpec]) -> FormField:
-    return _robot_field(
+def _build_presence_field(name: str, change: Callable[[RobotSpec, str], RobotSpec]) -> FormField:
+    return _build_robot_field(
         f"{name}.used",
         "Used",
-        lambda robot: ON if name in _sensors(robot) else OFF,
+        lambda robot: ON if name in _collect_sensors(robot) else OFF,
         change,
         SWITCHED,
     )
 
 
-def _free_port(robot: RobotSpec, wanted: str) -> str:
-    used = {part.port for part in _sensors(robot).values()}
-    free = [port for port in (wanted, *INPUT_PORTS) if port not in used]
+def _find_free_port(robot: RobotSpec, preferred: str) -> str:
+    used = {part.port for part in _collect_sensors(robot).values()}
+    free = [port for port in (preferred, *INPUT_PORTS) if port not in used]
     if not free:
         raise RobotError("every port is in use", "switch another sensor off first")
     return free[0]
 
 
-def _placed(plan: NextRun, text: str, name: str) -> NextRun:
+def _move_sensor(plan: NextRun, text: str, name: str) -> NextRun:
     """Change a colour sensor's x; the other sensors stay where the mat has put them."""
     on_mat = {sensor.name: sensor for sensor in plan.spec.robot.color_sensors}
     robot = plan.robot_choice.spec
-    x_mm = _parsed(list_values(ColorSensorSpec)["x_mm"], text)
+    x_mm = _parse_value(list_values(ColorSensorSpec)["x_mm"], text)
     sensors = [
         replace(sensor, x_mm=x_mm if sensor.name == name else on_mat[sensor.name].x_mm)
         for sensor in robot.color_sensors
     ]
-    return with_robot_edited(plan, replace(robot, color_sensors=tuple(sensors)), moved=True)
+    return edit_robot(plan, replace(robot, color_sensors=tuple(sensors)), moved=True)
 
 
-def _color_sensor_fields(
+def _build_color_sensor_fields(
     name: str, sensor: ColorSensorSpec, plan: NextRun
 ) -> tuple[FormField, ...]:
-    def switched(robot: RobotSpec, word: str) -> RobotSpec:
+    def switch_sensor(robot: RobotSpec, word: str) -> RobotSpec:
         others = tuple(other for other in robot.color_sensors if other.name != name)
         if word == OFF:
             return replace(robot, color_sensors=others)
         if len(others) < len(robot.color_sensors):
             return robot
-        again = replace(sensor, port=_free_port(robot, sensor.port))
+        again = replace(sensor, port=_find_free_port(robot, sensor.port))
         order = [other.name for other in plan.robot.spec.color_sensors]
         sensors = sorted(
             (*others, again),
@@ -269,33 +275,37 @@ def _color_sensor_fields(
         )
         return replace(robot, color_sensors=tuple(sensors))
 
-    used = _presence_field(name, switched)
-    if name not in _sensors(plan.robot_choice.spec):
+    used = _build_presence_field(name, switch_sensor)
+    if name not in _collect_sensors(plan.robot_choice.spec):
         return (used,)
-    fields = _sensor_fields(sensor)
+    fields = _build_sensor_fields(sensor)
     return (
         used,
         *(
-            replace(one, write=partial(_placed, name=name)) if one.id == f"{name}.x_mm" else one
+            replace(one, write=partial(_move_sensor, name=name))
+            if one.id == f"{name}.x_mm"
+            else one
             for one in fields
         ),
     )
 
 
-def _single_fields(plan: NextRun, field: str, kind: type[SensorSpec]) -> tuple[FormField, ...]:
+def _build_single_fields(
+    plan: NextRun, field: str, kind: type[SensorSpec]
+) -> tuple[FormField, ...]:
     """Return the fields of the ultrasonic sensor or the gyro, the first of which adds or removes it."""
     mounted: SensorSpec | None = getattr(plan.robot_choice.spec, field)
     fresh: SensorSpec = mounted or getattr(plan.robot.spec, field) or kind()
 
-    def switched(robot: RobotSpec, word: str) -> RobotSpec:
+    def switch_sensor(robot: RobotSpec, word: str) -> RobotSpec:
         if word == OFF:
             return tree.put(robot, field, None)
         if getattr(robot, field) is not None:
             return robot
-        return tree.put(robot, field, replace(fresh, port=_free_port(robot, fresh.port)))
+        return tree.put(robot, field, replace(fresh, port=_find_free_port(robot, fresh.port)))
 
-    used = _presence_field(fresh.name, switched)
-    return (used,) if mounted is None else (used, *_sensor_fields(mounted))
+    used = _build_presence_field(fresh.name, switch_sensor)
+    return (used,) if mounted is None else (used, *_build_sensor_fields(mounted))
 
 
 # Pen and world
@@ -308,41 +318,45 @@ def _run_field(path: str) -> FormField:
         path,
         value.label or path.replace("_", " ")[:MAX_LABEL],
         lambda plan: value.format_text(tree.get_value(plan.spec, spec_path)),
-        lambda plan, text: with_values(plan, {path: _parsed(value, text)}),
+        lambda plan, text: change_values(plan, {path: _parse_value(value, text)}),
         value.choices,
     )
 
 
-def _pen_fields() -> tuple[FormField, ...]:
-    def field_of(key: str, value: Value) -> FormField:
+def _build_pen_fields() -> tuple[FormField, ...]:
+    def build_field(key: str, value: Value) -> FormField:
         path = f"pen.{key}"
-        return _run_field(path) if path in RUN_VALUES else _value_field(path, value, lambda _: path)
+        return (
+            _run_field(path)
+            if path in RUN_VALUES
+            else _build_value_field(path, value, lambda _: path)
+        )
 
-    return tuple(field_of(key, value) for key, value in list_values(PenSpec).items())
+    return tuple(build_field(key, value) for key, value in list_values(PenSpec).items())
 
 
-def _world_fields() -> tuple[FormField, ...]:
+def _build_world_fields() -> tuple[FormField, ...]:
     def profile(plan: NextRun) -> str:
         return Path(plan.words.get("profile", plan.spec.profile.name)).name
 
     # Pose, noise and seed have panels of their own.
-    shown = [
+    fields = [
         path
         for path, one in RUN_VALUES.items()
         if one.spec_path == f"world.{path}" and "." not in path
     ]
-    return FormField("profile", "Profile", profile, with_profile, tuple(PROFILES)), *map(
-        _run_field, shown
+    return FormField("profile", "Profile", profile, change_profile, tuple(PROFILES)), *map(
+        _run_field, fields
     )
 
 
-def _arguments(plan: NextRun) -> str:
+def _format_arguments(plan: NextRun) -> str:
     return shlex.join(plan.settings["arguments"])
 
 
-def _with_arguments(plan: NextRun, text: str) -> NextRun:
+def _change_arguments(plan: NextRun, text: str) -> NextRun:
     try:
-        return with_arguments(plan, tuple(shlex.split(text)))
+        return change_arguments(plan, tuple(shlex.split(text)))
     except ValueError:
         raise ConfigError(
             "a quote is not closed", "put an argument with spaces in '…' or \"…\""
@@ -352,7 +366,8 @@ def _with_arguments(plan: NextRun, text: str) -> NextRun:
 def find(plan: NextRun, edit_id: str) -> FormField | None:
     """Return a field by its id, None if this robot has no such field."""
     return next(
-        (edit for section in sections(plan) for edit in section.edits if edit.id == edit_id), None
+        (edit for section in build_sections(plan) for edit in section.edits if edit.id == edit_id),
+        None,
     )
 
 

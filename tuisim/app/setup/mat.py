@@ -56,22 +56,22 @@ def prepare_mat(spec: RunSpec) -> Mat:
     """
     image = mats.background(spec.world.background).image
     key = mat_key(spec)
-    return _opened(key, mat_cache.prepare(image, key[2], fit=key[1]))
+    return _open_mat(key, mat_cache.prepare(image, key[2], fit=key[1]))
 
 
-def prepare_mat_of(run: StoredRun) -> Mat:
+def prepare_stored_mat(run: StoredRun) -> Mat:
     """Return the exact mat of a stored run; blocks as `prepare_mat` does.
 
     Raises:
         LogError: it is no longer available.
     """
-    return _opened(mat_key(run.spec), mat_files(run))
+    return _open_mat(mat_key(run.spec), mat_files(run))
 
 
-def blank_mat(spec: RunSpec) -> Mat:
+def make_blank_mat(spec: RunSpec) -> Mat:
     """Return a white sheet in place of a missing mat; sensors have nothing to read on it."""
     return Mat(mat_key(spec), None, np.full((FIELD_HEIGHT_MM, FIELD_WIDTH_MM, 3), 255, np.uint8))
 
 
-def _opened(key: MatKey, files: FieldFiles) -> Mat:
+def _open_mat(key: MatKey, files: FieldFiles) -> Mat:
     return Mat(key, mat_cache.open_field(files, has_floor=key[3]), mat_cache.mat_pixels(files))

@@ -99,7 +99,7 @@ class NextRun:
         return choice
 
 
-def plan_of(settings: Settings, free: Iterable[str] = ()) -> NextRun:
+def build_plan(settings: Settings, free: Iterable[str] = ()) -> NextRun:
     """Return the plan for settings.
 
     Args:
@@ -109,13 +109,13 @@ def plan_of(settings: Settings, free: Iterable[str] = ()) -> NextRun:
     Raises:
         ConfigError: they name something that does not exist, or an invalid file.
     """
-    world, words = _resolved({path: settings[path] for path in WORLD_PATHS})
+    world, words = _resolve_choices({path: settings[path] for path in WORLD_PATHS})
     settings = settings.changed(world)
     following = {path: settings[path] for path in free}
     return NextRun(settings, build_run_spec(settings), words, world["robot"], following)
 
 
-def first_plan(
+def build_first_plan(
     spec: RunSpec, settings: Settings | None, decided: Decided, program: Program | None
 ) -> NextRun:
     """Return the plan with which the app begins.
@@ -127,26 +127,26 @@ def first_plan(
         program: Its program.
     """
     if settings is None:
-        return plan_of_run(spec, program)
-    plan = plan_of(settings, decided.free)
+        return plan_rerun(spec, program)
+    plan = build_plan(settings, decided.free)
     return replace(plan, program_robot=decided.robot, shown_ports=decided.shown_ports)
 
 
-def plan_of_spec(spec: RunSpec) -> NextRun:
+def plan_spec(spec: RunSpec) -> NextRun:
     """Return the plan of a run of which nothing else is known."""
-    return replace(plan_of(merge_settings(extract_settings(spec))), spec=spec)
+    return replace(build_plan(merge_settings(extract_settings(spec))), spec=spec)
 
 
-def plan_of_run(spec: RunSpec, program: Program | None = None) -> NextRun:
+def plan_rerun(spec: RunSpec, program: Program | None = None) -> NextRun:
     """Return the plan for repeating a run with the arguments of its program, and the presses of its first line.
 
     The mat may be missing: it has to be found before the start.
     """
     try:
-        plan = plan_of_spec(spec)
+        plan = plan_spec(spec)
     except BackgroundError:
         elsewhere = replace(spec, world=replace(spec.world, background=EMPTY_MAT))
-        plan = replace(plan_of_spec(elsewhere), spec=spec)
+        plan = replace(plan_spec(elsewhere), spec=spec)
     arguments = program.arguments if program else ()
     presses = read_first_line(program).get("press", ())
     return replace(plan, settings=plan.settings.changed({"arguments": arguments, "press": presses}))
@@ -163,20 +163,20 @@ def read_first_line(program: Program | None) -> Mapping[str, Any]:
         return {}
 
 
-def _resolved(choices: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, str]]:
+def _resolve_choices(choices: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, str]]:
     """Return robot, obstacles and profile as objects, and the words that named them."""
-    found, words = dict(choices), {}
+    resolved, words = dict(choices), {}
     for key, load in (
         ("robot", choose_robot),
         ("obstacles", load_obstacles),
         ("profile", load_profile),
     ):
-        if isinstance(word := found.get(key), str):
-            found[key], words[key] = load(word), word
-    return found, words
+        if isinstance(word := resolved.get(key), str):
+            resolved[key], words[key] = load(word), word
+    return resolved, words
 
 
-def with_values(plan: NextRun, values: Mapping[str, Any]) -> NextRun:
+def change_values(plan: NextRun, values: Mapping[str, Any]) -> NextRun:
     """Return the plan with changed settings, by path, that need no file.
 
     Raises:
@@ -186,7 +186,7 @@ def with_values(plan: NextRun, values: Mapping[str, Any]) -> NextRun:
     return replace(plan, settings=settings, spec=build_run_spec(settings))
 
 
-def with_choices(plan: NextRun, choices: Mapping[str, Any]) -> NextRun:
+def apply_choices(plan: NextRun, choices: Mapping[str, Any]) -> NextRun:
     """Return the plan with the choices of a magic line or a world file applied; the rest stays.
 
     Args:
@@ -196,27 +196,34 @@ def with_choices(plan: NextRun, choices: Mapping[str, Any]) -> NextRun:
     Raises:
         ConfigError: they name something that does not exist, or an invalid file.
     """
-    said, words = _resolved({path: value for path, value in choices.items() if path in WORLD_PATHS})
+    world_choices, words = _resolve_choices(
+        {path: value for path, value in choices.items() if path in WORLD_PATHS}
+    )
     ground = {
         key: value
         for key, value in plan.from_program.items()
         if key in GROUND_PATHS and plan.settings[key] in (None, value)
     }
-    if "background" in said:
-        said = {**dict.fromkeys(RESET_BY_MAT), **ground, **said}
-    elif "profile" in said and ground:
-        said |= ground if has_brick_rules(said["profile"]) else dict.fromkeys(ground)
-    elif said.keys() & set(START):
-        said = {**dict.fromkeys(START), **said}
-    kept = {path: word for path, word in plan.words.items() if path not in said}
+    if "background" in world_choices:
+        world_choices = {**dict.fromkeys(RESET_BY_MAT), **ground, **world_choices}
+    elif "profile" in world_choices and ground:
+        world_choices |= (
+            ground if has_brick_rules(world_choices["profile"]) else dict.fromkeys(ground)
+        )
+    elif world_choices.keys() & set(START):
+        world_choices = {**dict.fromkeys(START), **world_choices}
+    words_kept = {path: word for path, word in plan.words.items() if path not in world_choices}
     following = {key: value for key, value in plan.from_program.items() if key not in choices}
-    built = with_values(plan, said)
+    built = change_values(plan, world_choices)
     return replace(
-        built, words=kept | words, robot=said.get("robot", plan.robot), from_program=following
+        built,
+        words=words_kept | words,
+        robot=world_choices.get("robot", plan.robot),
+        from_program=following,
     )
 
 
-def following(plan: NextRun, source: ProgramSource) -> tuple[NextRun, Decided]:
+def follow_program(plan: NextRun, source: ProgramSource) -> tuple[NextRun, Decided]:
     """Return the plan with what the source of a program decides, where nobody has chosen; and that, if it is new.
 
     Raises:
@@ -227,71 +234,73 @@ def following(plan: NextRun, source: ProgramSource) -> tuple[NextRun, Decided]:
         source, settings.changed({key: usual[key] for key in free}), free, insists=False
     )
     free |= decided.layer.keys() & {"profile"}
-    layer, words = _resolved({key: decided.layer.get(key, usual[key]) for key in free})
+    layer, words = _resolve_choices({key: decided.layer.get(key, usual[key]) for key in free})
     changed = {key: value for key, value in layer.items() if settings[key] != value}
-    kept = {key: word for key, word in plan.words.items() if key not in changed}
+    words_kept = {key: word for key, word in plan.words.items() if key not in changed}
     named = {key: word for key, word in words.items() if key in changed}
-    found = replace(
-        with_values(plan, changed) if changed else plan, words=kept | named, from_program=layer
+    new_plan = replace(
+        change_values(plan, changed) if changed else plan,
+        words=words_kept | named,
+        from_program=layer,
     )
-    found = replace(
-        found,
+    new_plan = replace(
+        new_plan,
         robot=changed.get("robot", plan.robot),
         program_robot=decided.robot,
         shown_ports=decided.shown_ports,
     )
-    return found, decided if changed.keys() & {"robot", "profile"} else Decided()
+    return new_plan, decided if changed.keys() & {"robot", "profile"} else Decided()
 
 
-def with_free(plan: NextRun, keys: Iterable[str]) -> NextRun:
+def free_settings(plan: NextRun, keys: Iterable[str]) -> NextRun:
     """Return the plan with settings that nobody chooses any more, so that they follow the program where they can."""
     free = {key: plan.settings[key] for key in keys if key in PROGRAM_PATHS}
     return replace(plan, from_program={**plan.from_program, **free})
 
 
-def with_program_robot(plan: NextRun) -> NextRun:
+def follow_program_robot(plan: NextRun) -> NextRun:
     """Return the plan with the robot that the program needs, which follows the program from now on."""
     chosen = plan.program_robot or choose_robot(DEFAULT_ROBOT)
     words = {key: word for key, word in plan.words.items() if key != "robot"}
     following = {**plan.from_program, "robot": chosen}
     return replace(
-        with_values(plan, {"robot": chosen}), words=words, robot=chosen, from_program=following
+        change_values(plan, {"robot": chosen}), words=words, robot=chosen, from_program=following
     )
 
 
-def with_mat(plan: NextRun, name: str) -> NextRun:
+def change_mat(plan: NextRun, name: str) -> NextRun:
     """Return the plan on another mat, with that mat's start pose, obstacles and sensor positions.
 
     Raises:
         BackgroundError: there is no such mat.
     """
-    return with_choices(plan, {"background": name})
+    return apply_choices(plan, {"background": name})
 
 
-def with_robot(plan: NextRun, word: str) -> NextRun:
+def change_robot(plan: NextRun, word: str) -> NextRun:
     """Return the plan with another robot, by name or from a file.
 
     Raises:
         RobotError: there is no robot of that name, or the file is invalid.
     """
-    return with_choices(plan, {"robot": word})
+    return apply_choices(plan, {"robot": word})
 
 
-def with_profile(plan: NextRun, word: str) -> NextRun:
+def change_profile(plan: NextRun, word: str) -> NextRun:
     """Return the plan with another profile, by name or from a file.
 
     Raises:
         ProfileError: there is no profile of that name, or the file is invalid.
     """
-    return with_choices(plan, {**dict.fromkeys(RESET_BY_PROFILE), "profile": word})
+    return apply_choices(plan, {**dict.fromkeys(RESET_BY_PROFILE), "profile": word})
 
 
-def with_robot_as_chosen(plan: NextRun) -> NextRun:
+def undo_robot_edits(plan: NextRun) -> NextRun:
     """Return the plan with every edit of the robot undone."""
-    return with_values(plan, {"robot": plan.robot})
+    return change_values(plan, {"robot": plan.robot})
 
 
-def with_robot_edited(plan: NextRun, robot: RobotSpec, moved: bool = False) -> NextRun:
+def edit_robot(plan: NextRun, robot: RobotSpec, moved: bool = False) -> NextRun:
     """Return the plan with an edited robot.
 
     Args:
@@ -303,26 +312,26 @@ def with_robot_edited(plan: NextRun, robot: RobotSpec, moved: bool = False) -> N
         ConfigError: the mat is missing.
     """
     choice = plan.robot_choice
-    return with_values(
+    return change_values(
         plan, {"robot": replace(choice, spec=robot, own_places=choice.own_places or moved)}
     )
 
 
-def robot_to_save(plan: NextRun) -> RobotSpec:
+def build_saved_robot(plan: NextRun) -> RobotSpec:
     """Return the robot as chosen and edited, not as modified by the mat, with the pen of the plan."""
     return replace(plan.robot_choice.spec, pen=plan.spec.robot.pen)
 
 
-def with_obstacle_set(plan: NextRun, word: str) -> NextRun:
+def change_obstacle_set(plan: NextRun, word: str) -> NextRun:
     """Return the plan with a set of obstacles, by name or from a file.
 
     Raises:
         ObstacleError: there is no set of that name, or the file is invalid.
     """
-    return with_choices(plan, {"obstacles": word})
+    return apply_choices(plan, {"obstacles": word})
 
 
-def with_obstacles(plan: NextRun, obstacles: tuple[Obstacle, ...]) -> NextRun:
+def change_obstacles(plan: NextRun, obstacles: tuple[Obstacle, ...]) -> NextRun:
     """Return the plan with these obstacles."""
     settings = plan.settings.changed({"obstacles": obstacles})
     words = {path: word for path, word in plan.words.items() if path != "obstacles"}
@@ -335,18 +344,18 @@ def with_obstacles(plan: NextRun, obstacles: tuple[Obstacle, ...]) -> NextRun:
 
 def _put(plan: NextRun, values: Mapping[str, Any]) -> NextRun:
     """Return the plan with values of the run that move nothing else, by path."""
-    found = {RUN_VALUES[path].spec_path: value for path, value in values.items()}
+    spec_values = {RUN_VALUES[path].spec_path: value for path, value in values.items()}
     return replace(
-        plan, settings=plan.settings.changed(values), spec=tree.put_all(plan.spec, found)
+        plan, settings=plan.settings.changed(values), spec=tree.put_all(plan.spec, spec_values)
     )
 
 
-def at_pose(plan: NextRun, pose: Pose) -> NextRun:
+def move_start(plan: NextRun, pose: Pose) -> NextRun:
     """Return the plan with another start pose."""
     return _put(plan, {path: tree.get_value(pose, path.removeprefix("start.")) for path in START})
 
 
-def with_noise(plan: NextRun, noise: NoiseSpec) -> NextRun:
+def change_noise(plan: NextRun, noise: NoiseSpec) -> NextRun:
     """Return the plan with other noise."""
     # A robot file may set the noise of its motors and sensors: it applies until the user sets the noise.
     before = plan.spec.world.noise
@@ -361,16 +370,16 @@ def with_noise(plan: NextRun, noise: NoiseSpec) -> NextRun:
     )
 
 
-def with_arguments(plan: NextRun, arguments: tuple[str, ...]) -> NextRun:
+def change_arguments(plan: NextRun, arguments: tuple[str, ...]) -> NextRun:
     """Return the plan with other arguments of the program."""
     return replace(plan, settings=plan.settings.changed({"arguments": arguments}))
 
 
-def with_seed(plan: NextRun, seed: int) -> NextRun:
+def change_seed(plan: NextRun, seed: int) -> NextRun:
     """Return the plan with another seed."""
     return _put(plan, {"seed": seed})
 
 
-def with_pen(plan: NextRun, down: bool) -> NextRun:
+def change_pen(plan: NextRun, down: bool) -> NextRun:
     """Return the plan with the pen down or up at the start."""
     return _put(plan, {"pen.down": down})

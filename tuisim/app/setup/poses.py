@@ -25,12 +25,12 @@ from tuisim.engine.files import (
 )
 from tuisim.settings.worlds import parse_pose
 
-MOST_TRIES = 2000
+MAX_TRIES = 2000
 
 Corners = Sequence[tuple[float, float]]
 
 
-def random_pose(spec: RunSpec, chance: random.Random) -> Pose | None:
+def choose_random_pose(spec: RunSpec, chance: random.Random) -> Pose | None:
     """Return a random pose in whole mm and degrees at which the robot's outline is on the field.
 
     Args:
@@ -40,15 +40,15 @@ def random_pose(spec: RunSpec, chance: random.Random) -> Pose | None:
     Returns:
         None if no free place was found.
     """
-    for _ in range(MOST_TRIES):
+    for _ in range(MAX_TRIES):
         x_mm, y_mm = chance.randint(0, FIELD_WIDTH_MM), chance.randint(0, FIELD_HEIGHT_MM)
         pose = Pose(float(x_mm), float(y_mm), float(chance.randint(-179, 180)))
-        if fits(spec, pose):
+        if has_room(spec, pose):
             return pose
     return None
 
 
-def fits(spec: RunSpec, pose: Pose) -> bool:
+def has_room(spec: RunSpec, pose: Pose) -> bool:
     """Return whether the robot's outline is on the field, and clear of obstacles where those are solid."""
     corners = [world_point(pose, x, y) for x, y in build_outline(spec.robot).corners_mm]
     if not all(0 <= x <= FIELD_WIDTH_MM and 0 <= y <= FIELD_HEIGHT_MM for x, y in corners):
@@ -67,7 +67,7 @@ def fits(spec: RunSpec, pose: Pose) -> bool:
     return not any(_overlap(corners, box, pose.heading_deg) for box in boxes)
 
 
-def _overlap(one: Corners, other: Corners, heading_deg: float) -> bool:
+def _overlap(first: Corners, other: Corners, heading_deg: float) -> bool:
     """Return whether two rectangles overlap: no side of either separates them."""
     heading = math.radians(heading_deg)
     axes = (
@@ -77,7 +77,7 @@ def _overlap(one: Corners, other: Corners, heading_deg: float) -> bool:
         (-math.sin(heading), math.cos(heading)),
     )
     for across, up in axes:
-        ours, theirs = ([x * across + y * up for x, y in corners] for corners in (one, other))
+        ours, theirs = ([x * across + y * up for x, y in corners] for corners in (first, other))
         if max(ours) <= min(theirs) or max(theirs) <= min(ours):
             return False
     return True
@@ -90,7 +90,7 @@ MAX_NAME = 40
 _HEAD = "# Poses saved in tuisim: mm from the lower left corner, degrees counter-clockwise from +x."
 
 
-def poses_file() -> Path:
+def find_poses_file() -> Path:
     """Return the path of the file of saved poses."""
     return home_folder() / FILE
 
@@ -101,16 +101,16 @@ def load_poses() -> dict[str, Pose]:
     Raises:
         ConfigError: their file cannot be read or is invalid.
     """
-    path = poses_file()
-    return _poses(read_file(path, ConfigError)) if path.exists() else {}
+    path = find_poses_file()
+    return _parse_poses(read_file(path, ConfigError)) if path.exists() else {}
 
 
-def _poses(data: object) -> dict[str, Pose]:
-    at = Location(str(poses_file()))
-    poses = required(table(data, at, ("poses",)), "poses", at)
+def _parse_poses(data: object) -> dict[str, Pose]:
+    location = Location(str(find_poses_file()))
+    poses = required(table(data, location, ("poses",)), "poses", location)
     return {
-        name: parse_pose(pose, at.at(f"poses.{name}"))
-        for name, pose in table(poses, at.at("poses")).items()
+        name: parse_pose(pose, location.at(f"poses.{name}"))
+        for name, pose in table(poses, location.at("poses")).items()
     }
 
 
@@ -126,7 +126,7 @@ def save_pose(name: str, pose: Pose) -> None:
     poses = {**load_poses(), name: pose}
     if len(poses) > MAX_POSES:
         raise ConfigError(
-            f"{MAX_POSES} poses are saved already", "delete some first", file=str(poses_file())
+            f"{MAX_POSES} poses are saved already", "delete some first", file=str(find_poses_file())
         )
     _write(poses)
 
@@ -141,7 +141,7 @@ def delete_pose(name: str) -> None:
 
 
 def _write(poses: Mapping[str, Pose]) -> None:
-    path = poses_file()
+    path = find_poses_file()
     lines = [_HEAD, "", "[poses]"]
     for name, pose in poses.items():
         lines += ["", f"[poses.{toml_key(name)}]", *toml_lines(asdict(pose))]
@@ -151,4 +151,4 @@ def _write(poses: Mapping[str, Pose]) -> None:
         raise ConfigError(
             f"cannot be made: {error.strerror or error}", file=str(path.parent)
         ) from None
-    save_toml(path, lines, Location(str(path)), _poses, poses, owner_only=True)
+    save_toml(path, lines, Location(str(path)), _parse_poses, poses, owner_only=True)

@@ -41,13 +41,13 @@ class Recent:
     title: str
 
 
-def recent(new_name: str) -> list[Recent]:
+def list_recent(new_name: str) -> list[Recent]:
     """Return what one may go on with, the likeliest first. Reads files.
 
     Args:
         new_name: Name of a program without a file.
     """
-    kept = [draft for draft in list_drafts() if not draft.path or _is_own(draft.path)][
+    own_drafts = [draft for draft in list_drafts() if not draft.path or _is_own(draft.path)][
         :_MOST_OF_KIND
     ]
     unsaved = [
@@ -55,18 +55,18 @@ def recent(new_name: str) -> list[Recent]:
             Kind.DRAFT,
             draft.path,
             Path(draft.path or new_name).name,
-            f"Not saved, edited {_when(draft.written_s)}",
+            f"Not saved, edited {_format_time(draft.written_s)}",
         )
-        for draft in kept
+        for draft in own_drafts
     ]
     try:
         runs = RunStore().runs()[: -_RUNS_READ - 1 : -1]
     except LogError:
         return unsaved
-    known = {draft.path for draft in kept}
+    known = {draft.path for draft in own_drafts}
     programs = [
-        Recent(Kind.PROGRAM, path, Path(path).name, f"Ran {when}, in {_folder(Path(path))}")
-        for path, when in _programs(runs)
+        Recent(Kind.PROGRAM, path, Path(path).name, f"Ran {when}, in {_shorten_folder(Path(path))}")
+        for path, when in _list_programs(runs)
         if path not in known
     ]
     replays = [
@@ -74,7 +74,7 @@ def recent(new_name: str) -> list[Recent]:
             Kind.RUN,
             run.id,
             f"Run {run.number}",
-            f"{run.program} on {Path(run.background).name}, {_made(run)}",
+            f"{run.program} on {Path(run.background).name}, {_describe_run(run)}",
         )
         for run in runs
         if run.ticks
@@ -85,7 +85,7 @@ def recent(new_name: str) -> list[Recent]:
     return [*texts, *replays[:_MOST_OF_KIND]][:_MOST]
 
 
-def _programs(runs: list[RunInfo]) -> Iterator[tuple[str, str]]:
+def _list_programs(runs: list[RunInfo]) -> Iterator[tuple[str, str]]:
     """Yield the path of each program of the user that still is there, and when it ran last."""
     store, seen = RunStore(), set()
     for run in runs:
@@ -102,7 +102,7 @@ def _programs(runs: list[RunInfo]) -> Iterator[tuple[str, str]]:
             and not is_protected(Path(path))
         ):
             seen.add(path)
-            yield path, _made(run)
+            yield path, _describe_run(run)
 
 
 def _is_own(path: str) -> bool:
@@ -113,20 +113,20 @@ def _is_own(path: str) -> bool:
         return False
 
 
-def _folder(path: Path) -> str:
+def _shorten_folder(path: Path) -> str:
     folder = str(path.parent)
     home = str(Path.home())
     return f"~{folder.removeprefix(home)}" if folder.startswith(home) else folder
 
 
-def _made(run: RunInfo) -> str:
+def _describe_run(run: RunInfo) -> str:
     try:
-        return _when(datetime.fromisoformat(run.created).timestamp())
+        return _format_time(datetime.fromisoformat(run.created).timestamp())
     except ValueError:
         return run.created[:16]
 
 
-def _when(seconds: float) -> str:
+def _format_time(seconds: float) -> str:
     """Return a time in seconds since 1970 in words: of today the time only."""
     then = time.localtime(seconds)
     is_today = then[:3] == time.localtime()[:3]

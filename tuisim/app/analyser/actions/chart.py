@@ -28,7 +28,7 @@ def mark(screen: LogScreen) -> None:
     screen.model.mark_s = screen.model.cursor_s if screen.model.mark_s is None else None
 
 
-def pan(screen: LogScreen, share: float) -> None:
+def pan_chart(screen: LogScreen, share: float) -> None:
     """Show an earlier or later time range."""
     screen.model.pan(share)
 
@@ -44,7 +44,7 @@ def tick(screen: LogScreen) -> None:
         screen.model.trace.on = not screen.model.trace.on
 
 
-def facets(screen: LogScreen) -> None:
+def switch_facets(screen: LogScreen) -> None:
     """Switch between one chart per variable and one for all."""
     switch(screen, "facets")
     if screen.chart.options.facets:
@@ -71,7 +71,7 @@ def align(screen: LogScreen) -> None:
     screen.ask("Align runs by", go, screen.model.alignment, _ALIGNMENTS)
 
 
-def against(screen: LogScreen) -> None:
+def ask_axes(screen: LogScreen) -> None:
     """Ask which variables to draw against each other."""
     options = screen.chart.options
 
@@ -83,7 +83,7 @@ def against(screen: LogScreen) -> None:
         else:
             if len(names) > 2:
                 raise LogError(
-                    f"cannot draw {text!r}", "a name, or two with `against` between them"
+                    f"cannot draw {text!r}", "a name, or two with `ask_axes` between them"
                 )
             y, x = names if len(names) == 2 else (model.selected, names[0])
             for name in (x, y):

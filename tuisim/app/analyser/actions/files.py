@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from tuisim.analysis.model import Model
 from tuisim.analysis.source import OpenedLog
 from tuisim.app import background
-from tuisim.app.analyser.panes import PANES, band_search, pane_frame
+from tuisim.app.analyser.panes import PANES, build_band_search, build_frame
 from tuisim.app.dialogs.save import SaveDialog
 from tuisim.base.errors import counted
 from tuisim.terminal.app import offer
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from tuisim.app.analyser.screen import LogScreen
 
-MOST_COPIED = 10_000
+MAX_COPIED = 10_000
 """Most rows to copy: terminals drop longer texts."""
 _CHARTS = (
     (".svg", "vector graphics, sharp at any size"),
@@ -51,7 +51,7 @@ def copy_pane(screen: LogScreen) -> None:
         screen.copy("\n".join([*lines, *pane.below(model)]), pane.title)
         return
     rows = model.rows
-    if len(rows) > MOST_COPIED:
+    if len(rows) > MAX_COPIED:
         screen.say(
             f"{len(rows):,} rows are too many for the clipboard: F filters them, `tuisim log export` writes a file"
         )
@@ -73,9 +73,9 @@ def export(screen: LogScreen) -> None:
 
     def save(target: Path) -> None:
         model = screen.model
-        frame = None if pane == "table" else pane_frame(pane, model)
+        frame = None if pane == "table" else build_frame(pane, model)
         work = partial(_write_rows, model, frame, target)
-        saved = partial(_saved, screen, f"Rows saved to {describe_files(target)}", target)
+        saved = partial(_report_saved, screen, f"Rows saved to {describe_files(target)}", target)
         background.run(screen, work, saved, screen.complain, group="export")
 
     forms = tuple((suffix, exporter.contents) for suffix, exporter in EXPORTERS.items())
@@ -84,7 +84,7 @@ def export(screen: LogScreen) -> None:
     )
 
 
-def _saved(screen: LogScreen, notice: str, target: Path, _: object) -> None:
+def _report_saved(screen: LogScreen, notice: str, target: Path, _: object) -> None:
     screen.say(notice)
     offer(screen.app, target)
 
@@ -98,7 +98,7 @@ def _write_rows(model: Model, frame: pd.DataFrame | None, target: Path) -> None:
         export_frame(frame, target, build_table_metadata("pane", frame))
 
 
-def chart(screen: LogScreen) -> None:
+def ask_chart_file(screen: LogScreen) -> None:
     """Ask for the file to save the chart to: with the time range and the variables as shown."""
     from tuisim.analysis.chart import View, build_chart
     from tuisim.pictures.charts.files import CHART_FORMATS, find_format, save_chart
@@ -107,10 +107,10 @@ def chart(screen: LogScreen) -> None:
 
     def save(target: Path) -> None:
         # Text gets the size of the chart on the screen, if visible; images have their own size.
-        shown = (
+        chart_in_view = (
             screen.chart.size if target.suffix.lower() == ".txt" and screen.chart.display else None
         )
-        size = (shown.width, shown.height) if shown else None
+        size = (chart_in_view.width, chart_in_view.height) if chart_in_view else None
         view = View(options.facets, options.marks, options.hold, options.against)
         save_chart(partial(build_chart, screen.model, view), target, size)
         offer(screen.app, target)
@@ -130,7 +130,7 @@ def report(screen: LogScreen) -> None:
 
     def save(target: Path) -> None:
         work = partial(_write_report, opened, target, names)
-        saved = partial(_saved, screen, f"Report saved to {target}", target)
+        saved = partial(_report_saved, screen, f"Report saved to {target}", target)
         background.run(screen, work, saved, screen.complain, group="report")
 
     screen.app.push_screen(
@@ -143,4 +143,4 @@ def report(screen: LogScreen) -> None:
 def _write_report(opened: OpenedLog, target: Path, names: Sequence[str]) -> None:
     from tuisim.analysis.report import write_report
 
-    write_report(opened, target, names, band_search(opened.log.rows))
+    write_report(opened, target, names, build_band_search(opened.log.rows))

@@ -25,7 +25,7 @@ def _log(rows: int | None) -> str:
     return "The log is being opened" if rows is None else ""
 
 
-def _rows(rows: int | None) -> str:
+def _describe_rows(rows: int | None) -> str:
     return _log(rows) or ("" if rows else "There are no rows yet")
 
 
@@ -35,7 +35,7 @@ _START = (
 )
 
 
-def _help(screen: LogScreen) -> None:
+def _show_help(screen: LogScreen) -> None:
     from tuisim.app.guide.screen import GuideScreen, KeyPage, Topic
 
     keys = KeyPage("All keys of the analyser", _START, key_groups(screen.ACTIONS.values()))
@@ -46,7 +46,7 @@ def _show(pane: str) -> Callable[[LogScreen], None]:
     return lambda screen: screen.show_pane(pane)
 
 
-def _app(action: str) -> Callable[[LogScreen], None]:
+def _build_app_call(action: str) -> Callable[[LogScreen], None]:
     def go(screen: LogScreen) -> None:
         screen.call_next(screen.run_action, f"app.{action}")
 
@@ -75,26 +75,55 @@ ACTIONS: Mapping[str, LogAction] = {
             "c",
             "Events: crossings of a threshold; again: set it",
             PANE,
-            panes.events,
+            panes.show_events,
             _log,
             "events",
         ),
         Action(
-            "note", "m", "Note on the sample, band or range from A", LOG, log.note, _rows, "note"
+            "note",
+            "m",
+            "Note on the sample, band or range from A",
+            LOG,
+            log.note,
+            _describe_rows,
+            "note",
         ),
-        Action("up", "up", "Previous row", CURSOR, partial(panes.rows, step=-1), _rows),
-        Action("down", "down", "Next row", CURSOR, partial(panes.rows, step=1), _rows),
-        Action("page-up", "pageup", "Previous page", CURSOR, partial(panes.pages, step=-1), _rows),
-        Action("page-down", "pagedown", "Next page", CURSOR, partial(panes.pages, step=1), _rows),
-        Action("head", "home", "First row", CURSOR, partial(panes.to_end, last=False), _rows),
-        Action("tail", "end", "Last row", CURSOR, partial(panes.to_end, last=True), _rows),
+        Action("up", "up", "Previous row", CURSOR, partial(panes.rows, step=-1), _describe_rows),
+        Action("down", "down", "Next row", CURSOR, partial(panes.rows, step=1), _describe_rows),
+        Action(
+            "page-up",
+            "pageup",
+            "Previous page",
+            CURSOR,
+            partial(panes.move_pages, step=-1),
+            _describe_rows,
+        ),
+        Action(
+            "page-down",
+            "pagedown",
+            "Next page",
+            CURSOR,
+            partial(panes.move_pages, step=1),
+            _describe_rows,
+        ),
+        Action(
+            "head",
+            "home",
+            "First row",
+            CURSOR,
+            partial(panes.go_to_end, last=False),
+            _describe_rows,
+        ),
+        Action(
+            "tail", "end", "Last row", CURSOR, partial(panes.go_to_end, last=True), _describe_rows
+        ),
         Action(
             "left",
             "left",
             "Cursor left by one column",
             CURSOR,
             partial(panes.columns, step=-1),
-            _rows,
+            _describe_rows,
         ),
         Action(
             "right",
@@ -102,7 +131,7 @@ ACTIONS: Mapping[str, LogAction] = {
             "Cursor right by one column",
             CURSOR,
             partial(panes.columns, step=1),
-            _rows,
+            _describe_rows,
         ),
         Action(
             "far-left",
@@ -110,7 +139,7 @@ ACTIONS: Mapping[str, LogAction] = {
             "Cursor left by ten",
             CURSOR,
             partial(panes.columns, step=-10),
-            _rows,
+            _describe_rows,
         ),
         Action(
             "far-right",
@@ -118,15 +147,36 @@ ACTIONS: Mapping[str, LogAction] = {
             "Cursor right by ten",
             CURSOR,
             partial(panes.columns, step=10),
-            _rows,
+            _describe_rows,
         ),
         Action(
-            "go-to", "g", "Go to a row, or a time such as 2.5s", CURSOR, panes.go_to, _rows, "go to"
+            "go-to",
+            "g",
+            "Go to a row, or a time such as 2.5s",
+            CURSOR,
+            panes.go_to,
+            _describe_rows,
+            "go to",
         ),
-        Action("event", "j", "Next event", CURSOR, partial(panes.event, step=1), _rows),
-        Action("event-before", "J", "Previous event", CURSOR, partial(panes.event, step=-1), _rows),
         Action(
-            "mark", "a", "Set A here and measure from it; remove it", CHART, chart.mark, _rows, "A"
+            "event", "j", "Next event", CURSOR, partial(panes.go_to_event, step=1), _describe_rows
+        ),
+        Action(
+            "event-before",
+            "J",
+            "Previous event",
+            CURSOR,
+            partial(panes.go_to_event, step=-1),
+            _describe_rows,
+        ),
+        Action(
+            "mark",
+            "a",
+            "Set A here and measure from it; remove it",
+            CHART,
+            chart.mark,
+            _describe_rows,
+            "A",
         ),
         Action(
             "zoom-in",
@@ -134,34 +184,41 @@ ACTIONS: Mapping[str, LogAction] = {
             "Zoom in at the cursor",
             CHART,
             lambda screen: screen.model.zoom(0.5),
-            _rows,
+            _describe_rows,
             "zoom",
         ),
-        Action("zoom-out", "Z", "Zoom out", CHART, lambda screen: screen.model.zoom(2.0), _rows),
+        Action(
+            "zoom-out",
+            "Z",
+            "Zoom out",
+            CHART,
+            lambda screen: screen.model.zoom(2.0),
+            _describe_rows,
+        ),
         Action(
             "pan-left",
             "left_square_bracket",
             "Scroll left",
             CHART,
-            partial(chart.pan, share=-0.25),
-            _rows,
+            partial(chart.pan_chart, share=-0.25),
+            _describe_rows,
         ),
         Action(
             "pan-right",
             "right_square_bracket",
             "Scroll right",
             CHART,
-            partial(chart.pan, share=0.25),
-            _rows,
+            partial(chart.pan_chart, share=0.25),
+            _describe_rows,
         ),
-        Action("fit", "f", "Show the whole time range", CHART, chart.fit, _rows),
+        Action("fit", "f", "Show the whole time range", CHART, chart.fit, _describe_rows),
         Action(
             "variable",
             "v",
             "Next variable",
             CHART,
             lambda screen: screen.model.select(1),
-            _rows,
+            _describe_rows,
             "variable",
         ),
         Action(
@@ -170,20 +227,27 @@ ACTIONS: Mapping[str, LogAction] = {
             "Previous variable",
             CHART,
             lambda screen: screen.model.select(-1),
-            _rows,
+            _describe_rows,
         ),
-        Action("tick", "space", "Show or hide the variable", CHART, chart.tick, _rows, "tick"),
+        Action(
+            "tick", "space", "Show or hide the variable", CHART, chart.tick, _describe_rows, "tick"
+        ),
         Action(
             "facets",
             "x",
             "One chart for each variable, or one for all",
             CHART,
-            chart.facets,
-            _rows,
+            chart.switch_facets,
+            _describe_rows,
             "facets",
         ),
         Action(
-            "marks", "X", "Points or lines", CHART, partial(chart.switch, option="marks"), _rows
+            "marks",
+            "X",
+            "Points or lines",
+            CHART,
+            partial(chart.switch, option="marks"),
+            _describe_rows,
         ),
         Action(
             "hold",
@@ -191,28 +255,40 @@ ACTIONS: Mapping[str, LogAction] = {
             "Steps or straight lines",
             CHART,
             partial(chart.switch, option="hold"),
-            _rows,
+            _describe_rows,
         ),
-        Action("align", "A", "Align runs by time, distance or an event", CHART, chart.align, _rows),
+        Action(
+            "align",
+            "A",
+            "Align runs by time, distance or an event",
+            CHART,
+            chart.align,
+            _describe_rows,
+        ),
         Action(
             "against",
             "k",
             "Draw the path, or a variable against another",
             CHART,
-            chart.against,
-            _rows,
+            chart.ask_axes,
+            _describe_rows,
         ),
         Action(
             "derive",
             "d",
             "Derive a variable, such as slope(Colour)",
             LOG,
-            log.derived,
-            _rows,
+            log.ask_variable,
+            _describe_rows,
             "derive",
         ),
         Action(
-            "larger", "plus", "Chart and pane, chart alone, pane alone", PANE, panes.larger, _log
+            "larger",
+            "plus",
+            "Chart and pane, chart alone, pane alone",
+            PANE,
+            panes.cycle_sizes,
+            _log,
         ),
         Action(
             "column-before",
@@ -220,7 +296,7 @@ ACTIONS: Mapping[str, LogAction] = {
             "Previous column",
             TABLE,
             partial(panes.choose, step=-1),
-            _rows,
+            _describe_rows,
         ),
         Action(
             "column",
@@ -228,7 +304,7 @@ ACTIONS: Mapping[str, LogAction] = {
             "Next column",
             TABLE,
             partial(panes.choose, step=1),
-            _rows,
+            _describe_rows,
         ),
         Action(
             "sort",
@@ -236,18 +312,36 @@ ACTIONS: Mapping[str, LogAction] = {
             "Sort by the column: ascending, descending, off",
             TABLE,
             panes.sort,
-            _rows,
+            _describe_rows,
             "sort",
         ),
         Action(
-            "filter", "F", "Filter: value > 50 and time < 3", TABLE, panes.select, _rows, "filter"
+            "filter",
+            "F",
+            "Filter: value > 50 and time < 3",
+            TABLE,
+            panes.select,
+            _describe_rows,
+            "filter",
         ),
-        Action("unfilter", "U", "All rows, all columns", TABLE, panes.show_all, _rows),
-        Action("search", "slash", "Search", TABLE, panes.search, _rows, "search"),
-        Action("find-next", "N", "Next match", TABLE, partial(panes.find, step=1), _rows),
-        Action("find-before", "P", "Previous match", TABLE, partial(panes.find, step=-1), _rows),
+        Action("unfilter", "U", "All rows, all columns", TABLE, panes.show_all, _describe_rows),
+        Action("search", "slash", "Search", TABLE, panes.search, _describe_rows, "search"),
+        Action("find-next", "N", "Next match", TABLE, partial(panes.find, step=1), _describe_rows),
         Action(
-            "hide", "h", "Hide the column", TABLE, lambda screen: screen.model.rows.hide(), _rows
+            "find-before",
+            "P",
+            "Previous match",
+            TABLE,
+            partial(panes.find, step=-1),
+            _describe_rows,
+        ),
+        Action(
+            "hide",
+            "h",
+            "Hide the column",
+            TABLE,
+            lambda screen: screen.model.rows.hide(),
+            _describe_rows,
         ),
         Action(
             "freeze",
@@ -255,7 +349,7 @@ ACTIONS: Mapping[str, LogAction] = {
             "Pin the column at the left",
             TABLE,
             lambda screen: screen.model.rows.freeze(),
-            _rows,
+            _describe_rows,
         ),
         Action(
             "copy",
@@ -263,18 +357,18 @@ ACTIONS: Mapping[str, LogAction] = {
             "Copy the value",
             FILES,
             files.copy_value,
-            _rows,
+            _describe_rows,
             "copy",
             footer_key="y",
         ),
-        Action("copy-row", "Y", "Copy the row", FILES, files.copy_row, _rows),
+        Action("copy-row", "Y", "Copy the row", FILES, files.copy_row, _describe_rows),
         Action(
             "copy-pane",
             "ctrl+y",
             "Copy the table as shown, or the pane",
             FILES,
             files.copy_pane,
-            _rows,
+            _describe_rows,
         ),
         Action(
             "export",
@@ -282,7 +376,7 @@ ACTIONS: Mapping[str, LogAction] = {
             "Export the rows of the pane as shown",
             FILES,
             files.export,
-            _rows,
+            _describe_rows,
             "export",
         ),
         Action(
@@ -290,8 +384,8 @@ ACTIONS: Mapping[str, LogAction] = {
             "S",
             "Save the chart as shown: SVG, PNG or text",
             FILES,
-            files.chart,
-            _rows,
+            files.ask_chart_file,
+            _describe_rows,
             words="picture image graph plot file",
         ),
         Action(
@@ -303,35 +397,61 @@ ACTIONS: Mapping[str, LogAction] = {
             _log,
             words="picture chart html print",
         ),
-        Action("delete-note", "delete", "Delete the selected note", LOG, log.delete_note, _rows),
-        Action("telemetry", "T", "Telemetry or printed samples", LOG, log.telemetry, _log),
-        Action("choices", "C", "Change how the file is read", LOG, LogScreen.ask_choices, _log),
-        Action("open-runs", "R", "Open other runs, several in one chart", LOG, log.runs, _log),
-        Action("differences", "D", "Go to where two runs differ", LOG, log.differences, _log),
-        Action("world", "w", "Show or hide the world", PANE, panes.world, _log),
         Action(
-            "help", "question_mark", "Guide: all keys, and every page", APP, _help, footer="help"
+            "delete-note",
+            "delete",
+            "Delete the selected note",
+            LOG,
+            log.delete_note,
+            _describe_rows,
+        ),
+        Action("telemetry", "T", "Telemetry or printed samples", LOG, log.switch_telemetry, _log),
+        Action("choices", "C", "Change how the file is read", LOG, LogScreen.ask_choices, _log),
+        Action(
+            "open-runs", "R", "Open other runs, several in one chart", LOG, log.choose_runs, _log
+        ),
+        Action("differences", "D", "Go to where two runs differ", LOG, log.show_differences, _log),
+        Action("world", "w", "Show or hide the world", PANE, panes.switch_world, _log),
+        Action(
+            "help",
+            "question_mark",
+            "Guide: all keys, and every page",
+            APP,
+            _show_help,
+            footer="help",
         ),
         Action(
             "palette",
             "ctrl+p",
             "Commands, by name",
             APP,
-            _app("command_palette"),
+            _build_app_call("command_palette"),
             footer="all",
             footer_key="^p",
         ),
-        Action("theme", "f10", "Theme: light, high contrast and others", APP, _app("choose_theme")),
-        Action("pixels", "number_sign", "Characters or pixels", APP, _app("switch_pixels")),
         Action(
-            "redraw", "ctrl+l", "Redraw a screen that other output overwrote", APP, _app("redraw")
+            "theme",
+            "f10",
+            "Theme: light, high contrast and others",
+            APP,
+            _build_app_call("choose_theme"),
+        ),
+        Action(
+            "pixels", "number_sign", "Characters or pixels", APP, _build_app_call("switch_pixels")
+        ),
+        Action(
+            "redraw",
+            "ctrl+l",
+            "Redraw a screen that other output overwrote",
+            APP,
+            _build_app_call("redraw"),
         ),
         Action(
             "screenshot",
             "I,f12",
             "Save a screenshot: SVG and PNG (also F12)",
             APP,
-            _app("save_screen"),
+            _build_app_call("save_screen"),
             shown_key="I",
             words="picture image capture",
         ),

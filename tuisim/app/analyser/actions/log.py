@@ -32,7 +32,7 @@ _RECKONING: Form = (RECKONING, "the pose by dead reckoning, and the error_mm")
 _OTHER_RUNS = (("last", "the newest run"), ("12", "run 12"))
 
 
-def telemetry(screen: LogScreen) -> None:
+def switch_telemetry(screen: LogScreen) -> None:
     """Switch between telemetry and samples."""
     if screen.request.file:
         screen.say("A file has no telemetry: R opens stored runs")
@@ -40,33 +40,33 @@ def telemetry(screen: LogScreen) -> None:
     screen.open(replace(screen.request, telemetry=not screen.request.telemetry))
 
 
-def runs(screen: LogScreen) -> None:
+def choose_runs(screen: LogScreen) -> None:
     """Ask which runs to open."""
     from tuisim.app.dialogs.runs import RunsChooser
 
-    def chosen(ids: str | None) -> None:
+    def handle_choice(ids: str | None) -> None:
         if ids:
             screen.open(LogRequest(runs=tuple(ids.split())))
 
-    screen.app.push_screen(RunsChooser(), chosen)
+    screen.app.push_screen(RunsChooser(), handle_choice)
 
 
 # Derived variables
 
 
-def derived(screen: LogScreen) -> None:
+def ask_variable(screen: LogScreen) -> None:
     """Ask for a derived variable."""
 
     def go(text: str) -> None:
         model = screen.model
-        screen.work(
+        screen.run_task(
             "computing …",
             model.log.rows,
             lambda _: (model, *compute_definition(model, text)),
-            computed,
+            show_log,
         )
 
-    def computed(result: tuple[Model, str, Log]) -> None:
+    def show_log(result: tuple[Model, str, Log]) -> None:
         of, text, log = result
         model = screen.model
         if model is of:
@@ -134,7 +134,7 @@ def delete_note(screen: LogScreen) -> None:
 # Differences
 
 
-def differences(screen: LogScreen) -> None:
+def show_differences(screen: LogScreen) -> None:
     """Show the differences between the first two open runs; with a single run, ask for the other one."""
     runs = screen.model.opened.runs
     if not runs:
@@ -158,7 +158,7 @@ def differences(screen: LogScreen) -> None:
 def _compare(screen: LogScreen, first: StoredRun, second: StoredRun) -> None:
     ticks = first.telemetry.count + second.telemetry.count
     then = partial(_show_differences, screen, screen.model, first, second)
-    screen.work("comparing …", ticks, lambda _: diff_runs(first, second), then)
+    screen.run_task("comparing …", ticks, lambda _: diff_runs(first, second), then)
 
 
 def _show_differences(
@@ -166,22 +166,22 @@ def _show_differences(
 ) -> None:
     from tuisim.app.dialogs.runs import Differences
 
-    def answered(go: bool | None) -> None:
+    def handle_answer(go: bool | None) -> None:
         ticks = (diff.tick.time_s,) if diff.tick else ()
         samples = diff.sample.times_s if diff.sample else ()
         parted_s = min((at_s for at_s in (*ticks, *samples) if at_s is not None), default=None)
         if go and parted_s is not None and screen.model is model:
-            _go_to(screen, model, parted_s)
+            _go_to_difference(screen, model, parted_s)
 
     # Wait until the dialog that asked for the run is closed.
     screen.call_later(
         screen.app.push_screen,
         Differences(_name(first), _name(second), diff, samples=True),
-        answered,
+        handle_answer,
     )
 
 
-def _go_to(screen: LogScreen, model: Model, time_s: float) -> None:
+def _go_to_difference(screen: LogScreen, model: Model, time_s: float) -> None:
     """Put the cursor, in the first run, where the runs begin to differ."""
     name = model.selected.partition(" #")[0]
     selected = next(

@@ -29,12 +29,12 @@ _THRESHOLDS = (
 )
 
 
-def events(screen: LogScreen) -> None:
+def show_events(screen: LogScreen) -> None:
     """Show the events; ask for thresholds if there are none, or if the events are shown already."""
     model = screen.model
-    shown = screen.pane.name_shown == "events" and screen.pane.display
+    is_in_view = screen.pane.name_shown == "events" and screen.pane.display
     screen.show_pane("events")
-    if (shown or not model.events.thresholds) and model.log.rows:
+    if (is_in_view or not model.events.thresholds) and model.log.rows:
         now = ", ".join(map(str, model.events.thresholds))
         screen.ask("Events", lambda text: _search(screen, text), now, _THRESHOLDS, completes=True)
 
@@ -44,27 +44,27 @@ def _search(screen: LogScreen, text: str) -> None:
     log = screen.model.log
     thresholds = parse_events(text, log)
 
-    def found(result: tuple[Log, tuple[EventChoice, ...], list[Event | CommandRow]]) -> None:
+    def show_results(result: tuple[Log, tuple[EventChoice, ...], list[Event | CommandRow]]) -> None:
         # The log may have grown during the search: search again.
         screen.model.events.set(*result)
         screen.choose(0)
 
     runs = screen.model.events.runs
-    screen.work(
+    screen.run_task(
         "searching for events …",
         log.rows,
         lambda _: (log, thresholds, find_events(log, thresholds, runs)),
-        found,
+        show_results,
     )
 
 
-def larger(screen: LogScreen) -> None:
+def cycle_sizes(screen: LogScreen) -> None:
     """Cycle through chart and pane, chart alone, pane alone."""
     both = screen.chart.display and screen.pane.display
     screen.lay_out(chart=both or not screen.chart.display, pane=not both)
 
 
-def world(screen: LogScreen) -> None:
+def switch_world(screen: LogScreen) -> None:
     """Show or hide the world beside the log."""
     if not has_poses(screen.model.opened):
         screen.say(NO_POSES)
@@ -92,7 +92,7 @@ def sort(screen: LogScreen) -> None:
         order = rows.chosen, False
     else:
         order = ("", False) if rows.view.descending else (rows.chosen, True)
-    screen.work(
+    screen.run_task(
         "sorting …",
         len(rows),
         lambda _: rows.build_sorted_view(*order),
@@ -118,7 +118,7 @@ def select(screen: LogScreen) -> None:
         model.add_named_columns(text)
         conditions = tuple(parse_conditions(text, model.log.table.column_names)) if text else ()
         then = partial(_arrange, screen, model)
-        screen.work(
+        screen.run_task(
             "filtering …",
             model.log.rows,
             lambda _: model.rows.build_filtered_view(conditions),
@@ -170,13 +170,13 @@ def find(screen: LogScreen, step: int) -> None:
             raise LogError(f"{text!r} was not found", "in the rows and columns that are shown")
         return place
 
-    def found(place: int) -> None:
+    def go_to_row(place: int) -> None:
         if screen.model is model:
             screen.pane.turn_to("table")
             model.go_to_row(rows.row(place))
             model.follow_cursor()
 
-    screen.work("searching …", len(rows), match, found)
+    screen.run_task("searching …", len(rows), match, go_to_row)
 
 
 _SECONDS = re.compile(r"(-?\d+(?:\.\d+)?)\s*s")
@@ -199,12 +199,12 @@ def rows(screen: LogScreen, step: int) -> None:
         screen.choose(pane.chosen + step)
 
 
-def pages(screen: LogScreen, step: int) -> None:
+def move_pages(screen: LogScreen, step: int) -> None:
     """Move by pages of the pane."""
     rows(screen, step * screen.pane.lines)
 
 
-def to_end(screen: LogScreen, last: bool) -> None:
+def go_to_end(screen: LogScreen, last: bool) -> None:
     """Go to the first or the last row."""
     rows(screen, screen.model.log.rows if last else -screen.model.log.rows)
 
@@ -242,7 +242,7 @@ def go_to(screen: LogScreen) -> None:
     screen.ask("Go to", go, forms=_PLACES)
 
 
-def event(screen: LogScreen, step: int) -> None:
+def go_to_event(screen: LogScreen, step: int) -> None:
     """Go to the next event, or the previous one."""
     model = screen.model
     events = model.events.list_events(model.log)
@@ -251,7 +251,9 @@ def event(screen: LogScreen, step: int) -> None:
         return
     rows = [event.row for event in events]
     ahead = [
-        at for at, row in enumerate(rows) if (row > model.row if step > 0 else row < model.row)
+        index
+        for index, row in enumerate(rows)
+        if (row > model.row if step > 0 else row < model.row)
     ]
     if not ahead:
         screen.say("This is the last event" if step > 0 else "This is the first event")
