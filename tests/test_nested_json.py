@@ -82,7 +82,7 @@ def of_batch(_folder: Path) -> object:
     [
         (of_preferences, None),
         (of_draft, None),
-        (of_breakpoints, kept_breaks.Kept()),
+        (of_breakpoints, kept_breaks.StoredBreaks()),
         (of_companion, {}),
         (of_schema, {}),
         (of_journal, {}),

@@ -8,7 +8,7 @@ import pytest
 from textual.widgets import OptionList
 
 from tests.app.app_help import open_lab, until
-from tuisim.app.action import fitting, most_entries
+from tuisim.app.action import find_max_entries, fit_actions
 from tuisim.app.actions.keys import ACTIONS
 from tuisim.app.dialogs.palette import Palette
 from tuisim.app.snapshot import RunPhase, Situation
@@ -19,7 +19,9 @@ async def test_it_offers_every_key_those_that_work_now_first_and_finds_one_by_it
         await pilot.press("ctrl+p")
         await until(pilot, lambda: isinstance(app.screen, Palette) and app.screen.is_ready)
         listed = app.screen.query_one(OptionList)
-        works = [not ACTIONS[option.id or ""].why_not(app.situation()) for option in listed.options]
+        works = [
+            not ACTIONS[option.id or ""].why_not(app.find_situation()) for option in listed.options
+        ]
         assert len(works) == len(ACTIONS)
         assert works == sorted(works, reverse=True)
         lines = [str(option.prompt) for option in listed.options]
@@ -41,7 +43,7 @@ def test_the_footer_has_few_entries_in_groups_that_fit_with_help_palette_and_qui
 ) -> None:
     now = Situation(state, has_program=True, has_run=state != RunPhase.IDLE)
     works = [action for action in ACTIONS.values() if not action.why_not(now)]
-    shown = fitting(works, columns, most_entries(columns))
+    shown = fit_actions(works, columns, find_max_entries(columns))
     assert len(shown) <= most
     assert [one.id for one in shown[-3:]] == ["help", "palette", "quit"]
     groups = [group for group, _ in groupby(shown, lambda one: one.group)]

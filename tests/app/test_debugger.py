@@ -20,7 +20,7 @@ from tests.app.app_help import (
     until_typing,
 )
 from tuisim.app.app import LabApp
-from tuisim.app.kept_breaks import Kept, keep, load_kept
+from tuisim.app.kept_breaks import StoredBreaks, keep, load_kept
 from tuisim.app.panels.chart import Chart
 from tuisim.app.snapshot import RunPhase
 from tuisim.engine.breakpoints import parse_breakpoints
@@ -94,8 +94,8 @@ async def test_steps_from_the_first_line() -> None:
     async with open_lab(COUNTS) as (pilot, app):
         await press(pilot, app, "n", 1, 2, 3, 4, 5)
         assert values(app) == {"total": "0", "i": "0"}
-        assert app.run_controller.snapshot().line == 5
-        assert app.panel_area.shown("debug")
+        assert app.run_controller.build_snapshot().line == 5
+        assert app.panel_area.is_shown("debug")
         await press(pilot, app, "n", 6, 3, 4)
         assert values(app)["i"] == "1"
         await until(pilot, lambda: "line 4" in drawn(app))
@@ -187,20 +187,20 @@ async def test_a_breakpoint_holds_and_is_kept_with_the_program() -> None:
 async def test_a_breakpoint_on_the_current_line_needs_no_code_in_sight() -> None:
     async with open_lab(COUNTS, size=(80, 24)) as (pilot, app):
         await pilot.press("R")
-        await until(pilot, lambda: app.run_controller.snapshot().line >= 3)
+        await until(pilot, lambda: app.run_controller.build_snapshot().line >= 3)
         await press_and_stand(pilot, "space")
         current = app.debugger.current_line
-        assert not app.panel_area.shown("code")
+        assert not app.panel_area.is_shown("code")
         await pilot.press("t")
         assert [one.text for one in app.debugger.breaks] == [str(current)]
         assert f"Breakpoint on line {current}, the current one" in notices(app)
-        assert not app.panel_area.shown("code")
+        assert not app.panel_area.is_shown("code")
 
 
 async def test_the_footer_offers_what_is_needed_while_the_code_is_read() -> None:
     async with open_lab(COUNTS, size=(80, 24)) as (pilot, app):
         await press(pilot, app, "n", 1, 2)
-        assert app.panel_area.focused_panel() == "code"
+        assert app.panel_area.find_focused_panel() == "code"
         shown = str(app.key_footer.render())
         assert "N line back" in shown
         assert "u out" in shown
@@ -271,12 +271,12 @@ async def test_code_and_debugger_stand_at_the_line_that_printed_a_sample() -> No
         await stands(pilot, app, 5)
         app.panel_area.post_message(Chart.CursorMoved(0.2, "Total"))
         await stands(pilot, app, 6)
-        snapshot = app.run_controller.snapshot()
+        snapshot = app.run_controller.build_snapshot()
         assert (snapshot.instant.tick, snapshot.line, line(app)) == (20, 6, 6)
         await until(pilot, lambda: "line 6" in drawn(app))
         # From there it goes on.
         await press(pilot, app, "n", 3)
-        assert app.run_controller.snapshot().line == 3
+        assert app.run_controller.build_snapshot().line == 3
 
 
 async def test_run_to_the_cursor_starts_the_program() -> None:
@@ -290,7 +290,7 @@ async def test_run_to_the_cursor_starts_the_program() -> None:
 
 async def test_breaks_are_kept_with_a_program_that_no_panel_shows() -> None:
     app = LabApp(settings(COUNTS, panels_off=("code", "controls")))
-    keep(program_of(app).path, Kept(parse_breakpoints(("4",)), ("total",)))
+    keep(program_of(app).path, StoredBreaks(parse_breakpoints(("4",)), ("total",)))
     async with app.run_test(size=(80, 24)) as pilot:
         await ready(pilot)
         await until(pilot, lambda: bool(app.debugger.breaks))
@@ -305,15 +305,15 @@ async def test_breaks_are_kept_with_a_program_that_no_panel_shows() -> None:
 async def test_editing_begins_where_the_program_is_paused() -> None:
     async with open_lab(COUNTS, size=(80, 24)) as (pilot, app):
         await pilot.press("R")
-        await until(pilot, lambda: app.run_controller.snapshot().state is RunPhase.RUNNING)
+        await until(pilot, lambda: app.run_controller.build_snapshot().state is RunPhase.RUNNING)
         await pilot.press("space")
-        await until(pilot, lambda: app.run_controller.snapshot().state is RunPhase.PAUSED)
+        await until(pilot, lambda: app.run_controller.build_snapshot().state is RunPhase.PAUSED)
         # A panel that is opened has seen nothing of the run.
-        assert not app.panel_area.shown("code")
+        assert not app.panel_area.is_shown("code")
         await pilot.press("d")
         await until_typing(pilot)
         assert app.panel_area.code is not None
-        assert app.panel_area.code.cursor_line == app.run_controller.snapshot().line > 1
+        assert app.panel_area.code.cursor_line == app.run_controller.build_snapshot().line > 1
 
 
 async def test_a_step_back_has_the_time_of_its_tick() -> None:
@@ -322,7 +322,7 @@ async def test_a_step_back_has_the_time_of_its_tick() -> None:
         await press(pilot, app, "n", 1, 2, 3, 4)
         await press(pilot, app, "N", 3)
         assert app.debugger.view is not None
-        paused, snapshot = app.debugger.view.paused, app.run_controller.snapshot()
+        paused, snapshot = app.debugger.view.paused, app.run_controller.build_snapshot()
         assert paused.tick == snapshot.instant.tick
         assert paused.time_ns / 1e9 == snapshot.time_s
 

@@ -12,7 +12,7 @@ from tests.app.app_help import open_lab, program, run_from_start, until
 from tests.app.lesson_help import opened, run_over
 from tuisim.app.app import LabApp
 from tuisim.app.dialogs.chooser import Chooser
-from tuisim.app.earlier_run import stored_before
+from tuisim.app.earlier_run import find_run_before
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.runs.handle import RunOptions, start_run
 from tuisim.engine.runs.recorded_run import Recording
@@ -25,7 +25,7 @@ SIZE = (120, 40)
 
 
 def earlier_pose(app: LabApp) -> Pose | None:
-    return app.run_controller.snapshot().earlier_pose
+    return app.run_controller.build_snapshot().earlier_pose
 
 
 async def test_the_run_before_is_drawn_at_the_same_time() -> None:
@@ -57,10 +57,10 @@ def test_without_a_run_before_it_is_the_last_stored_one_of_the_program() -> None
     of("other.py")
     of("line.py", "Two_shapes")
     later = of("line.py")
-    found = stored_before(later)
+    found = find_run_before(later)
     assert found is not None and found.run_id == first.run_id
-    assert stored_before(first) is None
-    assert stored_before(of("")) is None
+    assert find_run_before(first) is None
+    assert find_run_before(of("")) is None
 
 
 @pytest.mark.slow

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tests.cases import cases
-from tuisim.app.error_words import fitting, in_a_list, remedy
+from tuisim.app.error_words import find_remedy, fit_words, shorten_error
 from tuisim.base.errors import TuisimError
 
 PORT = (
@@ -48,7 +48,7 @@ MAT = "line 1: no such mat 'Grey_bnds', did you mean Grey_bands?"
     },
 )
 def test_what_matters_comes_first(words: str, width: int, told: str) -> None:
-    assert fitting(words, width) == told
+    assert fit_words(words, width) == told
 
 
 @pytest.mark.parametrize(
@@ -60,7 +60,7 @@ def test_what_matters_comes_first(words: str, width: int, told: str) -> None:
     ],
 )
 def test_the_remedy_is_told(words: str, told: str) -> None:
-    assert remedy(words) == told
+    assert find_remedy(words) == told
 
 
 @pytest.mark.parametrize(
@@ -76,4 +76,4 @@ def test_the_remedy_is_told(words: str, told: str) -> None:
     ],
 )
 def test_below_a_list_its_names_are_not_told(hint: str, told: str) -> None:
-    assert in_a_list(TuisimError("no mat 'lop'", hint)) == told
+    assert shorten_error(TuisimError("no mat 'lop'", hint)) == told

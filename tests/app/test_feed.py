@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tuisim.app.feed import PanelFeed, _thinned, _with_gaps, sample_series
+from tuisim.app.feed import PanelFeed, _insert_gaps, _thin_positions, sample_series
 from tuisim.app.snapshot import CHART_PERIOD_S, RunPhase
 from tuisim.engine.runs.records import OutputRow, Stream
 
@@ -26,7 +26,7 @@ class Panels:
         self.on_screen = False
         self.got: list[tuple[str, list[float], bool]] = []
 
-    def shown(self, panel: str) -> bool:
+    def is_shown(self, panel: str) -> bool:
         assert panel == "chart"
         return self.on_screen
 
@@ -81,7 +81,7 @@ def test_a_chart_gets_telemetry_as_often_as_it_is_drawn(
     runs: Any = SimpleNamespace(
         timeline=SimpleNamespace(recording=None, at=None),
         state=RunPhase.RUNNING,
-        mat_for=lambda _: object(),
+        find_mat=lambda _: object(),
     )
     feed._feed, feed._runs, panels.on_screen = telemetry, runs, True
     now_s = 100.0
@@ -108,11 +108,11 @@ def test_samples_are_at_the_time_that_they_carry() -> None:
 
 
 def test_a_long_stretch_is_thinned_and_keeps_its_end() -> None:
-    assert _thinned(3, 6, 5) == [3, 4, 5]
-    assert _thinned(0, 10, 4) == [1, 4, 6, 9]
+    assert _thin_positions(3, 6, 5) == [3, 4, 5]
+    assert _thin_positions(0, 10, 4) == [1, 4, 6, 9]
 
 
 def test_a_placement_leaves_a_gap_in_the_trace() -> None:
-    xs, ys = _with_gaps(np.array([1.0, 2.0, 9.0]), np.array([0.0, 0.0, 0.0]), np.array([0, 0, 1]))
+    xs, ys = _insert_gaps(np.array([1.0, 2.0, 9.0]), np.array([0.0, 0.0, 0.0]), np.array([0, 0, 1]))
     np.testing.assert_array_equal(xs, [1.0, 2.0, np.nan, 9.0])
     assert len(ys) == 4

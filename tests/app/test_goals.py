@@ -187,7 +187,9 @@ async def test_goals_are_opened_with_their_world_and_closed_with_the_next(task: 
         await pilot.press("R")
         await until_state(pilot, RunPhase.ENDED)
         await open_path(pilot, app, task.name)
-        await until(pilot, lambda: app.panel_area.shown("goals") and state(app, "said") == "· open")
+        await until(
+            pilot, lambda: app.panel_area.is_shown("goals") and state(app, "said") == "· open"
+        )
         assert app.run_controller.next_run.spec.world.start.x_mm == 300
         assert app.loader.world_file == Path(task.name)
         # The run before was for another task.
@@ -245,13 +247,13 @@ async def test_nothing_is_judged_while_the_panel_is_closed(
     task: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     judged = []
-    judge = app_goals._judged
+    judge = app_goals._judge_run
 
     def noted(*given: Any) -> Any:
         judged.append(given)
         return judge(*given)
 
-    monkeypatch.setattr(app_goals, "_judged", noted)
+    monkeypatch.setattr(app_goals, "_judge_run", noted)
     async with open_lab(with_goals(task, DRIVES, panels_on=frozenset()), size=SIZE) as (pilot, app):
         await pilot.press("R")
         await until_state(pilot, RunPhase.ENDED)

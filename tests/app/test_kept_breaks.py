@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tuisim.app.kept_breaks import Kept, following, keep, load_kept
+from tuisim.app.kept_breaks import StoredBreaks, follow_edit, keep, load_kept
 from tuisim.engine.breakpoints import parse_breakpoints
 
 
@@ -20,11 +20,11 @@ from tuisim.engine.breakpoints import parse_breakpoints
 )
 def test_breaks_follow_their_lines(before: str, now: str, expected: list[str]) -> None:
     breaks = parse_breakpoints(("2", "3 if x", "time 3"))
-    assert [one.text for one in following(breaks, before, now)] == [*expected, "time 3"]
+    assert [one.text for one in follow_edit(breaks, before, now)] == [*expected, "time 3"]
 
 
 def test_what_is_kept_comes_back(home: object) -> None:
-    kept = Kept(parse_breakpoints(("12 if x > 3", "# time 3.5")), ("len(x)",))
+    kept = StoredBreaks(parse_breakpoints(("12 if x > 3", "# time 3.5")), ("len(x)",))
     keep("/some/where.py", kept)
     assert load_kept("/some/where.py") == kept
-    assert load_kept("/else/where.py") == Kept()
+    assert load_kept("/else/where.py") == StoredBreaks()

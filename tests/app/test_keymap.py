@@ -10,7 +10,7 @@ from tests.app.app_help import LOGS, notices, open_lab, screen_text, until, unti
 from tests.cases import cases
 from tuisim.app.actions.keys import ACTIONS
 from tuisim.app.guide.screen import GuideScreen
-from tuisim.app.keymap import with_keys
+from tuisim.app.keymap import apply_keys
 from tuisim.guide import tables
 from tuisim.settings.user_config import UserConfig
 
@@ -29,7 +29,7 @@ from tuisim.settings.user_config import UserConfig
 def test_keys_are_those_of_the_user(
     keys: dict[str, tuple[str, ...]], written: dict[str, str]
 ) -> None:
-    found = with_keys(ACTIONS, UserConfig(Path("config.toml"), keys=keys))
+    found = apply_keys(ACTIONS, UserConfig(Path("config.toml"), keys=keys))
     assert {
         name: action.key for name, action in found.items() if action != ACTIONS[name]
     } == written

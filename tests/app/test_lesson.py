@@ -47,7 +47,7 @@ async def test_a_question_is_answered_by_its_key_while_the_panel_of_the_place_is
         app.lesson.skip_step()
         app.lesson.skip_step()
         await pilot.press("X")
-        await until(pilot, lambda: app.panel_area.focused_panel() == "positioning")
+        await until(pilot, lambda: app.panel_area.find_focused_panel() == "positioning")
         x_mm = app.query_one("#x", Input)
         before = x_mm.value
         await type_answer(pilot, app, "502")
@@ -76,7 +76,7 @@ async def test_panel_of_a_paused_program(tmp_path: Path) -> None:
         app.lesson.skip_step()
         app.lesson.skip_step()
         await pilot.press("G")
-        await until(pilot, lambda: app.panel_area.shown("debug"))
+        await until(pilot, lambda: app.panel_area.is_shown("debug"))
         app.lesson.update()
         assert "do" not in states()
         await pilot.press("n")
@@ -156,7 +156,7 @@ async def test_lesson_is_in_sight_and_scrolls_while_one_types_in_a_small_termina
         assert code.typing
         assert code.cursor_line == cursor
         await pilot.press("escape")
-        await until(pilot, lambda: app.panel_area.shown("world"))
+        await until(pilot, lambda: app.panel_area.is_shown("world"))
 
 
 async def test_way_to_the_next_lesson_is_in_sight_in_a_small_terminal(tmp_path: Path) -> None:
@@ -188,7 +188,7 @@ async def test_a_lesson_that_is_opened_again_shows_the_last_run_of_its_program(
         assert program_of(app).path == str(path)
         assert "Do it" in shown(app)
         # It has counted when it was made.
-        app.lesson.start_over()
+        app.lesson.restart_lesson()
         await pilot.pause()
         assert states() == {}
     path.write_text(path.read_text() + "x = 2\n")

@@ -138,13 +138,13 @@ async def test_panels_of_a_magic_line_come_and_go_as_it_is_saved(
 ) -> None:
     path = folder / "mine.py"
     async with open_lab(with_file(path)) as (pilot, app):
-        before = app.panel_area.shown(panel)
+        before = app.panel_area.is_shown(panel)
         path.write_text(with_magic(words))
         look(app)
-        await until(pilot, lambda: app.panel_area.shown(panel) is shown)
+        await until(pilot, lambda: app.panel_area.is_shown(panel) is shown)
         path.write_text(with_magic(""))
         look(app)
-        await until(pilot, lambda: app.panel_area.shown(panel) is before)
+        await until(pilot, lambda: app.panel_area.is_shown(panel) is before)
 
 
 @pytest.mark.slow
@@ -152,7 +152,7 @@ async def test_panels_of_a_magic_line_come_as_a_program_is_opened(folder: Path) 
     (folder / "mine.py").write_text(with_magic(" -cu --speed 2"))
     async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
         app = await open_path(pilot, "mine.py")
-        assert app.panel_area.shown("chart")
+        assert app.panel_area.is_shown("chart")
         assert app.panel_area.world is not None
         assert app.panel_area.world.show_rays
         assert app.run_controller.speed == 2

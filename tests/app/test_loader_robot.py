@@ -102,13 +102,13 @@ async def test_a_chosen_profile_that_does_not_fit_the_program_is_told_when_it_is
     claw: Path,
 ) -> None:
     async with open_lab(opened(claw)) as (pilot, app):
-        app.loader.attempt(lambda plan: plans.change_profile(plan, "pybricks4"))
+        app.loader.try_change(lambda plan: plans.change_profile(plan, "pybricks4"))
         await until(pilot, lambda: app.loader.mat_is_ready)
         await pilot.press("R")
         misfit = "claw.py uses ev3dev2, and the profile pybricks4 is for pybricks"
         await until(pilot, lambda: any(misfit in notice for notice in notices(app)))
         assert app.run_controller.run is None
-        app.loader.attempt(lambda plan: plans.change_profile(plan, "ev3"))
+        app.loader.try_change(lambda plan: plans.change_profile(plan, "ev3"))
         await until(pilot, lambda: app.loader.mat_is_ready)
         await pilot.press("R")
         await until(pilot, lambda: stored_profile(app) == "ev3")

@@ -61,7 +61,7 @@ def fits(text: Static) -> bool:
 @pytest.mark.slow
 async def test_nothing_is_cut_in_any_layout(size: tuple[int, int]) -> None:
     async with open_lab(LOGS, autorun=True, speed=0.0, size=size) as (pilot, app):
-        await until(pilot, lambda: app.run_controller.snapshot().end == End.FINISHED)
+        await until(pilot, lambda: app.run_controller.build_snapshot().end == End.FINISHED)
         for keys in ((), *((key,) for key in KEYS.values())):
             await pilot.press(*keys)
             await pilot.pause(0.2)
@@ -93,13 +93,13 @@ async def test_the_world_is_as_large_as_its_panel(size: tuple[int, int]) -> None
 async def test_the_panel_with_the_focus_stays_when_the_keyboard_of_a_phone_takes_room() -> None:
     async with open_lab(LOGS, size=(64, 60)) as (pilot, app):
         area = app.panel_area
-        await until(pilot, lambda: area.shown("code"))
-        area.attend("code")
-        await until(pilot, lambda: area.focused_panel() == "code")
+        await until(pilot, lambda: area.is_shown("code"))
+        area.focus_opened("code")
+        await until(pilot, lambda: area.find_focused_panel() == "code")
         for rows in (56, 40, 30, 60):
             await pilot.resize_terminal(64, rows)
             await until(pilot, lambda rows=rows: area.size.height == rows - 1)  # type: ignore[misc]
-            assert (area.shown("code"), area.focused_panel()) == (True, "code"), rows
+            assert (area.is_shown("code"), area.find_focused_panel()) == (True, "code"), rows
 
 
 async def test_a_large_terminal_edits_in_a_high_panel_beside_the_world() -> None:

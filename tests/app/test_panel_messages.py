@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tests.app.app_help import notices, open_lab, until
-from tuisim.app.panel_messages import looks_at_buttons
+from tuisim.app.panel_messages import has_button_calls
 from tuisim.app.snapshot import RunPhase
 
 DRAWS = "from ev3dev2.display import Display\nDisplay().update()\n"
@@ -25,7 +25,7 @@ DRAWS = "from ev3dev2.display import Display\nDisplay().update()\n"
     ],
 )
 def test_a_program_that_looks_at_the_buttons(text: str, expected: bool) -> None:
-    assert looks_at_buttons(text) == expected
+    assert has_button_calls(text) == expected
 
 
 async def test_the_panel_is_named_once_while_it_is_hidden() -> None:

@@ -27,13 +27,13 @@ async def _open_and_close(pilot: Pilot[Any], panel: str) -> None:
     app, (key, words) = lab(pilot), EMPTY[panel]
     if key:
         await pilot.press(key)
-        await until(pilot, lambda: app.panel_area.shown(panel), panel)
+        await until(pilot, lambda: app.panel_area.is_shown(panel), panel)
     # The keys of the panel itself are shown while it has the focus.
     app.set_focus(None)
     await until(pilot, lambda: _has(screen_text(app), words), panel)
     if key:
         await pilot.press(key)
-        await until(pilot, lambda: not app.panel_area.shown(panel), panel)
+        await until(pilot, lambda: not app.panel_area.is_shown(panel), panel)
 
 
 @pytest.mark.parametrize("size", [(80, 24), (120, 40)], ids=["80", "120"])

@@ -57,9 +57,9 @@ def _move_all(plan: NextRun, profile: str) -> NextRun:
 async def _open_again(pilot: Pilot[None], app: LabApp) -> None:
     """Close the chart and open it: then it is drawn anew, with the whole run."""
     app.panel_area.request({"chart": False})
-    await until(pilot, lambda: not app.panel_area.shown("chart"))
+    await until(pilot, lambda: not app.panel_area.is_shown("chart"))
     app.panel_area.request({"chart": True})
-    await until(pilot, lambda: app.panel_area.shown("chart") and not app.feed.is_behind)
+    await until(pilot, lambda: app.panel_area.is_shown("chart") and not app.feed.is_behind)
     await until(pilot, lambda: not app.screen.query_one(Chart)._dirty)
     await until(pilot, lambda: "86.27" in "".join(_texts(app)["chart"]), "86.27 in the chart")
 
@@ -91,6 +91,6 @@ async def test_no_panel_of_a_run_follows_the_settings_of_the_next(profile: str) 
         await until(pilot, lambda: app.loader.mat_is_ready)
         await _open_again(pilot, app)
         await until(pilot, lambda: _of_run(app) == at_end, "the texts at the end")
-        assert app.run_controller.snapshot().time_s == pytest.approx(5.51, abs=0.02)
+        assert app.run_controller.build_snapshot().time_s == pytest.approx(5.51, abs=0.02)
         await _go_to_past(pilot, app)
         await until(pilot, lambda: _texts(app) == in_past, "the texts in the past")

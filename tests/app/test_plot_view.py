@@ -14,7 +14,7 @@ from tests.terminal.pixel_help import ANSWERS, answered, drawn_by, on_canvas, pa
 from tuisim.app.app import LabApp
 from tuisim.app.panels.chart import Chart
 from tuisim.app.plot_view import PlotView
-from tuisim.app.screenshot import screen_cells
+from tuisim.app.screenshot import collect_cells
 from tuisim.terminal.picture_mode import Sharpness
 from tuisim.terminal.picture_options import AUTO, CellSet, Protocol
 from tuisim.terminal.queries import TerminalAnswered, parse_facts
@@ -60,7 +60,7 @@ async def test_the_chart_is_what_was_drawn(protocol: Protocol) -> None:
 def _characters(pilot: Pilot[Any], view: PlotView) -> str:
     """Return the characters of a screenshot where a chart is."""
     x, y, width, height = view.content_region
-    lines = ["".join(text for text, _ in row) for row in screen_cells(pilot.app)]
+    lines = ["".join(text for text, _ in row) for row in collect_cells(pilot.app)]
     return "".join(line[x : x + width] for line in lines[y : y + height])
 
 

@@ -48,6 +48,6 @@ def test_reasons_of_a_run_that_is_no_longer_in_view_are_dropped() -> None:
     tour.take(first, REASONS, None)
     assert tour.reasons == ()
     runs: Any = SimpleNamespace(timeline=SimpleNamespace(recording=second), earlier=None)
-    assert not tour.are_of(runs)
+    assert not tour.has_gone_wrong(runs)
     tour.take(second, REASONS, None)
-    assert tour.are_of(runs)
+    assert tour.has_gone_wrong(runs)

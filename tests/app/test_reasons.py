@@ -55,7 +55,7 @@ async def test_it_goes_to_each_reason_and_back_to_the_end() -> None:
         await ask(pilot, app, "the robot left the path of run")
         assert timeline.at is not None
         assert 0 < timeline.tick < 30
-        assert app.run_controller.snapshot().earlier_pose is not None
+        assert app.run_controller.build_snapshot().earlier_pose is not None
         await ask(pilot, app, "This is the end of the run again; ! goes to the first reason")
         assert timeline.at is None
 
@@ -88,7 +88,7 @@ async def test_the_answer_stays_until_a_key_does_something() -> None:
 async def test_the_arrow_stays_on_the_line_of_the_reason() -> None:
     async with open_lab(LEAVES_THE_MAT, speed=0.0, size=SIZE) as (pilot, app):
         await pilot.press("R")
-        await until(pilot, lambda: app.run_controller.snapshot().time_s > 20.0)
+        await until(pilot, lambda: app.run_controller.build_snapshot().time_s > 20.0)
         await pilot.press("S")
         await until_state(pilot, RunPhase.ENDED)
         await until(pilot, lambda: bool(app.context.reasons.reasons))
@@ -155,7 +155,7 @@ async def test_a_program_that_goes_on_is_paused_and_it_says_what_that_waits_for(
 ) -> None:
     async with open_lab(text, speed=0.0, size=SIZE) as (pilot, app):
         await pilot.press("R")
-        await until(pilot, lambda: app.run_controller.snapshot().time_s > 20.0)
+        await until(pilot, lambda: app.run_controller.build_snapshot().time_s > 20.0)
         assert "! wrong?" in screen_text(app)
         await ask(pilot, app, words)
         await until_state(pilot, RunPhase.PAUSED)

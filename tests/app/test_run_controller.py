@@ -57,19 +57,19 @@ async def test_pause_one_tick_go_on_and_stop() -> None:
             pilot,
             lambda: (
                 app.run_controller.state == RunPhase.RUNNING
-                and app.run_controller.snapshot().instant.tick > 5
+                and app.run_controller.build_snapshot().instant.tick > 5
             ),
         )
         await pilot.press("space")
         await until_state(pilot, RunPhase.PAUSED)
-        tick = app.run_controller.snapshot().instant.tick
+        tick = app.run_controller.build_snapshot().instant.tick
         await pilot.press("full_stop")
-        await until(pilot, lambda: app.run_controller.snapshot().instant.tick == tick + 1)
+        await until(pilot, lambda: app.run_controller.build_snapshot().instant.tick == tick + 1)
         await pilot.press("space")
-        await until(pilot, lambda: app.run_controller.snapshot().instant.tick > tick + 5)
+        await until(pilot, lambda: app.run_controller.build_snapshot().instant.tick > tick + 5)
         await pilot.press("S")
         await until_state(pilot, RunPhase.ENDED)
-        assert app.run_controller.snapshot().end == "stopped"
+        assert app.run_controller.build_snapshot().end == "stopped"
 
 
 async def test_the_robot_can_be_placed_during_a_run() -> None:
@@ -83,7 +83,10 @@ async def test_the_robot_can_be_placed_during_a_run() -> None:
         last = recording.telemetry.last()
         assert last is not None
         # The recording ends in the middle of the drive; what is shown is a robot that stands.
-        assert (last.left_speed_dps > 0, app.run_controller.snapshot().instant.left_speed_dps) == (
+        assert (
+            last.left_speed_dps > 0,
+            app.run_controller.build_snapshot().instant.left_speed_dps,
+        ) == (
             True,
             0.0,
         )
@@ -110,7 +113,7 @@ async def test_an_error_opens_the_code_at_its_line() -> None:
     text = "\n" * 40 + "print(nothing)\n"
     async with open_lab(text, autorun=True, size=(80, 24)) as (pilot, app):
         await until_shown(pilot, "✗41 print(nothing)")
-        assert app.panel_area.shown("output")
+        assert app.panel_area.is_shown("output")
 
 
 async def test_an_error_is_readable_in_a_small_terminal_until_the_next_run() -> None:
@@ -118,7 +121,7 @@ async def test_an_error_is_readable_in_a_small_terminal_until_the_next_run() -> 
     parts = "NameError: name 'nothing' is ", "not defined"
     async with open_lab("print('A: 1')\nprint(nothing)\n", size=(80, 24)) as (pilot, app):
         await pilot.press("O", "O")
-        assert not app.panel_area.shown("output")
+        assert not app.panel_area.is_shown("output")
         await pilot.press("R")
         await until(pilot, lambda: all(part in screen_text(app) for part in parts))
         await until_state(pilot, RunPhase.ENDED)
@@ -151,7 +154,7 @@ async def test_a_flood_of_prints_leaves_the_app_usable() -> None:
     async with open_lab(flood, autorun=True) as (pilot, app):
         await until_state(pilot, RunPhase.RUNNING)
         await pilot.press("D", "D")
-        assert not app.panel_area.shown("code")
+        assert not app.panel_area.is_shown("code")
         await until_shown(pilot, "line 199999")
 
 

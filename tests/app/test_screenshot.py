@@ -11,7 +11,7 @@ from PIL import Image
 
 from tests.app.app_help import notices, open_lab, until
 from tuisim.app.app import LabApp
-from tuisim.app.screenshot import screen_cells
+from tuisim.app.screenshot import collect_cells
 from tuisim.terminal.cell_image import CELL_PX
 
 GREY = (128, 128, 128)
@@ -39,7 +39,7 @@ def _in_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 async def test_a_key_saves_the_screen_and_names_the_files(tmp_path: Path) -> None:
     async with open_lab(size=(100, 30)) as (pilot, app):
         await until(
-            pilot, lambda: any(look.ink == GREY for row in screen_cells(app) for _, look in row)
+            pilot, lambda: any(look.ink == GREY for row in collect_cells(app) for _, look in row)
         )
         for number, key in enumerate(("I", "f12"), 1):
             await pilot.press(key)

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from tests.app.panel_help import moment
-from tuisim.app.snapshot import AppState, RunPhase, Situation, short_value
+from tuisim.app.snapshot import AppState, RunPhase, Situation, shorten_value
 from tuisim.engine.protocol import End, Unended
 
 
@@ -55,4 +55,4 @@ def test_the_status_tells_phase_speed_and_past(
     ],
 )
 def test_numbers_of_many_decimals_get_four_digits(text: str, expected: str) -> None:
-    assert short_value(text) == expected
+    assert shorten_value(text) == expected

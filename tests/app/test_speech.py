@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from tests.running import PATIENCE_S
-from tuisim.app.speech import MAX_SOUND_S, RATE_HZ, Voice, wav_of
+from tuisim.app.speech import MAX_SOUND_S, RATE_HZ, Voice, build_wav
 from tuisim.engine.protocol import Spoke
 
 
@@ -23,7 +23,7 @@ def samples(data: bytes) -> array[int]:
 
 
 def test_a_tone_has_its_length_pitch_and_pause() -> None:
-    made = samples(wav_of([[441.0, 1000.0, 500.0]]))
+    made = samples(build_wav([[441.0, 1000.0, 500.0]]))
     assert len(made) == RATE_HZ * 3 // 2
     crossings = sum(a < 0 <= b for a, b in pairwise(made))
     assert abs(crossings - 441) <= 2
@@ -32,8 +32,8 @@ def test_a_tone_has_its_length_pitch_and_pause() -> None:
 
 @pytest.mark.slow
 def test_silence_and_the_longest_sound() -> None:
-    assert not any(samples(wav_of([[0.0, 100.0, 0.0]])))
-    assert len(samples(wav_of([[100.0, 1e9, 1e9], [100.0, 1e9, 0.0]]))) == int(
+    assert not any(samples(build_wav([[0.0, 100.0, 0.0]])))
+    assert len(samples(build_wav([[100.0, 1e9, 1e9], [100.0, 1e9, 0.0]]))) == int(
         MAX_SOUND_S * RATE_HZ
     )
 

@@ -12,7 +12,7 @@ from tests.app.app_help import LOGS, open_lab, screen_text, until
 from tests.app.monkey import at_once
 from tests.app.terminals import Terminal
 from tuisim.app.guide.screen import GuideScreen
-from tuisim.app.terminal_app import MINIMUM, is_too_small, message_lines
+from tuisim.app.terminal_app import MINIMUM, build_message, is_too_small
 
 SIZES = [
     Size(width, height)
@@ -23,7 +23,7 @@ SIZES = [
 
 def test_the_message_fits_in_every_size() -> None:
     for size in filter(is_too_small, SIZES):
-        lines = message_lines(size)
+        lines = build_message(size)
         assert len(lines) <= size.height and max(map(len, lines)) <= size.width, size
 
 
@@ -41,7 +41,7 @@ def test_the_message_fits_in_every_size() -> None:
     ids=["20x5", "39x40", "12x3", "9x1"],
 )
 def test_the_message_says_as_much_as_fits(size: Size, expected: str) -> None:
-    assert " ".join(message_lines(size)) == expected
+    assert " ".join(build_message(size)) == expected
 
 
 @pytest.mark.quick_cases("20x5")

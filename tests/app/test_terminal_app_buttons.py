@@ -34,12 +34,12 @@ async def test_an_action_that_no_page_has_is_ignored() -> None:
     async with open_lab(ENDLESS) as (pilot, app):
         app.post_message(ActionAsked("__init__"))
         app.post_message(ActionAsked("panel-chart"))
-        await until(pilot, lambda: app.panel_area.shown("chart"))
+        await until(pilot, lambda: app.panel_area.is_shown("chart"))
 
 
 async def test_a_click_on_the_empty_panel_of_lessons_offers_them() -> None:
     async with open_lab(ENDLESS, panels_on=frozenset({"lesson"})) as (pilot, app):
-        await until(pilot, lambda: app.panel_area.shown("lesson"))
+        await until(pilot, lambda: app.panel_area.is_shown("lesson"))
         await pilot.click(app.panel_area.lesson, offset=(5, 5))
         await until(pilot, lambda: isinstance(app.screen, Chooser))
 
@@ -49,7 +49,7 @@ async def test_a_button_says_that_it_does_nothing_above_the_lab() -> None:
     async with open_lab(LOGS) as (pilot, app):
         app.post_message(ActionAsked("run"))
         await until(
-            pilot, lambda: app.situation().has_run and app.run_controller.state not in IN_RUN
+            pilot, lambda: app.find_situation().has_run and app.run_controller.state not in IN_RUN
         )
         app.post_message(ActionAsked("analyse"))
         await until(pilot, lambda: isinstance(app.screen, Analyser))

@@ -171,7 +171,7 @@ async def test_the_first_frame_of_a_run_waits_for_its_first_tick(
         drawn: list[tuple[RunPhase, bool]] = []
 
         def note() -> None:
-            now = app.run_controller.snapshot()
+            now = app.run_controller.build_snapshot()
             drawn.append((now.state, now.instant.tick > 0))
 
         monkeypatch.setattr(app.pacer, "drawn", note)

@@ -18,7 +18,14 @@ import tuisim.app
 from tests.app.app_help import LOGS, open_lab, settings, until
 from tuisim.app.app import LabApp
 from tuisim.app.dialogs.palette import ThemeChooser
-from tuisim.app.themes import HIGH_CONTRAST, LIGHT, OWN_THEME, UNUSED_THEMES, ThemeColors, contrast
+from tuisim.app.themes import (
+    HIGH_CONTRAST,
+    LIGHT,
+    OWN_THEME,
+    UNUSED_THEMES,
+    ThemeColors,
+    measure_contrast,
+)
 from tuisim.base import palette
 from tuisim.pictures.charts.traces import TRACE_COLORS
 
@@ -85,7 +92,9 @@ def test_text_can_be_read_under_any_theme(theme: object) -> None:
     traces = [f"#{red:02x}{green:02x}{blue:02x}" for red, green, blue in TRACE_COLORS]
 
     for text, ground in itertools.product([*TEXT, *traces], GROUNDS):
-        assert contrast(*shown(colors, Style(color=text, bgcolor=ground))) >= least - 0.05, (
+        assert (
+            measure_contrast(*shown(colors, Style(color=text, bgcolor=ground))) >= least - 0.05
+        ), (
             text,
             ground,
         )

@@ -98,7 +98,7 @@ async def test_a_former_instant_is_shown_as_it_was() -> None:
             speed=0.0,
             pen_down=False,
         )
-        shown = app.run_controller.snapshot()
+        shown = app.run_controller.build_snapshot()
         assert replace(shown, **OF_NOW, past=False, now_tick=0) == expected
         last = recording.telemetry.last()
         assert last is not None
@@ -283,7 +283,7 @@ async def test_commands_are_marked_and_found_and_told() -> None:
     async with a_run() as (pilot, app):
         timeline, commands = app.run_controller.timeline, recording_of(app).commands
         ticks = [commands.tick(number) for number in commands.find_events()]
-        assert len(ticks) >= 2 and (ticks[0], Mark.COMMAND) in timeline.marks()
+        assert len(ticks) >= 2 and (ticks[0], Mark.COMMAND) in timeline.list_marks()
         stops = [commands.tick(number) for number in commands.find_events("stop")]
         timeline.go(1)
         assert find("command stop", timeline) == min(tick for tick in stops if tick > 1)
@@ -336,7 +336,7 @@ async def test_a_refusal_in_a_low_terminal_leaves_the_keys_in_view() -> None:
 def test_a_timeline_without_a_run_stands_still() -> None:
     timeline = Timeline()
     timeline.step(-1)
-    assert (timeline.at, timeline.record(), timeline.marks()) == (None, None, [])
+    assert (timeline.at, timeline.record(), timeline.list_marks()) == (None, None, [])
     assert not timeline.advance_playback(1.0, 1.0)
     with pytest.raises(ConfigError, match="no run yet"):
         find("1", timeline)

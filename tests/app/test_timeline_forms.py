@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from tuisim.app.timeline import forms
+from tuisim.app.timeline import list_forms
 
 
 @pytest.mark.parametrize("tick, which", [(3, "the next"), (10, "the first")], ids=["past", "end"])
@@ -16,6 +16,6 @@ def test_they_say_in_which_direction_the_search_goes(tick: int, which: str) -> N
 
     assert all(
         which in meaning
-        for form, meaning in forms(timeline)
+        for form, meaning in list_forms(timeline)
         if form.startswith(("line", "sample", "print"))
     )

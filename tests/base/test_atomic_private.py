@@ -12,7 +12,7 @@ import pytest
 from tests.conftest import Command
 from tuisim.analysis.source import Note, find_notes_file, write_notes
 from tuisim.app.editor.text_file import keep_draft
-from tuisim.app.kept_breaks import Kept, keep
+from tuisim.app.kept_breaks import StoredBreaks, keep
 from tuisim.app.setup.poses import save_pose
 from tuisim.engine.core.geometry import Pose
 
@@ -32,7 +32,7 @@ def test_home_is_private_and_exports_are_as_the_umask_says(
     program.write_text("tank_drive.on_for_seconds(20, 30, 0.1)\nprint('a: 1')\n")
     assert here("run", "p.py", "--press", "enter@0.05", "--export", "a.csv").returncode == 0
     keep_draft(str(program), "x")
-    keep(str(program), Kept())
+    keep(str(program), StoredBreaks())
     save_pose("here", Pose(1.0, 2.0, 3.0))
     write_notes(find_notes_file(tmp_path / "a.csv"), [Note("x", 0.0, 0.0)])
     rights = {path: stat.S_IMODE(path.stat().st_mode) for path in (home, *home.rglob("*"))}

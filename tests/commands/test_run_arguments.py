@@ -198,7 +198,7 @@ def test_a_branch_has_the_arguments_and_modules_of_its_run(stored: Path) -> None
     edited = Program("uses.py", "# edited\n" + USES, path=run.program.path)
     branch = Branch(Recording(run), 0, edited, None, goes_on=False)
     runs = RunController(None, plan_rerun(run.spec), 0.0)
-    runs.branch(branch)
+    runs.start_branch(branch)
     assert runs.run is not None
     with closing(runs.run) as handle:
         until_line(handle)
@@ -244,7 +244,7 @@ async def test_the_app_gives_arguments_that_can_be_edited(folder: Path) -> None:
         edit = find(app.run_controller.next_run, "arguments")
         assert edit is not None
         assert edit.read(app.run_controller.next_run) == "A 'B C'"
-        assert app.loader.attempt(lambda plan: edit.write(plan, "X 'Y Z'"))
+        assert app.loader.try_change(lambda plan: edit.write(plan, "X 'Y Z'"))
         await pilot.press("R")
         await until(
             pilot,
@@ -254,7 +254,7 @@ async def test_the_app_gives_arguments_that_can_be_edited(folder: Path) -> None:
         assert run.program.arguments == ("X", "Y Z")
         assert app.run_controller.timeline.recording is not None
         assert app.run_controller.timeline.recording.program.arguments == ("X", "Y Z")
-        assert not app.loader.attempt(lambda plan: edit.write(plan, "'open"))
+        assert not app.loader.try_change(lambda plan: edit.write(plan, "'open"))
         (folder / "q.py").write_text(SHOWS)
         app.loader.open_file(str(folder / "q.py"))
         assert app.run_controller.next_run.settings["arguments"] == ()

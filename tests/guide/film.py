@@ -17,7 +17,7 @@ from textual.pilot import Pilot
 from tests.app.app_help import lab, ready
 from tests.conftest import ROOT
 from tuisim.app.app import AppSettings, LabApp
-from tuisim.app.screenshot import screen_cells
+from tuisim.app.screenshot import collect_cells
 from tuisim.app.snapshot import RunPhase
 from tuisim.app.terminal_app import picture_mode_at_start
 from tuisim.base.source import Program
@@ -72,9 +72,9 @@ async def _watch(pilot: Pilot[Any], key: str, seconds: float) -> AsyncIterator[F
     next_s = time.monotonic()
     end_s = next_s + seconds
     while next_s < end_s:
-        yield time.monotonic(), screen_cells(pilot.app)
+        yield time.monotonic(), collect_cells(pilot.app)
         next_s = max(next_s + FRAME_S, time.monotonic())
-        if lab(pilot).situation().state is RunPhase.RUNNING:
+        if lab(pilot).find_situation().state is RunPhase.RUNNING:
             end_s = next_s + seconds
         await asyncio.sleep(next_s - time.monotonic())
 

@@ -128,7 +128,7 @@ class AppSteps:
         if not controller.in_past or controller.mat is None or tick >= controller.timeline.newest:
             return
         # The line is the one that was run, until the debugger knows which one comes next.
-        view = controller.snapshot()
+        view = controller.build_snapshot()
         now = (
             view.instant,
             view.time_s,

@@ -12,7 +12,7 @@ import pandas as pd
 from tests.proof.kind import FaultError
 from tests.proof.run_model import RunModel, Seen, again
 from tests.running import PATIENCE_S
-from tuisim.app.branch import Branch, first_difference
+from tuisim.app.branch import Branch, find_first_difference
 from tuisim.base.errors import LogError, TuisimError
 from tuisim.base.source import Program
 from tuisim.engine.protocol import (
@@ -272,7 +272,7 @@ def _branch(model: RunModel, random: Random) -> None:
     run = model.follow(start_run(branch.runs, of.spec, options))
     model.store.tag(run.run_id, branch.tags)
     model.pump(run, lambda: run.paused or run.waiting_for_input is not None)
-    differs = first_difference(of, Recording(run, of.answers), branch.tick)
+    differs = find_first_difference(of, Recording(run, of.answers), branch.tick)
     if differs is not None and not (edited and differs > 0) and run.paused:
         raise FaultError(
             f"run {run.number}, a branch of {of.name} at {branch.tick}, differs at {differs}"

@@ -62,7 +62,7 @@ async def test_every_widget_is_told_its_size(
 ) -> None:
     async with open_lab(LOGS, size=size) as (pilot, app):
         await until(
-            pilot, lambda: app.panel_area.shown(last) and app.panel_area.panels[last].is_mounted
+            pilot, lambda: app.panel_area.is_shown(last) and app.panel_area.panels[last].is_mounted
         )
         await pilot.pause()
         laid_out = app.screen._compositor.full_map

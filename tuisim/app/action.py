@@ -110,7 +110,7 @@ def label_of_key(key: str) -> str:
     return f"⇧{label}" if modifier == "shift" else f"{modifier}+{label}" if modifier else label
 
 
-def key_bindings(actions: Iterable[Action[Any, Any]]) -> list[BindingType]:
+def build_bindings(actions: Iterable[Action[Any, Any]]) -> list[BindingType]:
     """Return the bindings of an `ActionHost`."""
     return [
         Binding(action.key, _call(action), action.title, show=False, priority=action.comes_first)
@@ -122,14 +122,14 @@ def _call(action: Action[Any, Any]) -> str:
     return f"act('{action.id}')"
 
 
-def with_keys_of(app: App[Any], text: str) -> str:
+def fill_keys(app: App[Any], text: str) -> str:
     """Return a text with the keys of an app in place of the ids in braces."""
-    return app.with_keys(text) if isinstance(app, ActionHost) else text
+    return app.fill_keys(text) if isinstance(app, ActionHost) else text
 
 
 def action_link(app: App[Any], action: str, word: str) -> str:
     """Return the markup of a word that runs an action when it is clicked, after the key of the action."""
-    key = escape_markup(with_keys_of(app, f"{{{action}}}"))
+    key = escape_markup(fill_keys(app, f"{{{action}}}"))
     return f"[@click=app.act('{action}')]{key} {word}[/]"
 
 
@@ -150,8 +150,8 @@ class ActionHost(DOMNode):
         calls = {_call(action) for action in changed}
         bindings = find_bindings(self).key_to_bindings
         for key, bound in [*bindings.items()]:
-            if kept := [one for one in bound if one.action not in calls]:
-                bindings[key] = kept
+            if kept_bindings := [binding for binding in bound if binding.action not in calls]:
+                bindings[key] = kept_bindings
             else:
                 del bindings[key]
         for action in changed:
@@ -161,7 +161,7 @@ class ActionHost(DOMNode):
                 )
         self.ACTIONS = actions
 
-    def situation(self) -> Any:
+    def find_situation(self) -> Any:
         """Return the state that decides which keys are available."""
 
     def action_target(self) -> Any:
@@ -172,7 +172,7 @@ class ActionHost(DOMNode):
         if is_leaving(self.app):
             return
         action = self.ACTIONS[name]
-        if reason := action.why_not(self.situation()):
+        if reason := action.why_not(self.find_situation()):
             self.say(reason)
             return
         try:
@@ -186,13 +186,13 @@ class ActionHost(DOMNode):
 
     def say(self, text: str) -> None:
         """Show a short notice, as long as it takes to read."""
-        self.app.notify(self.with_keys(text), markup=False)
+        self.app.notify(self.fill_keys(text), markup=False)
 
-    def with_keys(self, text: str) -> str:
+    def fill_keys(self, text: str) -> str:
         """Return a text with the key of each action in place of its id in braces, such as `{run}`."""
         return _ID.sub(
-            lambda found: (
-                self.ACTIONS[found[1]].key_label if found[1] in self.ACTIONS else found[0]
+            lambda match: (
+                self.ACTIONS[match[1]].key_label if match[1] in self.ACTIONS else match[0]
             ),
             text,
         )
@@ -224,10 +224,10 @@ CLICKED_KEYS: tuple[KeyWord, ...] = (("letters", "edit"), ("esc", "keys"), ("^p"
 """Keys after a click into the program: the next letter starts typing."""
 
 
-def panel_keys(focused: DOMNode | None) -> tuple[KeyWord, ...]:
+def find_panel_keys(focused: DOMNode | None) -> tuple[KeyWord, ...]:
     """Return the keys that a panel has for the footer, as `FOOTER_KEYS`, while the focus is in it; else nothing."""
     around = focused.ancestors_with_self if focused else ()
-    return next((one.FOOTER_KEYS for one in around if hasattr(one, "FOOTER_KEYS")), ())
+    return next((node.FOOTER_KEYS for node in around if hasattr(node, "FOOTER_KEYS")), ())
 
 
 BETWEEN_GROUPS = " │"
@@ -235,12 +235,14 @@ _FEWEST, _FEWEST_AT, _COLUMNS_FOR_ONE = 9, 80, 20
 """A footer has so many entries at so many columns, and one more for every further ones: more are not read."""
 
 
-def most_entries(columns: int) -> int:
+def find_max_entries(columns: int) -> int:
     """Return how many entries the footer of a terminal has at most."""
     return _FEWEST + max(0, columns - _FEWEST_AT) // _COLUMNS_FOR_ONE
 
 
-def fitting(actions: Sequence[Action[Any, Any]], width: int, most: int) -> list[Action[Any, Any]]:
+def fit_actions(
+    actions: Sequence[Action[Any, Any]], width: int, max_count: int
+) -> list[Action[Any, Any]]:
     """Return the actions that fit a footer, those of a group beside each other, the keys for help and for leaving last.
 
     Args:
@@ -249,27 +251,27 @@ def fitting(actions: Sequence[Action[Any, Any]], width: int, most: int) -> list[
         most: Entries.
     """
     always = [action for action in actions if action.id in _ALWAYS]
-    left = width - sum(map(_cells, always))
+    left = width - sum(map(_measure_action, always))
     groups: dict[str, list[Action[Any, Any]]] = {}
     for action in actions:
         if (
             not action.footer
             or action.id in _ALWAYS
-            or len(always) + sum(map(len, groups.values())) >= most
+            or len(always) + sum(map(len, groups.values())) >= max_count
         ):
             continue
-        cells = _cells(action) + (0 if action.group in groups else len(BETWEEN_GROUPS))
+        cells = _measure_action(action) + (0 if action.group in groups else len(BETWEEN_GROUPS))
         if cells <= left:
             left -= cells
             groups.setdefault(action.group, []).append(action)
     return [*chain.from_iterable(groups.values()), *always]
 
 
-def _cells(action: Action[Any, Any]) -> int:
-    return len(_key(action)) + len(action.footer) + 2
+def _measure_action(action: Action[Any, Any]) -> int:
+    return len(_find_key_label(action)) + len(action.footer) + 2
 
 
-def _key(action: Action[Any, Any]) -> str:
+def _find_key_label(action: Action[Any, Any]) -> str:
     return action.footer_key or action.key_label
 
 
@@ -292,7 +294,7 @@ async def press(screen: Screen[Any], key: str) -> None:
             return
 
 
-def _key_at(x: int, words: Iterable[KeyWord]) -> str:
+def _find_key(x: int, words: Iterable[KeyWord]) -> str:
     """Return the key whose words are at a column; empty if there is none."""
     end = 0
     for key, word in words:
@@ -325,14 +327,14 @@ class KeyFooter(ActionWords):
             self._of_dialog = keys
             self.refresh()
 
-    def key_of_dialog_at(self, x: int) -> str:
+    def find_dialog_key(self, x: int) -> str:
         """Return the display name of the dialog's key at a column of the row; empty if there is none."""
-        return _key_at(x, self._of_dialog)
+        return _find_key(x, self._of_dialog)
 
     @on(events.Click)
     async def press_key_of_field(self, event: events.Click) -> None:
         """Press the key of the text field whose word was clicked: a phone may lack it."""
-        if not self._of_dialog and (label := _key_at(event.x, self._typing)):
+        if not self._of_dialog and (label := _find_key(event.x, self._typing)):
             # The field keeps the focus.
             event.stop()
             await press(self.screen, _KEYS_OF_FIELDS.get(label, label.replace("^", "ctrl+")))
@@ -362,18 +364,20 @@ class KeyFooter(ActionWords):
         status = f" {self._status} " if self._status else ""
         key_style = self.get_component_rich_style("footer--key", partial=True)
         line = Text(no_wrap=True, end="")
-        most = most_entries(width)
-        for key, word in (self._of_dialog or self._typing)[:most]:
+        max_count = find_max_entries(width)
+        for key, word in (self._of_dialog or self._typing)[:max_count]:
             if len(line) + len(key) + len(word) + 2 <= width - len(status):
                 line.append(f" {key}", key_style)
                 line.append(f" {word}")
         actions = () if self._of_dialog else self._actions
-        shown = fitting(actions, width - len(status) - len(line), most - len(self._typing))
-        for before, action in zip([None, *shown], shown, strict=False):
+        shown_actions = fit_actions(
+            actions, width - len(status) - len(line), max_count - len(self._typing)
+        )
+        for before, action in zip([None, *shown_actions], shown_actions, strict=False):
             if before and before.group != action.group:
                 line.append(BETWEEN_GROUPS, Style(color=palette.LINE))
             meta = Style(meta={ACT: action.id})
-            line.append(f" {_key(action)}", key_style + meta)
+            line.append(f" {_find_key_label(action)}", key_style + meta)
             line.append(f" {action.footer}", meta)
         line.append(" " * max(0, width - len(status) - len(line)))
         name = "footer--failed" if self._failed else "footer--status"
@@ -385,7 +389,7 @@ COLUMN_CELLS = 50
 """A column of keys is not made narrower than this to fit another one next to it."""
 
 
-def key_table(groups: Mapping[str, Iterable[KeyWord]], width: int) -> Text:
+def build_key_table(groups: Mapping[str, Iterable[KeyWord]], width: int) -> Text:
     """Return every key by group, in as many columns as fit; a group without a name has no heading.
 
     Text that is laid out already: Textual would measure and draw a nested table several times.
@@ -395,7 +399,7 @@ def key_table(groups: Mapping[str, Iterable[KeyWord]], width: int) -> Text:
     columns = Table.grid(padding=(0, 2), expand=True)
     for _ in range(count):
         columns.add_column(ratio=1)
-    columns.add_row(*map(_column, _in_columns(rows, count)))
+    columns.add_row(*map(_build_column, _distribute_groups(rows, count)))
     text = Text(no_wrap=True)
     for segment in Console(width=width, color_system="truecolor").render(columns):
         text.append(segment.text, segment.style)
@@ -406,27 +410,27 @@ def key_table(groups: Mapping[str, Iterable[KeyWord]], width: int) -> Text:
 _Group = tuple[str, list[KeyWord]]
 
 
-def _in_columns(groups: list[_Group], count: int) -> list[list[_Group]]:
+def _distribute_groups(groups: list[_Group], count: int) -> list[list[_Group]]:
     """Distribute groups over columns, in their order, so that the longest column is as short as possible."""
 
-    def filled(most: int) -> list[list[_Group]]:
+    def fill_columns(max_rows: int) -> list[list[_Group]]:
         columns: list[list[_Group]] = [[]]
-        left = most
+        left = max_rows
         for name, keys in groups:
             rows = len(keys) + 2
             if rows > left and columns[-1]:
                 columns.append([])
-                left = most
+                left = max_rows
             columns[-1].append((name, keys))
             left -= rows
         return columns
 
-    lowest = next(most for most in range(1, 10_000) if len(filled(most)) <= count)
-    columns = filled(lowest)
+    lowest = next(max_rows for max_rows in range(1, 10_000) if len(fill_columns(max_rows)) <= count)
+    columns = fill_columns(lowest)
     return columns + [[] for _ in range(count - len(columns))]
 
 
-def _column(groups: list[_Group]) -> Table:
+def _build_column(groups: list[_Group]) -> Table:
     table = Table.grid(padding=(0, 2))
     table.add_column(justify="right", style="bold")
     table.add_column()
@@ -439,7 +443,7 @@ def _column(groups: list[_Group]) -> Table:
     return table
 
 
-def key_groups(actions: Iterable[Action[Any, Any]]) -> dict[str, list[KeyWord]]:
+def group_keys(actions: Iterable[Action[Any, Any]]) -> dict[str, list[KeyWord]]:
     """Return the keys of actions by the name of their group."""
     groups: dict[str, list[KeyWord]] = {}
     for action in actions:

@@ -22,8 +22,8 @@ from tuisim.app.action import (
     TYPING_KEYS,
     KeyFooter,
     KeyWord,
-    key_bindings,
-    panel_keys,
+    build_bindings,
+    find_panel_keys,
 )
 from tuisim.app.actions import ActionContext, time_travel
 from tuisim.app.actions.files import greet
@@ -37,19 +37,19 @@ from tuisim.app.actions.keys import (
 )
 from tuisim.app.actions.lesson import accept_page_keys, has_more_text
 from tuisim.app.background import enter, leave
-from tuisim.app.branch import branch_message
+from tuisim.app.branch import build_branch_message
 from tuisim.app.debugger import DebugController
 from tuisim.app.editor.document import Document
-from tuisim.app.error_words import remedy
+from tuisim.app.error_words import find_remedy
 from tuisim.app.feed import PanelFeed
 from tuisim.app.file_watch import PERIOD_S
 from tuisim.app.goals import GoalsController
-from tuisim.app.keymap import check_theme, with_keys
+from tuisim.app.keymap import apply_keys, check_theme
 from tuisim.app.lesson import LessonController
 from tuisim.app.loader import Loader
 from tuisim.app.notebook_cells import do_asked
 from tuisim.app.panel_area import PanelArea
-from tuisim.app.panel_messages import PanelMessages, looks_at_buttons
+from tuisim.app.panel_messages import PanelMessages, has_button_calls
 from tuisim.app.run_controller import ROWS_A_POLL, RunController
 from tuisim.app.run_update import RunUpdate
 from tuisim.app.setup import next_run as plans
@@ -88,9 +88,9 @@ if TYPE_CHECKING:
     from tuisim.terminal.app import ServerAsks
     from tuisim.terminal.pixels import Pixels
 
-AFTER_FIRST_PAINT_S = 0.05
+FIRST_PAINT_DELAY_S = 0.05
 """Large data is sent this much later: the screen is painted more than once at startup."""
-MOST_PROBLEMS = 3
+MAX_PROBLEMS = 3
 """So many errors of `config.toml` are shown."""
 _CURSOR_QUERY = "\x1b[6n"
 _REST_GAP_S = 0.25
@@ -161,7 +161,7 @@ class LabApp(PanelMessages):
     CSS_PATH = "tuisim.tcss"
     ACTIONS = ACTIONS
     BINDINGS: ClassVar[list[BindingType]] = [
-        *key_bindings(ACTIONS.values()),
+        *build_bindings(ACTIONS.values()),
         Binding("escape", "leave_field", "Leave a field", show=False),
     ]
 
@@ -207,16 +207,16 @@ class LabApp(PanelMessages):
 
     def _take_config(self, config: UserConfig) -> tuple[ConfigError, ...]:
         """Use the user's own keys; return everything that is wrong in the file."""
-        found = [*config.problems]
+        problems = [*config.problems]
         try:
-            self.take_keys(with_keys(ACTIONS, config))
+            self.take_keys(apply_keys(ACTIONS, config))
         except ConfigError as error:
-            found.append(error)
+            problems.append(error)
         try:
             check_theme(config)
         except ConfigError as error:
-            found.append(error)
-        return tuple(found)
+            problems.append(error)
+        return tuple(problems)
 
     def complain(self, error: TuisimError) -> None:
         """Show an error, also in the cell of a notebook that has caused it."""
@@ -225,7 +225,7 @@ class LabApp(PanelMessages):
 
     def _tell_config(self) -> None:
         """Tell what is wrong in `config.toml`, or what it decides about the run."""
-        for error in self._config_problems[:MOST_PROBLEMS]:
+        for error in self._config_problems[:MAX_PROBLEMS]:
             self.complain(error)
         if self.settings.from_config:
             self.say(f"From {FILE}: {', '.join(self.settings.from_config)}")
@@ -241,7 +241,7 @@ class LabApp(PanelMessages):
         if self.is_headless:
             self.pacer.asks = False
         self.handle_situation_change()
-        self.set_timer(AFTER_FIRST_PAINT_S, self._begin)
+        self.set_timer(FIRST_PAINT_DELAY_S, self._begin)
 
     def _begin(self) -> None:
         if is_leaving(self):
@@ -254,13 +254,13 @@ class LabApp(PanelMessages):
             self.loader.begin()
         self.document.begin(asks=not self.settings.welcomes)
         # Breakpoints apply, and are saved, whether or not a panel shows the program.
-        self.debugger.program_changed(self.run_controller.program)
+        self.debugger.load_breaks(self.run_controller.program)
         self.lesson.begin()
         self._tell_config()
         if self.settings.welcomes:
             greet(self.context)
         self._set_frame_gap(1 / self.settings.fps)
-        self.set_interval(_REST_GAP_S, self._seldom)
+        self.set_interval(_REST_GAP_S, self._run_seldom)
         self.set_interval(PERIOD_S, self.check_files)
         self.set_timer(_WARM_UP_AFTER_S, warm_up)
         self.tell_server("ready", program=self._program_name)
@@ -274,7 +274,7 @@ class LabApp(PanelMessages):
         """Reload the files that have changed on disk, or ask about those with unsaved edits."""
         self.loader.check_files(self.document.check_conflict)
 
-    def to_now(self) -> None:
+    def go_to_now(self) -> None:
         """Return from the past to the newest instant."""
         time_travel.go_to_now(self.context)
 
@@ -298,7 +298,7 @@ class LabApp(PanelMessages):
 
     # The world
 
-    def mat_ready(self, pixels: Pixels | None) -> None:
+    def show_mat(self, pixels: Pixels | None) -> None:
         """Show the image of the mat that has been prepared, unless it is shown already."""
         if pixels is not None and (world := self.panel_area.world):
             world.set_mat(pixels)
@@ -308,9 +308,9 @@ class LabApp(PanelMessages):
             if self.run_controller.program:
                 self.start_run()
 
-    def next_run_changed(self) -> None:
+    def show_next_run(self) -> None:
         """Update the panels after the plan of the next run has changed."""
-        self._introduce_program()
+        self._show_program()
         self.panel_area.show_next_run(self.run_controller.next_run)
         self.handle_situation_change()
         self.draw(force=True)
@@ -342,8 +342,8 @@ class LabApp(PanelMessages):
         self._set_frame_gap(_START_GAP_S)
         self.set_timer(_WARM_UP_AFTER_S, self.run_controller.prepare_next)
         self.run_changed()
-        if self.run_controller.program and looks_at_buttons(self.run_controller.program.text):
-            self.hint_at_brick("reads the brick's buttons")
+        if self.run_controller.program and has_button_calls(self.run_controller.program.text):
+            self.suggest_brick("reads the brick's buttons")
         return True
 
     def run_changed(self, last_words: str = "", error_line: int = 0) -> None:
@@ -375,7 +375,7 @@ class LabApp(PanelMessages):
             if self.lesson.lesson is not None:
                 self.lesson.update()
             # A frame that has to wait counts as drawn.
-            drew = self._awaits_first_tick() or not self.pacer.ready() or self.draw()
+            drew = self._is_starting() or not self.pacer.ready() or self.draw()
             if drew or news or self.debugger.busy:
                 self._wake()
         except TuisimError as error:
@@ -392,7 +392,7 @@ class LabApp(PanelMessages):
             self._frame_timer.stop()
         self._frame_timer = self.set_interval(gap_s, self._on_frame_timer)
 
-    def _awaits_first_tick(self) -> bool:
+    def _is_starting(self) -> bool:
         """Return whether the run is starting: a frame drawn now would delay the one that shows its first tick."""
         if not self._starting_until_s:
             return False
@@ -405,7 +405,7 @@ class LabApp(PanelMessages):
         self._set_frame_gap(1 / self.settings.fps)
         return False
 
-    def _seldom(self) -> None:
+    def _run_seldom(self) -> None:
         # An extra call between two frames would leave the next one no time.
         if not self._is_awake:
             self._on_frame_timer()
@@ -436,19 +436,19 @@ class LabApp(PanelMessages):
         if not self.has_hinted and any(
             row.stream in (Stream.DISPLAY, Stream.CONSOLE) for row in news.rows
         ):
-            self.hint_at_brick("uses the brick's display")
+            self.suggest_brick("uses the brick's display")
         if output := self.panel_area.output:
             for remark in news.remarks:
-                output.note(self.with_keys(remark))
+                output.note(self.fill_keys(remark))
             if news.prompt is not None and not output.asking:
                 self._ask_user(news.prompt)
             elif news.prompt is None and output.asking:
                 output.stop_asking()
         if news.branched and (recording := self.run_controller.timeline.recording):
-            self.say(branch_message(news.branched, recording))
+            self.say(build_branch_message(news.branched, recording))
             self.handle_situation_change()
         if news.ended:
-            self._ended(news.ended, news.stood)
+            self._handle_end(news.ended, news.stood)
         if self._last_words and len(news.rows) < ROWS_A_POLL and self.panel_area.output:
             self.panel_area.output.note(self._last_words)
             self._last_words = ""
@@ -463,19 +463,19 @@ class LabApp(PanelMessages):
         if self.panel_area.output:
             self.panel_area.output.ask(prompt)
 
-    def _ended(self, ended: Ended, stood: str) -> None:
+    def _handle_end(self, ended: Ended, stood: str) -> None:
         self.tell_server("ended", id=self.run_controller.run_id)
         self.panel_area.release_buttons()
         good = ended.end in GOOD_ENDS
         if not good:
             self.panel_area.bring("output")
         notice, last = end_words(ended, stood)
-        self._last_words = last if good else f"{last}: {self.with_keys(remedy(ended.summary))}"
+        self._last_words = last if good else f"{last}: {self.fill_keys(find_remedy(ended.summary))}"
         self.document.mark_failure(ended.error_line, "" if good else notice)
         # The output ends with the same words.
-        if not self.panel_area.shown("output"):
+        if not self.panel_area.is_shown("output"):
             self.notify(notice, severity="information" if good else "error", markup=False)
-        self.debugger.ended()
+        self.debugger.handle_end()
         self.handle_situation_change()
         self.check_files()
 
@@ -496,7 +496,7 @@ class LabApp(PanelMessages):
         self._drawn = now
         self.feed.show()
         self.panel_area.show(run)
-        if force or self._footed != _footed(state):
+        if force or self._footed != _list_footer_state(state):
             self._show_footer(state)
         self.pacer.drawn()
         return True
@@ -525,11 +525,11 @@ class LabApp(PanelMessages):
         if not has_stopped or not self.draw():
             self._show_footer(state)
 
-    def situation(self) -> Situation:
+    def find_situation(self) -> Situation:
         """Return the state that decides which keys are available."""
-        return self._situation(self.run_controller.state)
+        return self._build_situation(self.run_controller.state)
 
-    def _situation(self, phase: RunPhase) -> Situation:
+    def _build_situation(self, phase: RunPhase) -> Situation:
         runs, code = self.run_controller, self.panel_area.code
         timeline = runs.timeline
         facts = runs.program is not None, timeline.recording is not None, timeline.at is not None
@@ -541,7 +541,7 @@ class LabApp(PanelMessages):
             is_away,
             reads_code,
             self.has_pixels,
-            self.context.reasons.are_of(runs),
+            self.context.reasons.has_gone_wrong(runs),
             self.undo is not None,
             self.lesson.step_actions,
         )
@@ -556,12 +556,12 @@ class LabApp(PanelMessages):
 
     def state(self) -> AppState:
         """Return everything that panels and footer show, at the instant in view."""
-        run = self.run_controller.snapshot()
+        run = self.run_controller.build_snapshot()
         playing = self.run_controller.timeline.playing
-        return AppState(run, self._situation(run.state), self._looks_back, playing)
+        return AppState(run, self._build_situation(run.state), self._looks_back, playing)
 
     def _show_footer(self, state: AppState) -> None:
-        self._footed = _footed(state)
+        self._footed = _list_footer_state(state)
         names = list_working(state.situation)
         if self.panel_area.is_single:
             names = ("panel-next", *names)
@@ -582,20 +582,20 @@ class LabApp(PanelMessages):
         )
         if code is not None and code.awaits_letters:
             return CLICKED_KEYS
-        return TYPING_KEYS if typing else panel_keys(focused)
+        return TYPING_KEYS if typing else find_panel_keys(focused)
 
     # Panels
 
     def on_panel_area_added(self, message: PanelArea.Added) -> None:
         if message.panel == "world" and (world := self.panel_area.world):
             world.show_rays = self.settings.rays
-            world.time_bar.marks = self.run_controller.timeline.marks
+            world.time_bar.marks = self.run_controller.timeline.list_marks
             if self.run_controller.mat:
                 world.set_mat(self.run_controller.mat.pixels)
             if self.focused is None:
                 world.focus()
         if message.panel in ("code", "controls"):
-            self._introduce_program()
+            self._show_program()
         if message.panel in ("code", "debug"):
             self.debugger.mark()
             self.debugger.show()
@@ -610,9 +610,9 @@ class LabApp(PanelMessages):
         self.mark_box()
         self.call_after_refresh(self.draw, force=True)
 
-    def _introduce_program(self) -> None:
+    def _show_program(self) -> None:
         self.document.show_program()
-        self.debugger.program_changed(self.run_controller.program)
+        self.debugger.load_breaks(self.run_controller.program)
 
     # What the user does
 
@@ -627,7 +627,7 @@ class LabApp(PanelMessages):
     def action_leave_field(self) -> None:
         """Leave an input field; from the world, return from the past."""
         if self.debugger.is_away and self.focused in (None, self.panel_area.world):
-            self.to_now()
+            self.go_to_now()
         self.panel_area.focus_world()
 
     def on_output_answered(self, message: Output.Answered) -> None:
@@ -639,7 +639,7 @@ class LabApp(PanelMessages):
         do_asked(self.context, message.asked)
 
 
-def _footed(state: AppState) -> tuple[Any, ...]:
+def _list_footer_state(state: AppState) -> tuple[Any, ...]:
     """Return what of a state the footer tells."""
     run = state.run
     return (

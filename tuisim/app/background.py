@@ -55,8 +55,8 @@ def run(
         group: Name of the group of the work.
         exclusive: Cancel other work of the group.
     """
-    thread = partial(_in_thread, node.app, work, then, failed)
-    begin(node, partial(_awaited, thread), group=group, exclusive=exclusive)
+    thread = partial(_run_in_worker, node.app, work, then, failed)
+    begin(node, partial(_run_and_wait, thread), group=group, exclusive=exclusive)
 
 
 def begin(
@@ -72,7 +72,7 @@ def begin(
     node.run_worker(called_later, group=group, exclusive=exclusive)
 
 
-async def _awaited(work: Callable[[], None]) -> None:
+async def _run_and_wait(work: Callable[[], None]) -> None:
     """Call a function in a thread of its own.
 
     Not in one of asyncio's, which the app would wait for when it has been left, however long that takes.
@@ -88,7 +88,7 @@ async def _awaited(work: Callable[[], None]) -> None:
         else:
             done.set_exception(error)
 
-    def target() -> None:
+    def run_work() -> None:
         problem: BaseException | None = None
         try:
             work()
@@ -100,7 +100,7 @@ async def _awaited(work: Callable[[], None]) -> None:
             loop.call_soon_threadsafe(settle, problem)
 
     # With the context, which tells the thread its worker.
-    start(partial(copy_context().run, target))
+    start(partial(copy_context().run, run_work))
     await done
 
 
@@ -140,21 +140,21 @@ def leave(code: int) -> int:
     return code
 
 
-def _in_thread(
+def _run_in_worker(
     app: App[Any],
     work: Callable[[], Made],
     then: Callable[[Made], None],
     failed: Callable[[TuisimError], None] | None,
 ) -> None:
     try:
-        made = work()
+        result = work()
     except TuisimError as error:
         if failed is None:
             raise
         if not get_current_worker().is_cancelled:
             call(app, failed, error)
         return
-    call(app, then, made)
+    call(app, then, result)
 
 
 def call(

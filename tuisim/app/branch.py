@@ -94,7 +94,7 @@ class Branch:
         )
 
 
-def first_difference(before: Recording, now: Recording, tick: int) -> int | None:
+def find_first_difference(before: Recording, now: Recording, tick: int) -> int | None:
     """Return the first tick, up to one that both runs have reached, at which their worlds differ; or None."""
     old, new = (run.telemetry.array()[: tick + 1] for run in (before, now))
     both = min(len(old), len(new))
@@ -106,9 +106,9 @@ def first_difference(before: Recording, now: Recording, tick: int) -> int | None
     return both if both <= tick else None
 
 
-def branch_message(branch: Branch, now: Recording) -> str:
+def build_branch_message(branch: Branch, now: Recording) -> str:
     """Return the message for a branch that has reached its instant, or has ended before."""
-    differs = first_difference(branch.of, now, branch.tick)
+    differs = find_first_difference(branch.of, now, branch.tick)
     words = f"This is a {branch.title}" + (", of the edited program" if branch.edited else "")
     if differs is None:
         return words

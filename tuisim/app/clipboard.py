@@ -76,5 +76,5 @@ def read_rows(widget: Widget) -> Sequence[str]:
     inside = widget.region.shrink((1, 1, 1, 1))
     strips = render_screen(widget.app)[inside.y : inside.bottom]
     rows = [strip.crop(inside.x, inside.right).text.rstrip() for strip in strips]
-    last = max((at for at, row in enumerate(rows, 1) if row), default=0)
+    last = max((number for number, row in enumerate(rows, 1) if row), default=0)
     return rows[:last]

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from tuisim.app.kept_breaks import Kept, following, keep, load_kept
+from tuisim.app.kept_breaks import StoredBreaks, follow_edit, keep, load_kept
 from tuisim.app.snapshot import PauseView
 from tuisim.base.errors import TuisimError, counted
 from tuisim.base.source import find_code_line, source_lines
@@ -68,7 +68,7 @@ class DebugController:
         self.position: Position | None = None
         """The past instant that is viewed, exact to the line."""
         self._frame, self._thread = 0, ""
-        self.replay = ReplayDebugger(self._arrived, self._not_there, self._reached_now)
+        self.replay = ReplayDebugger(self._handle_arrival, self._report_missing, self._handle_now)
         self._wanted: Position | None = None
         """The instant that the replay debugger was last sent to."""
         self._is_stepping = False
@@ -87,26 +87,26 @@ class DebugController:
     @property
     def texts(self) -> tuple[str, ...]:
         """The breakpoints as sent to the run."""
-        return tuple(one.written() for one in self.breaks)
+        return tuple(entry.written() for entry in self.breaks)
 
     @property
     def lines(self) -> list[str]:
         """The lines of the edited text."""
         return source_lines(self._text)
 
-    def program_changed(self, program: Program | None) -> None:
+    def load_breaks(self, program: Program | None) -> None:
         """Update the breakpoints for another program or another text."""
         key = program.file if program else ""
         if key != self._program:
             self._program = key
-            kept = load_kept(key) if key else Kept()
-            self.breaks, self.watches = kept.breaks, kept.watches
+            stored = load_kept(key) if key else StoredBreaks()
+            self.breaks, self.watches = stored.breaks, stored.watches
         self._text = program.text if program else ""
         self.mark()
 
-    def edited(self, text: str) -> None:
+    def follow_edit(self, text: str) -> None:
         """Keep the breakpoints on their lines after an edit of the text."""
-        breaks = following(self.breaks, self._text, text)
+        breaks = follow_edit(self.breaks, self._text, text)
         self._text = text
         if breaks != self.breaks:
             self.set_breaks(breaks)
@@ -121,11 +121,11 @@ class DebugController:
     def _send_breakpoints(self) -> None:
         """Send the breakpoints to the live run, each on its line of the text that runs."""
         lines, texts = self._lines(), []
-        for one in self.breaks:
-            shown = break_line_of(one)
-            runs = lines.find_run_line(shown)
-            if runs or not shown:
-                texts.append(moved(one, runs).written())
+        for entry in self.breaks:
+            shown_line = break_line_of(entry)
+            runs = lines.find_run_line(shown_line)
+            if runs or not shown_line:
+                texts.append(moved(entry, runs).written())
         self._run_controller.send(protocol.SetBreaks(tuple(texts)))
 
     def set_watches(self, watches: tuple[str, ...]) -> None:
@@ -137,23 +137,23 @@ class DebugController:
     def _keep(self) -> None:
         if self._program:
             try:
-                keep(self._program, Kept(self.breaks, self.watches))
+                keep(self._program, StoredBreaks(self.breaks, self.watches))
             except TuisimError as error:
                 self._app.complain(error)
 
     def mark(self) -> None:
         """Show the breakpoints in the code."""
         if code := self._panel_area.code:
-            marks = {line: _mark(one) for line, one in break_lines(self.breaks).items()}
+            marks = {line: _mark(entry) for line, entry in break_lines(self.breaks).items()}
             code.set_marks(marks, self._count_words)
 
     @property
     def _count_words(self) -> str:
         """How many breakpoints can pause a run, if one of them is on no line, where its mark would tell."""
-        active = [one for one in self.breaks if not one.disabled]
+        active = [entry for entry in self.breaks if not entry.disabled]
         if all(map(break_line_of, active)):
             return ""
-        return self._app.with_keys(f"{counted(len(active), 'breakpoint')}: {{breaks}}")
+        return self._app.fill_keys(f"{counted(len(active), 'breakpoint')}: {{breaks}}")
 
     def toggle_line(self, line: int, which: str = "") -> None:
         """Set or remove the breakpoint on a line, or the next line of code; a disabled one is enabled. Say so.
@@ -162,29 +162,32 @@ class DebugController:
             line: From 1.
             which: Which line that is, in words.
         """
-        at = line if line in break_lines(self.breaks) else find_code_line(self.lines, line)
-        if not at:
+        code_line = line if line in break_lines(self.breaks) else find_code_line(self.lines, line)
+        if not code_line:
             self._app.say(f"No breakpoint: there is no code from line {line} on")
             return
-        which = which if at == line else f"the next line of code after line {line}"
-        name = f"line {at}, {which}" if which else f"line {at}"
-        there = break_lines(self.breaks).get(at)
+        which = which if code_line == line else f"the next line of code after line {line}"
+        name = f"line {code_line}, {which}" if which else f"line {code_line}"
+        there = break_lines(self.breaks).get(code_line)
         if there is None:
-            self.set_breaks((*self.breaks, parse_break(str(at))))
+            self.set_breaks((*self.breaks, parse_break(str(code_line))))
             self._app.say(f"Breakpoint on {name}")
         elif there.disabled:
             self.set_breaks(
-                tuple(replace(one, disabled=False) if one is there else one for one in self.breaks)
+                tuple(
+                    replace(entry, disabled=False) if entry is there else entry
+                    for entry in self.breaks
+                )
             )
             self._app.say(f"Breakpoint enabled on {name}")
         else:
-            self.set_breaks(tuple(one for one in self.breaks if one is not there))
+            self.set_breaks(tuple(entry for entry in self.breaks if entry is not there))
             self._app.say(f"Breakpoint removed from {name}")
 
     @property
     def current_line(self) -> int:
         """The line shown as current, in the edited text; 0 if there is none."""
-        snapshot = self._run_controller.snapshot()
+        snapshot = self._run_controller.build_snapshot()
         return (
             self._lines().find_shown_line(snapshot.line)
             if self._run_controller.in_run or snapshot.past
@@ -202,12 +205,16 @@ class DebugController:
         self._panels_opened, self._breakpoints_unsent = False, bool(self.breaks)
         self._more_back = 0
         self._forget_steps()
-        if self._run_controller.in_run and self._count_words and not self._panel_area.shown("code"):
+        if (
+            self._run_controller.in_run
+            and self._count_words
+            and not self._panel_area.is_shown("code")
+        ):
             self._app.say(self._count_words)
         self.replay.close()
         self.show()
 
-    def ended(self) -> None:
+    def handle_end(self) -> None:
         """Handle the end of the run: it is no longer paused; a past instant stays in view."""
         self._paused = None
         if not self.is_away:
@@ -258,8 +265,8 @@ class DebugController:
         for panel in ("code", "debug"):
             self._panel_area.open(panel)
         # The arrow keys are for what is read now; a field that is typed into keeps them.
-        if self._panel_area.focused_panel() in ("", "world"):
-            self._app.call_after_refresh(self._panel_area.attend, "code")
+        if self._panel_area.find_focused_panel() in ("", "world"):
+            self._app.call_after_refresh(self._panel_area.focus_opened, "code")
 
     # Inspect
 
@@ -293,12 +300,12 @@ class DebugController:
         """Select the next thread."""
         if self.view and (threads := self.view.inspected.threads):
             names = [thread.name for thread in threads]
-            at = (
+            index = (
                 names.index(self.view.inspected.thread)
                 if self.view.inspected.thread in names
                 else -1
             )
-            self._thread, self._frame = names[(at + 1) % len(names)], 0
+            self._thread, self._frame = names[(index + 1) % len(names)], 0
             self._inspect_again()
 
     def _inspect_again(self) -> None:
@@ -318,12 +325,12 @@ class DebugController:
             self._run_controller.chosen_line = None
         if not self.looks_back:
             if self.view and self.view.past and not self.busy:
-                self._back_to_now()
+                self._return_to_now()
             return
-        if timeline.at is not None and self.position is None and self._shows_past_variables():
+        if timeline.at is not None and self.position is None and self._has_past_variables():
             self._follow(Position(timeline.at))
 
-    def _shows_past_variables(self) -> bool:
+    def _has_past_variables(self) -> bool:
         """Return whether the program is run again up to an instant in view, for the values of its variables.
 
         The debug panel asks for that. Beside the code it is done for runs of this session, not for stored ones, whose
@@ -331,7 +338,7 @@ class DebugController:
         """
         run, recording = self._run_controller.run, self._run_controller.timeline.recording
         is_own = run is not None and recording is not None and run.run_id == recording.run_id
-        return self._panel_area.shown("debug") or (is_own and self._panel_area.shown("code"))
+        return self._panel_area.is_shown("debug") or (is_own and self._panel_area.is_shown("code"))
 
     def choose_line(self, tick: int, line: int) -> None:
         """Stand at a line of an instant that is gone to next, such as the one that printed a sample; 0 for none.
@@ -341,7 +348,7 @@ class DebugController:
         self._run_controller.chosen_line = (tick, line) if line else None
         self.position = self._wanted = None
 
-    def to_now(self) -> None:
+    def go_to_now(self) -> None:
         """Return to the newest instant, also from earlier lines of its own tick."""
         self.position, self._more_back = None, 0
         self._steps.clear()
@@ -351,7 +358,7 @@ class DebugController:
             self._wanted = None
             self.show()
 
-    def _back_to_now(self) -> None:
+    def _return_to_now(self) -> None:
         self.view, self._wanted = None, None
         self.show()
         self._inspect_again()
@@ -373,11 +380,11 @@ class DebugController:
             self.replay.go(timeline.recording, position, self.inspect_request)
         self.show()
 
-    def _arrived(self, paused: Paused, inspected: Inspected) -> None:
+    def _handle_arrival(self, paused: Paused, inspected: Inspected) -> None:
         timeline, here = self._run_controller.timeline, Position(paused.tick, paused.ordinal)
         if self._wanted is None:
             if not self._is_past(here):
-                self._reached_now()
+                self._handle_now()
                 return
             self.position = here
             timeline.go(paused.tick)
@@ -395,9 +402,9 @@ class DebugController:
         self._set_paused(PauseView(self._set_tick_time(paused), inspected, True))
         self._app.handle_situation_change()
         if self._more_back:
-            self.lines_back(0)
+            self.step_back(0)
         elif self._steps:
-            self._in_past(self._steps.popleft())
+            self._step_past(self._steps.popleft())
 
     def _is_past(self, at: Position) -> bool:
         """Return whether an instant is in the past; a re-run may get farther than the current run."""
@@ -406,15 +413,15 @@ class DebugController:
             return at.tick <= (self._run_controller.timeline.newest if now is None else now.tick)
         return at.is_before(Position(now.tick, now.ordinal))
 
-    def _reached_now(self) -> None:
+    def _handle_now(self) -> None:
         steps = tuple(self._steps)
-        self._app.to_now()
-        self._back_to_now()
+        self._app.go_to_now()
+        self._return_to_now()
         if self._paused is not None:
             for step in steps:
                 self.go_on(step)
 
-    def _not_there(self, why: str) -> None:
+    def _report_missing(self, why: str) -> None:
         self._wanted, self._more_back = None, 0
         self._steps.clear()
         self._app.say(why)
@@ -438,7 +445,7 @@ class DebugController:
 
     # Steps
 
-    def _here(self) -> Position | None:
+    def _find_position(self) -> Position | None:
         """Return the instant in view, exact to the line as far as that is known."""
         timeline = self._run_controller.timeline
         if self.position is not None:
@@ -465,7 +472,7 @@ class DebugController:
     def go_on(self, command: Message) -> None:
         """Send a command that continues the program until it pauses again, once the step on its way has arrived."""
         if self.is_away:
-            self._in_past(command)
+            self._step_past(command)
         elif self._run_controller.in_run and self._is_stepping:
             self._steps.append(command)
         elif self._run_controller.in_run:
@@ -485,7 +492,7 @@ class DebugController:
         self._is_stepping = False
         self._steps.clear()
 
-    def _in_past(self, command: Message) -> None:
+    def _step_past(self, command: Message) -> None:
         timeline = self._run_controller.timeline
         if timeline.recording is None:
             return
@@ -493,15 +500,15 @@ class DebugController:
             self._steps.append(command)
             return
         self._open_panels()
-        here = self._here()
+        here = self._find_position()
         assert here is not None
         self.position = self._wanted = self._run_controller.chosen_line = None
         self.replay.go_on(timeline.recording, here, command, self.inspect_request)
         self.show()
 
-    def lines_back(self, count: int) -> None:
+    def step_back(self, count: int) -> None:
         """Go back by a number of executed lines."""
-        here, recording = self._here(), self._run_controller.timeline.recording
+        here, recording = self._find_position(), self._run_controller.timeline.recording
         if here is None or recording is None:
             self._app.say("No run yet: {run} runs the program")
             return

@@ -20,13 +20,13 @@ def is_comparable(earlier: Recording, later: Recording) -> bool:
     return earlier.newest > 0 and earlier.spec.world.background == later.spec.world.background
 
 
-def pose_at(run: Recording, time_s: float) -> Pose:
+def find_pose(run: Recording, time_s: float) -> Pose:
     """Return the pose of a run's robot at a time in seconds; after its end, the last one."""
     tick = round(time_s * run.spec.profile.tick_hz)
     return run.telemetry.record(min(tick, run.newest)).pose
 
 
-def stored_before(later: Recording) -> Recording | None:
+def find_run_before(later: Recording) -> Recording | None:
     """Return the last stored run of a program file before another one that repeats it; None if there is none.
 
     Raises:
@@ -36,7 +36,7 @@ def stored_before(later: Recording) -> Recording | None:
     return next((run for run in before if is_repeat(later, run)), None)
 
 
-def find_last_like(program: Program, spec: RunSpec) -> StoredRun | None:
+def find_similar_run(program: Program, spec: RunSpec) -> StoredRun | None:
     """Return the last stored run of a program file; None if there is none, or if it was made of something else."""
     with suppress(LogError):
         run = next(_load_runs(program, ""), None)

@@ -18,11 +18,11 @@ _PART = re.compile(r"(\w+) lego-(?:ev3-|nxt-)?([\w-]+)")
 _ASKED = re.compile(r"(?P<what>\w+)\((?:ev3-ports:)?(?P<port>\w+)\) is not connected")
 
 
-def _tellings(words: str) -> Iterator[str]:
+def _list_wordings(words: str) -> Iterator[str]:
     """Yield an error in fewer and fewer words; each says what to do about it, if the error does."""
     yield words
-    if (parts := _parts(words)) is not None:
-        missing = _missing(words)
+    if (parts := _list_parts(words)) is not None:
+        missing = _describe_missing(words)
         yield f"{missing}; the robot has {parts}"
         yield f"{missing}: {parts}"
         yield parts
@@ -35,37 +35,39 @@ def _tellings(words: str) -> Iterator[str]:
     yield _KIND.sub("", words)
 
 
-def _missing(words: str) -> str:
-    asked = _ASKED.search(words)
-    return f"no {asked['what']} on {asked['port']}" if asked else "not on this port"
+def _describe_missing(words: str) -> str:
+    match = _ASKED.search(words)
+    return f"no {match['what']} on {match['port']}" if match else "not on this port"
 
 
-def _parts(words: str) -> str | None:
+def _list_parts(words: str) -> str | None:
     """Return what the robot has on its ports, with short names; None if an error does not say it."""
-    found = _PARTS.search(words)
-    return None if found is None else _PART.sub(r"\1 \2", found["parts"])
+    match = _PARTS.search(words)
+    return None if match is None else _PART.sub(r"\1 \2", match["parts"])
 
 
-def fitting(words: str, width: int) -> str:
+def fit_words(words: str, width: int) -> str:
     """Return an error in at most so many letters: what matters of it, whole if there is room."""
-    told = list(_tellings(words))
-    return next((one for one in told if len(one) <= width), cut(told[-1], width))
+    wordings = list(_list_wordings(words))
+    return next(
+        (wording for wording in wordings if len(wording) <= width), cut(wordings[-1], width)
+    )
 
 
-def remedy(words: str) -> str:
+def find_remedy(words: str) -> str:
     """Return what to do in the app about an error, with ids of actions in braces.
 
     Which name was meant is told by the error itself.
     """
-    if (parts := _parts(words)) is None:
+    if (parts := _list_parts(words)) is None:
         return "{went-wrong} goes to where it went wrong"
-    return f"{_missing(words)}: {parts}. {{robot}} chooses another robot"
+    return f"{_describe_missing(words)}: {parts}. {{robot}} chooses another robot"
 
 
-def in_a_list(error: TuisimError) -> str:
+def shorten_error(error: TuisimError) -> str:
     """Return an error about what was typed into a list: without the names that are in the list, or a shell command."""
-    guess, asked, _ = error.hint.partition("?")
-    if asked and guess.startswith("did you mean"):
+    guess, question, _ = error.hint.partition("?")
+    if question and guess.startswith("did you mean"):
         return f"{error.message} ({guess}?)"
     return (
         error.message

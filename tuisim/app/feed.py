@@ -94,7 +94,7 @@ class Feed:
         if end == self._charted:
             return {}
         records = run.telemetry.array(self._charted)[
-            _thinned(0, end - self._charted, POINTS_A_FEED)
+            _thin_positions(0, end - self._charted, POINTS_A_FEED)
         ]
         names = [column.name for column in list_columns(run.spec) if column.is_traced]
         values = column_values(
@@ -115,20 +115,20 @@ class Feed:
         if not len(records):
             return [], []
         self._traced += len(records)
-        jumps = _jumps(records, self._last_xy_mm)
+        jumps = _count_jumps(records, self._last_xy_mm)
         self._last_xy_mm = float(records["x_mm"][-1]), float(records["y_mm"][-1])
         if self._lifted and not (records["flags"] & FLAG_PEN_DOWN).any():
             return [], []
-        kept_at = _thinned(0, len(records), TRACE_POINTS_A_FEED)
+        kept_at = _thin_positions(0, len(records), TRACE_POINTS_A_FEED)
         records, jumps = records[kept_at], jumps[kept_at]
         xs, ys, lifted = place_drawn_mm(self.recording.spec.robot, records)
         # One gap is enough for a stretch with the pen up.
-        kept = ~(lifted & np.concatenate(([self._lifted], lifted[:-1])))
+        is_kept = ~(lifted & np.concatenate(([self._lifted], lifted[:-1])))
         self._lifted = bool(lifted[-1])
-        return _with_gaps(xs[kept], ys[kept], jumps[kept])
+        return _insert_gaps(xs[is_kept], ys[is_kept], jumps[is_kept])
 
 
-def trace_until(run: Recording, tick: int) -> Points:
+def trace_run(run: Recording, tick: int) -> Points:
     """Return where the pen of a run had drawn by the end of a tick, thinned in the same way for all ticks."""
     records = run.telemetry.array()
     stride = max(1, len(records) // TRACE_POINTS_A_FEED)
@@ -136,13 +136,13 @@ def trace_until(run: Recording, tick: int) -> Points:
     if not (records["flags"] & FLAG_PEN_DOWN).any():
         return [], []
     kept_at = np.append(np.arange(0, tick, stride), tick)
-    jumps = _jumps(records, None)[kept_at]
+    jumps = _count_jumps(records, None)[kept_at]
     xs, ys, lifted = place_drawn_mm(run.spec.robot, records[kept_at])
-    kept = ~(lifted & np.concatenate(([False], lifted[:-1])))
-    return _with_gaps(xs[kept], ys[kept], jumps[kept])
+    is_kept = ~(lifted & np.concatenate(([False], lifted[:-1])))
+    return _insert_gaps(xs[is_kept], ys[is_kept], jumps[is_kept])
 
 
-def _jumps(
+def _count_jumps(
     records: np.ndarray[Any, Any], before_mm: tuple[float, float] | None
 ) -> npt.NDArray[np.int64]:
     """Count the placements of the robot up to each record."""
@@ -154,19 +154,19 @@ def _jumps(
     return np.cumsum(~(way < _JUMP_MM))
 
 
-def _with_gaps(
+def _insert_gaps(
     xs: npt.NDArray[np.float64], ys: npt.NDArray[np.float64], jumps: npt.NDArray[np.int64]
 ) -> Points:
     gaps = np.flatnonzero(np.diff(jumps, prepend=0))
     return np.insert(xs, gaps, np.nan).tolist(), np.insert(ys, gaps, np.nan).tolist()
 
 
-def _thinned(start: int, end: int, most: int) -> list[int]:
-    """Return at most `most` evenly spread positions from start to end, including the last one."""
+def _thin_positions(start: int, end: int, max_count: int) -> list[int]:
+    """Return at most `max_count` evenly spread positions from start to end, including the last one."""
     span = end - start
-    if span <= most:
+    if span <= max_count:
         return list(range(start, end))
-    return [start + (step + 1) * span // most - 1 for step in range(most)]
+    return [start + (step + 1) * span // max_count - 1 for step in range(max_count)]
 
 
 PAST_ROWS = 200
@@ -213,11 +213,11 @@ class PanelFeed:
         if output := self._panel_area.output:
             output.add(rows)
         self._uncharted += rows
-        self._chart_rows()
+        self._send_rows()
 
-    def _chart_rows(self) -> None:
+    def _send_rows(self) -> None:
         """Pass on what has been written, if the chart is on the screen."""
-        if self._uncharted and self._panel_area.shown("chart"):
+        if self._uncharted and self._panel_area.is_shown("chart"):
             self._append(sample_series(self._uncharted), logged=True)
             self._uncharted.clear()
 
@@ -232,20 +232,22 @@ class PanelFeed:
         return (
             self._feed is not None
             and self._feed.is_behind
-            and self._charted_mat(self._feed) is not None
+            and self._find_mat(self._feed) is not None
         )
 
-    def _charted_mat(self, feed: Feed) -> Field | None:
+    def _find_mat(self, feed: Feed) -> Field | None:
         """Return the mat that the chart's readings are taken from; None if no chart or no mat."""
-        return self._runs.mat_for(feed.recording.spec) if self._panel_area.shown("chart") else None
+        return (
+            self._runs.find_mat(feed.recording.spec) if self._panel_area.is_shown("chart") else None
+        )
 
-    def _chart_telemetry(self, feed: Feed) -> None:
+    def _send_telemetry(self, feed: Feed) -> None:
         """Pass on telemetry as often as the chart is drawn; at once where there is much of it, or no more to come."""
         now_s = time.monotonic()
         is_soon = now_s < self._charted_s + CHART_PERIOD_S and not feed.is_far_behind
         if is_soon and self._runs.state is RunPhase.RUNNING:
             return
-        if (mat := self._charted_mat(feed)) is not None:
+        if (mat := self._find_mat(feed)) is not None:
             self._charted_s = now_s
             self._append(feed.chart_series(mat), logged=False)
 
@@ -257,17 +259,17 @@ class PanelFeed:
 
     def show(self) -> None:
         """Pass on the telemetry since the last call; keep trace and output at the instant in view."""
-        self._chart_rows()
+        self._send_rows()
         if self._feed is not None:
             if self._feed.begin_again() and self._panel_area.chart:
                 self._panel_area.chart.clear()
                 self._uncharted = [*self._feed.recording.rows.rows(0)]
-                self._chart_rows()
+                self._send_rows()
             if world := self._panel_area.world:
                 xs, ys = self._feed.trace_points()
                 if xs:
                     world.extend_trace(xs, ys, self._feed.recording.spec.robot.pen)
-            self._chart_telemetry(self._feed)
+            self._send_telemetry(self._feed)
         is_past = self._runs.timeline.at is not None
         if is_past or self._shows_past:
             self._shows_past = is_past
@@ -281,7 +283,7 @@ class PanelFeed:
                 if tick is None or recording is None:
                     world.show_past_trace(None)
                 else:
-                    world.show_past_trace(trace_until(recording, tick), recording.spec.robot.pen)
+                    world.show_past_trace(trace_run(recording, tick), recording.spec.robot.pen)
         if output := self._panel_area.output:
             count = (
                 None

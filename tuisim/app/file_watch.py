@@ -15,11 +15,11 @@ _Stamp = tuple[int, int, int]
 def _stamp(path: Path) -> _Stamp | None:
     """Return what tells two versions of a file apart, or None if there is no file."""
     try:
-        found = os.stat(path)
+        status = os.stat(path)
     except (OSError, ValueError):
         return None
     # Editors write a new file and rename it: that one has another inode, whatever its time and size.
-    return found.st_mtime_ns, found.st_size, found.st_ino
+    return status.st_mtime_ns, status.st_size, status.st_ino
 
 
 class FileWatch:
@@ -41,10 +41,10 @@ class FileWatch:
 
     def changed(self) -> list[Path]:
         """Return the files that are new or changed since the last call. A deleted file may come back."""
-        found = []
+        changed_paths = []
         for path, known in self._known.items():
             now = _stamp(path)
             if now is not None and now != known:
                 self._known[path] = now
-                found.append(path)
-        return found
+                changed_paths.append(path)
+        return changed_paths

@@ -115,7 +115,7 @@ class GoalsController:
             return
         hint = ""
         if self._recording is None:
-            hint = self._app.with_keys(
+            hint = self._app.fill_keys(
                 "{run} runs the program"
                 if self._run_controller.program
                 else "{open} opens a program"
@@ -124,7 +124,7 @@ class GoalsController:
 
     def update(self) -> None:
         """Judge the run in view again, in the background, if it has gone on or has ended; never blocks."""
-        if self.file is None or not (self.judges_always or self._panel_area.shown("goals")):
+        if self.file is None or not (self.judges_always or self._panel_area.is_shown("goals")):
             return
         recording = self._run_controller.timeline.recording
         if recording is self._earlier:
@@ -139,12 +139,17 @@ class GoalsController:
         if written == self._judged or (not ended and time.monotonic() < self._next_s):
             return
         self._judged, self._is_judging = written, True
-        mat = self._run_controller.mat_for(recording.spec)
-        work = partial(_judged, self.file.goals, recording.folder, not ended, mat)
-        then, failed = partial(self._arrived, written), partial(self._failed, written)
+        mat = self._run_controller.find_mat(recording.spec)
+        work = partial(_judge_run, self.file.goals, recording.folder, not ended, mat)
+        then, failed = (
+            partial(self._take_judgements, written),
+            partial(self._report_failure, written),
+        )
         background.run(self._panel_area, work, then, failed, group="goals")
 
-    def _arrived(self, written: object, found: tuple[tuple[Judgement, ...], float] | None) -> None:
+    def _take_judgements(
+        self, written: object, found: tuple[tuple[Judgement, ...], float] | None
+    ) -> None:
         self._is_judging = False
         if written != self._judged or found is None:
             # The run or the goals are others by now, or the run was just about to end.
@@ -154,7 +159,7 @@ class GoalsController:
         self._next_s = time.monotonic() + max(PERIOD_S, took_s / _SHARE)
         self.show()
 
-    def _failed(self, written: object, error: TuisimError) -> None:
+    def _report_failure(self, written: object, error: TuisimError) -> None:
         self._is_judging = False
         if written == self._judged:
             # While the run goes on, the error would only be repeated.
@@ -162,7 +167,7 @@ class GoalsController:
             self._app.complain(error)
 
 
-def _judged(
+def _judge_run(
     goals: Sequence[Goal], folder: Path, live: bool, field: Field | None
 ) -> tuple[tuple[Judgement, ...], float] | None:
     """Return the judgements of a run, and the seconds that they took; None if a live run ended meanwhile.

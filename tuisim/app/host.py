@@ -26,7 +26,7 @@ class LabHost(ActionHost, TerminalApp):
 
     def answer(self, text: str) -> None:
         """Show what a key has found out until the next one does something; ids of actions are in braces."""
-        self.notify(self.with_keys(text), timeout=inf)
+        self.notify(self.fill_keys(text), timeout=inf)
 
     def offer_undo(self, undo: Callable[[], None] | None) -> None:
         """Offer a key that takes something back, until a run starts or another key changes something."""
@@ -54,15 +54,15 @@ class LabHost(ActionHost, TerminalApp):
         """
 
     @abstractmethod
-    def mat_ready(self, pixels: Pixels | None) -> None:
+    def show_mat(self, pixels: Pixels | None) -> None:
         """Show the image of the mat that has been prepared; None if it is shown already."""
 
     @abstractmethod
-    def next_run_changed(self) -> None:
+    def show_next_run(self) -> None:
         """Update the panels after the plan of the next run has changed."""
 
     @abstractmethod
-    def to_now(self) -> None:
+    def go_to_now(self) -> None:
         """Return from the past to the newest instant."""
 
     @abstractmethod

@@ -19,14 +19,14 @@ MAX_KEPT = 200
 
 
 @dataclass(frozen=True, slots=True)
-class Kept:
+class StoredBreaks:
     """The stored breakpoints and watches of one program."""
 
     breaks: tuple[Breakpoint, ...] = ()
     watches: tuple[str, ...] = ()
 
 
-def load_kept(program: str) -> Kept:
+def load_kept(program: str) -> StoredBreaks:
     """Return what is stored for a program; empty if there is nothing or it cannot be read.
 
     Args:
@@ -35,12 +35,12 @@ def load_kept(program: str) -> Kept:
     try:
         data = json.loads(read_regular(find_program_data(FOLDER, program), MAX_FILE_BYTES))
         breaks = tuple(parse_break(text) for text in data["breaks"][:MAX_KEPT])
-        return Kept(breaks, tuple(str(text) for text in data["watches"][:MAX_KEPT]))
+        return StoredBreaks(breaks, tuple(str(text) for text in data["watches"][:MAX_KEPT]))
     except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError, ConfigError):
-        return Kept()
+        return StoredBreaks()
 
 
-def keep(program: str, kept: Kept) -> None:
+def keep(program: str, stored: StoredBreaks) -> None:
     """Store the breakpoints and watches of a program.
 
     Raises:
@@ -49,8 +49,8 @@ def keep(program: str, kept: Kept) -> None:
     file = find_program_data(FOLDER, program)
     data = {
         "program": program,
-        "breaks": [one.written() for one in kept.breaks],
-        "watches": list(kept.watches),
+        "breaks": [entry.written() for entry in stored.breaks],
+        "watches": list(stored.watches),
     }
     try:
         write_json(file, data)
@@ -60,7 +60,7 @@ def keep(program: str, kept: Kept) -> None:
         ) from None
 
 
-def following(breaks: tuple[Breakpoint, ...], before: str, now: str) -> tuple[Breakpoint, ...]:
+def follow_edit(breaks: tuple[Breakpoint, ...], before: str, now: str) -> tuple[Breakpoint, ...]:
     """Move breakpoints along with their lines after one edit of the text; those on deleted lines are dropped."""
     old, new = source_lines(before), source_lines(now)
     shift = len(new) - len(old)
@@ -68,10 +68,10 @@ def following(breaks: tuple[Breakpoint, ...], before: str, now: str) -> tuple[Br
         return breaks
     same = count_same_lines(old, new)
     kept = []
-    for one in breaks:
-        line = break_line_of(one)
+    for entry in breaks:
+        line = break_line_of(entry)
         if line <= same or not line:
-            kept.append(one)
+            kept.append(entry)
         elif line + shift > same:
-            kept.append(moved(one, line + shift))
+            kept.append(moved(entry, line + shift))
     return tuple(kept)

@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 from textual.keys import KEY_NAME_REPLACEMENTS, Keys
 
 from tuisim.app.action import Action, label_of_key
-from tuisim.app.themes import theme_names
+from tuisim.app.themes import list_themes
 from tuisim.base.errors import nearest
 from tuisim.engine.files import Location
 from tuisim.settings.user_config import THEME, Section, UserConfig
@@ -68,7 +68,7 @@ def key_of(text: str, at: Location) -> str:
     return key
 
 
-def with_keys(
+def apply_keys(
     actions: Mapping[str, Action[Host, Now]], config: UserConfig
 ) -> dict[str, Action[Host, Now]]:
     """Return a table of keys with the user's own.
@@ -76,22 +76,22 @@ def with_keys(
     Raises:
         ConfigError: an id or a key does not exist, or a key belongs to two actions.
     """
-    at = Location(str(config.path)).at(Section.KEYS)
-    found = dict(actions)
+    location = Location(str(config.path)).at(Section.KEYS)
+    table = dict(actions)
     for name, keys in config.keys.items():
-        here = at.at(name)
-        if name not in found:
+        here = location.at(name)
+        if name not in table:
             raise here.wrong(
-                "no such action", f"{nearest(name, found)}; `tuisim guide keys` lists the ids"
+                "no such action", f"{nearest(name, table)}; `tuisim guide keys` lists the ids"
             )
         written = ",".join(dict.fromkeys(key_of(key, here) for key in keys))
-        found[name] = replace(found[name], key=written, shown_key="", footer_key="")
-    _check_clashes(found, config, at)
-    return found
+        table[name] = replace(table[name], key=written, shown_key="", footer_key="")
+    _check_clashes(table, config, location)
+    return table
 
 
 def _check_clashes(
-    actions: Mapping[str, Action[Any, Any]], config: UserConfig, at: Location
+    actions: Mapping[str, Action[Any, Any]], config: UserConfig, location: Location
 ) -> None:
     owners: dict[str, str] = {}
     for name, action in actions.items():
@@ -102,7 +102,7 @@ def _check_clashes(
             # Blame an entry of the user's: without any, no two actions share a key.
             blamed, has = (name, other) if name in config.keys else (other, name)
             title = actions[has].title
-            raise at.at(blamed).wrong(
+            raise location.at(blamed).wrong(
                 f"{label_of_key(key)} is also the key of {has} ({title})",
                 f"give {blamed} or {has} another key",
             )
@@ -115,6 +115,6 @@ def check_theme(config: UserConfig) -> None:
         ConfigError: there is no such theme.
     """
     name = str(config.value(THEME))
-    if name not in theme_names():
-        at = Location(str(config.path)).at(THEME)
-        raise at.wrong(f"no such theme {name!r}", nearest(name, theme_names()))
+    if name not in list_themes():
+        location = Location(str(config.path)).at(THEME)
+        raise location.wrong(f"no such theme {name!r}", nearest(name, list_themes()))

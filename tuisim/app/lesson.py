@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tuisim.app import background
-from tuisim.app.earlier_run import find_last_like
+from tuisim.app.earlier_run import find_similar_run
 from tuisim.app.panels import PANELS, PanelPlace
 from tuisim.app.snapshot import RunPhase
 from tuisim.base.errors import ConfigError, TuisimError
@@ -119,7 +119,7 @@ class LessonController:
         except ConfigError as error:
             self._app.complain(error)
         self._save(session)
-        self._panel_area.request(self._panels_for(session.lesson))
+        self._panel_area.request(self._choose_panels(session.lesson))
         if self._panel_area.world:
             # After typing in the program before, the arrow keys would still move in it, and not the robot.
             self._panel_area.world.focus()
@@ -127,11 +127,11 @@ class LessonController:
         runs = self._run_controller
         if runs.program is None or runs.in_run:
             return
-        if run := find_last_like(runs.program, runs.next_run.spec):
+        if run := find_similar_run(runs.program, runs.next_run.spec):
             session.begin_step(run.id)
             self._loader.open_run(run)
 
-    def _panels_for(self, lesson: Lesson) -> dict[str, bool | None]:
+    def _choose_panels(self, lesson: Lesson) -> dict[str, bool | None]:
         """Return which panels to show and hide: the text gets the side column, but for readings where there is room."""
         beside = [info.id for info in PANELS.values() if info.place is PanelPlace.SIDE]
         usual: dict[str, None] = {}
@@ -140,8 +140,8 @@ class LessonController:
         elif not any(step.check == ShowCheck("chart") for step in lesson.steps):
             # A chart that was opened in another lesson would be in the place of the output that this one speaks of.
             usual = dict.fromkeys(("output", "chart"))
-        asked = dict.fromkeys((*lesson.settings.get("panels_on", ()), "code", "lesson"), True)
-        return {**dict.fromkeys(beside, False), **usual, **asked}
+        panels = dict.fromkeys((*lesson.settings.get("panels_on", ()), "code", "lesson"), True)
+        return {**dict.fromkeys(beside, False), **usual, **panels}
 
     def _begin_step(self, session: LessonSession) -> None:
         recording = self._run_controller.timeline.recording
@@ -156,15 +156,15 @@ class LessonController:
         self.show()
         self._app.handle_situation_change()
 
-    def lessons(self) -> list[Lesson]:
+    def list_lessons(self) -> list[Lesson]:
         """Return all lessons that can be read, in their order."""
-        found = []
+        lessons = []
         for path in find_lesson_paths(self.folder).values():
             try:
-                found.append(load_lesson(path))
+                lessons.append(load_lesson(path))
             except ConfigError as error:
                 self._app.complain(error)
-        return found
+        return lessons
 
     @property
     def next_name(self) -> str:
@@ -174,7 +174,7 @@ class LessonController:
             return ""
         return next(iter(names[names.index(self.lesson.name) + 1 :]), "")
 
-    def _next_title(self) -> str:
+    def _find_next_title(self) -> str:
         try:
             return (
                 load_lesson(find_lesson(self.next_name, self.folder)).title
@@ -201,7 +201,7 @@ class LessonController:
             finally:
                 self._follow(change)
 
-    def hint(self) -> None:
+    def show_hint(self) -> None:
         """Show the next hint of the step."""
         session, step = self.session, self.step
         if session is None or step is None:
@@ -219,10 +219,10 @@ class LessonController:
     def skip_step(self) -> None:
         """Leave the step undone and go on to the next."""
         if self.session is not None and (step := self.session.skip_step()):
-            self._go_on(self.session)
+            self._continue_session(self.session)
             self._app.say(f"Skipped: {step.title}. Start over to do it again")
 
-    def start_over(self) -> None:
+    def restart_lesson(self) -> None:
         """Forget the progress on the lesson, and begin with its program again; the student's program is kept aside."""
         session = self.session
         if session is None:
@@ -233,9 +233,9 @@ class LessonController:
             self._app.complain(error)
             return
         session.start_over()
-        self._go_on(session)
+        self._continue_session(session)
 
-    def show_step_before(self) -> None:
+    def show_former_step(self) -> None:
         """Turn back to the step before, and let the arrow keys turn the pages."""
         self._panel_area.request({"lesson": True})
         self._app.call_after_refresh(self._turn_back)
@@ -245,7 +245,7 @@ class LessonController:
             panel.focus()
             panel.action_turn(-1)
 
-    def exported(self, path: Path) -> None:
+    def note_export(self, path: Path) -> None:
         """Note that the log was exported to a file."""
         if self.session is not None:
             self._follow(self.session.take_export(path.name))
@@ -266,10 +266,10 @@ class LessonController:
     def _look(self) -> Sight:
         """Return what the student sees."""
         runs, view = self._run_controller, self._debugger.view
-        panels = {panel for panel in SEEABLE if self._panel_area.shown(panel)}
+        panels = {panel for panel in SEEABLE if self._panel_area.is_shown(panel)}
         if self._beside is not None:
             panels.add("analyser")
-        recording, at = runs.timeline.recording, runs.timeline.at
+        recording, tick = runs.timeline.recording, runs.timeline.at
         judged, judgements = self._goals.judged
         at_break = view is not None and not view.past and view.paused.reason is PauseReason.BREAK
         return Sight(
@@ -283,7 +283,9 @@ class LessonController:
             if view
             else (),
             break_met=view.paused.detail if view and at_break else None,
-            past_s=at / recording.spec.profile.tick_hz if recording and at is not None else None,
+            past_s=tick / recording.spec.profile.tick_hz
+            if recording and tick is not None
+            else None,
         )
 
     def _follow(self, change: Change) -> None:
@@ -292,7 +294,7 @@ class LessonController:
         if session is None or change is Change.NONE:
             return
         if change is Change.GO_ON:
-            self._go_on(session)
+            self._continue_session(session)
             over = " · the lesson is done" if session.step is None else ""
             if session.done:
                 self._app.say(f"✓ {session.done.title}{over}")
@@ -309,7 +311,7 @@ class LessonController:
         if self.session is session:
             self._follow(session.take_trial(trial, judged))
 
-    def _go_on(self, session: LessonSession) -> None:
+    def _continue_session(self, session: LessonSession) -> None:
         self._save(session)
         self._begin_step(session)
 
@@ -319,7 +321,7 @@ class LessonController:
         except ConfigError as error:
             self._app.complain(error)
 
-    def _error(self, session: LessonSession) -> str:
+    def _find_error(self, session: LessonSession) -> str:
         """Return how the run has failed that the goals were judged on; empty if it has not."""
         run, (recording, _) = self._run_controller.run, self._goals.judged
         if (
@@ -343,7 +345,7 @@ class LessonController:
             if panel is not None:
                 panel.show_lesson(self.view())
 
-    def beside_log(self) -> LessonPanel | None:
+    def build_log_panel(self) -> LessonPanel | None:
         """Return a panel with the step for a log that is opened above the app; None if no lesson is open."""
         if self.session is None:
             return None
@@ -376,7 +378,7 @@ class LessonController:
             elsewhere=session.describe_elsewhere(runs.pose, in_run=runs.in_run),
             done=session.done,
             story=session.story if session.done else "",
-            error=self._error(session),
+            error=self._find_error(session),
             remark=session.attempt.remark,
-            next_title="" if session.step else self._next_title(),
+            next_title="" if session.step else self._find_next_title(),
         )

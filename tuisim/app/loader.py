@@ -83,7 +83,7 @@ class Loader:
             if self.world_file is not None:
                 self._read_world(self.world_file)
             if program and program.path:
-                self._note_program(*_parts(_read_program(program.path)))
+                self._note_program(*_split_source(_read_program(program.path)))
         except TuisimError:
             pass  # It was read a moment ago and is invalid now: the next check reports that.
         self._follow()
@@ -100,8 +100,10 @@ class Loader:
         """Prepare the mat in the background; the app shows it when that is done."""
         spec = self._run_controller.next_run.spec
         self.is_preparing = True
-        work, failed = partial(prepare_mat, spec), partial(self._mat_failed, spec)
-        background.run(self._panel_area, work, self._prepared, failed, group="mat", exclusive=True)
+        work, failed = partial(prepare_mat, spec), partial(self._restore_mat, spec)
+        background.run(
+            self._panel_area, work, self._handle_prepared, failed, group="mat", exclusive=True
+        )
 
     def prepare_mat_again(self) -> None:
         """Prepare the mat once more if that has failed."""
@@ -113,7 +115,7 @@ class Loader:
         if not self.mat_is_ready:
             self._app.say(SOON)
 
-    def _mat_failed(self, spec: RunSpec, error: TuisimError) -> None:
+    def _restore_mat(self, spec: RunSpec, error: TuisimError) -> None:
         """Report the error in a mat, and restore the previous mat."""
         self.is_preparing = False
         self._app.complain(error)
@@ -126,7 +128,7 @@ class Loader:
             plan, run_controller.mat = self._good
             self._load(plan, run_controller.program)
 
-    def _prepared(self, mat: Mat) -> None:
+    def _handle_prepared(self, mat: Mat) -> None:
         self.is_preparing = False
         run_controller = self._run_controller
         if mat.key == mat_key(run_controller.next_run.spec):
@@ -135,7 +137,7 @@ class Loader:
             )
             run_controller.mat = mat
             self._good = run_controller.next_run, mat
-            self._app.mat_ready(None if same_picture else mat.pixels)
+            self._app.show_mat(None if same_picture else mat.pixels)
 
     def lay_out(self, plan: NextRun, program: Program | None, mat: Mat) -> None:
         """Set a plan and a program together with their mat, which must have been prepared already."""
@@ -145,11 +147,11 @@ class Loader:
         if program != self._run_controller.program:
             self._note_program(program, read_first_line(program))
         self._load(plan, program)
-        self._app.mat_ready(mat.pixels)
+        self._app.show_mat(mat.pixels)
 
     # What the user chooses
 
-    def attempt(self, make: Callable[[NextRun], NextRun]) -> bool:
+    def try_change(self, make: Callable[[NextRun], NextRun]) -> bool:
         """Change the plan, or report the error; the robot stays where it is. Return whether the plan was changed."""
         try:
             self.set_next_run(self.change(make))
@@ -165,7 +167,7 @@ class Loader:
             TuisimError: there is a run, or the change is impossible.
         """
         if self._run_controller.in_run:
-            raise TuisimError(self._app.with_keys(NOT_NOW))
+            raise TuisimError(self._app.fill_keys(NOT_NOW))
         return make(self._run_controller.next_run)
 
     def set_next_run(self, plan: NextRun) -> None:
@@ -174,7 +176,7 @@ class Loader:
             for note in plan.robot.notes:
                 self._app.say(note)
         self._run_controller.change(plan)
-        self._loaded()
+        self._finish_loading()
 
     def change_mat(self, name: str) -> None:
         """Change the mat; the robot goes to its start."""
@@ -207,15 +209,15 @@ class Loader:
 
     def _open_source(self, source: ProgramSource) -> Decided:
         """Open a program with what its magic line asks for; return what its source decides."""
-        program, said = _parts(source)
+        program, magic = _split_source(source)
         source = drop_wrong_mat(source, self._run_controller.next_run.settings["mats"])
         plan, before = self._run_controller.next_run, self._run_controller.program
         if before is not None and before.path != program.path:
             plan = plans.apply_choices(plan, {"arguments": (), "press": ()})
         plan, decided = plans.follow_program(plans.apply_choices(plan, source.options), source)
-        self._note_program(program, said)
+        self._note_program(program, magic)
         self._load(plan, program)
-        self._apply_app_settings({}, said)
+        self._apply_app_settings({}, magic)
         return decided
 
     def tell(self, decided: Decided) -> None:
@@ -225,16 +227,16 @@ class Loader:
         if decided.refusal:
             self._app.say(decided.refusal)
 
-    def _note_program(self, program: Program | None, said: Mapping[str, Any]) -> None:
-        self._magic_settings, self._file_prelude = said, program.prelude if program else ""
+    def _note_program(self, program: Program | None, magic: Mapping[str, Any]) -> None:
+        self._magic_settings, self._file_prelude = magic, program.prelude if program else ""
 
     def _open_world(self, path: str) -> None:
         before = self.world_file, self._world_settings, self._world_refers
         try:
             named, goals = self._read_world(Path(path))
             source = _read_program(named) if named else None
-            program, magic = _parts(source) if source else (self._run_controller.program, {})
-            plan, decided = _in_world(source, magic, self._world_settings)
+            program, magic = _split_source(source) if source else (self._run_controller.program, {})
+            plan, decided = _plan_in_world(source, magic, self._world_settings)
         except TuisimError:
             self.world_file, self._world_settings, self._world_refers = before
             raise
@@ -252,8 +254,8 @@ class Loader:
             TuisimError: program or world are wrong; nothing has changed.
         """
         source = _read_program(program_path)
-        program, magic = _parts(source)
-        plan, decided = _in_world(source, magic, world)
+        program, magic = _split_source(source)
+        plan, decided = _plan_in_world(source, magic, world)
         self.world_file, self._world_settings, self._world_refers = None, {}, ()
         self._note_program(program, magic)
         self._load(plan, program)
@@ -271,22 +273,22 @@ class Loader:
             world.settings,
             world.files,
         )
-        return _program_path(world.program) if world.program is not None else None, goals
+        return _find_program_path(world.program) if world.program is not None else None, goals
 
     def _load(self, plan: NextRun, program: Program | None) -> None:
         self._run_controller.load(plan, program)
         if world := self._panel_area.world:
             world.clear_trace()
-        self._loaded()
+        self._finish_loading()
 
-    def _loaded(self) -> None:
+    def _finish_loading(self) -> None:
         self._follow()
         if not self.mat_is_ready:
             mat = self._run_controller.mat
             if mat is not None and mat.key[:2] != mat_key(self._run_controller.next_run.spec)[:2]:
                 self._run_controller.mat = None
             self.prepare_mat()
-        self._app.next_run_changed()
+        self._app.show_next_run()
 
     # Stored runs
 
@@ -316,12 +318,12 @@ class Loader:
             f"— {end_label(run.state)} at {end_s:.2f} s",
             standstill_words(run.telemetry, run.spec),
         )
-        words = f"{', '.join(filter(None, end))} · {_title(run)}"
+        words = f"{', '.join(filter(None, end))} · {_name_run(run)}"
         self._app.run_changed(words, run.end.error_line if run.end else 0)
         for note in run.notes:
             self._app.say(note)
         self._app.say(
-            f"{_title(run)} is open: {{back}} {{second-back}} and {{go-to}} go back in it, {{run}} runs it again"
+            f"{_name_run(run)} is open: {{back}} {{second-back}} and {{go-to}} go back in it, {{run}} runs it again"
         )
         self._app.draw(force=True)
 
@@ -339,11 +341,11 @@ class Loader:
         paths += [user_path(word) for word in words.values() if means_file(word)]
         self._watch.follow(dict.fromkeys(paths))
 
-    def saved(self, path: Path) -> None:
+    def note_saved(self, path: Path) -> None:
         """Note that the app itself wrote a file, so that the change is not reported."""
         self._watch.note(path)
 
-    def saved_world(self, path: Path) -> None:
+    def note_saved_world(self, path: Path) -> None:
         """Note that the world was written to a file; watch that file from now on."""
         try:
             self._read_world(path)
@@ -374,14 +376,14 @@ class Loader:
     def reload(self, path: Path) -> None:
         """Reload a file."""
         try:
-            known = self._reread(path)
+            known = self._read_again(path)
         except TuisimError as error:
             self._app.complain(error)
             return
         if known:
             self._app.say(f"{path.name} changed on disk: reloaded")
 
-    def _reread(self, path: Path) -> bool:
+    def _read_again(self, path: Path) -> bool:
         """Read a file again. Return whether it is still in use."""
         plan = self._run_controller.next_run
         program = self._run_controller.program
@@ -391,7 +393,7 @@ class Loader:
         if path == self.world_file:
             before = self._world_settings
             _, goals = self._read_world(path)
-            self._apply_changed(_differences(before, self._world_settings), program)
+            self._apply_changed(_find_differences(before, self._world_settings), program)
             if goals is not None or path == self.goals.path:
                 self.goals.change(goals)
             return True
@@ -409,7 +411,7 @@ class Loader:
             self.set_next_run(plans.apply_choices(plan, {field: plan.words[field]}))
         if path in self._world_refers and str(path) == plan.spec.world.background:
             self._run_controller.mat = None
-            self._loaded()
+            self._finish_loading()
             return True
         return bool(fields)
 
@@ -440,7 +442,7 @@ class Loader:
         """
         if source is None:
             self._apply_changed(
-                _differences(self._magic_settings, settings), self._run_controller.program
+                _find_differences(self._magic_settings, settings), self._run_controller.program
             )
             self._apply_app_settings(self._magic_settings, settings)
             self._magic_settings = settings
@@ -460,7 +462,7 @@ class Loader:
 
     def _apply_program(self, source: ProgramSource) -> None:
         """Apply another text of the open program, with the changes in its magic line, and in the robot it needs."""
-        new, said = _parts(source)
+        new, magic = _split_source(source)
         program = self._run_controller.program
         as_said = (
             new.prelude if new.prelude != self._file_prelude or program is None else program.prelude
@@ -468,18 +470,18 @@ class Loader:
         folder = program.module_folder if program and not new.path else ""
         before = self._magic_settings
         applied = replace(new, prelude=as_said, module_folder=folder)
-        gone = before.keys() - said.keys()
+        gone = before.keys() - magic.keys()
         self._apply_changed(
-            _differences(before, said), applied, replace(source, program=applied), gone
+            _find_differences(before, magic), applied, replace(source, program=applied), gone
         )
-        self._note_program(new, said)
-        self._apply_app_settings(before, said)
+        self._note_program(new, magic)
+        self._apply_app_settings(before, magic)
 
     def _apply_app_settings(self, before: Mapping[str, Any], now: Mapping[str, Any]) -> None:
         """Apply the changes in a magic line that concern the app: panels, rays and speed."""
-        panels = _panels_in(now)
+        panels = _list_panels(now)
         self._panel_area.request(
-            {panel: panels.get(panel) for panel, _ in _panels_in(before).items() ^ panels.items()}
+            {panel: panels.get(panel) for panel, _ in _list_panels(before).items() ^ panels.items()}
         )
         if now.get("rays") and not before.get("rays") and self._panel_area.world:
             self._panel_area.world.show_rays = True
@@ -518,12 +520,12 @@ def _read_program(path: str) -> ProgramSource:
     return read_program(user_path(path))
 
 
-def _parts(source: ProgramSource) -> tuple[Program, Mapping[str, Any]]:
+def _split_source(source: ProgramSource) -> tuple[Program, Mapping[str, Any]]:
     """Return a program with the settings of its magic line."""
     return source.program, source.options
 
 
-def _in_world(
+def _plan_in_world(
     source: ProgramSource | None, magic: Mapping[str, Any], world: Mapping[str, Any]
 ) -> tuple[NextRun, Decided]:
     """Return the plan of a program in a world, which replaces all earlier choices, and what the program decides."""
@@ -534,7 +536,7 @@ def _in_world(
     return plans.follow_program(plan, source) if source else (plan, Decided())
 
 
-def _program_path(word: str) -> str:
+def _find_program_path(word: str) -> str:
     """Return the path of a program that a world file names: a path, or the name of an example."""
     from tuisim.programs.program_file import list_programs
 
@@ -546,15 +548,15 @@ def _program_path(word: str) -> str:
     )
 
 
-def _panels_in(said: Mapping[str, Any]) -> dict[str, bool]:
+def _list_panels(magic: Mapping[str, Any]) -> dict[str, bool]:
     """Return the panels that a magic line shows (True) and hides (False)."""
     return {
-        **dict.fromkeys(said.get("panels_on", ()), True),
-        **dict.fromkeys(said.get("panels_off", ()), False),
+        **dict.fromkeys(magic.get("panels_on", ()), True),
+        **dict.fromkeys(magic.get("panels_off", ()), False),
     }
 
 
-def _differences(before: Mapping[str, Any], now: Mapping[str, Any]) -> dict[str, Any]:
+def _find_differences(before: Mapping[str, Any], now: Mapping[str, Any]) -> dict[str, Any]:
     """Return the settings of a file that have changed; removed ones get their default."""
     bare = Settings()
     removed = {path: bare[path] for path in before.keys() - now.keys() if path in plans.WORLD_PATHS}
@@ -591,5 +593,5 @@ def _prepare_run(word: str | StoredRun) -> tuple[StoredRun, Mat, TuisimError | N
         return run, make_blank_mat(run.spec), error
 
 
-def _title(run: StoredRun) -> str:
+def _name_run(run: StoredRun) -> str:
     return f"Run {run.number}" if run.number else f"Run {run.id}"

@@ -60,12 +60,12 @@ def _take_cell(
         return
     try:
         # JSON has no tuples.
-        said = {
+        choices = {
             path: tuple(value) if isinstance(value, list) else value
             for path, value in settings.items()
         }
         context.loader.take_cell(
-            ProgramSource(Program(**program), said, has_magic=True) if program else None, said
+            ProgramSource(Program(**program), choices, has_magic=True) if program else None, choices
         )
     except TuisimError as error:
         context.app.complain(error)

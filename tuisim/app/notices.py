@@ -157,11 +157,17 @@ class Notices:
     def add(self, notice: Notice) -> None:
         """Show a notice as soon as its turn comes."""
         now_s = time.monotonic()
-        self._told = [(until_s, one) for until_s, one in self._told if until_s > now_s]
+        self._told = [
+            (until_s, waiting_notice) for until_s, waiting_notice in self._told if until_s > now_s
+        ]
         reading_s = len(notice.message) / CHARACTERS_A_SECOND
         self._told.append((now_s + max(notice.timeout_s, reading_s), notice))
         if notice.severity != "error":
-            self._waiting = deque(one for one in self._waiting if one.severity == "error")
+            self._waiting = deque(
+                waiting_notice
+                for waiting_notice in self._waiting
+                if waiting_notice.severity == "error"
+            )
         self._waiting.append(notice)
         self._app.call_later(self._take_turn)
 
@@ -174,10 +180,17 @@ class Notices:
         """Show no longer what stays until a key does something."""
         now_s = time.monotonic()
         self._told = [
-            (now_s + len(one.message) / CHARACTERS_A_SECOND if one.stays else until_s, one)
-            for until_s, one in self._told
+            (
+                now_s + len(waiting_notice.message) / CHARACTERS_A_SECOND
+                if waiting_notice.stays
+                else until_s,
+                waiting_notice,
+            )
+            for until_s, waiting_notice in self._told
         ]
-        self._waiting = deque(one for one in self._waiting if not one.stays)
+        self._waiting = deque(
+            waiting_notice for waiting_notice in self._waiting if not waiting_notice.stays
+        )
         if self._row is not None and self._row.notice.stays:
             self._end_turn()
 

@@ -11,7 +11,7 @@ from textual.dom import DOMNode
 from textual.message import Message
 from textual.widget import Widget
 
-from tuisim.app.action import label_of_key, with_keys_of
+from tuisim.app.action import fill_keys, label_of_key
 from tuisim.app.layout.arrangement import (
     KeptLayout,
     Preset,
@@ -62,11 +62,11 @@ class _Mounted(Generic[PanelWidget]):
     """An attribute that is a panel, or None until that is mounted."""
 
     def __init__(self, panel: str) -> None:
-        self._panel = panel
+        self._find_panel = panel
 
     def __get__(self, area: PanelArea | None, owner: type[PanelArea]) -> PanelWidget | None:
         return cast(
-            "PanelWidget | None", area.panels.get(self._panel) if area is not None else None
+            "PanelWidget | None", area.panels.get(self._find_panel) if area is not None else None
         )
 
 
@@ -95,8 +95,8 @@ class PanelArea(Container):
         """The panels that have been mounted, by id."""
         self.arrangement = PanelLayout()
         """What is on the screen."""
-        given = {**dict.fromkeys(on, True), **dict.fromkeys(off, False)}
-        self._given = {panel: given[panel] for panel in PANELS if panel in given}
+        switched = {**dict.fromkeys(on, True), **dict.fromkeys(off, False)}
+        self._given = {panel: switched[panel] for panel in PANELS if panel in switched}
         """Panels shown or hidden by options, which are not kept."""
         self._asked = dict(self._given)
         """Panels that were asked for, the latest last."""
@@ -133,7 +133,7 @@ class PanelArea(Container):
     goals: _Mounted[Goals] = _Mounted("goals")
     lesson: _Mounted[LessonPanel] = _Mounted("lesson")
 
-    def shown(self, panel: str) -> bool:
+    def is_shown(self, panel: str) -> bool:
         """Return whether a panel is on the screen."""
         return panel in self.panels and self.panels[panel].display
 
@@ -155,7 +155,7 @@ class PanelArea(Container):
 
     def toggle(self, panel: str) -> None:
         """Show or hide a panel; where there is room for one only, show it instead of the other one."""
-        show = self.is_single or not self.shown(panel) or bool(self.alone)
+        show = self.is_single or not self.is_shown(panel) or bool(self.alone)
         self.alone, self._roomy = "", None
         if self.is_single:
             self.front = panel if panel != self.front else "world"
@@ -171,12 +171,12 @@ class PanelArea(Container):
         if self.preset == self._kept_preset:
             self.keep_panels()
 
-    def awaits_focus(self, panel: str) -> bool:
+    def can_take_focus(self, panel: str) -> bool:
         """Return whether a panel that can have the focus is shown beside others, one of which has it.
 
         One that has just been shown will have it in a moment.
         """
-        beside = self.shown(panel) and not self.alone and not self.is_single
+        beside = self.is_shown(panel) and not self.alone and not self.is_single
         return beside and panel != self.front and self._can_focus(panel)
 
     def open(self, panel: str) -> None:
@@ -184,10 +184,10 @@ class PanelArea(Container):
         if self.is_single:
             self.front = panel
             self.lay_out()
-        elif not self.shown(panel):
+        elif not self.is_shown(panel):
             self.request({panel: True})
 
-    def next_panel(self, by: int) -> str:
+    def show_next_panel(self, by: int) -> str:
         """Return the panel after the one with the focus; where there is room for one only, show it."""
         if self.is_single:
             usual = choose_panels(self.preset, self._asked, self.size.width, self.size.height)
@@ -196,21 +196,21 @@ class PanelArea(Container):
             self.lay_out()
             return self.front
         panels = [panel for panel in self.arrangement.boxes if self._can_focus(panel)]
-        at = (
+        index = (
             panels.index(focused)
-            if (focused := self.focused_panel()) in panels
+            if (focused := self.find_focused_panel()) in panels
             else -1
             if by > 0
             else 0
         )
-        return panels[(at + by) % len(panels)] if panels else ""
+        return panels[(index + by) % len(panels)] if panels else ""
 
     def _can_focus(self, panel: str) -> bool:
         return any(
             child.focusable for child in self.panels[panel].walk_children(Widget, with_self=True)
         )
 
-    def focused_panel(self) -> str:
+    def find_focused_panel(self) -> str:
         """Return the panel that has the focus, or an empty text."""
         return self.find_owner(self.screen.focused)
 
@@ -221,14 +221,14 @@ class PanelArea(Container):
 
     def find_pointed_panel(self) -> str:
         """Return the panel that was clicked last if it cannot have the focus, else the one with the focus, if any."""
-        if self.clicked and self.shown(self.clicked):
+        if self.clicked and self.is_shown(self.clicked):
             return self.clicked
-        return self.focused_panel()
+        return self.find_focused_panel()
 
-    def focused_widgets(self) -> list[DOMNode]:
+    def list_focused_widgets(self) -> list[DOMNode]:
         """Return the widget with the focus and those around it, up to its panel."""
         around = self.screen.focused.ancestors_with_self if self.screen.focused else []
-        panel = self.panels.get(self.focused_panel())
+        panel = self.panels.get(self.find_focused_panel())
         return [widget for widget in around if panel in widget.ancestors_with_self]
 
     def choose_preset(self, preset: Preset) -> Preset:
@@ -247,11 +247,11 @@ class PanelArea(Container):
         self.lay_out()
         return self.preset
 
-    def next_preset(self) -> None:
+    def show_next_preset(self) -> None:
         """Show the next preset; one that would show the same panels in the same place is left out."""
         before, presets = self.arrangement.boxes, list(Preset)
-        at = presets.index(self.preset)
-        for preset in presets[at + 1 :] + presets[: at + 1]:
+        index = presets.index(self.preset)
+        for preset in presets[index + 1 :] + presets[: index + 1]:
             if preset == self.preset:
                 break
             self.choose_preset(preset)
@@ -261,38 +261,40 @@ class PanelArea(Container):
     def keep_panels(self) -> None:
         """Keep the preset, and the panels shown or hidden by their keys, for the next start in this size."""
         self._kept_preset = self.preset
-        save_layout(self._size_class(), KeptLayout(self.preset, self._chosen))
+        save_layout(self._find_size(), KeptLayout(self.preset, self._chosen))
 
-    def _size_class(self) -> TerminalSize:
+    def _find_size(self) -> TerminalSize:
         return classify_size(self.size.width, self.size.height + 1)
 
     def _load(self) -> None:
         """Take up what was kept for this size."""
         self._is_loaded = True
-        kept = load_layout(self._size_class())
-        self.preset = self._kept_preset = kept.preset
-        self._chosen = kept.asked
+        layout = load_layout(self._find_size())
+        self.preset = self._kept_preset = layout.preset
+        self._chosen = layout.asked
         self._asked = {
-            **{panel: on for panel, on in kept.asked.items() if panel not in self._given},
+            **{panel: on for panel, on in layout.asked.items() if panel not in self._given},
             **self._given,
         }
 
-    def request(self, wanted: Mapping[str, bool | None]) -> None:
+    def request(self, panels: Mapping[str, bool | None]) -> None:
         """Show and hide panels. Later requests get room first; None leaves a panel to the size of the terminal."""
-        for panel, show in wanted.items():
+        for panel, show in panels.items():
             self._asked.pop(panel, None)
             if show is not None:
                 self._asked[panel] = show
-        before = [panel for panel in PANELS if self.shown(panel)]
+        before = [panel for panel in PANELS if self.is_shown(panel)]
         self.lay_out()
-        asked = [panel for panel, show in wanted.items() if show and not self.alone]
-        for panel in asked:
-            if not self.shown(panel):
+        panels_to_show = [panel for panel, show in panels.items() if show and not self.alone]
+        for panel in panels_to_show:
+            if not self.is_shown(panel):
                 self.app.notify(
                     f"No room for {PANELS[panel].title}: hide another panel or enlarge the terminal"
                 )
-        gone = [PANELS[panel] for panel in before if panel not in wanted and not self.shown(panel)]
-        came = " and ".join(PANELS[panel].title for panel in asked if self.shown(panel))
+        gone = [
+            PANELS[panel] for panel in before if panel not in panels and not self.is_shown(panel)
+        ]
+        came = " and ".join(PANELS[panel].title for panel in panels_to_show if self.is_shown(panel))
         if gone and came:
             names = ", ".join(f"{info.title} ({label_of_key(info.key)})" for info in gone)
             self.app.notify(f"{came} instead of {names}")
@@ -309,36 +311,36 @@ class PanelArea(Container):
             self._roomy = panel, columns, rows
             self.lay_out()
 
-    def _wanted(self) -> tuple[list[str], list[str]]:
+    def _choose_panels(self) -> tuple[list[str], list[str]]:
         """Return the ids of the panels to show, by priority, and those for what space is left."""
         width, height = self.size
         self.is_stacked = self.is_beside = False
-        wanted, fill = choose_panels(self.preset, self._asked, width, height)
+        chosen, fill = choose_panels(self.preset, self._asked, width, height)
         if self._roomy:
             panel, columns, rows = self._roomy
-            keeps_lesson = "lesson" in wanted and panel != "lesson" and height >= _STACKED_ROWS
-            asked_for = wanted
-            wanted = make_room(panel, wanted, (columns, rows), (width, height), self.preset)
-            if wanted == [panel] and arrange_beside_world(panel, asked_for, width, height):
+            keeps_lesson = "lesson" in chosen and panel != "lesson" and height >= _STACKED_ROWS
+            asked_for = chosen
+            chosen = make_room(panel, chosen, (columns, rows), (width, height), self.preset)
+            if chosen == [panel] and arrange_beside_world(panel, asked_for, width, height):
                 self.alone, self.is_beside = "", True
                 return [panel, *asked_for], []
-            if wanted == [panel] and keeps_lesson:
+            if chosen == [panel] and keeps_lesson:
                 # Its lines need the whole width, but not all rows.
                 self.alone, self.is_stacked = "", True
                 return [panel, "lesson"], []
-            self.alone = panel if wanted == [panel] else ""
-            return wanted, []
+            self.alone = panel if chosen == [panel] else ""
+            return chosen, []
         if self.alone or self.is_single:
             return [self.alone or self.front], []
-        return wanted, fill
+        return chosen, fill
 
-    def _arranged(self) -> PanelLayout:
-        wanted, fill = self._wanted()
-        if self.is_beside and (layout := arrange_beside_world(wanted[0], wanted[1:], *self.size)):
+    def _arrange(self) -> PanelLayout:
+        chosen, fill = self._choose_panels()
+        if self.is_beside and (layout := arrange_beside_world(chosen[0], chosen[1:], *self.size)):
             return layout
         if self.is_stacked:
-            return stack_panels(wanted[0], wanted[1], self.size.width, self.size.height)
-        return arrange(wanted, self.size.width, self.size.height, fill, self.preset)
+            return stack_panels(chosen[0], chosen[1], self.size.width, self.size.height)
+        return arrange(chosen, self.size.width, self.size.height, fill, self.preset)
 
     def lay_out(self, keeps: str = "") -> None:
         """Lay out every panel.
@@ -348,24 +350,24 @@ class PanelArea(Container):
         """
         if not self.size:
             return
-        self.arrangement = self._arranged()
+        self.arrangement = self._arrange()
         if keeps and keeps not in self.arrangement.boxes and not self.alone:
             self._asked[keeps] = True
-            self.arrangement = self._arranged()
+            self.arrangement = self._arrange()
         with self.app.batch_update():
             for panel, widget in self.panels.items():
                 widget.display = panel in self.arrangement.boxes
             for panel, box in self.arrangement.boxes.items():
-                styles = self._panel(panel).styles
+                styles = self._find_panel(panel).styles
                 styles.width, styles.height = box.width, box.height
                 styles.offset = (box.x, box.y)
         if self.world:
             is_usual = self.preset == Preset.STANDARD
-            key = with_keys_of(self.app, f"{{layout-{self.preset}}}")
+            key = fill_keys(self.app, f"{{layout-{self.preset}}}")
             self.world.name_layout("" if is_usual else f"{key} {self.preset}")
         self.post_message(self.Rearranged())
 
-    def _panel(self, panel: str) -> Widget:
+    def _find_panel(self, panel: str) -> Widget:
         if panel not in self.panels:
             widget = cast(Widget, PANELS[panel].load()())
             widget.border_title = build_title(self.app, panel)
@@ -383,7 +385,7 @@ class PanelArea(Container):
 
     def focus_world(self) -> None:
         """Focus the world if it is shown; the focus of a dialog above the panels stays."""
-        self.screen.set_focus(self.world if self.shown("world") else None)
+        self.screen.set_focus(self.world if self.is_shown("world") else None)
 
     def leave_code(self) -> None:
         """Focus the world if the code has the focus, unless the user types in it."""
@@ -392,7 +394,7 @@ class PanelArea(Container):
 
     def bring(self, panel: str) -> None:
         """Show a panel, unless it is shown already."""
-        if not self.shown(panel):
+        if not self.is_shown(panel):
             self.toggle(panel)
 
     def release_buttons(self) -> None:
@@ -400,14 +402,14 @@ class PanelArea(Container):
         if self.brick:
             self.brick.release_all()
 
-    def attend(self, panel: str) -> None:
+    def focus_opened(self, panel: str) -> None:
         """Focus a panel that has been opened, if it can have the focus; the world if it was closed."""
         widget = self.panels.get(panel)
-        if not self.shown(panel) or widget is None:
+        if not self.is_shown(panel) or widget is None:
             self.focus_world()
         elif not widget.is_mounted:
             # It is still being mounted.
-            widget.call_later(self.attend, panel)
+            widget.call_later(self.focus_opened, panel)
         elif hasattr(widget, "begin"):
             widget.begin()
         else:
@@ -421,13 +423,13 @@ class PanelArea(Container):
         """Mount the panels that need data from the start, shown or not."""
         for panel in panels:
             if panel not in self.panels:
-                self._panel(panel).display = False
+                self._find_panel(panel).display = False
 
     def on_resize(self, event: events.Resize) -> None:
         if not self._is_loaded:
             self._load()
-        panel = self.focused_panel()
-        self.lay_out(keeps=panel if self.shown(panel) else "")
+        panel = self.find_focused_panel()
+        self.lay_out(keeps=panel if self.is_shown(panel) else "")
 
     def on_descendant_focus(self, event: events.DescendantFocus) -> None:
         """Mark the panel that has the focus.
@@ -445,7 +447,7 @@ class PanelArea(Container):
         around = focused.ancestors_with_self if focused else []
         for panel in self.panels.values():
             panel.set_class(panel in around, "-focused")
-        self.front = self.focused_panel() or self.front
+        self.front = self.find_focused_panel() or self.front
         if self.front != "world":
             self.clicked = ""
 
@@ -455,14 +457,16 @@ class PanelArea(Container):
         for panel, widget in self.panels.items():
             if widget.display and widget.is_attached and panel not in _READINGS:
                 cast(Panel, widget).show(snapshot)
-        self._throttle.period_s = _ARRAYS_PERIOD_S if self.shown("arrays") else _READINGS_PERIOD_S
+        self._throttle.period_s = (
+            _ARRAYS_PERIOD_S if self.is_shown("arrays") else _READINGS_PERIOD_S
+        )
         self._throttle.ask(at_once=snapshot.has_stopped_since(before))
 
     def _show_readings(self) -> None:
         if (now := self._snapshot) is None:
             return
         for panel in _READINGS:
-            if self.shown(panel) and self.panels[panel].is_attached:
+            if self.is_shown(panel) and self.panels[panel].is_attached:
                 cast(Panel, self.panels[panel]).show(now)
         if self.world is not None:
             self.world.time_bar.show(now)

@@ -43,16 +43,16 @@ _BUTTONS = re.compile(
 """An import of ev3dev2's buttons, or a look at those of Pybricks' brick."""
 
 
-def looks_at_buttons(program: str) -> bool:
+def has_button_calls(program: str) -> bool:
     """Return whether the text of a program uses the brick's buttons."""
     return bool(_BUTTONS.search(program))
 
 
 def _find_typing_room(area: PanelArea) -> tuple[int, int]:
     """Return the columns and rows of the code panel that are room enough for who types in it."""
-    if area.shown("lesson"):
+    if area.is_shown("lesson"):
         return _LESSON_COLUMNS, ROOMY_ROWS
-    is_wide = area.shown("world") and area.size.width >= EDITOR_COLS + DISCS_COLS
+    is_wide = area.is_shown("world") and area.size.width >= EDITOR_COLS + DISCS_COLS
     return EDITOR_COLS, _HIGH_ROWS if is_wide else ROOMY_ROWS
 
 
@@ -63,9 +63,9 @@ class PanelMessages(LabHost):
     has_hinted = False
     """Whether the panel of the brick was named."""
 
-    def hint_at_brick(self, does: str) -> None:
+    def suggest_brick(self, does: str) -> None:
         """Name the panel of the brick, if it is hidden, to whoever runs a program that needs it; once."""
-        if not self.has_hinted and not self.context.panels.shown("brick"):
+        if not self.has_hinted and not self.context.panels.is_shown("brick"):
             self.say(f"The program {does}: {{panel-brick}} opens its panel")
         self.has_hinted = True
 
@@ -111,7 +111,7 @@ class PanelMessages(LabHost):
 
     def on_code_edited(self, message: Code.Edited) -> None:
         self.context.document.handle_edit(message.text)
-        self.context.debugger.edited(message.text)
+        self.context.debugger.follow_edit(message.text)
 
     def on_code_wanted(self, message: Code.Wanted) -> None:
         from tuisim.app.panels.code import ProgramCommand
@@ -170,7 +170,7 @@ class PanelMessages(LabHost):
             message.row.refuse(error)
 
     def on_obstacles_edited(self, message: Obstacles.Edited) -> None:
-        self.context.loader.attempt(
+        self.context.loader.try_change(
             lambda plan: change_obstacles(plan, message.change(plan.spec.world.obstacles))
         )
 
@@ -180,14 +180,14 @@ class PanelMessages(LabHost):
     def mark_box(self) -> None:
         """Show in the world which obstacle is selected, and whether the mouse draws obstacles."""
         area = self.context.panels
-        on = area.shown("obstacles")
+        on = area.is_shown("obstacles")
         if area.world:
             area.world.edit_boxes(on, area.obstacles.at if on and area.obstacles else None)
 
     def on_world_boxes_dragged(self, message: World.BoxesDragged) -> None:
         panel = self.context.panels.obstacles
         if (
-            self.context.loader.attempt(lambda plan: change_obstacles(plan, message.obstacles))
+            self.context.loader.try_change(lambda plan: change_obstacles(plan, message.obstacles))
             and panel
         ):
             panel.mark(message.index)

@@ -101,7 +101,11 @@ class PlotView(LinesView):
     def _show(
         self, lines: Lines, pictures: Sequence[tuple[int, ChartPicture]], graphics: Graphics
     ) -> None:
-        plots = [(first + one.top, one.left - 1, one.plot) for first, one in pictures if one.plot]
+        plots = [
+            (first + picture.top, picture.left - 1, picture.plot)
+            for first, picture in pictures
+            if picture.plot
+        ]
         spans = {
             top + row: (left, left + plot.size[1])
             for top, left, plot in plots
@@ -109,7 +113,7 @@ class PlotView(LinesView):
         }
         if self._tiles is None or self._tiles.graphics != graphics:
             self._tiles, self._spans = TilePicture(graphics), {}
-        runs = self._tiles.put(self._image(plots, graphics.cell_points))
+        runs = self._tiles.put(self._draw_image(plots, graphics.cell_points))
         super().set_lines(lines)
         if spans != self._spans:
             self._spans = spans
@@ -121,7 +125,7 @@ class PlotView(LinesView):
             self.refresh(*[Region(col, row, length, 1) for row, col, length in runs])
         self._sharpness.record_change()
 
-    def _image(self, plots: Sequence[tuple[int, int, Plot]], cell: tuple[int, int]) -> Pixels:
+    def _draw_image(self, plots: Sequence[tuple[int, int, Plot]], cell: tuple[int, int]) -> Pixels:
         (width, height), size = cell, self.size
         image: Pixels = np.zeros((size.height * height, size.width * width, 3), np.uint8)
         theme = find_picture_mode(self.app).theme
@@ -131,16 +135,19 @@ class PlotView(LinesView):
             if (rgb := convert_color(shade.bgcolor))
         )
         inks = PlotInks(
-            self.ground_rgb, self._ink(convert_color(AXIS.color)), self._ink(_CURSOR), shades
+            self.ground_rgb,
+            self._find_ink(convert_color(AXIS.color)),
+            self._find_ink(_CURSOR),
+            shades,
         )
         for top, left, plot in plots:
             rows, cols = plot.size
-            curves = tuple(replace(curve, rgb=self._ink(curve.rgb)) for curve in plot.curves)
+            curves = tuple(replace(curve, rgb=self._find_ink(curve.rgb)) for curve in plot.curves)
             part = draw_plot(replace(plot, curves=curves), cell, inks)
             image[top * height : (top + rows) * height, left * width : (left + cols) * width] = part
         return image
 
-    def _ink(self, own: Rgb | None) -> Rgb:
+    def _find_ink(self, own: Rgb | None) -> Rgb:
         theme = find_picture_mode(self.app).theme
         rgb = own or _CURSOR
         return theme.choose_text_rgb(rgb) if theme else rgb
@@ -169,11 +176,11 @@ class PlotView(LinesView):
             return strip
         left, right = self._spans[y]
         parts = strip.crop(0, left), PictureStrip(self._tiles.row(y)[left:right]), strip.crop(right)
-        made = PlotStrip(parts, partial(self._spare_line, y))
+        made = PlotStrip(parts, partial(self._render_spare_line, y))
         self._text_strips[y] = made
         return made
 
-    def _spare_line(self, y: int) -> Strip:
+    def _render_spare_line(self, y: int) -> Strip:
         if self._spare is None:
             self._spare = self._spare_lines()
         return self.draw_strip(self._spare[y] if y < len(self._spare) else [])

@@ -23,14 +23,14 @@ class ReasonTour:
         self._at: int | None = None
         """Index of the one in view; None before the first, and after the last."""
 
-    def is_of(self, recording: Recording | None) -> bool:
+    def is_about(self, recording: Recording | None) -> bool:
         """Return whether these are, or will be, the reasons of a run."""
         return recording is not None and self._of is recording
 
-    def are_of(self, runs: RunController) -> bool:
+    def has_gone_wrong(self, runs: RunController) -> bool:
         """Return whether the run in view is known to have gone wrong, or repeats the one beside it."""
         recording, earlier = runs.timeline.recording, runs.earlier
-        has_gone_wrong = self.is_of(recording) and bool(self.reasons)
+        has_gone_wrong = self.is_about(recording) and bool(self.reasons)
         can_differ = recording is not None and earlier is not None and is_repeat(recording, earlier)
         return has_gone_wrong or can_differ
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from tuisim.app import background
-from tuisim.app.earlier_run import stored_before
+from tuisim.app.earlier_run import find_run_before
 from tuisim.app.snapshot import RunPhase
 from tuisim.engine.runs.store import load_run
 from tuisim.tasks.lessons.spec import RunCheck
@@ -32,15 +32,20 @@ FoundReasons = tuple[tuple["Reason", ...], "Recording | None"]
 def look(context: ActionContext) -> None:
     """Find out in the background whether the run in view, which has ended, went wrong; once."""
     recording, tour = context.runs.timeline.recording, context.reasons
-    if recording is None or context.runs.state is not RunPhase.ENDED or tour.is_of(recording):
+    if recording is None or context.runs.state is not RunPhase.ENDED or tour.is_about(recording):
         return
     tour.begin(recording)
-    find(context, recording, context.runs.earlier, lambda found: note(context, recording, found))
+    find(
+        context,
+        recording,
+        context.runs.earlier,
+        lambda reasons_so_far: note(context, recording, reasons_so_far),
+    )
 
 
-def note(context: ActionContext, recording: Recording, found: FoundReasons) -> None:
+def note(context: ActionContext, recording: Recording, reasons_so_far: FoundReasons) -> None:
     """Keep the reasons of a run, and let the footer name the key."""
-    context.reasons.take(recording, *found)
+    context.reasons.take(recording, *reasons_so_far)
     context.app.handle_situation_change()
 
 
@@ -69,16 +74,16 @@ def find(
         judgements = tuple(each for each in session.attempt.judgements if each.goal.name in asked)
     elif file is not None and context.loader.goals.is_of_task(recording):
         goals = file.goals
-    mat = context.runs.mat_for(recording.spec)
+    mat = context.runs.find_mat(recording.spec)
 
-    def work() -> FoundReasons:
+    def find_reasons() -> FoundReasons:
         before = earlier if earlier is not None and is_repeat(recording, earlier) else None
         if before is None and searches:
-            before = stored_before(recording)
+            before = find_run_before(recording)
         return _read(recording.folder, goals, judgements, before, mat), before
 
     failed = context.app.complain if searches else lambda _: None
-    background.run(context.panels, work, then, failed, group="reasons", exclusive=True)
+    background.run(context.panels, find_reasons, then, failed, group="reasons", exclusive=True)
 
 
 def _read(

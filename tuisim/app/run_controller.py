@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from tuisim.app.earlier_run import is_comparable, pose_at
+from tuisim.app.earlier_run import find_pose, is_comparable
 from tuisim.app.run_update import RunUpdate, describe_remarks
 from tuisim.app.setup import next_run as plans
 from tuisim.app.setup.next_run import NextRun
@@ -57,9 +57,9 @@ class Pending:
 
     def note(self, record: TickRecord, action: protocol.Message) -> None:
         """Add an action that was sent while this was the newest record."""
-        if self._after != _key(record):
+        if self._after != _build_key(record):
             self.forget()
-            self._after = _key(record)
+            self._after = _build_key(record)
         match action:
             case protocol.SetPose(x_mm=x_mm, y_mm=y_mm, heading_deg=heading_deg):
                 self._pose = Pose(x_mm, y_mm, heading_deg)
@@ -72,12 +72,14 @@ class Pending:
         """Drop all pending actions."""
         self._after, self._pose, self._noise, self._pen_down = (-1, 0), None, None, None
 
-    def done_to(self, record: TickRecord, instant: Instant, pen_down: bool) -> tuple[Instant, bool]:
+    def apply_pending(
+        self, record: TickRecord, instant: Instant, pen_down: bool
+    ) -> tuple[Instant, bool]:
         """Return the instant of the newest record and its pen with the pending actions applied.
 
         The gyro keeps its angle, as it does when the robot is lifted.
         """
-        if self._after != _key(record):
+        if self._after != _build_key(record):
             return instant, pen_down
         pose = self._pose or instant.pose
         zero_deg = instant.gyro_zero_deg + pose.heading_deg - instant.pose.heading_deg
@@ -87,7 +89,7 @@ class Pending:
         return instant, pen_down if self._pen_down is None else self._pen_down
 
 
-def _key(record: TickRecord) -> tuple[int, int]:
+def _build_key(record: TickRecord) -> tuple[int, int]:
     return record.tick, record.actions
 
 
@@ -125,7 +127,7 @@ class RunController:
         """The brick's buttons that the user holds down."""
         self._branch: Branch | None = None
         """The branch that the current run becomes, while the run is repeated up to its instant."""
-        self._still = self._at_rest(self.home)
+        self._still = self._build_rest(self.home)
         self._end: RunState | None = None
         """How the run ended."""
         self._moved = True
@@ -179,20 +181,20 @@ class RunController:
     @property
     def pose(self) -> Pose:
         """The pose of the robot."""
-        return self._moment(self._record())[0].pose
+        return self._find_moment(self._record())[0].pose
 
     @property
     def pen_down(self) -> bool:
         """Whether the pen is down."""
-        return self._moment(self._record())[2]
+        return self._find_moment(self._record())[2]
 
-    def snapshot(self) -> Snapshot:
+    def build_snapshot(self) -> Snapshot:
         """Return the snapshot of the instant in view."""
         timeline, recording, spec = self.timeline, self.timeline.recording, self.spec
         newest = recording.telemetry.last() if recording else None
         past, now_tick = timeline.at is not None, newest.tick if newest else 0
         record = timeline.record() if past else None if self._moved else newest
-        instant, line, pen_down = self._moment(record)
+        instant, line, pen_down = self._find_moment(record)
         state, face = self.state, timeline.face(now_tick if timeline.at is None else timeline.at)
         # After the robot was placed following the run, all its motors are reset.
         hz = timeline.tick_hz
@@ -218,22 +220,22 @@ class RunController:
             recorded_spec=recording.spec if recording else None,
             face=face,
             turns=turns,
-            pressed=self._pressed_at(record),
+            pressed=self._find_pressed(record),
             placed=recording is not None and self._moved and not past,
             past=past,
             now_tick=now_tick,
             now_pose=newest.pose if newest and past else None,
-            earlier_pose=self._earlier_pose(instant) if record else None,
+            earlier_pose=self._find_earlier_pose(instant) if record else None,
             program=recording.program if recording and self._is_of_run else self.program,
         )
 
-    def _earlier_pose(self, instant: Instant) -> Pose | None:
+    def _find_earlier_pose(self, instant: Instant) -> Pose | None:
         if self.earlier is None or not self.shows_earlier:
             return None
-        pose = pose_at(self.earlier, instant.tick / self.timeline.tick_hz)
+        pose = find_pose(self.earlier, instant.tick / self.timeline.tick_hz)
         return None if pose == instant.pose else pose
 
-    def _at_rest(self, pose: Pose) -> Instant:
+    def _build_rest(self, pose: Pose) -> Instant:
         spec = self.next_run.spec
         flags = build_start_flags(spec.robot)
         return Instant(
@@ -259,7 +261,7 @@ class RunController:
             return None
         return self.timeline.record() or recording.telemetry.last()
 
-    def _moment(self, record: TickRecord | None) -> tuple[Instant, int, bool]:
+    def _find_moment(self, record: TickRecord | None) -> tuple[Instant, int, bool]:
         """Return the instant of a record, the program's line, and whether the pen is down."""
         recording = self.timeline.recording
         if record is None or recording is None:
@@ -275,10 +277,10 @@ class RunController:
         instant = recording.instant(record, self.spec, noise)
         line = exact.get(record.tick, record.line)
         if self.in_run and not self.in_past:
-            instant, down = self._pending.done_to(record, instant, down)
+            instant, down = self._pending.apply_pending(record, instant, down)
         return instant, line, down
 
-    def _pressed_at(self, record: TickRecord | None) -> frozenset[str]:
+    def _find_pressed(self, record: TickRecord | None) -> frozenset[str]:
         """Return the buttons that are held down: by the user now, or in the recording at the instant in view."""
         recording = self.timeline.recording
         if record is None or recording is None or not self._is_of_run:
@@ -287,14 +289,14 @@ class RunController:
 
     def _field(self, record: TickRecord | None) -> Field | None:
         """Return the mat as the sensors saw it then, None until it is prepared for them."""
-        mat, recording = self.mat_for(self.spec), self.timeline.recording
+        mat, recording = self.find_mat(self.spec), self.timeline.recording
         return (
             mat
             if mat is None or record is None or recording is None
             else recording.field_at(record.tick, mat)
         )
 
-    def mat_for(self, spec: RunSpec) -> Field | None:
+    def find_mat(self, spec: RunSpec) -> Field | None:
         """Return the mat of the next run or of that in view, if it is one for a run's sensors; else None."""
         recording, mats = self.timeline.recording, (self.mat, self._mat_of_run)
         if recording and self.mat and self.mat.serves(recording.spec):
@@ -342,7 +344,7 @@ class RunController:
             live=True, speed=self.speed, time_limit_s=0.0, stall_limit_s=0.0, asks_user=True
         )
 
-    def branch(self, branch: Branch) -> None:
+    def start_branch(self, branch: Branch) -> None:
         """Repeat a run as fast as possible up to an instant of it, and continue from there. Ends the current run.
 
         Raises:
@@ -360,7 +362,7 @@ class RunController:
         self.next_run = plans.change_noise(self.next_run, noise)
         self._branch = branch
 
-    def _branch_arrived(self, paused: protocol.Paused | None = None) -> Branch | None:
+    def _finish_branch(self, paused: protocol.Paused | None = None) -> Branch | None:
         """Switch from the former run to the new one, which is paused at the instant of the branch or has ended.
 
         A program that ends before that instant is paused at its end.
@@ -389,7 +391,7 @@ class RunController:
         later = self.timeline.recording
         self.earlier = earlier if earlier and later and is_comparable(earlier, later) else None
 
-    def accompany(self, companion: Recording | None) -> None:
+    def set_companion(self, companion: Recording | None) -> None:
         """Draw a run beside every run from now on; None for the run before again."""
         self.companion = companion
         self.shows_earlier = True
@@ -406,7 +408,7 @@ class RunController:
     def _show_recording(self, recording: Recording) -> None:
         # What is drawn of a frame is of one instant.
         recording.hold()
-        self.timeline.switch_to(recording)
+        self.timeline.show_run(recording)
         self.show_earlier(self.companion)
         self._pending.forget()
         self.pressed = frozenset()
@@ -437,7 +439,7 @@ class RunController:
         if self.in_past:
             self.propose(protocol.SetPen(down))
             return
-        self._act(protocol.SetPen(down))
+        self._send_action(protocol.SetPen(down))
         self.next_run = plans.change_pen(self.next_run, down)
 
     def press(self, buttons: frozenset[str]) -> None:
@@ -450,7 +452,7 @@ class RunController:
     def set_noise(self, noise: NoiseSpec) -> None:
         """Change the noise, at once and for the next run."""
         if self.in_past:
-            if noise != self._moment(self._record())[0].noise:
+            if noise != self._find_moment(self._record())[0].noise:
                 self.propose(protocol.SetNoise(noise.light, noise.motor))
             return
         if noise == self.next_run.spec.world.noise:
@@ -458,7 +460,7 @@ class RunController:
         self.next_run = plans.change_noise(self.next_run, noise)
         self._still = replace(self._still, noise=noise)
         if self.in_run:
-            self._act(protocol.SetNoise(noise.light, noise.motor))
+            self._send_action(protocol.SetNoise(noise.light, noise.motor))
 
     def set_seed(self, seed: int) -> None:
         """Choose the seed of the next run."""
@@ -474,20 +476,20 @@ class RunController:
         if self.in_run:
             # While paused, placing the robot where it already is would only add a needless action to the record.
             if not self._is_paused or pose != self.pose:
-                self._act(command)
+                self._send_action(command)
             return
-        self._start_at(pose)
+        self._set_start(pose)
 
-    def _start_at(self, pose: Pose) -> None:
+    def _set_start(self, pose: Pose) -> None:
         self.next_run = plans.move_start(self.next_run, pose)
-        self._still = self._at_rest(pose)
+        self._still = self._build_rest(pose)
         self._moved = True
 
     def load(self, plan: NextRun, program: Program | None) -> None:
         """Load another world or program; the robot goes to its start. Not during a run."""
         self.timeline.go(None)
         self.next_run, self.program, self.home = plan, program, plan.spec.world.start
-        self._start_at(plan.spec.world.start)
+        self._set_start(plan.spec.world.start)
 
     def change(self, plan: NextRun) -> None:
         """Set a plan that differs in other things than the start; the robot stays where it is. Not during a run.
@@ -509,9 +511,9 @@ class RunController:
             self.run.close()
             self.run = None
         self._branch = None
-        self.timeline.switch_to(None)
+        self.timeline.show_run(None)
 
-    def _act(self, action: protocol.Message) -> None:
+    def _send_action(self, action: protocol.Message) -> None:
         """Send an action that changes the world; while paused, show it before it has taken effect."""
         record = self._record()
         if record is not None and self._branch is None and self._is_paused:
@@ -548,9 +550,9 @@ class RunController:
             match event:
                 case protocol.Ended():
                     ended, self._end = event, event.end
-                    branched = self._branch_arrived()
+                    branched = self._finish_branch()
                 case protocol.Paused() if self._branch:
-                    branched = self._branch_arrived(event)
+                    branched = self._finish_branch(event)
                     pauses.append(event)
                 case protocol.Paused() | protocol.Resumed() | protocol.Inspected():
                     pauses.append(event)
@@ -566,7 +568,7 @@ class RunController:
         stood = standstill_words(recording.telemetry, recording.spec) if ended else ""
         if not self.in_past:
             remarks += self._waits.look(
-                recording, ended, self.state is RunPhase.RUNNING, self.mat_for
+                recording, ended, self.state is RunPhase.RUNNING, self.find_mat
             )
         rows = recording.take_rows(ROWS_A_POLL)
         prompt = self.run.waiting_for_input if self.run and self.in_run else None

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from tuisim.app.branch import Branch
-from tuisim.app.snapshot import busy_loop_words
+from tuisim.app.snapshot import describe_busy_loop
 from tuisim.base.data_class import dataclass
 from tuisim.engine import protocol
 from tuisim.engine.runs.records import OutputRow
@@ -48,6 +48,6 @@ def describe_remarks(
 ) -> Iterator[str]:
     """Yield what the output says of an event."""
     if isinstance(event, protocol.BusyLoop):
-        yield busy_loop_words(event)
+        yield describe_busy_loop(event)
     elif words := describe_newest(recording.plugged, recording.spec):
         yield words

@@ -15,7 +15,7 @@ from tuisim.terminal.cell_image import CellGrid, draw_cells, draw_cells_svg, spl
 from tuisim.terminal.textual_internals import render_screen
 
 
-def screen_cells(app: App[Any]) -> CellGrid:
+def collect_cells(app: App[Any]) -> CellGrid:
     """Return the cells of an app's screen, with its dialogs and notices."""
     width = app.screen.size.width
     runs = (

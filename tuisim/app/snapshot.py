@@ -253,7 +253,7 @@ def end_words(ended: Ended, stood: str) -> tuple[str, str]:
     return ", ".join(filter(None, (words, stood))), ", ".join(filter(None, (last, stood)))
 
 
-def busy_loop_words(busy_loop: BusyLoop) -> str:
+def describe_busy_loop(busy_loop: BusyLoop) -> str:
     """Return what the output says of a loop without a wait, with ids of actions in braces."""
     since = f"{busy_loop.since_ns / 1e9:.2f} s"
     return f"— line {busy_loop.line}: a loop without a wait since {since}. {{stop}} stops it"
@@ -265,17 +265,17 @@ _SHORT = 6
 """Characters of a number that stays as it is."""
 
 
-def short_value(text: str) -> str:
+def shorten_value(text: str) -> str:
     """Return the text of a value with numbers of many decimals to four digits, those in strings as they are."""
 
-    def short(found: re.Match[str]) -> str:
-        word = found[0]
+    def shorten_number(match: re.Match[str]) -> str:
+        word = match[0]
         if word[0] in "'\"" or len(word) <= _SHORT:
             return word
         number = float(word)
         return min(word, f"{number:.1f}" if 1000 <= abs(number) < 1e9 else f"{number:.4g}", key=len)
 
-    return _NUMBERS.sub(short, text)
+    return _NUMBERS.sub(shorten_number, text)
 
 
 def end_label(state: RunState | None) -> str:

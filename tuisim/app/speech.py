@@ -34,7 +34,7 @@ _FADE_SAMPLES = 100
 """Fade at the start and end of a tone, to avoid clicks."""
 
 
-def wav_of(tones: Sequence[Sequence[float]]) -> bytes:
+def build_wav(tones: Sequence[Sequence[float]]) -> bytes:
     """Return tones as a mono WAV file, cut after MAX_SOUND_S.
 
     Args:
@@ -45,9 +45,9 @@ def wav_of(tones: Sequence[Sequence[float]]) -> bytes:
     for hz, ms, pause_ms in tones:
         count = min(int(ms / 1000.0 * RATE_HZ), room - len(samples))
         step = 2.0 * math.pi * hz / RATE_HZ
-        for at in range(count):
-            fade = min(1.0, at / _FADE_SAMPLES, (count - at) / _FADE_SAMPLES)
-            samples.append(int(_LOUDNESS * fade * math.sin(step * at)))
+        for index in range(count):
+            fade = min(1.0, index / _FADE_SAMPLES, (count - index) / _FADE_SAMPLES)
+            samples.append(int(_LOUDNESS * fade * math.sin(step * index)))
         samples.extend([0] * min(int(pause_ms / 1000.0 * RATE_HZ), room - len(samples)))
         if len(samples) >= room:
             break
@@ -72,9 +72,11 @@ class Voice:
         remote = any(name in environment for name in ("SSH_CONNECTION", "SSH_TTY", "SSH_CLIENT"))
         mute = quiet or remote
         self._speaks = None if mute else shutil.which(SPEAKS)
-        found = ((shutil.which(name), arguments) for name, arguments in PLAYS)
+        players = ((shutil.which(name), arguments) for name, arguments in PLAYS)
         self._plays = (
-            None if mute else next(([path, *arguments] for path, arguments in found if path), None)
+            None
+            if mute
+            else next(([path, *arguments] for path, arguments in players if path), None)
         )
         self._sounding: subprocess.Popen[bytes] | None = None
 
@@ -87,16 +89,20 @@ class Voice:
         elif sound.tones:
             tones = [tone for tone in json.loads(sound.tones) if len(tone) == 3]
             if self._plays and any(hz for hz, _, _ in tones):
-                self._sounding = _fed(self._plays, wav_of(tones))
+                self._sounding = _start_player(self._plays, build_wav(tones))
         elif self._speaks:
             # The text is passed by the pipe: as an argument it could be read as an option.
-            self._sounding = _fed([self._speaks, "--stdin"], sound.text[:MAX_CHARS].encode())
+            self._sounding = _start_player(
+                [self._speaks, "--stdin"], sound.text[:MAX_CHARS].encode()
+            )
 
     def _play_file(self, path: str) -> None:
         if self._plays:
             try:
                 with open_regular(Path(path), follow_links=True) as file:
-                    self._sounding = _fed(self._plays, file.read(int(MAX_SOUND_S * RATE_HZ * 8)))
+                    self._sounding = _start_player(
+                        self._plays, file.read(int(MAX_SOUND_S * RATE_HZ * 8))
+                    )
             except OSError:
                 # The program has played it: the file may be deleted by now.
                 return
@@ -107,7 +113,7 @@ class Voice:
             self._sounding.kill()
 
 
-def _fed(command: Sequence[str], data: bytes) -> subprocess.Popen[bytes] | None:
+def _start_player(command: Sequence[str], data: bytes) -> subprocess.Popen[bytes] | None:
     """Start a program with data on its standard input, without waiting for it; None if it cannot be started."""
     read, write = os.pipe()
     try:

@@ -17,7 +17,7 @@ from textual.screen import Screen
 from textual.theme import Theme
 
 from tuisim.app import background
-from tuisim.app.action import ActionHost, KeyFooter, with_keys_of
+from tuisim.app.action import ActionHost, KeyFooter, fill_keys
 from tuisim.app.dialogs.dialog import ClosesOnce, Dialog
 from tuisim.app.notices import Notice, Notices
 from tuisim.app.themes import (
@@ -26,7 +26,7 @@ from tuisim.app.themes import (
     OWN_THEME,
     UNUSED_THEMES,
     ThemeColors,
-    theme_names,
+    list_themes,
 )
 from tuisim.base import palette
 from tuisim.base.errors import ConfigError, TuisimError
@@ -56,12 +56,12 @@ def is_too_small(size: Size) -> bool:
     return size.width < MINIMUM.width or size.height < MINIMUM.height
 
 
-def laid_out(size: Size) -> Size:
+def clamp_size(size: Size) -> Size:
     """Return the size that panels and dialogs are laid out for: at least the minimum."""
     return Size(max(size.width, MINIMUM.width), max(size.height, MINIMUM.height))
 
 
-def _wordings(size: Size) -> Iterator[str]:
+def _list_wordings(size: Size) -> Iterator[str]:
     """Yield the versions of the message, the longest first."""
     needed = f"{MINIMUM.width}×{MINIMUM.height}"
     has = f"{size.width}×{size.height}"
@@ -71,19 +71,19 @@ def _wordings(size: Size) -> Iterator[str]:
     yield "Too small"
 
 
-def message_lines(size: Size) -> list[str]:
+def build_message(size: Size) -> list[str]:
     """Return the lines of the message that a terminal is too small: the longest version that fits."""
-    for wording in _wordings(size):
+    for wording in _list_wordings(size):
         lines = wrap(wording, max(size.width, 1), break_long_words=False)
         if len(lines) <= size.height and all(len(line) <= size.width for line in lines):
             return lines
     return ["!"]
 
 
-def _message_codes(size: Size) -> str:
-    lines = message_lines(size)
+def _build_codes(size: Size) -> str:
+    lines = build_message(size)
     top = (size.height - len(lines)) // 2
-    rows = (Control.move_to(0, top + at).segment.text + line for at, line in enumerate(lines))
+    rows = (Control.move_to(0, top + row).segment.text + line for row, line in enumerate(lines))
     return "\x1b[0m\x1b[2J" + "".join(rows)
 
 
@@ -117,7 +117,7 @@ class TerminalApp(BufferedApp):
         }
 
     def on_mount(self) -> None:
-        self.theme_changed_signal.subscribe(self, self._theme_changed)
+        self.theme_changed_signal.subscribe(self, self._apply_theme)
         self.set_class(find_color_depth(self) < PALETTE_256 or bool(self.no_color), "-few-colors")
 
     def _take_theme(self) -> None:
@@ -125,11 +125,15 @@ class TerminalApp(BufferedApp):
         self.picture_mode.theme = theme = (
             None if is_own else ThemeColors(self.current_theme, TRACE_COLORS)
         )
-        filters = [one for one in self.line_filters if not isinstance(one, ThemeColors)]
+        filters = [
+            line_filter
+            for line_filter in self.line_filters
+            if not isinstance(line_filter, ThemeColors)
+        ]
         # Before the filter for terminals without colours, which leaves no colour to be replaced.
         self.line_filters = [theme, *filters] if theme else filters
 
-    def _theme_changed(self, theme: Theme) -> None:
+    def _apply_theme(self, theme: Theme) -> None:
         """Draw everything in the colours of another theme."""
         self._take_theme()
         self.redraw_pictures()
@@ -138,17 +142,17 @@ class TerminalApp(BufferedApp):
     def action_choose_theme(self) -> None:
         """Let the user choose a theme, and keep the choice."""
 
-        def chosen(name: str | None) -> None:
+        def handle_choice(name: str | None) -> None:
             if name is not None:
                 self.keep_setting(THEME, None if name == OWN_THEME else name)
 
-        self.push_screen(self.theme_chooser(), chosen)
+        self.push_screen(self.build_theme_chooser(), handle_choice)
 
-    def theme_chooser(self) -> ThemeChooser:
+    def build_theme_chooser(self) -> ThemeChooser:
         """Return the dialog of the themes."""
         from tuisim.app.dialogs.palette import ThemeChooser
 
-        return ThemeChooser(theme_names(), self.theme, partial(setattr, self, "theme"))
+        return ThemeChooser(list_themes(), self.theme, partial(setattr, self, "theme"))
 
     def notify(
         self,
@@ -181,7 +185,7 @@ class TerminalApp(BufferedApp):
         if isinstance(event, events.Resize):
             was, self.too_small = self.too_small, event.size if is_too_small(event.size) else None
             if self.too_small:
-                event = events.Resize(laid_out(event.size), laid_out(event.size))
+                event = events.Resize(clamp_size(event.size), clamp_size(event.size))
             if was != self.too_small:
                 # The layout may stay the same, and would not be drawn then.
                 self.call_later(self.action_redraw)
@@ -226,7 +230,9 @@ class TerminalApp(BufferedApp):
     def show_keys_of_dialog(self) -> None:
         """Show in the footers below a dialog the keys that work in it."""
         top = self.screen_stack[-1] if self.screen_stack else None
-        for footer in (one for screen in self.screen_stack for one in screen.query(KeyFooter)):
+        for footer in (
+            footer_row for screen in self.screen_stack for footer_row in screen.query(KeyFooter)
+        ):
             footer.show_dialog(top.keys if isinstance(top, Dialog) else ())
 
     @property
@@ -240,7 +246,7 @@ class TerminalApp(BufferedApp):
             # A screen that was closed while being mounted still tries to draw itself.
             update = None
         elif self.too_small and update is not None and SUPPORTED:
-            update = Codes(_message_codes(self.too_small))
+            update = Codes(_build_codes(self.too_small))
             self.frame_buffer.forget()
         super().show_update(screen, update)
 
@@ -265,7 +271,7 @@ class TerminalApp(BufferedApp):
             before = self.pixels
             self.choose_pixels(NO_PIXELS)
             self._left_pixels = before
-            words = with_keys_of(self, "Drawn with characters: {pixels} brings the pixels back")
+            words = fill_keys(self, "Drawn with characters: {pixels} brings the pixels back")
             self.notify(words, markup=False)
         else:
             self.notify("This terminal does not report that it can draw pixels", markup=False)
@@ -273,16 +279,19 @@ class TerminalApp(BufferedApp):
     def action_save_screen(self) -> None:
         """Save the whole screen as SVG and PNG, in the working directory."""
         # Imported on demand: the app starts faster without it.
-        from tuisim.app.screenshot import save_screenshot, screen_cells
+        from tuisim.app.screenshot import collect_cells, save_screenshot
 
-        def saved(files: tuple[Path, Path]) -> None:
+        def handle_saved(files: tuple[Path, Path]) -> None:
             svg, png = files
             self.notify(f"Saved {svg.name} and {png.name} in {png.parent}", markup=False)
             offer(self, svg, png)
 
-        work = partial(save_screenshot, screen_cells(self), Path.cwd())
+        work = partial(save_screenshot, collect_cells(self), Path.cwd())
         background.run(
-            self, work, saved, lambda error: self.notify(str(error), severity="error", markup=False)
+            self,
+            work,
+            handle_saved,
+            lambda error: self.notify(str(error), severity="error", markup=False),
         )
 
     def run_in_terminal(self, command: Sequence[str]) -> None:
@@ -316,13 +325,13 @@ class TerminalApp(BufferedApp):
             return
         from tuisim.app.dialogs.palette import GUIDE_PREFIX, Palette
 
-        def chosen(action: str | None) -> None:
+        def handle_choice(action: str | None) -> None:
             if action is not None and action.startswith(GUIDE_PREFIX):
                 self._ask_guide(host, action.removeprefix(GUIDE_PREFIX))
             elif action is not None:
                 host.action_act(action)
 
-        self.push_screen(Palette(host.ACTIONS.values(), host.situation()), chosen)
+        self.push_screen(Palette(host.ACTIONS.values(), host.find_situation()), handle_choice)
 
     def _ask_guide(self, host: ActionHost, question: str) -> None:
         """Open the guide with a question."""

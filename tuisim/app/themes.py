@@ -57,7 +57,7 @@ LIGHT = Theme(
 )
 
 
-def theme_names() -> list[str]:
+def list_themes() -> list[str]:
     """Return the names of the themes that can be chosen."""
     return [
         *(name for name in BUILTIN_THEMES if name not in UNUSED_THEMES),
@@ -95,11 +95,11 @@ class ThemeColors(LineFilter):
         self._contrast = _HIGH_CONTRAST if theme.name == HIGH_CONTRAST.name else _LEAST_CONTRAST
         roles = {own: getattr(theme, role) or own for own, role in _ROLES.items()}
         own = {Color.parse(name).rgb for name in palette.COLORS.values()} | set(traces)
-        self._replaced = {rgb: self._replacement(rgb) for rgb in own}
+        self._replaced = {rgb: self._find_replacement(rgb) for rgb in own}
         self._replaced |= {
             Color.parse(name).rgb: Color.parse(color).rgb for name, color in roles.items()
         }
-        self._style = lru_cache(maxsize=4096)(self._themed)
+        self._style = lru_cache(maxsize=4096)(self._apply_theme)
 
     def rgb(self, own: Rgb) -> Rgb:
         """Return the colour in place of one of the app's own; any other is returned as it is."""
@@ -109,7 +109,7 @@ class ThemeColors(LineFilter):
         """Return the colour of text or lines in one of the app's own colours: it can be read on the background."""
         new = self.rgb(own)
         return (
-            self._legible(new, self._background.rgb, is_line=own == _LINE)
+            self._make_legible(new, self._background.rgb, is_line=own == _LINE)
             if own in self._replaced
             else new
         )
@@ -123,7 +123,7 @@ class ThemeColors(LineFilter):
             for segment in segments
         ]
 
-    def _replacement(self, rgb: Rgb) -> Rgb:
+    def _find_replacement(self, rgb: Rgb) -> Rgb:
         hue, lightness, saturation = colorsys.rgb_to_hls(*(channel / 255 for channel in rgb))
         step = min(max((lightness - _DARKEST) / (1 - _DARKEST), 0.0), 1.0)
         if max(rgb) - min(rgb) < _GREYISH:
@@ -134,7 +134,7 @@ class ThemeColors(LineFilter):
         red, green, blue = colorsys.hls_to_rgb(hue, dark + step * (light - dark), saturation)
         return round(255 * red), round(255 * green), round(255 * blue)
 
-    def _themed(self, style: Style) -> Style:
+    def _apply_theme(self, style: Style) -> Style:
         fore, back = convert_color(style.color), convert_color(style.bgcolor)
         # No own background is white: a white one shows what a sensor sees.
         new_fore, new_back = (
@@ -142,7 +142,7 @@ class ThemeColors(LineFilter):
             back and (back if back == _WHITE else self.rgb(back)),
         )
         if new_fore and fore in self._replaced:
-            new_fore = self._legible(
+            new_fore = self._make_legible(
                 new_fore, new_back or self._background.rgb, is_line=fore == _LINE
             )
         if (new_fore, new_back) == (fore, back):
@@ -153,14 +153,14 @@ class ThemeColors(LineFilter):
         )
         return style + changed
 
-    def _legible(self, rgb: Rgb, on: Rgb, is_line: bool) -> Rgb:
+    def _make_legible(self, rgb: Rgb, on: Rgb, is_line: bool) -> Rgb:
         """Return a colour moved toward black or white until it can be read."""
         ground, color = Color(*on), Color(*rgb)
-        least = 1.5 if is_line and self._contrast < _HIGH_CONTRAST else self._contrast
-        away = Color(255, 255, 255) if _light_of(ground) < 0.18 else Color(0, 0, 0)
+        min_contrast = 1.5 if is_line and self._contrast < _HIGH_CONTRAST else self._contrast
+        away = Color(255, 255, 255) if _measure_light(ground) < 0.18 else Color(0, 0, 0)
         for step in range(11):
             moved = color.blend(away, step / 10)
-            if contrast(moved, ground) >= least:
+            if measure_contrast(moved, ground) >= min_contrast:
                 return moved.rgb
         return away.rgb
 
@@ -170,7 +170,7 @@ _LINE = Color.parse(palette.LINE).rgb
 """Frames need not be as strong as text."""
 
 
-def _light_of(color: Color) -> float:
+def _measure_light(color: Color) -> float:
     """Return the relative luminance of a colour."""
     channels = (
         c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in color.normalized
@@ -179,7 +179,7 @@ def _light_of(color: Color) -> float:
     return 0.2126 * red + 0.7152 * green + 0.0722 * blue
 
 
-def contrast(one: Color, other: Color) -> float:
+def measure_contrast(first: Color, other: Color) -> float:
     """Return the contrast of two colours, 1 to 21."""
-    light, dark = sorted((_light_of(one), _light_of(other)), reverse=True)
+    light, dark = sorted((_measure_light(first), _measure_light(other)), reverse=True)
     return (light + 0.05) / (dark + 0.05)

@@ -55,7 +55,7 @@ class Timeline:
         self._face = BrickState()
         """What the brick showed after output rows, by row number."""
 
-    def switch_to(self, recording: Recording | None) -> None:
+    def show_run(self, recording: Recording | None) -> None:
         """Switch to another run, at its newest instant."""
         self.recording = recording
         self._face_numbers, self._face = [], BrickState()
@@ -107,7 +107,7 @@ class Timeline:
             )
         return self._face
 
-    def marks(self) -> list[tuple[int, Mark]]:
+    def list_marks(self) -> list[tuple[int, Mark]]:
         """Return the marked ticks, with the kind of each marker."""
         if self.recording is None:
             return []
@@ -178,7 +178,7 @@ _FORMS = (
 """The accepted forms, with what they mean."""
 
 
-def forms(timeline: Timeline) -> list[tuple[str, str]]:
+def list_forms(timeline: Timeline) -> list[tuple[str, str]]:
     """Return the accepted forms, with what they mean at the instant in view."""
     # Nothing can be found after the newest instant: the search goes from the start.
     which = "the first" if timeline.tick >= timeline.newest else "the next"
@@ -222,14 +222,14 @@ class _Search:
         )
         return (row for row in found if row.stream in TEXT_STREAMS)
 
-    def tick_of(self, condition: ValueCondition) -> int | None:
+    def find_tick(self, condition: ValueCondition) -> int | None:
         """Return the tick of the next row of which a condition is true."""
         if condition.operator is Operator.CHANGES:
             every = (row for row in self.recording.rows.rows(0) if row.stream in TEXT_STREAMS)
-            return self.nearest([row.tick for row in rows_when(condition, every)])
+            return self.find_nearest([row.tick for row in rows_when(condition, every)])
         return next((row.tick for row in rows_when(condition, self.texts())), None)
 
-    def nearest(self, ticks: list[int]) -> int | None:
+    def find_nearest(self, ticks: list[int]) -> int | None:
         """Return the next of some sorted ticks."""
         where = bisect_left(ticks, self.at) - 1 if self.back else bisect_right(ticks, self.at)
         return ticks[where] if 0 <= where < len(ticks) else None
@@ -241,7 +241,7 @@ def find(
     """Return the tick that an expression means, relative to the instant in view.
 
     Args:
-        text: One of `forms`.
+        text: One of `list_forms`.
         timeline: The run, and where one is in it.
         mat: The run's mat, which readings are taken from; None if there is none yet.
         first_at_end: Whether a search at the newest instant, after which there is nothing, begins at the start of the
@@ -261,9 +261,9 @@ def find(
     if not back and (word == "start" or word == "end") and not rest:
         return 0 if word == "start" else recording.newest
     if not back and (seconds := _SECONDS.fullmatch(text.strip())):
-        return _within(round(float(seconds[1]) * timeline.tick_hz), recording)
+        return _check_reached(round(float(seconds[1]) * timeline.tick_hz), recording)
     if not back and word == "tick" and rest.isdecimal():
-        return _within(int(rest), recording)
+        return _check_reached(int(rest), recording)
     at_end = timeline.tick >= recording.newest
     backwards = bool(back) or (at_end and not first_at_end)
     search = (
@@ -272,8 +272,8 @@ def find(
         else _Search(recording, timeline.tick, backwards)
     )
     if word == "line" and rest.isdecimal():
-        return _line(search, int(rest))
-    condition = _condition(word, rest, text)
+        return _find_line(search, int(rest))
+    condition = _parse_condition(word, rest, text)
     if condition is None and word == "command":
         return _find_command(search, rest)
     if condition is None:
@@ -290,11 +290,11 @@ def _find_condition(search: _Search, condition: ValueCondition, mat: Field | Non
     try:
         match condition.source:
             case ValueSource.PRINT:
-                return _printed(search, condition)
+                return _find_printed(search, condition)
             case ValueSource.SAMPLE:
-                return _sample(search, condition)
+                return _find_sample(search, condition)
             case ValueSource.COLUMN:
-                return _becomes(search, condition, mat)
+                return _find_change(search, condition, mat)
     except ValueError as error:
         raise ConfigError(str(error), _HINT) from error
 
@@ -313,7 +313,7 @@ def describe_commands(text: str, timeline: Timeline) -> str:
     return f"{timeline.time_s:.2f} s, {'; '.join(texts)}" if texts else ""
 
 
-def _condition(word: str, rest: str, text: str) -> ValueCondition | None:
+def _parse_condition(word: str, rest: str, text: str) -> ValueCondition | None:
     """Return the condition in the words of an instant; `word` is the first one, `rest` is without the direction."""
     if word == ValueSource.PRINT and rest:
         return parse_run_condition(f"{word} {rest}") or ValueCondition(
@@ -334,7 +334,7 @@ def _refuse(word: str, recording: Recording) -> ConfigError:
     return ConfigError(f"{word!r} is not an instant" if word else "no instant given", hint or _HINT)
 
 
-def _within(tick: int, recording: Recording) -> int:
+def _check_reached(tick: int, recording: Recording) -> int:
     hz = recording.spec.profile.tick_hz
     if tick > recording.newest:
         newest = recording.newest
@@ -344,14 +344,14 @@ def _within(tick: int, recording: Recording) -> int:
     return tick
 
 
-def _line(search: _Search, line: int) -> int:
+def _find_line(search: _Search, line: int) -> int:
     lines = len(source_lines(search.recording.program.text))
     if not 1 <= line <= lines:
         raise ConfigError(f"the program has no line {line}", f"1 … {lines}")
     # Of consecutive ticks at one line, the first is meant: that is when the program reached the line.
     at_it = ValueCondition("line", Operator.EQUAL, str(line))
     came = begins(at_it, held(at_it, search.recording.telemetry.array()["line"])).tolist()
-    tick = search.nearest(sorted({*came, *search.recording.rows.ticks_of_line(line)}))
+    tick = search.find_nearest(sorted({*came, *search.recording.rows.ticks_of_line(line)}))
     if tick is None:
         hint = "a search finds only lines that let time pass or print"
         raise ConfigError(f"line {line} does not run {search.words}", hint)
@@ -361,14 +361,14 @@ def _line(search: _Search, line: int) -> int:
 def _find_command(search: _Search, words: str) -> int:
     commands = search.recording.commands
     commands.read_all()
-    tick = search.nearest([commands.tick(number) for number in commands.find_events(words)])
+    tick = search.find_nearest([commands.tick(number) for number in commands.find_events(words)])
     if tick is None:
         raise ConfigError(f"no {f'command {words}'.rstrip()} {search.words}")
     return tick
 
 
-def _sample(search: _Search, condition: ValueCondition) -> int:
-    tick = search.tick_of(condition)
+def _find_sample(search: _Search, condition: ValueCondition) -> int:
+    tick = search.find_tick(condition)
     if tick is None:
         seen = _read_printed_names(search.recording)
         is_unknown = seen and condition.name and condition.name not in seen
@@ -384,13 +384,13 @@ def _read_printed_names(recording: Recording) -> list[str]:
     return sorted({sample[0] for row in printed if (sample := parse_sample(row.text))})
 
 
-def _becomes(search: _Search, condition: ValueCondition, mat: Field | None) -> int:
+def _find_change(search: _Search, condition: ValueCondition, mat: Field | None) -> int:
     """Return the tick at which a column begins to meet a condition, or at which a printed name of no column does."""
     recording = search.recording
     if find_column_name(condition.name, list_columns(recording.spec)) is None:
         printed = _read_printed_names(recording)
         if condition.name in printed:
-            return _sample(search, replace(condition, source=ValueSource.SAMPLE))
+            return _find_sample(search, replace(condition, source=ValueSource.SAMPLE))
         if close := closest(condition.name, printed, 1):
             raise ConfigError(f"this run has no {condition.name!r}", did_you_mean(close))
     name = find_named_column(condition.name, recording.spec)
@@ -400,17 +400,17 @@ def _becomes(search: _Search, condition: ValueCondition, mat: Field | None) -> i
     values = column_values(
         (name,), recording.telemetry.array(), recording, recording.actions(), mat
     )
-    tick = search.nearest(begins(condition, held(condition, values[name])).tolist())
+    tick = search.find_nearest(begins(condition, held(condition, values[name])).tolist())
     if tick is None:
         becomes = "" if condition.is_momentary else " becomes true"
         raise ConfigError(f"no tick {search.words} at which {condition}{becomes}")
     return tick
 
 
-def _printed(search: _Search, condition: ValueCondition) -> int:
+def _find_printed(search: _Search, condition: ValueCondition) -> int:
     pattern = condition.value
     try:
-        tick = search.tick_of(condition)
+        tick = search.find_tick(condition)
     except re.error as error:
         raise ConfigError(f"{pattern!r} is not a regular expression: {error}") from error
     if tick is None:

@@ -16,17 +16,17 @@ async def test_every_panels_key_shows_and_hides_it() -> None:
     async with open_lab(LOGS, size=(200, 60)) as (pilot, app):
 
         def has_focus(name: str) -> bool:
-            return app.panel_area.focused_panel() == name
+            return app.panel_area.find_focused_panel() == name
 
         for panel in PANELS.values():
             at_first = TerminalSize.LARGE in panel.sizes
-            assert app.panel_area.shown(panel.id) is at_first, panel.id
+            assert app.panel_area.is_shown(panel.id) is at_first, panel.id
             for shown in (not at_first, at_first):
-                if app.panel_area.awaits_focus(panel.id):
+                if app.panel_area.can_take_focus(panel.id):
                     await pilot.press(panel.key)
                     await until(pilot, partial(has_focus, panel.id), panel.id)
                 await pilot.press(panel.key)
-                assert app.panel_area.shown(panel.id) is shown, panel.id
+                assert app.panel_area.is_shown(panel.id) is shown, panel.id
                 await pilot.pause()
                 assert (
                     bool(re.search(f"[─━] {panel.key} {panel.title}", screen_text(app))) is shown
@@ -36,30 +36,30 @@ async def test_every_panels_key_shows_and_hides_it() -> None:
 @pytest.mark.parametrize(("panel", "key"), [("chart", "c"), ("noise", "z")])
 async def test_the_key_of_a_panel_that_is_shown_focuses_it_first(panel: str, key: str) -> None:
     async with open_lab(size=(200, 60)) as (pilot, app):
-        assert app.panel_area.shown(panel) and app.panel_area.focused_panel() == "world"
+        assert app.panel_area.is_shown(panel) and app.panel_area.find_focused_panel() == "world"
         await pilot.press(key)
-        await until(pilot, lambda: app.panel_area.focused_panel() == panel)
+        await until(pilot, lambda: app.panel_area.find_focused_panel() == panel)
         await pilot.press(key)
-        await until(pilot, lambda: app.panel_area.focused_panel() == "world")
-        assert not app.panel_area.shown(panel)
+        await until(pilot, lambda: app.panel_area.find_focused_panel() == "world")
+        assert not app.panel_area.is_shown(panel)
 
 
 @pytest.mark.slow
 async def test_a_panel_without_room_takes_the_place_of_another() -> None:
     async with open_lab(LOGS, size=(80, 24)) as (pilot, app):
         await pilot.press("X")
-        await until(pilot, lambda: app.panel_area.focused_panel() == "positioning")
+        await until(pilot, lambda: app.panel_area.find_focused_panel() == "positioning")
         await pilot.press("H")
         assert all(
-            app.panel_area.shown(panel)
+            app.panel_area.is_shown(panel)
             for panel in ("instrumentation", "output", "positioning", "controls")
         )
         await pilot.press("c")
-        assert app.panel_area.shown("chart")
-        assert not app.panel_area.shown("instrumentation")
+        assert app.panel_area.is_shown("chart")
+        assert not app.panel_area.is_shown("instrumentation")
         assert "Chart instead of Instrumentation (i), Output (O), Positioning (X)" in notices(app)
         await pilot.press("c")
-        assert app.panel_area.shown("instrumentation")
+        assert app.panel_area.is_shown("instrumentation")
 
 
 @pytest.mark.slow
@@ -68,10 +68,10 @@ async def test_switched_off_stays_off_in_every_size() -> None:
         LOGS, panels_off=frozenset({"world"}), panels_on=frozenset({"arrays", "no such panel"})
     )
     async with open_lab(off, size=(80, 24)) as (pilot, app):
-        assert app.panel_area.shown("arrays")
+        assert app.panel_area.is_shown("arrays")
         await pilot.resize_terminal(200, 60)
-        await until(pilot, lambda: app.panel_area.shown("chart"))
-        assert not app.panel_area.shown("world")
+        await until(pilot, lambda: app.panel_area.is_shown("chart"))
+        assert not app.panel_area.is_shown("world")
 
 
 async def test_quit_without_a_run_asks_nothing() -> None:

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from tests.app.app_help import LOGS, notices, open_lab, screen_text, until
-from tuisim.app.action import Action, fitting
+from tuisim.app.action import Action, fit_actions
 from tuisim.app.actions.keys import ACTIONS, list_working
 from tuisim.app.analyser.actions.keys import ACTIONS as ANALYSER_ACTIONS
 from tuisim.app.guide.screen import GuideScreen
@@ -46,16 +46,16 @@ async def test_nudge() -> None:
         ):
             await pilot.press(key)
             assert app.run_controller.pose == pose, key
-            assert app.run_controller.snapshot().gyro_deg == 0, key
+            assert app.run_controller.build_snapshot().gyro_deg == 0, key
             await pilot.press("m")
             assert app.run_controller.pose == Pose(150, 500, 0), key
 
 
 async def test_readings_follow_the_robot_at_rest() -> None:
     async with open_lab(LOGS) as (_, app):
-        assert app.run_controller.snapshot().colors["left"].red == 255
+        assert app.run_controller.build_snapshot().colors["left"].red == 255
         app.run_controller.place(Pose(300, 500, 0))
-        assert app.run_controller.snapshot().colors["left"].red == 220
+        assert app.run_controller.build_snapshot().colors["left"].red == 220
 
 
 async def test_speed_steps_and_ends() -> None:
@@ -76,9 +76,9 @@ async def test_pen_is_p_and_not_shift_p() -> None:
         await pilot.press("p")
         assert (after_shift_p, app.run_controller.pen_down) == (False, True)
         await pilot.press("x")
-        assert not app.panel_area.shown("positioning")
+        assert not app.panel_area.is_shown("positioning")
         await pilot.press("X")
-        assert app.panel_area.shown("positioning")
+        assert app.panel_area.is_shown("positioning")
 
 
 async def test_help_lists_every_key() -> None:
@@ -115,7 +115,7 @@ def test_keys_differ() -> None:
 
 
 def test_in_the_past_the_footer_begins_with_the_ways_out() -> None:
-    shown = fitting(
+    shown = fit_actions(
         [
             ACTIONS[one]
             for one in list_working(

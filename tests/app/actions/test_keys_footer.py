@@ -12,7 +12,7 @@ from tests.app.analyser.test_screen import text_of
 from tests.app.app_help import LOGS, notices, open_lab, program, until
 from tests.cases import cases
 from tuisim.analysis.source import LogRequest
-from tuisim.app.action import fitting
+from tuisim.app.action import fit_actions
 from tuisim.app.actions.keys import ACTIONS, list_footer_actions, list_working
 from tuisim.app.analyser.app import AnalyserApp
 from tuisim.app.dialogs.question import Question
@@ -34,7 +34,7 @@ def test_after_a_run_the_next_steps_of_a_student_come_first(
     names = list_working(
         Situation(RunPhase.ENDED, has_program=True, has_run=True, reads_code=reads_code)
     )
-    shown = fitting([ACTIONS[name] for name in names], width - len(status), 9)
+    shown = fit_actions([ACTIONS[name] for name in names], width - len(status), 9)
     assert shown[0].key_label == "R"
     assert keys < {action.key_label for action in shown}
 
@@ -82,7 +82,7 @@ async def test_the_key_of_a_panel_that_is_not_shown_looks_like_any_other() -> No
     async with open_lab(LOGS, autorun=True, speed=0.0, size=(80, 24)) as (pilot, app):
         await until(pilot, lambda: "chart" in app.key_footer.render().plain)
         rendered = app.key_footer.render()
-        assert not app.panel_area.shown("chart")
+        assert not app.panel_area.is_shown("chart")
         at = rendered.plain.index(" chart") + 1
         assert rendered.get_style_at_offset(app.console, at).color is None
 
@@ -108,7 +108,7 @@ def test_the_pause_key_says_what_it_does_now(now: Situation, playing: bool, word
 async def test_letters_and_signs_do_nothing_in_a_field_for_numbers() -> None:
     async with open_lab("pass\n", size=(80, 24)) as (pilot, app):
         await pilot.press("X")
-        await until(pilot, lambda: app.panel_area.focused_panel() == "positioning")
+        await until(pilot, lambda: app.panel_area.find_focused_panel() == "positioning")
         await pilot.press("enter")
         await until(pilot, lambda: isinstance(pilot.app.focused, NumberInput))
         await until(pilot, lambda: last_line(pilot).startswith(" enter apply esc leave tab next "))
@@ -144,7 +144,7 @@ async def test_in_a_lesson_the_footer_offers_its_keys() -> None:
 
 def test_a_question_of_a_lesson_offers_to_answer_it() -> None:
     now = Situation(RunPhase.IDLE, True, False, lesson_actions=("answer", "hint", "lesson-menu"))
-    shown = fitting(list_footer_actions(ACTIONS, list_working(now), now, playing=False), 70, 9)
+    shown = fit_actions(list_footer_actions(ACTIONS, list_working(now), now, playing=False), 70, 9)
     assert [action.id for action in shown if action.group == "Lesson"] == [*now.lesson_actions]
 
 

@@ -73,7 +73,7 @@ async def test_the_robot_stays_where_it_is_put_while_a_line_holds_the_run() -> N
         assert app.run_controller.pose == Pose(start.x_mm + 10, start.y_mm + 20, start.heading_deg)
         # As at the end of a drag.
         app.run_controller.place(app.run_controller.pose)
-        now = app.run_controller.snapshot()
+        now = app.run_controller.build_snapshot()
         assert (now.instant.noise, now.pen_down, now.gyro_deg) == (NoiseSpec(20, 0), True, 0)
         # Another line, and still the same tick: nothing has been done yet.
         await pilot.press("n")
@@ -108,7 +108,7 @@ async def noisy_past(pilot: Pilot[Any]) -> LabApp:
     await until(
         pilot,
         lambda: (
-            app.run_controller.snapshot().instant.noise.light == 10
+            app.run_controller.build_snapshot().instant.noise.light == 10
             and app.run_controller.timeline.newest > 60
         ),
     )
@@ -197,7 +197,7 @@ async def test_lines_back_add_up_and_the_end_key_comes_back_from_a_line_of_the_s
             await until(pilot, partial(at_line, app, line))
             # The panels are there from the first line on.
             await until(
-                pilot, lambda: app.panel_area.shown("code") and app.panel_area.shown("debug")
+                pilot, lambda: app.panel_area.is_shown("code") and app.panel_area.is_shown("debug")
             )
         await pilot.press("N", "N", "n")
         await until(pilot, lambda: at_line(app, 2) and not app.debugger.busy)
@@ -227,10 +227,12 @@ async def test_what_is_changed_for_the_next_run_is_seen_also_from_the_past() -> 
         await until_state(pilot, RunPhase.ENDED)
         go_to_tick(app.context, 10)
         assert app.run_controller.in_past
-        assert app.loader.attempt(
+        assert app.loader.try_change(
             lambda plan: change_obstacles(plan, (Obstacle(100, 100, 50, 50),))
         )
-        assert app.run_controller.snapshot().spec.world.obstacles == (Obstacle(100, 100, 50, 50),)
+        assert app.run_controller.build_snapshot().spec.world.obstacles == (
+            Obstacle(100, 100, 50, 50),
+        )
 
 
 async def test_a_sample_clicked_in_the_chart_is_found_in_the_code() -> None:
@@ -242,14 +244,14 @@ async def test_a_sample_clicked_in_the_chart_is_found_in_the_code() -> None:
         await until_shown(pilot, "100 white")
         await pilot.mouse_down(app.query_one(Chart), offset=(20, 4))
         await until(pilot, lambda: app.run_controller.in_past)
-        clicked = app.run_controller.snapshot()
+        clicked = app.run_controller.build_snapshot()
         await pilot.press("comma")
         await until(
-            pilot, lambda: app.run_controller.snapshot().instant.tick < clicked.instant.tick
+            pilot, lambda: app.run_controller.build_snapshot().instant.tick < clicked.instant.tick
         )
 
         assert clicked.line == 5
-        assert app.run_controller.snapshot().line == 4
+        assert app.run_controller.build_snapshot().line == 4
 
 
 async def test_a_line_of_a_module_beside_the_program_is_shown(

@@ -325,13 +325,13 @@ async def test_what_cannot_be_opened_ends_the_app_with_the_reason(tmp_path: Path
 @pytest.mark.slow
 async def test_the_lab_below_hears_no_key(run: StoredRun) -> None:
     async with open_lab(LOGS) as (pilot, lab):
-        below, pose = lab.screen, lab.run_controller.snapshot().instant.pose
+        below, pose = lab.screen, lab.run_controller.build_snapshot().instant.pose
         analyser = Analyser(LogRequest(runs=(run.id,)))
         await lab.push_screen(analyser)
         await until(pilot, lambda: analyser.is_open)
         await pilot.press("d", "escape", "B", "i", "left", "shift+up")
         assert lab.screen is analyser
-        assert lab.run_controller.snapshot().instant.pose == pose
+        assert lab.run_controller.build_snapshot().instant.pose == pose
         await pilot.press("ctrl+p")
         await until(pilot, lambda: isinstance(lab.screen, Palette))
         offered = lab.screen.query_one(OptionList).options

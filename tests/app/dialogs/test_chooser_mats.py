@@ -96,7 +96,7 @@ async def test_what_is_no_image_changes_nothing(content: str | None, tmp_path: P
         )
         await until(pilot, lambda: app.run_controller.next_run == before)
         assert app.loader.mat_is_ready
-        assert app.run_controller.snapshot().colors["left"].rgb == (255, 255, 255)
+        assert app.run_controller.build_snapshot().colors["left"].rgb == (255, 255, 255)
 
 
 def with_mats(folder: Path | None) -> AppSettings:

@@ -70,11 +70,11 @@ async def test_a_stored_run_is_shown_as_it_was_and_run_anew_alike() -> None:
         await pilot.press("g")
         app.screen.query_one(Input).value = "1.5"
         await pilot.press("enter")
-        await until(pilot, lambda: app.run_controller.snapshot().past)
-        assert app.run_controller.snapshot().instant.noise.light == 20
-        assert app.run_controller.snapshot().spec.seed == 5
+        await until(pilot, lambda: app.run_controller.build_snapshot().past)
+        assert app.run_controller.build_snapshot().instant.noise.light == 20
+        assert app.run_controller.build_snapshot().spec.seed == 5
         app.run_controller.timeline.go(50)
-        assert app.run_controller.snapshot().instant.noise.light == 0
+        assert app.run_controller.build_snapshot().instant.noise.light == 0
         app.run_controller.set_speed(0.0)
         await pilot.press("R", "r")
         await until(
@@ -115,7 +115,7 @@ async def test_a_run_is_searched_for_and_chosen() -> None:
             ),
         )
         await pilot.press("comma")
-        assert app.run_controller.snapshot().past
+        assert app.run_controller.build_snapshot().past
 
 
 @pytest.mark.slow
@@ -131,7 +131,7 @@ async def test_mat_and_program_may_be_gone(tmp_path: Path) -> None:
     async with open_lab(replaying(run_id)) as (pilot, app):
         await until_state(pilot, RunPhase.ENDED)
         # The prepared mat is in the cache still.
-        assert app.run_controller.snapshot().colors["left"].green > 150
+        assert app.run_controller.build_snapshot().colors["left"].green > 150
         assert program_of(app).path == ""
         await pilot.press("R")
         await until(pilot, lambda: any("own.png" in notice for notice in notices(app)))
@@ -142,8 +142,8 @@ async def test_mat_and_program_may_be_gone(tmp_path: Path) -> None:
         await until_state(pilot, RunPhase.ENDED)
         await until(pilot, lambda: any("the mat of the run" in notice for notice in notices(app)))
         await pilot.press("less_than_sign")
-        assert app.run_controller.snapshot().past
-        assert not app.run_controller.snapshot().colors
+        assert app.run_controller.build_snapshot().past
+        assert not app.run_controller.build_snapshot().colors
 
 
 def _no_run_file(folder: Path) -> str:

@@ -32,5 +32,5 @@ def test_what_is_known_stays() -> None:
 async def test_panels_that_nothing_shows_unasked_are_not_kept_for_the_next_start() -> None:
     async with open_lab(LOGS, size=(80, 24)) as (pilot, app):
         await pilot.press("G", "K", "c")
-        await until(pilot, lambda: app.panel_area.shown("chart"))
+        await until(pilot, lambda: app.panel_area.is_shown("chart"))
     assert load_layout(TerminalSize.SMALL).asked == {"chart": True}

@@ -114,7 +114,7 @@ async def test_a_former_instant_shows_the_brick_as_it_was() -> None:
         app.run_controller.timeline.go(1)
         app.draw(force=True)
         await until(pilot, lambda: "Mission 7" not in drawn(app))
-        assert app.run_controller.snapshot().pressed == frozenset()
+        assert app.run_controller.build_snapshot().pressed == frozenset()
 
 
 @pytest.mark.slow
@@ -122,16 +122,16 @@ async def test_plus_gives_the_panel_the_whole_desk_and_back() -> None:
     async with open_lab(WATCHES) as (pilot, app):
         await pilot.press("K", "plus")
         await pilot.pause()
-        assert [panel for panel in app.panel_area.panels if app.panel_area.shown(panel)] == [
+        assert [panel for panel in app.panel_area.panels if app.panel_area.is_shown(panel)] == [
             "brick"
         ]
         assert app.panel_area.panels["brick"].size.width > 110
         await pilot.press("plus")
         await pilot.pause()
-        assert app.panel_area.shown("world")
+        assert app.panel_area.is_shown("world")
         await pilot.press("plus", "W")
         await pilot.pause()
-        assert app.panel_area.shown("world")
+        assert app.panel_area.is_shown("world")
 
 
 @pytest.mark.slow
@@ -145,7 +145,7 @@ async def test_buttons_are_of_now_and_a_branch_begins_with_none_held() -> None:
         await until(pilot, lambda: "up" in printed(app))
         assert actions(app) == [["up"]]
         await pilot.press("comma")
-        await until(pilot, lambda: app.run_controller.snapshot().past)
+        await until(pilot, lambda: app.run_controller.build_snapshot().past)
         await pilot.press("enter")
         await until(pilot, lambda: any("only in the present" in text for text in notices(app)))
         assert app.run_controller.pressed == {"up"}
@@ -217,7 +217,7 @@ async def test_a_hand_presses_as_the_first_line_says(
         app.loader.open_file("waits.py")
         await pilot.press("K", "R")
         await until(pilot, lambda: "went on" in printed(app))
-        assert app.run_controller.snapshot().pressed == {"enter"}
+        assert app.run_controller.build_snapshot().pressed == {"enter"}
         assert actions(app) == [["enter"]]
         await pilot.press("S")
         await until(pilot, lambda: not app.run_controller.in_run)

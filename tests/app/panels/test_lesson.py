@@ -89,7 +89,7 @@ async def test_a_run_is_judged_after_skip_and_start_over(tmp_path: Path) -> None
         app.lesson.skip_step()
         assert states() == {"number": "skipped"}
         build_program_path(app.lesson.lesson).write_text("pass\n")  # type: ignore[arg-type]
-        app.lesson.start_over()
+        app.lesson.restart_lesson()
         await until(pilot, lambda: "1. Think" in shown(app))
         assert states() == {}
         assert program_of(app).text == PROGRAM
@@ -185,10 +185,10 @@ async def test_step_is_done_by_doing_it(
 
 async def test_panel_that_a_step_asks_for_is_not_open_already(tmp_path: Path) -> None:
     async with open_lab(opened(tmp_path, "show = 'instrumentation'"), size=LARGE) as (pilot, app):
-        await until(pilot, lambda: app.panel_area.shown("instrumentation"))
+        await until(pilot, lambda: app.panel_area.is_shown("instrumentation"))
         app.lesson.skip_step()
         app.lesson.skip_step()
-        await until(pilot, lambda: not app.panel_area.shown("instrumentation"))
+        await until(pilot, lambda: not app.panel_area.is_shown("instrumentation"))
         app.lesson.update()
         assert app.lesson.step is not None
         await pilot.press("i")
@@ -201,7 +201,7 @@ async def test_panel_that_a_step_asks_for_is_not_open_already(tmp_path: Path) ->
 async def test_page_keys_scroll_the_text_beside_every_panel(panel: str, tmp_path: Path) -> None:
     async with open_lab(with_lines(opened(tmp_path), 40), size=SMALL) as (pilot, app):
         app.panel_area.request({panel: True, "lesson": True})
-        await until(pilot, lambda: app.panel_area.shown(panel) and "Line 0" in shown(app))
+        await until(pilot, lambda: app.panel_area.is_shown(panel) and "Line 0" in shown(app))
         lesson = app.panel_area.lesson
         assert lesson is not None
         for widget in [
@@ -250,7 +250,7 @@ async def test_lesson_stands_beside_world_and_code(
 ) -> None:
     async with open_lab(opened(tmp_path), size=size) as (pilot, app):
         await until(
-            pilot, lambda: all(map(app.panel_area.shown, ("lesson", "world", "code", "output")))
+            pilot, lambda: all(map(app.panel_area.is_shown, ("lesson", "world", "code", "output")))
         )
         assert app.panel_area.lesson is not None
         assert app.panel_area.lesson.styles.width is not None
@@ -301,7 +301,7 @@ async def test_running_an_edited_text_saves_it_and_ends_typing_and_the_former_ru
         await until(
             pilot, lambda: app.panel_area.code is not None and not app.panel_area.code.typing
         )
-        assert app.panel_area.shown("lesson")
+        assert app.panel_area.is_shown("lesson")
         assert not app.document.dirty
         assert build_program_path(app.lesson.lesson).read_text() == f"y=2\n{PROGRAM}"  # type: ignore[arg-type]
 
@@ -320,13 +320,15 @@ async def test_output_is_back_when_another_lesson_is_opened(
     size: tuple[int, int], is_shown: bool, tmp_path: Path
 ) -> None:
     async with open_lab(opened(tmp_path), size=size) as (pilot, app):
-        if not app.panel_area.shown("chart"):
+        if not app.panel_area.is_shown("chart"):
             await pilot.press("c")
-        await until(pilot, lambda: app.panel_area.shown("chart"))
+        await until(pilot, lambda: app.panel_area.is_shown("chart"))
         app.lesson.open("first-run")
         await until(
             pilot,
-            lambda: app.panel_area.shown("output") and app.panel_area.shown("chart") is is_shown,
+            lambda: (
+                app.panel_area.is_shown("output") and app.panel_area.is_shown("chart") is is_shown
+            ),
         )
 
 
@@ -339,7 +341,7 @@ async def test_chart_stays_in_the_lesson_that_asks_for_it(tmp_path: Path) -> Non
         await until(pilot, lambda: states()["do"] == "done")
     async with LabApp(made).run_test(size=SMALL) as pilot:
         again = await ready(pilot)
-        await until(pilot, lambda: again.panel_area.shown("chart"))
+        await until(pilot, lambda: again.panel_area.is_shown("chart"))
 
 
 async def test_arrow_keys_move_the_robot_when_another_lesson_begins(tmp_path: Path) -> None:

@@ -23,10 +23,10 @@ def sliders(app: LabApp) -> list[int]:
 
 async def test_a_slider_acts_on_the_readings_at_once() -> None:
     async with open_lab(LOGS, panels_on=SHOWN, size=(80, 24)) as (pilot, app):
-        assert app.run_controller.snapshot().colors["left"].green == 255
+        assert app.run_controller.build_snapshot().colors["left"].green == 255
         app.query_one("#light", Slider).focus()
         await pilot.press("end")
-        await until(pilot, lambda: app.run_controller.snapshot().colors["left"].green < 255)
+        await until(pilot, lambda: app.run_controller.build_snapshot().colors["left"].green < 255)
         assert app.run_controller.next_run.spec.world.noise == NoiseSpec(128, 0)
         assert str(app.query_one("#light-number", Static).render()) == "128"
         # The arrows belong to the slider now, not to the robot.
@@ -51,7 +51,7 @@ async def test_a_seed_is_for_the_next_run_and_a_wrong_one_is_refused_beside_it()
 
 async def test_digits_set_the_number_of_a_slider() -> None:
     async with open_lab(LOGS, panels_on=SHOWN, size=(80, 24)) as (pilot, app):
-        app.panel_area.attend("noise")
+        app.panel_area.focus_opened("noise")
         await until(pilot, lambda: app.focused is app.query_one("#light"))
         for keys, number in (("74", 74), ("e1290", 90), ("e0", 0), ("12e8", 8)):
             await pilot.press(*["enter" if key == "e" else key for key in keys])

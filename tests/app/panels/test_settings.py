@@ -68,7 +68,7 @@ async def test_it_opens_with_the_robots_values(size: tuple[int, int]) -> None:
         ] == ["settings"]
         # Letters are still keys of the app.
         await pilot.press("Z")
-        assert not app.panel_area.shown("settings")
+        assert not app.panel_area.is_shown("settings")
         assert app.focused is app.panel_area.world
 
 
@@ -79,10 +79,10 @@ async def test_a_value_is_taken_at_once() -> None:
         assert app.run_controller.spec.robot.color_sensors[0].x_mm == -100
         assert row(app, "preset").entry.value == "Default_Robot, edited"
         await enter(pilot, "ultrasonic.used", "on")
-        await until(pilot, lambda: app.run_controller.snapshot().ultrasonic_mm is None)
+        await until(pilot, lambda: app.run_controller.build_snapshot().ultrasonic_mm is None)
         await pilot.press("ctrl+n")
         await until(pilot, lambda: row(app, "preset").entry.value == "Default_Robot")
-        assert app.run_controller.snapshot().ultrasonic_mm is not None
+        assert app.run_controller.build_snapshot().ultrasonic_mm is not None
 
 
 @pytest.mark.slow
@@ -104,7 +104,7 @@ async def test_values_are_checked_and_entered_also_where_a_field_is_left_or_a_ch
         await pilot.press("tab")
         await until(pilot, lambda: app.run_controller.next_run.spec.robot.back_mm == -99)
 
-        app.loader.attempt(lambda plan: change_robot(plan, "Default_Robot"))
+        app.loader.try_change(lambda plan: change_robot(plan, "Default_Robot"))
         choice = row(app, "preset").entry
         assert isinstance(choice, Choice)
         await until(pilot, lambda: choice.value == "Default_Robot")
@@ -199,7 +199,7 @@ async def test_a_profile_is_chosen_and_seen_in_the_controls() -> None:
 async def test_what_a_robots_file_has_that_means_nothing_here_is_said(tmp_path: Path) -> None:
     (tmp_path / "mine.json").write_text('{"owner": "Ann"}')
     async with open_lab() as (pilot, app):
-        app.loader.attempt(lambda plan: change_robot(plan, str(tmp_path / "mine.json")))
+        app.loader.try_change(lambda plan: change_robot(plan, str(tmp_path / "mine.json")))
         await until(
             pilot,
             lambda: sum("ignored unknown keys: owner" in notice for notice in notices(app)) == 1,
@@ -212,4 +212,4 @@ async def test_a_long_value_is_seen_from_its_beginning_and_escape_closes_the_pan
         await until(pilot, lambda: app.focused is row(app, "name").entry)
         await until_shown(pilot, "Name        Default_")
         await pilot.press("escape")
-        await until(pilot, lambda: not app.panel_area.shown("settings"))
+        await until(pilot, lambda: not app.panel_area.is_shown("settings"))

@@ -127,10 +127,10 @@ def test_the_pen_of_a_long_run_takes_little_memory() -> None:
 def test_a_timeline_marks_what_the_user_and_breakpoints_did() -> None:
     timeline = Timeline()
     recording = Recording(stored("tank_drive.on_for_seconds(50, 50, 1)\n"))
-    timeline.switch_to(recording)
+    timeline.show_run(recording)
     assert recording.name == f"run {recording.number}"
     timeline.breaks.append(40)
-    assert timeline.marks() == [(40, "break")]
+    assert timeline.list_marks() == [(40, "break")]
     timeline.go(30)
     timeline.play(10.0)
     assert not timeline.advance_playback(10.2, 1.0)

@@ -7,7 +7,7 @@ from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from tuisim.app.action import KeyWord, key_groups
+from tuisim.app.action import KeyWord, group_keys
 from tuisim.app.layout.arrangement import Preset
 from tuisim.app.panels import PANELS
 from tuisim.engine.files import Scalar
@@ -20,16 +20,16 @@ if TYPE_CHECKING:
 
 def toggle(context: ActionContext, panel: str) -> None:
     """Show a panel and focus it; focus one that is shown beside the focus; else hide it."""
-    if not context.panels.awaits_focus(panel):
+    if not context.panels.can_take_focus(panel):
         context.panels.toggle(panel)
     context.app.handle_situation_change()
-    context.app.call_after_refresh(context.panels.attend, panel)
+    context.app.call_after_refresh(context.panels.focus_opened, panel)
 
 
 def enlarge(context: ActionContext) -> None:
     """Maximize the panel with the focus, or restore the layout."""
     area = context.panels
-    panel = area.focused_panel()
+    panel = area.find_focused_panel()
     if panel or area.alone:
         area.maximize("" if area.alone else panel)
     else:
@@ -65,14 +65,14 @@ def choose_preset(context: ActionContext, preset: Preset) -> None:
 
 def show_next_preset(context: ActionContext) -> None:
     """Show the next preset."""
-    context.panels.next_preset()
-    _say_layout(context, context.app.with_keys(" ({layout-next}: next, {layout-keep}: keep)"))
+    context.panels.show_next_preset()
+    _say_layout(context, context.app.fill_keys(" ({layout-next}: next, {layout-keep}: keep)"))
 
 
 def _say_layout(context: ActionContext, more: str) -> None:
     area = context.panels
-    if not area.shown(area.focused_panel()):
-        context.app.call_after_refresh(area.attend, area.front)
+    if not area.is_shown(area.find_focused_panel()):
+        context.app.call_after_refresh(area.focus_opened, area.front)
     context.app.say(f"Layout: {area.preset}{more}")
     context.app.handle_situation_change()
 
@@ -87,9 +87,9 @@ def keep_layout(context: ActionContext) -> None:
 
 def focus_next_panel(context: ActionContext, by: int) -> None:
     """Focus the next panel; where there is room for one only, show it."""
-    if panel := context.panels.next_panel(by):
+    if panel := context.panels.show_next_panel(by):
         context.app.handle_situation_change()
-        context.app.call_after_refresh(context.panels.attend, panel)
+        context.app.call_after_refresh(context.panels.focus_opened, panel)
 
 
 _START = (
@@ -112,19 +112,23 @@ def show_help(context: ActionContext) -> None:
     from tuisim.app.guide.key_tables import EVERYWHERE, own_keys
     from tuisim.app.guide.screen import TOPICS, GuideScreen, KeyPage, Topic
 
-    groups = key_groups(
+    groups = group_keys(
         action for action in context.app.ACTIONS.values() if not action.id.startswith("nudge-")
     )
     groups["Robot"] += _NUDGES
     every: Mapping[str, Iterable[KeyWord]] = {**groups, "In the code": EDITOR_KEYS, "": EVERYWHERE}
     panel = context.panels.find_pointed_panel()
-    widgets = context.panels.focused_widgets() if panel == context.panels.focused_panel() else []
+    widgets = (
+        context.panels.list_focused_widgets()
+        if panel == context.panels.find_focused_panel()
+        else []
+    )
     topic = TOPICS.get(panel, Topic())
     # The keys of the code have a group already.
     if panel != "code" and (own := own_keys(widgets)):
         here = f"In the panel {PANELS[panel].title}"
         every, topic = {here: own, **every}, replace(topic, groups=(here, *topic.groups))
-    keys = KeyPage("All keys", context.app.with_keys(_START), every)
+    keys = KeyPage("All keys", context.app.fill_keys(_START), every)
     context.app.push_screen(GuideScreen(keys, topic))
 
 
@@ -181,7 +185,7 @@ def open_settings(context: ActionContext) -> None:
     from tuisim.app.dialogs.settings import SettingsScreen
 
     context.app.push_screen(
-        SettingsScreen(partial(change_setting, context), context.app.theme_chooser)
+        SettingsScreen(partial(change_setting, context), context.app.build_theme_chooser)
     )
 
 

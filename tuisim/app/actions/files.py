@@ -175,7 +175,7 @@ def _save(context: ActionContext, what: str, name: str, write: Callable[[Path], 
 
     def save(path: Path) -> None:
         write(path)
-        context.loader.saved(path)
+        context.loader.note_saved(path)
 
     # The file that it came from, if it came from one.
     word = context.runs.next_run.words.get(what, "")
@@ -196,7 +196,7 @@ def save_world(context: ActionContext) -> None:
             program.path if program and program.path else None,
             plan.settings["arguments"],
         )
-        context.loader.saved_world(path)
+        context.loader.note_saved_world(path)
 
     context.app.push_screen(SaveDialog("world", str(context.loader.world_file or "lab.toml"), save))
 
@@ -207,7 +207,7 @@ def export(context: ActionContext) -> None:
 
     def handle_export(target: Path | None) -> None:
         if target:
-            context.lesson.exported(target)
+            context.lesson.note_export(target)
 
     run_id = context.runs.run_id
     program = context.runs.program
@@ -217,16 +217,16 @@ def export(context: ActionContext) -> None:
 
 def edit(context: ActionContext) -> None:
     """Show the code, and start typing in it."""
-    if not context.panels.shown("code"):
+    if not context.panels.is_shown("code"):
         context.panels.toggle("code")
     context.app.call_after_refresh(_type, context)
 
 
 def _type(context: ActionContext) -> None:
-    if context.panels.shown("code") and (code := context.panels.code):
+    if context.panels.is_shown("code") and (code := context.panels.code):
         # A newly mounted panel has not received the program yet.
         context.document.show_program()
-        code.show(context.runs.snapshot())
+        code.show(context.runs.build_snapshot())
         code.start_typing(at_error=True)
 
 
@@ -269,7 +269,7 @@ def _ask_new_program(context: ActionContext) -> None:
 
     def handle_choice(text: str | None) -> None:
         if text is not None:
-            if not context.panels.shown("code"):
+            if not context.panels.is_shown("code"):
                 context.panels.toggle("code")
             context.app.call_after_refresh(context.document.start_new, text)
 
@@ -344,7 +344,7 @@ def _push_analyser(context: ActionContext, request: LogRequest) -> None:
 
     controller = context.lesson
     context.app.push_screen(
-        Analyser(request, controller.beside_log()), lambda _: controller.log_closed()
+        Analyser(request, controller.build_log_panel()), lambda _: controller.log_closed()
     )
 
 

@@ -215,7 +215,7 @@ def _build_debug_actions() -> list[LabAction]:
         Action(
             "line-back",
             *line_back,
-            lambda lab: lab.debugger.lines_back(1),
+            lambda lab: lab.debugger.step_back(1),
             _can_look_back,
             "line back",
         ),
@@ -609,7 +609,7 @@ ACTIONS: Mapping[str, LabAction] = {
             "Y",
             "Next hint of the lesson",
             LESSON,
-            lambda lab: lab.lesson.hint(),
+            lambda lab: lab.lesson.show_hint(),
             footer="hint",
         ),
         _scroll("lesson-up", "pageup", "or the code: up", -8),

@@ -63,7 +63,7 @@ def has_more_text(area: PanelArea) -> bool:
     return (
         area.screen.is_current
         and area.lesson is not None
-        and area.shown("lesson")
+        and area.is_shown("lesson")
         and area.lesson.reads_on
     )
 
@@ -90,7 +90,7 @@ def show_menu(context: ActionContext) -> None:
             f"{number:2} {lesson.title}",
             progress.get(lesson.name, LessonProgress()).words(lesson),
         )
-        for number, lesson in enumerate(context.lesson.lessons(), start=1)
+        for number, lesson in enumerate(context.lesson.list_lessons(), start=1)
     ]
     current = f"{_OPEN}{_find_current_lesson(context)}"
     groups = [ChoiceGroup("This lesson", here), ChoiceGroup("All lessons", lessons)]
@@ -109,7 +109,7 @@ def _handle_choice(context: ActionContext, choice: str | None) -> None:
     if choice is None:
         return
     if choice == _BEFORE:
-        context.lesson.show_step_before()
+        context.lesson.show_former_step()
     elif choice == _SKIP:
         context.lesson.skip_step()
     elif choice == _MODEL:
@@ -129,7 +129,7 @@ def _ask_restart(context: ActionContext) -> None:
 
     def handle_answer(key: str | None) -> None:
         if key:
-            context.document.run_when_saved(context.lesson.start_over)
+            context.document.run_when_saved(context.lesson.restart_lesson)
 
     context.app.push_screen(
         Question("Start over?", text, answers, "keeps the lesson as it is"), handle_answer
@@ -142,13 +142,13 @@ def _switch_model(context: ActionContext) -> None:
 
     lesson, runs = context.lesson.lesson, context.runs
     if lesson is None or runs.companion is not None:
-        runs.accompany(None)
+        runs.set_companion(None)
         context.app.draw(force=True)
         return
 
     def handle_recording(recording: Recording) -> None:
         if context.lesson.lesson is lesson:
-            runs.accompany(recording)
+            runs.set_companion(recording)
             context.app.say(
                 "The grey robot of the model answer drives along with each run: {went-wrong} goes to where "
                 "yours went wrong, {earlier} hides it"

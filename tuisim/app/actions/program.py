@@ -84,7 +84,7 @@ def toggle_break(context: ActionContext) -> None:
 def _find_cursor_line(context: ActionContext) -> int:
     """Return the line of the cursor; show the code first if it is hidden."""
     area = context.panels
-    if area.shown("code"):
+    if area.is_shown("code"):
         return area.code.cursor_line if area.code else 0
     _go_to_code(context)
     return 0
@@ -93,9 +93,9 @@ def _find_cursor_line(context: ActionContext) -> int:
 def _go_to_code(context: ActionContext) -> None:
     """Give the code the focus, so that the user can choose a line."""
     area = context.panels
-    if not area.shown("code"):
+    if not area.is_shown("code"):
         area.toggle("code")
-    context.app.call_after_refresh(area.attend, "code")
+    context.app.call_after_refresh(area.focus_opened, "code")
     context.app.say("The cursor in the code sets the line: the arrow keys move it")
 
 

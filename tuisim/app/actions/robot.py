@@ -129,9 +129,9 @@ def choose(context: ActionContext, what: str) -> None:
 
     def handle_choice(word: str | None) -> None:
         if word == PROGRAM_ROBOT:
-            context.loader.attempt(plans.follow_program_robot)
+            context.loader.try_change(plans.follow_program_robot)
         elif word:
-            context.loader.attempt(lambda plan: change(plan, word))
+            context.loader.try_change(lambda plan: change(plan, word))
 
     context.app.push_screen(chooser(context.runs.next_run), handle_choice)
 
@@ -139,7 +139,7 @@ def choose(context: ActionContext, what: str) -> None:
 def reset_robot(context: ActionContext) -> None:
     """Undo the edits of the robot."""
     if context.runs.next_run.robot_is_edited:
-        context.loader.attempt(plans.undo_robot_edits)
+        context.loader.try_change(plans.undo_robot_edits)
     else:
         context.app.say("The robot has no changes to undo")
 
@@ -153,7 +153,7 @@ def zoom(context: ActionContext) -> None:
 
 def find_world_panel(context: ActionContext) -> World | None:
     """Return the world panel; None, with a notice, if it is hidden."""
-    if context.panels.shown("world"):
+    if context.panels.is_shown("world"):
         return context.panels.world
     context.app.say("The world is hidden: {panel-world} shows it")
     return None

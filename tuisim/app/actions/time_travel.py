@@ -9,7 +9,7 @@ from tuisim.app import reasons
 from tuisim.app.branch import Branch, action_words
 from tuisim.app.setup.mat import mat_key
 from tuisim.app.snapshot import RunPhase
-from tuisim.app.timeline import describe_commands, find, forms
+from tuisim.app.timeline import describe_commands, find, list_forms
 from tuisim.base.errors import TuisimError
 from tuisim.engine import protocol
 from tuisim.engine.core.sensors import list_column_names
@@ -33,7 +33,7 @@ def go_to_tick(context: ActionContext, tick: int | None) -> None:
     if tick is not None:
         context.runs.pause()
     else:
-        context.debugger.to_now()
+        context.debugger.go_to_now()
     context.runs.timeline.go(tick)
     refresh(context)
 
@@ -66,7 +66,7 @@ def go_to_time(context: ActionContext, time_s: float | None, sample: str = "") -
         and (line := recording.rows.line_of(sample, tick))
     ):
         context.debugger.choose_line(tick, line)
-        if not context.panels.shown("code"):
+        if not context.panels.is_shown("code"):
             context.app.say(f"Line {line} printed this: {{panel-code}} shows it")
     go_to_tick(context, tick)
 
@@ -137,7 +137,7 @@ def ask_instant(context: ActionContext) -> None:
 
     recording = timeline.recording
     spec = recording.spec if recording else context.runs.spec
-    field = context.runs.mat_for(spec)
+    field = context.runs.find_mat(spec)
 
     def go(text: str) -> None:
         text = text or timeline.searched
@@ -154,7 +154,7 @@ def ask_instant(context: ActionContext) -> None:
     again = f"Enter: {timeline.searched}" if timeline.searched else ""
     context.app.push_screen(
         LinePrompt(
-            title, go, forms=forms(timeline), words=words, placeholder=again, sees_below=True
+            title, go, forms=list_forms(timeline), words=words, placeholder=again, sees_below=True
         )
     )
 
@@ -177,7 +177,7 @@ def go_wrong(context: ActionContext) -> None:
         return
     context.runs.pause()
     tour = context.reasons
-    if not tour.is_of(recording):
+    if not tour.is_about(recording):
         tour.begin(recording)
     before = tour.earlier or context.runs.earlier
 
@@ -252,7 +252,7 @@ def propose_branch(
 
 def _start_branch(context: ActionContext, branch: Branch) -> None:
     try:
-        context.runs.branch(branch)
+        context.runs.start_branch(branch)
     except TuisimError as error:
         context.app.complain(error)
         return

@@ -9,7 +9,7 @@ from textual.binding import BindingType
 
 from tuisim.analysis.model import Model
 from tuisim.analysis.source import LogRequest
-from tuisim.app.action import key_bindings
+from tuisim.app.action import build_bindings
 from tuisim.app.analyser.actions.keys import ACTIONS
 from tuisim.app.analyser.screen import LogScreen
 from tuisim.app.background import enter, leave
@@ -23,7 +23,7 @@ class Analyser(LogScreen):
     """The views of one log, and the keys that work on them."""
 
     ACTIONS = ACTIONS
-    BINDINGS: ClassVar[list[BindingType]] = key_bindings(ACTIONS.values())
+    BINDINGS: ClassVar[list[BindingType]] = build_bindings(ACTIONS.values())
 
 
 class AnalyserApp(TerminalApp):

@@ -252,7 +252,7 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         super().action_act(name)
         self.update()
 
-    def situation(self) -> int | None:
+    def find_situation(self) -> int | None:
         """Return the number of rows, None while there is no log."""
         return None if self._model is None else self._model.log.rows
 
@@ -261,7 +261,7 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         if self._model is None:
             return
         self._show_title(self._describe_progress())
-        now = self.situation()
+        now = self.find_situation()
         self.key_footer.show(
             [action for action in self.ACTIONS.values() if not action.why_not(now)]
         )
@@ -343,12 +343,12 @@ class LogScreen(ActionHost, ClosesOnce[None]):
             self.pane.chosen = number
 
     def on_log_chart_pointed(self, message: LogChart.Pointed) -> None:
-        if self.situation():
+        if self.find_situation():
             self.model.go_to_time(message.time_s)
             self.update()
 
     def on_log_chart_ticked(self, message: LogChart.Ticked) -> None:
-        if self.situation():
+        if self.find_situation():
             self.model.selected = message.name
             self.action_act("tick")
 

@@ -22,7 +22,7 @@ from tuisim.app import background
 from tuisim.app.dialogs.dialog import MOVE_KEYS, Dialog, name_and_title
 from tuisim.app.dialogs.paths import complete_path, is_path, list_completions
 from tuisim.app.dialogs.save import parse_path
-from tuisim.app.error_words import in_a_list
+from tuisim.app.error_words import shorten_error
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import LogError, TuisimError
 from tuisim.base.folders import user_path
@@ -145,7 +145,7 @@ class ListDialog(Dialog[str]):
 
     def report_unread(self, error: TuisimError) -> None:
         """Say why nothing can be chosen by what was typed, which stays to be corrected."""
-        self.app.notify(in_a_list(error), severity="error", markup=False)
+        self.app.notify(shorten_error(error), severity="error", markup=False)
 
 
 class Chooser(ListDialog):
@@ -298,7 +298,7 @@ class Chooser(ListDialog):
         """Choose what the search has found; without that, say what is wrong."""
         listed = self.query_one(OptionList)
         if listed.highlighted is None:
-            self.say(in_a_list(error), wrong=True)
+            self.say(shorten_error(error), wrong=True)
         else:
             listed.action_select()
 

@@ -232,7 +232,7 @@ class Dialog(ClosesOnce[Result], Generic[Result]):
         )
         for footer in footers:
             if footer.region.contains(event.screen_x, event.screen_y):
-                label = footer.key_of_dialog_at(event.screen_x - footer.region.x)
+                label = footer.find_dialog_key(event.screen_x - footer.region.x)
                 await press(self, keys.get(label, ""))
 
     def _receives_key(self, key: str) -> bool:

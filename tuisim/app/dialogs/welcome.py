@@ -13,7 +13,7 @@ from textual.binding import Binding, BindingType
 from textual.widgets import OptionList, Static
 from textual.widgets.option_list import Option
 
-from tuisim.app.action import ActionHost, with_keys_of
+from tuisim.app.action import ActionHost, fill_keys
 from tuisim.app.dialogs.dialog import Dialog, name_and_title
 from tuisim.app.setup.recent import Recent
 from tuisim.terminal.textual_internals import find_bindings
@@ -75,7 +75,7 @@ class Welcome(Dialog[Begin | Recent]):
             markup=False,
         )
         yield Static()
-        yield Static(with_keys_of(self.app, _KEY_WORDS), markup=False)
+        yield Static(fill_keys(self.app, _KEY_WORDS), markup=False)
 
     def on_mount(self) -> None:
         actions = self.app.ACTIONS if isinstance(self.app, ActionHost) else {}

@@ -26,7 +26,7 @@ from tuisim.app.editor.candidate_list import CandidateList
 from tuisim.app.editor.completion import Candidate, find_candidates, find_word
 from tuisim.app.editor.strips import cut_strip, highlight_strip
 from tuisim.app.editor.syntax import KINDS, Colouring
-from tuisim.app.snapshot import short_value
+from tuisim.app.snapshot import shorten_value
 from tuisim.base.data_class import dataclass
 from tuisim.engine.protocol import Variable
 from tuisim.programs.names import UnknownName
@@ -335,7 +335,7 @@ class CodeArea(TextArea):
         """
         ground = Style(bgcolor=style.bgcolor)
         used = cell_len(text.text.rstrip()) + VALUE_GAP
-        shown_values = [short_value(" ".join(variable.value.split())) for variable in values]
+        shown_values = [shorten_value(" ".join(variable.value.split())) for variable in values]
         looks = [
             self._find_style("changed" if variable.changed else "value") + ground
             for variable in values

@@ -446,7 +446,7 @@ class Document:
         drop_draft(self._path)
         self._saved, self._is_file = self._text, True
         self._path, self._name = str(path), path.name
-        self._loader.saved(path)
+        self._loader.note_saved(path)
         self.show()
 
     def _write(self, path: Path) -> None:

@@ -13,7 +13,7 @@ from textual.widgets import Input
 
 from tuisim.app.action import FIELD_KEYS, Action, KeyWord, label_of_key
 from tuisim.app.editor.area import EDITOR_KEYS
-from tuisim.app.keymap import with_keys
+from tuisim.app.keymap import apply_keys
 from tuisim.app.panels import PANELS
 from tuisim.base.errors import ConfigError
 from tuisim.guide.tables import Table, code
@@ -60,7 +60,7 @@ def list_app_keys() -> Table:
     actions = _load_actions("tuisim.app.actions.keys")
     # The app and `tuisim config` tell what is wrong.
     with suppress(ConfigError):
-        actions = with_keys(actions, load_config())
+        actions = apply_keys(actions, load_config())
     rows = [
         (*row, code(name)) for row, name in zip(_list_keys(actions.values()), actions, strict=True)
     ]

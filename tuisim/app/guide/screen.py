@@ -17,7 +17,7 @@ from textual.widgets import Input, Static, Tree
 from textual.widgets.tree import TreeNode
 
 from tuisim.app import background
-from tuisim.app.action import KeyWord, key_table
+from tuisim.app.action import KeyWord, build_key_table
 from tuisim.app.dialogs.dialog import Dialog
 from tuisim.app.guide.answers import AnswerList, name_answer
 from tuisim.base import palette
@@ -199,7 +199,9 @@ class _Page(VerticalScroll):
                 group: self._keys.groups[group]
                 for group in (*self._topic.groups, *self._keys.groups)
             }
-            self._text.update(Text(f"{self._keys.start}\n\n").append_text(key_table(groups, width)))
+            self._text.update(
+                Text(f"{self._keys.start}\n\n").append_text(build_key_table(groups, width))
+            )
             self.scroll_home(animate=False)
             return
         lines = draw_page(load_pages()[name], width)
@@ -209,7 +211,7 @@ class _Page(VerticalScroll):
             group: self._keys.groups[group] for group in self._topic.groups if self._with_keys
         }
         self._text.update(
-            key_table(groups, width).append("\n").append_text(drawn) if groups else drawn
+            build_key_table(groups, width).append("\n").append_text(drawn) if groups else drawn
         )
         # The heading stays in sight where the passage does, too; the end of another passage does not.
         near = row - top < self.scrollable_content_region.height - _ROWS_OF_PASSAGE

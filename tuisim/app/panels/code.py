@@ -16,14 +16,14 @@ from textual.message import Message
 from textual.widgets import TextArea
 from textual.widgets.text_area import Selection
 
-from tuisim.app.action import with_keys_of
+from tuisim.app.action import fill_keys
 from tuisim.app.clipboard import Copied
 from tuisim.app.editor.area import CodeArea, EditorCommand
 from tuisim.app.editor.assistant import Assistant
 from tuisim.app.editor.candidate_list import CandidateList
 from tuisim.app.editor.find_bar import FIND, LINE, FindBar
 from tuisim.app.editor.text_lines import LineMap, find_matches
-from tuisim.app.error_words import fitting
+from tuisim.app.error_words import fit_words
 from tuisim.app.panels import PANELS
 from tuisim.app.panels.titles import build_title
 from tuisim.app.snapshot import PauseView, RunPhase, Snapshot
@@ -117,7 +117,7 @@ class Code(Vertical):
 
     @property
     def _nothing_open(self) -> str:
-        return with_keys_of(self.app, NOTHING_OPEN)
+        return fill_keys(self.app, NOTHING_OPEN)
 
     @property
     def cursor_line(self) -> int:
@@ -180,7 +180,7 @@ class Code(Vertical):
     def _say(self) -> None:
         title, edited = self._said
         self.border_title = title + edited
-        words = fitting(self._error_words, self.size.width - _FRAME) if self.error_line else ""
+        words = fit_words(self._error_words, self.size.width - _FRAME) if self.error_line else ""
         title_words = words or ("running text differs" if self.differs else self._break_words)
         helped = Text() if words else self._assistant.describe_cursor(self.size.width - _FRAME)
         if self._area.is_completing:

@@ -9,7 +9,7 @@ from rich.style import Style
 from rich.text import Text
 from textual.reactive import reactive
 
-from tuisim.app.action import ACT, ActionWords, with_keys_of
+from tuisim.app.action import ACT, ActionWords, fill_keys
 from tuisim.app.snapshot import IN_RUN, RunPhase, Snapshot, end_label, speed_label
 
 _LABEL_CELLS = 9
@@ -49,7 +49,7 @@ class Controls(ActionWords, can_focus=False):
         return Text(f" {text} ", style + Style(meta={ACT: action}))
 
     def _find_key(self, action: str) -> str:
-        return with_keys_of(self.app, f"{{{action}}}")
+        return fill_keys(self.app, f"{{{action}}}")
 
     def _build_line(self, label: str, *parts: str | Text) -> Text:
         line = Text()

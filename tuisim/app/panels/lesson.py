@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 from textual.binding import Binding, BindingType
 
-from tuisim.app.action import Act, with_keys_of
+from tuisim.app.action import Act, fill_keys
 from tuisim.app.panels import PANELS
 from tuisim.app.panels.titles import build_title
 from tuisim.app.render.lesson import Away, LessonPicture, LessonView, draw_lesson
@@ -96,7 +96,7 @@ class LessonPanel(LinesPanel, can_focus=True):
             self.border_title = title
         key = "{lesson-back} {lesson-on} read on" if self._is_typing else "{lesson-down} reads on"
         is_read = self.can_focus and (below or (self._is_typing and self.reads_on))
-        pages = with_keys_of(self.app, key) if is_read else ""
+        pages = fill_keys(self.app, key) if is_read else ""
         words = "↑↓ text · ←→ steps · M menu" if self.has_focus else escape_markup(pages)
         if words != self.border_subtitle:
             self.border_subtitle = words

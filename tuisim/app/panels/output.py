@@ -19,7 +19,7 @@ from textual.strip import Strip
 from textual.widget import Widget
 from textual.widgets import Input, Static
 
-from tuisim.app.action import with_keys_of
+from tuisim.app.action import fill_keys
 from tuisim.app.clipboard import Copied
 from tuisim.app.panels import PANELS
 from tuisim.app.panels.titles import build_title
@@ -127,7 +127,7 @@ class Output(Vertical):
     def show(self, snapshot: Snapshot) -> None:
         """Say before the first run what appears here; rows arrive through `add`."""
         self._log.say_if_empty(
-            with_keys_of(self.app, IDLE_WORDS) if snapshot.state is RunPhase.IDLE else ""
+            fill_keys(self.app, IDLE_WORDS) if snapshot.state is RunPhase.IDLE else ""
         )
 
 

@@ -10,7 +10,7 @@ from typing import assert_never
 
 from rich.style import Style
 
-from tuisim.app.snapshot import RunPhase, short_value
+from tuisim.app.snapshot import RunPhase, shorten_value
 from tuisim.base import palette
 from tuisim.base.data_class import dataclass
 from tuisim.engine.protocol import FrameState, Inspected, Paused, PauseReason, Variable
@@ -223,7 +223,7 @@ def _build_pair(
     column = min(_NAME_COLUMN, max(6, width // 2 - 2), max(6, len(name)))
     name_text = cut(name, column).ljust(column)
     room = width - column - 3
-    text = short_value(" ".join(value.split("\n")))
+    text = shorten_value(" ".join(value.split("\n")))
     return [
         (f"{mark} ", _CHANGED),
         (name_text, name_style),

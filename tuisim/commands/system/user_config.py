@@ -62,9 +62,9 @@ def config(as_json: bool, init: bool) -> int:
 def _check_in_app(settings: UserConfig) -> None:
     """Check what only the app knows: the keys, and the name of the theme."""
     from tuisim.app.actions.keys import ACTIONS
-    from tuisim.app.keymap import check_theme, with_keys
+    from tuisim.app.keymap import apply_keys, check_theme
 
-    with_keys(ACTIONS, settings)
+    apply_keys(ACTIONS, settings)
     check_theme(settings)
 
 

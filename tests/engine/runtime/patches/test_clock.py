@@ -6,7 +6,7 @@ import pytest
 
 from tests.cases import cases
 from tests.running import Run, Start, until
-from tuisim.app.snapshot import busy_loop_words
+from tuisim.app.snapshot import describe_busy_loop
 from tuisim.engine.protocol import BusyLoop, Message
 
 PROGRAMS = {
@@ -134,7 +134,7 @@ def test_a_long_loop_without_a_wait_is_told(start: Start, text: str, told: list[
 
 def test_the_output_says_what_stops_a_long_loop() -> None:
     words = "— line 5: a loop without a wait since 1.00 s. {stop} stops it"
-    assert busy_loop_words(BusyLoop(5, 1_000_000_000)) == words
+    assert describe_busy_loop(BusyLoop(5, 1_000_000_000)) == words
 
 
 @pytest.mark.parametrize(

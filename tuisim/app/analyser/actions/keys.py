@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from functools import partial
 
-from tuisim.app.action import Action, key_groups
+from tuisim.app.action import Action, group_keys
 from tuisim.app.analyser.actions import chart, files, log, panes
 from tuisim.app.analyser.screen import LogScreen
 
@@ -38,7 +38,7 @@ _START = (
 def _show_help(screen: LogScreen) -> None:
     from tuisim.app.guide.screen import GuideScreen, KeyPage, Topic
 
-    keys = KeyPage("All keys of the analyser", _START, key_groups(screen.ACTIONS.values()))
+    keys = KeyPage("All keys of the analyser", _START, group_keys(screen.ACTIONS.values()))
     screen.app.push_screen(GuideScreen(keys, Topic()))
 
 
