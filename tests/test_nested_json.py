@@ -13,7 +13,7 @@ from tuisim.analysis.source import read_notes
 from tuisim.app import kept_breaks
 from tuisim.app.editor import text_file
 from tuisim.base.errors import LogError
-from tuisim.batch.partial import _decoded
+from tuisim.batch.partial import _decode_line
 from tuisim.engine.runs.side_files import (
     MODULES_FILE,
     READS_FILE,
@@ -74,7 +74,7 @@ def of_journal(folder: Path) -> object:
 
 
 def of_batch(_folder: Path) -> object:
-    return _decoded(DEEP)
+    return _decode_line(DEEP)
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from tests.app.analyser.logs import long_log, model_of
-from tuisim.analysis.model import Model
+from tuisim.analysis.model import AnalysisModel
 from tuisim.analysis.source import (
     LogRequest,
     Note,
@@ -23,14 +23,14 @@ def test_notes_are_kept_with_a_file(tmp_path: Path, home: Path) -> None:
     file = tmp_path / "log.csv"
     file.write_text("time,value\n0,1\n")
     opened = OpenedLog(LogRequest(file=str(file)), long_log())
-    model = Model(opened)
+    model = AnalysisModel(opened)
     model.add_note("second", 2.0, 3.0, "Colour", 0)
     model.add_note("first", 1.0, 1.0, "", 0)
-    assert [note.text for _, note in Model(opened).notes] == ["first", "second"]
+    assert [note.text for _, note in AnalysisModel(opened).notes] == ["first", "second"]
     file.write_text("time,value\n0,1\n1,2\n")
-    assert len(Model(opened).notes) == 2
+    assert len(AnalysisModel(opened).notes) == 2
     model.drop_note(*model.notes[0])
-    assert [note.text for _, note in Model(opened).notes] == ["second"]
+    assert [note.text for _, note in AnalysisModel(opened).notes] == ["second"]
     assert [path.parent for path in home.rglob("*.jsonl")] == [home / "notes"]
 
 

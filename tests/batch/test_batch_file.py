@@ -9,7 +9,7 @@ import pytest
 
 from tests.cases import cases
 from tuisim.base.errors import ConfigError
-from tuisim.batch.batch_file import load_batch, means_batch
+from tuisim.batch.batch_file import is_batch_file, load_batch
 from tuisim.batch.parameters import RandomDraw, SampleValues
 from tuisim.settings.worlds import load_world
 
@@ -76,7 +76,7 @@ def test_a_world_file_may_be_named(write: Any, tmp_path: Path) -> None:
     [("[batch]", True), ('background = "Loop"', False), ("[[goal]]", False), ("not toml", False)],
 )
 def test_a_batch_file_has_a_table_batch(write: Any, text: str, expected: bool) -> None:
-    assert means_batch(str(write(text))) is expected
+    assert is_batch_file(str(write(text))) is expected
 
 
 @cases(

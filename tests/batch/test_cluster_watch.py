@@ -12,7 +12,7 @@ from tests.cases import cases
 from tuisim import __version__
 from tuisim.base.errors import HostError
 from tuisim.batch import cluster_watch
-from tuisim.batch.cluster_watch import ClusterWatch, within
+from tuisim.batch.cluster_watch import ClusterWatch, call_within_s
 
 NOBODY = ModuleNotFoundError("No module named 'tuisim'")
 
@@ -117,7 +117,7 @@ def test_workers_that_do_not_answer_are_told(monkeypatch: pytest.MonkeyPatch) ->
             raise TimeoutError
         return call()
 
-    monkeypatch.setattr(cluster_watch, "within", hangs)
+    monkeypatch.setattr(cluster_watch, "call_within_s", hangs)
     with pytest.raises(HostError, match="workers do not answer: 2 of 2"):
         Cluster({"a": __version__, "b": __version__}).watch().wait_for_workers()
 
@@ -125,8 +125,8 @@ def test_workers_that_do_not_answer_are_told(monkeypatch: pytest.MonkeyPatch) ->
 def test_a_call_is_given_up_or_answered() -> None:
     over = threading.Event()
     with pytest.raises(TimeoutError, match="no answer within"):
-        within(0.001, over.wait)
+        call_within_s(0.001, over.wait)
     over.set()
-    assert within(60, divmod, 7, 2) == (3, 1)
+    assert call_within_s(60, divmod, 7, 2) == (3, 1)
     with pytest.raises(ZeroDivisionError):
-        within(60, divmod, 7, 0)
+        call_within_s(60, divmod, 7, 0)

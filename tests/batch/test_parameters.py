@@ -11,7 +11,7 @@ from tuisim.base.errors import ConfigError
 from tuisim.batch.parameters import (
     RandomDraw,
     SampleValues,
-    grid_of,
+    build_grid,
     parse_seeds,
     parse_set,
     parse_values,
@@ -105,7 +105,7 @@ def test_wrong_seeds_are_explained(text: str, words: str) -> None:
 
 
 def test_the_last_parameter_varies_fastest() -> None:
-    grid = grid_of({"a": (1, 2), "b": ("x", "y", "z"), "seed": (0, 1)})
+    grid = build_grid({"a": (1, 2), "b": ("x", "y", "z"), "seed": (0, 1)})
     assert (len(grid), grid.names) == (12, ("a", "b", "seed"))
     assert [tuple(point.values()) for point in grid][:4] == [
         (1, "x", 0),
@@ -139,7 +139,7 @@ def test_whole_random_numbers_include_both_ends() -> None:
 
 def test_a_latin_hypercube_has_one_value_in_each_part_of_each_parameter() -> None:
     latin = SampleValues(RandomDraw.LATIN, 0, 10, 10)
-    grid = grid_of({"a": latin, "seed": (1, 2), "b": latin})
+    grid = build_grid({"a": latin, "seed": (1, 2), "b": latin})
     assert (len(grid), grid.names) == (20, ("a", "b", "seed"))
     columns = list(zip(*(point.values() for point in grid if point["seed"] == 1), strict=True))
     assert [sorted(int(value) for value in column) for column in columns[:2]] == [[*range(10)]] * 2
@@ -149,7 +149,7 @@ def test_a_latin_hypercube_has_one_value_in_each_part_of_each_parameter() -> Non
 
 def test_the_parameters_of_a_latin_hypercube_have_the_same_number_of_values() -> None:
     with pytest.raises(ConfigError, match=r"^b: .*same number of values and seed as a .*4, seed=0"):
-        grid_of(
+        build_grid(
             {
                 "a": SampleValues(RandomDraw.LATIN, 0, 1, 4),
                 "b": SampleValues(RandomDraw.LATIN, 0, 1, 5),
@@ -159,4 +159,4 @@ def test_the_parameters_of_a_latin_hypercube_have_the_same_number_of_values() ->
 
 def test_too_many_combinations_are_refused() -> None:
     with pytest.raises(ConfigError, match="4,000,000 combinations of a, b"):
-        grid_of({"a": tuple(range(2000)), "b": tuple(range(2000))})
+        build_grid({"a": tuple(range(2000)), "b": tuple(range(2000))})

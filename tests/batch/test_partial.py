@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from tuisim.base.errors import ConfigError, ExportError
-from tuisim.batch.partial import PartialTable, partial_of
+from tuisim.batch.partial import PartialTable, find_partial
 
 ROWS = {
     0: {"run": 1, "x_mm": 0.1 + 0.2, "end": "finished"},
@@ -17,7 +17,7 @@ ROWS = {
 
 
 def table(folder: Path, sha256: str = "a") -> PartialTable:
-    return PartialTable(partial_of(folder / "out.csv"), {"sha256": sha256, "runs": 3})
+    return PartialTable(find_partial(folder / "out.csv"), {"sha256": sha256, "runs": 3})
 
 
 def test_rows_come_back_bit_for_bit(tmp_path: Path) -> None:
@@ -33,7 +33,7 @@ def test_without_a_file_nothing_is_done(tmp_path: Path) -> None:
 
 def test_the_torn_line_of_a_killed_process_is_left_out(tmp_path: Path) -> None:
     table(tmp_path).open(ROWS).close()
-    path = partial_of(tmp_path / "out.csv")
+    path = find_partial(tmp_path / "out.csv")
     path.write_bytes(path.read_bytes()[:-5])
     rows = table(tmp_path).rows()
     assert list(rows) == [0]

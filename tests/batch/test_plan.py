@@ -31,7 +31,9 @@ def plan(choices: dict[str, Any], *subjects: Subject, **how: Any) -> Plan:
 
 def test_every_combination_is_a_task_and_the_seed_varies_fastest() -> None:
     tasks = list(
-        plan({"noise.motor": (0, 20), "seed": (5, 6)}, subject("a.py"), subject("b.py")).tasks()
+        plan(
+            {"noise.motor": (0, 20), "seed": (5, 6)}, subject("a.py"), subject("b.py")
+        ).iterate_tasks()
     )
     found = [
         (task.index, task.program.name, task.spec.world.noise.motor, task.spec.seed)
@@ -51,7 +53,7 @@ def test_every_combination_is_a_task_and_the_seed_varies_fastest() -> None:
 
 
 def test_without_parameters_there_is_one_task_with_the_chosen_seed() -> None:
-    (task,) = plan({}, subject(settings={"seed": 4})).tasks()
+    (task,) = plan({}, subject(settings={"seed": 4})).iterate_tasks()
     assert (task.spec.seed, dict(task.parameters)) == (4, {})
 
 
@@ -60,7 +62,7 @@ def test_a_program_runs_in_the_folder_and_with_the_modules_of_the_user(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("PYTHONPATH", "own")
-    (task,) = plan({}).tasks()
+    (task,) = plan({}).iterate_tasks()
     assert (task.program.working_directory, task.program.python_path) == (
         str(tmp_path),
         (str(tmp_path / "own"),),
@@ -68,11 +70,11 @@ def test_a_program_runs_in_the_folder_and_with_the_modules_of_the_user(
 
 
 def test_tasks_that_are_done_are_left_out() -> None:
-    assert [task.index for task in plan({"seed": (1, 2, 3, 4)}).tasks({0, 2})] == [1, 3]
+    assert [task.index for task in plan({"seed": (1, 2, 3, 4)}).iterate_tasks({0, 2})] == [1, 3]
 
 
 def test_arguments_of_the_program_are_a_parameter() -> None:
-    found = [task.program.arguments for task in plan({"arguments": ("5 fast", 6)}).tasks()]
+    found = [task.program.arguments for task in plan({"arguments": ("5 fast", 6)}).iterate_tasks()]
     assert found == [("5", "fast"), ("6",)]
 
 
@@ -86,17 +88,19 @@ def test_arguments_of_the_program_are_a_parameter() -> None:
 def test_samples_are_whole_where_the_key_takes_whole_numbers(name: str, whole: bool) -> None:
     values = [
         task.parameters[name]
-        for task in plan({name: SampleValues(RandomDraw.RANDOM, 50, 60, 4)}).tasks()
+        for task in plan({name: SampleValues(RandomDraw.RANDOM, 50, 60, 4)}).iterate_tasks()
     ]
     assert {type(value) for value in values} == {int if whole else float}
 
 
 def test_a_mat_brings_its_start_pose_unless_one_is_chosen() -> None:
     mats = {"background": ("Lollipop", "Loop")}
-    own = [task.spec.world.start for task in plan(mats).tasks()]
+    own = [task.spec.world.start for task in plan(mats).iterate_tasks()]
     chosen = [
         task.spec.world.start
-        for task in plan(mats, subject("a.py", ("start.x_mm",), {"start.x_mm": 321.0})).tasks()
+        for task in plan(
+            mats, subject("a.py", ("start.x_mm",), {"start.x_mm": 321.0})
+        ).iterate_tasks()
     ]
     assert own[0] != own[1]
     assert [(pose.x_mm, pose.y_mm) for pose in chosen] == [(321.0, pose.y_mm) for pose in own]
@@ -146,4 +150,4 @@ def test_a_profile_for_another_library_is_found_before_anything_is_run() -> None
     },
 )
 def test_a_batch_is_identified_by_all_that_its_rows_depend_on(other: Plan, same: bool) -> None:
-    assert (plan({"seed": (1, 2)}).identity() == other.identity()) is same
+    assert (plan({"seed": (1, 2)}).build_identity() == other.build_identity()) is same

@@ -10,7 +10,7 @@ from tests.batch.stand_in import run_backwards
 from tests.batch.test_plan import plan, subject
 from tuisim.base.errors import ConfigError
 from tuisim.batch import sweep
-from tuisim.batch.partial import PartialTable, partial_of
+from tuisim.batch.partial import PartialTable, find_partial
 from tuisim.batch.sweep import Sweep, Workers
 from tuisim.batch.table import RUN, Row
 
@@ -18,8 +18,8 @@ from tuisim.batch.table import RUN, Row
 def test_what_is_not_done_is_executed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sweep, "run_many", run_backwards)
     out, several = tmp_path / "out.csv", plan({"seed": (5, 6)}, subject("a.py"), subject("b.py"))
-    identity = {"version": "1", **several.identity()}
-    PartialTable(partial_of(out), identity).open({1: {RUN: 2, "end": "kept"}}).close()
+    identity = {"version": "1", **several.build_identity()}
+    PartialTable(find_partial(out), identity).open({1: {RUN: 2, "end": "kept"}}).close()
     with pytest.raises(ConfigError, match="holds the rows of an interrupted batch"):
         Sweep(several, {}, out, "1")
     told: list[Row] = []
@@ -33,7 +33,7 @@ def test_what_is_not_done_is_executed(tmp_path: Path, monkeypatch: pytest.Monkey
         ("b.py", 6),
     ]
     assert rows[1] == {RUN: 2, "end": "kept"}
-    assert PartialTable(partial_of(out), identity).rows() == rows
+    assert PartialTable(find_partial(out), identity).rows() == rows
     begun.finish()
     assert list(tmp_path.iterdir()) == []
 

@@ -12,20 +12,20 @@ from tests.batch.test_plan import plan, subject
 from tests.cases import cases
 from tuisim.base.errors import ConfigError, LogError
 from tuisim.batch.table import (
+    build_frame,
+    build_metadata,
+    build_row,
+    build_summaries,
     check_expressions,
-    frame_of,
-    metadata_of,
-    result_columns,
-    row_of,
-    summaries,
+    list_result_columns,
 )
 
 NOISES = plan({"noise.motor": (0, 20), "seed": (1, 2, 13)})
-ROWS = [row_of(result_of(task), "", task.spec.seed) for task in NOISES.tasks()]
+ROWS = [build_row(result_of(task), "", task.spec.seed) for task in NOISES.iterate_tasks()]
 
 
 def test_there_is_one_row_for_each_run_whatever_the_order() -> None:
-    frame = frame_of(reversed(ROWS))
+    frame = build_frame(reversed(ROWS))
     assert frame["run"].tolist() == [1, 2, 3, 4, 5, 6]
     assert list(frame.columns) == [
         "run",
@@ -48,11 +48,11 @@ def test_there_is_one_row_for_each_run_whatever_the_order() -> None:
         "Colour_min",
         "Colour_max",
     ]
-    assert frame.equals(frame_of(ROWS))
+    assert frame.equals(build_frame(ROWS))
 
 
 def test_a_column_has_the_narrowest_type_and_nan_where_nothing_was_printed() -> None:
-    frame = frame_of(ROWS)
+    frame = build_frame(ROWS)
     kinds = {
         name: frame[name].dtype.kind for name in ("noise.motor", "seed", "x_mm", "Colour_count")
     }
@@ -61,8 +61,8 @@ def test_a_column_has_the_narrowest_type_and_nan_where_nothing_was_printed() -> 
 
 
 def test_the_program_is_a_column_if_there_are_several() -> None:
-    (task,) = plan({}, subject("a.py")).tasks()
-    assert list(frame_of([row_of(result_of(task), "a.py", 0)]).columns)[:3] == [
+    (task,) = plan({}, subject("a.py")).iterate_tasks()
+    assert list(build_frame([build_row(result_of(task), "a.py", 0)]).columns)[:3] == [
         "run",
         "program",
         "seed",
@@ -70,7 +70,7 @@ def test_the_program_is_a_column_if_there_are_several() -> None:
 
 
 def test_values_of_several_types_are_written_as_text() -> None:
-    frame = frame_of([{"run": 1, "robot.weight": "light"}, {"run": 2, "robot.weight": 3.5}])
+    frame = build_frame([{"run": 1, "robot.weight": "light"}, {"run": 2, "robot.weight": 3.5}])
     assert frame["robot.weight"].tolist() == ["light", "3.5"]
 
 
@@ -84,12 +84,12 @@ def test_values_of_several_types_are_written_as_text() -> None:
     },
 )
 def test_an_expression_is_evaluated_in_each_row(text: str, expected: list[float]) -> None:
-    found = frame_of(ROWS, {"new": text})["new"].tolist()
+    found = build_frame(ROWS, {"new": text})["new"].tolist()
     assert found == pytest.approx(expected, nan_ok=True)
 
 
 def test_a_later_expression_uses_an_earlier_one() -> None:
-    frame = frame_of(ROWS, {"one": "seed + 1", "two": "one * 2"})
+    frame = build_frame(ROWS, {"one": "seed + 1", "two": "one * 2"})
     assert frame["two"].tolist() == [4, 6, 28] * 2
 
 
@@ -121,11 +121,11 @@ def test_right_expressions_are_accepted() -> None:
 
 def test_an_expression_over_text_is_refused() -> None:
     with pytest.raises(LogError, match="no column 'end'"):
-        frame_of(ROWS, {"new": "end + 1"})
+        build_frame(ROWS, {"new": "end + 1"})
 
 
 def test_a_summary_has_one_line_for_each_combination_of_parameters() -> None:
-    lines = summaries(frame_of(ROWS), NOISES.names, ["x_mm"])
+    lines = build_summaries(build_frame(ROWS), NOISES.names, ["x_mm"])
     assert [(dict(line.group), line.statistics.mean) for line in lines] == [
         ({"noise.motor": 0}, 100.0),
         ({"noise.motor": 20}, pytest.approx(100 + 20 * 16 / 3)),
@@ -136,14 +136,14 @@ def test_a_summary_of_many_combinations_is_about_all_runs() -> None:
     rows: list[dict[str, Any]] = [
         {"run": run, "noise.motor": run, "x_mm": 1.0} for run in range(50)
     ]
-    assert [dict(line.group) for line in summaries(frame_of(rows), ["noise.motor"], ["x_mm"])] == [
-        {}
-    ]
+    assert [
+        dict(line.group) for line in build_summaries(build_frame(rows), ["noise.motor"], ["x_mm"])
+    ] == [{}]
 
 
 def test_a_summary_begins_with_what_was_computed() -> None:
-    frame = frame_of(ROWS, {"error_mm": "x_mm - 100"})
-    assert result_columns(frame, ["error_mm"]) == [
+    frame = build_frame(ROWS, {"error_mm": "x_mm - 100"})
+    assert list_result_columns(frame, ["error_mm"]) == [
         "error_mm",
         "x_mm",
         "y_mm",
@@ -154,7 +154,7 @@ def test_a_summary_begins_with_what_was_computed() -> None:
 
 
 def test_units_are_stored_with_a_table() -> None:
-    units = metadata_of(frame_of([{"run": 1, "x_mm": 1.0, "far_mm_mean": 2.0, "n": 1}]), {})[
+    units = build_metadata(build_frame([{"run": 1, "x_mm": 1.0, "far_mm_mean": 2.0, "n": 1}]), {})[
         "units"
     ]
     assert units == {"x_mm": "mm", "far_mm_mean": "mm"}

@@ -22,7 +22,7 @@ from tuisim.engine.core.tick_record import TICK_FIELDS
 from tuisim.engine.runs.records import HEADER_BYTES, OUTPUT_FILE, TELEMETRY_FILE
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.engine.runs.store import RunStore
-from tuisim.pictures.movies.clip import END_MS, Recorded
+from tuisim.pictures.movies.clip import END_MS, ClipRun
 from tuisim.pictures.movies.files import SMALL_BYTES, make_small_movie
 from tuisim.pictures.movies.painter import FramePainter
 from tuisim.pictures.scene.pen import build_pen_trace
@@ -164,7 +164,7 @@ def test_without_a_file_it_is_named_after_the_program(here: Command, tmp_path: P
 
 @pytest.mark.slow
 def test_a_small_movie_of_a_long_run_is_faster() -> None:
-    made = make_small_movie(Recorded(record(*[100, -100] * 25)))
+    made = make_small_movie(ClipRun(record(*[100, -100] * 25)))
     assert made is not None
     clip, content = made
     assert (clip.speed, len(clip.shots)) == (3, 85)
@@ -177,7 +177,7 @@ def test_a_small_movie_of_a_long_run_is_faster() -> None:
 )
 def test_no_small_movie(monkeypatch: pytest.MonkeyPatch, speed_dps: float, most: int) -> None:
     monkeypatch.setattr("tuisim.pictures.movies.files.SMALL_BYTES", most)
-    assert make_small_movie(Recorded(record(speed_dps))) is None
+    assert make_small_movie(ClipRun(record(speed_dps))) is None
 
 
 # Words after `runs`, and what the line on stderr must say.

@@ -7,7 +7,7 @@ import random
 import pytest
 
 from tests.app.analyser.logs import long_log, model_of
-from tuisim.analysis.model import Model
+from tuisim.analysis.model import AnalysisModel
 from tuisim.base.errors import LogError
 from tuisim.logs import table as rows_module
 from tuisim.logs.table import TableTask, parse_conditions
@@ -49,7 +49,7 @@ def test_a_search_tells_how_far_it_is_and_can_be_stopped(monkeypatch: pytest.Mon
     assert rows.find("nowhere", 0, 1, task) is None and task.part == 0.25
 
 
-def values(model: Model) -> list[float]:
+def values(model: AnalysisModel) -> list[float]:
     return [float(model.rows.text(model.rows.row(at), "value")) for at in range(len(model.rows))]
 
 

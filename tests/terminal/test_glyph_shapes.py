@@ -6,12 +6,12 @@ from itertools import pairwise
 
 import pytest
 
-from tuisim.terminal.glyph_shapes import Area, Bend, GlyphShape, draw_character
+from tuisim.terminal.glyph_shapes import Bend, GlyphArea, GlyphShape, draw_character
 
 
 def painted(shapes: tuple[GlyphShape, ...] | None) -> set[tuple[int, int]]:
     """Pixels that areas cover."""
-    areas = [shape for shape in shapes or () if isinstance(shape, Area)]
+    areas = [shape for shape in shapes or () if isinstance(shape, GlyphArea)]
     edges = [tuple(map(int, (at.left, at.top, at.right, at.bottom))) for at in areas]
     return {
         (x, y)

@@ -19,7 +19,7 @@ from tuisim.pictures.charts.layout import ChartData, Line, Span, add_unit
 from tuisim.pictures.charts.traces import clip_line, reduce_points
 
 if TYPE_CHECKING:
-    from tuisim.analysis.model import Model
+    from tuisim.analysis.model import AnalysisModel
     from tuisim.logs.bands import Band
 
 
@@ -37,7 +37,7 @@ class View:
     """Pair of x and y to draw against each other, instead of all variables over time."""
 
 
-def build_chart(model: Model, view: View, columns: int, rows: int) -> ChartData:
+def build_chart(model: AnalysisModel, view: View, columns: int, rows: int) -> ChartData:
     """Return the chart of a model: its visible variables within its limits.
 
     What a picture of `columns` by `rows` pixels, or parts of characters, could not tell apart is left out.
@@ -73,7 +73,7 @@ def _build_line(trace: LogTrace, number: int, hold: bool, x_limits: Limits, colu
 
 
 def _build_path_chart(
-    model: Model, names: tuple[str, str], marks: bool, columns: int, rows: int
+    model: AnalysisModel, names: tuple[str, str], marks: bool, columns: int, rows: int
 ) -> ChartData:
     xs, ys = (model.sample_variable(name) for name in names)
     places = model.trace.places
@@ -100,7 +100,7 @@ def build_spans(bands: Iterable[Band]) -> tuple[Span, ...]:
     )
 
 
-def draw_event_marks(model: Model, limits: Limits, columns: int) -> str:
+def draw_event_marks(model: AnalysisModel, limits: Limits, columns: int) -> str:
     """Return a line of text with a mark in each column of the chart that has events."""
     line = [" "] * columns
     for event in model.events.list_events(model.log):

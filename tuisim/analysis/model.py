@@ -39,7 +39,7 @@ _SORTED_AT_ONCE = 200_000
 """Up to this number of values, quantiles take only some hundredths of a second."""
 
 
-class Model:
+class AnalysisModel:
     """The state of the analysis of one log.
 
     Raises:
@@ -180,7 +180,7 @@ class Model:
             )
             self.row = int(rows[min(max(index, 0), len(rows) - 1)])
 
-    def restore(self, other: Model) -> None:
+    def restore(self, other: AnalysisModel) -> None:
         """Restore the state of another model of the same log, which has grown since."""
         self.row, self.mark_s, self.limits = other.row, other.mark_s, other.limits
         if other.row == other.log.rows - 1:
@@ -197,7 +197,7 @@ class Model:
         if other.alignment != TIME:
             self._align_again(other.alignment)
 
-    def copy_definitions(self, other: Model) -> None:
+    def copy_definitions(self, other: AnalysisModel) -> None:
         """Compute the derived variables of another model of the same log. Slow for a long log: call it in a thread."""
         for name, text in other.definitions.items():
             if name not in self.definitions:
@@ -400,7 +400,7 @@ RECKONING = "reckoning"
 """Definition text for dead reckoning from the wheel encoders."""
 
 
-def derive(model: Model, text: str) -> None:
+def derive(model: AnalysisModel, text: str) -> None:
     """Derive a variable; blocks until it is computed.
 
     Raises:
@@ -409,7 +409,7 @@ def derive(model: Model, text: str) -> None:
     apply_definition(model, *compute_definition(model, text))
 
 
-def apply_definition(model: Model, text: str, log: Log) -> None:
+def apply_definition(model: AnalysisModel, text: str, log: Log) -> None:
     """Apply a derived log to a model."""
     name = RECKONING if text == RECKONING else parse_definition(text).name
     model.definitions.pop(name, None)
@@ -423,7 +423,7 @@ def apply_definition(model: Model, text: str, log: Log) -> None:
     )
 
 
-def compute_definition(model: Model, text: str) -> tuple[str, Log]:
+def compute_definition(model: AnalysisModel, text: str) -> tuple[str, Log]:
     """Return a definition as typed, and the log with the derived variable.
 
     Raises:

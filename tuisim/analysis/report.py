@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tuisim.analysis.chart import View, build_chart, build_spans
-from tuisim.analysis.model import Model
+from tuisim.analysis.model import AnalysisModel
 from tuisim.analysis.pins import Picture, Pin, encode_data, encode_picture, place_pins
 from tuisim.analysis.source import LogRequest, OpenedLog, open_pieces
 from tuisim.base.errors import ExportError, LogError, listed
@@ -30,7 +30,7 @@ from tuisim.logs.signals import QUANTILES
 from tuisim.pictures.charts.files import FACET_PX, draw_svg, write_whole
 from tuisim.pictures.charts.layout import lay_out_chart
 from tuisim.pictures.html.render import Table, render_page
-from tuisim.pictures.movies.clip import Recorded
+from tuisim.pictures.movies.clip import ClipRun
 from tuisim.pictures.movies.files import make_small_movie
 from tuisim.pictures.scene.pictures import draw_end, find_area, find_view
 
@@ -127,8 +127,8 @@ def build_report(
     )
 
 
-def _find_bands(opened: OpenedLog, names: Sequence[str], search: Search) -> Model:
-    model = Model(opened)
+def _find_bands(opened: OpenedLog, names: Sequence[str], search: Search) -> AnalysisModel:
+    model = AnalysisModel(opened)
     for trace in model.traces:
         trace.on = trace.name in names if names else trace.on
     model.find_bands(model.list_unsearched(), search)
@@ -192,7 +192,7 @@ def _draw_way(run: StoredRun) -> Image:
 def _draw_movie(run: StoredRun, pins: Sequence[Pin]) -> Picture | None:
     """Return a small movie of a run with places that are marked on it; None if nothing moves."""
     try:
-        movie = make_small_movie(Recorded(run))
+        movie = make_small_movie(ClipRun(run))
     except LogError:
         # Where there is no picture either, it says why.
         return None
@@ -206,7 +206,7 @@ def _draw_movie(run: StoredRun, pins: Sequence[Pin]) -> Picture | None:
     )
 
 
-def _draw_chart(model: Model) -> Mapping[str, Any]:
+def _draw_chart(model: AnalysisModel) -> Mapping[str, Any]:
     lines = len(model.traces.list_ticked())
     height = 2 * FACET_PX if lines < 2 else 80 + FACET_PX * lines
     chart = build_chart(model, View(facets=True), _WIDTH_PX, height)
@@ -226,7 +226,7 @@ def _format_number(value: float, format_spec: str) -> str:
     return "" if math.isnan(value) else format(value, format_spec)
 
 
-def _build_band_table(model: Model) -> Mapping[str, Any]:
+def _build_band_table(model: AnalysisModel) -> Mapping[str, Any]:
     heads = ["variable", "name", "band", "from s", "to s", "samples", "level", "spread", "width mm"]
     pairs = zip(model.list_reports(), model.describe_bands(), strict=True)
     bands = model.bands()
@@ -259,7 +259,7 @@ def _build_band_table(model: Model) -> Mapping[str, Any]:
     }
 
 
-def _build_statistics(model: Model) -> Table:
+def _build_statistics(model: AnalysisModel) -> Table:
     heads = [
         "variable",
         "count",
@@ -283,7 +283,7 @@ def _build_statistics(model: Model) -> Table:
     return Table(heads, rows, numbers=1)
 
 
-def _build_note_table(model: Model) -> Table:
+def _build_note_table(model: AnalysisModel) -> Table:
     rows = []
     for run, note in model.notes:
         span = f"{note.start_s:.2f}" + (

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from tuisim.api.keywords import check_keywords
 from tuisim.base.errors import HostError
-from tuisim.batch.parameters import checked_seeds
+from tuisim.batch.parameters import check_seeds
 from tuisim.engine.runs.child.isolation import check_isolation
 from tuisim.tasks.goals.files import load_goals
 from tuisim.tasks.marks.marking import MarkRequest, open_marking
@@ -61,7 +61,7 @@ def mark(
     request = MarkRequest(
         task=task,
         folders=[*map(str, named)],
-        seeds=checked_seeds([*seeds], "seeds"),
+        seeds=check_seeds([*seeds], "seeds"),
         version=version("tuisim"),
         time_limit_s=timeout_s,
         jobs=jobs,

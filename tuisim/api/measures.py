@@ -11,7 +11,7 @@ from tuisim.api.descriptions import plain
 from tuisim.api.run import Run
 from tuisim.base.errors import ConfigError
 from tuisim.batch.plan import Plan
-from tuisim.batch.table import usual_columns
+from tuisim.batch.table import list_usual_columns
 from tuisim.engine.core.sensors import find_named_column
 from tuisim.engine.runs.frames import telemetry_columns
 from tuisim.engine.runs.run_folder import read_run
@@ -50,12 +50,12 @@ class Measures:
         Raises:
             ConfigError: a run has no such column, or a metric is called like a column.
         """
-        usual = usual_columns(plan.names, [goal.name for goal in plan.goals])
+        usual = list_usual_columns(plan.names, [goal.name for goal in plan.goals])
         for name in self._metrics:
             if name in usual:
                 raise ConfigError(f"{name!r} is a column already", key="metrics")
         for subject in plan.subjects:
-            spec = plan.spec_of(subject, {})
+            spec = plan.build_spec(subject, {})
             self._columns = [find_named_column(name, spec) for name in self._columns]
 
     def measure(self, result: Result) -> dict[str, Any]:

@@ -13,7 +13,7 @@ from tuisim.api.calls import check_timeout, prepare_program, read_source
 from tuisim.api.descriptions import plain, read_options, read_world
 from tuisim.api.measures import Measures, Metric, show_progress
 from tuisim.base.errors import ConfigError
-from tuisim.batch.parameters import SEED, Choice, checked_seeds, parse_values
+from tuisim.batch.parameters import SEED, Choice, check_seeds, parse_values
 from tuisim.batch.plan import Plan, Subject
 from tuisim.batch.sweep import Sweep, Workers, is_interrupted
 from tuisim.engine.core.spec import RunSpec
@@ -204,7 +204,7 @@ def _is_varied(name: str, value: object) -> bool:
 def _read_seeds(seeds: Any) -> dict[str, Choice]:
     if isinstance(seeds, str) or not isinstance(seeds, Iterable):
         raise ConfigError(f"must be several, got {seeds!r}", "such as range(200)", key="seeds")
-    chosen = checked_seeds([plain(seed) for seed in seeds], "seeds")
+    chosen = check_seeds([plain(seed) for seed in seeds], "seeds")
     return {SEED: chosen} if chosen else {}
 
 

@@ -13,7 +13,7 @@ from msgspec import UNSET, Meta, Struct, UnsetType
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ConfigError
 from tuisim.base.folders import user_path
-from tuisim.batch.parameters import SEED, Choice, checked_seeds, parse_seeds, parse_values
+from tuisim.batch.parameters import SEED, Choice, check_seeds, parse_seeds, parse_values
 from tuisim.engine import files
 from tuisim.engine.core.values import quote
 from tuisim.engine.files import Location
@@ -54,7 +54,7 @@ class BatchFile:
     expressions: Mapping[str, str] = field(default_factory=dict)
 
 
-def means_batch(word: str) -> bool:
+def is_batch_file(word: str) -> bool:
     """Return whether a word of the command line names a batch file; a file that cannot be read is none.
 
     A world file has no table `[batch]`.
@@ -80,18 +80,18 @@ def load_batch(path: Path, mats: str | None = None) -> BatchFile:
     """
     path = user_path(path)
     data = dict(files.table(files.read_file(path, ConfigError), Location(str(path))))
-    at = Location(str(path)).at(BATCH_KEY)
+    location = Location(str(path)).at(BATCH_KEY)
     if BATCH_KEY not in data:
         raise ConfigError("is not a batch", f"a batch has a table [{BATCH_KEY}]", file=str(path))
-    table = files.convert(data.pop(BATCH_KEY), _BatchTable, at)
+    table = files.convert(data.pop(BATCH_KEY), _BatchTable, location)
     folder = path.parent
     world = None
     if table.world is not UNSET:
         if data:
-            raise at.at("world").wrong(
+            raise location.at("world").wrong(
                 f"cannot be combined with {', '.join(data)}", "a world file, or its keys"
             )
-        with files.errors_at(at.file, at.at("world").key):
+        with files.errors_at(location.file, location.at("world").key):
             world = load_world(folder / table.world, mats)
     elif data:
         world = parse_world(data, path, mats)
@@ -103,89 +103,93 @@ def load_batch(path: Path, mats: str | None = None) -> BatchFile:
         else table.program
     )
     if len(programs) > MAX_PROGRAMS:
-        raise at.at("program").wrong(f"has {len(programs)} programs", f"at most {MAX_PROGRAMS}")
+        raise location.at("program").wrong(
+            f"has {len(programs)} programs", f"at most {MAX_PROGRAMS}"
+        )
     return BatchFile(
         path,
-        tuple(_beside(folder, word) for word in programs),
+        tuple(_find_program_beside(folder, word) for word in programs),
         world,
-        _choices(table, at),
+        _parse_choices(table, location),
         jobs=None if table.jobs is UNSET else table.jobs,
         out=None if table.out is UNSET else str(folder / table.out),
         goals=None if table.goals is UNSET else str(folder / table.goals),
         keep=None if table.keep is UNSET else table.keep,
         expressions={}
         if table.expressions is UNSET
-        else _expressions(table.expressions, at.at("expressions")),
+        else _parse_expressions(table.expressions, location.at("expressions")),
     )
 
 
-def _beside(folder: Path, word: str) -> str:
+def _find_program_beside(folder: Path, word: str) -> str:
     """Return the path of a program beside the file; a name without such a file may be that of an example."""
     path, _, cell = word.partition("#")
-    found = folder / user_path(path)
+    file = folder / user_path(path)
     return (
-        f"{found}{'#' * bool(cell)}{cell}"
-        if os.path.exists(found) or Path(path).parent != Path()
+        f"{file}{'#' * bool(cell)}{cell}"
+        if os.path.exists(file) or Path(path).parent != Path()
         else word
     )
 
 
-def _expressions(data: object, at: Location) -> dict[str, str]:
+def _parse_expressions(data: object, location: Location) -> dict[str, str]:
     return {
-        name: files.convert(text, str, at.at(name)) for name, text in files.table(data, at).items()
+        name: files.convert(text, str, location.at(name))
+        for name, text in files.table(data, location).items()
     }
 
 
-def _choices(table: _BatchTable, at: Location) -> dict[str, Choice]:
-    found: dict[str, Choice] = {}
+def _parse_choices(table: _BatchTable, location: Location) -> dict[str, Choice]:
+    choices: dict[str, Choice] = {}
     if table.set is not UNSET:
-        place = at.at("set")
-        for name, values in _flat(files.table(table.set, place)).items():
-            found[name] = _choice(values, place.at(name))
+        place = location.at("set")
+        for name, values in _flatten_table(files.table(table.set, place)).items():
+            choices[name] = _parse_choice(values, place.at(name))
     if table.seeds is not UNSET:
-        place = at.at("seeds")
-        if SEED in found:
+        place = location.at("seeds")
+        if SEED in choices:
             raise place.wrong(f"cannot be combined with set.{SEED}", "give only one of them")
         listed = table.seeds if isinstance(table.seeds, list) else [table.seeds]
         try:
-            found[SEED] = (
+            choices[SEED] = (
                 parse_seeds(table.seeds, "")
                 if isinstance(table.seeds, str)
-                else checked_seeds(listed, "")
+                else check_seeds(listed, "")
             )
         except ConfigError as error:
             raise place.wrong(error.message, error.hint) from None
-    return found
+    return choices
 
 
-def _flat(table: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
+def _flatten_table(table: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
     """Return nested tables with dots in the keys."""
-    found: dict[str, Any] = {}
+    values: dict[str, Any] = {}
     for key, value in table.items():
-        found |= (
-            _flat(value, f"{prefix}{key}.")
+        values |= (
+            _flatten_table(value, f"{prefix}{key}.")
             if isinstance(value, dict)
             else {f"{prefix}{key}": value}
         )
-    return found
+    return values
 
 
-def _choice(values: object, at: Location) -> Choice:
+def _parse_choice(values: object, location: Location) -> Choice:
     """Return the values of a list as they are; a text is read as on the command line."""
     try:
         if isinstance(values, str):
             return parse_values(values, "")
     except ConfigError as error:
-        raise at.wrong(error.message, error.hint) from None
+        raise location.wrong(error.message, error.hint) from None
     listed = values if isinstance(values, list) else [values]
     if not listed:
-        raise at.wrong("has no values")
+        raise location.wrong("has no values")
     return tuple(
-        _scalar(value, at.at(f"[{number}]")) for number, value in enumerate(listed, start=1)
+        _parse_scalar(value, location.at(f"[{number}]"))
+        for number, value in enumerate(listed, start=1)
     )
 
 
-def _scalar(value: object, at: Location) -> Value:
+def _parse_scalar(value: object, location: Location) -> Value:
     if not isinstance(value, str | bool | int | float):
-        raise at.wrong(f"must be a text, a number, true or false, got {quote(value)}")
+        raise location.wrong(f"must be a text, a number, true or false, got {quote(value)}")
     return value

@@ -15,7 +15,7 @@ from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 from tuisim.base.errors import ConfigError, HostError, TuisimError
-from tuisim.batch.cluster_watch import ClusterWatch, within
+from tuisim.batch.cluster_watch import ClusterWatch, call_within_s
 from tuisim.engine.runs.child.process import warm_up
 from tuisim.engine.runs.temporary import batch_folder
 from tuisim.tasks.execute import execute
@@ -28,7 +28,7 @@ CHUNK = 4
 """Tasks that a worker gets at once."""
 AHEAD = 400
 """Chunks that the scheduler has at most: it keeps each in memory, and workers may join at any time."""
-MOST_TRIES = 10
+MAX_TRIES = 10
 """How many workers may die of a chunk before the batch fails."""
 CONNECT_S = 5.0
 _RESULT_S, _CLOSE_S = 2.0, 1.0
@@ -60,11 +60,11 @@ def run_on_cluster(
         raise ConfigError(
             f"is not an address of a scheduler: {scheduler!r}", hint, key="--scheduler"
         )
-    distributed = _dask()
+    distributed = _load_dask()
     cluster = None
     try:
         if scheduler:
-            client = within(CONNECT_S + 1, _client_of, distributed, scheduler)
+            client = call_within_s(CONNECT_S + 1, _build_client, distributed, scheduler)
         else:
             cluster = distributed.LocalCluster(
                 n_workers=workers,
@@ -76,16 +76,18 @@ def run_on_cluster(
             )
             client = distributed.Client(cluster, set_as_default=False)
     except Exception as error:  # What listens at an address may be anything, and raise anything.
-        raise _no_scheduler(scheduler, error) from None
+        raise _build_scheduler_error(scheduler, error) from None
     try:
-        yield from _results(client, ClusterWatch(client, scheduler or "this machine"), iter(tasks))
+        yield from _iterate_results(
+            client, ClusterWatch(client, scheduler or "this machine"), iter(tasks)
+        )
     finally:
         _close(client)
         if cluster is not None:
             cluster.close()
 
 
-def _client_of(distributed: Any, scheduler: str) -> Any:
+def _build_client(distributed: Any, scheduler: str) -> Any:
     client = object.__new__(distributed.Client)
     try:
         client.__init__(scheduler, timeout=CONNECT_S, set_as_default=False)
@@ -97,7 +99,7 @@ def _client_of(distributed: Any, scheduler: str) -> Any:
     return client
 
 
-def _dask() -> Any:
+def _load_dask() -> Any:
     try:
         import distributed
     except ImportError as error:
@@ -111,7 +113,7 @@ def _dask() -> Any:
     return distributed
 
 
-def _no_scheduler(scheduler: str, error: Exception) -> ConfigError:
+def _build_scheduler_error(scheduler: str, error: Exception) -> ConfigError:
     why = str(error).partition("\n")[0] or type(error).__name__
     if isinstance(error, MemoryError):
         # It takes any greeting for the size of a message.
@@ -132,14 +134,14 @@ def _close(client: Any) -> None:
         client.close(timeout=_CLOSE_S)
 
 
-def _results(client: Any, watch: ClusterWatch, tasks: Iterator[Task]) -> Iterator[Result]:
+def _iterate_results(client: Any, watch: ClusterWatch, tasks: Iterator[Task]) -> Iterator[Result]:
     watch.wait_for_workers()
     done: queue.SimpleQueue[Any] = queue.SimpleQueue()
     pending = 0
     while True:
         while pending < AHEAD and (chunk := list(islice(tasks, CHUNK))):
             # Not pure: Dask would look for the same task among those of other batches.
-            future = client.submit(_execute_all, chunk, pure=False, retries=MOST_TRIES)
+            future = client.submit(_execute_all, chunk, pure=False, retries=MAX_TRIES)
             future.add_done_callback(done.put)
             pending += 1
         if not pending:
@@ -150,7 +152,7 @@ def _results(client: Any, watch: ClusterWatch, tasks: Iterator[Task]) -> Iterato
         except queue.Empty:
             continue
         try:
-            found = future.result(timeout=_RESULT_S)
+            outcome = future.result(timeout=_RESULT_S)
         except TimeoutError:
             # The worker that has the result died: another one makes it again.
             done.put(future)
@@ -165,7 +167,7 @@ def _results(client: Any, watch: ClusterWatch, tasks: Iterator[Task]) -> Iterato
                 f"{watch.name}: a worker failed: {type(error).__name__}: {why}"
             ) from None
         pending -= 1
-        yield from found
+        yield from outcome
 
 
 def _execute_all(tasks: list[Task]) -> list[Result]:

@@ -20,23 +20,23 @@ _VERSION = "__import__('tuisim').__version__"
 _GOES_ON = "with --out, --resume continues with the rows so far"
 
 
-def within(seconds: float, call: Callable[..., _Found], *args: Any, **named: Any) -> _Found:
+def call_within_s(seconds: float, call: Callable[..., _Found], *args: Any, **named: Any) -> _Found:
     """Return what a call returns.
 
     Raises:
         TimeoutError: it takes longer; it goes on in a thread.
     """
-    found: queue.SimpleQueue[tuple[_Found | None, BaseException | None]] = queue.SimpleQueue()
+    answers: queue.SimpleQueue[tuple[_Found | None, BaseException | None]] = queue.SimpleQueue()
 
     def work() -> None:
         try:
-            found.put((call(*args, **named), None))
+            answers.put((call(*args, **named), None))
         except BaseException as error:  # Raised again in the thread that waits.
-            found.put((None, error))
+            answers.put((None, error))
 
     threading.Thread(target=work, daemon=True).start()
     try:
-        result, error = found.get(timeout=seconds)
+        result, error = answers.get(timeout=seconds)
     except queue.Empty:
         raise TimeoutError(f"no answer within {seconds:g} s") from None
     if error is not None:
@@ -92,7 +92,7 @@ class ClusterWatch:
         begun = self._clock()
         if begun < self._look_at:
             return
-        wrong, hint = self._wrong()
+        wrong, hint = self._find_fault()
         now = self._clock()
         self._look_at = now + self.EVERY_S
         if not wrong:
@@ -105,16 +105,16 @@ class ClusterWatch:
 
     def explain(self) -> None:
         """Raise HostError if the cluster cannot work at this moment."""
-        wrong, hint = self._wrong()
+        wrong, hint = self._find_fault()
         if wrong:
             raise HostError(f"{self.name}: {wrong}", hint)
 
-    def _wrong(self) -> tuple[str, str]:
+    def _find_fault(self) -> tuple[str, str]:
         """Return why the cluster cannot work at this moment, and what helps; empty texts if it can."""
         if self._client.status != "running":
             return "the scheduler is lost", _GOES_ON
         try:
-            workers = set(within(PATIENCE_S, self._client.nthreads))
+            workers = set(call_within_s(PATIENCE_S, self._client.nthreads))
         except OSError:
             # `TimeoutError` and all errors of connections.
             return "the scheduler does not answer", _GOES_ON
@@ -132,8 +132,12 @@ class ClusterWatch:
     def _check(self, workers: list[str]) -> None:
         """Raise HostError if a worker has no tuisim, or another version."""
         run = self._client.run
-        found = within(PATIENCE_S, run, eval, _VERSION, workers=workers, on_error="return")
-        wrong = {worker: version for worker, version in found.items() if version != self._version}
+        versions = call_within_s(
+            PATIENCE_S, run, eval, _VERSION, workers=workers, on_error="return"
+        )
+        wrong = {
+            worker: version for worker, version in versions.items() if version != self._version
+        }
         for worker, version in sorted(wrong.items()):
             has = (
                 f"tuisim {version}, not {self._version}"

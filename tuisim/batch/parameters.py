@@ -111,18 +111,18 @@ class Grid:
         return math.prod(len(axis.points) for axis in self.axes)
 
     def __iter__(self) -> Iterator[dict[str, Value]]:
-        return map(self.at, range(len(self)))
+        return map(self.find_values, range(len(self)))
 
-    def at(self, index: int) -> dict[str, Value]:
+    def find_values(self, index: int) -> dict[str, Value]:
         """Return the values of one combination by parameter; `index` counts from 0."""
-        found: list[tuple[str, Value]] = []
+        values: list[tuple[str, Value]] = []
         for axis in reversed(self.axes):
             index, here = divmod(index, len(axis.points))
-            found[:0] = zip(axis.names, axis.points[here], strict=True)
-        return dict(found)
+            values[:0] = zip(axis.names, axis.points[here], strict=True)
+        return dict(values)
 
 
-def grid_of(
+def build_grid(
     choices: Mapping[str, Choice], is_whole: Callable[[str, float], bool] = lambda *_: False
 ) -> Grid:
     """Return the grid of some parameters, in their order.
@@ -139,11 +139,15 @@ def grid_of(
     for name, choice in choices.items():
         if name not in drawn:
             axes.append(
-                ParameterAxis((name,), tuple((value,) for value in _values(name, choice, is_whole)))
+                ParameterAxis(
+                    (name,), tuple((value,) for value in _list_values(name, choice, is_whole))
+                )
             )
         elif name == next(iter(drawn)):
             _check_together(drawn)
-            columns = [_values(one, other, is_whole) for one, other in drawn.items()]
+            columns = [
+                _list_values(latin_name, other, is_whole) for latin_name, other in drawn.items()
+            ]
             axes.append(ParameterAxis(tuple(drawn), tuple(zip(*columns, strict=True))))
     grid = Grid(tuple(axes))
     if len(grid) > MAX_VALUES:
@@ -158,15 +162,19 @@ def _is_latin(choice: Choice) -> bool:
 
 
 def _check_together(drawn: Mapping[str, Choice]) -> None:
-    (first, one), *others = drawn.items()
+    (first, first_choice), *others = drawn.items()
     for name, other in others:
-        assert isinstance(one, SampleValues) and isinstance(other, SampleValues)
-        if (one.count, one.seed) != (other.count, other.seed):
+        assert isinstance(first_choice, SampleValues) and isinstance(other, SampleValues)
+        if (first_choice.count, first_choice.seed) != (other.count, other.seed):
             message = f"a Latin hypercube needs the same number of values and seed as {first}"
-            raise ConfigError(message, f"latin(…, …, {one.count}, seed={one.seed})", key=name)
+            raise ConfigError(
+                message, f"latin(…, …, {first_choice.count}, seed={first_choice.seed})", key=name
+            )
 
 
-def _values(name: str, choice: Choice, is_whole: Callable[[str, float], bool]) -> Sequence[Value]:
+def _list_values(
+    name: str, choice: Choice, is_whole: Callable[[str, float], bool]
+) -> Sequence[Value]:
     if not isinstance(choice, SampleValues):
         return choice
     # The middle of two whole numbers, inside the interval.
@@ -196,21 +204,21 @@ def parse_values(text: str, key: str) -> Choice:
     Raises:
         ConfigError: they are wrong; errors blame `key`.
     """
-    pieces = _pieces(text)
+    pieces = _split_pieces(text)
     if not all(pieces):
         raise ConfigError(f"a value is missing in {text!r}", ALLOWED, key=key)
     if len(pieces) == 1 and (call := _CALL.fullmatch(pieces[0])):
         return _sample(call[1], call[2], key)
-    found: list[Value] = []
+    values: list[Value] = []
     for piece in pieces:
         if _CALL.fullmatch(piece):
             raise ConfigError(f"{piece} stands alone, without further values", ALLOWED, key=key)
-        found += _expanded(piece, key)
-        if len(found) > MAX_VALUES:
+        values += _expand_piece(piece, key)
+        if len(values) > MAX_VALUES:
             raise ConfigError(
                 f"more than {MAX_VALUES:,} values", f"at most {MAX_VALUES:,}", key=key
             )
-    return tuple(found)
+    return tuple(values)
 
 
 def parse_seeds(text: str, key: str = "--seeds") -> tuple[int, ...]:
@@ -222,10 +230,10 @@ def parse_seeds(text: str, key: str = "--seeds") -> tuple[int, ...]:
     choice = parse_values(text, key)
     if isinstance(choice, SampleValues):
         choice = choice.values(SEED, whole=True)
-    return checked_seeds(choice, key)
+    return check_seeds(choice, key)
 
 
-def checked_seeds(values: Sequence[object], key: str) -> tuple[int, ...]:
+def check_seeds(values: Sequence[object], key: str) -> tuple[int, ...]:
     """Return seeds after checking them.
 
     Raises:
@@ -245,24 +253,26 @@ def checked_seeds(values: Sequence[object], key: str) -> tuple[int, ...]:
     return tuple(seeds)
 
 
-def _pieces(text: str) -> list[str]:
+def _split_pieces(text: str) -> list[str]:
     """Split a text at the commas outside quotes and parentheses."""
-    pieces, at = [], 0
+    pieces, start = [], 0
     while True:
-        match = _PIECE.match(text, at)
+        match = _PIECE.match(text, start)
         assert match is not None
         pieces.append(match[0].strip())
-        at = match.end() + 1
-        if at > len(text):
+        start = match.end() + 1
+        if start > len(text):
             return pieces
 
 
-def _expanded(piece: str, key: str) -> Sequence[Value]:
+def _expand_piece(piece: str, key: str) -> Sequence[Value]:
     """Return the values of one piece of a list: a range, a number, a truth value or a word."""
     if span := _SPAN.fullmatch(piece):
-        return _range(Decimal(span[1]), Decimal(span[2]), Decimal(1), piece, key)
+        return _expand_range(Decimal(span[1]), Decimal(span[2]), Decimal(1), piece, key)
     if limits := _RANGE.fullmatch(piece):
-        return _range(Decimal(limits[1]), Decimal(limits[2]), Decimal(limits[3] or 1), piece, key)
+        return _expand_range(
+            Decimal(limits[1]), Decimal(limits[2]), Decimal(limits[3] or 1), piece, key
+        )
     if _QUOTED.fullmatch(piece):
         return (piece[1:-1],)
     if re.fullmatch(r"[+-]?\d+", piece):
@@ -273,7 +283,9 @@ def _expanded(piece: str, key: str) -> Sequence[Value]:
     return (_TRUTHS.get(piece.lower(), piece),)
 
 
-def _range(low: Decimal, high: Decimal, step: Decimal, piece: str, key: str) -> Sequence[Value]:
+def _expand_range(
+    low: Decimal, high: Decimal, step: Decimal, piece: str, key: str
+) -> Sequence[Value]:
     """Return the values from `low` to `high`; in decimal, so that none is off by a rounding error."""
     if step == 0 or (high - low) / step < 0:
         raise ConfigError(
@@ -290,7 +302,7 @@ def _range(low: Decimal, high: Decimal, step: Decimal, piece: str, key: str) -> 
     whole = all(
         number == number.to_integral_value() for number in (low, step)
     ) and "." not in piece.replace("..", "")
-    values = (low + at * step for at in range(count + 1))
+    values = (low + step_number * step for step_number in range(count + 1))
     return [int(value) if whole else float(value) for value in values]
 
 

@@ -15,7 +15,7 @@ from tuisim.batch.table import RUN, RUN_ID, Row, is_statistic
 SUFFIX = ".part"
 
 
-def partial_of(target: Path) -> Path:
+def find_partial(target: Path) -> Path:
     """Return the file of the rows that are done, beside the table that is to be written."""
     return target.with_name(target.name + SUFFIX)
 
@@ -44,12 +44,12 @@ class PartialTable:
             return {}
         except OSError as error:
             raise ConfigError(f"cannot be read: {error.strerror}", file=str(self._path)) from None
-        if _decoded(head) != self._identity:
+        if _decode_line(head) != self._identity:
             hint = "--resume needs the same programs, parameters, goals and limits; to start again, remove the file"
             raise ConfigError("is of another batch", hint, file=str(self._path))
         # The last line of a killed process may be incomplete.
-        found = [row for line in lines if isinstance(row := _decoded(line), dict) and RUN in row]
-        return _started(found)
+        rows = [row for line in lines if isinstance(row := _decode_line(line), dict) and RUN in row]
+        return _select_started(rows)
 
     def open(self, rows: Mapping[int, Row]) -> Self:
         """Begin a file with rows that are done; close it with `close` or `remove`.
@@ -59,7 +59,7 @@ class PartialTable:
         """
         try:
             with replacing(self._path, durable=False) as handle:
-                handle.writelines(_encoded(one) for one in (self._identity, *rows.values()))
+                handle.writelines(_encode_row(row) for row in (self._identity, *rows.values()))
             self._file = self._path.open("ab")
         except OSError as error:
             raise ExportError(f"cannot write {self._path}: {error.strerror or error}") from error
@@ -73,7 +73,7 @@ class PartialTable:
         """
         assert self._file is not None
         try:
-            self._file.write(_encoded(row))
+            self._file.write(_encode_row(row))
             self._file.flush()
         except OSError as error:
             raise ExportError(f"cannot write {self._path}: {error.strerror or error}") from error
@@ -99,9 +99,7 @@ class PartialTable:
             raise ExportError(f"cannot remove {self._path}: {error.strerror or error}") from error
 
 
-def rows_of_table(
-    path: Path, identity: Mapping[str, Any], columns: Iterable[str]
-) -> dict[int, Row]:
+def read_rows(path: Path, identity: Mapping[str, Any], columns: Iterable[str]) -> dict[int, Row]:
     """Return the rows of the whole table of a batch by the index of their task; empty if the file is another one.
 
     Args:
@@ -112,14 +110,14 @@ def rows_of_table(
     from tuisim.logs.reader import open_log
 
     try:
-        found = open_log(path).metadata.get("batch")
-        frame = read_log(path) if found == identity else None
+        metadata = open_log(path).metadata.get("batch")
+        frame = read_log(path) if metadata == identity else None
     except TuisimError:
         return {}
     if frame is None or len(frame) != identity["runs"]:
         return {}
     usual = {*columns, RUN_ID}
-    kept = frame[[name for name in frame.columns if name in usual or is_statistic(name)]]
+    usual_frame = frame[[name for name in frame.columns if name in usual or is_statistic(name)]]
     rows: list[Row] = [
         # A run has no statistics of what it has not printed; of the other columns some texts are empty.
         {
@@ -127,9 +125,9 @@ def rows_of_table(
             for name, value in row.items()
             if value == value or name in usual
         }
-        for row in kept.to_dict("records")
+        for row in usual_frame.to_dict("records")
     ]
-    return _started(rows)
+    return _select_started(rows)
 
 
 def _read(name: str, value: Any) -> Any:
@@ -139,16 +137,16 @@ def _read(name: str, value: Any) -> Any:
     return int(value) if name.endswith("_count") and isinstance(value, float) else value
 
 
-def _started(rows: Iterable[Row]) -> dict[int, Row]:
+def _select_started(rows: Iterable[Row]) -> dict[int, Row]:
     """Return rows by the index of their task, without those of runs that could not be started: they may now."""
     return {int(row[RUN]) - 1: row for row in rows if row.get("end")}
 
 
-def _encoded(row: Mapping[str, Any]) -> bytes:
+def _encode_row(row: Mapping[str, Any]) -> bytes:
     return json.dumps(row, ensure_ascii=True).encode() + b"\n"
 
 
-def _decoded(line: bytes) -> object:
+def _decode_line(line: bytes) -> object:
     try:
         return json.loads(line)
     except (ValueError, RecursionError):

@@ -13,7 +13,7 @@ from typing import Any
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ConfigError
 from tuisim.base.source import Program
-from tuisim.batch.parameters import SEED, Choice, Grid, checked_seeds, grid_of
+from tuisim.batch.parameters import SEED, Choice, Grid, build_grid, check_seeds
 from tuisim.batch.table import check_expressions
 from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.core.tree import dump_run
@@ -68,7 +68,7 @@ class Plan:
     def __post_init__(self) -> None:
         # A worker may be in another folder, or on another machine.
         subjects = tuple(
-            replace(one, program=in_surroundings(one.program)) for one in self.subjects
+            replace(each, program=in_surroundings(each.program)) for each in self.subjects
         )
         object.__setattr__(self, "subjects", subjects)
         first = self.subjects[0]
@@ -81,9 +81,9 @@ class Plan:
                 return True
             return False
 
-        object.__setattr__(self, "grid", grid_of(self.choices, is_whole))
+        object.__setattr__(self, "grid", build_grid(self.choices, is_whole))
         if isinstance(seeds := self.choices.get(SEED), tuple):
-            checked_seeds(seeds, SEED)
+            check_seeds(seeds, SEED)
         for subject in self.subjects:
             self._check(subject)
 
@@ -95,7 +95,7 @@ class Plan:
                 message = f"{name} varies what an option sets"
                 raise ConfigError(message, "give one of them", key=str(self.path))
         for values in Grid(tuple(own)):
-            spec = self.spec_of(subject, values)
+            spec = self.build_spec(subject, values)
             if "profile" in values:
                 require_library(subject.program, spec.profile)
 
@@ -115,19 +115,19 @@ class Plan:
         """
         check_expressions(expressions, self.names, [goal.name for goal in self.goals])
 
-    def subject_at(self, index: int) -> Subject:
+    def find_subject(self, index: int) -> Subject:
         """Return the program of a run; `index` counts from 0."""
         return self.subjects[index // len(self.grid)]
 
-    def seed_at(self, index: int) -> int:
+    def find_seed(self, index: int) -> int:
         """Return the seed of a run."""
-        seed = self.grid.at(index % len(self.grid)).get(
-            SEED, self.subject_at(index).settings["seed"]
+        seed = self.grid.find_values(index % len(self.grid)).get(
+            SEED, self.find_subject(index).settings["seed"]
         )
         assert isinstance(seed, int)
         return seed
 
-    def spec_of(self, subject: Subject, values: Mapping[str, Value]) -> RunSpec:
+    def build_spec(self, subject: Subject, values: Mapping[str, Value]) -> RunSpec:
         """Return the specification of a run; those that differ in the seed only are built once.
 
         Raises:
@@ -136,21 +136,21 @@ class Plan:
         own = {name: value for name, value in values.items() if name != SEED}
         key = (id(subject), *own.items(), *map(type, own.values()))
         if key not in self._specs:
-            self._specs[key] = build_run_spec(self._settings(subject, own))
+            self._specs[key] = build_run_spec(self._merge_settings(subject, own))
         spec, seed = self._specs[key], values.get(SEED)
         return replace(spec, seed=seed) if isinstance(seed, int) else spec
 
-    def _settings(self, subject: Subject, values: Mapping[str, Value]) -> Settings:
+    def _merge_settings(self, subject: Subject, values: Mapping[str, Value]) -> Settings:
         changes = resolve_keys(values, subject.settings, self.path)
         # A mat comes with its own start pose, unless it was chosen for all runs.
-        kept = {
+        remaining = {
             key: value
             for key, value in changes.items()
             if value is not None or key not in subject.given
         }
-        return subject.settings.changed(kept)
+        return subject.settings.changed(remaining)
 
-    def tasks(self, done: Collection[int] = ()) -> Iterator[Task]:
+    def iterate_tasks(self, done: Collection[int] = ()) -> Iterator[Task]:
         """Yield the tasks whose index is not among those that are done."""
         for index in range(len(self)):
             if index not in done:
@@ -158,11 +158,11 @@ class Plan:
 
     def task(self, index: int) -> Task:
         """Return one task; `index` counts from 0."""
-        subject, values = self.subject_at(index), self.grid.at(index % len(self.grid))
-        spec = self.spec_of(subject, values)
+        subject, values = self.find_subject(index), self.grid.find_values(index % len(self.grid))
+        spec = self.build_spec(subject, values)
         program = subject.program
         if "arguments" in values:
-            program = replace(program, arguments=self._settings(subject, values)["arguments"])
+            program = replace(program, arguments=self._merge_settings(subject, values)["arguments"])
         if any(name.partition(".")[0] == "robot" for name in values):
             # It is a named one.
             program = replace(program, shown_ports=None)
@@ -177,25 +177,25 @@ class Plan:
             returns_files=self.returns_files,
         )
 
-    def identity(self) -> dict[str, Any]:
+    def build_identity(self) -> dict[str, Any]:
         """Return what identifies the batch, ready for JSON: equal for batches with equal rows.
 
         Goals belong to it, expressions do not: they are computed from the rows.
         """
         programs = [
             {
-                "name": one.label,
-                "sha256": one.program.sha256,
-                "prelude": one.program.prelude,
-                "arguments": list(one.program.arguments),
+                "name": each.label,
+                "sha256": each.program.sha256,
+                "prelude": each.program.prelude,
+                "arguments": list(each.program.arguments),
             }
-            for one in self.subjects
+            for each in self.subjects
         ]
         whole = hashlib.sha256()
         own = Grid(tuple(axis for axis in self.grid.axes if axis.names != (SEED,)))
         for subject in self.subjects:
             for values in own:
-                spec = self.spec_of(subject, values)
+                spec = self.build_spec(subject, values)
                 plain = [dump_run(spec), self.options_of(spec, subject.settings).to_plain()]
                 whole.update(json.dumps(plain, sort_keys=True).encode())
         whole.update(repr((programs, self.grid.axes, self.goals, str(self.keep))).encode())

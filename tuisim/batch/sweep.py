@@ -10,18 +10,18 @@ from typing import TYPE_CHECKING, Any
 
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ConfigError
-from tuisim.batch.partial import PartialTable, partial_of, rows_of_table
+from tuisim.batch.partial import PartialTable, find_partial, read_rows
 from tuisim.batch.plan import Plan
 from tuisim.batch.table import (
     PROGRAM,
     ColumnSummary,
     Row,
-    frame_of,
-    metadata_of,
-    result_columns,
-    row_of,
-    summaries,
-    usual_columns,
+    build_frame,
+    build_metadata,
+    build_row,
+    build_summaries,
+    list_result_columns,
+    list_usual_columns,
 )
 from tuisim.logs.export import export_frame
 from tuisim.tasks.pool import run_many
@@ -54,7 +54,7 @@ class Workers:
 
 def is_interrupted(out: Path) -> bool:
     """Return whether there are rows of an interrupted batch whose table would be written to a file."""
-    return os.path.exists(partial_of(out))
+    return os.path.exists(find_partial(out))
 
 
 class Sweep:
@@ -90,15 +90,15 @@ class Sweep:
         """What identifies the batch in its files; empty if none are written."""
         self._partial: PartialTable | None = None
         if out is not None:
-            self._identity = plan.identity()
+            self._identity = plan.build_identity()
             self._partial = self._open_partial(out, version, resumes)
 
     def _open_partial(self, out: Path, version: str, resumes: bool) -> PartialTable:
-        path = partial_of(out)
+        path = find_partial(out)
         partial = PartialTable(path, {"version": version, **self._identity})
         if resumes:
-            columns = usual_columns(self._plan.names, [goal.name for goal in self._plan.goals])
-            self.rows = partial.rows() or rows_of_table(out, self._identity, columns)
+            columns = list_usual_columns(self._plan.names, [goal.name for goal in self._plan.goals])
+            self.rows = partial.rows() or read_rows(out, self._identity, columns)
         elif os.path.exists(path):
             hint = "--resume continues it; to start again, remove the file"
             raise ConfigError("holds the rows of an interrupted batch", hint, file=str(path))
@@ -126,13 +126,13 @@ class Sweep:
         """
         plan, several = self._plan, len(self._plan.subjects) > 1
         # What is done by now is taken out of the tasks before the first new row comes.
-        tasks = plan.tasks(frozenset(self.rows))
+        tasks = plan.iterate_tasks(frozenset(self.rows))
         try:
             # Closed, the results stop the tasks that are running.
             with closing(workers.run(tasks)) as results:
                 for result in results:
-                    label = plan.subject_at(result.index).label if several else ""
-                    row = row_of(result, label, plan.seed_at(result.index)) | measure(result)
+                    label = plan.find_subject(result.index).label if several else ""
+                    row = build_row(result, label, plan.find_seed(result.index)) | measure(result)
                     self.rows[result.index] = row
                     if self._partial is not None:
                         self._partial.add(row)
@@ -147,7 +147,7 @@ class Sweep:
         Raises:
             LogError: an expression is invalid, or names a column that there is not.
         """
-        return frame_of(self.rows.values(), self._expressions if self.rows else {})
+        return build_frame(self.rows.values(), self._expressions if self.rows else {})
 
     def export(self, frame: pd.DataFrame) -> None:
         """Write the table.
@@ -156,7 +156,7 @@ class Sweep:
             ExportError: it cannot be written.
         """
         if self._out is not None:
-            export_frame(frame, self._out, metadata_of(frame, self._identity))
+            export_frame(frame, self._out, build_metadata(frame, self._identity))
 
     def finish(self) -> None:
         """Remove the rows that are kept for an interrupted batch.
@@ -170,4 +170,4 @@ class Sweep:
     def summarize(self, frame: pd.DataFrame) -> list[ColumnSummary]:
         """Return statistics of what a summary is about, for each combination of parameters unless these are many."""
         parameters = [*([PROGRAM] if PROGRAM in frame.columns else []), *self._plan.names]
-        return summaries(frame, parameters, result_columns(frame, self._expressions))
+        return build_summaries(frame, parameters, list_result_columns(frame, self._expressions))

@@ -34,13 +34,13 @@ STATISTICS = tuple(VariableStatistics.__dataclass_fields__)
 GOAL = "goal."
 """The columns of goals are `goal.NAME`: whether the run has met it."""
 
-MOST_GROUPS = 12
+MAX_GROUPS = 12
 """A summary of more groups has one line for each column."""
 
 _DOTTED = re.compile(r"`[^`]*`|\b[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)+\b")
 
 
-def row_of(result: Result, program: str, seed: int) -> Row:
+def build_row(result: Result, program: str, seed: int) -> Row:
     """Return the row of a run.
 
     Args:
@@ -55,19 +55,19 @@ def row_of(result: Result, program: str, seed: int) -> Row:
     row |= {name: getattr(result, name) for name in ENDS}
     if result.judgements:
         row |= {
-            f"{GOAL}{one.goal.name}": one.state is GoalState.MET
-            for one in result.judgements
-            if one.state is not GoalState.UNKNOWN
+            f"{GOAL}{judgement.goal.name}": judgement.state is GoalState.MET
+            for judgement in result.judgements
+            if judgement.state is not GoalState.UNKNOWN
         }
         row[POINTS] = compute_points(result.judgements)
     if result.run_id:
         row[RUN_ID] = result.run_id
     for name, statistics in result.variables.items():
-        row |= {f"{name}_{one}": value for one, value in asdict(statistics).items()}
+        row |= {f"{name}_{judgement}": value for judgement, value in asdict(statistics).items()}
     return row
 
 
-def frame_of(rows: Iterable[Row], expressions: Mapping[str, str] | None = None) -> pd.DataFrame:
+def build_frame(rows: Iterable[Row], expressions: Mapping[str, str] | None = None) -> pd.DataFrame:
     """Return the table of some runs, in the order of the grid.
 
     A variable that a run has not printed is NaN. The columns of variables come last.
@@ -85,17 +85,17 @@ def frame_of(rows: Iterable[Row], expressions: Mapping[str, str] | None = None) 
     names: dict[str, None] = {}
     for row in ordered:
         names |= dict.fromkeys(row)
-    columns = {name: _column([row.get(name) for row in ordered]) for name in names}
+    columns = {name: _build_column([row.get(name) for row in ordered]) for name in names}
     for name, text in (expressions or {}).items():
-        columns[name] = evaluated(text, _statistics_last(columns), len(ordered))
-    return pd.DataFrame(_statistics_last(columns))
+        columns[name] = evaluate_expression(text, _move_statistics(columns), len(ordered))
+    return pd.DataFrame(_move_statistics(columns))
 
 
-def _statistics_last(columns: Mapping[str, Any]) -> dict[str, Any]:
+def _move_statistics(columns: Mapping[str, Any]) -> dict[str, Any]:
     return {name: columns[name] for name in sorted(columns, key=is_statistic)}
 
 
-def _column(values: Sequence[Any]) -> Any:
+def _build_column(values: Sequence[Any]) -> Any:
     """Return a column with the narrowest type that holds all values: truth, whole number, number or text."""
     import numpy as np
     import pandas as pd
@@ -112,7 +112,7 @@ def _column(values: Sequence[Any]) -> Any:
     return pd.Series(["" if value is None else str(value) for value in values], dtype="str")
 
 
-def evaluated(text: str, columns: Mapping[str, Any], length: int) -> Any:
+def evaluate_expression(text: str, columns: Mapping[str, Any], length: int) -> Any:
     """Return the value of an expression in each row; names with dots need no backticks.
 
     A statistic of a variable that no run has printed is NaN, as is a goal if no run could be judged.
@@ -127,7 +127,7 @@ def evaluated(text: str, columns: Mapping[str, Any], length: int) -> Any:
         for name, column in columns.items()
         if _is_numeric(column)
     }
-    written = quoted(text, numbers)
+    written = quote_names(text, numbers)
     for name in find_names(written):
         if name not in numbers and (is_statistic(name) or name.startswith(GOAL) or name == POINTS):
             numbers[name] = np.full(length, np.nan)
@@ -140,16 +140,16 @@ def _is_numeric(column: Any) -> bool:
 
 def is_statistic(name: str) -> bool:
     """Return whether a name may be a column of a sample variable."""
-    return name.endswith(tuple(f"_{one}" for one in STATISTICS))
+    return name.endswith(tuple(f"_{statistic}" for statistic in STATISTICS))
 
 
-def quoted(text: str, columns: Iterable[str]) -> str:
+def quote_names(text: str, columns: Iterable[str]) -> str:
     """Return an expression with backticks around the names of columns that contain dots."""
     dotted = {name for name in columns if "." in name}
     return _DOTTED.sub(lambda found: f"`{found[0]}`" if found[0] in dotted else found[0], text)
 
 
-def usual_columns(parameters: Iterable[str], goals: Iterable[str]) -> list[str]:
+def list_usual_columns(parameters: Iterable[str], goals: Iterable[str]) -> list[str]:
     """Return the columns of a table that are known before the first run: all but those of sample variables."""
     goal_columns = [f"{GOAL}{name}" for name in goals]
     names = (
@@ -177,16 +177,18 @@ def check_expressions(
     Raises:
         ConfigError: an expression cannot be read, names a column that there will not be, or is called like one.
     """
-    known = usual_columns(parameters, goals)
+    known = list_usual_columns(parameters, goals)
     for name, text in expressions.items():
         key = f"--expr {name}"
         if name in known or is_statistic(name) or not name.isidentifier():
             hint = "a name of letters, digits and _ that no column has and that ends in none of their suffixes"
             raise ConfigError("cannot be the name of a new column", hint, key=key)
         try:
-            used = find_names(quoted(text, known))
+            used = find_names(quote_names(text, known))
             # With no rows, this finds whatever is not allowed.
-            evaluated(text, {one: _column([]) for one in {*known, *used}}, 0)
+            evaluate_expression(
+                text, {column_name: _build_column([]) for column_name in {*known, *used}}, 0
+            )
         except LogError as error:
             raise ConfigError(error.message, error.hint, key=key) from None
         for column in used:
@@ -208,7 +210,7 @@ class ColumnSummary:
     statistics: Summary
 
 
-def summaries(
+def build_summaries(
     frame: pd.DataFrame, parameters: Sequence[str], columns: Sequence[str]
 ) -> list[ColumnSummary]:
     """Return statistics and quantiles of some columns, for each combination of parameters unless these are many.
@@ -220,7 +222,7 @@ def summaries(
     """
     by = [name for name in parameters if name != SEED and frame[name].nunique() > 1]
     groups: list[tuple[dict[str, Value], pd.DataFrame]] = [({}, frame)]
-    if by and len(frame[by].drop_duplicates()) <= MOST_GROUPS:
+    if by and len(frame[by].drop_duplicates()) <= MAX_GROUPS:
         groups = [
             (dict(zip(by, values, strict=True)), part)
             for values, part in frame.groupby(by, sort=False)
@@ -232,22 +234,22 @@ def summaries(
     ]
 
 
-def result_columns(frame: pd.DataFrame, expressions: Iterable[str]) -> list[str]:
+def list_result_columns(frame: pd.DataFrame, expressions: Iterable[str]) -> list[str]:
     """Return the columns of a table that a summary is about: expressions, points, pose, time and last values."""
     first = [*expressions, POINTS, *POSE, "time_s"]
     lasts = [name for name in frame.columns if name.endswith("_last")]
     return [name for name in (*first, *lasts) if name in frame.columns]
 
 
-def metadata_of(frame: pd.DataFrame, batch: Mapping[str, Any]) -> dict[str, Any]:
+def build_metadata(frame: pd.DataFrame, batch: Mapping[str, Any]) -> dict[str, Any]:
     """Return what is stored with a table: its columns, their units, and what identifies the batch."""
     units = {
         name: unit.words
         for name in frame.columns
-        if (unit := parse_unit(_without_statistic(name))).words
+        if (unit := parse_unit(_strip_statistic(name))).words
     }
     return {**build_table_metadata("batch", frame), "units": units, "batch": dict(batch)}
 
 
-def _without_statistic(name: str) -> str:
+def _strip_statistic(name: str) -> str:
     return name.rpartition("_")[0] if is_statistic(name) else name

@@ -17,7 +17,7 @@ from tuisim.batch.table import GOAL, RUN_ID, ColumnSummary, Row
 from tuisim.commands import exit_status
 from tuisim.commands.batch_request import OPTIONS, Request, read_request
 from tuisim.commands.echo import (
-    Figure,
+    FigureCell,
     Progress,
     draw_table,
     echo,
@@ -207,9 +207,9 @@ def _exit_code(row: Row) -> int:
     return exit_status.choose_exit_code(End(row["end"]), row["exit_code"])
 
 
-def _round_figure(value: float) -> Figure:
+def _round_figure(value: float) -> FigureCell:
     """Return a number with few digits; a mere rounding error is 0."""
-    return Figure(0.0 if abs(value) < _ROUNDING else value, ".4g")
+    return FigureCell(0.0 if abs(value) < _ROUNDING else value, ".4g")
 
 
 def _format_duration(seconds: float) -> str:

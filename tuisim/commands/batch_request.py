@@ -10,7 +10,7 @@ from pathlib import Path
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ConfigError
 from tuisim.base.folders import user_path
-from tuisim.batch.batch_file import BatchFile, load_batch, means_batch
+from tuisim.batch.batch_file import BatchFile, is_batch_file, load_batch
 from tuisim.batch.parameters import SEED, Choice, parse_seeds, parse_set
 from tuisim.batch.plan import Plan, Subject
 from tuisim.batch.sweep import Workers
@@ -169,7 +169,7 @@ def _find_goals_world(arguments: Arguments) -> str | None:
 
 def _take_batch_file(arguments: Arguments) -> BatchFile:
     """Return the batch file among the programs, and leave it out of them; an empty one if there is none."""
-    named = [word for word in arguments.programs if means_batch(word)]
+    named = [word for word in arguments.programs if is_batch_file(word)]
     if len(named) > 1:
         raise ConfigError(f"two batches: {named[0]} and {named[1]}", "name one")
     if not named:

@@ -144,7 +144,7 @@ class CsvOut:
             )
 
 
-class Figure(float):
+class FigureCell(float):
     """A number in a table, written by a format spec of its own; one that is missing is empty."""
 
     how: str

@@ -15,7 +15,7 @@ from tuisim.settings.command_line import WordType, argument, command, option
 
 if TYPE_CHECKING:
     from tuisim.engine.runs.run_folder import StoredRun
-    from tuisim.pictures.movies.clip import ClipPanel, Recorded
+    from tuisim.pictures.movies.clip import ClipPanel, ClipRun
     from tuisim.pictures.movies.painter import Size
 
 _PANELS = "world, chart, arrays"
@@ -121,11 +121,11 @@ def _build_default_name(run: StoredRun, end: str) -> str:
     return f"{name_of(Path(run.program.name)).strip('-.') or 'run'}-{end}"
 
 
-def _load_recorded(run: StoredRun) -> Recorded:
+def _load_recorded(run: StoredRun) -> ClipRun:
     from tuisim.engine.runs.frames import damage_note
-    from tuisim.pictures.movies.clip import Recorded
+    from tuisim.pictures.movies.clip import ClipRun
 
-    recorded = Recorded(run)
+    recorded = ClipRun(run)
     for note in filter(None, (*run.notes, damage_note(run))):
         echo_error(f"note: {note}")
     return recorded
@@ -137,7 +137,7 @@ def _check_number(value: float, low: float, high: float, key: str) -> None:
         raise ConfigError(f"must be from {low:g} to {high:g}, got {value:g}", key=key)
 
 
-def _choose_panels(recorded: Recorded, size: Size | None) -> tuple[ClipPanel, ...]:
+def _choose_panels(recorded: ClipRun, size: Size | None) -> tuple[ClipPanel, ...]:
     """Return the panels that have something to show, and room for it."""
     from tuisim.pictures.movies.clip import ClipPanel
 

@@ -192,9 +192,9 @@ def check_breaks(
         ConfigError: a text is not a breakpoint, or not valid for a program or its robot; a watch is not an expression,
             or there are watches without breakpoints.
     """
-    for one in prepared:
-        for entry in parse_breakpoints(texts, one.spec):
-            check_line(entry, source_lines(one.program.text if one.program else ""))
+    for candidate in prepared:
+        for entry in parse_breakpoints(texts, candidate.spec):
+            check_line(entry, source_lines(candidate.program.text if candidate.program else ""))
     for watch in watches:
         parse_watch(watch)
     if watches and not texts:

@@ -44,7 +44,7 @@ class _CellPlan:
     program: Program | None
 
 
-class Lab:
+class NotebookLab:
     """The simulated robot shared by the cells of a notebook.
 
     Its world lasts from cell to cell, its log until it is cleared.
@@ -445,9 +445,9 @@ def _select_given(plan: _CellPlan, words: Arguments) -> Mapping[str, Any]:
     from tuisim.settings.options import merge_settings
 
     presses = {"press": plan.settings["press"]}
-    given = merge_settings(plan.persistent, words.settings, presses).given
-    return {path: value for path, value in given.items() if path not in ("autorun", "speed")}
+    values = merge_settings(plan.persistent, words.settings, presses).given
+    return {path: value for path, value in values.items() if path not in ("autorun", "speed")}
 
 
-roboSim = Lab()  # noqa: N816 - the course's cells call it so
+roboSim = NotebookLab()  # noqa: N816 - the course's cells call it so
 """The simulator used by the magics."""

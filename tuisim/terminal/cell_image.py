@@ -21,7 +21,7 @@ from rich.cells import split_graphemes
 from rich.color import Color
 from rich.style import Style
 
-from tuisim.terminal.glyph_shapes import Area, Bend, Dot, GlyphShape, draw_character
+from tuisim.terminal.glyph_shapes import Bend, GlyphArea, GlyphDot, GlyphShape, draw_character
 from tuisim.terminal.pixels import Rgb
 
 if TYPE_CHECKING:
@@ -161,7 +161,7 @@ def _draw_shapes(shapes: Sequence[GlyphShape]) -> Mask:
     draw = ImageDraw.Draw(image)
     for shape in shapes:
         match shape:
-            case Area():
+            case GlyphArea():
                 corners = (
                     shape.left * _FINE,
                     shape.top * _FINE,
@@ -169,7 +169,7 @@ def _draw_shapes(shapes: Sequence[GlyphShape]) -> Mask:
                     shape.bottom * _FINE - 1,
                 )
                 draw.rectangle(corners, round(255 * shape.opacity))
-            case Dot():
+            case GlyphDot():
                 x, y, radius = shape.x * _FINE, shape.y * _FINE, shape.radius * _FINE
                 draw.ellipse((x - radius, y - radius, x + radius - 1, y + radius - 1), 255)
             case Bend():
@@ -234,7 +234,7 @@ def _draw_svg_grounds(grid: CellGrid) -> Iterator[str]:
         x = 0
         for ground, run in groupby(look.ground for _, look in row):
             count = len(list(run))
-            area = Area(0, 0, count * CELL_PX[0], CELL_PX[1])
+            area = GlyphArea(0, 0, count * CELL_PX[0], CELL_PX[1])
             paths.setdefault(ground, []).append(
                 _draw_svg_area(area, x * CELL_PX[0], y * CELL_PX[1])
             )
@@ -243,7 +243,7 @@ def _draw_svg_grounds(grid: CellGrid) -> Iterator[str]:
         yield f'<path fill="{_format_hex(color)}" d="{"".join(parts)}"/>'
 
 
-def _draw_svg_area(area: Area, x: float, y: float) -> str:
+def _draw_svg_area(area: GlyphArea, x: float, y: float) -> str:
     return f"M{x + area.left:g} {y + area.top:g}H{x + area.right:g}V{y + area.bottom:g}H{x + area.left:g}z"
 
 
@@ -255,11 +255,11 @@ def _draw_svg_shapes(grid: CellGrid) -> Iterator[str]:
             left, top = x * CELL_PX[0], y * CELL_PX[1]
             for shape in draw_character(text, *CELL_PX) or ():
                 match shape:
-                    case Area():
+                    case GlyphArea():
                         paths.setdefault((look.ink, shape.opacity), []).append(
                             _draw_svg_area(shape, left, top)
                         )
-                    case Dot():
+                    case GlyphDot():
                         place = (
                             f'cx="{left + shape.x:g}" cy="{top + shape.y:g}" r="{shape.radius:.2f}"'
                         )

@@ -304,7 +304,7 @@ _ROWS_OF_BLOCK = 8
 line draw the whole screen one colour after another."""
 
 
-class _Run:
+class _LookRun:
     """Cells beside each other that need no change of the style."""
 
     __slots__ = ("cells", "look", "row", "x", "y")
@@ -336,7 +336,7 @@ class _Pen:
         self._x = self._y = -1
         self._first_row = 0
         """Of the block of rows whose runs wait."""
-        self._runs: list[_Run] = []
+        self._runs: list[_LookRun] = []
         """They wait for the others of their block: those of one style are written together."""
 
     def take(self, x: int, y: int, text: str, look: CellLook, row: Sequence[Cell | None]) -> None:
@@ -350,14 +350,14 @@ class _Pen:
             or (last.y, last.x + len(last.cells)) != (y, x)
             or (joined := _join_looks(last.look, look)) is None
         ):
-            self._runs.append(_Run(x, y, look, [(text, look)], row))
+            self._runs.append(_LookRun(x, y, look, [(text, look)], row))
         else:
             last.cells.append((text, look))
             last.look = joined
 
     def _write_runs(self) -> None:
         """Write what waits, with as few changes of the style as there are styles."""
-        grounds: dict[tuple[str, str], dict[CellLook, list[_Run]]] = {}
+        grounds: dict[tuple[str, str], dict[CellLook, list[_LookRun]]] = {}
         for run in self._runs:
             of_ground = grounds.setdefault((run.look.background, run.look.link), {})
             of_ground.setdefault(run.look, []).append(run)

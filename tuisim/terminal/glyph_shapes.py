@@ -17,7 +17,7 @@ from tuisim.terminal.glyphs import block_patterns
 
 
 @dataclass(frozen=True, slots=True)
-class Area:
+class GlyphArea:
     """A rectangle, in pixels from the upper left corner of the cell."""
 
     left: float
@@ -28,7 +28,7 @@ class Area:
 
 
 @dataclass(frozen=True, slots=True)
-class Dot:
+class GlyphDot:
     """A disc."""
 
     x: float
@@ -44,7 +44,7 @@ class Bend:
     width: float
 
 
-GlyphShape: TypeAlias = Area | Dot | Bend
+GlyphShape: TypeAlias = GlyphArea | GlyphDot | Bend
 
 _EIGHTHS: Mapping[str, tuple[int, int, int, int]] = {
     "▀": (0, 0, 8, 4), "▐": (4, 0, 8, 8), "▔": (0, 0, 8, 1), "▕": (7, 0, 8, 8),
@@ -71,7 +71,7 @@ def draw_character(char: str, width: int, height: int) -> tuple[GlyphShape, ...]
         left, top, right, bottom = eighths
         return (_place_area(left / 8, top / 8, right / 8, bottom / 8, width, height),)
     if char in _SHADES:
-        return (Area(0, 0, width, height, _SHADES[char]),)
+        return (GlyphArea(0, 0, width, height, _SHADES[char]),)
     if char in block_patterns():
         rows, bits = block_patterns()[char]
         parts = [
@@ -84,7 +84,9 @@ def draw_character(char: str, width: int, height: int) -> tuple[GlyphShape, ...]
     if ord(char) in _BRAILLE:
         dots = [place for bit, place in enumerate(_BRAILLE_PLACES) if ord(char) >> bit & 1]
         radius = min(width / 4, height / 8) * 0.7
-        return tuple(Dot((x + 0.5) * width / 2, (y + 0.5) * height / 4, radius) for x, y in dots)
+        return tuple(
+            GlyphDot((x + 0.5) * width / 2, (y + 0.5) * height / 4, radius) for x, y in dots
+        )
     if ord(char) in _BOX:
         return tuple(
             _draw_box(unicodedata.name(char).removeprefix("BOX DRAWINGS ").split(), width, height)
@@ -94,7 +96,7 @@ def draw_character(char: str, width: int, height: int) -> tuple[GlyphShape, ...]
 
 def _place_area(
     left: float, top: float, right: float, bottom: float, width: int, height: int
-) -> Area:
+) -> GlyphArea:
     """Return a rectangle, given in shares of the cell, on whole pixels."""
     x = [math.floor(share * width + 0.5) for share in (left, right)]
     y = [math.floor(share * height + 0.5) for share in (top, bottom)]
@@ -103,7 +105,7 @@ def _place_area(
         x = [x[0], x[0] + 1] if left < 0.5 else [x[0] - 1, x[0]]
     if y[0] == y[1]:
         y = [y[0], y[0] + 1] if top < 0.5 else [y[0] - 1, y[0]]
-    return Area(x[0], y[0], x[1], y[1])
+    return GlyphArea(x[0], y[0], x[1], y[1])
 
 
 _SIDES = {
@@ -160,7 +162,7 @@ def _parse_arms(words: list[str]) -> dict[str, str]:
     return arms
 
 
-def _draw_arms(arms: Mapping[str, str], width: int, height: int, thick: int) -> Iterator[Area]:
+def _draw_arms(arms: Mapping[str, str], width: int, height: int, thick: int) -> Iterator[GlyphArea]:
     """Yield the arms of lines that meet in the middle of the cell."""
     middle = {"x": (width - thick) // 2, "y": (height - thick) // 2}
     # A double line is two light ones, the width of one apart.
@@ -184,7 +186,7 @@ def _draw_arms(arms: Mapping[str, str], width: int, height: int, thick: int) -> 
         for start, size in strips[weight]:
             if side in ("UP", "DOWN"):
                 left = middle["x"] + start
-                yield Area(
+                yield GlyphArea(
                     left,
                     0 if side == "UP" else rows[0],
                     left + size,
@@ -192,7 +194,7 @@ def _draw_arms(arms: Mapping[str, str], width: int, height: int, thick: int) -> 
                 )
             else:
                 top = middle["y"] + start
-                yield Area(
+                yield GlyphArea(
                     0 if side == "LEFT" else columns[0],
                     top,
                     columns[1] if side == "LEFT" else width,
@@ -212,13 +214,15 @@ def _draw_arc(right: bool, down: bool, width: int, height: int, thick: int) -> B
     return Bend(((x, end_y), *curve, (end_x, y)), thick)
 
 
-def _draw_dashes(count: int, upright: bool, thick: int, width: int, height: int) -> Iterator[Area]:
+def _draw_dashes(
+    count: int, upright: bool, thick: int, width: int, height: int
+) -> Iterator[GlyphArea]:
     length, across = (height, width) if upright else (width, height)
     start = (across - thick) // 2
     for number in range(count):
         first, last = round(number * length / count), round((number + 0.6) * length / count)
         yield (
-            Area(start, first, start + thick, last)
+            GlyphArea(start, first, start + thick, last)
             if upright
-            else Area(first, start, last, start + thick)
+            else GlyphArea(first, start, last, start + thick)
         )

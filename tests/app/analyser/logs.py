@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pyarrow as pa
 
-from tuisim.analysis.model import Model
+from tuisim.analysis.model import AnalysisModel
 from tuisim.analysis.source import LogRequest, OpenedLog
 from tuisim.logs.columns import guess_columns
 from tuisim.logs.log import Log
@@ -38,5 +38,5 @@ def wide_log(rows: int) -> Log:
     return Log("test", table, guess_columns(table))
 
 
-def model_of(log: Log) -> Model:
-    return Model(OpenedLog(LogRequest(), log))
+def model_of(log: Log) -> AnalysisModel:
+    return AnalysisModel(OpenedLog(LogRequest(), log))

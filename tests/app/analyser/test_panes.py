@@ -8,7 +8,7 @@ import pytest
 
 from tests.app.analyser.logs import long_log, model_of
 from tests.cases import for_each
-from tuisim.analysis.model import Model
+from tuisim.analysis.model import AnalysisModel
 from tuisim.analysis.source import LogRequest, OpenedLog
 from tuisim.app.analyser.panes import pane_lines
 from tuisim.app.analyser.table_pane import build_heading
@@ -83,7 +83,7 @@ def test_a_summary_that_does_not_fit_leaves_its_line_to_the_rows(bands: int, row
     assert [line.split()[0] for line in shown] == [str(number) for number in range(1, rows + 1)]
 
 
-def text_of(model: Model, pane: str = "table", width: int = 100, height: int = 30) -> str:
+def text_of(model: AnalysisModel, pane: str = "table", width: int = 100, height: int = 30) -> str:
     lines = pane_lines(pane, model, 0, width, height)
     return "\n".join("".join(text for text, _ in line) for line in lines)
 
@@ -141,7 +141,7 @@ def test_an_empty_log_says_what_else_there_is() -> None:
 
 def test_the_column_run_does_not_look_like_the_number_of_a_stored_run(run: StoredRun) -> None:
     opened = OpenedLog(LogRequest(), build_log((run,)), (run,))
-    assert build_heading(Model(opened), "run") == "run (in log)"
+    assert build_heading(AnalysisModel(opened), "run") == "run (in log)"
     assert build_heading(model_of(opened.log), "run") == "run"
 
 

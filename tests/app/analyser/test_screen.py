@@ -13,7 +13,7 @@ from textual.pilot import Pilot
 from textual.widgets import Input, OptionList
 
 from tests.app.app_help import LOGS, notices, open_lab, program, until
-from tuisim.analysis.model import Model
+from tuisim.analysis.model import AnalysisModel
 from tuisim.analysis.source import NOTES_FILE, LogRequest, read_notes
 from tuisim.app.analyser.actions.keys import ACTIONS
 from tuisim.app.analyser.app import Analyser, AnalyserApp
@@ -33,7 +33,7 @@ SIZES = [(80, 24), (120, 40), (200, 60)]
 @asynccontextmanager
 async def open_analyser(
     size: tuple[int, int] = (120, 40), **log: Any
-) -> AsyncIterator[tuple[Pilot[Any], Analyser, Model]]:
+) -> AsyncIterator[tuple[Pilot[Any], Analyser, AnalysisModel]]:
     """Open the analyser with a log, asked for as in `LogRequest`, and wait until it is there."""
     async with AnalyserApp(LogRequest(**log)).run_test(size=size) as pilot:
         app = pilot.app
@@ -210,11 +210,11 @@ async def typed(pilot: Pilot[Any], *keys: str) -> None:
             await pilot.press({"<": "less_than_sign", ">": "greater_than_sign"}.get(key, key))
 
 
-def filtered(model: Model) -> bool:
+def filtered(model: AnalysisModel) -> bool:
     return 0 < len(model.rows) < model.log.rows
 
 
-STEPS: list[tuple[list[str], Callable[[Analyser, Model], bool]]] = [
+STEPS: list[tuple[list[str], Callable[[Analyser, AnalysisModel], bool]]] = [
     (["z", "z", "right_square_bracket"], lambda _, model: model.limits is not None),
     (["f"], lambda _, model: model.limits is None),
     (["F", "=value<90", "enter"], lambda _, model: filtered(model)),

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from tests.cases import cases
 from tuisim.commands.system import diagnosis
-from tuisim.commands.system.diagnosis import Finding, State, prevents_use
+from tuisim.commands.system.diagnosis import Finding, FindingState, prevents_use
 from tuisim.terminal.picture_options import CellSet
 
-OK, ADVICE, PROBLEM = State
+OK, ADVICE, PROBLEM = FindingState
 TEXTUALS = (8, 2, 5), (8, 2, 8)
 
 
-JUDGED: dict[str, tuple[Finding, State, str]] = {
+JUDGED: dict[str, tuple[Finding, FindingState, str]] = {
     "terminal without a kind": (
         diagnosis.judge_terminal("", "dumb", is_remote=False),
         ADVICE,
@@ -89,7 +89,7 @@ JUDGED: dict[str, tuple[Finding, State, str]] = {
 
 
 @cases("finding, state, advice", JUDGED)
-def test_each_finding_says_what_to_do(finding: Finding, state: State, advice: str) -> None:
+def test_each_finding_says_what_to_do(finding: Finding, state: FindingState, advice: str) -> None:
     assert finding.state is state
     assert advice in finding.advice
     assert bool(finding.advice) or state is OK

@@ -9,7 +9,7 @@ import pytest
 
 from tests.tasks.goals.recorded import goals_of
 from tuisim.analysis.events import find_events, parse_events
-from tuisim.analysis.model import Model, derive
+from tuisim.analysis.model import AnalysisModel, derive
 from tuisim.analysis.source import LogRequest, open_pieces
 from tuisim.cli import run_command
 from tuisim.engine.core.columns import find_column_name
@@ -82,7 +82,7 @@ def test_the_name_of_a_trace_is_an_event_a_filter_and_a_variable_of_the_analyser
     name: str, run: StoredRun
 ) -> None:
     *_, opened = open_pieces(LogRequest(runs=("1",), telemetry=True))
-    model = Model(opened)
+    model = AnalysisModel(opened)
     model.add_named_columns(f"{name} changes")
     assert len(find_events(model.log, parse_events(f"{name} changes", model.log))) > 5
     conditions = parse_conditions(

@@ -15,7 +15,7 @@ from rich.cells import cell_len
 from tests.app.analyser.logs import long_log, model_of
 from tests.cases import cases, for_each
 from tuisim.analysis.chart import View, build_chart
-from tuisim.analysis.model import Model
+from tuisim.analysis.model import AnalysisModel
 from tuisim.logs.columns import guess_columns
 from tuisim.logs.log import Log
 from tuisim.pictures.charts import axes
@@ -65,7 +65,7 @@ VIEWS = {
 }
 
 
-def log_of(columns: dict[str, object]) -> Model:
+def log_of(columns: dict[str, object]) -> AnalysisModel:
     table = pa.table(columns)
     return model_of(Log("title\x1b]0;\n<title>", table, guess_columns(table)))
 

@@ -11,7 +11,7 @@ from tuisim.base.errors import ConfigError, ExportError
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 from tuisim.pictures.charts.files import check_format
 from tuisim.pictures.movies import files
-from tuisim.pictures.movies.clip import ClipPanel, Recorded
+from tuisim.pictures.movies.clip import ClipPanel, ClipRun
 from tuisim.pictures.movies.files import (
     MOVIE_SUFFIXES,
     Clip,
@@ -23,7 +23,7 @@ from tuisim.pictures.scene.pictures import RIM_RGB
 
 
 @pytest.fixture
-def clip(recorded: Recorded) -> Clip:
+def clip(recorded: ClipRun) -> Clip:
     return Clip(recorded, (ClipPanel.WORLD,), (0.0, 0.5), fps=4.0, size=(160, 160))
 
 
@@ -40,7 +40,7 @@ def test_a_movie_is_a_gif_and_says_how_far_it_is(clip: Clip, tmp_path: Path) -> 
 
 @pytest.mark.parametrize("suffix, magic", [(".png", b"\x89PNG"), (".svg", b"<svg ")])
 def test_a_picture_is_of_pixels_or_of_shapes(
-    suffix: str, magic: bytes, recorded: Recorded, tmp_path: Path
+    suffix: str, magic: bytes, recorded: ClipRun, tmp_path: Path
 ) -> None:
     path = tmp_path / f"a{suffix}"
     save_picture(recorded, (ClipPanel.WORLD,), 0.2, path, (160, 160))
@@ -67,7 +67,7 @@ def test_too_many_frames_are_refused(
 
 
 def test_the_view_of_a_clip_lies_on_the_world_in_its_frames(
-    recorded: Recorded, tmp_path: Path
+    recorded: ClipRun, tmp_path: Path
 ) -> None:
     clip = Clip(recorded, (ClipPanel.WORLD,), recorded.clip_span_s(None, None), size=(400, 500))
     save_picture(recorded, clip.panels, 0.0, tmp_path / "a.png", clip.size)
@@ -89,7 +89,7 @@ def test_the_view_of_a_clip_lies_on_the_world_in_its_frames(
 
 
 def test_a_small_movie_has_fewer_frames_or_is_none_where_it_would_be_large(
-    recorded: Recorded, monkeypatch: pytest.MonkeyPatch
+    recorded: ClipRun, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     movie = make_small_movie(recorded)
     assert movie is not None and movie[0].fps == 10 and movie[1].startswith(b"GIF8")

@@ -10,7 +10,7 @@ import pytest
 from tests.cases import for_each
 from tuisim.base.errors import ConfigError
 from tuisim.pictures.charts.layout import Words
-from tuisim.pictures.movies.clip import ClipPanel, Recorded
+from tuisim.pictures.movies.clip import ClipPanel, ClipRun
 from tuisim.pictures.movies.painter import WIDTH_PX, FramePainter, PictureBox, _place_boxes
 
 ALL = tuple(ClipPanel)
@@ -43,7 +43,7 @@ def test_a_size_without_room_for_a_panel_is_refused() -> None:
         _place_boxes(ALL, (160, 120), 2)
 
 
-def test_a_chosen_size_is_that_of_the_image_and_else_it_fits_the_panels(recorded: Recorded) -> None:
+def test_a_chosen_size_is_that_of_the_image_and_else_it_fits_the_panels(recorded: ClipRun) -> None:
     moment = recorded.read_moment(0.1)
     assert FramePainter(recorded, (ClipPanel.WORLD,), (0, 0.5), (320, 240)).image(moment).size == (
         320,
@@ -55,7 +55,7 @@ def test_a_chosen_size_is_that_of_the_image_and_else_it_fits_the_panels(recorded
     assert world.size[1] < both.size[1]
 
 
-def test_the_caption_has_as_many_values_as_fit(recorded: Recorded) -> None:
+def test_the_caption_has_as_many_values_as_fit(recorded: ClipRun) -> None:
     def words(size: tuple[int, int]) -> list[str]:
         painter = FramePainter(recorded, (ClipPanel.WORLD,), (0, 0.5), size)
         return [
@@ -68,7 +68,7 @@ def test_the_caption_has_as_many_values_as_fit(recorded: Recorded) -> None:
     assert words((90, 240)) == ["0.30 s"]
 
 
-def test_the_world_moves_between_two_frames(recorded: Recorded) -> None:
+def test_the_world_moves_between_two_frames(recorded: ClipRun) -> None:
     painter = FramePainter(recorded, (ClipPanel.WORLD,), (0, 0.5), (320, 240))
     first, last = (np.asarray(painter.image(recorded.read_moment(time_s))) for time_s in (0.0, 0.5))
     # Below the caption.

@@ -30,7 +30,7 @@ from tuisim.engine.core.tree import dump_run, load_run
 from tuisim.engine.obstacles import save_obstacles
 from tuisim.engine.runs import run_folder
 from tuisim.notebook import display
-from tuisim.notebook.lab import Lab
+from tuisim.notebook.lab import NotebookLab
 from tuisim.settings.magic_line import parse_line
 from tuisim.settings.robots import save_robot
 from tuisim.settings.worlds import save_world
@@ -69,7 +69,7 @@ def _hold_run(program: Any, spec: RunSpec, options: Any, _store: object = None) 
 
 def _hold_sweep(sweep: Any, *_: object) -> NoReturn:
     plan = sweep._plan
-    tasks = list(islice(plan.tasks(), MOST_TASKS))
+    tasks = list(islice(plan.iterate_tasks(), MOST_TASKS))
     more = [
         {"values": task.parameters, "arguments": list(task.program.arguments)} for task in tasks
     ]
@@ -158,7 +158,7 @@ def of_choices(program: str, choices: Mapping[str, Any]) -> Outcome:
 
 def of_cells(magics: Sequence[str]) -> Outcome:
     """Return the specification after the cells of a notebook that begin with these magic lines; errors are printed."""
-    lab = Lab()
+    lab = NotebookLab()
     errors = []
     with _said() as (_, err):
         for line in magics:

@@ -7,7 +7,7 @@ from typing import ClassVar
 
 from textual.binding import BindingType
 
-from tuisim.analysis.model import Model
+from tuisim.analysis.model import AnalysisModel
 from tuisim.analysis.source import LogRequest
 from tuisim.app.action import build_bindings
 from tuisim.app.analyser.actions.keys import ACTIONS
@@ -50,7 +50,7 @@ class AnalyserApp(TerminalApp):
 class _First(Analyser):
     """The only screen: an error before anything is shown ends the app."""
 
-    def set_model(self, model: Model) -> None:
+    def set_model(self, model: AnalysisModel) -> None:
         first = not self.is_open
         super().set_model(model)
         if first:

@@ -31,7 +31,7 @@ from tuisim.terminal.picture_mode import is_ascii
 from tuisim.terminal.text_runs import Run, escape_markup
 
 if TYPE_CHECKING:
-    from tuisim.analysis.model import Model
+    from tuisim.analysis.model import AnalysisModel
     from tuisim.analysis.traces import LogTrace
 
 _EVENTS = Style(color=palette.EVENT, bold=True)
@@ -86,16 +86,16 @@ class LogChart(LinesPanel):
         self.options = ChartOptions()
         self._painters: dict[str, ChartPainter] = {}
         self._pictures: list[tuple[int, ChartPicture]] = []
-        self._model: Model | None = None
+        self._model: AnalysisModel | None = None
         self._pointed_s: float | None = None
         """The time below the pointer."""
 
-    def set_model(self, model: Model) -> None:
+    def set_model(self, model: AnalysisModel) -> None:
         """Switch to another log, or redraw the same one with other options."""
         self._painters.clear()
         self.show(model)
 
-    def show(self, model: Model) -> None:
+    def show(self, model: AnalysisModel) -> None:
         """Draw the current view of the model."""
         self._model = model
         width, height = self._text.size
@@ -109,7 +109,7 @@ class LogChart(LinesPanel):
         self._read(self._pointed_s)
 
     def _paint(
-        self, model: Model, is_blank: bool
+        self, model: AnalysisModel, is_blank: bool
     ) -> tuple[list[list[Run]], list[tuple[int, ChartPicture]]]:
         width, height = self._text.size
         for trace in model.traces.list_ticked():
@@ -160,7 +160,7 @@ class LogChart(LinesPanel):
             lines += [*picture.lines, *[[] for _ in range(rows - len(picture.lines))]]
         return [*lines, *(self._mark_events(model) if marked else []), *measured], self._pictures
 
-    def _mark_events(self, model: Model) -> list[list[Run]]:
+    def _mark_events(self, model: AnalysisModel) -> list[list[Run]]:
         """Return the line below the charts with a marker for each threshold crossing."""
         _, picture = self._pictures[-1]
         if not picture.columns:
@@ -175,7 +175,7 @@ class LogChart(LinesPanel):
         ]
 
     def _draw_against(
-        self, model: Model, names: tuple[str, str], width: int, height: int
+        self, model: AnalysisModel, names: tuple[str, str], width: int, height: int
     ) -> list[list[Run]]:
         trace = model.trace
         xs, ys = (limit_drawn(model.sample_variable(name)) for name in names)
@@ -243,7 +243,7 @@ def _select_facets(facets: list[LogTrace], selected: str, max_count: int) -> lis
     return facets[first : first + max_count]
 
 
-def _build_measure_line(model: Model, unit: str, width: int) -> list[list[Run]]:
+def _build_measure_line(model: AnalysisModel, unit: str, width: int) -> list[list[Run]]:
     """Return the line with the differences between the two cursors."""
     if model.mark_s is None or not model.log.rows:
         return []

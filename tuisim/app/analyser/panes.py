@@ -16,7 +16,7 @@ from rich.style import Style
 from textual.worker import get_current_worker
 
 from tuisim.analysis.events import CommandRow, Event
-from tuisim.analysis.model import Model
+from tuisim.analysis.model import AnalysisModel
 from tuisim.app import background
 from tuisim.app.analyser.table_pane import (
     DIM,
@@ -63,10 +63,10 @@ class Pane:
     """One line of `PANES`."""
 
     title: str
-    rows: Callable[[Model], Sequence[Cells]]
+    rows: Callable[[AnalysisModel], Sequence[Cells]]
     """Its rows as texts; None for the table, which has too many."""
     heads: Cells
-    below: Callable[[Model], Sequence[str]] = lambda _: ()
+    below: Callable[[AnalysisModel], Sequence[str]] = lambda _: ()
     """Text below the rows."""
     empty: str = ""
     wraps: bool = False
@@ -132,7 +132,7 @@ def _format_event(event: Event | CommandRow) -> Cells:
     )
 
 
-def _list_statistics(model: Model) -> list[Cells]:
+def _list_statistics(model: AnalysisModel) -> list[Cells]:
     rows = []
     # A short log is processed faster than it is drawn.
     missing = model.list_unsummed() if model.log.rows > FAST_ROWS else []
@@ -152,7 +152,7 @@ def _list_statistics(model: Model) -> list[Cells]:
     return rows
 
 
-def _describe_interval(model: Model) -> list[str]:
+def _describe_interval(model: AnalysisModel) -> list[str]:
     span = model.find_measured_span()
     if span is None:
         return []
@@ -161,7 +161,7 @@ def _describe_interval(model: Model) -> list[str]:
     ]
 
 
-def _notes(model: Model) -> list[Cells]:
+def _notes(model: AnalysisModel) -> list[Cells]:
     return [
         (
             f"{note.start_s:.2f}",
@@ -174,7 +174,7 @@ def _notes(model: Model) -> list[Cells]:
     ]
 
 
-def _list_runs(model: Model) -> list[Cells]:
+def _list_runs(model: AnalysisModel) -> list[Cells]:
     return [
         (
             f"#{number}" if len(model.opened.runs) > 1 else "",
@@ -196,7 +196,7 @@ PANES: Mapping[str, Pane] = {
         "Bands",
         lambda model: _LazyRows(model.bands(), _format_band),
         ("variable", "#", "level", "name", "from s", "to s", "n", "mm", "std"),
-        Model.describe_bands,
+        AnalysisModel.describe_bands,
         "No bands: no variable shown stays at a level",
     ),
     "statistics": Pane(
@@ -238,7 +238,7 @@ PANES: Mapping[str, Pane] = {
 """The panes by name."""
 
 
-def build_frame(name: str, model: Model) -> pd.DataFrame:
+def build_frame(name: str, model: AnalysisModel) -> pd.DataFrame:
     """Return the rows of a pane other than the table; bands with all their properties."""
     import pandas as pd
 
@@ -255,7 +255,7 @@ def build_frame(name: str, model: Model) -> pd.DataFrame:
     return frame
 
 
-def pane_lines(name: str, model: Model, chosen: int, width: int, height: int) -> list[Line]:
+def pane_lines(name: str, model: AnalysisModel, chosen: int, width: int, height: int) -> list[Line]:
     """Return a pane as lines.
 
     Args:
@@ -335,7 +335,7 @@ def _build_continuation(
     ]
 
 
-def _count_rows(name: str, model: Model, width: int) -> int:
+def _count_rows(name: str, model: AnalysisModel, width: int) -> int:
     """Return the number of lines that show all of a pane."""
     if name == "table":
         return 1 + len(model.rows)
@@ -347,7 +347,9 @@ def _count_rows(name: str, model: Model, width: int) -> int:
     )
 
 
-def _split_below(pane: Pane, model: Model, width: int, height: int) -> tuple[list[str], int]:
+def _split_below(
+    pane: Pane, model: AnalysisModel, width: int, height: int
+) -> tuple[list[str], int]:
     """Return the lines below the rows of a pane, and the number of rows for which there is room.
 
     All rows come first, if they fit; among many, a sixth of the lines is for what is below them. No line is for what
@@ -361,7 +363,7 @@ def _split_below(pane: Pane, model: Model, width: int, height: int) -> tuple[lis
     return below, max(height - 1 - len(below), 1)
 
 
-def describe_place(name: str, model: Model, chosen: int, width: int, height: int) -> str:
+def describe_place(name: str, model: AnalysisModel, chosen: int, width: int, height: int) -> str:
     """Return which row of a pane other than the table is selected, where not all of them fit; else nothing."""
     count = len(PANES[name].rows(model))
     fits = count <= _split_below(PANES[name], model, width, height)[1]
@@ -453,9 +455,9 @@ class PaneView(LinesPanel):
         self.name_shown = "table"
         self.chosen = 0
         """Selected row, in all panes but the table."""
-        self._model: Model | None = None
+        self._model: AnalysisModel | None = None
         self._complain = complain
-        self._busy: dict[str, Model] = {}
+        self._busy: dict[str, AnalysisModel] = {}
         """The log that is being processed, by pane."""
 
     @property
@@ -467,7 +469,7 @@ class PaneView(LinesPanel):
         """Switch to another pane."""
         self.name_shown, self.chosen = name, 0
 
-    def show(self, model: Model) -> None:
+    def show(self, model: AnalysisModel) -> None:
         """Draw the current view of the model."""
         self._model = model
         self._compute(model, self.name_shown)
@@ -488,7 +490,7 @@ class PaneView(LinesPanel):
             self._text.set_lines(pane_lines(self.name_shown, model, self.chosen, width, height))
             self.styles.max_height = max(_count_rows(self.name_shown, model, width), _MIN_ROWS) + 2
 
-    def _compute(self, model: Model, pane: str) -> None:
+    def _compute(self, model: AnalysisModel, pane: str) -> None:
         """Compute the missing content of a pane, once at a time; that of a small log at once."""
         names = {"bands": model.list_unsearched, "statistics": model.list_unsummed}.get(
             pane, list
@@ -496,7 +498,7 @@ class PaneView(LinesPanel):
         if not names or self._busy.get(pane) is model:
             return
         at_once, do = (
-            (SEARCHED_AT_ONCE, find_bands) if pane == "bands" else (FAST_ROWS, Model.sum_up)
+            (SEARCHED_AT_ONCE, find_bands) if pane == "bands" else (FAST_ROWS, AnalysisModel.sum_up)
         )
         work = partial(do, model, names)
         if model.log.rows <= at_once:
@@ -521,7 +523,7 @@ class PaneView(LinesPanel):
             self.show(self._model)
 
 
-def find_bands(model: Model, names: Sequence[str]) -> None:
+def find_bands(model: AnalysisModel, names: Sequence[str]) -> None:
     """Search variables for bands; for a log of more rows than `SEARCHED_AT_ONCE`, call it in a worker."""
     model.find_bands(names, build_band_search(model.log.rows))
 

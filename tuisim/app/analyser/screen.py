@@ -16,7 +16,7 @@ from textual.events import Event, Key, Resize
 from textual.widget import Widget
 
 from tuisim.analysis.events import CommandRow
-from tuisim.analysis.model import RECKONING, Model
+from tuisim.analysis.model import RECKONING, AnalysisModel
 from tuisim.analysis.remembered import is_readable_again, read_doubtful, remember_choices
 from tuisim.analysis.source import LogRequest, open_pieces
 from tuisim.app import background
@@ -92,7 +92,7 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         super().__init__()
         self.request = request
         self._beside = beside
-        self._model: Model | None = None
+        self._model: AnalysisModel | None = None
         self.searched = ""
         """The text that was searched for last."""
         self.job: TableTask | None = None
@@ -152,7 +152,7 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         return self._model is not None
 
     @property
-    def model(self) -> Model:
+    def model(self) -> AnalysisModel:
         """The open log; a growing one is another model after each reading.
 
         Raises:
@@ -182,7 +182,7 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         for opened in open_pieces(request):
             if request is not self.request or not self.is_running:
                 return
-            model, before = Model(opened), self._model
+            model, before = AnalysisModel(opened), self._model
             if before is not None and before.opened.request is request:
                 model.copy_definitions(before)
             # Data for the first chart of a long log is computed here, in the background.
@@ -200,7 +200,7 @@ class LogScreen(ActionHost, ClosesOnce[None]):
             self.request = self._model.opened.request
             self.update()
 
-    def set_model(self, model: Model) -> None:
+    def set_model(self, model: AnalysisModel) -> None:
         """Show the log that was read, unless another one was requested since."""
         opened, before = model.opened, self._model
         if opened.request is not self.request:

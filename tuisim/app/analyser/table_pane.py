@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from rich.style import Style
 
-from tuisim.analysis.model import Model
+from tuisim.analysis.model import AnalysisModel
 from tuisim.base import palette
 from tuisim.base.errors import counted
 from tuisim.terminal.text_runs import Line, cut, escape_markup, find_first_row
@@ -21,7 +21,7 @@ _SAMPLED = 40
 """Number of rows that determine the width of a table's column, besides the visible ones."""
 
 
-def build_table_lines(model: Model, width: int, height: int) -> list[Line]:
+def build_table_lines(model: AnalysisModel, width: int, height: int) -> list[Line]:
     """Return the rows of the table around the cursor, with as many columns as fit."""
     rows = model.rows
     if not len(rows):
@@ -52,7 +52,7 @@ def build_table_lines(model: Model, width: int, height: int) -> list[Line]:
 
 
 def _build_head_line(
-    model: Model, columns: Sequence[str], widths: Sequence[int], number_width: int
+    model: AnalysisModel, columns: Sequence[str], widths: Sequence[int], number_width: int
 ) -> Line:
     rows = model.rows
     head: Line = [(" " * (number_width + 2), HEAD)]
@@ -70,7 +70,9 @@ def _is_number(text: str) -> bool:
     return text[:1].isdigit() or (text[:1] == "-" and text[1:2].isdigit())
 
 
-def _fit_columns(model: Model, shown_rows: list[int], width: int) -> tuple[list[str], list[int]]:
+def _fit_columns(
+    model: AnalysisModel, shown_rows: list[int], width: int
+) -> tuple[list[str], list[int]]:
     """Return the columns shown and their widths: the frozen ones, then those up to the selected one."""
     rows = model.rows
     seen = shown_rows[:_SAMPLED]
@@ -99,7 +101,7 @@ def _fit_columns(model: Model, shown_rows: list[int], width: int) -> tuple[list[
     return columns, [widths[column] for column in columns]
 
 
-def build_heading(model: Model, column: str) -> str:
+def build_heading(model: AnalysisModel, column: str) -> str:
     """Return the heading of a column.
 
     The column `run` counts the runs of the log: beside the number of a stored run in the title, its heading says so.
@@ -107,7 +109,7 @@ def build_heading(model: Model, column: str) -> str:
     return f"{column} (in log)" if column == "run" and model.opened.runs else column
 
 
-def count_rows(model: Model) -> str:
+def count_rows(model: AnalysisModel) -> str:
     """Return how many rows are shown, and the filter."""
     rows, total = model.rows, model.log.rows
     words = f"{len(rows):,} of {total:,} rows" if len(rows) != total else counted(total, "row")

@@ -33,7 +33,7 @@ from tuisim.terminal.cell_view import LinesView
 from tuisim.terminal.text_runs import Run, find_first_row
 
 if TYPE_CHECKING:
-    from tuisim.analysis.model import Model
+    from tuisim.analysis.model import AnalysisModel
     from tuisim.analysis.source import OpenedLog
     from tuisim.engine.core.field import Field
     from tuisim.engine.runs.run_folder import StoredRun
@@ -165,7 +165,7 @@ class WorldPane(Vertical):
         self._arrays.border_title = PANELS["arrays"].title
         self._worlds: dict[int, RunWorld | None] = {}
         self._requested: set[int] = set()
-        self._model: Model | None = None
+        self._model: AnalysisModel | None = None
         self._shown: RunWorld | None = None
 
     def compose(self) -> ComposeResult:
@@ -183,7 +183,7 @@ class WorldPane(Vertical):
         if self._model is not None:
             self.show(self._model)
 
-    def set_model(self, model: Model) -> None:
+    def set_model(self, model: AnalysisModel) -> None:
         """Switch to another log."""
         self._model, self._shown = model, None
         self._worlds.clear()
@@ -196,7 +196,7 @@ class WorldPane(Vertical):
         )
         self.show(model)
 
-    def show(self, model: Model) -> None:
+    def show(self, model: AnalysisModel) -> None:
         """Show the row of the cursor."""
         self._model = model
         if not model.log.rows or not self.display:
@@ -220,7 +220,7 @@ class WorldPane(Vertical):
             self._arrays.show(snapshot)
         self._source.set_lines(self._list_lines(world, model.find_printed_line() or snapshot.line))
 
-    def _show_prepared(self, model: Model, run: int, world: RunWorld | None) -> None:
+    def _show_prepared(self, model: AnalysisModel, run: int, world: RunWorld | None) -> None:
         if model is self._model:
             self._worlds[run] = world
             self.show(model)

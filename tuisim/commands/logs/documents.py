@@ -9,7 +9,7 @@ from functools import partial
 from pathlib import Path
 
 from tuisim.analysis.chart import View, build_chart
-from tuisim.analysis.model import Model
+from tuisim.analysis.model import AnalysisModel
 from tuisim.analysis.source import LogRequest, OpenedLog, open_pieces
 from tuisim.base.errors import ConfigError, LogError, listed
 from tuisim.commands.echo import echo, echo_drawn, echo_error, echo_written
@@ -58,7 +58,7 @@ def plot(arguments: Arguments) -> int:
     return 0
 
 
-def _check_visible(model: Model) -> None:
+def _check_visible(model: AnalysisModel) -> None:
     ticked = model.traces.list_ticked()
     if not any(len(trace.pyramid.times_s) for trace in ticked):
         raise LogError(
@@ -81,9 +81,9 @@ def _parse_option_size(text: str, smallest: Size, largest: Size) -> Size:
     return size
 
 
-def _build_model(log: Log, arguments: Arguments) -> Model:
+def _build_model(log: Log, arguments: Arguments) -> AnalysisModel:
     """Return the model of a log with the chosen variables and time range."""
-    model = Model(OpenedLog(LogRequest(), log))
+    model = AnalysisModel(OpenedLog(LogRequest(), log))
     if arguments.variable and not arguments.against:
         names = choose_names(log, arguments)
         for trace in model.traces:
@@ -101,7 +101,7 @@ def _build_model(log: Log, arguments: Arguments) -> Model:
     return model
 
 
-def _choose_pair(log: Log, model: Model, arguments: Arguments) -> tuple[str, str] | None:
+def _choose_pair(log: Log, model: AnalysisModel, arguments: Arguments) -> tuple[str, str] | None:
     if not arguments.against:
         return None
     if len(arguments.variable) > 1:
@@ -118,7 +118,7 @@ def _choose_pair(log: Log, model: Model, arguments: Arguments) -> tuple[str, str
     return arguments.against, y
 
 
-def _show(model: Model, view: View, size: Size | None) -> None:
+def _show(model: AnalysisModel, view: View, size: Size | None) -> None:
     """Print the chart, in colour if the terminal supports it."""
     from tuisim.pictures.charts.text_chart import draw_text
 

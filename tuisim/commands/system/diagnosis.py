@@ -19,7 +19,7 @@ LARGE_STORE_MB = 2000
 OLDEST_PYTHON = (3, 11)
 
 
-class State(StrEnum):
+class FindingState(StrEnum):
     """How good a finding is."""
 
     OK = "ok"
@@ -35,7 +35,7 @@ class Finding:
 
     name: str
     value: str
-    state: State = State.OK
+    state: FindingState = FindingState.OK
     advice: str = ""
     """What to do about it."""
 
@@ -51,7 +51,10 @@ def judge_terminal(name: str, term: str, *, is_remote: bool) -> Finding:
     value = f"{name or 'no name'} (TERM={term or 'not set'}{', over SSH' if is_remote else ''})"
     if term in ("", "dumb", "unknown"):
         return Finding(
-            "terminal", value, State.ADVICE, "The terminal is unknown: export TERM=xterm-256color"
+            "terminal",
+            value,
+            FindingState.ADVICE,
+            "The terminal is unknown: export TERM=xterm-256color",
         )
     return Finding("terminal", value)
 
@@ -59,7 +62,7 @@ def judge_terminal(name: str, term: str, *, is_remote: bool) -> Finding:
 def judge_no_terminal() -> Finding:
     """Judge that there is no terminal."""
     advice = "The app needs a terminal; `tuisim run`, `batch`, `log` and notebooks do not"
-    return Finding("terminal", "none", State.ADVICE, advice)
+    return Finding("terminal", "none", FindingState.ADVICE, advice)
 
 
 def judge_colors(depth: str, *, is_remote: bool, is_fixed: bool = False) -> Finding:
@@ -77,12 +80,12 @@ def judge_colors(depth: str, *, is_remote: bool, is_fixed: bool = False) -> Find
         return Finding(
             "colours",
             f"{value}, as TERM or NO_COLOR says",
-            State.ADVICE,
+            FindingState.ADVICE,
             "--colors chooses another number",
         )
     sent = "; SSH does not send this variable by itself" if is_remote else ""
     advice = f"If the terminal shows more, as most do: export COLORTERM=truecolor{sent}"
-    return Finding("colours", value, State.ADVICE, advice)
+    return Finding("colours", value, FindingState.ADVICE, advice)
 
 
 _POINTS = {
@@ -110,10 +113,13 @@ def judge_cells(cells: CellSet, term: str = "", variable: str = "") -> Finding:
             if term
             else f"Finer glyphs need UTF-8: {_use_utf8(variable)}"
         )
-        return Finding("cells", value, State.ADVICE, advice)
+        return Finding("cells", value, FindingState.ADVICE, advice)
     if cells in (CellSet.HALF, CellSet.QUADRANT):
         return Finding(
-            "cells", value, State.OK, "Press V in the app to see whether the font shows finer ones"
+            "cells",
+            value,
+            FindingState.OK,
+            "Press V in the app to see whether the font shows finer ones",
         )
     return Finding("cells", value)
 
@@ -137,7 +143,7 @@ def judge_size(cols: int, rows: int) -> Finding:
             return Finding(
                 "size",
                 value,
-                State.ADVICE,
+                FindingState.ADVICE,
                 f"Enlarge the window to {word} {smallest[0]} × {smallest[1]}",
             )
     return Finding("size", value)
@@ -152,7 +158,7 @@ def judge_locale(variable: str, encoding: str) -> Finding:
     """
     value = f"{variable or 'not set'} ({encoding})"
     if encoding.lower().replace("-", "") != "utf8" or (variable and "utf" not in variable.lower()):
-        return Finding("locale", value, State.ADVICE, f"Use UTF-8: {_use_utf8(variable)}")
+        return Finding("locale", value, FindingState.ADVICE, f"Use UTF-8: {_use_utf8(variable)}")
     return Finding("locale", value)
 
 
@@ -165,13 +171,13 @@ def judge_latency(latency_s: float | None) -> Finding:
     """Judge how long the terminal takes to answer; None if it does not answer."""
     if latency_s is None:
         advice = "It does not answer, so tuisim cannot know what it shows: choose with --cells and --pixels"
-        return Finding("latency", "no answer", State.ADVICE, advice)
+        return Finding("latency", "no answer", FindingState.ADVICE, advice)
     value = f"{1000 * latency_s:.0f} ms" if latency_s >= 0.01 else f"{1000 * latency_s:.1f} ms"
     if latency_s > SLOW_S:
         return Finding(
             "latency",
             value,
-            State.ADVICE,
+            FindingState.ADVICE,
             "Slow link: --fps 5, --cells half and --pixels none send less",
         )
     return Finding("latency", value)
@@ -181,7 +187,9 @@ def judge_python(version: tuple[int, ...], path: str) -> Finding:
     """Judge the version of Python."""
     value = f"{'.'.join(map(str, version))} ({path})"
     if version < OLDEST_PYTHON:
-        return Finding("Python", value, State.PROBLEM, "Install tuisim with Python 3.11 or later")
+        return Finding(
+            "Python", value, FindingState.PROBLEM, "Install tuisim with Python 3.11 or later"
+        )
     return Finding("Python", value)
 
 
@@ -192,9 +200,12 @@ def judge_system(system: str, release: str) -> Finding:
         return Finding("system", value)
     if system == "Darwin":
         return Finding(
-            "system", value, State.ADVICE, "macOS is untested: please report what does not work"
+            "system",
+            value,
+            FindingState.ADVICE,
+            "macOS is untested: please report what does not work",
         )
-    return Finding("system", value, State.PROBLEM, "tuisim needs Linux; on Windows use WSL")
+    return Finding("system", value, FindingState.PROBLEM, "tuisim needs Linux; on Windows use WSL")
 
 
 def home_finding(folder: str, why_not: str) -> Finding:
@@ -206,7 +217,7 @@ def home_finding(folder: str, why_not: str) -> Finding:
     """
     if why_not:
         advice = "Runs cannot be stored: fix the permissions, or export TUISIM_HOME=FOLDER"
-        return Finding("home folder", f"{folder}: {why_not}", State.PROBLEM, advice)
+        return Finding("home folder", f"{folder}: {why_not}", FindingState.PROBLEM, advice)
     return Finding("home folder", f"{folder} (writable)")
 
 
@@ -215,17 +226,24 @@ def store_finding(count: int, size_bytes: int, free_bytes: int) -> Finding:
     value = f"{count} runs, {size_bytes / 1e6:.1f} MB; {free_bytes / 1e9:.1f} GB free"
     if free_bytes < 100e6:
         return Finding(
-            "store", value, State.ADVICE, "The disk is almost full: tuisim runs rm --older-than 30d"
+            "store",
+            value,
+            FindingState.ADVICE,
+            "The disk is almost full: tuisim runs rm --older-than 30d",
         )
     if size_bytes > LARGE_STORE_MB * 1e6:
-        return Finding("store", value, State.ADVICE, "Large: tuisim runs rm --older-than 30d")
+        return Finding(
+            "store", value, FindingState.ADVICE, "Large: tuisim runs rm --older-than 30d"
+        )
     return Finding("store", value)
 
 
 def judge_assets(why_not: str) -> Finding:
     """Judge whether the mats and the examples are there; `why_not` is empty if they are."""
     if why_not:
-        return Finding("mats", why_not, State.PROBLEM, "Install tuisim again, or fix TUISIM_ASSETS")
+        return Finding(
+            "mats", why_not, FindingState.PROBLEM, "Install tuisim again, or fix TUISIM_ASSETS"
+        )
     return Finding("mats", "found")
 
 
@@ -238,11 +256,13 @@ def judge_dependencies(requirements: Iterable[tuple[str, str, str]]) -> list[Fin
     """
     findings = [_judge_dependency(*finding) for finding in requirements]
     good = ", ".join(
-        f"{finding.name} {finding.value}" for finding in findings if finding.state is State.OK
+        f"{finding.name} {finding.value}"
+        for finding in findings
+        if finding.state is FindingState.OK
     )
     return [
         Finding("packages", good or "none"),
-        *(finding for finding in findings if finding.state is not State.OK),
+        *(finding for finding in findings if finding.state is not FindingState.OK),
     ]
 
 
@@ -251,12 +271,12 @@ def _judge_dependency(name: str, pinned: str, installed: str) -> Finding:
         return Finding(
             name,
             "missing",
-            State.PROBLEM,
+            FindingState.PROBLEM,
             "Install tuisim again: pip install --force-reinstall tuisim",
         )
     if pinned and installed != pinned:
         return Finding(
-            name, installed, State.PROBLEM, f"Needs {pinned}: pip install {name}=={pinned}"
+            name, installed, FindingState.PROBLEM, f"Needs {pinned}: pip install {name}=={pinned}"
         )
     return Finding(name, installed)
 
@@ -271,7 +291,7 @@ def judge_simulator(old_simulator: str) -> list[Finding]:
         return []
     advice = "It is tuisim in the kernel RoboLab (tuisim): tuisim kernel install"
     value = f"the old simulator, in {old_simulator}"
-    return [Finding("nbev3devsim", value, State.ADVICE, advice)]
+    return [Finding("nbev3devsim", value, FindingState.ADVICE, advice)]
 
 
 Version = tuple[int, ...]
@@ -294,9 +314,11 @@ def judge_textual(
     lacks = f", and lacks {', '.join(missing)}" if missing else ""
     value = f"{installed}: not a version that the app was tried with{lacks}. It draws half blocks, more slowly"
     requirement = f"textual>={'.'.join(map(str, first))},<={'.'.join(map(str, last))}"
-    return Finding("Textual", value, State.ADVICE, f"For the rest: pip install '{requirement}'")
+    return Finding(
+        "Textual", value, FindingState.ADVICE, f"For the rest: pip install '{requirement}'"
+    )
 
 
 def prevents_use(findings: Iterable[Finding]) -> bool:
     """Return whether any finding prevents the use of tuisim."""
-    return any(finding.state is State.PROBLEM for finding in findings)
+    return any(finding.state is FindingState.PROBLEM for finding in findings)

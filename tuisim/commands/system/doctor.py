@@ -20,13 +20,13 @@ from tuisim.base.errors import ConfigError, TuisimError
 from tuisim.base.folders import backgrounds_folder, home_folder, programs_folder
 from tuisim.commands.echo import echo, echo_json
 from tuisim.commands.system import diagnosis
-from tuisim.commands.system.diagnosis import Finding, State, prevents_use
+from tuisim.commands.system.diagnosis import Finding, FindingState, prevents_use
 from tuisim.notebook.kernel import find_old_simulator
 from tuisim.settings.command_line import AS_JSON, command, option
 
 EXIT_PREVENTED = 1
 _WIDTH = 78
-_MARKS = {State.OK: "ok", State.ADVICE: "!", State.PROBLEM: "FAIL"}
+_MARKS = {FindingState.OK: "ok", FindingState.ADVICE: "!", FindingState.PROBLEM: "FAIL"}
 _EXACTLY = re.compile(r"([A-Za-z0-9._-]+)\s*(?:==([^;,\s]+))?")
 
 

@@ -77,7 +77,7 @@ class ClipMoment:
     """The newest value of each variable that was printed up to then, by name."""
 
 
-class Recorded:
+class ClipRun:
     """A recorded run at any of its instants.
 
     Args:

@@ -12,7 +12,7 @@ import numpy as np
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ConfigError
 from tuisim.pictures.charts.files import check_format, draw_svg, encode_png, write_whole
-from tuisim.pictures.movies.clip import ClipPanel, Recorded, Shot, count_shots, plan_shots
+from tuisim.pictures.movies.clip import ClipPanel, ClipRun, Shot, count_shots, plan_shots
 from tuisim.pictures.movies.image_files import PALETTE_FRAMES, encode_gif
 from tuisim.pictures.movies.painter import FramePainter, Size, find_frame_view
 from tuisim.pictures.scene.view import Viewport
@@ -34,7 +34,7 @@ MAX_FRAMES = 20_000
 class Clip:
     """A movie to be written."""
 
-    recorded: Recorded
+    recorded: ClipRun
     panels: tuple[ClipPanel, ...]
     span_s: tuple[float, float]
     """Range of simulated time."""
@@ -75,15 +75,15 @@ def _encode_gif(clip: Clip, watch: Watch) -> bytes:
     )
 
 
-def _encode_png(painter: FramePainter, recorded: Recorded, time_s: float) -> bytes:
+def _encode_png(painter: FramePainter, recorded: ClipRun, time_s: float) -> bytes:
     return encode_png(painter.image(recorded.read_moment(time_s)))
 
 
-def _encode_svg(painter: FramePainter, recorded: Recorded, time_s: float) -> bytes:
+def _encode_svg(painter: FramePainter, recorded: ClipRun, time_s: float) -> bytes:
     return draw_svg(painter.draw(recorded.read_moment(time_s))).encode()
 
 
-PICTURE_FORMATS: Mapping[str, Callable[[FramePainter, Recorded, float], bytes]] = {
+PICTURE_FORMATS: Mapping[str, Callable[[FramePainter, ClipRun, float], bytes]] = {
     ".png": _encode_png,
     ".svg": _encode_svg,
 }
@@ -123,7 +123,7 @@ _SMALL_S, _SMALL_FPS = 10, (10, 5)
 """Its longest duration, and its frames per second: fewer of them where it would be too large."""
 
 
-def make_small_movie(recorded: Recorded) -> tuple[Clip, bytes] | None:
+def make_small_movie(recorded: ClipRun) -> tuple[Clip, bytes] | None:
     """Return a movie of the world as GIF, small enough for a page; a long run is shown faster.
 
     Returns:
@@ -145,7 +145,7 @@ def make_small_movie(recorded: Recorded) -> tuple[Clip, bytes] | None:
 
 
 def save_picture(
-    recorded: Recorded,
+    recorded: ClipRun,
     panels: Sequence[ClipPanel],
     time_s: float,
     path: Path,

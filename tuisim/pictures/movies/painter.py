@@ -30,7 +30,7 @@ from tuisim.pictures.charts.layout import (
 )
 from tuisim.pictures.charts.sample_chart import build_sample_chart
 from tuisim.pictures.movies.arrays import draw_arrays
-from tuisim.pictures.movies.clip import ClipMoment, ClipPanel, Recorded
+from tuisim.pictures.movies.clip import ClipMoment, ClipPanel, ClipRun
 from tuisim.pictures.scene.discs import DiscFace, list_disc_faces
 from tuisim.pictures.scene.pen import build_pen_trace
 from tuisim.pictures.scene.pictures import (
@@ -84,7 +84,7 @@ def _fit_size(panels: Sequence[ClipPanel], robot: RobotSpec, area: Area) -> Size
 
 
 def find_frame_view(
-    recorded: Recorded, panels: Sequence[ClipPanel], size: Size | None = None
+    recorded: ClipRun, panels: Sequence[ClipPanel], size: Size | None = None
 ) -> Viewport:
     """Return which part of the world a whole frame would show if its world, which it has, filled it.
 
@@ -120,7 +120,7 @@ class FramePainter:
 
     def __init__(
         self,
-        recorded: Recorded,
+        recorded: ClipRun,
         panels: Sequence[ClipPanel],
         span_s: tuple[float, float],
         size: Size | None = None,
@@ -221,7 +221,7 @@ def _center_box(box: PictureBox, size: Size) -> PictureBox:
     )
 
 
-def _build_chart(recorded: Recorded, columns: int, span_s: tuple[float, float]) -> ChartData:
+def _build_chart(recorded: ClipRun, columns: int, span_s: tuple[float, float]) -> ChartData:
     """Return the chart of the printed samples, at the times at which they were printed."""
     low, high = span_s
     return build_sample_chart(
@@ -255,7 +255,7 @@ class MovingWorld:
         LogError: the mat no longer exists.
     """
 
-    def __init__(self, recorded: Recorded, view: Viewport) -> None:
+    def __init__(self, recorded: ClipRun, view: Viewport) -> None:
         self._recorded, self._spec, self._view = recorded, recorded.run.spec, view
         mat = mat_pixels(mat_files(recorded.run))
         self._painter = build_painter(mat, has_floor=self._spec.world.is_open)
@@ -285,7 +285,7 @@ class SensorArrays:
         LogError: the mat no longer exists.
     """
 
-    def __init__(self, recorded: Recorded) -> None:
+    def __init__(self, recorded: ClipRun) -> None:
         self._run = recorded.run
         self._mat, self._recording = open_mat(recorded.run), Recording(recorded.run)
 

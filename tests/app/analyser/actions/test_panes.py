@@ -9,11 +9,11 @@ import pytest
 
 from tests.app.analyser.test_screen import open_analyser, text_of, typed
 from tests.app.app_help import notices, until
-from tuisim.analysis.model import Model
+from tuisim.analysis.model import AnalysisModel
 from tuisim.app.analyser import screen as screen_module
 from tuisim.logs.table import TableTask
 
-STEPS: list[tuple[list[str], Callable[[Model], bool]]] = [
+STEPS: list[tuple[list[str], Callable[[AnalysisModel], bool]]] = [
     (["F", "=value < 50 and name == a", "enter"], lambda model: len(model.rows) == 50),
     (["U", "o", "o"], lambda model: model.rows.view.descending and model.rows.row(0) == 199),
     (["U", "slash", "=77", "enter"], lambda model: model.row == 154),

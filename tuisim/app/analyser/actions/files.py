@@ -7,7 +7,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tuisim.analysis.model import Model
+from tuisim.analysis.model import AnalysisModel
 from tuisim.analysis.source import OpenedLog
 from tuisim.app import background
 from tuisim.app.analyser.panes import PANES, build_band_search, build_frame
@@ -89,7 +89,7 @@ def _report_saved(screen: LogScreen, notice: str, target: Path, _: object) -> No
     offer(screen.app, target)
 
 
-def _write_rows(model: Model, frame: pd.DataFrame | None, target: Path) -> None:
+def _write_rows(model: AnalysisModel, frame: pd.DataFrame | None, target: Path) -> None:
     from tuisim.logs.export import build_table_metadata, export_frame, export_log
 
     if frame is None:

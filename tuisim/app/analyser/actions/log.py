@@ -6,7 +6,13 @@ from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
-from tuisim.analysis.model import RECKONING, Model, apply_definition, compute_definition, derive
+from tuisim.analysis.model import (
+    RECKONING,
+    AnalysisModel,
+    apply_definition,
+    compute_definition,
+    derive,
+)
 from tuisim.analysis.source import LogRequest
 from tuisim.app.dialogs.question import Form
 from tuisim.base.errors import LogError
@@ -66,7 +72,7 @@ def ask_variable(screen: LogScreen) -> None:
             show_log,
         )
 
-    def show_log(result: tuple[Model, str, Log]) -> None:
+    def show_log(result: tuple[AnalysisModel, str, Log]) -> None:
         of, text, log = result
         model = screen.model
         if model is of:
@@ -113,7 +119,7 @@ def note(screen: LogScreen) -> None:
     screen.ask(title, keep, value)
 
 
-def _mark_time_s(model: Model) -> float:
+def _mark_time_s(model: AnalysisModel) -> float:
     """Return the time, in its run, of the sample at the second cursor."""
     trace = model.trace_of_row(model.row)
     if model.mark_s is None or not len(trace.pyramid.times_s):
@@ -162,7 +168,7 @@ def _compare(screen: LogScreen, first: StoredRun, second: StoredRun) -> None:
 
 
 def _show_differences(
-    screen: LogScreen, model: Model, first: StoredRun, second: StoredRun, diff: RunDiff
+    screen: LogScreen, model: AnalysisModel, first: StoredRun, second: StoredRun, diff: RunDiff
 ) -> None:
     from tuisim.app.dialogs.runs import Differences
 
@@ -181,7 +187,7 @@ def _show_differences(
     )
 
 
-def _go_to_difference(screen: LogScreen, model: Model, time_s: float) -> None:
+def _go_to_difference(screen: LogScreen, model: AnalysisModel, time_s: float) -> None:
     """Put the cursor, in the first run, where the runs begin to differ."""
     name = model.selected.partition(" #")[0]
     selected = next(

@@ -14,7 +14,7 @@ from tuisim.logs.log import Log
 from tuisim.logs.table import TableTask, TableView, parse_conditions
 
 if TYPE_CHECKING:
-    from tuisim.analysis.model import Model
+    from tuisim.analysis.model import AnalysisModel
     from tuisim.app.analyser.screen import LogScreen
 
 _THRESHOLDS = (
@@ -100,7 +100,7 @@ def sort(screen: LogScreen) -> None:
     )
 
 
-def _arrange(screen: LogScreen, model: Model, arrangement: TableView) -> None:
+def _arrange(screen: LogScreen, model: AnalysisModel, arrangement: TableView) -> None:
     """Show filtered and sorted rows, the cursor among them."""
     if screen.model is not model:
         return
