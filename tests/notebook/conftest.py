@@ -57,7 +57,7 @@ def cell(shell: InteractiveShell, monkeypatch: pytest.MonkeyPatch) -> Cell:
     """`cell(text)` runs a cell in a shell that has loaded tuisim; the simulator is as new."""
     from tuisim.notebook import lab, magics
 
-    fresh = lab.NotebookLab()
+    fresh = lab.Lab()
     monkeypatch.setattr(lab, "roboSim", fresh)
     monkeypatch.setattr(magics, "roboSim", fresh)
     for name in [

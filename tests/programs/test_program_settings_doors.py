@@ -15,7 +15,7 @@ from tuisim.app.setup import next_run as plans
 from tuisim.app.setup.next_run import NextRun
 from tuisim.engine.core.spec import NoiseSpec, RunSpec
 from tuisim.engine.core.tree import dump_run
-from tuisim.notebook.lab import NotebookLab
+from tuisim.notebook.lab import Lab
 from tuisim.programs.program_file import ProgramSource, read_program
 from tuisim.programs.program_settings import build_program_settings, find_free_paths
 from tuisim.settings.build import build_run_spec
@@ -226,7 +226,7 @@ def test_a_cell_is_a_file_that_begins_with_its_magic_line(
 ) -> None:
     (folder / "p.py").write_text(f"# %%sim_magic {option}\n{PROGRAMS[program]}")
     (of_file,) = outside.of_command(("run", "p.py")).specs
-    lab = NotebookLab()
+    lab = Lab()
     lab.apply(parse_line(option, "sim_magic"), PROGRAMS[program], "none")
     of_cell = lab.spec
     name = of_file.robot.name

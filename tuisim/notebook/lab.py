@@ -44,7 +44,7 @@ class _CellPlan:
     program: Program | None
 
 
-class NotebookLab:
+class Lab:
     """The simulated robot shared by the cells of a notebook.
 
     Its world lasts from cell to cell, its log until it is cleared.
@@ -449,5 +449,5 @@ def _select_given(plan: _CellPlan, words: Arguments) -> Mapping[str, Any]:
     return {path: value for path, value in values.items() if path not in ("autorun", "speed")}
 
 
-roboSim = NotebookLab()  # noqa: N816 - the course's cells call it so
+roboSim = Lab()  # noqa: N816 - the course's cells call it so
 """The simulator used by the magics."""

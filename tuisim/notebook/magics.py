@@ -14,7 +14,7 @@ from IPython.core.interactiveshell import InteractiveShell
 from tuisim.base.errors import ConfigError, TuisimError
 from tuisim.base.source import APP_MAGIC, PRELUDE_TEXTS, PRELUDES
 from tuisim.notebook import eds, old_formats
-from tuisim.notebook.lab import NotebookLab, roboSim
+from tuisim.notebook.lab import Lab, roboSim
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -40,9 +40,9 @@ def _guard_magic(act: Handler) -> Callable[..., Any]:
     return call_magic
 
 
-def _find_lab(shell: InteractiveShell, name: str | None) -> NotebookLab:
+def _find_lab(shell: InteractiveShell, name: str | None) -> Lab:
     lab = roboSim if name is None else shell.user_ns.get(name)
-    if not isinstance(lab, NotebookLab):
+    if not isinstance(lab, Lab):
         raise ConfigError(f"no simulator {name!r}", "roboSim is one", key="-s")
     return lab
 
@@ -70,7 +70,7 @@ def _build_magic(shell: InteractiveShell, magic: str) -> Handler:
     return run_magic
 
 
-Log = Callable[[NotebookLab, "Arguments"], Any]
+Log = Callable[[Lab, "Arguments"], Any]
 
 
 def _build_log_magic(shell: InteractiveShell, magic: str, act: Log) -> Handler:
@@ -86,19 +86,19 @@ def _build_log_magic(shell: InteractiveShell, magic: str, act: Log) -> Handler:
     return read
 
 
-def _show_data(lab: NotebookLab, words: Arguments) -> Any:
+def _show_data(lab: Lab, words: Arguments) -> Any:
     return lab.clear_datalog() if words.clear else lab.data()
 
 
-def _show_robot_state(lab: NotebookLab, words: Arguments) -> old_formats.RobotState:
+def _show_robot_state(lab: Lab, words: Arguments) -> old_formats.RobotState:
     return old_formats.RobotState(lab.robot_state)
 
 
-def _show_image_pair(lab: NotebookLab, words: Arguments) -> old_formats.ImagePair:
+def _show_image_pair(lab: Lab, words: Arguments) -> old_formats.ImagePair:
     return old_formats.pick_image_pair(lab.logged_arrays(), words.index)
 
 
-def _show_bw_image(lab: NotebookLab, words: Arguments) -> Image:
+def _show_bw_image(lab: Lab, words: Arguments) -> Image:
     from random import randrange
 
     arrays = [array for of_run in lab.logged_arrays() for array in of_run]

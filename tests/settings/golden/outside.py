@@ -30,7 +30,7 @@ from tuisim.engine.core.tree import dump_run, load_run
 from tuisim.engine.obstacles import save_obstacles
 from tuisim.engine.runs import run_folder
 from tuisim.notebook import display
-from tuisim.notebook.lab import NotebookLab
+from tuisim.notebook.lab import Lab
 from tuisim.settings.magic_line import parse_line
 from tuisim.settings.robots import save_robot
 from tuisim.settings.worlds import save_world
@@ -158,7 +158,7 @@ def of_choices(program: str, choices: Mapping[str, Any]) -> Outcome:
 
 def of_cells(magics: Sequence[str]) -> Outcome:
     """Return the specification after the cells of a notebook that begin with these magic lines; errors are printed."""
-    lab = NotebookLab()
+    lab = Lab()
     errors = []
     with _said() as (_, err):
         for line in magics:
