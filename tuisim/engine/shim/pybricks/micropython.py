@@ -37,6 +37,7 @@ OF_PYTHON: Mapping[str, str] = {
         "heapq",
         "io",
         "json",
+        "math",
         "os",
         "queue",
         "random",

@@ -94,6 +94,17 @@ class Motor(motor.Motor):
 
         return self.brick.finish(self.brick.until_done(passed, lambda: None, self.stop))
 
+    _zero_deg = 0
+    """The angle that the program has made of the mark on the shaft, at which the motor began."""
+
+    def reset_angle(self, angle: float | None = None) -> None:
+        """Make the current angle another one; by default that from the mark on a hub motor's shaft."""
+        if angle is None and self.brick.session.sim.spec.robot.hub:
+            angle = (self.angle() - self._zero_deg + 180) % 360 - 180
+        if angle is not None:
+            self._zero_deg += whole(angle) - self.angle()
+        super().reset_angle(angle)
+
     def speed(self, window: float = 100) -> int:
         """Return the speed in degrees per second, which is exact for any window."""
         if whole(window) <= 0:
@@ -131,6 +142,21 @@ class Motor(motor.Motor):
 
 class Control(motor.Control):
     """The settings of a motor's controller."""
+
+    def limits(  # type: ignore[override]
+        self,
+        speed: float | None = None,
+        acceleration: Any = None,
+        torque: float | None = None,
+        actuation: float | None = None,
+    ) -> tuple[int, int, int] | None:
+        """Return the highest speed, acceleration and power, or set them; a torque, in mNm, limits nothing."""
+        if isinstance(acceleration, tuple):
+            acceleration = acceleration[0]
+        if torque is not None and speed is None and acceleration is None and actuation is None:
+            self.brick.command()
+            return None
+        return super().limits(speed, acceleration, actuation)
 
     def load(self) -> int:
         """Return the load in mNm."""

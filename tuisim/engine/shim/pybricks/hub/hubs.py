@@ -14,7 +14,9 @@ from tuisim.engine.shim.pybricks.hub.imu import IMU
 from tuisim.engine.shim.pybricks.hub.parameters import Button
 from tuisim.engine.shim.pybricks.matrix import Axis
 from tuisim.engine.shim.tones import Tone, song_of, tones_heard
+from tuisim.engine.shim.unsupported.modules import Hardware, refused_part
 
+RADIO = Hardware("messages between hubs", "leave them out: there is one hub")
 BUTTON_NAMES: Mapping[str, Button] = {
     "left": Button.LEFT,
     "right": Button.RIGHT,
@@ -138,6 +140,7 @@ class Hub(Connected):
     """Any hub."""
 
     BUTTONS: tuple[str, ...] = ("enter",)
+    ble = refused_part("PrimeHub", "ble", RADIO)
 
     def __init__(
         self,

@@ -20,7 +20,8 @@ REFUSED: Mapping[str, tuple[str, ...]] = {
         *("AnalogSensor", "I2CDevice", "LUMPDevice", "LWP3Device", "PUPDevice", "UARTDevice"),
         "XboxController",
     ),
-    "pybricks.messaging": ("BLERadio", "AppData"),
+    "pybricks.messaging": ("BLERadio",),
+    "pybricks.tools": ("AppData",),
     "pybricks.robotics": ("Car", "SpikeBase"),
 }
 """Classes that can be imported but not used, by module."""
@@ -56,7 +57,9 @@ def find_names(hub: str) -> Mapping[str, Mapping[str, Any]]:
         },
         "pybricks.tools": {
             "wait": tools.wait,
-            "StopWatch": tools.StopWatch,
+            "StopWatch": version_4.StopWatch,
+            "read_input_byte": version_4.read_input_byte,
+            "Axis": matrix.Axis,
             "Matrix": matrix.Matrix,
             "vector": matrix.vector,
             "cross": matrix.cross,
