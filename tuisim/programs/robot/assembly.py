@@ -402,7 +402,7 @@ class _Builder:
             if by_side and mention.kind is DeviceKind.COLOR and (side := find_side(mention.names)):
                 alike = [sensor for sensor in alike if sensor.name == side]
             if alike:
-                chosen = new.likeliest(alike, mention)
+                chosen = new.choose_likeliest(alike, mention)
                 left.remove(chosen)
                 placed[port] = mount(on_port(chosen, port), mention)
             else:

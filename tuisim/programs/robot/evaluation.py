@@ -63,7 +63,7 @@ class Evaluation:
             return ()
         self._open.add(key)
         try:
-            values = _drop_repeated(self._of(node, scope))
+            values = _drop_repeated(self._evaluate(node, scope))
         finally:
             self._open.discard(key)
         if not self._open:
@@ -71,7 +71,7 @@ class Evaluation:
             self._known[key] = values
         return values
 
-    def _of(self, node: ast.expr, scope: Scope) -> Iterator[Value]:
+    def _evaluate(self, node: ast.expr, scope: Scope) -> Iterator[Value]:
         match node:
             case ast.Constant(value=str() | int() | float() | None as constant):
                 yield constant

@@ -81,12 +81,12 @@ class _MechanicsReader:
                         self._read_assigned(target, value, scope)
             case ast.Call(func=ast.Attribute(value=base, attr="set_polarity"), args=[value, *_]):
                 for text in self.evaluation.values(value, scope):
-                    self._turn(self._known_motors(base, scope), text, _find_where(node, scope))
+                    self._turn(self._find_known(base, scope), text, _find_where(node, scope))
             case ast.Attribute(value=base, attr="is_stalled"):
                 self._stall(base, scope, node)
             case ast.While(test=ast.Compare(left=left, ops=[ast.Gt() | ast.GtE() | ast.NotEq()])):
                 motor = _find_motor(left)
-                if motor is not None and self._only_moves_endlessly(motor, scope):
+                if motor is not None and self._is_endless(motor, scope):
                     self._stall(motor, scope, node)
             case ast.Compare(left=left, comparators=[ast.Attribute(value=base, attr="state")]):
                 if "stalled" in self.evaluation.values(left, scope):
@@ -95,7 +95,7 @@ class _MechanicsReader:
                 if "stalled" in self.evaluation.values(state, scope):
                     self._stall(base, scope, node)
             case ast.Call(func=ast.Attribute(value=base, attr="wait_until_not_moving")):
-                if self._only_moves_endlessly(base, scope):
+                if self._is_endless(base, scope):
                     self._stall(base, scope, node)
             case ast.Call(func=ast.Attribute(value=base, attr=name)):
                 self._read_call(node, name, base, scope)
@@ -103,11 +103,11 @@ class _MechanicsReader:
     def _read_call(self, call: ast.Call, name: str, base: ast.expr, scope: Scope) -> None:
         """Note a move, or what a method of Pybricks says about a motor."""
         if name in self.moves.ending:
-            self._note_reach(call, name, self._motors(base, scope), scope)
+            self._note_reach(call, name, self._find_motors(base, scope), scope)
         elif name in self.moves.stalling:
-            self.found.driven_to_stops.update(self._motors(base, scope))
+            self.found.driven_to_stops.update(self._find_motors(base, scope))
             self._stall(
-                base, scope, call, [speed > 0 for speed in self._speeds(call, scope) if speed]
+                base, scope, call, [speed > 0 for speed in self._find_speeds(call, scope) if speed]
             )
         elif name == "stalled":
             match base:
@@ -123,16 +123,16 @@ class _MechanicsReader:
             case "polarity":
                 for text in self.evaluation.values(value, scope):
                     self._turn(
-                        self._known_motors(target.value, scope), text, _find_where(target, scope)
+                        self._find_known(target.value, scope), text, _find_where(target, scope)
                     )
             case "position":
                 self._note_places(target.value, value, scope)
             case "position_sp":
-                self._note_targets(value, self._motors(target.value, scope), scope)
+                self._note_targets(value, self._find_motors(target.value, scope), scope)
 
     def _note_places(self, base: ast.expr, value: ast.expr, scope: Scope) -> None:
-        for port in self._motors(base, scope):
-            self.places.setdefault(port, set()).update(self._numbers(value, scope))
+        for port in self._find_motors(base, scope):
+            self.places.setdefault(port, set()).update(self._find_numbers(value, scope))
 
     def _read_forwards(self, scope: Scope) -> None:
         """Note motors that a function, which is named for driving forwards, turns backwards only."""
@@ -145,41 +145,41 @@ class _MechanicsReader:
                 continue
             if any(
                 length < 0
-                for length_node in self._lengths(node, node.func.attr, scope)
-                for length in self._numbers(length_node, scope)
+                for length_node in self._find_lengths(node, node.func.attr, scope)
+                for length in self._find_numbers(length_node, scope)
             ):
                 return
-            for port in self._known_motors(node.func.value, scope):
-                speeds.setdefault(port, []).extend(self._speeds(node, scope))
+            for port in self._find_known(node.func.value, scope):
+                speeds.setdefault(port, []).extend(self._find_speeds(node, scope))
                 where.setdefault(port, _find_where(node, scope))
         for port, port_speeds in speeds.items():
             if port_speeds and max(port_speeds) < 0:
                 self.backwards[port] = where[port]
 
-    def _speeds(self, call: ast.Call, scope: Scope) -> Iterator[float]:
+    def _find_speeds(self, call: ast.Call, scope: Scope) -> Iterator[float]:
         """Yield the speeds that a call gives, to one motor or to both of a pair."""
         assert isinstance(call.func, ast.Attribute)
-        pairs = self._pairs(call.func.value, scope)
+        pairs = self._find_pairs(call.func.value, scope)
         first, last = (0, 1) if not pairs or call.func.attr in self.moves.of_both else (0, 2)
         if any(pair.class_name == "MoveSteering" for pair in pairs):
             first, last = 1, 2
         names = (*self.moves.speeds, "left_speed", "right_speed")
         named = [keyword.value for keyword in call.keywords if keyword.arg in names]
         for node in (*named, *call.args[first:last]):
-            yield from self._numbers(
+            yield from self._find_numbers(
                 node.args[0] if isinstance(node, ast.Call) and node.args else node, scope
             )
 
-    def _lengths(self, call: ast.Call, name: str, scope: Scope) -> list[ast.expr]:
+    def _find_lengths(self, call: ast.Call, name: str, scope: Scope) -> list[ast.expr]:
         """Return what a call of a movement gives for its length or its end."""
         named = [keyword.value for keyword in call.keywords if keyword.arg in self.moves.lengths]
         if name not in self.moves.length_at:
             return named
         assert isinstance(call.func, ast.Attribute)
-        first = self.moves.length_at[name] + (1 if self._pairs(call.func.value, scope) else 0)
+        first = self.moves.length_at[name] + (1 if self._find_pairs(call.func.value, scope) else 0)
         return named + call.args[first : first + 1]
 
-    def _numbers(self, node: ast.expr, scope: Scope) -> list[float]:
+    def _find_numbers(self, node: ast.expr, scope: Scope) -> list[float]:
         return [
             value for value in self.evaluation.values(node, scope) if isinstance(value, int | float)
         ]
@@ -199,21 +199,21 @@ class _MechanicsReader:
         Args:
             said: Whether the motor turns forwards there, for each time; empty if its movements say it.
         """
-        for port in self._motors(base, scope):
-            forwards = next(iter(ways or self._directions(scope.body, [port], scope)), None)
-            stop = EndStop(_find_where(node, scope), self._as_mounted(port, forwards), scope)
+        for port in self._find_motors(base, scope):
+            forwards = next(iter(ways or self._find_ways(scope.body, [port], scope)), None)
+            stop = EndStop(_find_where(node, scope), self._convert_way(port, forwards), scope)
             known = self.found.stops.setdefault(port, stop)
-            if any(self._as_mounted(port, way) != known.forwards for way in ways):
+            if any(self._convert_way(port, way) != known.forwards for way in ways):
                 self.found.closed.add(port)
 
-    def _as_mounted(self, port: str, forwards: bool | None) -> bool | None:
+    def _convert_way(self, port: str, forwards: bool | None) -> bool | None:
         """Return a direction of the program as that of a motor."""
         mention = self.mentions.find_motor(port)
         return not forwards if forwards is not None and mention and mention.is_turned else forwards
 
     # Movements
 
-    def _calls(
+    def _find_calls(
         self, nodes: Iterable[ast.AST], ports: Iterable[str], names: Iterable[str], scope: Scope
     ) -> list[ast.Call]:
         moved, known = {*ports}, {*names}
@@ -223,44 +223,46 @@ class _MechanicsReader:
             if isinstance(node, ast.Call)
             and isinstance(node.func, ast.Attribute)
             and node.func.attr in known
-            and moved & {*self._motors(node.func.value, scope)}
+            and moved & {*self._find_motors(node.func.value, scope)}
         ]
 
     def _moves(self, scope: Scope, ports: Iterable[str], names: Iterable[str]) -> bool:
-        return bool(self._calls(scope.body, ports, names, scope))
+        return bool(self._find_calls(scope.body, ports, names, scope))
 
-    def _only_moves_endlessly(self, base: ast.expr, scope: Scope) -> bool:
+    def _is_endless(self, base: ast.expr, scope: Scope) -> bool:
         """Return whether a motor, in some part of the program, moves and never by itself ends to."""
-        ports = self._motors(base, scope)
+        ports = self._find_motors(base, scope)
         return self._moves(scope, ports, self.moves.endless) and not self._moves(
             scope, ports, self.moves.ending
         )
 
-    def _directions(
+    def _find_ways(
         self, nodes: Sequence[ast.AST], ports: Iterable[str], scope: Scope
     ) -> Iterator[bool]:
         """Yield whether the movements without an end among some nodes are forwards."""
         ports = [*ports]
-        for call in self._calls(nodes, ports, self.moves.endless, scope):
+        for call in self._find_calls(nodes, ports, self.moves.endless, scope):
             named = [keyword.value for keyword in call.keywords if keyword.arg in self.moves.speeds]
             for node in (*named, *call.args[:1]):
                 inside = node.args[0] if isinstance(node, ast.Call) and node.args else node
-                yield from (value > 0 for value in self._numbers(inside, scope) if value)
+                yield from (value > 0 for value in self._find_numbers(inside, scope) if value)
         for statement in nodes:
             match statement:
                 case ast.Assign(targets=[ast.Attribute(value=base, attr=name)], value=speed) if (
                     name in self.moves.speeds
                 ):
-                    if {*ports} & {*self._motors(base, scope)}:
-                        yield from (value > 0 for value in self._numbers(speed, scope) if value)
+                    if {*ports} & {*self._find_motors(base, scope)}:
+                        yield from (
+                            value > 0 for value in self._find_numbers(speed, scope) if value
+                        )
 
     def _note_reach(self, call: ast.Call, name: str, ports: Sequence[str], scope: Scope) -> None:
         turns = 360.0 if name == "on_for_rotations" else 1.0
-        for node in self._lengths(call, name, scope):
+        for node in self._find_lengths(call, name, scope):
             if name in self.moves.unsigned:
                 self._note_targets(node, ports, scope)
                 continue
-            lengths = self._numbers(node, scope)
+            lengths = self._find_numbers(node, scope)
             self.found.endless.update(() if lengths else ports)
             for length in lengths:
                 turn = Target(abs(length) * turns, _find_where(node, scope), scope)
@@ -268,7 +270,7 @@ class _MechanicsReader:
                     self.found.note_turn(port, turn)
 
     def _note_targets(self, node: ast.expr, ports: Sequence[str], scope: Scope) -> None:
-        targets = self._numbers(node, scope)
+        targets = self._find_numbers(node, scope)
         if not targets:
             self.found.endless.update(ports)
             return
@@ -297,7 +299,7 @@ class _MechanicsReader:
                 pass
             case _:
                 return
-        touches = self._devices(base, scope, DeviceKind.TOUCH)
+        touches = self._find_ports(base, scope, DeviceKind.TOUCH)
         nodes = [inner for statement in statements for inner in ast.walk(statement)]
         moved = {
             port
@@ -305,17 +307,17 @@ class _MechanicsReader:
             if isinstance(node, ast.Call)
             and isinstance(node.func, ast.Attribute)
             and node.func.attr in self.moves.endless | self.moves.ending
-            for port in self._motors(node.func.value, scope)
+            for port in self._find_motors(node.func.value, scope)
         }
         if len(moved) == 1 and touches:
-            forwards = next(self._directions([*nodes, *scope.body], moved, scope), None)
+            forwards = next(self._find_ways([*nodes, *scope.body], moved, scope), None)
             motor = moved.pop()
-            stop = EndStop(_find_where(last, scope), self._as_mounted(motor, forwards), scope)
+            stop = EndStop(_find_where(last, scope), self._convert_way(motor, forwards), scope)
             self.found.presses.append(StopPress(touches[0], motor, stop))
 
     # Devices
 
-    def _known_motors(self, node: ast.expr, scope: Scope) -> list[str]:
+    def _find_known(self, node: ast.expr, scope: Scope) -> list[str]:
         """Return the ports of the motors that an expression can be; none if it stands for one of several in turn."""
         calls = [
             value.call
@@ -327,19 +329,19 @@ class _MechanicsReader:
             for call in calls
             if call
         )
-        return [] if in_turn else self._motors(node, scope)
+        return [] if in_turn else self._find_motors(node, scope)
 
-    def _motors(self, node: ast.expr, scope: Scope) -> list[str]:
-        return self._devices(node, scope, DeviceKind.LARGE, DeviceKind.MEDIUM, DeviceKind.MOTOR)
+    def _find_motors(self, node: ast.expr, scope: Scope) -> list[str]:
+        return self._find_ports(node, scope, DeviceKind.LARGE, DeviceKind.MEDIUM, DeviceKind.MOTOR)
 
-    def _devices(self, node: ast.expr, scope: Scope, *kinds: DeviceKind) -> list[str]:
+    def _find_ports(self, node: ast.expr, scope: Scope, *kinds: DeviceKind) -> list[str]:
         """Return the ports of the devices of some kinds that an expression can be."""
         if isinstance(node, ast.Attribute) and node.attr in ("left_motor", "right_motor"):
-            pairs = self._pairs(node.value, scope)
+            pairs = self._find_pairs(node.value, scope)
             if pairs:
                 return [pair.left if node.attr == "left_motor" else pair.right for pair in pairs]
-        ports = [port for pair in self._pairs(node, scope) for port in (pair.left, pair.right)]
-        for value in self._values(node, scope):
+        ports = [port for pair in self._find_pairs(node, scope) for port in (pair.left, pair.right)]
+        for value in self._evaluate(node, scope):
             if isinstance(value, Instance):
                 ports += [
                     device.port
@@ -348,7 +350,7 @@ class _MechanicsReader:
                 ]
         return list(dict.fromkeys(ports))
 
-    def _values(self, node: ast.expr, scope: Scope) -> Sequence[Value]:
+    def _evaluate(self, node: ast.expr, scope: Scope) -> Sequence[Value]:
         """Return what an expression can be at its place: by the nearest assignment above, and in its own object."""
         match node:
             case ast.Name(id=name):
@@ -363,18 +365,20 @@ class _MechanicsReader:
                     if bound.node.lineno < node.lineno and not (bound.path or bound.is_item)
                 ]
                 if len(known) > 1 and above:
-                    return self._values(max(above, key=lambda bound: bound.node.lineno).node, scope)
+                    return self._evaluate(
+                        max(above, key=lambda bound: bound.node.lineno).node, scope
+                    )
             case ast.Attribute(value=base, attr=name):
-                of = self._values(base, scope)
+                of = self._evaluate(base, scope)
                 if any(isinstance(bound, Instance) for bound in of):
                     return [
                         value
                         for bound in of
-                        for value in self._evaluation_in(bound).attribute(bound, name)
+                        for value in self._enter_object(bound).attribute(bound, name)
                     ]
         return self.evaluation.values(node, scope)
 
-    def _evaluation_in(self, value: Value) -> Evaluation:
+    def _enter_object(self, value: Value) -> Evaluation:
         """Return what the program's expressions can be in one object of a class of the program."""
         match value:
             case Instance(of=OwnClass(scope=scope), call=ast.Call() as call):
@@ -387,7 +391,7 @@ class _MechanicsReader:
                 return self.inside[call]
         return self.evaluation
 
-    def _pairs(self, node: ast.expr, scope: Scope) -> list[Pair]:
+    def _find_pairs(self, node: ast.expr, scope: Scope) -> list[Pair]:
         pairs = []
         for value in self.evaluation.values(node, scope):
             if isinstance(value, Instance):

@@ -171,15 +171,15 @@ class _Reader:
         of_ports = [pair for pair in self.made if not _needs_motors(pair[0])]
         # Its motors are known by then.
         for name, call in (*of_ports, *(pair for pair in self.made if _needs_motors(pair[0]))):
-            for inside, via in self._ways(name, call, whole):
+            for inside, via in self._list_ways(name, call, whole):
                 self.evaluation, self.via = inside, via
                 if name in library.PAIRS:
-                    pairs += self._pairs(name, call, devices)
-                    devices += self._needs(name, call)
+                    pairs += self._find_pairs(name, call, devices)
+                    devices += self._list_needs(name, call)
                 elif name == library.MOTOR_SET:
-                    devices += self._motor_set(call)
+                    devices += self._read_set(call)
                 elif name in library.DEVICES:
-                    devices += self._devices(name, call)
+                    devices += self._find_devices(name, call)
         self.evaluation = whole
         # What is known in one call of a function may not be in another one, such as that in itself.
         known = {pair.call for pair in devices if pair.port}
@@ -188,7 +188,7 @@ class _Reader:
             tuple(dict.fromkeys(devices)), tuple(dict.fromkeys(pairs)), self.scopes, whole
         )
 
-    def _ways(
+    def _list_ways(
         self, name: str, call: Call, whole: Evaluation
     ) -> Iterator[tuple[Evaluation, Call | None]]:
         """Yield what is known in each call of the function in which something is made, with that call."""
@@ -267,11 +267,11 @@ class _Reader:
                 case ast.Dict(keys=keys, values=values):
                     for key, value in zip(keys, values, strict=True):
                         if isinstance(key, ast.Constant) and isinstance(key.value, str):
-                            self._hint(value, key.value)
+                            self._note_hint(value, key.value)
                 case ast.keyword(arg=str(name), value=value):
-                    self._hint(value, name)
+                    self._note_hint(value, name)
                 case ast.Return(value=ast.expr() as value) if isinstance(scope.node, FUNCTIONS):
-                    self._hint(value, scope.node.name)
+                    self._note_hint(value, scope.node.name)
         for function, calls in self.evaluation.calls.items():
             for call in calls:
                 if call.scope is scope:
@@ -279,7 +279,7 @@ class _Reader:
                         1 if call.is_bound else 0 :
                     ]
                     for name, value in zip(names, call.node.args, strict=False):
-                        self._hint(value, name)
+                        self._note_hint(value, name)
 
     def _note(self, target: ast.expr, value: ast.expr) -> None:
         match target, value:
@@ -290,37 +290,37 @@ class _Reader:
                 for part, inside in zip(targets, values, strict=False):
                     self._note(part, inside)
             case ((ast.Name(id=name) | ast.Attribute(attr=name)), _):
-                self._hint(value, name)
+                self._note_hint(value, name)
 
-    def _hint(self, value: ast.expr, name: str) -> None:
+    def _note_hint(self, value: ast.expr, name: str) -> None:
         if name not in (known := self.hints.setdefault(value, [])):
             known.append(name)
         match value:
             case ast.IfExp(body=one, orelse=other):
-                self._hint(one, name)
-                self._hint(other, name)
+                self._note_hint(one, name)
+                self._note_hint(other, name)
             case ast.BoolOp(values=parts):
                 for part in parts:
-                    self._hint(part, name)
+                    self._note_hint(part, name)
             case ast.Call(args=args):
                 # As in `elbow = Joint(LargeMotor(OUTPUT_B))`: the thing is named after its only part.
                 parts = [part for part in args if part in self.parts]
                 if len(parts) == 1 and value not in self.parts:
-                    self._hint(parts[0], name)
+                    self._note_hint(parts[0], name)
 
     # Devices
 
-    def _devices(self, name: str, call: Call) -> Iterator[Mention]:
+    def _find_devices(self, name: str, call: Call) -> Iterator[Mention]:
         kind, where = library.DEVICES[name], _find_where(call)
         driver = self.evaluation.find_argument(call, "driver_name", None)
         if driver:
-            kinds = [library.find_driver_kind(one) for one in self._flat(driver)]
+            kinds = [library.find_driver_kind(text) for text in self._flatten(driver)]
             if not kinds or kinds[0] is None:
                 return
             kind = kinds[0]
         elif kind is DeviceKind.SENSOR:
-            kind = self._kind_by_mode(call) or kind
-        names = self._called(call)
+            kind = self._find_kind(call) or kind
+        names = self._find_names(call)
         device = Mention(
             kind,
             "",
@@ -337,29 +337,29 @@ class _Reader:
         ports = (
             [("", names)]
             if name in library.WITHOUT_PORT
-            else list(self._ports(call, word, 0, names))
+            else list(self._find_ports(call, word, 0, names))
         )
-        if not ports and not any(isinstance(value, str) for value in self._given(call, word)):
+        if not ports and not any(isinstance(value, str) for value in self._read_given(call, word)):
             # A text that is no port of the brick names something that is not simulated.
-            yield replace(device, is_any=self._takes_any(call, word))
+            yield replace(device, is_any=self._has_any(call, word))
         for port, called in dict(ports).items():
             if port and not self.hub and port.startswith("out") != kind.is_motor:
                 continue
             placed = replace(device, port=port, names=called, is_any=not port)
-            yield self._mounted(placed, call) if kind.is_motor else placed
+            yield self._mount(placed, call) if kind.is_motor else placed
 
-    def _mounted(self, motor: Mention, call: Call) -> Mention:
+    def _mount(self, motor: Mention, call: Call) -> Mention:
         """Return a motor with the direction and the gears that the call says."""
         is_turned = library.INVERSED in (
             self.evaluation.find_argument(call, library.DIRECTION, 1) or ()
         )
-        return replace(motor, is_turned=is_turned, gear_ratio=self._gear_ratio(call))
+        return replace(motor, is_turned=is_turned, gear_ratio=self._read_gears(call))
 
-    def _gear_ratio(self, call: Call) -> float:
+    def _read_gears(self, call: Call) -> float:
         """Return the turns of a motor per turn of what it drives: its gears are one train, or a list of trains."""
-        parts = [*self._flat(self.evaluation.find_argument(call, library.GEARS, 2) or ())]
+        parts = [*self._flatten(self.evaluation.find_argument(call, library.GEARS, 2) or ())]
         trains = [
-            [*self._flat([part])] for part in parts if isinstance(part, SourceCollection)
+            [*self._flatten([part])] for part in parts if isinstance(part, SourceCollection)
         ] or [parts]
         ratio = 1.0
         for train in trains:
@@ -368,19 +368,19 @@ class _Reader:
                 ratio *= teeth[-1] / teeth[0]
         return ratio
 
-    def _called(self, call: Call) -> tuple[str, ...]:
+    def _find_names(self, call: Call) -> tuple[str, ...]:
         """Return what the program calls the thing that a call makes."""
         outside = self.hints.get(self.via.node, ()) if self.via else ()
         return tuple(dict.fromkeys((*self.hints.get(call.node, ()), *outside)))
 
-    def _given(self, call: Call, word: str) -> Sequence[Value]:
+    def _read_given(self, call: Call, word: str) -> Sequence[Value]:
         return self.evaluation.find_argument(call, word, 0) or ()
 
-    def _takes_any(self, call: Call, word: str) -> bool:
+    def _has_any(self, call: Call, word: str) -> bool:
         node = find_argument_node(call, word, 0)
         return node is None or (isinstance(node, ast.Constant) and node.value is None)
 
-    def _ports(
+    def _find_ports(
         self, call: Call, name: str, position: int, names: tuple[str, ...]
     ) -> Iterator[tuple[str, tuple[str, ...]]]:
         """Yield the ports that an argument can be, each with what the program calls the device."""
@@ -398,14 +398,14 @@ class _Reader:
         if parameters:
             for value, via in self.evaluation.arguments(parameters[0]):
                 if port := library.parse_port(value):
-                    further = self._said_in(via, parameters[0]) if via else ()
+                    further = self._find_said(via, parameters[0]) if via else ()
                     yield port, (*names, *own, *further)
             return
         for value in self.evaluation.values(node, call.scope):
             if port := library.parse_port(value):
                 yield port, (*names, *own)
 
-    def _said_in(self, call: Call, parameter: Parameter) -> tuple[str, ...]:
+    def _find_said(self, call: Call, parameter: Parameter) -> tuple[str, ...]:
         names = [argument.arg for argument in parameter.function.args.args]
         name = parameter.argument.arg
         position = names.index(name) - (1 if call.is_bound else 0) if name in names else None
@@ -415,7 +415,7 @@ class _Reader:
             *(library.list_names(node) if node is not None else ()),
         )
 
-    def _flat(self, values: Sequence[Value]) -> Iterator[Value]:
+    def _flatten(self, values: Sequence[Value]) -> Iterator[Value]:
         for value in values:
             if isinstance(value, SourceCollection):
                 for item in value.items:
@@ -423,7 +423,7 @@ class _Reader:
             else:
                 yield value
 
-    def _kind_by_mode(self, call: Call) -> DeviceKind | None:
+    def _find_kind(self, call: Call) -> DeviceKind | None:
         """Return the kind of a sensor whose mode the program sets."""
         names = self.hints.get(call.node, ())
         for scope in self.scopes:
@@ -442,7 +442,7 @@ class _Reader:
                                 return kind
         return None
 
-    def _motor_set(self, call: Call) -> Iterator[Mention]:
+    def _read_set(self, call: Call) -> Iterator[Mention]:
         owner, where = call.scope.owner, _find_where(call)
         for table in self.evaluation.find_argument(call, "motor_specs", 0) or ():
             if isinstance(table, SourceCollection) and isinstance(table.node, ast.Dict):
@@ -460,47 +460,47 @@ class _Reader:
                                 kinds[0],
                                 port,
                                 where,
-                                (*names, *self._called(call)),
+                                (*names, *self._find_names(call)),
                                 owner,
                                 call=call.node,
                             )
 
     # Pairs
 
-    def _pairs(self, name: str, call: Call, devices: Sequence[Mention]) -> Iterator[Pair]:
+    def _find_pairs(self, name: str, call: Call, devices: Sequence[Mention]) -> Iterator[Pair]:
         """Yield the pairs of motors that a call makes.
 
         Args:
             devices: What the program makes besides, with the motors of a class that takes motors.
         """
-        known, names = library.PAIRS[name], self._called(call)
+        known, names = library.PAIRS[name], self._find_names(call)
         polarities = [
             str(value) for value in self.evaluation.find_argument(call, library.POLARITY, 2) or ()
         ]
-        for left, other in self._ends(known, call, names, devices):
+        for left, other in self._find_ends(known, call, names, devices):
             if left != other and left.startswith("out") and other.startswith("out"):
                 yield Pair(
                     left,
                     other,
-                    self._motor_kind(name, known, call),
+                    self._read_motor_kind(name, known, call),
                     known.rank,
                     _find_where(call),
                     name,
-                    *self._sizes(known, call),
+                    *self._read_sizes(known, call),
                     names,
                     call.node,
                     call.scope.owner,
                     polarities[0] if polarities else "",
                 )
 
-    def _ends(
+    def _find_ends(
         self, known: PairClass, call: Call, names: tuple[str, ...], devices: Sequence[Mention]
     ) -> Iterable[tuple[str, str]]:
         """Return the ports of the left and the right motor, for each pair that a call can make."""
         if known.takes_motors:
             left, right = (
-                self._driven(call, known.left, 0, devices),
-                self._driven(call, known.right, 1, devices),
+                self._find_driven(call, known.left, 0, devices),
+                self._find_driven(call, known.right, 1, devices),
             )
             if len(left) == 2 and right in ([], left):
                 # As `motors[0]` and `motors[1]` of `motors = [Motor(port) for port in ports]`.
@@ -508,15 +508,15 @@ class _Reader:
         else:
             # The ports of a balancing robot come last.
             places = (10, 11) if known.usual[0] else (0, 1)
-            left = [port for port, _ in self._ports(call, known.left, places[0], names)]
-            right = [port for port, _ in self._ports(call, known.right, places[1], names)]
+            left = [port for port, _ in self._find_ports(call, known.left, places[0], names)]
+            right = [port for port, _ in self._find_ports(call, known.right, places[1], names)]
         left = left or ([known.usual[0]] if known.usual[0] else [])
         right = right or ([known.usual[1]] if known.usual[1] else [])
         if len(left) != len(right):
             left, right = left[:1], right[:1]
         return dict.fromkeys(zip(left, right, strict=False))
 
-    def _driven(self, call: Call, name: str, at: int, devices: Sequence[Mention]) -> list[str]:
+    def _find_driven(self, call: Call, name: str, at: int, devices: Sequence[Mention]) -> list[str]:
         """Return the ports of the motors that an argument can be."""
         instances = [
             one
@@ -537,25 +537,25 @@ class _Reader:
             )
         )
 
-    def _sizes(
+    def _read_sizes(
         self, known: PairClass, call: Call
     ) -> tuple[tuple[float, float | None] | None, float | None]:
         """Return the size of the wheels, and their distance."""
         if known.takes_motors:
-            diameter_mm = self._size(call, library.WHEEL_DIAMETER, 2)
+            diameter_mm = self._read_size(call, library.WHEEL_DIAMETER, 2)
             wheel_mm = (diameter_mm, None) if diameter_mm is not None else None
-            return wheel_mm, self._size(call, library.AXLE_TRACK, 3)
+            return wheel_mm, self._read_size(call, library.AXLE_TRACK, 3)
         return (
-            (self._wheel(call), self._size(call, library.DISTANCE, 3))
+            (self._read_wheel(call), self._read_size(call, library.DISTANCE, 3))
             if known.rank == 3
             else (None, None)
         )
 
-    def _size(self, call: Call, name: str, position: int) -> float | None:
+    def _read_size(self, call: Call, name: str, position: int) -> float | None:
         values = self.evaluation.find_argument(call, name, position) or ()
         return next((float(value) for value in values if isinstance(value, int | float)), None)
 
-    def _motor_kind(self, name: str, known: PairClass, call: Call) -> DeviceKind:
+    def _read_motor_kind(self, name: str, known: PairClass, call: Call) -> DeviceKind:
         values = self.evaluation.find_argument(
             call, library.MOTOR_CLASS, library.MOTOR_CLASS_INDEX.get(name)
         )
@@ -563,13 +563,13 @@ class _Reader:
             (kind for value in values or () if (kind := _find_motor_kind(value))), known.kind
         )
 
-    def _wheel(self, call: Call) -> tuple[float, float] | None:
+    def _read_wheel(self, call: Call) -> tuple[float, float] | None:
         for value in self.evaluation.find_argument(call, library.WHEEL_CLASS, 2) or ():
-            if size := self._size_of(value, ()):
+            if size := self._find_size(value, ()):
                 return size
         return None
 
-    def _size_of(self, wheel: Value, seen: tuple[Value, ...]) -> tuple[float, float] | None:
+    def _find_size(self, wheel: Value, seen: tuple[Value, ...]) -> tuple[float, float] | None:
         match wheel:
             case LibraryClass(name=name):
                 return library.WHEELS.get(name)
@@ -587,11 +587,11 @@ class _Reader:
                         if all(sizes):
                             return float(str(sizes[0][0])), float(str(sizes[1][0]))
                 for base in self.evaluation.bases(scope):
-                    if size := self._size_of(base, (*seen, wheel)):
+                    if size := self._find_size(base, (*seen, wheel)):
                         return size
         return None
 
-    def _needs(self, name: str, call: Call) -> Iterator[Mention]:
+    def _list_needs(self, name: str, call: Call) -> Iterator[Mention]:
         for kind in library.PAIRS[name].needs:
             yield Mention(kind, "", _find_where(call), is_any=True)
 

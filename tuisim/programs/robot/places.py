@@ -73,7 +73,7 @@ class NewSensors:
         self.by_port[port] = mention
 
     @staticmethod
-    def likeliest(sensors: list[SensorSpec], mention: Mention) -> SensorSpec:
+    def choose_likeliest(sensors: list[SensorSpec], mention: Mention) -> SensorSpec:
         """Return the one of some sensors that a program means, by its name for it."""
         side = find_side(mention.names)
         return next((sensor for sensor in sensors if sensor.name == side), sensors[0])
