@@ -21,7 +21,7 @@ def test_each_reason_comes_in_turn_and_then_the_end() -> None:
     tour.take(run, REASONS, None)
     assert tour.advance() == REASONS[0]
     assert tour.words == (
-        "1.00 s, line 3: the robot stood at the wall · reason 1 of 2, {went-wrong} goes on"
+        "1.00 s, line 3: the robot stood at the wall · reason 1 of 2, {went-wrong} shows the next"
     )
     assert tour.advance() == REASONS[1]
     assert tour.words.startswith("0.50 s: the robot left the mat · reason 2 of 2")

@@ -97,7 +97,7 @@ def test_variables_at_instants_forwards_and_back(recording: Recording, looker: L
 
 
 def test_lines_back_from_an_instant(recording: Recording, looker: Looker) -> None:
-    looker.debugger.step_back(recording, Position(105), 2, Inspect())
+    looker.debugger.lines_back(recording, Position(105), 2, Inspect())
     paused, names = looker.answer()
     assert (paused.line, names["n"], names["m"]) == (3, "10", "81")
 
