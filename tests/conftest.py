@@ -110,9 +110,9 @@ def shared_home(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
 @pytest.fixture(scope="session", autouse=True)
 def _forked_children() -> Iterator[None]:
     """Fork the children of all runs from the warm process, also the first."""
-    process.warm_up()
+    process.start_warm_process()
     yield
-    process.cool_down()
+    process.end_warm_process()
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -69,7 +69,7 @@ def _stored(programs: Mapping[str, str]) -> dict[str, Stored]:
         ]
         name = max(fits, key=lambda one: len(programs[one]))
         # One that is falsified holds whatever its program has left.
-        rows = [] if run.state == "falsified" else run.output.all_rows()
+        rows = [] if run.state == "falsified" else run.output.read_all_rows()
         printed = tuple(row.text for row in rows if row.stream == Stream.STDOUT)
         end = run.end
         found[name] = Stored(

@@ -34,12 +34,12 @@ class Done:
     @property
     def lines(self) -> list[str]:
         """What was printed, without error text."""
-        return [row.text for row in self.run.output.all_rows() if row.stream == 1]
+        return [row.text for row in self.run.output.read_all_rows() if row.stream == 1]
 
     @property
     def errors(self) -> list[str]:
         """Lines of error text."""
-        return [row.text for row in self.run.output.all_rows() if row.stream == 2]
+        return [row.text for row in self.run.output.read_all_rows() if row.stream == 2]
 
     @property
     def pose(self) -> tuple[float, float, float]:

@@ -30,7 +30,7 @@ from tuisim.app.timeline import Timeline, find
 from tuisim.base.errors import ConfigError
 from tuisim.engine.protocol import End
 from tuisim.engine.runs.records import Mark
-from tuisim.engine.runs.views import instant_of
+from tuisim.engine.runs.views import build_instant
 
 PEN = LOGS.replace("tank_drive.on", "print('off we go')\ntank_drive.on", 1)
 
@@ -87,7 +87,7 @@ async def test_a_former_instant_is_shown_as_it_was() -> None:
         await until(pilot, lambda: app.debugger.view is not None and not app.debugger.busy)
         assert app.debugger.view is not None
         record, line = recording.telemetry.record(200), app.debugger.view.paused.line
-        then = instant_of(record, recording.spec, recording.spec.world.noise)
+        then = build_instant(record, recording.spec, recording.spec.world.noise)
         expected = Snapshot(
             RunPhase.ENDED,
             End.FINISHED,

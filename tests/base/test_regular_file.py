@@ -15,7 +15,13 @@ import pytest
 from tests.commands.test_runs_damaged import record, row
 from tests.conftest import ROOT, Command
 from tuisim.cli import EXIT_OUR_MISTAKE
-from tuisim.engine.runs.records import HEADER_BYTES, OUTPUT_FILE, TELEMETRY_FILE, Stream, header
+from tuisim.engine.runs.records import (
+    HEADER_BYTES,
+    OUTPUT_FILE,
+    TELEMETRY_FILE,
+    Stream,
+    pack_header,
+)
 from tuisim.engine.runs.views import OutputView, TelemetryView
 
 HUGE = 64 << 30
@@ -145,7 +151,7 @@ def test_a_hole_in_a_recording_is_not_copied(home: Path) -> None:
         (OUTPUT_FILE, 200 << 20, b"TUISIMOU", 0),
     ):
         with (run / name).open("r+b") as stream:
-            stream.write(header(magic, size, claimed))
+            stream.write(pack_header(magic, size, claimed))
             stream.truncate(HUGE)
     with without_waiting():
         telemetry, output = TelemetryView(run), OutputView(run)

@@ -11,7 +11,7 @@ from tests.running import Run
 from tuisim.app.editor.text_file import read_text
 from tuisim.base.errors import ConfigError
 from tuisim.base.source import find_code_line, source_lines
-from tuisim.engine.runs.child.process import stuck_line
+from tuisim.engine.runs.child.process import find_stuck_line
 from tuisim.programs.program_file import parse_program, read_program
 
 NO_ENDS = "\x0b \x0c \x1c \x1d \x1e \x85 \u2028 \u2029"
@@ -67,7 +67,7 @@ def test_a_stuck_line_is_found_whatever_the_program_is_called(tmp_path: Path, na
     (tmp_path / "stack.txt").write_text(
         f'Current thread 0x1 (most recent call first):\n  File "{shown}", line 7 in f\n'
     )
-    assert stuck_line(tmp_path, name) == 7
+    assert find_stuck_line(tmp_path, name) == 7
 
 
 @pytest.mark.parametrize(

@@ -114,7 +114,7 @@ def _command(count: int, jobs: int, more: Sequence[str] = ()) -> Batch:
 
 def _until_moved_s(keeps_warm: bool) -> float:
     """Return the real seconds from the start of a run until its first tick that differs from the start."""
-    process.warm_up()
+    process.start_warm_process()
     begun = time.perf_counter()
     with nullcontext() if keeps_warm else started_by_itself():
         handle = begin(MOVES, options=RunOptions(live=True))

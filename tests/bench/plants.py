@@ -24,14 +24,14 @@ threading.setprofile(burn)
 """Makes every call and every return of a process cost so many turns of a loop."""
 NOISY = """
 from tuisim.engine.core import noise
-moved = noise._moved
+moved = noise._compute_shift
 
 def burn(values, level):
     for _ in range({turns}):
         pass
     return moved(values, level)
 
-noise._moved = burn
+noise._compute_shift = burn
 """
 """Makes every channel of a noisy reading cost so many turns of a loop."""
 FOLLOWING = """
@@ -98,11 +98,11 @@ FrameBuffer.codes = walk
 @contextmanager
 def in_runs(code: str) -> Iterator[None]:
     """Plant code in the processes of runs that this process starts."""
-    process.cool_down()
+    process.end_warm_process()
     start = "runpy.run_module"
     with patch.object(process, "BOOT", process.BOOT.replace(start, f"exec({code!r}); {start}")):
         yield
-        process.cool_down()
+        process.end_warm_process()
 
 
 @contextmanager

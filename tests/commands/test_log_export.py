@@ -15,7 +15,7 @@ import pytest
 
 from tests.conftest import Command
 from tuisim.cli import run_command
-from tuisim.engine.runs.frames import samples_frame, telemetry_frame
+from tuisim.engine.runs.frames import build_samples_frame, build_telemetry_frame
 from tuisim.engine.runs.store import RunStore
 from tuisim.logs.export import EXPORTERS, find_companion
 from tuisim.logs.frames import read_log
@@ -67,7 +67,7 @@ def kept(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Kept]:
             words = [run.id for run in runs] + ["--out", target]
             words = words if name == "samples" else [runs[0].id, "--telemetry", target]
             assert run_command(["runs", "export", *words]) == 0
-    frames = {"samples": samples_frame(runs), "telemetry": telemetry_frame(runs[0])}
+    frames = {"samples": build_samples_frame(runs), "telemetry": build_telemetry_frame(runs[0])}
     words_of = {"samples": tuple(run.id for run in runs), "telemetry": (runs[0].id, "--telemetry")}
     return {
         name: Kept(words_of[name], frames[name], open_log(files / "log.parquet").metadata, files)

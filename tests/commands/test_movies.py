@@ -260,7 +260,7 @@ def test_damaged_records_cost_only_their_frames(
 
 
 def test_a_run_that_has_not_ended(here: Command, run: StoredRun) -> None:
-    RunStore().new_run(PROGRAM, run.spec)
+    RunStore().create_run(PROGRAM, run.spec)
     done = here("runs", "movie", "last")
     assert (
         done.returncode,

@@ -33,7 +33,7 @@ SHOWS = "# %%sim_magic\nimport sys\nprint(sys.argv)\n"
 
 def until_line(handle: RunHandle) -> None:
     """Wait until a program has printed a second line."""
-    until_so(handle, lambda: len(handle.output.all_rows()) > 1)
+    until_so(handle, lambda: len(handle.output.read_all_rows()) > 1)
 
 
 pytestmark = pytest.mark.usefixtures("home")
@@ -202,7 +202,7 @@ def test_a_branch_has_the_arguments_and_modules_of_its_run(stored: Path) -> None
     assert runs.run is not None
     with closing(runs.run) as handle:
         until_line(handle)
-        assert [row.text for row in handle.output.all_rows()][1] == "['A'] 1 2020-01-01 3 2020"
+        assert [row.text for row in handle.output.read_all_rows()][1] == "['A'] 1 2020-01-01 3 2020"
     assert (handle.program.text[:8], handle.program.modules_from) == ("# edited", run.folder)
 
 

@@ -95,7 +95,7 @@ def test_program_cannot_swallow_the_end_of_the_disk(
     with files_of_at_most(TELEMETRY_CHUNK + 5000):
         handle = start(text, time_limit_s=0.0)
     assert over(handle).ended.end == "disk_full"
-    assert {len(row.text) for row in handle.output.all_rows()} == {5000}
+    assert {len(row.text) for row in handle.output.read_all_rows()} == {5000}
 
 
 @pytest.mark.usefixtures("real_start")

@@ -110,7 +110,7 @@ def test_bad_age(make: Make, here: Command, words: tuple[str, ...], said: str) -
 
 def test_a_run_that_still_goes_on_is_not_too_old(make: Make, here: Command) -> None:
     store = RunStore()
-    store.new_run(PROGRAM, make().spec)
+    store.create_run(PROGRAM, make().spec)
     assert "1 run removed" in here("runs", "rm", "--older-than", "0h").stdout
     assert [run.number for run in store.runs()] == [2]
 

@@ -20,7 +20,7 @@ from tests.cases import cases
 from tests.engine.runs.run_recorder import Recorder
 from tuisim.base.errors import ExportError, LogError
 from tuisim.engine.core.spec import RunSpec
-from tuisim.engine.runs.frames import samples_frame, telemetry_frame
+from tuisim.engine.runs.frames import build_samples_frame, build_telemetry_frame
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.logs.export import (
     EXPORTERS,
@@ -57,7 +57,9 @@ def test_samples_come_back_to_the_last_bit(
     run = noisy_run(record, noisy_spec)
     target = tmp_path / f"log{suffix}"
     export_samples([run, run], target)
-    pd.testing.assert_frame_equal(read_log(target), samples_frame([run, run]), check_exact=True)
+    pd.testing.assert_frame_equal(
+        read_log(target), build_samples_frame([run, run]), check_exact=True
+    )
 
 
 @pytest.mark.quick_cases(".csv", ".parquet")
@@ -68,7 +70,7 @@ def test_telemetry_comes_back_to_the_last_bit(
     run = noisy_run(record, noisy_spec)
     target = tmp_path / f"log{suffix}"
     export_telemetry(run, target)
-    pd.testing.assert_frame_equal(read_log(target), telemetry_frame(run), check_exact=True)
+    pd.testing.assert_frame_equal(read_log(target), build_telemetry_frame(run), check_exact=True)
 
 
 @each_format
@@ -152,7 +154,7 @@ def test_frame_without_rows_comes_back_with_its_types(
 ) -> None:
     run = record(spec).end()
     export_samples([run], tmp_path / f"x{suffix}")
-    pd.testing.assert_frame_equal(read_log(tmp_path / f"x{suffix}"), samples_frame([run]))
+    pd.testing.assert_frame_equal(read_log(tmp_path / f"x{suffix}"), build_samples_frame([run]))
 
 
 @pytest.mark.quick_cases("samples-*")
@@ -284,7 +286,7 @@ def test_csv_without_companion_is_read_all_the_same(logged: StoredRun, tmp_path:
     find_companion(tmp_path / "x.csv").unlink()
     with pytest.warns(UserWarning, match="text, not numbers: 'index'"):
         frame = read_log(tmp_path / "x.csv")
-    pd.testing.assert_frame_equal(frame.reset_index(drop=True), samples_frame([logged]))
+    pd.testing.assert_frame_equal(frame.reset_index(drop=True), build_samples_frame([logged]))
     assert open_log(tmp_path / "x.csv").metadata == {}
 
 

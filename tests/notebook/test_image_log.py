@@ -107,5 +107,5 @@ def test_what_an_interrupt_leaves_unheard_is_in_the_log(
     shown = cell(program("for i in range(400):\n    print('image_data left')"))
     assert "… and more lines" in shown.err
     # The interrupt may have stopped the program before its last line.
-    printed = RunStore().load_run(RunStore().runs()[-1].id).output.all_rows()
+    printed = RunStore().load_run(RunStore().runs()[-1].id).output.read_all_rows()
     assert len(cell("roboSim.raw_image_data").result) == len(printed)

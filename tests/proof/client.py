@@ -75,7 +75,7 @@ class Client:
                 run.send(command)
                 run.wait_for_event(0.05)
                 run.pump()
-                run.output.new_rows()
+                run.output.read_new_rows()
                 # From its first line to its end its process holds the lock of the folder.
                 was_held = was_held or (run.started and run.ended is None and run.folder.is_dir())
             run.send(Resume())
@@ -198,7 +198,7 @@ class Client:
         run: RunHandle = start_run(
             Program("victim.py", _LONG), build_run_spec(Settings()), RunOptions(live=True)
         )
-        while not run.output.new_rows():
+        while not run.output.read_new_rows():
             run.wait_for_event(0.05)
             if [event for event in run.pump() if run.ended is not None]:
                 raise FaultError(f"a run that nobody stopped ended {run.ended}")
@@ -224,7 +224,7 @@ def _is_over(role: str, done: int, rounds: int) -> bool:
 
 def main(role: str, seed: str, rounds: str, patience_s: str) -> int:
     """Do the work of a role until it is over; return 1 if something was wrong."""
-    process.warm_up()
+    process.start_warm_process()
     done = 0
     try:
         while not _is_over(role, done, int(rounds)):

@@ -367,12 +367,12 @@ def printed(text: str, solid: bool = False) -> list[str]:
         build_run_spec(Settings({"background": "Empty_Map", "profile": "ev3", "solid": solid})),
         robot=robot,
     )
-    process.warm_up()
+    process.start_warm_process()
     run = start_run(Program("program.py", text), spec, RunOptions(time_limit_s=1e6))
     try:
         if (ended := run.wait(PATIENCE_S)) is None or ended.end is not End.FINISHED:
             raise FaultError(f"the program ends with {ended}")
-        return [row.text for row in run.output.all_rows() if row.stream == Stream.STDOUT]
+        return [row.text for row in run.output.read_all_rows() if row.stream == Stream.STDOUT]
     finally:
         run.close()
 

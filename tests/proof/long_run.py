@@ -26,9 +26,9 @@ from tuisim.engine.runs.records import (
     HEADER_BYTES,
     TELEMETRY_FILE,
     TELEMETRY_MAGIC,
-    published_length,
+    read_published_length,
 )
-from tuisim.engine.runs.store import RunStore, bytes_in
+from tuisim.engine.runs.store import RunStore, count_bytes
 
 PROGRAM = """\
 import time
@@ -67,7 +67,7 @@ class Sample:
 def published_ticks(folder: Path) -> int:
     """Return the number of ticks that a run has recorded."""
     with (folder / TELEMETRY_FILE).open("rb") as handle:
-        return published_length(handle.read(HEADER_BYTES), TELEMETRY_MAGIC, str(folder))
+        return read_published_length(handle.read(HEADER_BYTES), TELEMETRY_MAGIC, str(folder))
 
 
 def _memory_mb(process: int) -> float:
@@ -95,7 +95,7 @@ def _sample(start_s: float, app: int, program: int, run: RunInfo) -> Sample:
         _descriptors(app),
         _memory_mb(program),
         _descriptors(program),
-        bytes_in(folder) / MB,
+        count_bytes(folder) / MB,
     )
 
 

@@ -136,8 +136,8 @@ PLANTED: tuple[Planted, ...] = (
     Planted(
         "run.json is taken from the run folder, not from what was started",
         "engine/runs/store.py",
-        '{**run.data, "tags": _tags_in(run.folder), "end"',
-        '{**read_run_file(run.folder), "tags": _tags_in(run.folder), "end"',
+        '{**run.data, "tags": _read_tags(run.folder), "end"',
+        '{**read_run_file(run.folder), "tags": _read_tags(run.folder), "end"',
         "enemies",
         ("notebook:forged:0",),
         "is not what was started",
@@ -280,8 +280,8 @@ PLANTED: tuple[Planted, ...] = (
     Planted(
         "an isolated program may enlarge the buffers of sockets",
         "engine/runs/child/seccomp.py",
-        "_instruction(_EQUAL, machine.setsockopt, 0, 7)",
-        "_instruction(_EQUAL, _X32, 0, 7)",
+        "_pack_instruction(_EQUAL, machine.setsockopt, 0, 7)",
+        "_pack_instruction(_EQUAL, _X32, 0, 7)",
         "limits",
         ("isolated:sockets with large buffers:0",),
         "it got too much",

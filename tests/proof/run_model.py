@@ -48,7 +48,7 @@ class Seen:
     def of(run: RunHandle | StoredRun) -> Seen:
         """Look at a run now."""
         ticks = run.telemetry.array().tobytes()
-        return Seen(ticks, run.output.all_rows())
+        return Seen(ticks, run.output.read_all_rows())
 
     def check_grown(self, now: Seen, name: str, is_live: bool = False) -> None:
         """Raise a fault if something that was seen is gone or different."""
@@ -75,7 +75,7 @@ class RunModel:
     """
 
     def __init__(self, folder: Path) -> None:
-        process.warm_up()
+        process.start_warm_process()
         self.outer = folder
         self.folder = prepared(folder, "place")
         self.files = {path.name for path in self.folder.iterdir()}
@@ -210,4 +210,4 @@ def again(run: StoredRun, **options: Any) -> Iterator[RunHandle]:
             other.close()
 
 
-atexit.register(process.cool_down)
+atexit.register(process.end_warm_process)

@@ -32,7 +32,7 @@ from tuisim.engine.protocol import (
     StepLine,
     StepTicks,
 )
-from tuisim.engine.runs.frames import samples_frame, telemetry_frame
+from tuisim.engine.runs.frames import build_samples_frame, build_telemetry_frame
 from tuisim.engine.runs.handle import RunHandle, RunOptions, start_run
 from tuisim.engine.runs.recorded_run import Recording
 from tuisim.engine.runs.store import RunStore
@@ -299,7 +299,7 @@ def _export(model: RunModel, random: Random) -> None:
     path = model.folder / f"log{suffix}"
     model.files |= {path.name, f"{path.name}.json"}
     (export_telemetry(run, path) if telemetry else export_samples([run], path))
-    frame = telemetry_frame(run) if telemetry else samples_frame([run])
+    frame = build_telemetry_frame(run) if telemetry else build_samples_frame([run])
     try:
         pd.testing.assert_frame_equal(read_log(path), frame, check_exact=True)
     except (AssertionError, TuisimError) as error:

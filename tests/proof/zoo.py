@@ -113,7 +113,7 @@ def _is_not_python(ended: Ended) -> bool:
 
 
 def _check_end(piece: Piece, ending: Ending, run: RunHandle, ended: Ended) -> None:
-    lines = [row.text for row in run.output.all_rows() if row.stream == Stream.STDOUT]
+    lines = [row.text for row in run.output.read_all_rows() if row.stream == Stream.STDOUT]
     if (not lines or lines[0] != "A: 1") and not _is_not_python(ended):
         raise FaultError(f"what was printed first is lost: {lines[:3]}; {ended}")
     if piece.breaks:
@@ -172,7 +172,7 @@ def _stopped(run: RunHandle) -> tuple[Ended, float]:
 
 def _until_it_prints(run: RunHandle) -> None:
     give_up = time.monotonic() + PATIENCE_S
-    while run.ended is None and not run.output.new_rows():
+    while run.ended is None and not run.output.read_new_rows():
         if time.monotonic() > give_up:
             raise FaultError("it prints nothing")
         run.wait_for_event(0.01)
@@ -261,7 +261,7 @@ def _check_like_python(piece: Piece, ending: Ending, folder: Path) -> None:
     finally:
         run.close()
     rows = {
-        stream: [row.text for row in run.output.all_rows() if row.stream == stream]
+        stream: [row.text for row in run.output.read_all_rows() if row.stream == stream]
         for stream in Stream
     }
     shutil.rmtree(folder)
@@ -325,7 +325,7 @@ def _check(case: str, folder: Path) -> None:
     piece, ending, way = _parts(case)
     # What a program leaves becomes a child of this process, and is found.
     ctypes.CDLL(None).prctl(_SUBREAPER, 1)
-    process.warm_up()
+    process.start_warm_process()
     before = _descendants()
     place = folder / "place"
     place.mkdir()

@@ -65,7 +65,7 @@ IMPORTS: Mapping[str, Piece] = {
         "import sys\nprint(len(sys.path) > 0)"
     ),
     "tuisim": Piece(
-        "try:\n    import tuisim.engine.runtime.session as s\n    s.Session.checkpoint = None\n"
+        "try:\n    import tuisim.engine.runtime.session as s\n    s.Session.check_stop = None\n"
         "except BaseException as e: print(type(e).__name__)",
         breaks=True,
     ),

@@ -151,12 +151,12 @@ def test_a_fault_of_tuisim_is_a_result_with_a_report(
     assert not list(tmp_path.iterdir())
 
 
-@pytest.mark.parametrize("step", ["write_end", "adopt"])
+@pytest.mark.parametrize("step", ["write_end", "add_folder"])
 def test_a_run_that_cannot_be_stored_counts(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, step: str
 ) -> None:
     """Its program could have seen to that."""
-    owner = {"write_end": temporary.TemporaryRun, "adopt": RunStore}[step]
+    owner = {"write_end": temporary.TemporaryRun, "add_folder": RunStore}[step]
     monkeypatch.setattr(owner, step, MagicMock(side_effect=LogError("cannot be stored")))
     result = execute(replace(task("1 / 0"), keep=Keep.ALL), tmp_path)
     assert (result.end, result.run_id) == ("raised", "")
@@ -167,7 +167,7 @@ def test_a_run_that_a_full_disk_refuses_is_not_judged(
 ) -> None:
     refusal = LogError("cannot be stored")
     refusal.__cause__ = OSError(errno.ENOSPC, "no space")
-    monkeypatch.setattr(RunStore, "adopt", MagicMock(side_effect=refusal))
+    monkeypatch.setattr(RunStore, "add_folder", MagicMock(side_effect=refusal))
     result = execute(replace(task("1 / 0"), keep=Keep.ALL), tmp_path)
     assert (result.end, result.exit_code) == ("", 2)
 

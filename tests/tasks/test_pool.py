@@ -157,7 +157,7 @@ def test_a_batch_without_a_folder_for_its_runs_is_told(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     missing = tmp_path / "missing"
-    monkeypatch.setattr(temporary, "_parent", lambda: missing)
+    monkeypatch.setattr(temporary, "_find_parent", lambda: missing)
     with pytest.raises(
         LogError, match=r"missing: no folder for temporary runs can be created: No such file"
     ):

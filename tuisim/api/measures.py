@@ -13,9 +13,9 @@ from tuisim.base.errors import ConfigError
 from tuisim.batch.plan import Plan
 from tuisim.batch.table import list_usual_columns
 from tuisim.engine.core.sensors import find_named_column
-from tuisim.engine.runs.frames import telemetry_columns
+from tuisim.engine.runs.frames import build_telemetry_columns
 from tuisim.engine.runs.run_folder import read_run
-from tuisim.engine.runs.temporary import temporary_home
+from tuisim.engine.runs.temporary import create_temporary_home
 from tuisim.tasks.task import Result
 
 if TYPE_CHECKING:
@@ -64,12 +64,12 @@ class Measures:
             return dict.fromkeys(self._metrics)
         import pandas as pd
 
-        with temporary_home("tuisim-study-") as folder:
+        with create_temporary_home("tuisim-study-") as folder:
             for name, data in result.files.items():
                 (folder / name).write_bytes(data)
             run = Run(read_run(folder))
             if self._columns:
-                columns = telemetry_columns(run.stored, names=self._columns)
+                columns = build_telemetry_columns(run.stored, names=self._columns)
                 self.frames[result.index] = pd.DataFrame(columns)
             return {name: plain(metric(run)) for name, metric in self._metrics.items()}
 

@@ -85,9 +85,9 @@ class Run:
         Columns: `index` (timedelta since the first sample), `variable`, `value`, `time` (s, simulated), `run`, `x_mm`,
         `y_mm`, `heading_deg`, `line`.
         """
-        from tuisim.engine.runs.frames import samples_frame
+        from tuisim.engine.runs.frames import build_samples_frame
 
-        return samples_frame([self.stored])
+        return build_samples_frame([self.stored])
 
     @property
     def telemetry(self) -> pd.DataFrame:
@@ -96,9 +96,9 @@ class Run:
         Raises:
             LogError: the recording is damaged, or the mat no longer exists.
         """
-        from tuisim.engine.runs.frames import telemetry_frame
+        from tuisim.engine.runs.frames import build_telemetry_frame
 
-        return telemetry_frame(self.stored)
+        return build_telemetry_frame(self.stored)
 
     @property
     def commands(self) -> tuple[SimulationCommand, ...]:

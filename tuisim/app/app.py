@@ -69,7 +69,7 @@ from tuisim.base.errors import ConfigError, TuisimError
 from tuisim.base.source import Program
 from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.protocol import Answer, Ended
-from tuisim.engine.runs.child.process import warm_up
+from tuisim.engine.runs.child.process import start_warm_process
 from tuisim.engine.runs.records import Stream
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.programs.program_settings import Decided
@@ -262,7 +262,7 @@ class LabApp(PanelMessages):
         self._set_frame_gap(1 / self.settings.fps)
         self.set_interval(_REST_GAP_S, self._run_seldom)
         self.set_interval(PERIOD_S, self.check_files)
-        self.set_timer(_WARM_UP_AFTER_S, warm_up)
+        self.set_timer(_WARM_UP_AFTER_S, start_warm_process)
         self.tell_server("ready", program=self._program_name)
 
     @property

@@ -77,7 +77,7 @@ class Branch:
         """The noise from that instant on."""
         if isinstance(self.then, protocol.SetNoise):
             return NoiseSpec(self.then.light, self.then.motor)
-        return self.of.noise_at(self.of.telemetry.record(self.tick))
+        return self.of.find_noise(self.of.telemetry.record(self.tick))
 
     def script(self) -> tuple[UserAction, ...]:
         """Return the user's actions until then."""

@@ -411,7 +411,7 @@ class DebugController:
         now = self._paused
         if now is None or now.ordinal == UNKNOWN_ORDINAL:
             return at.tick <= (self._run_controller.timeline.newest if now is None else now.tick)
-        return at.is_before(Position(now.tick, now.ordinal))
+        return at.precedes(Position(now.tick, now.ordinal))
 
     def _handle_now(self) -> None:
         steps = tuple(self._steps)

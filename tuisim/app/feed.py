@@ -15,9 +15,9 @@ from tuisim.base.data_class import dataclass
 from tuisim.engine.core.field import Field
 from tuisim.engine.core.sensors import list_columns
 from tuisim.engine.core.tick_record import FLAG_PEN_DOWN
-from tuisim.engine.runs.frames import column_values
+from tuisim.engine.runs.frames import compute_column_values
 from tuisim.engine.runs.records import OutputRow
-from tuisim.engine.runs.samples import samples_of
+from tuisim.engine.runs.samples import list_samples
 from tuisim.pictures.scene.pen import place_drawn_mm
 
 if TYPE_CHECKING:
@@ -43,7 +43,7 @@ _JUMP_MM = 25.0
 def sample_series(rows: Iterable[OutputRow]) -> Series:
     """Return the samples among printed lines, at the simulated time of the print or the time they carry."""
     series: Series = {}
-    for sample in samples_of(rows):
+    for sample in list_samples(rows):
         times, values = series.setdefault(sample.name, ([], []))
         times.append(sample.time_s)
         values.append(sample.value)
@@ -97,13 +97,13 @@ class Feed:
             _thin_positions(0, end - self._charted, POINTS_A_FEED)
         ]
         names = [column.name for column in list_columns(run.spec) if column.is_traced]
-        values = column_values(
+        values = compute_column_values(
             names,
             records,
             run,
             run.actions(),
             mat,
-            lambda record: run.field_at(int(record[0]), mat),
+            lambda record: run.find_field(int(record[0]), mat),
         )
         times_s = (records["tick"] / run.spec.profile.tick_hz).tolist()
         self._charted = end
@@ -295,4 +295,4 @@ class PanelFeed:
                 if tick is None or recording is None:
                     output.show_past(None)
                 else:
-                    output.show_past(*recording.rows.texts_until(tick, PAST_ROWS))
+                    output.show_past(*recording.rows.list_texts(tick, PAST_ROWS))

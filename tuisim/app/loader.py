@@ -19,8 +19,8 @@ from tuisim.base.errors import LogError, TuisimError
 from tuisim.base.folders import user_path
 from tuisim.base.source import Program
 from tuisim.engine.files import means_file
-from tuisim.engine.runs.run_folder import program_again
-from tuisim.engine.runs.standstill import standstill_words
+from tuisim.engine.runs.run_folder import restore_program
+from tuisim.engine.runs.standstill import describe_standstill
 from tuisim.engine.runs.store import RunStore
 from tuisim.programs.magic_mat import drop_wrong_mat
 from tuisim.programs.program_settings import Decided, find_free_paths
@@ -316,7 +316,7 @@ class Loader:
         end_s = max(0, run.telemetry.count - 1) / run.spec.profile.tick_hz
         end = (
             f"— {end_label(run.state)} at {end_s:.2f} s",
-            standstill_words(run.telemetry, run.spec),
+            describe_standstill(run.telemetry, run.spec),
         )
         words = f"{', '.join(filter(None, end))} · {_name_run(run)}"
         self._app.run_changed(words, run.end.error_line if run.end else 0)
@@ -576,7 +576,7 @@ def program_of(run: StoredRun) -> Program:
         same = False
     if same:
         return Program(name=stored.name, text=stored.text, prelude=stored.prelude, path=stored.path)
-    return replace(program_again(run.program, run.folder), path="")
+    return replace(restore_program(run.program, run.folder), path="")
 
 
 def _prepare_run(word: str | StoredRun) -> tuple[StoredRun, Mat, TuisimError | None]:

@@ -24,7 +24,7 @@ from tuisim.engine.core.tick_record import FLAG_PEN_DOWN
 from tuisim.engine.protocol import RunState
 from tuisim.engine.runs.handle import RunOptions, start_run
 from tuisim.engine.runs.recorded_run import Recording
-from tuisim.engine.runs.standstill import standstill_words
+from tuisim.engine.runs.standstill import describe_standstill
 from tuisim.engine.runs.store import RunStore
 from tuisim.programs.program_settings import require_library
 from tuisim.tasks.reasons.waiting import WaitWatch
@@ -198,7 +198,7 @@ class RunController:
         state, face = self.state, timeline.face(now_tick if timeline.at is None else timeline.at)
         # After the robot was placed following the run, all its motors are reset.
         hz = timeline.tick_hz
-        turns = face.turns_at(instant.tick / hz, hz) if record else ()
+        turns = face.extrapolate_turns(instant.tick / hz, hz) if record else ()
         turns = turns or ((0.0, 0.0),) * len(spec.robot.extra_motors)
         if state is RunPhase.ENDED and not past:
             # The last record is of the tick before the program's last commands; after its end, nothing turns.
@@ -266,7 +266,7 @@ class RunController:
         recording = self.timeline.recording
         if record is None or recording is None:
             return self._still, 0, self.next_run.spec.robot.pen.down
-        noise = recording.noise_at(record) if self._is_of_run else self.next_run.spec.world.noise
+        noise = recording.find_noise(record) if self._is_of_run else self.next_run.spec.world.noise
         # Before a run, the pen is where the next run will have it.
         down = (
             bool(record.flags & FLAG_PEN_DOWN)
@@ -293,7 +293,7 @@ class RunController:
         return (
             mat
             if mat is None or record is None or recording is None
-            else recording.field_at(record.tick, mat)
+            else recording.find_field(record.tick, mat)
         )
 
     def find_mat(self, spec: RunSpec) -> Field | None:
@@ -565,7 +565,7 @@ class RunController:
                     spoken.append(event)
                 case protocol.BusyLoop() | protocol.Plugged() if self._branch is None:
                     remarks += describe_remarks(event, recording)
-        stood = standstill_words(recording.telemetry, recording.spec) if ended else ""
+        stood = describe_standstill(recording.telemetry, recording.spec) if ended else ""
         if not self.in_past:
             remarks += self._waits.look(
                 recording, ended, self.state is RunPhase.RUNNING, self.find_mat

@@ -22,11 +22,11 @@ from tuisim.engine.core.conditions import (
 )
 from tuisim.engine.core.field import Field
 from tuisim.engine.core.sensors import find_named_column, list_column_names, list_columns
-from tuisim.engine.runs.brick_state import BrickState, face_after
+from tuisim.engine.runs.brick_state import BrickState, update_face
 from tuisim.engine.runs.command_events import parse_command_search
-from tuisim.engine.runs.frames import begins, column_values, held
+from tuisim.engine.runs.frames import compute_column_values, find_begins, test_condition
 from tuisim.engine.runs.records import TEXT_STREAMS, Mark, OutputRow
-from tuisim.engine.runs.samples import parse_sample, rows_when
+from tuisim.engine.runs.samples import parse_sample, select_rows
 
 if TYPE_CHECKING:
     from tuisim.engine.runs.recorded_run import Recording
@@ -99,10 +99,10 @@ class Timeline:
         """Return what the brick shows at a tick."""
         if self.recording is None:
             return BrickState()
-        numbers = self.recording.rows.face_numbers(tick)
+        numbers = self.recording.rows.list_face_numbers(tick)
         if numbers != self._face_numbers:
             self._face_numbers = numbers
-            self._face = face_after(
+            self._face = update_face(
                 BrickState(), [self.recording.rows.row(number) for number in numbers]
             )
         return self._face
@@ -226,8 +226,8 @@ class _Search:
         """Return the tick of the next row of which a condition is true."""
         if condition.operator is Operator.CHANGES:
             every = (row for row in self.recording.rows.rows(0) if row.stream in TEXT_STREAMS)
-            return self.find_nearest([row.tick for row in rows_when(condition, every)])
-        return next((row.tick for row in rows_when(condition, self.texts())), None)
+            return self.find_nearest([row.tick for row in select_rows(condition, every)])
+        return next((row.tick for row in select_rows(condition, self.texts())), None)
 
     def find_nearest(self, ticks: list[int]) -> int | None:
         """Return the next of some sorted ticks."""
@@ -350,8 +350,10 @@ def _find_line(search: _Search, line: int) -> int:
         raise ConfigError(f"the program has no line {line}", f"1 … {lines}")
     # Of consecutive ticks at one line, the first is meant: that is when the program reached the line.
     at_it = ValueCondition("line", Operator.EQUAL, str(line))
-    came = begins(at_it, held(at_it, search.recording.telemetry.array()["line"])).tolist()
-    tick = search.find_nearest(sorted({*came, *search.recording.rows.ticks_of_line(line)}))
+    came = find_begins(
+        at_it, test_condition(at_it, search.recording.telemetry.array()["line"])
+    ).tolist()
+    tick = search.find_nearest(sorted({*came, *search.recording.rows.list_ticks(line)}))
     if tick is None:
         hint = "a search finds only lines that let time pass or print"
         raise ConfigError(f"line {line} does not run {search.words}", hint)
@@ -397,10 +399,12 @@ def _find_change(search: _Search, condition: ValueCondition, mat: Field | None) 
     if mat is None:
         raise ConfigError("the mat is still being opened", "a moment later")
     condition = condition.format_condition(name)
-    values = column_values(
+    values = compute_column_values(
         (name,), recording.telemetry.array(), recording, recording.actions(), mat
     )
-    tick = search.find_nearest(begins(condition, held(condition, values[name])).tolist())
+    tick = search.find_nearest(
+        find_begins(condition, test_condition(condition, values[name])).tolist()
+    )
     if tick is None:
         becomes = "" if condition.is_momentary else " becomes true"
         raise ConfigError(f"no tick {search.words} at which {condition}{becomes}")

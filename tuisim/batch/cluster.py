@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING, Any
 
 from tuisim.base.errors import ConfigError, HostError, TuisimError
 from tuisim.batch.cluster_watch import ClusterWatch, call_within_s
-from tuisim.engine.runs.child.process import warm_up
-from tuisim.engine.runs.temporary import batch_folder
+from tuisim.engine.runs.child.process import start_warm_process
+from tuisim.engine.runs.temporary import create_batch_folder
 from tuisim.tasks.execute import execute
 from tuisim.tasks.task import Result, Task
 
@@ -172,6 +172,6 @@ def _iterate_results(client: Any, watch: ClusterWatch, tasks: Iterator[Task]) ->
 
 def _execute_all(tasks: list[Task]) -> list[Result]:
     if "here" not in _folders:
-        warm_up()
-        _folders["here"] = batch_folder()
+        start_warm_process()
+        _folders["here"] = create_batch_folder()
     return [execute(task, _folders["here"]) for task in tasks]

@@ -16,7 +16,7 @@ from tuisim.engine.protocol import NO_ANSWER, End
 from tuisim.engine.runs.records import Stream
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.engine.runs.samples import counts_of
-from tuisim.engine.runs.standstill import Standstill, has_left_field, standstill_of
+from tuisim.engine.runs.standstill import Standstill, find_standstill, has_left_field
 from tuisim.programs.plugged_words import describe_plugged
 from tuisim.tasks.reasons.reason import describe_end
 from tuisim.tasks.reasons.waited_words import describe_wait
@@ -49,7 +49,7 @@ def describe(run: StoredRun, most_bytes: int | None = None) -> dict[str, Any]:
     """
     last, end = run.telemetry.last(), run.end
     pose = last.pose if last else run.spec.world.start
-    stood = standstill_of(run.telemetry, run.spec)
+    stood = find_standstill(run.telemetry, run.spec)
     counts = (
         counts_of(run.output) if most_bytes is None or run.output.length <= most_bytes else None
     )

@@ -122,11 +122,11 @@ def _build_default_name(run: StoredRun, end: str) -> str:
 
 
 def _load_recorded(run: StoredRun) -> ClipRun:
-    from tuisim.engine.runs.frames import damage_note
+    from tuisim.engine.runs.frames import describe_damage
     from tuisim.pictures.movies.clip import ClipRun
 
     recorded = ClipRun(run)
-    for note in filter(None, (*run.notes, damage_note(run))):
+    for note in filter(None, (*run.notes, describe_damage(run))):
         echo_error(f"note: {note}")
     return recorded
 

@@ -82,7 +82,7 @@ class Follower:
                 self.handle.wait_for_event(POLL_S)
                 events = self.handle.pump()
                 ended = self.handle.ended
-            self._write_rows(self.handle.output.new_rows())
+            self._write_rows(self.handle.output.read_new_rows())
             self.tell(self.handle)
             for event in events:
                 if self.listen is not None:

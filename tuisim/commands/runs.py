@@ -36,15 +36,15 @@ from tuisim.engine.core.values import quote
 from tuisim.engine.files import toml_form
 from tuisim.engine.protocol import Unended
 from tuisim.engine.runs.catalogue import RunInfo
-from tuisim.engine.runs.diff import RunDiff, recording_in_words, setup_in_words
-from tuisim.engine.runs.frames import damage_note
+from tuisim.engine.runs.diff import RunDiff, describe_recording, describe_setup
+from tuisim.engine.runs.frames import describe_damage
 from tuisim.engine.runs.handle import ASK_AGAIN_S
 from tuisim.engine.runs.records import OutputRow, Stream, line_of
-from tuisim.engine.runs.rerun import changed_files, rerun, same
+from tuisim.engine.runs.rerun import list_changed_files, rerun, same
 from tuisim.engine.runs.run_folder import StoredRun
-from tuisim.engine.runs.side_files import MOST_PATH, FilesRead, read_reads
-from tuisim.engine.runs.store import RunStore, bytes_in
-from tuisim.engine.runs.temporary import temporary_home
+from tuisim.engine.runs.side_files import MAX_PATH, FilesRead, read_reads
+from tuisim.engine.runs.store import RunStore, count_bytes
+from tuisim.engine.runs.temporary import create_temporary_home
 from tuisim.logs.export import EXPORTERS, LISTED, check_targets, export_samples, export_telemetry
 from tuisim.settings.command_line import AS_JSON, Group, WordType, argument, command, option
 from tuisim.settings.options import RUN_VALUES
@@ -89,7 +89,7 @@ def list_runs(as_json: bool) -> int:
     store = RunStore()
     runs = store.runs()
     if as_json:
-        echo_json([{**asdict(run), "bytes": bytes_in(store.folder(run.id))} for run in runs])
+        echo_json([{**asdict(run), "bytes": count_bytes(store.folder(run.id))} for run in runs])
     elif not runs:
         echo(f"no runs yet in {store.home}")
     else:
@@ -108,7 +108,7 @@ def list_runs(as_json: bool) -> int:
                     f"{run.time_s or 0:.2f}",
                     "" if run.samples is None else str(run.samples),
                 ),
-                *(f"{size(bytes_in(store.folder(run.id))):>8}", _note(run), run.tags),
+                *(f"{size(count_bytes(store.folder(run.id))):>8}", _note(run), run.tags),
             )
             for run in runs
         ]
@@ -235,7 +235,7 @@ def _show(run: StoredRun, *, as_json: bool) -> None:
         what = (
             f"read ({counted(file.bytes, 'byte')})" if file.there else "looked for, and not there"
         )
-        echo(f"file {what}: {shortened(file.path, MOST_PATH)}")
+        echo(f"file {what}: {shortened(file.path, MAX_PATH)}")
     if read.left_out:
         echo(f"and {counted(read.left_out, 'more file')}")
     for row in rows:
@@ -265,7 +265,7 @@ def rm(words: Sequence[str], older_than: str | None) -> int:
             tell("removing runs", number, len(run_ids))
             folder = store.folder(run_id)
             target = os.path.realpath(folder) if folder.is_symlink() else ""
-            freed += 0 if target else bytes_in(folder)
+            freed += 0 if target else count_bytes(folder)
             store.remove(run_id)
             if target:
                 echo_error(f"note: run {run_id} was a link; its target was not removed: {target}")
@@ -316,10 +316,10 @@ def rerun_runs(words: Sequence[str], as_json: bool) -> int:
 
 def _rerun(run: StoredRun, *, as_json: bool) -> int:
     """Run it again and print whether the result is the same; return the exit code."""
-    notes = changed_files(run)
+    notes = list_changed_files(run)
     for note in notes:
         echo_error(f"note: {note}")
-    with temporary_home() as home:
+    with create_temporary_home() as home:
         scratch = RunStore(home)
         handle = rerun(run, scratch)
         what, ticks = f"rerunning run {run.number}: {run.program.name}", run.telemetry.count
@@ -340,7 +340,7 @@ def _rerun(run: StoredRun, *, as_json: bool) -> int:
 
 def format_diff(comparison: RunDiff) -> str:
     """Return a comparison as readable text."""
-    recording, setup = recording_in_words(comparison), setup_in_words(comparison)
+    recording, setup = describe_recording(comparison), describe_setup(comparison)
     pairs = (*recording, *setup) if comparison.same else (*setup, *recording)
     lines = [f"{label}: {words}" if label else words for label, words in pairs]
     if comparison.divergence and not comparison.same:
@@ -391,7 +391,7 @@ def export(words: Sequence[str], files: Sequence[str], telemetry: str | None) ->
             echo_written(file)
         if telemetry is not None:
             tell(f"writing {telemetry}")
-            if note := damage_note(runs[0]):
+            if note := describe_damage(runs[0]):
                 echo_error(f"note: {note}")
             export_telemetry(runs[0], telemetry)
             echo_written(telemetry)

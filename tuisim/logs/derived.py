@@ -20,7 +20,7 @@ from tuisim.engine.core.sensors import list_owners
 from tuisim.engine.core.spec import RobotSpec, RunSpec
 from tuisim.engine.core.tree import load_run
 from tuisim.engine.runs.arrays import FloatArray
-from tuisim.engine.runs.frames import computed
+from tuisim.engine.runs.frames import compute_owner_column
 from tuisim.logs.columns import is_numeric, list_numeric_columns
 from tuisim.logs.expressions import FUNCTIONS, Functions, evaluate, find_names
 from tuisim.logs.log import Log, Series
@@ -163,7 +163,7 @@ def find_computed_columns(log: Log) -> dict[str, Callable[[], FloatArray]]:
 
 def _compute_column(of: Any, columns: Sequence[Column], log: Log, spec: RunSpec) -> FloatArray:
     measured = {name: log.numbers(name) for name in list_measured_names(columns)}
-    return computed(of, columns, measured, spec)
+    return compute_owner_column(of, columns, measured, spec)
 
 
 def find_named_columns(log: Log, text: str) -> list[str]:

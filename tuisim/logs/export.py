@@ -126,9 +126,9 @@ def export_samples(runs: Sequence[StoredRun], path: str | Path) -> None:
         LogError: a recording is damaged.
     """
     check_target(path)
-    from tuisim.engine.runs.frames import samples_frame
+    from tuisim.engine.runs.frames import build_samples_frame
 
-    frame = samples_frame(runs)
+    frame = build_samples_frame(runs)
     export_frame(frame, path, log_metadata("samples", frame, runs))
 
 
@@ -140,9 +140,9 @@ def export_telemetry(run: StoredRun, path: str | Path) -> None:
         LogError: a recording is damaged, or the mat cannot be found any more.
     """
     check_target(path)
-    from tuisim.engine.runs.frames import telemetry_frame
+    from tuisim.engine.runs.frames import build_telemetry_frame
 
-    frame = telemetry_frame(run)
+    frame = build_telemetry_frame(run)
     export_frame(frame, path, log_metadata("telemetry", frame, [run]))
 
 

@@ -21,7 +21,7 @@ import pyarrow.compute as pc
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import LogError, counted, listed
 from tuisim.base.regular_file import read_regular
-from tuisim.engine.runs.frames import damage_note, sample_columns, telemetry_columns
+from tuisim.engine.runs.frames import build_telemetry_columns, describe_damage, sample_columns
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.logs import arrow
 from tuisim.logs.blocks import (
@@ -396,7 +396,7 @@ def build_telemetry_log(run: StoredRun) -> Log:
     Raises:
         LogError: the recording is damaged, or the mat no longer exists.
     """
-    return _build_log_from_columns("telemetry", [run], telemetry_columns(run))
+    return _build_log_from_columns("telemetry", [run], build_telemetry_columns(run))
 
 
 def _build_log_from_columns(
@@ -406,7 +406,7 @@ def _build_log_from_columns(
     title = ", ".join(f"run {run.number or run.id}: {run.program.name}" for run in runs)
     notes = [note for run in runs for note in run.notes]
     if kind == "telemetry":
-        notes += filter(None, map(damage_note, runs))
+        notes += filter(None, map(describe_damage, runs))
     return Log(
         title, table, guess_columns(table), tuple(notes), 0, log_metadata(kind, columns, runs)
     )

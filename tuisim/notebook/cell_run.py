@@ -25,7 +25,7 @@ from tuisim.engine.runs.handle import RunHandle, RunOptions, start_run
 from tuisim.engine.runs.presses import press_actions
 from tuisim.engine.runs.records import OutputRow, Stream
 from tuisim.engine.runs.run_folder import StoredRun, field_files
-from tuisim.engine.runs.samples import Sample, samples_of
+from tuisim.engine.runs.samples import Sample, list_samples
 from tuisim.engine.runs.store import RunStore
 from tuisim.notebook.app_run import AppRun
 from tuisim.notebook.cell_output import CellOutput
@@ -171,7 +171,7 @@ def describe_end(run: StoredRun, *, hurry: bool = False) -> str:
     status = f"{run.state}{what} · {run.time_s:.3f} s{plugged}"
     if hurry and run.output.length > BYTES_IN_A_HURRY:
         return status
-    samples = len(samples_of(run.output.rows()))
+    samples = len(list_samples(run.output.rows()))
     return f"{status} · {counted(samples, 'sample')}"
 
 
@@ -261,7 +261,7 @@ class _Follower:
 
     def _relay(self) -> bool:
         """Show new output, pass lines to the responder, and return whether there is more."""
-        rows, start = self._handle.output.new_rows(ROWS_AT_ONCE), 0
+        rows, start = self._handle.output.read_new_rows(ROWS_AT_ONCE), 0
         for stop, row in enumerate(rows, 1):
             side, addressed = parse_side(row), self._is_addressed(row)
             if side or addressed:
@@ -326,7 +326,7 @@ class _Follower:
         while not (self._interruption.count and row_count > ROWS_AFTER_INTERRUPT) and self._relay():
             row_count += ROWS_AT_ONCE
         self._printed.finish()
-        if self._handle.output.new_rows(1):
+        if self._handle.output.read_new_rows(1):
             self._cell.images.mark_incomplete(self._run)
             print("… and more lines, which are in the log", file=sys.stderr)
         ended = self._handle.ended
@@ -363,8 +363,8 @@ class _Screen:
         """Draw the current state of the run; search at most `most_rows` new lines for samples, None for all."""
         cell, run = self._cell, self._run
         if self._stage.is_enabled("chart"):
-            for row, after in islice(run.output.rows_from(self._position), most_rows):
-                self._samples += samples_of((row,))
+            for row, after in islice(run.output.read_rows(self._position), most_rows):
+                self._samples += list_samples((row,))
                 self._position = after
         last = run.telemetry.last() or start_record(cell.spec)
         traces = (*cell.traces, build_pen_trace(cell.spec, run.telemetry.array()))

@@ -22,7 +22,7 @@ from tuisim.engine.core.sensors.color import ColorReading
 from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.mat_cache import FieldFiles, mat_pixels, open_field
 from tuisim.engine.runs.samples import Sample
-from tuisim.engine.runs.views import TickRecord, instant_of
+from tuisim.engine.runs.views import TickRecord, build_instant
 from tuisim.pictures.charts.files import draw_image, encode_png
 from tuisim.pictures.charts.layout import lay_out_chart
 from tuisim.pictures.charts.sample_chart import build_sample_chart
@@ -120,7 +120,7 @@ def start_record(spec: RunSpec) -> TickRecord:
 def list_instruments(scene: Scene) -> list[Row]:
     """Return motors, sensors and pose of a scene."""
     spec, record, field = scene.spec, scene.last, scene.open_field()
-    instant = instant_of(record, spec, spec.world.noise)
+    instant = build_instant(record, spec, spec.world.noise)
     rows = [
         ("LeftMotor", f"{record.left_position_deg:.0f} counts, {record.left_speed_dps:.0f} °/s"),
         ("RightMotor", f"{record.right_position_deg:.0f} counts, {record.right_speed_dps:.0f} °/s"),
@@ -177,7 +177,7 @@ CHART_SIZE = (760, 300)
 
 
 def _draw_arrays(scene: Scene) -> Image:
-    instant = instant_of(scene.last, scene.spec, scene.spec.world.noise)
+    instant = build_instant(scene.last, scene.spec, scene.spec.world.noise)
     faces = list_disc_faces(scene.spec, instant, scene.open_field(), scene.program)
     return draw_image(draw_arrays(faces, FACE_PX[0] * max(len(faces), 1), FACE_PX[1]))
 

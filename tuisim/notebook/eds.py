@@ -24,12 +24,12 @@ IMAGE_COLUMNS = ("side", "vals", "clock", "run")
 
 def get_dataframe_from_datalog(log: Iterable[StoredRun]) -> pd.DataFrame:
     """Return the samples of runs as one long frame, see `engine.runs.frames.samples_frame`."""
-    from tuisim.engine.runs.frames import samples_frame
+    from tuisim.engine.runs.frames import build_samples_frame
     from tuisim.notebook.eds import use_seconds
 
     # It may be plotted next.
     use_seconds()
-    return samples_frame(log)
+    return build_samples_frame(log)
 
 
 def get_image_data_from_datalog(log: Iterable[StoredRun]) -> pd.DataFrame:

@@ -51,9 +51,9 @@ def read_arrays(
 ) -> list[tuple[ColorSensorSpec, bytes]]:
     """Return the pixels under the colour sensors at a tick: RGB bytes, row by row."""
     from tuisim.engine.core.sensors.color import read_pixel_array
-    from tuisim.engine.runs.views import instant_of
+    from tuisim.engine.runs.views import build_instant
 
-    instant = instant_of(record, spec, noise)
+    instant = build_instant(record, spec, noise)
     return [
         (sensor, read_pixel_array(sensor, instant, field)) for sensor in spec.robot.color_sensors
     ]
@@ -98,7 +98,7 @@ class ArrayReader:
             return {}
         self._field = self._field or open_mat(run)
         record = run.telemetry.record(row.tick)
-        arrays = read_arrays(run.spec, record, run.noise_at(record), self._field)
+        arrays = read_arrays(run.spec, record, run.find_noise(record), self._field)
         return {sensor.name: add_alpha(pixels) for sensor, pixels in arrays}
 
 

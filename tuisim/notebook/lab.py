@@ -184,7 +184,7 @@ class Lab:
             )
         highest_deg = float(run.telemetry.array()["heading_deg"].max())
         return old_formats.build_robot_state(
-            run.spec, record, run.noise_at(record), open_mat(run), highest_deg, self._wheels
+            run.spec, record, run.find_noise(record), open_mat(run), highest_deg, self._wheels
         )
 
     # The world
@@ -419,8 +419,8 @@ class Lab:
     def _build_scene(self, plan: _CellPlan) -> tuple[Scene, str]:
         """Return the scene while nothing runs, and its status line."""
         from tuisim.engine.runs.records import TEXT_STREAMS
-        from tuisim.engine.runs.run_folder import mat_files
-        from tuisim.engine.runs.samples import samples_of
+        from tuisim.engine.runs.run_folder import find_mat_files
+        from tuisim.engine.runs.samples import list_samples
         from tuisim.notebook.cell_output import format_row
         from tuisim.notebook.cell_run import describe_end
         from tuisim.notebook.display import Scene, start_record
@@ -432,10 +432,10 @@ class Lab:
         is_other = program is not None and program.text != self._last.program.text
         spec, files = plan.spec, plan.files
         if self._last.first_spec != spec:
-            spec, files = self._last.spec, mat_files(self._last)
-        rows = self._last.output.all_rows()
+            spec, files = self._last.spec, find_mat_files(self._last)
+        rows = self._last.output.read_all_rows()
         printed = [format_row(row) for row in rows if row.stream in TEXT_STREAMS]
-        last, samples = self._last.telemetry.last() or start, samples_of(rows)
+        last, samples = self._last.telemetry.last() or start, list_samples(rows)
         status = ready if is_other else describe_end(self._last)
         return Scene(spec, files, program, last, self._traces, samples, printed), status
 

@@ -20,7 +20,7 @@ from tuisim.engine.protocol import End, Ended
 from tuisim.engine.runs.handle import RunHandle, describe_falsified
 from tuisim.engine.runs.records import OUTPUT_FILE, TELEMETRY_FILE, OutputRow, Stream
 from tuisim.engine.runs.run_folder import RUN_FILE, StoredRun, find_diameters
-from tuisim.engine.runs.samples import samples_of
+from tuisim.engine.runs.samples import list_samples
 from tuisim.engine.runs.side_files import SIDE_FILES
 from tuisim.engine.runs.store import RunStore
 from tuisim.engine.runs.temporary import TemporaryRun
@@ -67,7 +67,7 @@ def _run_task(task: Task, folder: Path) -> Result:
             run = handle.stored()
             # Each is read once: nothing changes any more.
             for view in (run.telemetry, run.output):
-                view.read_on()
+                view.read_new()
                 view.holds = True
             run, replayed_end = _replay_run(task, run, ended)
             judgements = _judge(task, run)
@@ -169,7 +169,7 @@ def _keep(temporary: TemporaryRun, ended: Ended) -> str:
     """
     try:
         temporary.write_end(ended)
-        return RunStore().adopt(temporary.folder).id
+        return RunStore().add_folder(temporary.folder).id
     except LogError as error:
         if has_machine_cause(error) or isinstance(error.__cause__, sqlite3.Error):
             raise
@@ -195,7 +195,7 @@ def _build_result(
 ) -> Result:
     last = run.telemetry.last()
     pose = last.pose if last else run.spec.world.start
-    rows = run.output.all_rows()
+    rows = run.output.read_all_rows()
     return Result(
         index=task.index,
         parameters=task.parameters,
@@ -220,7 +220,7 @@ def _build_result(
 def compute_statistics(rows: Iterable[OutputRow]) -> dict[str, VariableStatistics]:
     """Return statistics of the samples among the rows of a run, by name."""
     values: dict[str, list[float]] = {}
-    for sample in samples_of(rows):
+    for sample in list_samples(rows):
         values.setdefault(sample.name, []).append(sample.value)
     return {name: _compute_variable(samples) for name, samples in values.items()}
 

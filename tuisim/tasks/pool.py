@@ -18,9 +18,9 @@ from typing import Any
 
 from tuisim.base.faults import describe_fault
 from tuisim.engine.protocol import End
-from tuisim.engine.runs.child.process import warm_up
+from tuisim.engine.runs.child.process import start_warm_process
 from tuisim.engine.runs.removal import remove_tree
-from tuisim.engine.runs.temporary import batch_folder
+from tuisim.engine.runs.temporary import create_batch_folder
 from tuisim.tasks.execute import build_unjudged, build_unknown_result, execute
 from tuisim.tasks.task import Result, Task
 
@@ -54,10 +54,10 @@ def run_many(tasks: Iterable[Task], jobs: int = 0) -> Generator[Result]:
     Raises:
         LogError: the folder for the recordings cannot be created.
     """
-    jobs, folder = jobs or count_processors(), batch_folder()
+    jobs, folder = jobs or count_processors(), create_batch_folder()
     try:
         if jobs == 1:
-            warm_up()
+            start_warm_process()
             yield from (execute(task, folder) for task in tasks)
             return
         pool = _Pool(jobs, folder)
@@ -175,7 +175,7 @@ def _prepare_worker() -> None:
     # The process that waits for the results ends this one.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_end_with_parent, daemon=True).start()
-    warm_up()
+    start_warm_process()
 
 
 def _end_with_parent() -> None:

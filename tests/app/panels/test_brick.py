@@ -40,7 +40,7 @@ while True:
 
 def printed(app: LabApp) -> list[str]:
     assert app.run_controller.run is not None
-    return [row.text for row in app.run_controller.run.output.all_rows() if row.stream == 1]
+    return [row.text for row in app.run_controller.run.output.read_all_rows() if row.stream == 1]
 
 
 def drawn(app: LabApp) -> str:

@@ -14,7 +14,7 @@ from tuisim.analysis.source import LogRequest, open_pieces
 from tuisim.cli import run_command
 from tuisim.engine.core.columns import find_column_name
 from tuisim.engine.core.sensors import list_columns
-from tuisim.engine.runs.frames import column_values
+from tuisim.engine.runs.frames import compute_column_values
 from tuisim.engine.runs.run_folder import StoredRun, open_mat
 from tuisim.engine.runs.store import RunStore
 from tuisim.logs.table import parse_conditions
@@ -44,7 +44,7 @@ def run(home_of_runs: Path, monkeypatch: pytest.MonkeyPatch) -> StoredRun:
 
 
 def value_of(run: StoredRun, name: str) -> float:
-    values = column_values([name], run.telemetry.array(), run, run.actions, open_mat(run))
+    values = compute_column_values([name], run.telemetry.array(), run, run.actions, open_mat(run))
     return float(values[name][-1])
 
 

@@ -157,7 +157,7 @@ def test_old_noise_leaves_speeds_alone_that_stay_negative_with_it(run: Run) -> N
 
 def test_viewers_and_programs_read_the_same(run: Run) -> None:
     """What a program reads is what the recording gives back, sensor by sensor."""
-    from tuisim.engine.runs.frames import telemetry_frame
+    from tuisim.engine.runs.frames import build_telemetry_frame
     from tuisim.engine.runs.store import load_run
 
     text = (
@@ -165,8 +165,8 @@ def test_viewers_and_programs_read_the_same(run: Run) -> None:
         "    print(colorLeft.rgb[0], ultrasonic.distance_centimeters, gyro.angle)"
     )
     done = run(text, noise=(30, 40))
-    frame = telemetry_frame(load_run(done.run.folder))
-    at = [row.tick for row in done.run.output.all_rows()]
+    frame = build_telemetry_frame(load_run(done.run.folder))
+    at = [row.tick for row in done.run.output.read_all_rows()]
     for line, tick in zip(done.lines, at, strict=True):
         red, distance_cm, angle = line.split()
         assert int(frame["left_red"][tick - 3]) == int(red)

@@ -22,11 +22,11 @@ from tuisim.engine.core.sensors import SENSORS, SensorKind, build_mounted_sensor
 from tuisim.engine.core.spec import MOUNTS, Mount, RobotSpec, RunSpec, SensorSpec, WorldSpec
 from tuisim.engine.core.tree import dump_run, load_run
 from tuisim.engine.protocol import Resume
-from tuisim.engine.runs.frames import MOTION_COLUMNS, telemetry_frame
+from tuisim.engine.runs.frames import MOTION_COLUMNS, build_telemetry_frame
 from tuisim.engine.runs.handle import RunOptions, start_run
 from tuisim.engine.runs.run_folder import StoredRun, open_mat
 from tuisim.engine.runs.store import RunStore
-from tuisim.engine.runs.views import instant_of
+from tuisim.engine.runs.views import build_instant
 from tuisim.engine.shim.sensors import DEVICES
 from tuisim.settings.robots import load_robot, save_robot
 
@@ -135,7 +135,7 @@ def read_out(kind: SensorKind) -> StoredRun:
 @each_kind
 def test_a_program_reads_it_in_every_mode(kind: SensorKind) -> None:
     run = read_out(kind)
-    lines = [row.text for row in run.output.all_rows()]
+    lines = [row.text for row in run.output.read_all_rows()]
     assert (lines[0], lines[-1]) == (kind.driver_name, "done")
     assert len(lines) > 2
 
@@ -145,13 +145,13 @@ def test_it_is_in_the_telemetry_as_measured(kind: SensorKind) -> None:
     run = read_out(kind)
     (sensor,) = run.spec.robot.sensors
     names = kind.names(sensor)
-    frame = telemetry_frame(run)
+    frame = build_telemetry_frame(run)
     assert set(frame.columns) >= {"time", *MOTION_COLUMNS, *names, "line"}
     assert all(name.startswith(f"{sensor.name}_") for name in names)
     last = run.telemetry.last()
     assert last is not None
     measured = kind.measure(
-        sensor, instant_of(last, run.spec, run.spec.world.noise), run.spec, open_mat(run)
+        sensor, build_instant(last, run.spec, run.spec.world.noise), run.spec, open_mat(run)
     )
     assert frame.iloc[-1][list(names)].tolist() == list(measured)
 
@@ -161,7 +161,7 @@ def test_the_panels_show_it(kind: SensorKind) -> None:
     run = read_out(kind)
     last = run.telemetry.last()
     assert last is not None
-    instant, field = instant_of(last, run.spec, run.spec.world.noise), open_mat(run)
+    instant, field = build_instant(last, run.spec, run.spec.world.noise), open_mat(run)
     (sensor,) = run.spec.robot.sensors
     now = Snapshot(
         RunPhase.ENDED, None, run.spec, field, instant, line=0, speed=1.0, pen_down=False

@@ -79,7 +79,7 @@ class Recorder:
 
 def begun(store: RunStore, spec: RunSpec, text: str = PROGRAM.text, **options: Any) -> Recorder:
     """Begin a run in a store."""
-    run = store.new_run(replace(PROGRAM, text=text), spec, **options)
+    run = store.create_run(replace(PROGRAM, text=text), spec, **options)
     telemetry = TelemetryWriter(run.folder)
     return Recorder(
         store, run, spec, telemetry, OutputWriter(run.folder), Simulation(spec, telemetry)

@@ -10,11 +10,11 @@ from tuisim.engine.runs.brick_state import (
     BLANK,
     BrickState,
     TextScreen,
-    console_row,
+    build_console_row,
+    build_led_row,
+    build_motors_row,
     display_row,
-    face_after,
-    led_row,
-    motors_row,
+    update_face,
 )
 from tuisim.engine.runs.records import OutputRow, Stream
 
@@ -24,7 +24,7 @@ def row(text: str, stream: Stream) -> OutputRow:
 
 
 def test_untouched_brick_is_blank() -> None:
-    face = face_after(BrickState(), [row("Colour: 3", Stream.STDOUT)])
+    face = update_face(BrickState(), [row("Colour: 3", Stream.STDOUT)])
     assert face == BrickState()
     assert not any(face.picture)
 
@@ -33,12 +33,12 @@ def test_each_stream_comes_back() -> None:
     picture = random.Random(5).randbytes(len(BLANK))
     screen = TextScreen(14, 5, ("hello", "", "", "", ""), ((0, 1, 3),))
     lights = {"left red": 255, "left green": 0, "right red": 7, "right green": 128}
-    face = face_after(
+    face = update_face(
         BrickState(),
         [
-            row(led_row(lights), Stream.LED),
+            row(build_led_row(lights), Stream.LED),
             row(display_row(picture), Stream.DISPLAY),
-            row(console_row(screen), Stream.CONSOLE),
+            row(build_console_row(screen), Stream.CONSOLE),
         ],
     )
     assert face == BrickState(lights, picture, screen, True)
@@ -46,9 +46,9 @@ def test_each_stream_comes_back() -> None:
 
 def test_newest_screen_is_shown() -> None:
     screen = TextScreen(14, 5, ("",) * 5)
-    face = face_after(
+    face = update_face(
         BrickState(),
-        [row(console_row(screen), Stream.CONSOLE), row(display_row(BLANK), Stream.DISPLAY)],
+        [row(build_console_row(screen), Stream.CONSOLE), row(display_row(BLANK), Stream.DISPLAY)],
     )
     assert face.text == screen
     assert not face.shows_text
@@ -56,7 +56,7 @@ def test_newest_screen_is_shown() -> None:
 
 def test_the_last_sound_is_kept() -> None:
     assert (
-        face_after(
+        update_face(
             BrickState(),
             [
                 row("[beep]", Stream.SPEECH),
@@ -69,8 +69,10 @@ def test_the_last_sound_is_kept() -> None:
 
 
 def test_motors_turn_evenly_on() -> None:
-    face = face_after(BrickState(), [row(motors_row([(90.0, -50.0), (1.5, 0.0)]), Stream.MOTORS)])
+    face = update_face(
+        BrickState(), [row(build_motors_row([(90.0, -50.0), (1.5, 0.0)]), Stream.MOTORS)]
+    )
     # The row is of tick 1.
-    (turning, standing) = face.turns_at(2.01, 100)
+    (turning, standing) = face.extrapolate_turns(2.01, 100)
     assert turning == pytest.approx((-10.0, -50.0))
     assert standing == (1.5, 0.0)

@@ -86,7 +86,7 @@ def test_catalogue_is_made_again_from_the_folders(
     harm(store.home / CATALOGUE_FILE)
     assert store.runs() == before
     assert [info.number for info in before] == [1, 3, 4]
-    assert store.new_run(PROGRAM, spec).number == 5
+    assert store.create_run(PROGRAM, spec).number == 5
 
 
 @pytest.mark.parametrize("ends", [True, False], ids=["ended", "running"])
@@ -129,7 +129,7 @@ def test_runs_are_listed_and_removed_also_where_no_catalogue_can_be_written(
 def test_harm_to_the_catalogue_does_not_stop_a_run(
     store: RunStore, spec: RunSpec, harm: Callable[[Path], object]
 ) -> None:
-    run = store.new_run(PROGRAM, spec)
+    run = store.create_run(PROGRAM, spec)
     harm(store.home / CATALOGUE_FILE)
     store.finish(run, FINISHED)
     assert [(info.number, info.end) for info in store.runs()] == [(1, "finished")]
@@ -138,7 +138,7 @@ def test_harm_to_the_catalogue_does_not_stop_a_run(
 def test_seed_may_be_larger_than_the_integers_of_the_catalogue(
     store: RunStore, spec: RunSpec
 ) -> None:
-    store.new_run(PROGRAM, replace(spec, seed=1 << 80))
+    store.create_run(PROGRAM, replace(spec, seed=1 << 80))
     assert store.runs()[0].seed == 1 << 80
 
 
@@ -158,7 +158,7 @@ def test_a_catalogue_that_another_process_has_made_meanwhile_is_kept(
         shutil.copy(other / CATALOGUE_FILE, home)
         yield
 
-    monkeypatch.setattr(catalogue, "locked", locked)
+    monkeypatch.setattr(catalogue, "lock_home", locked)
     assert Catalogue(home, lambda: ()).add(_info("b")) == 2
 
 

@@ -7,19 +7,24 @@ import pytest
 
 from tests.engine.runs.test_recorded_run import stored
 from tuisim.engine.core.tick_record import TICK_FIELDS
-from tuisim.engine.runs.diff import diff_runs, parted_at_s, recording_in_words, setup_in_words
+from tuisim.engine.runs.diff import (
+    describe_recording,
+    describe_setup,
+    diff_runs,
+    find_first_difference_s,
+)
 
 
 def test_the_difference_of_two_runs_is_told() -> None:
     text = "for speed in (30, 60):\n    tank_drive.on_for_seconds({}, speed, 0.5)\n    print('Speed: ' + str(speed))\n"
     one, two = stored(text.format(30), {"seed": 1}), stored(text.format("speed"), {"seed": 2})
     found = diff_runs(one, two)
-    recording, setup = dict(recording_in_words(found)), dict(setup_in_words(found))
+    recording, setup = dict(describe_recording(found)), dict(describe_setup(found))
     assert "x_mm" in recording["first differing tick"]
     assert "mm apart" in recording["poses"]
     assert setup["settings, seed"] == "1 | 2"
-    assert "--- prog.py" in [line for label, line in setup_in_words(found) if not label]
-    assert list(recording_in_words(diff_runs(one, one))) == [
+    assert "--- prog.py" in [line for label, line in describe_setup(found) if not label]
+    assert list(describe_recording(diff_runs(one, one))) == [
         ("bit-identical", "recording, output, settings")
     ]
 
@@ -37,14 +42,14 @@ def test_robots_part_by_distance_or_heading(field: str, step: float, at_s: float
     one = np.zeros(11, np.dtype(list(TICK_FIELDS)))
     two = one.copy()
     two[field] += step * np.arange(11)
-    assert parted_at_s(one, two, (10, 10)) == at_s
+    assert find_first_difference_s(one, two, (10, 10)) == at_s
 
 
 def test_a_full_turn_is_no_parting() -> None:
     one = np.zeros(3, np.dtype(list(TICK_FIELDS)))
     two = one.copy()
     two["heading_deg"] += 360.0
-    assert parted_at_s(one, two, (10, 10)) is None
+    assert find_first_difference_s(one, two, (10, 10)) is None
 
 
 @pytest.mark.parametrize(
@@ -62,11 +67,11 @@ def test_output_is_compared_up_to_a_tick(until: int | None, prefix: bool, row: i
 def test_runs_part_only_while_both_last() -> None:
     one = np.zeros(11, np.dtype(list(TICK_FIELDS)))
     one["x_mm"][6:] = 100.0
-    assert parted_at_s(one, one[:6], (10, 10)) is None
-    assert parted_at_s(one[:6], one, (10, 10)) is None
+    assert find_first_difference_s(one, one[:6], (10, 10)) is None
+    assert find_first_difference_s(one[:6], one, (10, 10)) is None
 
 
 def test_output_that_ends_earlier_is_told() -> None:
     one, two = stored("print('a')\n"), stored("print('a')\nprint('b')\n")
-    recording = dict(recording_in_words(diff_runs(one, two)))
+    recording = dict(describe_recording(diff_runs(one, two)))
     assert recording["first differing output row"].startswith("2: no more | 'b' at ")

@@ -21,11 +21,11 @@ from tuisim.engine.core.sensors.color import measure_color
 from tuisim.engine.core.spec import NoiseSpec, Obstacle, RunSpec, WorldSpec
 from tuisim.engine.mat_cache import FieldFiles, open_field, prepare
 from tuisim.engine.mats import background
-from tuisim.engine.runs.frames import SAMPLE_COLUMNS, samples_frame, telemetry_frame
+from tuisim.engine.runs.frames import SAMPLE_COLUMNS, build_samples_frame, build_telemetry_frame
 from tuisim.engine.runs.records import TELEMETRY_FILE
 from tuisim.engine.runs.run_folder import StoredRun
-from tuisim.engine.runs.sensor_arrays import quiet_color_columns
-from tuisim.engine.runs.views import instant_of
+from tuisim.engine.runs.sensor_arrays import measure_quiet_color
+from tuisim.engine.runs.views import build_instant
 
 TELEMETRY_COLUMNS = [
     "time",
@@ -61,7 +61,7 @@ SAMPLE_TYPES = [
 
 
 def test_samples_say_what_when_where_and_from_which_line(logged: StoredRun) -> None:
-    frame = samples_frame([logged])
+    frame = build_samples_frame([logged])
     assert list(frame.columns) == list(SAMPLE_COLUMNS)
     assert [str(kind) for kind in frame.dtypes] == SAMPLE_TYPES
     assert frame["variable"].tolist() == ["Colour", "Colour", "NA", "Gyro"]
@@ -87,7 +87,7 @@ def test_runs_are_counted_in_the_order_given(
         recorder.drive(10, 10, ticks)
         recorder.print("a: 2")
         runs.append(recorder.end())
-    frame = samples_frame(reversed(runs))
+    frame = build_samples_frame(reversed(runs))
     assert frame["run"].tolist() == [1, 1, 2, 2]
     assert frame["index"].dt.total_seconds().tolist() == [0, 0.05, 0, 0.03]
 
@@ -96,19 +96,19 @@ def test_runs_are_counted_in_the_order_given(
 def test_frame_without_samples_has_the_same_types(
     record: Callable[..., Recorder], spec: RunSpec, count: int
 ) -> None:
-    frame = samples_frame([record(spec).end() for _ in range(count)])
+    frame = build_samples_frame([record(spec).end() for _ in range(count)])
     assert (len(frame), [str(kind) for kind in frame.dtypes]) == (0, SAMPLE_TYPES)
 
 
 def test_pose_of_a_lost_tick_is_missing(logged: StoredRun) -> None:
     with open(logged.folder / TELEMETRY_FILE, "r+b") as handle:
         handle.truncate(64 + 12 * 64)
-    frame = samples_frame([replace(logged, telemetry=type(logged.telemetry)(logged.folder))])
+    frame = build_samples_frame([replace(logged, telemetry=type(logged.telemetry)(logged.folder))])
     assert frame["x_mm"].notna().tolist() == [True, True, False, False]
 
 
 def test_telemetry_has_every_tick(logged: StoredRun, field: Field) -> None:
-    frame = telemetry_frame(logged, field)
+    frame = build_telemetry_frame(logged, field)
     assert list(frame.columns) == TELEMETRY_COLUMNS
     assert {str(kind) for kind in frame.dtypes} == {"float64", "int64"}
     assert frame["time"].tolist() == [tick / 100 for tick in range(18)]
@@ -121,7 +121,7 @@ def test_time_is_when_the_tick_falls_due(
 ) -> None:
     recorder = record(replace(spec, profile=replace(spec.profile, tick_hz=30)))
     recorder.drive(1, 1, 3)
-    assert telemetry_frame(recorder.end(), field)["time"].tolist() == [
+    assert build_telemetry_frame(recorder.end(), field)["time"].tolist() == [
         0.0,
         0.033333334,
         0.066666667,
@@ -134,7 +134,7 @@ def sensors_one_by_one(run: StoredRun, field: Field) -> pd.DataFrame:
     rows = []
     for tick in range(run.telemetry.count):
         record = run.telemetry.record(tick)
-        instant = instant_of(record, run.spec, run.noise_at(record))
+        instant = build_instant(record, run.spec, run.find_noise(record))
         rows.append(measure_sensors(run.spec.robot.sensors, instant, run.spec, field))
     return pd.DataFrame(rows)
 
@@ -151,7 +151,7 @@ def test_sensors_are_those_of_the_core_to_the_last_bit(
     recorder.drive(-200, 300, 60)
     run = recorder.end()
     expected = sensors_one_by_one(run, field)
-    frame = telemetry_frame(run, field)
+    frame = build_telemetry_frame(run, field)
     pd.testing.assert_frame_equal(frame[expected.columns], expected, check_exact=True)
     assert frame["left_red"].nunique() > 20
 
@@ -172,7 +172,7 @@ def test_a_frame_of_more_ticks_takes_no_more_calls(
 
         sys.setprofile(count)
         try:
-            telemetry_frame(run, field)
+            build_telemetry_frame(run, field)
         finally:
             sys.setprofile(None)
         return counted
@@ -192,10 +192,10 @@ def test_noise_that_the_user_changes_is_in_the_sensors(
     recorder.drive(300, 310, 5)
     run = recorder.end()
     expected = sensors_one_by_one(run, field)
-    frame = telemetry_frame(run, field)
+    frame = build_telemetry_frame(run, field)
     pd.testing.assert_frame_equal(frame[expected.columns], expected, check_exact=True)
     quiet = pd.DataFrame(
-        quiet_color_columns(run.telemetry.array(), run.spec.robot.color_sensors[0], run.spec, field)
+        measure_quiet_color(run.telemetry.array(), run.spec.robot.color_sensors[0], run.spec, field)
     )
     differs = (quiet != frame[quiet.columns]).any(axis=1)
     assert differs.tolist() == [False] * 5 + [True] * 5 + [False] * 6
@@ -208,7 +208,7 @@ def test_robot_without_some_sensors(
         spec.robot, ultrasonic=None, gyro=None, color_sensors=spec.robot.color_sensors[1:]
     )
     run = record(replace(spec, robot=robot)).end()
-    assert list(telemetry_frame(run, field).columns[8:]) == [
+    assert list(build_telemetry_frame(run, field).columns[8:]) == [
         "right_red",
         "right_green",
         "right_blue",
@@ -219,7 +219,7 @@ def test_robot_without_some_sensors(
 def test_run_without_telemetry_gives_an_empty_frame(logged: StoredRun, field: Field) -> None:
     (logged.folder / TELEMETRY_FILE).unlink()
     run = replace(logged, telemetry=type(logged.telemetry)(logged.folder))
-    frame = telemetry_frame(run, field)
+    frame = build_telemetry_frame(run, field)
     assert (len(frame), list(frame.columns)) == (0, TELEMETRY_COLUMNS)
 
 
@@ -244,12 +244,12 @@ def test_mat_is_opened_where_the_host_left_it(
 ) -> None:
     run = record(mat_spec(spec), field=grey.to_plain()).end()
     monkeypatch.setenv("TUISIM_ASSETS", "/nowhere")
-    assert math.isclose(telemetry_frame(run)["left_red"][0], reading_at(run, grey))
+    assert math.isclose(build_telemetry_frame(run)["left_red"][0], reading_at(run, grey))
 
 
 def reading_at(run: StoredRun, files: FieldFiles) -> float:
     record = run.telemetry.record(0)
-    instant = instant_of(record, run.spec, NoiseSpec())
+    instant = build_instant(record, run.spec, NoiseSpec())
     return measure_color(run.spec.robot.color_sensors[0], instant, open_field(files)).red
 
 
@@ -260,7 +260,7 @@ def test_mat_is_prepared_again(
 ) -> None:
     lost = replace(grey, pixels=grey.pixels.parent.parent / "gone" / grey.pixels.name)
     run = record(mat_spec(spec), field=lost.to_plain() if known else None).end()
-    assert telemetry_frame(run)["left_red"][0] == reading_at(run, grey)
+    assert build_telemetry_frame(run)["left_red"][0] == reading_at(run, grey)
 
 
 def test_mat_that_has_changed_is_not_taken_for_the_old_one(
@@ -269,10 +269,10 @@ def test_mat_that_has_changed_is_not_taken_for_the_old_one(
     other = replace(grey, pixels=grey.pixels.with_name("other.rgb"))
     run = record(mat_spec(spec), field=other.to_plain()).end()
     with pytest.raises(LogError, match="Grey_bands has changed since the run"):
-        telemetry_frame(run)
+        build_telemetry_frame(run)
 
 
 def test_mat_that_is_gone_is_named(record: Callable[..., Recorder], spec: RunSpec) -> None:
     run = record(replace(spec, world=replace(spec.world, background="Blank_sheet"))).end()
     with pytest.raises(LogError, match="Blank_sheet"):
-        telemetry_frame(run)
+        build_telemetry_frame(run)

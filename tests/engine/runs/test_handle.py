@@ -31,11 +31,11 @@ def test_who_follows_a_run_sees_all_of_it_however_short_it_is(start: Start) -> N
     handle = start("print('bye')")
     handle._look_at_s = math.inf
     for view in (handle.telemetry, handle.output):
-        view.read_on()
+        view.read_new()
         view.holds = True
     ended = handle.wait(PATIENCE_S)
     assert ended is not None
-    assert ([row.text for row in handle.output.all_rows()], handle.telemetry.count) == (
+    assert ([row.text for row in handle.output.read_all_rows()], handle.telemetry.count) == (
         ["bye"],
         ended.tick + 1,
     )

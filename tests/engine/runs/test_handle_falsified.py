@@ -101,7 +101,7 @@ def test_a_falsified_run_ends_as_falsified(start: Start, text: str) -> None:
     run = handle.stored()
     assert (run.state, run.program.text) == (End.FALSIFIED, handle.program.text)
     assert len(run.telemetry.array()) == run.telemetry.count
-    assert len(run.output.all_rows()) <= 1
+    assert len(run.output.read_all_rows()) <= 1
 
 
 FORGED = (

@@ -11,7 +11,7 @@ import pytest
 from tests.running import Done, Run
 from tuisim.base.errors import LogError
 from tuisim.engine.mat_cache import open_field
-from tuisim.engine.runs.frames import column_values
+from tuisim.engine.runs.frames import compute_column_values
 from tuisim.engine.runs.motor_records import read_motor_columns, read_motor_values
 from tuisim.engine.runs.records import HEADER_BYTES
 from tuisim.engine.runs.side_files import MOTORS_FILE
@@ -66,7 +66,7 @@ def test_what_is_lost_is_unknown(hold: Callable[..., Done]) -> None:
     done = hold()
     os.truncate(done.run.folder / MOTORS_FILE, HEADER_BYTES + 16 * 5 + 3)
     mat = open_field(done.run.field)
-    columns = column_values(
+    columns = compute_column_values(
         ["left_duty_pc", "left_holding"], done.run.telemetry.array(), done.run, [], mat
     )
     for values in columns.values():

@@ -13,7 +13,7 @@ from tests.app.app_help import program
 from tests.running import PATIENCE_S
 from tuisim.app.timeline import Timeline
 from tuisim.engine.core.pen_marks import MarkedField, PenMarks
-from tuisim.engine.runs.brick_state import LED_NAMES, led_row
+from tuisim.engine.runs.brick_state import LED_NAMES, build_led_row
 from tuisim.engine.runs.handle import RunOptions, start_run
 from tuisim.engine.runs.recorded_run import Recording, RowIndex
 from tuisim.engine.runs.records import Mark, OutputWriter, Stream
@@ -46,12 +46,12 @@ def test_the_line_of_a_sample_is_that_of_the_last_one_in_its_tick(tmp_path: Path
     writer.close()
     index = RowIndex(OutputView(tmp_path))
     index.take(9)
-    assert [index.line_of("a", tick) for tick in (3, 4, 5, 6)] == [0, 2, 5, 0]
-    assert [index.line_of("b", tick) for tick in (4, 5)] == [0, 4]
+    assert [index.find_line("a", tick) for tick in (3, 4, 5, 6)] == [0, 2, 5, 0]
+    assert [index.find_line("b", tick) for tick in (4, 5)] == [0, 4]
 
 
 def test_rows_are_found_by_tick(tmp_path: Path) -> None:
-    leds = [led_row(dict.fromkeys(LED_NAMES, light)) for light in (0, 9)]
+    leds = [build_led_row(dict.fromkeys(LED_NAMES, light)) for light in (0, 9)]
     index = index_of(
         tmp_path,
         [
@@ -63,20 +63,20 @@ def test_rows_are_found_by_tick(tmp_path: Path) -> None:
         ],
     )
     assert [index.until(tick) for tick in (0, 4, 5, 8, 9, 99)] == [1, 1, 3, 4, 5, 5]
-    texts = {tick: [row.text for row in index.texts_until(tick, 2)[0]] for tick in (0, 6, 99)}
+    texts = {tick: [row.text for row in index.list_texts(tick, 2)[0]] for tick in (0, 6, 99)}
     assert texts == {0: ["a"], 6: ["a", "b"], 99: ["b", "c"]}
-    assert index.texts_until(99, 2)[1] == 1
+    assert index.list_texts(99, 2)[1] == 1
     assert [row.text for row in index.rows(3)] == [leds[1], "c"]
     assert [row.text for row in index.rows(1, -1)] == [leds[0], "a"]
-    assert [index.row(number).text for number in index.face_numbers(6)] == [leds[0]]
-    assert index.ticks_of_line(3) == [0, 5, 5, 7, 9]
+    assert [index.row(number).text for number in index.list_face_numbers(6)] == [leds[0]]
+    assert index.list_ticks(3) == [0, 5, 5, 7, 9]
 
 
 def test_the_line_that_printed_a_sample_is_found_in_its_tick(tmp_path: Path) -> None:
     samples = [(2, Stream.STDOUT, "A: 1"), (5, Stream.STDOUT, "B: 1")]
     index = index_of(tmp_path, samples)
-    assert [index.line_of("A", tick) for tick in (1, 2, 3, 5)] == [0, 3, 0, 0]
-    assert index.line_of("B", 5) == 3
+    assert [index.find_line("A", tick) for tick in (1, 2, 3, 5)] == [0, 3, 0, 0]
+    assert index.find_line("B", 5) == 3
 
 
 def test_new_levels_and_errors_stand_out_once(tmp_path: Path) -> None:
@@ -107,7 +107,7 @@ def test_sensors_see_what_the_pen_had_drawn_by_then() -> None:
     for tick in (30, 30, 31, 0, 59):
         drawn = PenMarks(mat, run.spec)
         drawn.add_records(records[: tick + 1])
-        seen = recording.field_at(tick, mat)
+        seen = recording.find_field(tick, mat)
         assert isinstance(seen, MarkedField)
         assert (seen.marks, seen.blocks) == (drawn.field.marks, drawn.field.blocks)
 
@@ -118,7 +118,7 @@ def test_the_pen_of_a_long_run_takes_little_memory() -> None:
     assert recording.newest >= 10_000
     tracemalloc.start()
     try:
-        recording.field_at(10_000, mat)
+        recording.find_field(10_000, mat)
         assert tracemalloc.get_traced_memory()[1] < 1 << 20
     finally:
         tracemalloc.stop()

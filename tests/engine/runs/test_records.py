@@ -16,12 +16,12 @@ from tuisim.engine.runs.records import (
     OutputWriter,
     Stream,
     TelemetryWriter,
-    header,
     is_hole,
+    iterate_raw_rows,
+    iterate_rows,
     line_of,
-    output_rows,
-    published_length,
-    raw_rows,
+    pack_header,
+    read_published_length,
 )
 from tuisim.engine.runs.views import TelemetryView
 
@@ -71,16 +71,16 @@ def test_room_is_reserved_where_there_is_no_call_for_it(
 
 
 def test_a_header_says_what_a_file_is() -> None:
-    made = header(b"TUISIMOU", 0, 12)
+    made = pack_header(b"TUISIMOU", 0, 12)
     assert len(made) == HEADER_BYTES
-    assert published_length(made, b"TUISIMOU", "f") == 12
+    assert read_published_length(made, b"TUISIMOU", "f") == 12
     for data, magic, said in (
         (made[:10], b"TUISIMOU", "too short"),
         (made, b"TUISIMTL", "not a tuisim recording"),
         (made[:8] + b"\xff\xff" + made[10:], b"TUISIMOU", "format version"),
     ):
         with pytest.raises(LogError, match=said):
-            published_length(data, magic, "f")
+            read_published_length(data, magic, "f")
 
 
 def test_rows_that_are_not_complete_are_left_out(tmp_path: Path) -> None:
@@ -94,16 +94,16 @@ def test_rows_that_are_not_complete_are_left_out(tmp_path: Path) -> None:
     writer.close()
     data = (tmp_path / OUTPUT_FILE).read_bytes()
     end = len(data) - HEADER_BYTES
-    rows = [row for row, _ in output_rows(data, 0, end)]
+    rows = [row for row, _ in iterate_rows(data, 0, end)]
     assert [(row.text, row.stream) for row in rows] == [
         ("one", Stream.STDOUT),
         ("", Stream.STDERR),
         ("\ufffd\ufffd", Stream.SPEECH),
     ]
-    assert [row.text for row, _ in output_rows(data, 0, end - 1)] == ["one", ""]
-    assert [text for _, text in raw_rows(data, end - 1)] == [b"one", b""]
-    (_, after_first), *_ = output_rows(data, 0, end)
-    assert [row.text for row, _ in output_rows(data, after_first, end)] == ["", "\ufffd\ufffd"]
+    assert [row.text for row, _ in iterate_rows(data, 0, end - 1)] == ["one", ""]
+    assert [text for _, text in iterate_raw_rows(data, end - 1)] == [b"one", b""]
+    (_, after_first), *_ = iterate_rows(data, 0, end)
+    assert [row.text for row, _ in iterate_rows(data, after_first, end)] == ["", "\ufffd\ufffd"]
 
 
 @pytest.mark.parametrize(

@@ -47,7 +47,7 @@ def test_places_in_one_tick_are_in_the_order_of_its_lines() -> None:
         Position(6, 1),
     ]
     assert Position(5).ordinal == BEFORE_NEXT_TICK
-    assert all(one.is_before(other) and not other.is_before(one) for one, other in pairwise(places))
+    assert all(one.precedes(other) and not other.precedes(one) for one, other in pairwise(places))
 
 
 class Looker:

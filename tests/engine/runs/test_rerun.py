@@ -14,7 +14,7 @@ from tests.running import Start, over, until, until_tick
 from tuisim.base.errors import LogError
 from tuisim.base.source import Program
 from tuisim.engine.protocol import Answer, Message, SetButtons, SetNoise, SetPen, SetPose
-from tuisim.engine.runs.brick_state import BrickState, face_after
+from tuisim.engine.runs.brick_state import BrickState, update_face
 from tuisim.engine.runs.handle import RunOptions, start_run
 from tuisim.engine.runs.records import Stream
 from tuisim.engine.runs.rerun import rerun, same
@@ -141,7 +141,7 @@ def test_a_stop_is_given_again_at_its_tick(start: Start, tmp_path: Path, live: b
     assert over(again).ended.end == "stopped"
     second = store.load_run(again.run_id)
     assert second.telemetry.array().tobytes() == stored.telemetry.array().tobytes()
-    assert second.output.all_rows() == stored.output.all_rows()
+    assert second.output.read_all_rows() == stored.output.read_all_rows()
     assert same(stored, second).same
     (stored.folder / STOP_FILE).write_text("rubbish")
     with pytest.raises(LogError, match=STOP_FILE):
@@ -201,7 +201,7 @@ def test_a_motor_that_does_not_drive_is_recorded_alike_live_and_headless(home: P
     over(live)
     run = RunStore().load_run(live.run_id)
     turns = [row for row in run.output.rows() if row.stream == Stream.MOTORS]
-    ((position_deg, speed_dps),) = face_after(BrickState(), turns).turns
+    ((position_deg, speed_dps),) = update_face(BrickState(), turns).turns
     assert (round(position_deg), speed_dps) == (-83, 0.0)
     again = rerun(run, RunStore())
     over(again)
@@ -218,6 +218,6 @@ def test_a_run_that_cannot_be_prepared_is_not_listed(home: Path, tmp_path: Path)
 
 
 def test_a_run_without_a_tick_cannot_be_done_again(tmp_path: Path) -> None:
-    new = RunStore().new_run(Program("p.py", "print(1)"), build_run_spec(Settings()))
+    new = RunStore().create_run(Program("p.py", "print(1)"), build_run_spec(Settings()))
     with pytest.raises(LogError, match="has no recording: it ended before its first tick"):
         rerun(RunStore().load_run(new.id), RunStore(tmp_path))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from tests.cases import cases
 from tuisim.engine.core.conditions import ValueCondition, ValueSource
 from tuisim.engine.runs.records import OutputRow, Stream
-from tuisim.engine.runs.samples import Sample, parse_sample, rows_when, samples_of
+from tuisim.engine.runs.samples import Sample, list_samples, parse_sample, select_rows
 
 SAMPLES = {
     "whole number": ("Ultrasonic: 2550", ("Ultrasonic", 2550.0, None)),
@@ -67,11 +67,11 @@ def test_only_what_was_printed_is_logged() -> None:
         OutputRow("a: 1", 5, 50_000_000, 3, stream)
         for stream in (Stream.STDOUT, Stream.STDERR, Stream.SPEECH, Stream.INPUT)
     ]
-    assert list(samples_of(rows)) == [Sample("a", 1.0, 0.05, 50_000_000, 5, 3)]
+    assert list(list_samples(rows)) == [Sample("a", 1.0, 0.05, 50_000_000, 5, 3)]
 
 
 def test_printed_time_counts() -> None:
-    (sample,) = samples_of([OutputRow("a: 1 7.5", 5, 50_000_000, 3, Stream.STDOUT)])
+    (sample,) = list_samples([OutputRow("a: 1 7.5", 5, 50_000_000, 3, Stream.STDOUT)])
     assert (sample.time_s, sample.time_ns) == (7.5, 50_000_000)
 
 
@@ -89,4 +89,4 @@ def test_lines_of_which_a_condition_is_true(
     printed = ("a: 1", "max", "a: 3", "b: 4")
     rows = [OutputRow(text, tick, tick, 1, Stream.STDOUT) for tick, text in enumerate(printed)]
     condition = ValueCondition(name, sign, value, source)
-    assert [row.text for row in rows_when(condition, rows)] == texts
+    assert [row.text for row in select_rows(condition, rows)] == texts

@@ -21,8 +21,8 @@ from tuisim.engine.core.spec import (
     UltrasonicSpec,
 )
 from tuisim.engine.core.tick_record import TICK_FIELDS
-from tuisim.engine.runs.sensor_arrays import measured_at_once
-from tuisim.engine.runs.views import TickRecord, instant_of
+from tuisim.engine.runs.sensor_arrays import measure_array
+from tuisim.engine.runs.views import TickRecord, build_instant
 
 BOXES = (Obstacle(300, 900, 50, 300), Obstacle(900, 500, 200, 200), Obstacle(1000, 560, 40, 900))
 ROBOTS = {
@@ -67,11 +67,11 @@ def test_arrays_are_the_readings_to_the_bit(
     run = replace(spec, robot=robot, world=replace(spec.world, walls=walls, obstacles=BOXES))
     records = places(400)
     for kind, sensor, *_ in list_mounted(robot):
-        found = measured_at_once(sensor, records, run, field, has_light_noise=False)
+        found = measure_array(sensor, records, run, field, has_light_noise=False)
         assert found is not None
         one_by_one = [
             kind.measure(
-                sensor, instant_of(TickRecord(*record.item()), run, NoiseSpec()), run, field
+                sensor, build_instant(TickRecord(*record.item()), run, NoiseSpec()), run, field
             )
             for record in records
         ]
@@ -84,7 +84,7 @@ def test_arrays_are_the_readings_to_the_bit(
 
 def test_light_noise_is_measured_tick_by_tick(spec: RunSpec, field: Field) -> None:
     assert (
-        measured_at_once(spec.robot.color_sensors[0], places(3), spec, field, has_light_noise=True)
+        measure_array(spec.robot.color_sensors[0], places(3), spec, field, has_light_noise=True)
         is None
     )
 
@@ -94,6 +94,6 @@ def test_a_damaged_record_has_no_reading_and_spoils_no_other(spec: RunSpec, fiel
     records["heading_deg"][1] = math.inf
     sensor = spec.robot.ultrasonic
     assert sensor is not None
-    (before,) = measured_at_once(sensor, places(3), spec, field, has_light_noise=False) or ()
-    (after,) = measured_at_once(sensor, records, spec, field, has_light_noise=False) or ()
+    (before,) = measure_array(sensor, places(3), spec, field, has_light_noise=False) or ()
+    (after,) = measure_array(sensor, records, spec, field, has_light_noise=False) or ()
     assert (after[0], after[2]) == (before[0], before[2])

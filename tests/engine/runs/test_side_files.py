@@ -12,8 +12,8 @@ import pytest
 from tuisim.base.errors import LogError
 from tuisim.engine.runs.side_files import (
     LOCK_FILE,
-    MOST_READS,
-    MOST_SUMMED_BYTES,
+    MAX_READS,
+    MAX_SUMMED_BYTES,
     READS_FILE,
     FileRead,
     FilesRead,
@@ -21,7 +21,7 @@ from tuisim.engine.runs.side_files import (
     note_read,
     note_reads_left_out,
     read_reads,
-    state_of,
+    read_state,
 )
 
 MISSING = FileRead("a", there=False)
@@ -32,7 +32,7 @@ def test_state_of_a_file(tmp_path: Path) -> None:
     path.write_bytes(b"123456789")
     os.utime(path, ns=(5, 5))
     # The check value of CRC-32.
-    assert state_of(str(path)) == FileRead(
+    assert read_state(str(path)) == FileRead(
         str(path), there=True, bytes=9, mtime_ns=5, crc32=0xCBF43926
     )
 
@@ -47,21 +47,21 @@ def test_pipes_in_place_of_lists_and_locks_do_not_block(tmp_path: Path) -> None:
 
 def test_a_large_file_is_not_read(tmp_path: Path) -> None:
     with open(tmp_path / "a", "wb") as file:
-        file.truncate(MOST_SUMMED_BYTES + 1)
-    found = state_of(str(tmp_path / "a"))
+        file.truncate(MAX_SUMMED_BYTES + 1)
+    found = read_state(str(tmp_path / "a"))
     assert found is not None
-    assert (found.bytes, found.crc32) == (MOST_SUMMED_BYTES + 1, -1)
+    assert (found.bytes, found.crc32) == (MAX_SUMMED_BYTES + 1, -1)
 
 
 @pytest.mark.parametrize(
     "path", ["/", os.devnull, "a\0b", "x" * 5000], ids=["folder", "device", "null", "long"]
 )
 def test_other_things_have_no_state(path: str) -> None:
-    assert state_of(path) is None
+    assert read_state(path) is None
 
 
 def test_state_of_no_file(tmp_path: Path) -> None:
-    assert state_of(str(tmp_path / "a")) == FileRead(str(tmp_path / "a"), there=False)
+    assert read_state(str(tmp_path / "a")) == FileRead(str(tmp_path / "a"), there=False)
 
 
 @pytest.mark.parametrize(
@@ -76,7 +76,7 @@ def test_state_of_no_file(tmp_path: Path) -> None:
     ],
 )
 def test_same_as(one: FileRead, other: FileRead, same: bool) -> None:
-    assert (one.same_as(other), other.same_as(one)) == (same, same)
+    assert (one.is_same(other), other.is_same(one)) == (same, same)
 
 
 def test_what_is_noted_is_read(tmp_path: Path) -> None:
@@ -90,10 +90,10 @@ def test_what_is_noted_is_read(tmp_path: Path) -> None:
 
 
 def test_a_longer_list_is_cut(tmp_path: Path) -> None:
-    rows = (json.dumps(asdict(FileRead(str(n), there=False))) + "\n" for n in range(MOST_READS + 3))
+    rows = (json.dumps(asdict(FileRead(str(n), there=False))) + "\n" for n in range(MAX_READS + 3))
     (tmp_path / READS_FILE).write_text("".join(rows))
     found = read_reads(tmp_path)
-    assert (len(found.files), found.left_out) == (MOST_READS, 3)
+    assert (len(found.files), found.left_out) == (MAX_READS, 3)
 
 
 @pytest.mark.parametrize(

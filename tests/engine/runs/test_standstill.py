@@ -13,7 +13,7 @@ from tests.engine.runs.run_recorder import Recorder
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.profile import PROFILES
 from tuisim.engine.core.spec import NoiseSpec, Obstacle, RobotSpec, RunSpec, WorldSpec
-from tuisim.engine.runs.standstill import has_left_field, standstill_of, standstill_words
+from tuisim.engine.runs.standstill import describe_standstill, find_standstill, has_left_field
 
 Record = Callable[..., Recorder]
 
@@ -42,7 +42,7 @@ def words(record: Record, spec: RunSpec, moves: Moves) -> str:
         else:
             recorder.drive(*speeds, ticks)
     run = recorder.end()
-    return standstill_words(run.telemetry, run.spec)
+    return describe_standstill(run.telemetry, run.spec)
 
 
 SAID: dict[str, tuple[RunSpec, Moves, str]] = {
@@ -125,7 +125,7 @@ def test_noise_that_lets_the_wheels_turn_a_little_does_not_hide_that_they_push(
     recorder = record(replace(SPEC, world=replace(WALL, noise=NoiseSpec(0, 50))))
     recorder.drive(*ON, 400)
     run = recorder.end()
-    found = standstill_of(run.telemetry, run.spec)
+    found = find_standstill(run.telemetry, run.spec)
     assert found is not None
     assert found.since_s == pytest.approx(1.03, abs=0.05)
     assert 1.0 < found.pushed_s < 3.0

@@ -27,7 +27,7 @@ from tuisim.engine.protocol import End, Ended, SetNoise, SetPen, Unended, UserAc
 from tuisim.engine.runs import side_files
 from tuisim.engine.runs.catalogue import CATALOGUE_FILE, RunInfo
 from tuisim.engine.runs.records import OUTPUT_FILE
-from tuisim.engine.runs.run_folder import RUN_FILE, StoredRun, noise_at, write_run_file
+from tuisim.engine.runs.run_folder import RUN_FILE, StoredRun, find_noise, write_run_file
 from tuisim.engine.runs.side_files import ACTIONS_FILE, LOCK_FILE, hold, is_held
 from tuisim.engine.runs.store import NewRun, RunStore, load_run
 
@@ -46,7 +46,7 @@ def test_run_is_stored_whole(record: Callable[..., Recorder], noisy_spec: RunSpe
     assert run.end == Ended(End.RAISED, 5, 50_000_000, summary="NameError: x")
     assert run.state == "raised"
     assert run.actions == (UserAction(5, SetPen(True)),)
-    assert (run.telemetry.count, len(run.output.all_rows()), run.notes) == (6, 1, ())
+    assert (run.telemetry.count, len(run.output.read_all_rows()), run.notes) == (6, 1, ())
 
 
 def test_catalogue_says_how_it_went(logged: StoredRun, store: RunStore) -> None:
@@ -106,7 +106,7 @@ def test_run_is_found(logged: StoredRun, store: RunStore, how: str) -> None:
 
 def test_number_goes_before_the_start_of_an_id(store: RunStore, spec: RunSpec) -> None:
     for _ in range(2):
-        store.finish(store.new_run(PROGRAM, spec), FINISHED)
+        store.finish(store.create_run(PROGRAM, spec), FINISHED)
     assert store.find("2").number == 2
 
 
@@ -119,7 +119,7 @@ def test_unknown_run_is_an_error_that_says_what_there_is(
 
 
 def test_start_of_several_ids_is_an_error(store: RunStore, spec: RunSpec) -> None:
-    ids = [store.new_run(PROGRAM, spec).id for _ in range(2)]
+    ids = [store.create_run(PROGRAM, spec).id for _ in range(2)]
     with pytest.raises(LogError, match=f"2 runs: {ids[0]}, {ids[1]}"):
         store.find(ids[0][:4])
 
@@ -132,7 +132,7 @@ def test_store_without_runs(store: RunStore) -> None:
 
 
 def test_home_comes_from_the_environment(home: Path, spec: RunSpec) -> None:
-    run = RunStore().new_run(PROGRAM, spec)
+    run = RunStore().create_run(PROGRAM, spec)
     assert run.folder.parent == home / "runs"
     assert load_run("last").id == run.id
 
@@ -149,13 +149,13 @@ def test_home_that_cannot_be_written_is_named(tmp_path: Path, spec: RunSpec) -> 
     (tmp_path / "file").write_text("")
     store = RunStore(tmp_path / "file" / "home")
     with pytest.raises(LogError, match=r"file/home: runs cannot be stored here.*TUISIM_HOME"):
-        store.new_run(PROGRAM, spec)
+        store.create_run(PROGRAM, spec)
 
 
 def test_run_that_could_not_be_listed_leaves_no_folder(tmp_path: Path, spec: RunSpec) -> None:
     (tmp_path / CATALOGUE_FILE).mkdir()
     with pytest.raises(LogError, match=CATALOGUE_FILE):
-        RunStore(tmp_path).new_run(PROGRAM, spec)
+        RunStore(tmp_path).create_run(PROGRAM, spec)
     assert list((tmp_path / "runs").iterdir()) == []
 
 
@@ -199,7 +199,7 @@ def test_a_run_is_running_from_the_start_of_its_process(start: Start) -> None:
 
 
 def test_a_run_is_running_before_its_process_starts(store: RunStore, spec: RunSpec) -> None:
-    run = store.new_run(PROGRAM, spec)
+    run = store.create_run(PROGRAM, spec)
     assert is_held(run.folder) is True
     assert (store.runs()[0].end, store.runs()[0].ticks) == (Unended.RUNNING, 0)
     with pytest.raises(LogError, match="still running"):
@@ -209,7 +209,7 @@ def test_a_run_is_running_before_its_process_starts(store: RunStore, spec: RunSp
 def test_runs_are_listed_where_no_lock_can_be_asked_for(
     store: RunStore, spec: RunSpec, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    run = store.new_run(PROGRAM, spec)
+    run = store.create_run(PROGRAM, spec)
     os.close(run.lock_fd)
 
     def fail(descriptor: int, operation: int) -> None:
@@ -231,7 +231,7 @@ def test_killed_run_keeps_its_rows(
     assert (info.end, info.ticks, info.samples) == (Unended.INTERRUPTED, 3, 2)
     assert store.runs() == [info]
     run = store.load_run("1")
-    assert (run.end, run.state, len(run.output.all_rows()), run.telemetry.count) == (
+    assert (run.end, run.state, len(run.output.read_all_rows()), run.telemetry.count) == (
         None,
         Unended.INTERRUPTED,
         2,
@@ -294,7 +294,7 @@ def test_torn_run_says_what_is_lost(
     with open(path, "r+b") as torn:
         torn.truncate(path.stat().st_size - 1)
     run = store.load_run(recorder.run.id)
-    assert [row.text for row in run.output.all_rows()] == ["a: 1"]
+    assert [row.text for row in run.output.read_all_rows()] == ["a: 1"]
     assert len(run.actions) == 1
     assert run.notes == (
         "output.bin was truncated: its last 1 byte is lost",
@@ -315,7 +315,7 @@ DAMAGED = {
 def test_damaged_run_file_is_named_and_does_not_hide_the_others(
     logged: StoredRun, store: RunStore, spec: RunSpec, content: bytes
 ) -> None:
-    bad = store.new_run(PROGRAM, spec)
+    bad = store.create_run(PROGRAM, spec)
     (bad.folder / RUN_FILE).write_bytes(content)
     with pytest.raises(LogError, match=RUN_FILE):
         store.load_run(bad.id)
@@ -335,13 +335,13 @@ def test_damaged_action_is_named_by_its_row(logged: StoredRun) -> None:
 def test_removed_run_is_gone_and_its_number_is_not_used_again(
     store: RunStore, spec: RunSpec
 ) -> None:
-    runs = [store.new_run(PROGRAM, spec) for _ in range(3)]
+    runs = [store.create_run(PROGRAM, spec) for _ in range(3)]
     for run in runs:
         store.finish(run, FINISHED)
     store.remove(runs[2].id)
     assert [info.number for info in store.runs()] == [1, 2]
     assert {path.name for path in (store.home / "runs").iterdir()} == {run.id for run in runs[:2]}
-    assert store.new_run(PROGRAM, spec).number == 4
+    assert store.create_run(PROGRAM, spec).number == 4
 
 
 def test_what_a_program_has_put_into_its_folder_is_not_copied_into_the_store(
@@ -354,7 +354,7 @@ def test_what_a_program_has_put_into_its_folder_is_not_copied_into_the_store(
     (logged.folder / "link").symlink_to(mine)
     (logged.folder / "reads.jsonl").symlink_to(mine)
     (logged.folder / "nowhere").symlink_to(tmp_path / "nothing")
-    adopted = RunStore(tmp_path / "other").adopt(logged.folder)
+    adopted = RunStore(tmp_path / "other").add_folder(logged.folder)
     assert {path.name for path in adopted.folder.iterdir()} == {
         "run.json",
         "telemetry.bin",
@@ -378,7 +378,7 @@ def test_a_run_cannot_be_removed_while_it_is_copied_into_the_store(
         write_run_file(folder, data)
 
     monkeypatch.setattr("tuisim.engine.runs.store.write_run_file", remove_and_write)
-    adopted = there.adopt(logged.folder)
+    adopted = there.add_folder(logged.folder)
     assert seen == [[adopted.id]]
     assert [row.end for row in there.runs()] == [End.FINISHED]
     there.remove(adopted.id)
@@ -398,7 +398,7 @@ def test_run_that_is_not_there_cannot_be_changed(store: RunStore, change: str) -
 def test_tags_stay_when_the_run_ends_and_the_catalogue_is_lost(
     store: RunStore, spec: RunSpec
 ) -> None:
-    run = store.new_run(PROGRAM, spec)
+    run = store.create_run(PROGRAM, spec)
     store.tag(run.id, ["good", "fast"])
     store.finish(run, FINISHED)
     (store.home / CATALOGUE_FILE).unlink()
@@ -413,7 +413,7 @@ def test_folder_deleted_or_copied_by_hand_is_noticed(
 ) -> None:
     shutil.copytree(logged.folder, store.folder("copy"))
     shutil.copytree(logged.folder, store.folder("copy").with_name(".copy"))
-    gone = store.new_run(PROGRAM, spec)
+    gone = store.create_run(PROGRAM, spec)
     shutil.rmtree(gone.folder)
     assert [(info.number, info.id, info.samples) for info in store.runs()] == [
         (1, logged.id, 4),
@@ -431,4 +431,4 @@ def test_noise_is_found_also_after_65536_actions(logged: StoredRun) -> None:
         for count in (tick - 2, tick, tick + 3):
             record = replace(logged.telemetry.record(0), tick=tick, actions=count & 0xFFFF)
             expected = NoiseSpec(count % 100, 0) if count else logged.spec.world.noise
-            assert noise_at(logged.spec, actions, record) == expected
+            assert find_noise(logged.spec, actions, record) == expected

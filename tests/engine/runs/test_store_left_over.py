@@ -18,7 +18,7 @@ FINISHED = Ended(End.FINISHED, 100, 1_000_000_000)
 def test_what_a_killed_removal_has_left_goes_when_runs_are_listed(
     store: RunStore, spec: RunSpec, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    runs = [store.new_run(PROGRAM, spec) for _ in range(3)]
+    runs = [store.create_run(PROGRAM, spec) for _ in range(3)]
     for run in runs:
         store.finish(run, FINISHED)
     with monkeypatch.context() as killed:
@@ -32,7 +32,7 @@ def test_what_a_killed_removal_has_left_goes_when_runs_are_listed(
 def test_a_folder_of_a_run_that_did_not_begin_goes_when_no_process_holds_it(
     store: RunStore, spec: RunSpec
 ) -> None:
-    run = store.new_run(PROGRAM, spec)
+    run = store.create_run(PROGRAM, spec)
     held, dead, mine, link = (run.folder.with_name(name) for name in ("held", "dead", "my", "link"))
     for folder in (held, dead, mine):
         folder.mkdir()

@@ -25,7 +25,7 @@ READ = run_folder.read_run_file
 @pytest.fixture
 def run(home: Path) -> NewRun:
     """A run that was interrupted."""
-    found = RunStore().new_run(PROGRAM, RunSpec(RobotSpec(), WorldSpec(), ROBOLAB))
+    found = RunStore().create_run(PROGRAM, RunSpec(RobotSpec(), WorldSpec(), ROBOLAB))
     os.close(found.lock_fd)
     return found
 

@@ -20,7 +20,12 @@ from tuisim.engine.core.spec import RobotSpec, RunSpec, WorldSpec
 from tuisim.engine.runs import temporary
 from tuisim.engine.runs.run_folder import RUN_FILE
 from tuisim.engine.runs.side_files import hold, is_held
-from tuisim.engine.runs.temporary import TemporaryRun, batch_folder, owned_folder, temporary_home
+from tuisim.engine.runs.temporary import (
+    TemporaryRun,
+    create_batch_folder,
+    create_owned_folder,
+    create_temporary_home,
+)
 
 SPEC = RunSpec(RobotSpec(), WorldSpec(), ROBOLAB)
 
@@ -34,7 +39,7 @@ def place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def test_a_home_is_held_and_goes_with_its_block() -> None:
-    with temporary_home() as folder:
+    with create_temporary_home() as folder:
         assert is_held(folder)
         (folder / "file").write_text("x")
     assert not folder.exists()
@@ -47,7 +52,7 @@ def test_threads_create_homes_at_the_same_time(place: Path) -> None:
     def create_and_remove(_: int) -> None:
         ready.wait()
         for _ in range(10):
-            with temporary_home() as folder:
+            with create_temporary_home() as folder:
                 assert is_held(folder)
 
     before_s = sys.getswitchinterval()
@@ -74,7 +79,7 @@ def test_the_first_folder_of_a_process_deletes_what_killed_ones_have_left(place:
     held.mkdir()
     lock_fd = hold(held)
     (elsewhere := place / "elsewhere").mkdir()
-    owned_folder(parent=elsewhere)
+    create_owned_folder(parent=elsewhere)
     os.close(lock_fd)
     assert not dead.exists()
     assert {path.name for path in place.iterdir()} == {
@@ -92,7 +97,7 @@ def test_where_no_folder_can_be_created_it_is_told(place: Path) -> None:
 
 def test_a_run_is_read_as_it_was_begun_whatever_the_program_does_to_its_file(place: Path) -> None:
     with TemporaryRun(place) as runs:
-        new = runs.new_run(Program("p.py", "x = 1\n"), SPEC)
+        new = runs.create_run(Program("p.py", "x = 1\n"), SPEC)
         (new.folder / RUN_FILE).write_text("rubbish")
         assert runs.load_run(new.folder).program.text == "x = 1\n"
         (new.folder / RUN_FILE).unlink()
@@ -107,4 +112,4 @@ def test_in_memory_only_where_there_is_room(place: Path, monkeypatch: pytest.Mon
     monkeypatch.setattr(temporary, "_MEMORY", memory)
     for free, parent in ((0, memory), (1 << 60, place)):
         monkeypatch.setattr(temporary, "_FREE_BYTES", free)
-        assert batch_folder().parent == parent
+        assert create_batch_folder().parent == parent

@@ -28,7 +28,7 @@ from tuisim.engine.runs.records import (
     OutputWriter,
     Stream,
     TelemetryWriter,
-    header,
+    pack_header,
 )
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.engine.runs.store import RunStore
@@ -77,7 +77,7 @@ def put(writer: TelemetryWriter, count: int) -> None:
 def test_run_without_files_is_empty(tmp_path: Path) -> None:
     telemetry, output = TelemetryView(tmp_path), OutputView(tmp_path)
     assert (telemetry.count, telemetry.last(), len(telemetry.array())) == (0, None, 0)
-    assert (output.new_rows(), output.all_rows(), output.length) == ([], [], 0)
+    assert (output.read_new_rows(), output.read_all_rows(), output.length) == ([], [], 0)
     assert telemetry.array().dtype.names == tuple(name for name, _ in TICK_FIELDS)
 
 
@@ -152,14 +152,14 @@ def test_new_rows_come_once_and_in_portions(tmp_path: Path) -> None:
     writer, view = OutputWriter(tmp_path), OutputView(tmp_path)
     for number in range(5):
         writer.write(f"line {number} é".encode(), number, number * 10, number, Stream.STDOUT)
-    assert [row.text for row in view.new_rows(2)] == ["line 0 é", "line 1 é"]
-    assert view.new_rows(0) == []
-    assert [row.tick for row in view.new_rows()] == [2, 3, 4]
-    assert view.new_rows() == []
+    assert [row.text for row in view.read_new_rows(2)] == ["line 0 é", "line 1 é"]
+    assert view.read_new_rows(0) == []
+    assert [row.tick for row in view.read_new_rows()] == [2, 3, 4]
+    assert view.read_new_rows() == []
     writer.write(b"x" * 100_000, 9, 9, 9, Stream.STDOUT)
-    assert [len(row.text) for row in view.new_rows()] == [100_000]
+    assert [len(row.text) for row in view.read_new_rows()] == [100_000]
     writer.close()
-    assert len(view.all_rows()) == 6
+    assert len(view.read_all_rows()) == 6
 
 
 def test_cut_off_telemetry_keeps_whole_records(tmp_path: Path) -> None:
@@ -189,7 +189,7 @@ def test_nothing_is_lost_when_the_writer_is_killed(tmp_path: Path) -> None:
         child.send_signal(signal.SIGKILL)
     assert (tmp_path / TELEMETRY_FILE).stat().st_size > HEADER_BYTES + 64 * 1003
     assert TelemetryView(tmp_path).array()["tick"].tolist() == list(range(1003))
-    assert len(OutputView(tmp_path).all_rows()) == 101
+    assert len(OutputView(tmp_path).read_all_rows()) == 101
 
 
 def test_runs_that_are_over_keep_no_files_open(
@@ -203,7 +203,9 @@ def test_runs_that_are_over_keep_no_files_open(
     views = [
         (TelemetryView(recorder.run.folder), OutputView(recorder.run.folder)) for _ in range(5)
     ]
-    assert {(ticks.array().size, len(output.all_rows())) for ticks, output in views} == {(4, 1)}
+    assert {(ticks.array().size, len(output.read_all_rows())) for ticks, output in views} == {
+        (4, 1)
+    }
     assert len(os.listdir("/proc/self/fd")) == before
 
 
@@ -224,7 +226,7 @@ def test_of_a_run_with_a_damaged_recording_the_other_one_is_read(
         handle.write(b"no magic")
     run = store.load_run(file.parent.name)
     assert run.notes == (f"{name}: not a tuisim recording: it cannot be read",)
-    assert (len(run.output.all_rows()), run.telemetry.count) == (rows, ticks)
+    assert (len(run.output.read_all_rows()), run.telemetry.count) == (rows, ticks)
 
 
 @pytest.mark.parametrize("time_ns, most", [(0, 5), (2_000_000_000, 25)])
@@ -256,7 +258,7 @@ def test_a_recording_that_is_lost_without_a_trace_is_told(
 def test_ticks_that_are_lost_without_a_trace_are_told(logged: StoredRun, store: RunStore) -> None:
     file = logged.folder / TELEMETRY_FILE
     whole = file.read_bytes()
-    file.write_bytes(header(TELEMETRY_MAGIC, TICK_RECORD.size, 17) + whole[HEADER_BYTES:])
+    file.write_bytes(pack_header(TELEMETRY_MAGIC, TICK_RECORD.size, 17) + whole[HEADER_BYTES:])
     assert store.load_run(logged.id).notes == (f"{TELEMETRY_FILE} has 17 of 18 records",)
 
 
@@ -364,8 +366,8 @@ def printed(folder: Path) -> OutputView:
             Stream.STDOUT,
         )
         if number % 1000 == 0:
-            view.new_rows()
-    view.new_rows()
+            view.read_new_rows()
+    view.read_new_rows()
     writer.close()
     return view
 
@@ -374,7 +376,7 @@ def test_much_output_takes_little_memory_and_is_read_again_from_its_file(tmp_pat
     view = printed(tmp_path)
     assert view._dropped > 0
     assert len(view._copy) < 5 << 20
-    rows = view.all_rows()
+    rows = view.read_all_rows()
     assert [row.tick for row in rows] == list(range(LINES))
     assert [rows[at].text.strip() for at in (0, 99, 101, LINES - 1)] == [
         "line 0",
@@ -383,7 +385,7 @@ def test_much_output_takes_little_memory_and_is_read_again_from_its_file(tmp_pat
         f"line {LINES - 1}",
     ]
     assert len(rows[100].text) == 100_000
-    assert sum(1 for _ in view.raw_rows()) == LINES
+    assert sum(1 for _ in view.read_raw_rows()) == LINES
     assert view.damage == ""
 
 
@@ -397,7 +399,7 @@ def test_output_that_a_program_changes_later_is_damage_and_no_error(tmp_path: Pa
     assert len(index) == LINES
     assert index.row(0).text == ""
     assert index.row(LINES - 1).text.strip() == f"line {LINES - 1}"
-    assert view.all_rows() == []
+    assert view.read_all_rows() == []
     assert "was changed" in view.damage
 
 

@@ -121,4 +121,4 @@ NO_ADDRESSES = (
 
 @pytest.mark.parametrize("text", NO_ADDRESSES)
 def test_other_numbers_stay(text: str) -> None:
-    assert Addresses(dict).stable(text) == (text,)
+    assert Addresses(dict).stabilize(text) == (text,)

@@ -53,7 +53,7 @@ def test_a_run_whose_folder_cannot_be_used_says_why(tmp_path: Path) -> None:
 def test_commands_before_the_first_line_wait_for_it(
     start: Start, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    make, written = process._pipe, list[int]()
+    make, written = process._open_pipe, list[int]()
 
     def pipe(reader: ExitStack, writer: ExitStack) -> tuple[int, int]:
         """The first pipe is that of the commands: one is in it before there is a child."""
@@ -62,23 +62,23 @@ def test_commands_before_the_first_line_wait_for_it(
             written.append(os.write(ends[1], SetPose(1500.0, 500.0, 0.0).encode()))
         return ends
 
-    monkeypatch.setattr(process, "_pipe", pipe)
+    monkeypatch.setattr(process, "_open_pipe", pipe)
     run = start("print(colorLeft.color)", live=True)
     ended = run.wait(PATIENCE_S)
     assert ended is not None
-    assert (ended.end, [row.text for row in run.output.all_rows()]) == ("finished", ["1"])
+    assert (ended.end, [row.text for row in run.output.read_all_rows()]) == ("finished", ["1"])
 
 
 def test_a_child_that_is_killed_leaves_every_row(start: Start) -> None:
     run = start(
         "import time\nfor i in range(10**6):\n    print('A:', i)\n    time.sleep(0.01)", live=True
     )
-    until(run, lambda: len(run.output.all_rows()) > 5)
+    until(run, lambda: len(run.output.read_all_rows()) > 5)
     os.kill(run._process.pid, signal.SIGKILL)
     ended = run.wait(PATIENCE_S)
     assert ended is not None
     assert ended.end == "crashed"
     assert "SIGKILL" in ended.summary
-    texts = [row.text for row in run.output.all_rows()]
+    texts = [row.text for row in run.output.read_all_rows()]
     assert texts == [f"A: {i}" for i in range(len(texts))]
     assert run.telemetry.count * TICK_RECORD.size > 0

@@ -43,7 +43,7 @@ def test_the_speed_may_change_while_a_program_sleeps(
         run.send(SetSpeed(speed))
     ended = run.wait(PATIENCE_S)
     assert ended is not None
-    assert (ended.end, [row.text for row in run.output.all_rows()]) == (
+    assert (ended.end, [row.text for row in run.output.read_all_rows()]) == (
         "finished",
         ["A: 1", "A: 2"],
     )
@@ -56,8 +56,8 @@ def test_a_program_whose_turn_does_not_come_is_not_taken_for_stuck(
     until(run, lambda: run.output.length > 0)
     # So busy a machine that the program does nothing but wait, far longer at each look; any time at all is too long.
     waits_s, killed = count(1e6, 1e3), list[int]()
-    monkeypatch.setattr(fair_clock, "waited_s", lambda pid: next(waits_s))
-    monkeypatch.setattr(fair_clock, "computed_s", lambda pid: 0.0)
+    monkeypatch.setattr(fair_clock, "measure_waited_s", lambda pid: next(waits_s))
+    monkeypatch.setattr(fair_clock, "measure_computed_s", lambda pid: 0.0)
     monkeypatch.setattr(handle, "STUCK_AFTER_S", 0.0)
     monkeypatch.setattr(handle, "end_group", killed.append)
     run.stop()
@@ -88,7 +88,7 @@ def test_user_actions_take_effect_right_before_a_tick_and_are_written_down(start
     run.send(SetNoise(0, 5))
     run.send(Resume())
     assert run.wait(PATIENCE_S) is not None
-    assert [row.text for row in run.output.all_rows()] == ["1"]
+    assert [row.text for row in run.output.read_all_rows()] == ["1"]
     first = run.telemetry.record(0)
     assert (first.x_mm, first.heading_deg, first.actions) == (1500.0, 90.0, 2)
     assert (run.folder / "actions.jsonl").read_text().splitlines() == [
@@ -103,4 +103,4 @@ def test_answer_from_the_user(start: Start) -> None:
     run.send(Answer("Ada"))
     ended = run.wait(PATIENCE_S)
     assert ended is not None
-    assert [row.text for row in run.output.all_rows()] == ["Name? Ada", "hello Ada"]
+    assert [row.text for row in run.output.read_all_rows()] == ["Name? Ada", "hello Ada"]

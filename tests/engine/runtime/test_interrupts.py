@@ -48,7 +48,7 @@ def test_asking_without_end_can_be_stopped(start: Start, options: dict[str, obje
     handle = start(
         ASKS.format("map(int, itertools.count())"), prelude="none", time_limit_s=0.0, **options
     )
-    until(handle, lambda: handle.started and len(handle.output.new_rows()) > 0)
+    until(handle, lambda: handle.started and len(handle.output.read_new_rows()) > 0)
     handle.stop()
     assert over(handle).ended.summary == "stopped"
 
@@ -95,7 +95,7 @@ def test_stop_always_works_and_keeps_what_was_printed(start: Start, text: str) -
     ended = run.wait(PATIENCE_S)
     assert ended is not None
     assert ended.end == "stopped"
-    assert run.output.all_rows()[0].text == "Before: 1"
+    assert run.output.read_all_rows()[0].text == "Before: 1"
 
 
 def test_cleaning_up_runs_after_a_stop(start: Start) -> None:
@@ -106,4 +106,4 @@ def test_cleaning_up_runs_after_a_stop(start: Start) -> None:
     until(run, lambda: run.output.length > 0)
     run.stop()
     run.wait(PATIENCE_S)
-    assert [row.text for row in run.output.all_rows()] == ["A: 1", "clean"]
+    assert [row.text for row in run.output.read_all_rows()] == ["A: 1", "clean"]

@@ -10,7 +10,7 @@ import pytest
 
 from tuisim.base.source import Program
 from tuisim.engine.runtime import known_programs
-from tuisim.engine.runtime.known_programs import MOST_CHARACTERS, MOST_KNOWN, KnownPrograms
+from tuisim.engine.runtime.known_programs import MAX_CHARACTERS, MAX_KNOWN, KnownPrograms
 from tuisim.engine.runtime.loader import LOOP_HOOK, compile_program
 
 
@@ -21,7 +21,7 @@ from tuisim.engine.runtime.loader import LOOP_HOOK, compile_program
         "x is 1\nif x is 1: pass",
         "'\\d'",
         "x = " + "-" * 5000 + "1",
-        "#" * (MOST_CHARACTERS + 1),
+        "#" * (MAX_CHARACTERS + 1),
     ],
     ids=["wrong", "with a warning", "with an ignored warning", "too deep", "too long"],
 )
@@ -68,6 +68,6 @@ def test_a_program_whose_annotations_are_dropped_is_another_program() -> None:
 
 def test_not_more_programs_are_kept_than_that() -> None:
     known = KnownPrograms()
-    for number in range(3 * MOST_KNOWN):
+    for number in range(3 * MAX_KNOWN):
         known.code(Program("p.py", f"x = {number}"), False)
-    assert len(known._seen) <= MOST_KNOWN
+    assert len(known._seen) <= MAX_KNOWN

@@ -23,7 +23,7 @@ def test_an_error_in_a_module_beside_the_program_shows_its_place(tmp_path: Path)
     run = start_run(Program("main.py", program.read_text(), path=str(program)), spec, RunOptions())
     ended = run.wait(PATIENCE_S)
     assert ended is not None
-    texts = [row.text for row in run.output.all_rows()]
+    texts = [row.text for row in run.output.read_all_rows()]
     assert texts[0] == "A: 1"
     assert any("helper.py" in text for text in texts)
     assert (ended.error_line, ended.summary) == (3, "KeyError: 'k' (line 3)")

@@ -163,13 +163,16 @@ def test_answers_to_input(run: Run) -> None:
     done = run("name = input('Name? ')\nprint('hello ' + name)\ninput()", answers=("Ada",))
     assert done.lines == ["hello Ada"]
     assert "EOFError" in done.errors[-1]
-    assert [row.text for row in done.run.output.all_rows() if row.stream == 4] == ["Name? Ada", ""]
+    assert [row.text for row in done.run.output.read_all_rows() if row.stream == 4] == [
+        "Name? Ada",
+        "",
+    ]
 
 
 def test_speech_is_shown(run: Run) -> None:
     done = run('say("it\'s black", wait=True)\nprint(get_clock() > 0.5)')
     assert done.lines == ["it's black", "True"]
-    assert [row.text for row in done.run.output.all_rows() if row.stream == 3] == [
+    assert [row.text for row in done.run.output.read_all_rows() if row.stream == 3] == [
         "it\u2019s black"
     ]
 

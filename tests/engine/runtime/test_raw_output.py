@@ -28,7 +28,9 @@ c.printf(b'no end')
 @pytest.mark.usefixtures("real_start")
 def test_its_order_and_time_are_those_of_the_program(run: Run) -> None:
     done = run(MIXED, prelude="none")
-    rows = [(row.text, row.stream, row.time_ns, row.line) for row in done.run.output.all_rows()]
+    rows = [
+        (row.text, row.stream, row.time_ns, row.line) for row in done.run.output.read_all_rows()
+    ]
     assert rows == [
         ("abc", 1, 0, 5),
         ("puts", 1, 0, 8),

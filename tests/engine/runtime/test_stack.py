@@ -35,6 +35,6 @@ def test_a_program_sees_its_own_frames_only(run: Run, text: str, told: list[str]
         f"import faulthandler, inspect, time, traceback\ndef f(): {text}\nf()", prelude="none"
     )
     assert done.ended.end == "finished"
-    seen = [row.text for row in done.run.output.all_rows()]
+    seen = [row.text for row in done.run.output.read_all_rows()]
     assert set(told) <= set(seen)
     assert not any("tuisim" in line or "runpy" in line for line in seen)

@@ -39,7 +39,7 @@ def test_a_program_cannot_tell_how_it_was_started(
     name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     # The kept one may be older than a limit of this process.
-    process.cool_down()
+    process.end_warm_process()
     prelude = "preloaded"
     text = (IMPORTS if name != "modules" else "import os, sys\n") + SURROUNDINGS[name]
     printed("print('prepares the template')", True, prelude)
@@ -50,7 +50,7 @@ def test_a_program_cannot_tell_how_it_was_started(
 
 
 def test_a_template_runs_each_program_as_it_is() -> None:
-    process.cool_down()
+    process.end_warm_process()
     texts = [
         "import __main__; print(1, __main__.__file__)",
         "def f(): 1 / 0\nprint(2)",
@@ -62,7 +62,7 @@ def test_a_template_runs_each_program_as_it_is() -> None:
 
 
 def test_a_template_is_told_what_is_different_in_a_run() -> None:
-    process.cool_down()
+    process.end_warm_process()
     text = "print(random.random(), tank_drive, sys.argv)"
     seen = set()
     for seed, x_mm, arguments in (
@@ -81,7 +81,7 @@ def test_a_template_is_told_what_is_different_in_a_run() -> None:
         )
         handle = RunHandle(program, spec, field_files(spec), RunOptions(), RunStore(), of_many=True)
         over(handle)
-        (row,) = handle.output.all_rows()
+        (row,) = handle.output.read_all_rows()
         last = handle.telemetry.last()
         assert last is not None
         assert (last.x_mm, row.text.endswith(f"{['p.py', *arguments]}")) == (x_mm, True)
@@ -108,7 +108,7 @@ else:
 
 @pytest.mark.usefixtures("home")
 def test_a_program_cannot_change_what_a_template_is_prepared_for() -> None:
-    process.cool_down()
+    process.end_warm_process()
     spec = build_run_spec(Settings())
     text = "tank_drive.on_for_rotations(20, 20, 1)\ntry: print(input())\nexcept EOFError: print('none')"
 
@@ -119,7 +119,7 @@ def test_a_program_cannot_change_what_a_template_is_prepared_for() -> None:
         )
         over(handle)
         last = handle.telemetry.last()
-        return last, [row.text for row in handle.output.all_rows()], handle.ended
+        return last, [row.text for row in handle.output.read_all_rows()], handle.ended
 
     expected = end_of(False)
     harmful = RunHandle(

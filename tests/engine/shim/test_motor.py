@@ -7,7 +7,7 @@ import pytest
 from tests.engine.shim import table_groups, table_motor
 from tests.engine.shim.checking import Table, Tables, cases, check
 from tests.engine.shim.conftest import START, RunOn
-from tuisim.engine.runs.frames import telemetry_frame
+from tuisim.engine.runs.frames import build_telemetry_frame
 
 BACKWARDS = """
 from ev3dev2.motor import *
@@ -110,7 +110,7 @@ print('Pressed:', end.value())
 def test_an_arm_presses_a_sensor_at_its_end_in_every_view_of_the_run(run_on: RunOn) -> None:
     done = run_on(PRESSED, "arm")
     run = done.run.stored()
-    frame = telemetry_frame(run)
+    frame = build_telemetry_frame(run)
     pressed = frame["end_pressed"]
     told = [
         (row.tick, float(row.text.rpartition(" ")[2]))

@@ -11,8 +11,8 @@ import tuisim
 from tests.engine.shim.late_programs import LATE_PROGRAMS, LateProgram
 from tests.running import Done, over
 from tuisim.engine.runs.diff import diff_runs
-from tuisim.engine.runs.frames import telemetry_columns
-from tuisim.engine.runs.handle import RunHandle, RunOptions, in_surroundings
+from tuisim.engine.runs.frames import build_telemetry_columns
+from tuisim.engine.runs.handle import RunHandle, RunOptions, set_surroundings
 from tuisim.engine.runs.rerun import rerun
 from tuisim.engine.runs.run_folder import field_files
 from tuisim.engine.runs.store import RunStore
@@ -88,7 +88,7 @@ def run_program(
     source = read_program(find_program(str(path)))
     found = build_program_settings(source, {} if robot is None else {"robot": robot})
     program, spec = found.apply(source.program), build_run_spec(found.settings)
-    program, how = in_surroundings(program), RunOptions(time_limit_s=60.0, **options)
+    program, how = set_surroundings(program), RunOptions(time_limit_s=60.0, **options)
     return over(RunHandle(program, spec, field_files(spec), how, RunStore(), of_many=of_many))
 
 
@@ -143,7 +143,9 @@ def options(late: LateProgram) -> RunOptions:
 
 def read_columns(done: Done) -> dict[str, list[float]]:
     """Return everything that telemetry exports."""
-    return {name: values.tolist() for name, values in telemetry_columns(done.run.stored()).items()}
+    return {
+        name: values.tolist() for name, values in build_telemetry_columns(done.run.stored()).items()
+    }
 
 
 @pytest.mark.parametrize("late", LATE_PROGRAMS.values(), ids=LATE_PROGRAMS)

@@ -6,7 +6,7 @@ import pytest
 
 from tests.engine.shim.conftest import RunOn
 from tuisim.engine.mat_cache import open_field
-from tuisim.engine.runs.frames import column_values
+from tuisim.engine.runs.frames import compute_column_values
 
 PROGRAM = """
 from ev3dev2.motor import *
@@ -22,7 +22,7 @@ print(touch.is_pressed, eye.proximity)
 def test_columns_of_touch_and_infrared(run_on: RunOn, profile: str) -> None:
     done = run_on(PROGRAM, "eyes", "furnished", profile)
     names, mat = ["touch_pressed", "infrared_proximity"], open_field(done.run.field)
-    columns = column_values(names, done.run.telemetry.array(), done.run, [], mat)
+    columns = compute_column_values(names, done.run.telemetry.array(), done.run, [], mat)
     assert list(columns) == names
     pressed, proximity = columns["touch_pressed"], columns["infrared_proximity"]
     assert (pressed[0], pressed[-1]) == (0, 1)

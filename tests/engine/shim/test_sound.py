@@ -36,7 +36,9 @@ def test_sounds_overlap(run_on: RunOn) -> None:
         "p = s.tone(440, 2000, play_type=1)\ns.tone(880, 500)\nprint(p.poll(), p.wait(), round(time.time() % 60, 2))"
     )
     rows = [
-        (row.text, row.time_ns) for row in done.run.output.all_rows() if row.stream == Stream.SPEECH
+        (row.text, row.time_ns)
+        for row in done.run.output.read_all_rows()
+        if row.stream == Stream.SPEECH
     ]
     assert rows == [("[tone 440 Hz 2 s]", 0), ("[tone 880 Hz 0.5 s]", 0)]
     assert done.lines == ["None 0 2.0"]
@@ -45,7 +47,7 @@ def test_sounds_overlap(run_on: RunOn) -> None:
 def test_a_song_is_heard_up_to_its_wrong_note(run_on: RunOn) -> None:
     done = run_on("from ev3dev2.sound import Sound\nSound().play_song([('D4', 'q'), ('D4', 'z')])")
     assert done.errors[-1] == "ValueError: invalid note (z)"
-    assert [row.text for row in done.run.output.all_rows() if row.stream == Stream.SPEECH] == [
+    assert [row.text for row in done.run.output.read_all_rows() if row.stream == Stream.SPEECH] == [
         "[♪ song of 1 note, 0.6 s]"
     ]
     assert done.ended.time_ns == 550_000_000
@@ -56,7 +58,7 @@ def test_for_ever_is_until_the_run_is_stopped(run_on: RunOn) -> None:
         "from ev3dev2.sound import Sound\nSound().tone(440, 400, play_type=2)", time_limit_s=1.9
     )
     assert done.ended.end == "time_limit"
-    assert [row.time_ns // 1_000_000 for row in done.run.output.all_rows()] == [
+    assert [row.time_ns // 1_000_000 for row in done.run.output.read_all_rows()] == [
         0,
         400,
         800,
@@ -82,7 +84,7 @@ def test_threads_take_turns_while_a_song_plays(run_on: RunOn) -> None:
         "song.join()\nprint(round(time.time() % 60, 2))"
     )
     assert done.lines == ["1.8"]
-    heard = [row.text for row in done.run.output.all_rows() if row.stream == Stream.SPEECH]
+    heard = [row.text for row in done.run.output.read_all_rows() if row.stream == Stream.SPEECH]
     assert sorted(heard) == ["[tone 880 Hz 0.01 s]"] * 4 + ["[♪ song of 3 notes, 1.5 s]"]
 
 

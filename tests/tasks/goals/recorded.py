@@ -75,7 +75,7 @@ class Run:
         self, store: RunStore, world: WorldSpec, text: str, prelude: str = "preloaded"
     ) -> None:
         spec = RunSpec(RobotSpec(weight=0.0, pen=PenSpec(down=True)), world, ROBOLAB)
-        self.new: NewRun = store.new_run(Program("task.py", text, prelude), spec)
+        self.new: NewRun = store.create_run(Program("task.py", text, prelude), spec)
         telemetry = TelemetryWriter(self.new.folder)
         simulation = Simulation(spec, telemetry)
         self.recorder = Recorder(

@@ -11,7 +11,7 @@ from tests.cases import cases
 from tests.engine.runs.run_recorder import Recorder
 from tests.tasks.goals.recorded import Run, Step, ahead, goals_of, says, wait, world
 from tuisim.engine.core.spec import Obstacle
-from tuisim.engine.runs.brick_state import TextScreen, console_row, led_row
+from tuisim.engine.runs.brick_state import TextScreen, build_console_row, build_led_row
 from tuisim.engine.runs.records import Stream
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.engine.runs.store import RunStore
@@ -25,9 +25,9 @@ def brick(stream: Stream, text: str) -> Step:
 
 BEEP = brick(Stream.SPEECH, "[beep]")
 RED = brick(
-    Stream.LED, led_row({"left red": 255, "left green": 0, "right red": 0, "right green": 0})
+    Stream.LED, build_led_row({"left red": 255, "left green": 0, "right red": 0, "right green": 0})
 )
-SCREEN = brick(Stream.CONSOLE, console_row(TextScreen(22, 12, ("", "Hello 5"))))
+SCREEN = brick(Stream.CONSOLE, build_console_row(TextScreen(22, 12, ("", "Hello 5"))))
 OK = says("ok")
 
 

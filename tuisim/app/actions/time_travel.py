@@ -63,7 +63,7 @@ def go_to_time(context: ActionContext, time_s: float | None, sample: str = "") -
         sample
         and tick is not None
         and recording is not None
-        and (line := recording.rows.line_of(sample, tick))
+        and (line := recording.rows.find_line(sample, tick))
     ):
         context.debugger.choose_line(tick, line)
         if not context.panels.is_shown("code"):

@@ -334,12 +334,12 @@ class Differences(Dialog[bool]):
         self._diff = diff
 
     def compose_content(self) -> ComposeResult:
-        from tuisim.engine.runs.diff import recording_in_words, setup_in_words
+        from tuisim.engine.runs.diff import describe_recording, describe_setup
 
         table = Table.grid(padding=(0, 2))
         table.add_column(style="bold")
         table.add_column()
-        rows = [*recording_in_words(self._diff), *setup_in_words(self._diff)]
+        rows = [*describe_recording(self._diff), *describe_setup(self._diff)]
         for name, what in rows:
             if name:
                 table.add_row(Text(name), Text(what))

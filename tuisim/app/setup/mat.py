@@ -10,7 +10,7 @@ from tuisim.engine import mat_cache, mats
 from tuisim.engine.core.field import Field
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, RunSpec
 from tuisim.engine.mat_cache import FieldFiles
-from tuisim.engine.runs.run_folder import StoredRun, mat_files
+from tuisim.engine.runs.run_folder import StoredRun, find_mat_files
 
 PATIENCE_S = 1.0
 """A run that waits longer than this for its mat says so: mostly it is prepared sooner."""
@@ -65,7 +65,7 @@ def prepare_stored_mat(run: StoredRun) -> Mat:
     Raises:
         LogError: it is no longer available.
     """
-    return _open_mat(mat_key(run.spec), mat_files(run))
+    return _open_mat(mat_key(run.spec), find_mat_files(run))
 
 
 def make_blank_mat(spec: RunSpec) -> Mat:

@@ -197,14 +197,14 @@ def _explain_missing_assets() -> str:
 
 def _store(home: Path) -> tuple[int, int, int]:
     """Return the number of stored runs, their size and the free space on the disk in bytes."""
-    from tuisim.engine.runs.store import bytes_in
+    from tuisim.engine.runs.store import count_bytes
 
     try:
         runs = [entry for entry in (home / "runs").iterdir() if entry.is_dir()]
     except OSError:
         runs = []
     place = next(parent for parent in (home, *home.parents) if parent.exists())
-    return len(runs), sum(map(bytes_in, runs)), shutil.disk_usage(place).free
+    return len(runs), sum(map(count_bytes, runs)), shutil.disk_usage(place).free
 
 
 def _list_requirements() -> list[tuple[str, str, str]]:

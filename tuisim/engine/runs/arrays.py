@@ -21,7 +21,7 @@ def find_spans(is_so: NDArray[np.bool_]) -> IntArray:
     return edges.reshape(-1, 2)
 
 
-def world_points_mm(
+def compute_world_points_mm(
     records: NDArray[Any], x_mm: float, y_mm: float
 ) -> tuple[NDArray[Any], NDArray[Any]]:
     """Return x and y in the world of a point of the robot at every tick, as `engine.core.geometry.world_point`; shape
@@ -32,11 +32,11 @@ def world_points_mm(
         x_mm: To the right of the midpoint between the wheels.
         y_mm: Forward of it.
     """
-    cos, sin = cos_and_sin(records["heading_deg"] - 90.0)
+    cos, sin = compute_cos_and_sin(records["heading_deg"] - 90.0)
     return records["x_mm"] + cos * x_mm - sin * y_mm, records["y_mm"] + sin * x_mm + cos * y_mm
 
 
-def cos_and_sin(angles_deg: NDArray[Any]) -> tuple[FloatArray, FloatArray]:
+def compute_cos_and_sin(angles_deg: NDArray[Any]) -> tuple[FloatArray, FloatArray]:
     """Return cosine and sine of angles, shape (n,), to the bit as `math` does; NaN where there is no angle."""
     # Those of numpy may differ in the last bit, which can change a pixel. A damaged record may have no valid heading.
     turns = list(map(math.radians, np.where(np.isfinite(angles_deg), angles_deg, np.nan).tolist()))

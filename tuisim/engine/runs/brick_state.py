@@ -30,9 +30,9 @@ PIXEL_NAMES = tuple(f"{row}{column}" for row in range(SIDE_PIXELS) for column in
 """The LEDs of a hub's matrix, row by row from the top."""
 
 BLANK = bytes(ROW_BYTES * DISPLAY_HEIGHT)
-_MOST_CELLS = 1000
+_MAX_CELLS = 1000
 """More columns and rows than the text screen has with any font."""
-_MOST_NUMBER = 1e12
+_MAX_NUMBER = 1e12
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,13 +68,13 @@ class BrickState:
     sound: str = ""
     """What the brick said or played last; in brackets unless it is speech."""
 
-    def turns_at(self, time_s: float, tick_hz: int) -> tuple[tuple[float, float], ...]:
+    def extrapolate_turns(self, time_s: float, tick_hz: int) -> tuple[tuple[float, float], ...]:
         """Return `turns` extrapolated to a later time."""
         since_s = time_s - self.turns_tick / tick_hz
         return tuple((position_deg + dps * since_s, dps) for position_deg, dps in self.turns)
 
 
-def led_row(brightness: Mapping[str, int]) -> str:
+def build_led_row(brightness: Mapping[str, int]) -> str:
     """Return the row for the LEDs: brightness 0 to 255 by name, as in `LED_NAMES`."""
     return json.dumps(dict(brightness))
 
@@ -84,12 +84,12 @@ def display_row(picture: bytes) -> str:
     return base64.b85encode(zlib.compress(picture, 6)).decode()
 
 
-def console_row(screen: TextScreen) -> str:
+def build_console_row(screen: TextScreen) -> str:
     """Return the row for the text screen."""
     return json.dumps([screen.columns, screen.rows, screen.lines, screen.inverse])
 
 
-def motors_row(turns: Iterable[tuple[float, float]]) -> str:
+def build_motors_row(turns: Iterable[tuple[float, float]]) -> str:
     """Return the row for the motors: `BrickState.turns`, valid from the row's tick on."""
     return json.dumps(list(turns))
 
@@ -101,7 +101,7 @@ DRAWN_STREAMS = frozenset({Stream.LED, Stream.DISPLAY, Stream.CONSOLE, Stream.MO
 def is_sound(stream: Stream, text: bytes) -> bool:
     """Return whether a row of one of `DRAWN_STREAMS` is what the functions of this module write."""
     try:
-        face = face_after(BrickState(), [OutputRow(text.decode(), 0, 0, 0, stream)])
+        face = update_face(BrickState(), [OutputRow(text.decode(), 0, 0, 0, stream)])
     except (ValueError, TypeError, AttributeError, RecursionError, zlib.error):
         return False
     match stream:
@@ -117,32 +117,32 @@ def is_sound(stream: Stream, text: bytes) -> bool:
 
 def _is_number(value: object) -> bool:
     return (
-        isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < _MOST_NUMBER
+        isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < _MAX_NUMBER
     )
 
 
 def _is_screen(screen: TextScreen) -> bool:
     sizes = (screen.columns, screen.rows, *(number for span in screen.inverse for number in span))
     return (
-        all(type(size) is int and 0 <= size <= _MOST_CELLS for size in sizes)
-        and len(screen.lines) <= _MOST_CELLS
-        and all(isinstance(line, str) and len(line) <= _MOST_CELLS for line in screen.lines)
+        all(type(size) is int and 0 <= size <= _MAX_CELLS for size in sizes)
+        and len(screen.lines) <= _MAX_CELLS
+        and all(isinstance(line, str) and len(line) <= _MAX_CELLS for line in screen.lines)
     )
 
 
-def _unpacked(text: str) -> bytes:
+def _unpack_picture(text: str) -> bytes:
     """Return the picture in a row; at most one byte more than a picture has, whatever the row claims."""
     return zlib.decompressobj().decompress(base64.b85decode(text), len(BLANK) + 1)
 
 
-def face_after(face: BrickState, rows: Iterable[OutputRow]) -> BrickState:
+def update_face(face: BrickState, rows: Iterable[OutputRow]) -> BrickState:
     """Return the state after more output; rows of other streams are ignored."""
     for row in rows:
         match row.stream:
             case Stream.LED:
                 face = replace(face, leds=json.loads(row.text))
             case Stream.DISPLAY:
-                face = replace(face, picture=_unpacked(row.text), shows_text=False)
+                face = replace(face, picture=_unpack_picture(row.text), shows_text=False)
             case Stream.CONSOLE:
                 columns, count, lines, inverse = json.loads(row.text)
                 spans = tuple((line, start, end) for line, start, end in inverse)

@@ -75,9 +75,9 @@ class RunInfo:
     """Tags, separated by spaces."""
 
 
-_MOST_RUNS = 1 << 40
+_MAX_RUNS = 1 << 40
 """A greater number than that of any run comes from a damaged file, and would leave none for the next run."""
-_MOST_ID = 255
+_MAX_ID = 255
 """The longest name of a folder."""
 _NAMES = tuple(field.name for field in fields(RunInfo))
 _COLUMNS = ", ".join(f'"{name}"' for name in _NAMES)
@@ -146,16 +146,16 @@ class Catalogue:
     def rows(self) -> list[RunInfo]:
         """Return all rows, oldest first."""
         try:
-            return self._do(_all_rows)
+            return self._do(_fetch_rows)
         except LogError:
             # SQLite must write even to read. If that is impossible, the folders provide the same data.
             with closing(sqlite3.connect(":memory:", isolation_level=None)) as connection:
                 self._fill(connection)
-                return _all_rows(connection)
+                return _fetch_rows(connection)
 
     def _write(self, operation: Callable[[sqlite3.Connection], _Result]) -> _Result:
         def write(connection: sqlite3.Connection) -> _Result:
-            with _transaction(connection):
+            with _begin_transaction(connection):
                 return operation(connection)
 
         return self._do(write)
@@ -184,7 +184,7 @@ class Catalogue:
 
     def _make_again(self) -> None:
         """Replace an invalid catalogue by a new one, filled from the run folders."""
-        with locked(self._home):
+        with lock_home(self._home):
             # Another process may have done it in the meantime.
             if _is_sound(self._path):
                 return
@@ -206,7 +206,7 @@ class Catalogue:
                     fresh.with_name(fresh.name + suffix).unlink(missing_ok=True)
 
     def _fill(self, connection: sqlite3.Connection) -> None:
-        with _transaction(connection):
+        with _begin_transaction(connection):
             connection.execute(_CREATE)
             # Runs with a stored number come first, so that none of the others takes it.
             for info in sorted(
@@ -226,7 +226,7 @@ def _is_full(folder: Path) -> bool:
 
 
 @contextmanager
-def locked(home: Path) -> Iterator[None]:
+def lock_home(home: Path) -> Iterator[None]:
     """Hold the lock of a home folder, for changes to several files. Blocks while another process holds it.
 
     Raises:
@@ -253,7 +253,7 @@ def locked(home: Path) -> Iterator[None]:
 
 
 @contextmanager
-def _transaction(connection: sqlite3.Connection) -> Iterator[None]:
+def _begin_transaction(connection: sqlite3.Connection) -> Iterator[None]:
     # Immediate: a lock requested only at the first write would fail at once instead of waiting.
     connection.execute("BEGIN IMMEDIATE")
     with connection:
@@ -300,7 +300,7 @@ def _is_sound(path: Path) -> bool:
         with closing(_open(path)) as connection:
             if connection.execute("PRAGMA quick_check(1)").fetchone()[0] != "ok":
                 return False
-            _all_rows(connection)
+            _fetch_rows(connection)
             return True
     except sqlite3.DatabaseError as error:
         if _must_be_made_again(error):
@@ -313,7 +313,7 @@ def _insert(connection: sqlite3.Connection, info: RunInfo) -> int:
     listed = connection.execute("SELECT number FROM runs WHERE id = ?", (info.id,)).fetchone()
     if listed is not None:
         return int(listed[0])
-    is_sound = 0 < info.number <= _MOST_RUNS
+    is_sound = 0 < info.number <= _MAX_RUNS
     taken = (
         is_sound
         and connection.execute("SELECT 1 FROM runs WHERE number = ?", (info.number,)).fetchone()
@@ -321,25 +321,25 @@ def _insert(connection: sqlite3.Connection, info: RunInfo) -> int:
     number = info.number if is_sound and not taken else None
     # A seed may exceed the integers of SQLite.
     changed = {"number": number, "seed": str(info.seed), "end": info.end or ""}
-    row = [_storable(changed.get(name, getattr(info, name))) for name in _NAMES]
+    row = [_make_storable(changed.get(name, getattr(info, name))) for name in _NAMES]
     return int(connection.execute(_INSERT, row).lastrowid or 0)
 
 
-def _storable(value: object) -> object:
+def _make_storable(value: object) -> object:
     """Return a value without lone surrogates, which stand for bytes of a file name and are not valid UTF-8."""
     return value.encode("utf-8", "replace").decode() if isinstance(value, str) else value
 
 
-def _all_rows(connection: sqlite3.Connection) -> list[RunInfo]:
+def _fetch_rows(connection: sqlite3.Connection) -> list[RunInfo]:
     # Text that is not valid UTF-8 counts as damage, like a cell of a wrong type.
     connection.text_factory = bytes
     try:
-        return [_info(row) for row in connection.execute(_SELECT)]
+        return [_build_info(row) for row in connection.execute(_SELECT)]
     except (ValueError, KeyError, AttributeError, TypeError) as error:
         raise _ForeignFile(f"a row is damaged: {error}") from error
 
 
-def _info(row: tuple[Any, ...]) -> RunInfo:
+def _build_info(row: tuple[Any, ...]) -> RunInfo:
     number, *texts, seed, end, ticks, time_s, samples, summary, tags = row
     for count, kind in ((number, int), (ticks, int), (time_s, float), (samples, int)):
         if not isinstance(count, kind) and (count is not None or count is number):
@@ -350,7 +350,7 @@ def _info(row: tuple[Any, ...]) -> RunInfo:
         not run_id
         or run_id.startswith(".")
         or {os.sep, "\0"} & set(run_id)
-        or len(os.fsencode(run_id)) > _MOST_ID
+        or len(os.fsencode(run_id)) > _MAX_ID
     ):
         # It must name a folder beside the others: the user may have it removed.
         raise ValueError(f"{shortened(run_id)} is not an id")

@@ -40,7 +40,7 @@ _STILL_DPS = 0.5
 """A motor that is slower stands still."""
 _WORDS = re.compile(r"command(?:\s+(?P<words>.+))?", re.IGNORECASE)
 _SPEEDS = (Aim.SPEED, Aim.BASE_SPEED)
-_OF_BASES = (Aim.BASE_SPEED, Aim.BASE_WAY)
+_BASE_AIMS = (Aim.BASE_SPEED, Aim.BASE_WAY)
 
 
 class CommandedRun(Protocol):
@@ -161,11 +161,11 @@ class CommandIndex:
         plugs = rows["call"] == Call.PLUG
         robots = np.cumsum(plugs) + (len(self._robots) - 1)
         for values in rows["values"][plugs].tolist():
-            self._robots.append(self._plug(values))
+            self._robots.append(self._plug_parts(values))
         codes: Array = (robots << 16) | (rows["call"].astype(np.int64) << 8) | rows["part"]
         return codes
 
-    def _plug(self, values: list[float]) -> RobotSpec:
+    def _plug_parts(self, values: list[float]) -> RobotSpec:
         """Return the robot after parts were plugged in; the same one if they cannot have been."""
         with suppress(ValueError, IndexError, TuisimError):
             return plug_parts(self._robots[-1], decode_parts(values, 0))
@@ -263,7 +263,7 @@ class CommandIndex:
         if len(records) < 2:
             return ""
         flags, after = records["flags"][1:], records[1:]
-        if aim in _OF_BASES:
+        if aim in _BASE_AIMS:
             speeds = np.abs(after["left_speed_dps"]) + np.abs(after["right_speed_dps"])
             is_running = flags & (FLAG_LEFT_RUNNING | FLAG_RIGHT_RUNNING) != 0
         else:
@@ -275,7 +275,7 @@ class CommandIndex:
             idle = idle[:0]
         count = int(idle[0]) + 1 if len(idle) else len(after)
         when = f"by {(start + count) / self._hz:.2f} s"
-        if aim in _OF_BASES:
+        if aim in _BASE_AIMS:
             driven_mm, turned_deg = _measure_way(records[: count + 1])
             if aim is Aim.BASE_SPEED:
                 rate = self._hz / count

@@ -60,8 +60,8 @@ class CommandsWriter(MappedWriter):
         """Append a command; arguments as of `SimulationCommand`."""
         count = self._count
         if count < self._room or self._extend(count):
-            at = HEADER_BYTES + count * COMMAND_RECORD.size
-            _PACKERS[len(values)](self._map, at, time_ns, part, call, *values)
+            offset = HEADER_BYTES + count * COMMAND_RECORD.size
+            _PACKERS[len(values)](self._map, offset, time_ns, part, call, *values)
         self._count = self._length[0] = count + 1
 
     def _extend(self, count: int) -> bool:

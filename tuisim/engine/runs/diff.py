@@ -14,7 +14,7 @@ from tuisim.base.source import source_lines
 from tuisim.engine.core.tree import dump_run
 from tuisim.engine.runs.records import TEXT_STREAMS, OutputRow, Stream, line_of
 from tuisim.engine.runs.run_folder import StoredRun
-from tuisim.engine.runs.samples import samples_of
+from tuisim.engine.runs.samples import list_samples
 
 if TYPE_CHECKING:
     import numpy as np
@@ -105,55 +105,55 @@ def diff_runs(
     Raises:
         LogError: a recording is damaged.
     """
-    one, two = first.telemetry.array(), second.telemetry.array()
+    left, right = first.telemetry.array(), second.telemetry.array()
     hz = (first.spec.profile.tick_hz, second.spec.profile.tick_hz)
     by_time = hz[0] != hz[1]
     if until is not None:
-        one, two = one[: until + 1], two[: until + 1]
+        left, right = left[: until + 1], right[: until + 1]
     if prefix:
-        two = two[: len(one)]
+        right = right[: len(left)]
     old, new = source_lines(first.program.text), source_lines(second.program.text)
     unified = difflib.unified_diff(
         old, new, first.program.name, second.program.name, n=1, lineterm=""
     )
     return RunDiff(
-        setup=tuple(_setup(first, second)),
+        setup=tuple(_diff_setup(first, second)),
         program=tuple(line for line, _ in zip(unified, range(DIFF_LINES), strict=False)),
         by_time=by_time,
-        tick=None if by_time else first_tick(one, two, hz[0]),
-        line=None if by_time else _first_line(one, two, hz[0]),
-        output=_first_row(_rows(first, until), _rows(second, until), prefix),
-        sample=_first_row(_samples(first, until), _samples(second, until), prefix),
-        divergence=divergence(one, two, hz) if len(one) and len(two) else None,
+        tick=None if by_time else find_first_tick(left, right, hz[0]),
+        line=None if by_time else _find_first_line(left, right, hz[0]),
+        output=_find_first_row(_list_rows(first, until), _list_rows(second, until), prefix),
+        sample=_find_first_row(_list_samples(first, until), _list_samples(second, until), prefix),
+        divergence=measure_divergence(left, right, hz) if len(left) and len(right) else None,
     )
 
 
-def first_tick(
-    one: np.ndarray[Any, Any], two: np.ndarray[Any, Any], tick_hz: int
+def find_first_tick(
+    left: np.ndarray[Any, Any], right: np.ndarray[Any, Any], tick_hz: int
 ) -> TickDifference | None:
     """Return the first tick at which two `TelemetryView.array` of one tick rate differ; None if they are equal."""
     import numpy as np
 
-    count = min(len(one), len(two))
+    count = min(len(left), len(right))
     # Compare bytes, not numbers: NaN equals itself, and 0.0 differs from -0.0.
-    size = one.dtype.itemsize
+    size = left.dtype.itemsize
     raw = [
         np.ascontiguousarray(records[:count]).view(np.uint8).reshape(count, size)
-        for records in (one, two)
+        for records in (left, right)
     ]
     differ = np.flatnonzero((raw[0] != raw[1]).any(axis=1))
     if len(differ):
         tick = int(differ[0])
-        names = one.dtype.names or ()
+        names = left.dtype.names or ()
         fields = tuple(
-            name for name in names if one[name][tick].tobytes() != two[name][tick].tobytes()
+            name for name in names if left[name][tick].tobytes() != right[name][tick].tobytes()
         )
         return TickDifference(tick, tick / tick_hz, fields)
-    return None if len(one) == len(two) else TickDifference(count, count / tick_hz, ())
+    return None if len(left) == len(right) else TickDifference(count, count / tick_hz, ())
 
 
-def divergence(
-    one: np.ndarray[Any, Any], two: np.ndarray[Any, Any], tick_hz: tuple[int, int]
+def measure_divergence(
+    left: np.ndarray[Any, Any], right: np.ndarray[Any, Any], tick_hz: tuple[int, int]
 ) -> Divergence:
     """Return the distance between two robots at the ticks of the first run that both runs cover.
 
@@ -164,7 +164,7 @@ def divergence(
     """
     import numpy as np
 
-    times, distance, turned = _apart(one, two, tick_hz)
+    times, distance, turned = _measure_apart(left, right, tick_hz)
     top = int(distance.argmax())
     exceeded = []
     for limit in EXCEEDED_MM:
@@ -182,43 +182,43 @@ def divergence(
     )
 
 
-def parted_at_s(
-    one: np.ndarray[Any, Any], two: np.ndarray[Any, Any], tick_hz: tuple[int, int]
+def find_first_difference_s(
+    left: np.ndarray[Any, Any], right: np.ndarray[Any, Any], tick_hz: tuple[int, int]
 ) -> float | None:
-    """Return the time at which the robots were first over 1 mm or 1 degree apart; arguments as of `divergence`.
+    """Return the time at which the robots were first over 1 mm or 1 degree apart; arguments as of `measure_divergence`.
 
     None if they never were: one run may still have ended before the other.
     """
-    times, distance, turned = _apart(one, two, tick_hz)
+    times, distance, turned = _measure_apart(left, right, tick_hz)
     is_apart = (distance > PARTED_MM) | (abs(turned) > PARTED_DEG)
     return float(times[is_apart.argmax()]) if is_apart.any() else None
 
 
-def _apart(
-    one: np.ndarray[Any, Any], two: np.ndarray[Any, Any], tick_hz: tuple[int, int]
+def _measure_apart(
+    left: np.ndarray[Any, Any], right: np.ndarray[Any, Any], tick_hz: tuple[int, int]
 ) -> tuple[_Series, ...]:
-    """Return times in s, distances in mm and differences of heading in degrees; arguments as of `divergence`."""
+    """Return times in s, distances in mm and differences of heading in degrees; arguments as there."""
     import numpy as np
 
-    end_s = min((len(one) - 1) / tick_hz[0], (len(two) - 1) / tick_hz[1])
+    end_s = min((len(left) - 1) / tick_hz[0], (len(right) - 1) / tick_hz[1])
     times = np.arange(int(end_s * tick_hz[0] + 1e-9) + 1) / tick_hz[0]
-    theirs = np.arange(len(two)) / tick_hz[1]
+    theirs = np.arange(len(right)) / tick_hz[1]
     apart = []
     for name in ("x_mm", "y_mm", "heading_deg"):
         other = (
-            two[name][: len(times)]
+            right[name][: len(times)]
             if tick_hz[0] == tick_hz[1]
-            else np.interp(times, theirs, two[name])
+            else np.interp(times, theirs, right[name])
         )
-        apart.append(other - one[name][: len(times)])
+        apart.append(other - left[name][: len(times)])
     return times, np.hypot(apart[0], apart[1]), (apart[2] + 180.0) % 360.0 - 180.0
 
 
-def _first_line(
-    one: np.ndarray[Any, Any], two: np.ndarray[Any, Any], tick_hz: int
+def _find_first_line(
+    left: np.ndarray[Any, Any], right: np.ndarray[Any, Any], tick_hz: int
 ) -> TickDifference | None:
-    count = min(len(one), len(two))
-    differ = (one["line"][:count] != two["line"][:count]).nonzero()[0]
+    count = min(len(left), len(right))
+    differ = (left["line"][:count] != right["line"][:count]).nonzero()[0]
     return (
         TickDifference(int(differ[0]), int(differ[0]) / tick_hz, ("line",)) if len(differ) else None
     )
@@ -228,12 +228,12 @@ _Row = tuple[Any, str, float]
 """Value to compare, its text, its time in s."""
 
 
-def _written(run: StoredRun, until: int | None) -> Iterator[OutputRow]:
+def _read_output(run: StoredRun, until: int | None) -> Iterator[OutputRow]:
     # Rows of the last tick itself may have been written after the end.
     return takewhile(lambda row: until is None or row.tick < until, run.output.rows())
 
 
-def _shown(row: OutputRow) -> str:
+def _describe_row(row: OutputRow) -> str:
     """Return a row as text, also one of the brick's state."""
     match row.stream:
         case (
@@ -250,13 +250,13 @@ def _shown(row: OutputRow) -> str:
             assert_never(row.stream)
 
 
-def _rows(run: StoredRun, until: int | None) -> Iterator[_Row]:
-    for row in _written(run, until):
-        yield row, _shown(row), row.time_ns / 1e9
+def _list_rows(run: StoredRun, until: int | None) -> Iterator[_Row]:
+    for row in _read_output(run, until):
+        yield row, _describe_row(row), row.time_ns / 1e9
 
 
-def _samples(run: StoredRun, until: int | None) -> Iterator[_Row]:
-    for sample in samples_of(_written(run, until)):
+def _list_samples(run: StoredRun, until: int | None) -> Iterator[_Row]:
+    for sample in list_samples(_read_output(run, until)):
         yield (
             (sample.name, sample.value, sample.time_s),
             f"{sample.name}: {sample.value:g}",
@@ -264,9 +264,11 @@ def _samples(run: StoredRun, until: int | None) -> Iterator[_Row]:
         )
 
 
-def _first_row(one: Iterator[_Row], two: Iterator[_Row], prefix: bool) -> RowDifference | None:
+def _find_first_row(
+    first: Iterator[_Row], second: Iterator[_Row], prefix: bool
+) -> RowDifference | None:
     number = 1
-    for left, right in zip_longest(one, two):
+    for left, right in zip_longest(first, second):
         if left is None and prefix:
             return None
         if left is None or right is None or left[0] != right[0]:
@@ -278,12 +280,12 @@ def _first_row(one: Iterator[_Row], two: Iterator[_Row], prefix: bool) -> RowDif
     return None
 
 
-def _setup(first: StoredRun, second: StoredRun) -> Iterator[tuple[str, str, str]]:
+def _diff_setup(first: StoredRun, second: StoredRun) -> Iterator[tuple[str, str, str]]:
     plain = dump_run(first.spec), dump_run(second.spec)
-    names = {**_flat(plain[0]), **_flat(plain[1])}
-    values = _flat(plain[0]), _flat(plain[1])
+    names = {**_flatten(plain[0]), **_flatten(plain[1])}
+    values = _flatten(plain[0]), _flatten(plain[1])
     for name in names:
-        left, right = (str(one.get(name, "—")) for one in values)
+        left, right = (str(settings.get(name, "—")) for settings in values)
         if left != right:
             yield name, left, right
     for name, label in (("name", "program name"), ("prelude", "predefined names")):
@@ -300,7 +302,7 @@ def _setup(first: StoredRun, second: StoredRun) -> Iterator[tuple[str, str, str]
         yield "user actions", str(len(first.actions)), str(len(second.actions))
 
 
-def _flat(plain: Any, name: str = "") -> dict[str, Any]:
+def _flatten(plain: Any, name: str = "") -> dict[str, Any]:
     """Return nested data as one flat table, with names such as `world.noise.light`."""
     if isinstance(plain, dict) and plain:
         pairs = [(f"{name}.{key}" if name else str(key), value) for key, value in plain.items()]
@@ -308,39 +310,42 @@ def _flat(plain: Any, name: str = "") -> dict[str, Any]:
         pairs = [(f"{name}.{number}", value) for number, value in enumerate(plain)]
     else:
         return {name: plain}
-    return {path: leaf for below, value in pairs for path, leaf in _flat(value, below).items()}
+    return {path: leaf for below, value in pairs for path, leaf in _flatten(value, below).items()}
 
 
-def setup_in_words(found: RunDiff) -> Iterator[tuple[str, str]]:
+def describe_setup(diff: RunDiff) -> Iterator[tuple[str, str]]:
     """Yield a label and a text per difference of the setup, then the lines of the programs' diff without labels."""
-    for name, left, right in found.setup:
+    for name, left, right in diff.setup:
         yield f"settings, {name}", f"{left} | {right}"
-    for line in found.program:
+    for line in diff.program:
         yield "", line
 
 
-def recording_in_words(found: RunDiff) -> Iterator[tuple[str, str]]:
+def describe_recording(diff: RunDiff) -> Iterator[tuple[str, str]]:
     """Yield a label and a text for each difference between the recordings, or one pair if they are identical."""
-    if found.same:
-        settings = "" if found.setup or found.program else ", settings"
+    if diff.same:
+        settings = "" if diff.setup or diff.program else ", settings"
         yield "bit-identical", f"recording, output{settings}"
         return
-    if found.by_time:
+    if diff.by_time:
         yield "tick rates differ", "compared by time, no record is the same"
-    for what, at in (("tick", found.tick), ("line", found.line)):
-        if at:
-            how = ", ".join(at.fields) if at.fields else "one recording ends"
-            yield f"first differing {what}", f"tick {at.tick}, {at.time_s:.2f} s: {how}"
-    for what, row in (("output row", found.output), ("sample", found.sample)):
+    for what, difference in (("tick", diff.tick), ("line", diff.line)):
+        if difference:
+            how = ", ".join(difference.fields) if difference.fields else "one recording ends"
+            yield (
+                f"first differing {what}",
+                f"tick {difference.tick}, {difference.time_s:.2f} s: {how}",
+            )
+    for what, row in (("output row", diff.output), ("sample", diff.sample)):
         if row:
             sides = zip((row.first, row.second), row.times_s, strict=True)
             left, right = (
                 "no more" if text is None else f"{text!r} at {at_s:.3f} s" for text, at_s in sides
             )
             yield f"first differing {what}", f"{row.row}: {left} | {right}"
-    if found.divergence:
-        apart = found.divergence
-        most = f"at most {apart.max_mm:.3f} mm apart, at {apart.max_at_s:.2f} s"
-        yield "poses", f"{most}; {apart.end_mm:.3f} mm at the common end, {apart.end_s:.2f} s"
+    if diff.divergence:
+        apart = diff.divergence
+        max_text = f"at most {apart.max_mm:.3f} mm apart, at {apart.max_at_s:.2f} s"
+        yield "poses", f"{max_text}; {apart.end_mm:.3f} mm at the common end, {apart.end_s:.2f} s"
         for limit, since_s in apart.exceeded:
             yield f"over {limit:g} mm", "never" if since_s is None else f"from {since_s:.2f} s"

@@ -23,9 +23,9 @@ from tuisim.engine.core.tick_record import TICK_RECORD
 from tuisim.engine.protocol import SetNoise, UserAction
 from tuisim.engine.runs.motor_records import read_motor_columns
 from tuisim.engine.runs.records import TELEMETRY_FILE
-from tuisim.engine.runs.run_folder import StoredRun, noise_at, open_mat
-from tuisim.engine.runs.samples import samples_of
-from tuisim.engine.runs.views import TickRecord, instant_of
+from tuisim.engine.runs.run_folder import StoredRun, find_noise, open_mat
+from tuisim.engine.runs.samples import list_samples
+from tuisim.engine.runs.views import TickRecord, build_instant
 
 if TYPE_CHECKING:
     import numpy as np
@@ -58,7 +58,7 @@ _MOST = 1e15
 """Larger values, in mm or degrees, count as damage: no motion gets this far."""
 
 
-def samples_frame(runs: Iterable[StoredRun]) -> pd.DataFrame:
+def build_samples_frame(runs: Iterable[StoredRun]) -> pd.DataFrame:
     """Return the samples of one or more runs as a frame, see `sample_columns`.
 
     Raises:
@@ -83,7 +83,7 @@ def sample_columns(runs: Iterable[StoredRun]) -> dict[str, Any]:
     """
     import numpy as np
 
-    parts = [_samples_of_run(run, ordinal) for ordinal, run in enumerate(runs, 1)]
+    parts = [_list_samples(run, ordinal) for ordinal, run in enumerate(runs, 1)]
     joined: dict[str, Any] = {}
     for name in SAMPLE_COLUMNS:
         if name == "variable":
@@ -100,10 +100,10 @@ def sample_columns(runs: Iterable[StoredRun]) -> dict[str, Any]:
     return joined
 
 
-def _samples_of_run(run: StoredRun, ordinal: int) -> dict[str, Any]:
+def _list_samples(run: StoredRun, ordinal: int) -> dict[str, Any]:
     import numpy as np
 
-    samples = samples_of(run.output.rows())
+    samples = list_samples(run.output.rows())
     times_ns = np.array([sample.time_ns for sample in samples], np.int64)
     records = run.telemetry.array()
     ticks = np.array([sample.tick for sample in samples], np.int64)
@@ -122,21 +122,21 @@ def _samples_of_run(run: StoredRun, ordinal: int) -> dict[str, Any]:
     return columns
 
 
-def telemetry_frame(run: StoredRun, field: Field | None = None) -> pd.DataFrame:
-    """Return the telemetry of a run as a frame, see `telemetry_columns`.
+def build_telemetry_frame(run: StoredRun, field: Field | None = None) -> pd.DataFrame:
+    """Return the telemetry of a run as a frame, see `build_telemetry_columns`.
 
     Raises:
         LogError: a recording is damaged, or the mat no longer exists.
     """
     import pandas as pd
 
-    return pd.DataFrame(telemetry_columns(run, field))
+    return pd.DataFrame(build_telemetry_columns(run, field))
 
 
-def telemetry_columns(
+def build_telemetry_columns(
     run: StoredRun, field: Field | None = None, names: Sequence[str] = ()
 ) -> dict[str, Array]:
-    """Return one row per tick, including tick 0 (the start); damaged records are omitted, see `damage_note`.
+    """Return one row per tick, including tick 0 (the start); damaged records are omitted, see `describe_damage`.
 
     Columns: `time` in s, simulated; MOTION_COLUMNS; those of every mounted sensor, such as
     `left_red` (0 … 255), `ultrasonic_mm`, `gyro_deg`, `gyro_rate_dps`; those of every motor with
@@ -149,16 +149,16 @@ def telemetry_columns(
     Raises:
         LogError: a recording is damaged, or the mat no longer exists.
     """
-    records = _sound(run.telemetry.array())
+    records = _select_sound(run.telemetry.array())
     mat = open_mat(run) if field is None else field
     exported = names or list_measured_names(list_columns(run.spec))
-    values = column_values(exported, records, run, run.actions, mat)
+    values = compute_column_values(exported, records, run, run.actions, mat)
     if names:
         return {"time": tick_times_s(records, run.spec), **{name: values[name] for name in names}}
     return {"time": tick_times_s(records, run.spec), **values, "line": records["line"].astype("i8")}
 
 
-def column_values(
+def compute_column_values(
     names: Collection[str],
     records: Array,
     run: RecordedRun,
@@ -184,7 +184,9 @@ def column_values(
         if any(column.name in names for column in mount.columns)
     ]
     measured = {name: records[name].astype("f8") for name in MOTION_COLUMNS}
-    measured |= _measured(records, sensors, _noises(records, spec, actions), spec, field, field_at)
+    measured |= _measure_columns(
+        records, sensors, _list_noises(records, spec, actions), spec, field, field_at
+    )
     motors = [
         columns
         for columns, _ in find_motor_owners(spec)
@@ -195,14 +197,14 @@ def column_values(
     return {
         column.name: measured[column.name]
         if column.of is None
-        else computed(column.of, columns, measured, spec)
+        else compute_owner_column(column.of, columns, measured, spec)
         for columns in (MOTION, *(mount.columns for mount in sensors), *motors)
         for column in columns
         if column.name in names
     }
 
 
-def computed(
+def compute_owner_column(
     of: Callable[[Iterable[Sequence[float]], RunSpec], list[float]],
     columns: Iterable[Column],
     measured: Mapping[str, Array],
@@ -215,7 +217,7 @@ def computed(
     return np.array(of(rows, spec), np.float64)
 
 
-def held(condition: ValueCondition, values: Array) -> Array:
+def test_condition(condition: ValueCondition, values: Array) -> Array:
     """Return whether a condition on a column is true at each tick, from its values there.
 
     Raises:
@@ -227,7 +229,7 @@ def held(condition: ValueCondition, values: Array) -> Array:
     return true
 
 
-def begins(condition: ValueCondition, true: Array) -> Array:
+def find_begins(condition: ValueCondition, true: Array) -> Array:
     """Return the ticks at which a condition becomes true, in ascending order, from whether it is true at each."""
     import numpy as np
 
@@ -236,14 +238,14 @@ def begins(condition: ValueCondition, true: Array) -> Array:
     return began
 
 
-def damage_note(run: StoredRun) -> str:
+def describe_damage(run: StoredRun) -> str:
     """Return a message with the number of damaged records; empty if there are none.
 
     Raises:
         LogError: a recording is damaged.
     """
     records = run.telemetry.array()
-    lost = len(records) - len(_sound(records))
+    lost = len(records) - len(_select_sound(records))
     return (
         f"{TELEMETRY_FILE}: {lost} of {len(records)} records {'is' if lost == 1 else 'are'} damaged and left out"
         if lost
@@ -251,7 +253,7 @@ def damage_note(run: StoredRun) -> str:
     )
 
 
-def _sound(records: Array) -> Array:
+def _select_sound(records: Array) -> Array:
     """Return the records that contain only plausible numbers."""
     import numpy as np
 
@@ -269,7 +271,7 @@ def tick_times_s(records: Array, spec: RunSpec) -> Array:
     return times
 
 
-def _noises(
+def _list_noises(
     records: Array, spec: RunSpec, actions: Sequence[UserAction]
 ) -> list[tuple[NoiseSpec, int]]:
     """Return the noises in order of time, each with its number of ticks."""
@@ -280,13 +282,13 @@ def _noises(
     # The noise can change only where the count of actions does.
     starts = [0, *(np.flatnonzero(np.diff(records["actions"])) + 1).tolist(), len(records)]
     return [
-        (noise_at(spec, actions, TickRecord(*records[start].item())), end - start)
+        (find_noise(spec, actions, TickRecord(*records[start].item())), end - start)
         for start, end in pairwise(starts)
         if end > start
     ]
 
 
-def _measured(
+def _measure_columns(
     records: Array,
     sensors: Sequence[MountedSensor],
     noises: Sequence[tuple[NoiseSpec, int]],
@@ -297,34 +299,34 @@ def _measured(
     """Return the measured columns of sensors: at once where that is possible, else tick by tick."""
     import numpy as np
 
-    from tuisim.engine.runs.sensor_arrays import measured_at_once
+    from tuisim.engine.runs.sensor_arrays import measure_array
 
-    found: dict[str, Array] = {}
+    arrays: dict[str, Array] = {}
     slow: list[MountedSensor] = []
     lit = any(noise.light for noise, _ in noises)
     for mount in sensors:
-        values = measured_at_once(mount.sensor, records, spec, field, lit)
+        values = measure_array(mount.sensor, records, spec, field, lit)
         if values is None:
             slow.append(mount)
         else:
-            found.update(zip(mount.names, values, strict=True))
+            arrays.update(zip(mount.names, values, strict=True))
     if not slow:
-        return found
+        return arrays
     names = [name for mount in slow for name in mount.names]
     rows = np.empty((len(records), len(names)))
     field_at = field_at or _field_with_marks(field, spec)
     every = chain.from_iterable(repeat(noise, count) for noise, count in noises)
     # One by one: all at once, as objects, the records of a long run take much memory.
-    for at, (record, noise) in enumerate(
+    for index, (record, noise) in enumerate(
         zip(TICK_RECORD.iter_unpack(records.data), every, strict=True)
     ):
-        instant, seen = instant_of(TickRecord(*record), spec, noise), field_at(record)
-        rows[at] = [
+        instant, seen = build_instant(TickRecord(*record), spec, noise), field_at(record)
+        rows[index] = [
             value
             for mount in slow
             for value in mount.kind.measure(mount.sensor, instant, spec, seen)
         ]
-    return {**found, **{name: rows[:, at] for at, name in enumerate(names)}}
+    return {**arrays, **{name: rows[:, index] for index, name in enumerate(names)}}
 
 
 def _field_with_marks(field: Field, spec: RunSpec) -> FieldAt:

@@ -42,18 +42,18 @@ from tuisim.engine.protocol import (
     Stop,
     Wheels,
 )
-from tuisim.engine.runs.child.events import DEBUGGED, EventStream, allowed_events, build_part
+from tuisim.engine.runs.child.events import DEBUGGED, EventStream, build_part, list_allowed_events
 from tuisim.engine.runs.child.fair_clock import FairClock
 from tuisim.engine.runs.child.isolation import Quota
 from tuisim.engine.runs.child.process import (
     await_stack,
+    describe_end,
+    end_descendants,
     end_group,
-    end_left_over,
+    find_stuck_line,
     mark,
     prepare_template,
     start_child,
-    stuck_line,
-    what_ended,
     write_command,
 )
 from tuisim.engine.runs.child.readable import is_readable
@@ -62,14 +62,14 @@ from tuisim.engine.runs.run_options import DEFAULT_TIME_LIMIT_S as DEFAULT_TIME_
 from tuisim.engine.runs.run_options import RunOptions as RunOptions
 from tuisim.engine.runs.side_files import (
     LOG_FILE,
-    MOST_BYTES,
+    MAX_BYTES,
     STACK_FILE,
     copy_modules,
     read_actions,
     read_stop_tick,
 )
 from tuisim.engine.runs.store import NewRun, RunStore
-from tuisim.engine.runs.views import TelemetryView, views_of
+from tuisim.engine.runs.views import TelemetryView, open_views
 
 STUCK_AFTER_S = 0.3
 """A child that has not ended this long after a stop is killed; see `RunHandle._fair_time_s`."""
@@ -86,7 +86,7 @@ STALL_FACTOR = 2.0
 class RunFolders(Protocol):
     """Where a handle stores its run: a `RunStore`, or a `TemporaryRun`."""
 
-    def new_run(
+    def create_run(
         self,
         program: Program,
         spec: RunSpec,
@@ -104,14 +104,14 @@ class RunFolders(Protocol):
     def load_run(self, run: Path, /) -> StoredRun: ...
 
 
-def _template_key(program: Program, spec: RunSpec, field: FieldFiles) -> Hashable:
+def _build_template_key(program: Program, spec: RunSpec, field: FieldFiles) -> Hashable:
     """Return what a template is prepared for: all of a run except its program, its options, seed, noise and start."""
     world = replace(spec.world, noise=NoiseSpec(), start=Pose(0.0, 0.0, 0.0))
     # A file of the mat that was made again is another one.
     return program.prelude, field, field.identities(), replace(spec, seed=0, world=world)
 
 
-def _needs(program: Program, field: FieldFiles) -> list[Path]:
+def _list_needs(program: Program, field: FieldFiles) -> list[Path]:
     """Return the files and folders that a program reads besides its run folder and its working directory."""
     own = [program.module_folder or os.path.dirname(program.path), *program.python_path]
     return [
@@ -141,7 +141,7 @@ class RunHandle:
         self.spec, self.plugged = spec, list[PluggedPart]()
         """The run with the parts that have been plugged in, and these."""
         self._options, self._store = options, store
-        self._run = run = store.new_run(
+        self._run = run = store.create_run(
             program, spec, field.to_plain(), options.to_plain(), options.live
         )
         self.run_id, self.number, self.folder = run.id, run.number, run.folder
@@ -154,7 +154,7 @@ class RunHandle:
         self.waiting_for_reply = False
         self.wheels = Wheels()
         """The registers of the wheel motors; known once the run has ended, unless it was killed."""
-        self.telemetry, self.output = views_of(self.folder, is_checked=True)
+        self.telemetry, self.output = open_views(self.folder, is_checked=True)
         self._unsent: list[Message] = []
         """Commands sent before the child listens: the signal that announces one would kill it."""
         self._stop_at: float | None = None
@@ -171,7 +171,7 @@ class RunHandle:
         self._start(of_many=of_many, isolated=isolated)
         self._mark = mark(self._process.pid)
         self._clock = FairClock(self._process.pid)
-        allowed = allowed_events(options, plugs=program.shown_ports is not None)
+        allowed = list_allowed_events(options, plugs=program.shown_ports is not None)
         self._events = EventStream(self._event_fd, allowed)
         writable: list[str | Path] = [run.folder, program.working_directory]
         self._quota = Quota(self._process.pid, writable) if isolated else None
@@ -187,9 +187,9 @@ class RunHandle:
                 run.lock_fd,
                 program.working_directory,
                 run.data,
-                _template_key(program, self.first_spec, self.field),
+                _build_template_key(program, self.first_spec, self.field),
                 of_many,
-                _needs(program, self.field) if isolated else None,
+                _list_needs(program, self.field) if isolated else None,
             )
         except OSError as error:
             os.close(self._lock_fd)
@@ -259,10 +259,10 @@ class RunHandle:
             self._look_for_falsified()
         if is_due:
             self._is_followed, self._look_at_s = True, now_s + LOOK_EVERY_S
-            self._enforce_quota()
+            self._check_quota()
             self._look_for_stall()
-        self._enforce_stop()
-        final = self._final_event(exited)
+        self._repeat_stop()
+        final = self._build_final_event(exited)
         kept = [event for event in events if not isinstance(event, Ended)]
         if final is None:
             return kept
@@ -277,39 +277,39 @@ class RunHandle:
         except RobotError as error:
             self._events.falsified = f"it plugged in a part that does not fit: {error.message}"
         except LogError as error:
-            self.unstored = self._what_is_wrong(error)
+            self.unstored = self._describe_damage(error)
 
     def _look_for_falsified(self) -> None:
         """Kill a child that has sent or recorded what the simulation does not."""
         # In a folder that was deleted there is nothing to look at: such a run is stopped.
         if not self._falsified and self.folder.is_dir():
-            damages = self.telemetry.read_on(), self.output.read_on()
+            damages = self.telemetry.read_new(), self.output.read_new()
             self._falsified = (
                 self._events.falsified
                 or next(filter(None, damages), "")
-                or self._too_much(self.telemetry)
+                or self._find_excess(self.telemetry)
             )
             if self._falsified:
                 end_group(self._process.pid)
 
-    def _enforce_quota(self) -> None:
+    def _check_quota(self) -> None:
         if self._quota is not None and not self._exceeded:
             self._exceeded = self._quota.exceeded(time.monotonic())
             if self._exceeded:
                 end_group(self._process.pid)
 
-    def _too_much(self, telemetry: TelemetryView) -> str:
+    def _find_excess(self, telemetry: TelemetryView) -> str:
         """Return what is larger than the run can have made it; empty if nothing is."""
         with suppress(OSError):
-            if (self.folder / LOG_FILE).stat().st_size > MOST_BYTES:
-                return f"it has written more than {MOST_BYTES >> 20} MiB to {LOG_FILE}"
+            if (self.folder / LOG_FILE).stat().st_size > MAX_BYTES:
+                return f"it has written more than {MAX_BYTES >> 20} MiB to {LOG_FILE}"
         limit_s, hz = self._options.time_limit_s, self.spec.profile.tick_hz
         # The host reads what is recorded: it must not grow beyond what the run can record.
         if limit_s and telemetry.count > (limit_s + _BEYOND_LIMIT_S) * hz:
             return f"it has recorded more than {limit_s:g} s"
         return ""
 
-    def _final_event(self, exited: bool) -> Ended | None:
+    def _build_final_event(self, exited: bool) -> Ended | None:
         if (
             self._announced is not None
             and not exited
@@ -318,7 +318,7 @@ class RunHandle:
             end_group(self._process.pid)
         if not exited:
             return None
-        falsified = self._falsified or (self._what_is_falsified() if self.folder.is_dir() else "")
+        falsified = self._falsified or (self._find_falsified() if self.folder.is_dir() else "")
         if self._announced is not None and not falsified and not self._exceeded:
             return self._announced
         tick = max(0, self.telemetry.count - 1)
@@ -333,7 +333,7 @@ class RunHandle:
             )
         if self._exceeded:
             return Ended(End.OUTPUT_LIMIT, tick, time_ns, 1, self._exceeded)
-        line = stuck_line(self.folder, self.program.file)
+        line = find_stuck_line(self.folder, self.program.file)
         if self._stop_at is not None:
             where = f" in line {line}, where it was stuck" if line else ""
             return Ended(End.STOPPED, tick, time_ns, summary=f"stopped{where}", error_line=line)
@@ -346,20 +346,20 @@ class RunHandle:
             return Ended(End.STALLED, tick, time_ns, 1, summary, error_line=line)
         status = self._process.wait()
         return Ended(
-            End.CRASHED, tick, time_ns, 1, what_ended(status, self.folder, line), error_line=line
+            End.CRASHED, tick, time_ns, 1, describe_end(status, self.folder, line), error_line=line
         )
 
-    def _what_is_falsified(self) -> str:
+    def _find_falsified(self) -> str:
         """Return what the run has left that the simulation does not leave; empty if there is nothing."""
         end = self._announced
         # One that could not begin, or found no room, leaves what it could write.
         is_whole = end is not None and end.end not in (End.CRASHED, End.DISK_FULL)
         # As whoever opens the run later finds them: what this host has seen before may be gone.
-        telemetry, output = views_of(self.folder, is_checked=True)
+        telemetry, output = open_views(self.folder, is_checked=True)
         # Each is read once: the process has ended.
-        damages = telemetry.read_on(), output.read_on()
+        damages = telemetry.read_new(), output.read_new()
         telemetry.holds = output.holds = True
-        if wrong := next(filter(None, damages), "") or self._too_much(telemetry):
+        if wrong := next(filter(None, damages), "") or self._find_excess(telemetry):
             return wrong
         for view in (telemetry, output) if is_whole else ():
             if view.note or view.is_missing:
@@ -388,7 +388,7 @@ class RunHandle:
         self.paused, self.waiting_for_input, self.waiting_for_reply = False, None, False
         for fd in (self._event_fd, self._command_fd, self._lifeline_fd):
             os.close(fd)
-        end_left_over(self._process.pid, self._mark)
+        end_descendants(self._process.pid, self._mark)
         for name in (LOG_FILE, STACK_FILE):
             path = self.folder / name
             # The folder may be about to be deleted.
@@ -398,7 +398,7 @@ class RunHandle:
         try:
             self._store.finish(self._run, final)
         except LogError as error:
-            self.unstored = self._what_is_wrong(error)
+            self.unstored = self._describe_damage(error)
             summary = f"{final.summary}; its end" if final.summary else "its end"
             self.ended = replace(final, summary=f"{summary} cannot be stored: {self.unstored}")
         finally:
@@ -413,13 +413,13 @@ class RunHandle:
         try:
             run = self._store.load_run(self.folder)
         except LogError as error:
-            self.unstored = self._what_is_wrong(error)
+            self.unstored = self._describe_damage(error)
             raise
         if run.end is None and self.ended is not None:
             return replace(run, end=self.ended)
         return run
 
-    def _what_is_wrong(self, error: LogError) -> str:
+    def _describe_damage(self, error: LogError) -> str:
         # A folder that is being deleted loses its files one by one.
         return (
             str(error)
@@ -441,7 +441,7 @@ class RunHandle:
                 break
             if (
                 self._stop_at is not None
-                and (left := self._stop_at + STUCK_AFTER_S - self._clock.now_s()) > 0
+                and (left := self._stop_at + STUCK_AFTER_S - self._clock.read_s()) > 0
             ):
                 # A stuck child is killed on time.
                 rest = min(rest, left)
@@ -485,25 +485,27 @@ class RunHandle:
                 self._events.allow(DEBUGGED)
         # If it cannot be written completely, the child is gone or stuck: pump() handles that.
         if write_command(self._command_fd, command.encode()):
-            self._signal(COMMAND_SIGNAL)
+            self._send_signal(COMMAND_SIGNAL)
 
     def stop(self) -> None:
         """Ask the program to stop; `pump` or `wait` kill the child if it does not."""
         if self._stop_at is None:
-            self._stop_at = self._clock.now_s()
+            self._stop_at = self._clock.read_s()
         self._asked_at = time.monotonic()
         self.send(Stop())
 
     def kill(self) -> None:
         """Kill the child immediately; what it has written is kept."""
         if self._stop_at is None:
-            self._stop_at = self._clock.now_s()
+            self._stop_at = self._clock.read_s()
         end_group(self._process.pid)
 
     def prepare_next(self) -> None:
         """Prepare a process for later runs of this robot and world, which then start sooner. Does not block."""
         prepare_template(
-            _template_key(self.program, self.first_spec, self.field), self.folder, self._run.data
+            _build_template_key(self.program, self.first_spec, self.field),
+            self.folder,
+            self._run.data,
         )
 
     def close(self) -> None:
@@ -514,7 +516,7 @@ class RunHandle:
             while self.ended is None:
                 self.pump()
 
-    def _enforce_stop(self) -> None:
+    def _repeat_stop(self) -> None:
         """Repeat a stop that has had no effect, and kill what is stuck."""
         if self._announced is not None:
             return
@@ -522,11 +524,11 @@ class RunHandle:
             # Deleted while it runs: nobody can see its results.
             self.stop()
         if self._stop_at is not None:
-            if self._clock.now_s() - self._stop_at > STUCK_AFTER_S:
+            if self._clock.read_s() - self._stop_at > STUCK_AFTER_S:
                 self._read_stack_and_kill()
             elif self.started and time.monotonic() - self._asked_at > ASK_AGAIN_S:
                 self._asked_at = time.monotonic()
-                self._signal(COMMAND_SIGNAL)
+                self._send_signal(COMMAND_SIGNAL)
 
     def _look_for_stall(self) -> None:
         """Kill a child that has made no progress for too long."""
@@ -537,7 +539,7 @@ class RunHandle:
             or self.paused
         ):
             return
-        tick, now = self.telemetry.count, self._clock.now_s()
+        tick, now = self.telemetry.count, self._clock.read_s()
         if (
             tick != self._progress[0]
             or self.waiting_for_reply
@@ -550,17 +552,17 @@ class RunHandle:
     @property
     def time_used_s(self) -> float:
         """Real seconds since the start without those in which the child waited for a processor."""
-        return self._clock.now_s()
+        return self._clock.read_s()
 
     def _read_stack_and_kill(self) -> None:
         if not self._stack_asked:
             # faulthandler writes the stack even from inside a C call, within this one signal.
             self._stack_asked = self._stop_at is None
-            self._signal(STACK_SIGNAL)
+            self._send_signal(STACK_SIGNAL)
             await_stack(self.folder, self._process.pid)
         end_group(self._process.pid)
 
-    def _signal(self, number: int) -> None:
+    def _send_signal(self, number: int) -> None:
         if self._process.poll() is None:
             self._process.send_signal(number)
 
@@ -570,7 +572,7 @@ def describe_falsified(what: str) -> str:
     return f"the program has falsified its recording: {what}"
 
 
-def _here() -> str:
+def _find_here() -> str:
     try:
         return os.getcwd()
     except FileNotFoundError:
@@ -578,11 +580,11 @@ def _here() -> str:
         return ""
 
 
-def in_surroundings(program: Program) -> Program:
+def set_surroundings(program: Program) -> Program:
     """Return a program with the working directory and PYTHONPATH of this process, unless it has its own."""
     if program.working_directory:
         return program
-    return replace(program, python_path=user_python_path(), working_directory=_here())
+    return replace(program, python_path=user_python_path(), working_directory=_find_here())
 
 
 def start_run(
@@ -596,5 +598,5 @@ def start_run(
     """
     parse_breakpoints(options.breaks, spec)
     return RunHandle(
-        in_surroundings(program), spec, field_files(spec), options, store or RunStore()
+        set_surroundings(program), spec, field_files(spec), options, store or RunStore()
     )

@@ -19,7 +19,7 @@ from tuisim.base.regular_file import of_the_machine, read_regular
 from tuisim.engine.core.hub_spec import HUB_PORTS, INSIDE
 from tuisim.engine.core.profile import NS_PER_S
 from tuisim.engine.core.spec import INPUT_PORTS, OUTPUT_PORTS
-from tuisim.engine.runs.records import HEADER_BYTES, MappedWriter, published_length
+from tuisim.engine.runs.records import HEADER_BYTES, MappedWriter, read_published_length
 from tuisim.engine.runs.side_files import READINGS_FILE
 
 if TYPE_CHECKING:
@@ -174,7 +174,7 @@ def read_readings(folder: Path, *, is_over: bool = True) -> Readings:
         raise LogError(f"cannot be read: {error.strerror or error}", file=str(path)) from (
             error if of_the_machine(error) else None
         )
-    published = published_length(data, READINGS_MAGIC, str(path))
+    published = read_published_length(data, READINGS_MAGIC, str(path))
     count = min(published, MAX_READINGS, (len(data) - HEADER_BYTES) // READING_RECORD.size)
     rows = np.frombuffer(data, np.dtype(list(READING_FIELDS)), count, HEADER_BYTES)
     if (

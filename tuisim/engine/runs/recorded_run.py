@@ -22,10 +22,10 @@ from tuisim.engine.protocol import SetButtons, UserAction
 from tuisim.engine.runs.command_events import CommandIndex
 from tuisim.engine.runs.motor_records import read_motor_values
 from tuisim.engine.runs.records import SAMPLE_STREAMS, TEXT_STREAMS, Mark, OutputRow, Stream
-from tuisim.engine.runs.run_folder import StoredRun, noise_at, program_again
+from tuisim.engine.runs.run_folder import StoredRun, find_noise, restore_program
 from tuisim.engine.runs.samples import parse_sample
 from tuisim.engine.runs.side_files import read_actions
-from tuisim.engine.runs.views import instant_of
+from tuisim.engine.runs.views import build_instant
 
 if TYPE_CHECKING:
     from tuisim.engine.core.plugged import PluggedPart
@@ -62,7 +62,7 @@ class Recording:
         self.rows = RowIndex(source.output)
         self.commands = CommandIndex(source)
         """What the program asked of motors and sensors, as far as it has been read."""
-        self.program = program_again(source.program, source.folder)
+        self.program = restore_program(source.program, source.folder)
         self.known_actions: tuple[UserAction, ...] = (
             source.actions if isinstance(source, StoredRun) else ()
         )
@@ -87,7 +87,7 @@ class Recording:
     def hold(self) -> None:
         """Stay as written up to now, until the next `RunHandle.pump` of a running run."""
         for view in (self.telemetry, self.output):
-            view.read_on()
+            view.read_new()
             view.holds = True
 
     @property
@@ -114,10 +114,10 @@ class Recording:
                 self.known_actions = read_actions(self.folder)[0]
         return self.known_actions
 
-    def noise_at(self, record: TickRecord) -> NoiseSpec:
+    def find_noise(self, record: TickRecord) -> NoiseSpec:
         """Return the noise at the tick of a record."""
         actions = self.actions()
-        return noise_at(self.spec, actions, record) if actions else self.spec.world.noise
+        return find_noise(self.spec, actions, record) if actions else self.spec.world.noise
 
     def pressed_at(self, tick: int) -> frozenset[str]:
         """Return the brick's buttons that were pressed when a tick was complete."""
@@ -126,7 +126,7 @@ class Recording:
                 return frozenset(action.command.pressed)
         return frozenset()
 
-    def field_at(self, tick: int, mat: Field) -> Field:
+    def find_field(self, tick: int, mat: Field) -> Field:
         """Return the mat as the sensors saw it at a tick: with pen marks if they are visible to sensors."""
         if not self.spec.world.pen_marks:
             return mat
@@ -139,7 +139,7 @@ class Recording:
         motors: tuple[MotorValues, ...] = ()
         with suppress(LogError):
             motors = read_motor_values(self.folder, self.spec, record.tick)
-        return replace(instant_of(record, spec, noise), motors=motors)
+        return replace(build_instant(record, spec, noise), motors=motors)
 
     def stalled(self, record: TickRecord) -> tuple[bool, bool]:
         """Return whether the left and the right motor were running but did not turn."""
@@ -236,7 +236,7 @@ class RowIndex:
             LogError: the recording is damaged.
         """
         rows = []
-        for row, after in islice(self._output.rows_from(self._end), limit):
+        for row, after in islice(self._output.read_rows(self._end), limit):
             self._note(row)
             self._end = after
             rows.append(row)
@@ -266,36 +266,36 @@ class RowIndex:
         """Return the number of rows when a tick was complete."""
         return bisect_right(self._ticks, tick)
 
-    def texts_until(self, tick: int, most: int) -> tuple[list[OutputRow], int]:
+    def list_texts(self, tick: int, most: int) -> tuple[list[OutputRow], int]:
         """Return the last readable rows at the end of a tick, and the number of readable rows before them."""
         end = bisect_right(self._texts, self.until(tick) - 1)
         first = max(0, end - most)
         return [self.row(number) for number in self._texts[first:end]], first
 
-    def face_numbers(self, tick: int) -> list[int]:
+    def list_face_numbers(self, tick: int) -> list[int]:
         """Return the indices of the rows that define the brick's state at the end of a tick, in order."""
         count = self.until(tick)
         return sorted(
-            numbers[at - 1]
+            numbers[index - 1]
             for numbers in self._faces.values()
-            if (at := bisect_right(numbers, count - 1))
+            if (index := bisect_right(numbers, count - 1))
         )
 
     def row(self, number: int) -> OutputRow:
         """Return one row by its index, from 0."""
         # Nothing, if the program has changed its recording meanwhile.
         nothing = OutputRow("", self._ticks[number], 0, 0, Stream.NOTE), 0
-        return next(self._output.rows_from(self._starts[number]), nothing)[0]
+        return next(self._output.read_rows(self._starts[number]), nothing)[0]
 
     def rows(self, first: int, step: int = 1) -> Iterator[OutputRow]:
         """Yield the rows from an index on; with a step of -1 backwards."""
         if step < 0:
             yield from (self.row(number) for number in range(first, -1, -1))
         elif first < len(self):
-            rows = self._output.rows_from(self._starts[first])
+            rows = self._output.read_rows(self._starts[first])
             yield from (row for row, _ in islice(rows, len(self) - first))
 
-    def line_of(self, name: str, tick: int) -> int:
+    def find_line(self, name: str, tick: int) -> int:
         """Return the line that printed the last sample of a name in a tick, 0 if there is none."""
         for row in map(self.row, reversed(range(self.until(tick - 1), self.until(tick)))):
             sample = parse_sample(row.text) if row.stream in SAMPLE_STREAMS else None
@@ -303,7 +303,7 @@ class RowIndex:
                 return row.line
         return 0
 
-    def ticks_of_line(self, line: int) -> list[int]:
+    def list_ticks(self, line: int) -> list[int]:
         """Return the ticks at which a line of the program printed."""
         return [
             tick for tick, number in zip(self._ticks, self._lines, strict=True) if number == line

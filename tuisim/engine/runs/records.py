@@ -91,7 +91,7 @@ OUTPUT_CHUNK = 1 << 16
 """Initial size of an output file after the header; it is truncated to its true size at the end."""
 
 _ZEROS = 1 << 16
-_LEAST_STEP = 4096
+_MIN_STEP = 4096
 """If the disk lacks space, a file requests less in steps of at least this size."""
 
 MAX_OUTPUT_BYTES = 256 << 20
@@ -101,7 +101,7 @@ MAX_OUTPUT_ROWS, MAX_ROWS_PER_S = 1_000_000, 1_000
 _NS_PER_ROW = 1_000_000_000 // MAX_ROWS_PER_S
 
 
-def header(magic: bytes, record_bytes: int, length: int) -> bytes:
+def pack_header(magic: bytes, record_bytes: int, length: int) -> bytes:
     """Return the header of a recording: HEADER_BYTES bytes."""
     return _HEADER.pack(magic, FORMAT_VERSION, record_bytes, length).ljust(HEADER_BYTES, b"\0")
 
@@ -115,10 +115,10 @@ def _allow_address_space(more: int) -> None:
     """Raise this process's limit of address space: it is for the memory of the program, not for its recording."""
     soft, hard = resource.getrlimit(resource.RLIMIT_AS)
     if soft != resource.RLIM_INFINITY:
-        wanted = soft + more if hard == resource.RLIM_INFINITY else min(hard, soft + more)
+        limit = soft + more if hard == resource.RLIM_INFINITY else min(hard, soft + more)
         # Where the system refuses, the program may use the less.
         with suppress(OSError, ValueError):
-            resource.setrlimit(resource.RLIMIT_AS, (wanted, hard))
+            resource.setrlimit(resource.RLIMIT_AS, (limit, hard))
 
 
 def _reserve(fd: int, start: int, size: int) -> None:
@@ -153,7 +153,7 @@ class MappedWriter:
         self._capacity = HEADER_BYTES + first_bytes
         _reserve(self._fd, 0, self._capacity)
         self._map_file()
-        self._map[0:HEADER_BYTES] = header(magic, record_bytes, 0)
+        self._map[0:HEADER_BYTES] = pack_header(magic, record_bytes, 0)
 
     def _make_room(self, need: int) -> None:
         try:
@@ -163,22 +163,22 @@ class MappedWriter:
             raise self.full(error) from None
 
     def _grow(self, need: int) -> None:
-        wanted = self._capacity
-        while wanted < need:
-            wanted *= 2
+        capacity = self._capacity
+        while capacity < need:
+            capacity *= 2
         while True:
             try:
-                _reserve(self._fd, self._capacity, wanted - self._capacity)
+                _reserve(self._fd, self._capacity, capacity - self._capacity)
                 break
             except OSError as error:
                 # Some file systems keep the part for which there was space.
                 os.ftruncate(self._fd, self._capacity)
-                if not is_full(error) or wanted == need:
+                if not is_full(error) or capacity == need:
                     raise
-                wanted = max(need, (self._capacity + wanted) // 2 - _LEAST_STEP)
-        self._unmap()
-        _allow_address_space(wanted - self._capacity)
-        self._capacity = wanted
+                capacity = max(need, (self._capacity + capacity) // 2 - _MIN_STEP)
+        self._close_map()
+        _allow_address_space(capacity - self._capacity)
+        self._capacity = capacity
         self._map_file()
 
     def _map_file(self) -> None:
@@ -186,12 +186,12 @@ class MappedWriter:
         # Set in one aligned store, which readers see atomically: pack_into would clear the bytes first.
         self._length = memoryview(self._map)[_LENGTH_AT : _LENGTH_AT + 8].cast("Q")
 
-    def _unmap(self) -> None:
+    def _close_map(self) -> None:
         self._length.release()
         self._map.close()
 
     def _close(self, used: int) -> None:
-        self._unmap()
+        self._close_map()
         # The header says what is used, so the rest may stay.
         with suppress(OSError):
             os.ftruncate(self._fd, used)
@@ -250,13 +250,13 @@ class OutputWriter(MappedWriter):
             raise LogError(
                 f"the program printed more than {MAX_OUTPUT_ROWS:,} lines and {MAX_ROWS_PER_S:,} a second"
             )
-        at = HEADER_BYTES + self.length
-        end = at + OUTPUT_ROW.size + len(text)
+        offset = HEADER_BYTES + self.length
+        end = offset + OUTPUT_ROW.size + len(text)
         if end > self._capacity:
             if end > MAX_OUTPUT_BYTES:
                 raise LogError(f"the program printed more than {MAX_OUTPUT_BYTES >> 20} MiB")
             self._make_room(end)
-        self._map[at:end] = OUTPUT_ROW.pack(len(text), tick, time_ns, line, stream) + text
+        self._map[offset:end] = OUTPUT_ROW.pack(len(text), tick, time_ns, line, stream) + text
         self.length = self._length[0] = end - HEADER_BYTES
 
     def close(self) -> None:
@@ -283,7 +283,7 @@ def line_of(row: OutputRow) -> str:
     return f"> {row.text}" if row.stream is Stream.INPUT else row.text
 
 
-def published_length(data: bytes, magic: bytes, file: str) -> int:
+def read_published_length(data: bytes, magic: bytes, file: str) -> int:
     """Return the length in a header: number of telemetry records, or bytes of output.
 
     Raises:
@@ -293,11 +293,11 @@ def published_length(data: bytes, magic: bytes, file: str) -> int:
 
 
 def read_header(data: bytes, magic: bytes, file: str) -> tuple[int, int]:
-    """Return the size of a record and the length in a header; errors as of `published_length`."""
+    """Return the size of a record and the length in a header; errors as of `read_published_length`."""
     if len(data) < HEADER_BYTES:
         raise LogError("too short to be a recording", file=file)
-    found, version, record_bytes, length = _HEADER.unpack_from(data)
-    if found != magic:
+    file_magic, version, record_bytes, length = _HEADER.unpack_from(data)
+    if file_magic != magic:
         raise LogError("not a tuisim recording", file=file)
     if version != FORMAT_VERSION:
         raise LogError(f"format version {version}, this tuisim reads {FORMAT_VERSION}", file=file)
@@ -310,8 +310,8 @@ def is_hole(part: bytes | memoryview) -> bool:
     return not bytes(part[-HEADER_BYTES:]).strip(b"\0") and not bytes(part).strip(b"\0")
 
 
-def raw_rows(data: bytes | memoryview, end: int) -> Iterator[tuple[int, bytes]]:
-    """Yield stream and text of each complete row, a cheaper variant of `output_rows`."""
+def iterate_raw_rows(data: bytes | memoryview, end: int) -> Iterator[tuple[int, bytes]]:
+    """Yield stream and text of each complete row, a cheaper variant of `iterate_rows`."""
     start, head, after_head = HEADER_BYTES, OUTPUT_ROW.unpack_from, OUTPUT_ROW.size
     end += HEADER_BYTES
     while start + after_head <= end:
@@ -322,7 +322,7 @@ def raw_rows(data: bytes | memoryview, end: int) -> Iterator[tuple[int, bytes]]:
         yield stream, bytes(data[start - size : start])
 
 
-def output_rows(data: bytes | memoryview, start: int, end: int) -> Iterator[tuple[OutputRow, int]]:
+def iterate_rows(data: bytes | memoryview, start: int, end: int) -> Iterator[tuple[OutputRow, int]]:
     """Yield each complete row between two byte positions, with the position after it.
 
     Args:
@@ -331,12 +331,12 @@ def output_rows(data: bytes | memoryview, start: int, end: int) -> Iterator[tupl
         end: Published length in bytes.
     """
     while start + OUTPUT_ROW.size <= end:
-        at = HEADER_BYTES + start
-        size, tick, time_ns, line, stream = OUTPUT_ROW.unpack_from(data, at)
+        offset = HEADER_BYTES + start
+        size, tick, time_ns, line, stream = OUTPUT_ROW.unpack_from(data, offset)
         start += OUTPUT_ROW.size + size
         if start > end:
             return
-        text = bytes(data[at + OUTPUT_ROW.size : at + OUTPUT_ROW.size + size]).decode(
+        text = bytes(data[offset + OUTPUT_ROW.size : offset + OUTPUT_ROW.size + size]).decode(
             "utf-8", "replace"
         )
         yield OutputRow(text, tick, time_ns, line, _STREAMS.get(stream, Stream.UNKNOWN)), start

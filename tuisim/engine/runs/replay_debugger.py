@@ -11,7 +11,7 @@ from tuisim.base.errors import TuisimError
 from tuisim.engine import protocol
 from tuisim.engine.protocol import BEFORE_NEXT_TICK, Ended, Inspected, LineHistory, Paused
 from tuisim.engine.runs.removal import remove_tree
-from tuisim.engine.runs.temporary import owned_folder
+from tuisim.engine.runs.temporary import create_owned_folder
 
 if TYPE_CHECKING:
     from tuisim.engine.runs.handle import RunHandle
@@ -38,7 +38,7 @@ class Position:
         """Sort key: before the next tick comes after every line of this one."""
         return self.tick, float("inf") if self.ordinal == BEFORE_NEXT_TICK else self.ordinal
 
-    def is_before(self, other: Position) -> bool:
+    def precedes(self, other: Position) -> bool:
         """Return whether this instant comes before another one."""
         return self._sort_key < other._sort_key
 
@@ -139,7 +139,7 @@ class ReplayDebugger:
                 # It would run on from there without a pause.
                 self.run.send(self._request)
                 return
-            if here.is_before(at):
+            if here.precedes(at):
                 self._paused = None
                 self.run.send(protocol.RunToInstant(at.tick, at.ordinal))
                 return
@@ -161,9 +161,9 @@ class ReplayDebugger:
             trace_from_tick=traced_from if traced_from >= 0 else None,
         )
         try:
-            self._folder = owned_folder()
+            self._folder = create_owned_folder()
             self.run = start_run(
-                recording.program, recording.first_spec, options, _scratch(self._folder)
+                recording.program, recording.first_spec, options, _open_scratch(self._folder)
             )
         except (TuisimError, OSError) as error:
             self.busy = False
@@ -206,7 +206,9 @@ class ReplayDebugger:
         assert self._of is not None and self._aim is not None
         aim = self._aim
         if self._line:
-            met = [one for one in history.lines if (one.tick, one.line) == (aim.tick, self._line)]
+            met = [
+                line for line in history.lines if (line.tick, line.line) == (aim.tick, self._line)
+            ]
             self._line = 0
             if met:
                 self._go(self._of, Position(aim.tick, met[-1].ordinal), aim.tick)
@@ -215,15 +217,15 @@ class ReplayDebugger:
                 self.run.send(self._request)
             return
         lines = [Position(met.tick, met.ordinal) for met in history.lines]
-        before = [place for place in lines if place.is_before(aim)]
+        before = [place for place in lines if place.precedes(aim)]
         if len(before) >= self._back:
-            found = before[-self._back]
+            position = before[-self._back]
         elif self._traced_from > 0 and len(lines) < HISTORY:
             farther = max(0, aim.tick - 8 * (aim.tick - self._traced_from))
             self._go(self._of, aim, farther)
             return
         elif before:
-            found = before[0]
+            position = before[0]
         else:
             self._back = 0
             assert self.run is not None
@@ -231,7 +233,7 @@ class ReplayDebugger:
             return
         self._back = 0
         # Traced from the same tick on, the same lines have the same ordinals.
-        self._go(self._of, found, found.tick)
+        self._go(self._of, position, position.tick)
 
     def close(self) -> None:
         """Close the process and delete its files."""
@@ -244,7 +246,7 @@ class ReplayDebugger:
         self.busy = False
 
 
-def _scratch(folder: Path) -> RunStore:
+def _open_scratch(folder: Path) -> RunStore:
     from tuisim.engine.runs.store import RunStore
 
     return RunStore(folder)

@@ -17,7 +17,7 @@ from tuisim.engine.core.tick_record import TICK_FIELDS, TICK_RECORD
 from tuisim.engine.protocol import UserAction
 from tuisim.engine.runs.command_records import read_commands
 from tuisim.engine.runs.motor_records import MOTORS_MAGIC
-from tuisim.engine.runs.records import HEADER_BYTES, TELEMETRY_FILE, TELEMETRY_MAGIC, header
+from tuisim.engine.runs.records import HEADER_BYTES, TELEMETRY_FILE, TELEMETRY_MAGIC, pack_header
 from tuisim.engine.runs.replay import ReplayedTicks, replay
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.engine.runs.side_files import ACTIONS_FILE, MOTORS_FILE
@@ -68,7 +68,7 @@ def replay_run(
     except OSError as error:
         raise LogError(f"cannot be written: {error.strerror}", file=str(run.folder)) from error
     run = replace(run, telemetry=TelemetryView(run.folder), actions=done)
-    run.telemetry.read_on()
+    run.telemetry.read_new()
     run.telemetry.holds = True
     return (
         run,
@@ -126,10 +126,10 @@ def _find_motor_parting(run: StoredRun, ticks: ReplayedTicks) -> int:
 def _replace_files(run: StoredRun, ticks: ReplayedTicks, actions: Sequence[UserAction]) -> None:
     """Write anew what is recorded of ticks, motors and a user."""
     count = len(ticks.telemetry) // TICK_RECORD.size
-    begin = header(TELEMETRY_MAGIC, TICK_RECORD.size, count)
+    begin = pack_header(TELEMETRY_MAGIC, TICK_RECORD.size, count)
     _replace_file(run.folder / TELEMETRY_FILE, begin, ticks.telemetry)
     if has_driver(run.spec):
-        begin = header(MOTORS_MAGIC, ticks.motor_bytes, count)
+        begin = pack_header(MOTORS_MAGIC, ticks.motor_bytes, count)
         _replace_file(run.folder / MOTORS_FILE, begin, ticks.motors)
     lines = (json.dumps(action.to_plain()).encode() + b"\n" for action in actions)
     _replace_file(run.folder / ACTIONS_FILE, *lines)

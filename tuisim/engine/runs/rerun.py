@@ -13,8 +13,8 @@ from tuisim.base.errors import LogError, shortened
 from tuisim.engine.protocol import End, RunState, Stop, Unended, UserAction
 from tuisim.engine.runs.diff import RunDiff, diff_runs
 from tuisim.engine.runs.handle import RunHandle, RunOptions, start_run
-from tuisim.engine.runs.run_folder import program_again
-from tuisim.engine.runs.side_files import MOST_PATH, read_reads, read_stop_tick, state_of
+from tuisim.engine.runs.run_folder import restore_program
+from tuisim.engine.runs.side_files import MAX_PATH, read_reads, read_state, read_stop_tick
 
 if TYPE_CHECKING:
     from tuisim.engine.runs.run_folder import StoredRun
@@ -47,9 +47,9 @@ def rerun(run: StoredRun, store: RunStore, **options: Any) -> RunHandle:
         LogError: the run has no recording, or its options are invalid.
     """
     return start_run(
-        program_again(run.program, run.folder),
+        restore_program(run.program, run.folder),
         run.first_spec,
-        replace(_options(run), **options),
+        replace(_build_options(run), **options),
         store,
     )
 
@@ -61,7 +61,7 @@ def same(run: StoredRun, again: StoredRun) -> RunDiff:
         run: The run; one that was cut off is compared up to its last record, unless the position of its stop is known.
         again: Its re-run.
     """
-    if not _stopped_by_itself(run):
+    if not _has_obeyed_stop(run):
         return diff_runs(run, again, prefix=run.state in CUT_OFF)
     whole = diff_runs(run, again)
     # How far threads get during cleanup depends on the real clock.
@@ -72,7 +72,7 @@ def same(run: StoredRun, again: StoredRun) -> RunDiff:
     )
 
 
-def changed_files(run: StoredRun) -> tuple[str, ...]:
+def list_changed_files(run: StoredRun) -> tuple[str, ...]:
     """Return a note for each file that the run has read and that is another one now, so that a re-run may differ.
 
     Raises:
@@ -80,18 +80,18 @@ def changed_files(run: StoredRun) -> tuple[str, ...]:
     """
     notes = []
     for read in read_reads(run.folder).files:
-        now = state_of(read.path)
-        if now is not None and read.same_as(now):
+        now = read_state(read.path)
+        if now is not None and read.is_same(now):
             continue
         if not read.there:
             what = "was not there, and is there now"
         else:
             what = "has changed since" if now is not None and now.there else "is gone"
-        notes.append(f"a file that the program opens {what}: {shortened(read.path, MOST_PATH)}")
+        notes.append(f"a file that the program opens {what}: {shortened(read.path, MAX_PATH)}")
     return tuple(notes)
 
 
-def _stopped_by_itself(run: StoredRun) -> bool:
+def _has_obeyed_stop(run: StoredRun) -> bool:
     """Return whether the program obeyed a stop that can be repeated at the same position."""
     # The summary of a run that had to be killed says more than that.
     return (
@@ -101,7 +101,7 @@ def _stopped_by_itself(run: StoredRun) -> bool:
     )
 
 
-def _options(run: StoredRun) -> RunOptions:
+def _build_options(run: StoredRun) -> RunOptions:
     last = run.telemetry.last()
     if last is None and not run.folder.is_dir():
         raise LogError(

@@ -23,8 +23,8 @@ from tuisim.engine.mat_cache import FieldFiles, open_field, prepare
 from tuisim.engine.mats import background
 from tuisim.engine.protocol import End, Ended, RunState, SetNoise, Unended, UserAction
 from tuisim.engine.runs.removal import remove_tree
-from tuisim.engine.runs.side_files import MOST_BYTES, is_held, read_actions
-from tuisim.engine.runs.views import OutputView, TelemetryView, TickRecord, views_of
+from tuisim.engine.runs.side_files import MAX_BYTES, is_held, read_actions
+from tuisim.engine.runs.views import OutputView, TelemetryView, TickRecord, open_views
 
 RUN_FILE = "run.json"
 RUN_FORMAT = 3
@@ -47,7 +47,7 @@ _ACTION_COUNTS = 1 << 16
 
 
 _Kind = TypeVar("_Kind")
-MOST_INTEGER = (1 << 63) - 1
+MAX_INTEGER = (1 << 63) - 1
 """What the catalogue can hold."""
 _ANY_END = Ended(End.FINISHED, 0, 0)
 _TOLD = frozenset({End.FINISHED, End.RAISED, End.TIME_LIMIT, End.DEADLOCK})
@@ -88,7 +88,7 @@ class StoredRun:
         """How it ended, or its state without an end."""
         if self.end is not None:
             return self.end.end
-        return state_without_end(self.folder)
+        return find_state_without_end(self.folder)
 
     @property
     def time_s(self) -> float:
@@ -98,17 +98,17 @@ class StoredRun:
         last = self.telemetry.last()
         return compute_due_ns(last.tick, self.spec.profile.tick_hz) / NS_PER_S if last else 0.0
 
-    def noise_at(self, record: TickRecord) -> NoiseSpec:
+    def find_noise(self, record: TickRecord) -> NoiseSpec:
         """Return the noise at the tick of a telemetry record."""
-        return noise_at(self.spec, self.actions, record)
+        return find_noise(self.spec, self.actions, record)
 
 
-def state_without_end(folder: Path) -> Unended:
+def find_state_without_end(folder: Path) -> Unended:
     """Return whether the run in a folder without a stored end is running or was interrupted."""
     return Unended.RUNNING if is_held(folder) else Unended.INTERRUPTED
 
 
-def program_again(program: Program, folder: Path) -> Program:
+def restore_program(program: Program, folder: Path) -> Program:
     """Return the program of a run with its arguments, working directory and own modules, to be run again.
 
     Args:
@@ -118,7 +118,7 @@ def program_again(program: Program, folder: Path) -> Program:
     return replace(program, modules_from=folder)
 
 
-def noise_at(spec: RunSpec, actions: Sequence[UserAction], record: TickRecord) -> NoiseSpec:
+def find_noise(spec: RunSpec, actions: Sequence[UserAction], record: TickRecord) -> NoiseSpec:
     """Return the noise at the tick of a record: that of the spec, changed by the user's actions, which are in order."""
     # The record counts the actions modulo 65536; their ticks resolve the ambiguity.
     due = bisect_right(actions, record.tick, key=lambda action: action.tick)
@@ -129,7 +129,7 @@ def noise_at(spec: RunSpec, actions: Sequence[UserAction], record: TickRecord) -
     return spec.world.noise
 
 
-def new_run_data(
+def build_run_data(
     run_id: str,
     number: int,
     created: str,
@@ -186,7 +186,7 @@ def read_run_file(folder: Path) -> dict[str, Any]:
     """
     path = folder / RUN_FILE
     try:
-        data = json.loads(read_regular(path, MOST_BYTES))
+        data = json.loads(read_regular(path, MAX_BYTES))
     except FileNotFoundError as error:
         raise LogError(f"no run here: {RUN_FILE} is missing", file=str(folder)) from error
     except (OSError, ValueError, RecursionError) as error:
@@ -203,13 +203,13 @@ def read_run_file(folder: Path) -> dict[str, Any]:
     return data
 
 
-def _typed(value: Any, kind: type[_Kind], name: str) -> _Kind:
-    if not isinstance(value, kind) or (isinstance(value, int) and abs(value) > MOST_INTEGER):
+def _check_type(value: Any, kind: type[_Kind], name: str) -> _Kind:
+    if not isinstance(value, kind) or (isinstance(value, int) and abs(value) > MAX_INTEGER):
         raise TypeError(f"{name} is {value!r}")
     return value
 
 
-def _restored(plain: Mapping[str, Any]) -> RunSpec:
+def _restore_spec(plain: Mapping[str, Any]) -> RunSpec:
     """Return the spec in a run file, whose numbers are ones to reckon with."""
     spec = restore(plain)
     if not 1 <= spec.profile.tick_hz <= NS_PER_S:
@@ -220,7 +220,7 @@ def _restored(plain: Mapping[str, Any]) -> RunSpec:
         part = parts.pop()
         if isinstance(part, dict | list):
             parts += part.values() if isinstance(part, dict) else part
-        elif isinstance(part, int | float) and not abs(part) <= MOST_INTEGER:
+        elif isinstance(part, int | float) and not abs(part) <= MAX_INTEGER:
             raise ValueError(f"{part} is out of range")
     return spec
 
@@ -233,26 +233,28 @@ def add_plugged(spec: RunSpec, parts: Sequence[PluggedPart]) -> RunSpec:
 def _parse_program(plain: Mapping[str, Any]) -> Program:
     """Return the program in a run file."""
     texts = ("name", "path", "text", "prelude", "working_directory", "module_folder")
-    found: dict[str, Any] = {key: _typed(plain[key], str, key) for key in texts}
+    fields: dict[str, Any] = {key: _check_type(plain[key], str, key) for key in texts}
     lists = ["arguments", "python_path"]
     lists += ["shown_ports"] if plain["shown_ports"] is not None else []
     for key in lists:
-        found[key] = tuple(_typed(word, str, key) for word in _typed(plain[key], list, key))
-    return Program(**found)
+        fields[key] = tuple(
+            _check_type(word, str, key) for word in _check_type(plain[key], list, key)
+        )
+    return Program(**fields)
 
 
-def _options_of(data: Mapping[str, Any]) -> dict[str, Any]:
-    options = _typed(data["options"], dict, "options")
-    for answer in _typed(options.get("answers", []), list, "answers"):
-        _typed(answer, str, "an answer")
+def _parse_options(data: Mapping[str, Any]) -> dict[str, Any]:
+    options = _check_type(data["options"], dict, "options")
+    for answer in _check_type(options.get("answers", []), list, "answers"):
+        _check_type(answer, str, "an answer")
     return options
 
 
-def _end_of(data: Mapping[str, Any]) -> Ended:
+def _parse_end(data: Mapping[str, Any]) -> Ended:
     kinds = {field.name: type(getattr(_ANY_END, field.name)) for field in fields(Ended)}
     known = {**data, "end": End(data["end"])}
     return Ended(
-        **{name: _typed(value, kinds.get(name, object), name) for name, value in known.items()}
+        **{name: _check_type(value, kinds.get(name, object), name) for name, value in known.items()}
     )
 
 
@@ -270,31 +272,31 @@ def read_run(folder: Path, document: str | None = None, known: RunSpec | None = 
     data = read_run_file(folder) if document is None else json.loads(document)
     # The intact parts of a damaged run are readable: its program, its world, and the other recording.
     is_falsified = isinstance(data.get("end"), dict) and data["end"].get("end") == End.FALSIFIED
-    telemetry, output = views_of(folder, is_falsified)
+    telemetry, output = open_views(folder, is_falsified)
     try:
         actions, cut = read_actions(folder)
     except LogError as error:
         actions, cut = (), f"{error.message}: the user's actions are ignored"
     try:
-        first_spec = _restored(data["spec"]) if known is None else known
-        plugged = tuple(map(PluggedPart.from_plain, _typed(data["plugged"], list, "plugged")))
-        end = None if data["end"] is None else _end_of(data["end"])
-        lost = [view.note or _lost_of(view, end) for view in (telemetry, output)]
+        first_spec = _restore_spec(data["spec"]) if known is None else known
+        plugged = tuple(map(PluggedPart.from_plain, _check_type(data["plugged"], list, "plugged")))
+        end = None if data["end"] is None else _parse_end(data["end"])
+        lost = [view.note or _describe_lost(view, end) for view in (telemetry, output)]
         # What has ended stays as it is.
         telemetry.holds = output.holds = end is not None
         return StoredRun(
             folder=folder,
-            id=_typed(data["id"], str, "id"),
+            id=_check_type(data["id"], str, "id"),
             number=int(data["number"]),
-            created=_typed(data["created"], str, "created"),
+            created=_check_type(data["created"], str, "created"),
             live=bool(data["live"]),
             program=_parse_program(data["program"]),
             spec=add_plugged(first_spec, plugged),
             first_spec=first_spec,
             plugged=plugged,
-            field=_typed(data["field"] or {}, dict, "field") or None,
-            options=_options_of(data),
-            tags=tuple(_typed(tag, str, "a tag") for tag in data["tags"]),
+            field=_check_type(data["field"] or {}, dict, "field") or None,
+            options=_parse_options(data),
+            tags=tuple(_check_type(tag, str, "a tag") for tag in data["tags"]),
             end=end,
             actions=actions,
             notes=tuple(filter(None, (*lost, cut))),
@@ -308,7 +310,7 @@ def read_run(folder: Path, document: str | None = None, known: RunSpec | None = 
         raise LogError(f"damaged: {shortened(what)}", file=str(folder / RUN_FILE)) from error
 
 
-def _lost_of(view: TelemetryView | OutputView, end: Ended | None) -> str:
+def _describe_lost(view: TelemetryView | OutputView, end: Ended | None) -> str:
     """Return what a sound recording lacks of a run that has told its own end; empty if nothing."""
     if end is None or end.end not in _TOLD:
         return ""
@@ -341,14 +343,14 @@ def open_mat(run: StoredRun) -> Field:
     Raises:
         LogError: the mat no longer exists, or its image has changed.
     """
-    files = mat_files(run)
+    files = find_mat_files(run)
     try:
         return open_field(files, has_floor=run.spec.world.is_open)
     except ConfigError as error:
-        raise _no_mat(run, error) from error
+        raise _build_mat_error(run, error) from error
 
 
-def mat_files(run: StoredRun) -> FieldFiles:
+def find_mat_files(run: StoredRun) -> FieldFiles:
     """Return the files of the mat that `open_mat` opens; prepares them again if necessary.
 
     Raises:
@@ -359,20 +361,20 @@ def mat_files(run: StoredRun) -> FieldFiles:
         diameters = {sensor.diameter_mm for sensor in run.spec.robot.color_sensors}
         if made_on is not None and made_on.is_for(diameters) and made_on.are_sound:
             return made_on
-        found = field_files(run.spec)
+        files = field_files(run.spec)
         # The file names are derived from the contents of the image.
-        if made_on is not None and found.pixels.name != made_on.pixels.name:
+        if made_on is not None and files.pixels.name != made_on.pixels.name:
             name = run.spec.world.background
             raise LogError(
                 f"the mat {name} has changed since the run", file=str(background(name).image)
             )
     except ConfigError as error:
-        raise _no_mat(run, error) from error
+        raise _build_mat_error(run, error) from error
     # The system refuses some names that come from damaged files.
     except (KeyError, TypeError, ValueError, AttributeError, OverflowError, OSError) as error:
         raise LogError(f"the mat of the run is not named: {error}", file=str(run.folder)) from error
-    return found
+    return files
 
 
-def _no_mat(run: StoredRun, error: ConfigError) -> LogError:
+def _build_mat_error(run: StoredRun, error: ConfigError) -> LogError:
     return LogError(f"the mat of the run: {error.message}", error.hint, file=str(run.folder))

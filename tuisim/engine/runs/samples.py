@@ -47,10 +47,10 @@ def parse_sample(text: str) -> tuple[str, float, float | None] | None:
     """Return name, value and printed time (None without one) of a line; None if it is not a sample."""
     if ":" not in text:
         return None
-    found = _SAMPLE.fullmatch(text)
-    if found is None:
+    match = _SAMPLE.fullmatch(text)
+    if match is None:
         return None
-    name, value, time = found[1], float(found[2]), None if found[3] is None else float(found[3])
+    name, value, time = match[1], float(match[2]), None if match[3] is None else float(match[3])
     # Extremely long numbers are parsed as infinity; such lines are not samples.
     if (
         not name.isidentifier()
@@ -72,7 +72,7 @@ class Counts:
 def counts_of(output: OutputView) -> Counts:
     """Count printed lines and samples without creating row objects: there may be a million."""
     lines = samples = 0
-    for stream, text in output.raw_rows():
+    for stream, text in output.read_raw_rows():
         if stream in SAMPLE_STREAMS:
             lines += stream == _STDOUT
             if b":" in text and (
@@ -83,7 +83,7 @@ def counts_of(output: OutputView) -> Counts:
     return Counts(lines, samples)
 
 
-def samples_of(rows: Iterable[OutputRow]) -> list[Sample]:
+def list_samples(rows: Iterable[OutputRow]) -> list[Sample]:
     """Return the samples among the rows that a program printed, in order."""
     samples: list[Sample] = []
     for row in rows:
@@ -97,7 +97,7 @@ def samples_of(rows: Iterable[OutputRow]) -> list[Sample]:
     return samples
 
 
-def value_reader(condition: ValueCondition) -> Callable[[str], float | None]:
+def build_value_reader(condition: ValueCondition) -> Callable[[str], float | None]:
     """Return a function that takes a printed line, and returns the value that a condition on such lines tests.
 
     That is the number of a sample with its name, or 1 for a line that it matches; None where there is nothing to test.
@@ -113,13 +113,13 @@ def value_reader(condition: ValueCondition) -> Callable[[str], float | None]:
     return number
 
 
-def rows_when(condition: ValueCondition, rows: Iterable[OutputRow]) -> Iterator[OutputRow]:
+def select_rows(condition: ValueCondition, rows: Iterable[OutputRow]) -> Iterator[OutputRow]:
     """Yield the rows of printed lines of which a condition is true.
 
     Raises:
         ValueError: what a sample is to be compared with is no number.
     """
-    read, test, before = value_reader(condition), condition.test(), math.nan
+    read, test, before = build_value_reader(condition), condition.test(), math.nan
     for row in rows:
         value = read(row.text)
         if value is not None:

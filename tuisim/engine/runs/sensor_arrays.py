@@ -1,6 +1,6 @@
 """What sensors measure at many ticks at once, equal to their functions in `engine.core.sensors` to the last bit.
 
-To add a kind of sensor: a function of its spec, the records, the run and the mat, and a line in `_AT_ONCE`. A kind
+To add a kind of sensor: a function of its spec, the records, the run and the mat, and a line in `_MEASURES`. A kind
 without one is measured tick by tick.
 """
 
@@ -32,12 +32,12 @@ from tuisim.engine.core.spec import (
     SensorSpec,
     UltrasonicSpec,
 )
-from tuisim.engine.runs.arrays import cos_and_sin, world_points_mm
+from tuisim.engine.runs.arrays import compute_cos_and_sin, compute_world_points_mm
 
 Array = NDArray[Any]
 
 
-def measured_at_once(
+def measure_array(
     sensor: SensorSpec, records: Array, run: RunSpec, field: Field, has_light_noise: bool
 ) -> tuple[Array, ...] | None:
     """Return what is measured of a sensor at every tick, in the order of its columns; None if it cannot be at once.
@@ -54,7 +54,7 @@ def measured_at_once(
         return None
     if isinstance(sensor, UltrasonicSpec) and find_drift(run).echo_loss_pc:
         return None
-    measure = _AT_ONCE.get(type(sensor))
+    measure = _MEASURES.get(type(sensor))
     if measure is None:
         return None
     # A ray may be parallel to an edge, and a damaged record may hold any numbers.
@@ -62,7 +62,7 @@ def measured_at_once(
         return measure(sensor, records, run, field)
 
 
-def quiet_color_columns(
+def measure_quiet_color(
     records: Array, sensor: ColorSensorSpec, run: RunSpec, field: Field
 ) -> dict[str, Array]:
     """Return red, green and blue of a colour sensor at every tick without light noise, by column.
@@ -73,7 +73,7 @@ def quiet_color_columns(
         run: The specification of the run.
         field: The mat; it must have sums of the sensor's diameter.
     """
-    x_mm, y_mm = world_points_mm(records, sensor.x_mm, sensor.y_mm)
+    x_mm, y_mm = compute_world_points_mm(records, sensor.x_mm, sensor.y_mm)
     diameter = sensor.diameter_mm
     with np.errstate(invalid="ignore"):  # a position beyond all integers is off the mat either way
         col = (x_mm - diameter / 2).astype(np.int64) + diameter
@@ -113,37 +113,39 @@ def _sum_discs(col: Array, row: Array, diameter: int, field: Field) -> tuple[Arr
     return sums + beside, np.ones(len(col), np.bool_)
 
 
-def _color(
+def _measure_color(
     sensor: ColorSensorSpec, records: Array, run: RunSpec, field: Field
 ) -> tuple[Array, ...]:
-    return tuple(quiet_color_columns(records, sensor, run, field).values())
+    return tuple(measure_quiet_color(records, sensor, run, field).values())
 
 
-def _gyro(sensor: GyroSpec, records: Array, run: RunSpec, field: Field) -> tuple[Array, ...]:
+def _measure_gyro(
+    sensor: GyroSpec, records: Array, run: RunSpec, field: Field
+) -> tuple[Array, ...]:
     left_dps: Any = records["left_speed_dps"].astype("f8")
     right_dps: Any = records["right_speed_dps"].astype("f8")
     angle_deg = records["gyro_zero_deg"].astype("f8") - records["heading_deg"]
     fastest = run.profile.gyro_max_dps or np.inf
     rate_dps: Any = np.clip(-sense_turn_rate_dps(left_dps, right_dps, run), -fastest, fastest)
-    return _rounded(angle_deg), _rounded(rate_dps)
+    return _round_numbers(angle_deg), _round_numbers(rate_dps)
 
 
-def _ultrasonic(
+def _measure_ultrasonic(
     sensor: UltrasonicSpec, records: Array, run: RunSpec, field: Field
 ) -> tuple[Array, ...]:
-    start = world_points_mm(records, sensor.x_mm, sensor.y_mm)
+    start = compute_world_points_mm(records, sensor.x_mm, sensor.y_mm)
     facing_deg = records["heading_deg"] + sensor.angle_deg
-    found = find_surfaces(run.world)
+    surfaces = find_surfaces(run.world)
     nearest_mm = np.full(len(records), sensor.max_range_mm)
     for ray_deg in sensor.ray_angles_deg:
-        cos, sin = cos_and_sin(facing_deg + ray_deg)
+        cos, sin = compute_cos_and_sin(facing_deg + ray_deg)
         nearest_mm = _cut_off(
-            nearest_mm, found.upright, start, (cos, sin), _echoes(90.0, facing_deg)
+            nearest_mm, surfaces.upright, start, (cos, sin), _is_echoing(90.0, facing_deg)
         )
         nearest_mm = _cut_off(
-            nearest_mm, found.level, start[::-1], (sin, cos), _echoes(0.0, facing_deg)
+            nearest_mm, surfaces.level, start[::-1], (sin, cos), _is_echoing(0.0, facing_deg)
         )
-    distance_mm, farthest = _rounded(nearest_mm), float(round(sensor.max_range_mm))
+    distance_mm, farthest = _round_numbers(nearest_mm), float(round(sensor.max_range_mm))
     is_near = distance_mm < run.profile.min_echo_mm
     drift = find_drift(run)
     if drift.echo_bias_mm:
@@ -155,7 +157,7 @@ def _ultrasonic(
         return (distance_mm,)
     drawn = (generate_bytes(run.seed, tick, sensor.name, 4) for tick in records["tick"].tolist())
     shares = np.array([int.from_bytes(four, "little") / 2147483647.5 - 1 for four in drawn])
-    noisy_mm = _rounded(distance_mm + sensor.noise_mm * shares)
+    noisy_mm = _round_numbers(distance_mm + sensor.noise_mm * shares)
     return (np.clip(noisy_mm, 0.0, farthest),)
 
 
@@ -180,26 +182,32 @@ def _cut_off(
     echoes = echoes & (np.abs(across_step) >= 1e-12)
     for place, low, high in edges:
         way_mm = (place - across) / across_step
-        at = along + way_mm * along_step
+        place_along = along + way_mm * along_step
         ahead = np.where(across_step > 0, place >= across, place <= across)
-        hits = echoes & ahead & (way_mm < nearest_mm) & (low - 1e-9 <= at) & (at <= high + 1e-9)
+        hits = (
+            echoes
+            & ahead
+            & (way_mm < nearest_mm)
+            & (low - 1e-9 <= place_along)
+            & (place_along <= high + 1e-9)
+        )
         nearest_mm = np.where(hits, way_mm, nearest_mm)
     return nearest_mm
 
 
-def _echoes(edge_deg: float, facing_deg: Array) -> Array:
+def _is_echoing(edge_deg: float, facing_deg: Array) -> Array:
     angle_deg = np.abs(edge_deg - facing_deg) % 180.0
     return (angle_deg > MIN_ECHO_DEG) & (angle_deg < MAX_ECHO_DEG)
 
 
-def _rounded(values: Array) -> Array:
+def _round_numbers(values: Array) -> Array:
     """Return whole numbers, as Python rounds; -0.0 becomes 0.0."""
     rounded: Array = np.rint(values) + 0.0
     return rounded
 
 
-_AT_ONCE: Mapping[type[SensorSpec], Callable[..., tuple[Array, ...]]] = {
-    ColorSensorSpec: _color,
-    UltrasonicSpec: _ultrasonic,
-    GyroSpec: _gyro,
+_MEASURES: Mapping[type[SensorSpec], Callable[..., tuple[Array, ...]]] = {
+    ColorSensorSpec: _measure_color,
+    UltrasonicSpec: _measure_ultrasonic,
+    GyroSpec: _measure_gyro,
 }

@@ -44,9 +44,9 @@ They allow repeating the run after the modules have changed or are gone.
 
 READS_FILE = "reads.jsonl"
 """Files outside the run folder that the program has opened for reading, one JSON object per line."""
-MOST_READS = 100
+MAX_READS = 100
 """Further files are only counted."""
-MOST_PATH = 200
+MAX_PATH = 200
 """Characters of a path that are shown."""
 
 READINGS_FILE = "readings.bin"
@@ -77,7 +77,7 @@ SIDE_FILES = (
 )
 """All of them but the lock."""
 
-MOST_BYTES = 64 << 20
+MAX_BYTES = 64 << 20
 """More than any of those has that are read whole."""
 
 
@@ -127,7 +127,7 @@ def read_actions(folder: Path) -> tuple[tuple[UserAction, ...], str]:
     """
     path = folder / ACTIONS_FILE
     try:
-        data = read_regular(path, MOST_BYTES)
+        data = read_regular(path, MAX_BYTES)
     except FileNotFoundError:
         return (), ""
     except OSError as error:
@@ -156,7 +156,7 @@ def read_actions(folder: Path) -> tuple[tuple[UserAction, ...], str]:
 
 
 @contextmanager
-def _reading(path: Path) -> Iterator[None]:
+def _convert_errors(path: Path) -> Iterator[None]:
     """Turn whatever goes wrong while a file is read, and taken apart, into a LogError."""
     try:
         yield
@@ -164,10 +164,10 @@ def _reading(path: Path) -> Iterator[None]:
         raise LogError(f"cannot be read: {error}", file=str(path)) from error
 
 
-def _rows(path: Path) -> Iterator[Any]:
+def _read_rows(path: Path) -> Iterator[Any]:
     """Return the rows of a file of JSON lines, none if it is missing; an incomplete last one is ignored."""
     try:
-        *lines, _ = read_regular(path, MOST_BYTES).split(b"\n")
+        *lines, _ = read_regular(path, MAX_BYTES).split(b"\n")
     except FileNotFoundError:
         lines = []
     return map(json.loads, lines)
@@ -196,9 +196,9 @@ def read_stop_tick(folder: Path) -> int | None:
         LogError: the file is damaged.
     """
     path = folder / STOP_FILE
-    with _reading(path):
+    with _convert_errors(path):
         try:
-            data = read_regular(path, MOST_BYTES)
+            data = read_regular(path, MAX_BYTES)
         except FileNotFoundError:
             return None
         return int(json.loads(data)["tick"])
@@ -244,7 +244,7 @@ def read_modules(run_folder: Path) -> list[OwnModule]:
         LogError: the file is damaged.
     """
     path = run_folder / MODULES_FILE
-    with _reading(path):
+    with _convert_errors(path):
         try:
             # Most runs have none, and each looks for it.
             _lstat(f"{run_folder}{os.sep}{MODULES_FILE}")
@@ -257,7 +257,7 @@ def read_modules(run_folder: Path) -> list[OwnModule]:
                 None if row["folders"] is None else tuple(row["folders"]),
                 row["text"],
             )
-            for row in _rows(path)
+            for row in _read_rows(path)
         ]
 
 
@@ -269,7 +269,7 @@ def copy_modules(source: Path, target: Path) -> None:
     """
     try:
         with suppress(FileNotFoundError):
-            (target / MODULES_FILE).write_bytes(read_regular(source / MODULES_FILE, MOST_BYTES))
+            (target / MODULES_FILE).write_bytes(read_regular(source / MODULES_FILE, MAX_BYTES))
     except OSError as error:
         raise LogError(
             f"cannot be copied: {error.strerror or error}", file=str(source / MODULES_FILE)
@@ -288,7 +288,7 @@ class FileRead:
     crc32: int = -1
     """Checksum of the contents; -1 if there is none."""
 
-    def same_as(self, other: FileRead) -> bool:
+    def is_same(self, other: FileRead) -> bool:
         """Return whether the contents are equal, as far as can be told."""
         if not (self.there and other.there):
             return self.there == other.there
@@ -309,24 +309,26 @@ class FilesRead:
 _stat, _lstat, _open, _read, _close = os.stat, os.lstat, os.open, os.read, os.close
 """Saved before those of the program are replaced, which note what it opens."""
 _PART_BYTES = 1 << 20
-MOST_SUMMED_BYTES = 1 << 22
+MAX_SUMMED_BYTES = 1 << 22
 """A larger file has no checksum: its size and time tell whether it has changed."""
 
 
-def state_of(path: str) -> FileRead | None:
+def read_state(path: str) -> FileRead | None:
     """Return a file as it is now, or that there is none; None for folders, devices and the like."""
     try:
-        found = _stat(path)
+        status = _stat(path)
     except (OSError, ValueError) as error:
         gone = isinstance(error, FileNotFoundError | NotADirectoryError)
         return FileRead(path, there=False) if gone else None
-    if not stat.S_ISREG(found.st_mode):
+    if not stat.S_ISREG(status.st_mode):
         return None
-    return FileRead(path, True, found.st_size, found.st_mtime_ns, _checksum(path, found.st_size))
+    return FileRead(
+        path, True, status.st_size, status.st_mtime_ns, _compute_checksum(path, status.st_size)
+    )
 
 
-def _checksum(path: str, size: int) -> int:
-    if size > MOST_SUMMED_BYTES:
+def _compute_checksum(path: str, size: int) -> int:
+    if size > MAX_SUMMED_BYTES:
         return -1
     total = 0
     try:
@@ -334,7 +336,7 @@ def _checksum(path: str, size: int) -> int:
     except OSError:
         return -1
     try:
-        for _ in range(0, MOST_SUMMED_BYTES + 1, _PART_BYTES):
+        for _ in range(0, MAX_SUMMED_BYTES + 1, _PART_BYTES):
             total = crc32(_read(descriptor, _PART_BYTES), total)
     except OSError:
         return -1
@@ -368,15 +370,15 @@ def read_reads(run_folder: Path) -> FilesRead:
         LogError: the file is damaged.
     """
     path = run_folder / READS_FILE
-    found: dict[str, FileRead] = {}
+    reads: dict[str, FileRead] = {}
     left_out = 0
-    with _reading(path):
-        for row in _rows(path):
+    with _convert_errors(path):
+        for row in _read_rows(path):
             if "left_out" in row:
                 left_out = int(row["left_out"])
                 continue
             name = str(row["path"])
-            found.setdefault(
+            reads.setdefault(
                 name,
                 FileRead(
                     name,
@@ -386,4 +388,4 @@ def read_reads(run_folder: Path) -> FilesRead:
                     int(row["crc32"]),
                 ),
             )
-    return FilesRead(tuple(found.values())[:MOST_READS], left_out + max(0, len(found) - MOST_READS))
+    return FilesRead(tuple(reads.values())[:MAX_READS], left_out + max(0, len(reads) - MAX_READS))

@@ -75,7 +75,7 @@ class _Stretch:
     at: str
 
 
-def standstill_of(telemetry: TelemetryView, spec: RunSpec) -> Standstill | None:
+def find_standstill(telemetry: TelemetryView, spec: RunSpec) -> Standstill | None:
     """Return when the robot of a run stood at something solid; None if it never did, or if nothing is solid.
 
     Raises:
@@ -84,12 +84,15 @@ def standstill_of(telemetry: TelemetryView, spec: RunSpec) -> Standstill | None:
     if not spec.world.solid:
         return None
     records = telemetry.array()
-    stretches = list(_stretches(records, spec))
+    stretches = list(_find_stretches(records, spec))
     if not stretches:
         return None
-    moved = [_moves_on(records, one.end - 1, other.start) for one, other in pairwise(stretches)]
+    moved = [
+        _find_next_move(records, stretch_before.end - 1, other.start)
+        for stretch_before, other in pairwise(stretches)
+    ]
     last = stretches[-1].end - 1
-    until = _moves_on(records, last, len(records) - 1)
+    until = _find_next_move(records, last, len(records) - 1)
     kinds = sorted({stretch.at for stretch in stretches}, reverse=True)
 
     def time_s(tick: int) -> float:
@@ -119,17 +122,17 @@ def has_left_field(telemetry: TelemetryView, spec: RunSpec) -> bool:
     return any(bool(((at_mm < 0) | (at_mm > size_mm)).any()) for at_mm, size_mm in sides)
 
 
-def standstill_words(telemetry: TelemetryView, spec: RunSpec) -> str:
+def describe_standstill(telemetry: TelemetryView, spec: RunSpec) -> str:
     """Return `Standstill.words` of a run; empty if there is nothing to say.
 
     Raises:
         LogError: the recording is damaged.
     """
-    found = standstill_of(telemetry, spec)
-    return found.words if found else ""
+    standstill = find_standstill(telemetry, spec)
+    return standstill.words if standstill else ""
 
 
-def _stretches(records: NDArray[Any], spec: RunSpec) -> Iterator[_Stretch]:
+def _find_stretches(records: NDArray[Any], spec: RunSpec) -> Iterator[_Stretch]:
     """Yield each stretch that is long enough for the motors to stall.
 
     Noise lets the wheels turn a little between ticks in which they are stopped: those are one stretch.
@@ -151,7 +154,7 @@ def _stretches(records: NDArray[Any], spec: RunSpec) -> Iterator[_Stretch]:
     solids, shortest = Solids(spec.world, spec.robot), compute_stall_ticks(spec.profile.tick_hz)
     now: _Stretch | None = None
     for start, end in find_spans(pushes).tolist():
-        if at := _touched(solids, records, start, spec):
+        if at := _describe_touched(solids, records, start, spec):
             goes_on = now is not None and start - now.end < shortest and runs[now.end : start].all()
             if now is not None and not goes_on and now.end - now.start >= shortest:
                 yield now
@@ -160,21 +163,21 @@ def _stretches(records: NDArray[Any], spec: RunSpec) -> Iterator[_Stretch]:
         yield now
 
 
-def _touched(solids: Solids, records: NDArray[Any], tick: int, spec: RunSpec) -> str:
+def _describe_touched(solids: Solids, records: NDArray[Any], tick: int, spec: RunSpec) -> str:
     """Return what the robot touches at a tick, in words; empty if it is nothing."""
-    gaps = solids.measure_gaps_mm(_pose(records, tick))
+    gaps = solids.measure_gaps_mm(_build_pose(records, tick))
     number = next((number for number, gap in enumerate(gaps) if gap < _CONTACT_MM), None)
     if number is None:
         return ""
     return WALL if spec.world.walls and number < _WALLS else "an obstacle"
 
 
-def _pose(records: NDArray[Any], tick: int) -> PoseTuple:
+def _build_pose(records: NDArray[Any], tick: int) -> PoseTuple:
     x_mm, y_mm, heading_deg = records[_POSE][tick].item()
     return x_mm, y_mm, heading_deg
 
 
-def _moves_on(records: NDArray[Any], start: int, end: int) -> int | None:
+def _find_next_move(records: NDArray[Any], start: int, end: int) -> int | None:
     """Return the first tick after `start`, up to `end`, at which the robot is elsewhere; None without one."""
     import numpy as np
 

@@ -22,21 +22,21 @@ from tuisim.engine.core.plugged import PluggedPart
 from tuisim.engine.core.profile import NS_PER_S, compute_due_ns
 from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.protocol import RUN_STATES, End, Ended, Unended
-from tuisim.engine.runs.catalogue import HOME_HINT, Catalogue, RunInfo, locked
+from tuisim.engine.runs.catalogue import HOME_HINT, Catalogue, RunInfo, lock_home
 from tuisim.engine.runs.records import OUTPUT_FILE, TELEMETRY_FILE
 from tuisim.engine.runs.removal import remove_tree
 from tuisim.engine.runs.run_folder import (
-    MOST_INTEGER,
+    MAX_INTEGER,
     RUN_FILE,
     StoredRun,
-    new_run_data,
+    build_run_data,
+    find_state_without_end,
     read_run,
     read_run_file,
-    state_without_end,
     write_run_file,
 )
 from tuisim.engine.runs.samples import counts_of
-from tuisim.engine.runs.side_files import MOST_BYTES, SIDE_FILES, hold, is_held
+from tuisim.engine.runs.side_files import MAX_BYTES, SIDE_FILES, hold, is_held
 from tuisim.engine.runs.views import OutputView, TelemetryView
 
 RUNS_FOLDER = "runs"
@@ -83,7 +83,7 @@ class RunStore:
 
     # Writing
 
-    def new_run(
+    def create_run(
         self,
         program: Program,
         spec: RunSpec,
@@ -105,13 +105,13 @@ class RunStore:
         """
         now = datetime.now(UTC)
         created = now.isoformat(timespec="milliseconds")
-        run_id, folder, lock_fd = self._new_folder(now)
+        run_id, folder, lock_fd = self._create_folder(now)
         info = RunInfo(
             0, run_id, created, program.name, spec.world.background, spec.profile.name, spec.seed
         )
         try:
             number = self._catalogue.add(info)
-            data = new_run_data(run_id, number, created, program, spec, field, options, live)
+            data = build_run_data(run_id, number, created, program, spec, field, options, live)
             write_run_file(folder, data)
         # Interrupted, too: nobody else closes the lock.
         except BaseException:
@@ -120,16 +120,16 @@ class RunStore:
             raise
         return NewRun(run_id, number, folder, lock_fd, data)
 
-    def adopt(self, folder: Path) -> NewRun:
+    def add_folder(self, folder: Path) -> NewRun:
         """Move the folder of a finished run from elsewhere into the store, and list it; return where it is now.
 
         Raises:
             LogError: it holds no run, or the home folder cannot be written.
         """
         data = read_run_file(folder)
-        run_id, place, lock_fd = self._new_folder(datetime.now(UTC))
+        run_id, place, lock_fd = self._create_folder(datetime.now(UTC))
         try:
-            info = _info_from(run_id, data)
+            info = _build_info(run_id, data)
             _copy_files(folder, place)
             number = self._catalogue.add(info)
             write_run_file(place, {**data, "id": run_id, "number": number})
@@ -158,9 +158,9 @@ class RunStore:
         run_id = run.id
         if not os.path.isdir(run.folder):
             raise LogError(f"no run {run_id!r}", file=str(self._runs))
-        with locked(self.home):
+        with lock_home(self.home):
             write_run_file(
-                run.folder, {**run.data, "tags": _tags_in(run.folder), "end": asdict(end)}
+                run.folder, {**run.data, "tags": _read_tags(run.folder), "end": asdict(end)}
             )
         output = OutputView(run.folder, end.end is End.FALSIFIED)
         samples = counts_of(output).samples if output.length <= _COUNT_AT_ONCE_BYTES else None
@@ -182,8 +182,8 @@ class RunStore:
             LogError: the run cannot be written.
         """
         run.data["plugged"] = [part.to_plain() for part in parts]
-        with locked(self.home):
-            write_run_file(run.folder, {**run.data, "tags": _tags_in(run.folder)})
+        with lock_home(self.home):
+            write_run_file(run.folder, {**run.data, "tags": _read_tags(run.folder)})
 
     def forget(self, run_id: str) -> None:
         """Delete a run that could not be started."""
@@ -213,7 +213,7 @@ class RunStore:
         folder = self.folder(run_id)
         if not os.path.isdir(folder):
             raise LogError(f"no run {run_id!r}", file=str(self._runs))
-        if not _has_end(folder) and state_without_end(folder) is Unended.RUNNING:
+        if not _has_end(folder) and find_state_without_end(folder) is Unended.RUNNING:
             raise LogError(f"run {run_id} is still running", "stop it first")
         try:
             _delete(folder)
@@ -238,8 +238,8 @@ class RunStore:
         """
         rows, left = [], _COUNT_A_LISTING_BYTES
         changes: list[tuple[str, dict[str, Any]]] = []
-        for row in self._rows():
-            known, change, counted = self._completed(row, left)
+        for row in self._update_rows():
+            known, change, counted = self._complete(row, left)
             if not change and row.end in _MAY_CHANGE and not self.folder(row.id).is_dir():
                 # Removed by another process since it was listed.
                 continue
@@ -253,7 +253,7 @@ class RunStore:
                 self._catalogue.update_all(changes)
         return rows
 
-    def _rows(self) -> list[RunInfo]:
+    def _update_rows(self) -> list[RunInfo]:
         """Return all runs with the data in the catalogue."""
         try:
             there = {entry.name for entry in os.scandir(self._runs) if entry.is_dir()}
@@ -267,18 +267,18 @@ class RunStore:
         listed = {row.id for row in rows}
         gone = {row.id for row in rows if row.id not in there and not self.folder(row.id).is_dir()}
         strangers = [self.folder(name) for name in sorted(there - listed)]
-        found = list(filter(None, map(self._info_in, strangers)))
+        new_rows = list(filter(None, map(self._read_info, strangers)))
         for folder in strangers:
-            _remove_left_over(folder)
-        if gone or found:
+            _remove_unfinished(folder)
+        if gone or new_rows:
             try:
                 self._catalogue.remove(gone)
-                for info in found:
+                for info in new_rows:
                     self._catalogue.add(info)
                 rows = self._catalogue.rows()
             except LogError:
                 # If nothing can be written, the folders are right nevertheless.
-                rows = [row for row in rows if row.id not in gone] + found
+                rows = [row for row in rows if row.id not in gone] + new_rows
         return rows
 
     def find(self, text: str) -> RunInfo:
@@ -287,10 +287,10 @@ class RunStore:
         Raises:
             LogError: no run matches, or more than one.
         """
-        rows = self._rows()
+        rows = self._update_rows()
         if not rows:
             raise LogError(f"no run {text!r}: no runs are stored yet", file=str(self.home))
-        return self._completed(_match(text, rows), _COUNT_A_LISTING_BYTES)[0]
+        return self._complete(_match(text, rows), _COUNT_A_LISTING_BYTES)[0]
 
     def load_run(self, run: str | Path) -> StoredRun:
         """Return a run by its folder (a path, or a string with a slash) or by anything that `find` accepts.
@@ -313,7 +313,7 @@ class RunStore:
 
     # Internals
 
-    def _new_folder(self, now: datetime) -> tuple[str, Path, int]:
+    def _create_folder(self, now: datetime) -> tuple[str, Path, int]:
         """Create and lock a folder: what nobody holds counts as interrupted, and can be removed by any process.
 
         Returns:
@@ -340,20 +340,20 @@ class RunStore:
         folder = self.folder(run_id)
         if not os.path.isdir(folder):
             raise LogError(f"no run {run_id!r}", file=str(self._runs))
-        with locked(self.home):
+        with lock_home(self.home):
             write_run_file(folder, {**read_run_file(folder), **changes})
 
     def _scan(self) -> Iterator[RunInfo]:
-        return filter(None, map(self._info_in, sorted(self._runs.glob("*"))))
+        return filter(None, map(self._read_info, sorted(self._runs.glob("*"))))
 
-    def _info_in(self, folder: Path) -> RunInfo | None:
+    def _read_info(self, folder: Path) -> RunInfo | None:
         """Return the catalogue row of a folder; None if it holds no run (yet)."""
         # The folder's name is the id: a copied run is another run.
         run_id = folder.name
         if run_id.startswith(".") or not os.path.lexists(folder / RUN_FILE):
             return None
         try:
-            return _info_from(run_id, read_run_file(folder))
+            return _build_info(run_id, read_run_file(folder))
         except LogError as error:
             if not os.path.lexists(folder / RUN_FILE):
                 # Another process has just removed it.
@@ -364,7 +364,7 @@ class RunStore:
             summary = f"{RUN_FILE} is damaged: {error!r}"
         return RunInfo(0, run_id, "", "", "", "", 0, Unended.DAMAGED, summary=summary)
 
-    def _completed(self, info: RunInfo, most_bytes: int) -> tuple[RunInfo, dict[str, Any], int]:
+    def _complete(self, info: RunInfo, most_bytes: int) -> tuple[RunInfo, dict[str, Any], int]:
         """Add the data that is missing in the catalogue.
 
         Args:
@@ -381,8 +381,8 @@ class RunStore:
         known = info
         if is_open:
             # The run file is written first: it may have an end that the catalogue does not.
-            stored = self._info_in(folder)
-            state = state_without_end(folder)
+            stored = self._read_info(folder)
+            state = find_state_without_end(folder)
             if stored is not None and stored.end is Unended.DAMAGED:
                 known = replace(info, end=Unended.DAMAGED, summary=stored.summary)
             elif stored is not None and stored.end:
@@ -390,15 +390,15 @@ class RunStore:
             elif info.end is state is Unended.INTERRUPTED:
                 return info, {}, 0
             else:
-                found = (stored if info.end is Unended.DAMAGED else None) or info
-                known = replace(found, number=info.number, end=state)
+                row = (stored if info.end is Unended.DAMAGED else None) or info
+                known = replace(row, number=info.number, end=state)
         counted = 0
         try:
             output = OutputView(folder)
             if output.length <= most_bytes:
                 known, counted = replace(known, samples=counts_of(output).samples), output.length
             if known.end in (Unended.RUNNING, Unended.INTERRUPTED):
-                known = _with_last_record(known, folder)
+                known = _add_last_record(known, folder)
         except LogError as error:
             return replace(known, summary=known.summary or str(error)), {}, counted
         # Where the lock cannot be asked for, it may be running.
@@ -426,27 +426,27 @@ def load_run(run: str | Path | int) -> StoredRun:
             number = index(run)
         except TypeError:
             raise LogError(f"this names no run: {reprlib.repr(run)}", hint) from None
-        if abs(number) > MOST_INTEGER:
+        if abs(number) > MAX_INTEGER:
             raise LogError("no run has a number as large as this", hint)
         run = str(number)
     return RunStore().load_run(run)
 
 
-def bytes_in(folder: Path) -> int:
+def count_bytes(folder: Path) -> int:
     """Return the total size of a run's files in bytes; files deleted during the call do not count.
 
     Raises:
         LogError: the folder cannot be read.
     """
-    found = 0
+    total_bytes = 0
     try:
         with suppress(FileNotFoundError), os.scandir(folder) as entries:
             for entry in entries:
                 with suppress(FileNotFoundError):
-                    found += entry.stat().st_size
+                    total_bytes += entry.stat().st_size
     except OSError as error:
         raise LogError(f"cannot be read: {error.strerror or error}", file=str(folder)) from error
-    return found
+    return total_bytes
 
 
 def _match(text: str, rows: Sequence[RunInfo]) -> RunInfo:
@@ -459,20 +459,20 @@ def _match(text: str, rows: Sequence[RunInfo]) -> RunInfo:
         lambda row: row.id.startswith(text),
     )
     for matches in tests:
-        found = [row for row in rows if text and matches(row)]
-        if len(found) == 1:
-            return found[0]
-        if found:
-            some = ", ".join(row.id for row in found[:3])
+        matching = [row for row in rows if text and matches(row)]
+        if len(matching) == 1:
+            return matching[0]
+        if matching:
+            some = ", ".join(row.id for row in matching[:3])
             raise LogError(
-                f"{text!r} is the start of {len(found)} runs: {some}{' …' if len(found) > 3 else ''}"
+                f"{text!r} is the start of {len(matching)} runs: {some}{' …' if len(matching) > 3 else ''}"
             )
     raise LogError(
         f"no run {text!r}", f"a number from {rows[0].number} to {rows[-1].number}, an id, or {LAST}"
     )
 
 
-def _info_from(run_id: str, data: Mapping[str, Any]) -> RunInfo:
+def _build_info(run_id: str, data: Mapping[str, Any]) -> RunInfo:
     """Return the catalogue row of a run file; raises KeyError, TypeError or ValueError for invalid contents."""
     spec, end = data["spec"], data["end"]
     info = RunInfo(
@@ -488,7 +488,7 @@ def _info_from(run_id: str, data: Mapping[str, Any]) -> RunInfo:
     if end is None:
         return info
     ticks, time_s = int(end["tick"]), int(end["time_ns"]) / NS_PER_S
-    if ticks > MOST_INTEGER:
+    if ticks > MAX_INTEGER:
         raise ValueError(f"tick is {ticks}")
     return replace(
         info, end=RUN_STATES[end["end"]], ticks=ticks, time_s=time_s, summary=str(end["summary"])
@@ -510,9 +510,9 @@ def _copy_files(folder: Path, place: Path) -> None:
                 raise
             continue
         with source, open(place / name, "xb", opener=private) as target:
-            found = os.fstat(source.fileno())
+            status = os.fstat(source.fileno())
             # A file may claim any size; its holes would be filled.
-            if found.st_size <= 512 * found.st_blocks + MOST_BYTES:
+            if status.st_size <= 512 * status.st_blocks + MAX_BYTES:
                 shutil.copyfileobj(source, target)
 
 
@@ -529,7 +529,7 @@ def _delete(folder: Path) -> None:
         remove_tree(removed, ignore_errors=False)
 
 
-def _remove_left_over(folder: Path) -> None:
+def _remove_unfinished(folder: Path) -> None:
     """Remove a folder in which a killed process was about to begin a run, or to delete one."""
     is_removed = folder.name.startswith(".") and folder.name.endswith(_REMOVED)
     is_begun = os.path.lexists(folder / RUN_FILE)
@@ -537,7 +537,7 @@ def _remove_left_over(folder: Path) -> None:
         remove_tree(folder)
 
 
-def _tags_in(folder: Path) -> list[str]:
+def _read_tags(folder: Path) -> list[str]:
     """Return the tags of a run that is over, without what the program may have put in their place."""
     try:
         tags = read_run_file(folder).get("tags", ())
@@ -557,7 +557,7 @@ def _has_end(folder: Path) -> bool:
         return False
 
 
-def _with_last_record(info: RunInfo, folder: Path) -> RunInfo:
+def _add_last_record(info: RunInfo, folder: Path) -> RunInfo:
     last = TelemetryView(folder).last()
     if last is None:
         return replace(info, ticks=0, time_s=0.0)

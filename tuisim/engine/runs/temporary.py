@@ -24,7 +24,7 @@ from tuisim.engine.runs.removal import remove_tree
 from tuisim.engine.runs.run_folder import (
     RUN_FILE,
     StoredRun,
-    new_run_data,
+    build_run_data,
     read_run,
     write_run_file,
 )
@@ -40,16 +40,16 @@ _PREFIX = "tuisim-"
 _BATCH_PREFIX = f"{_PREFIX}batch-"
 
 
-def batch_folder() -> Path:
+def create_batch_folder() -> Path:
     """Create a folder for the temporary runs of a batch.
 
     Raises:
         LogError: it cannot be created.
     """
-    return owned_folder(_BATCH_PREFIX, _parent())
+    return create_owned_folder(_BATCH_PREFIX, _find_parent())
 
 
-def owned_folder(prefix: str = _PREFIX, parent: Path | None = None) -> Path:
+def create_owned_folder(prefix: str = _PREFIX, parent: Path | None = None) -> Path:
     """Create a folder that counts as used as long as this process lives; its name begins with the prefix.
 
     The first one also removes those that killed processes have left, there and in the other usual places.
@@ -60,8 +60,8 @@ def owned_folder(prefix: str = _PREFIX, parent: Path | None = None) -> Path:
     default = Path(tempfile.gettempdir())
     parent = parent or default
     for place in (parent, default, _MEMORY):
-        _remove_left_over(place)
-    folder = _new_folder(parent, prefix)
+        _remove_abandoned(place)
+    folder = _create_folder(parent, prefix)
     with _held_lock:
         for old in [old for old in _held if not old.exists()]:
             os.close(_held.pop(old))
@@ -78,7 +78,7 @@ _held_lock = threading.Lock()
 
 
 @cache
-def _remove_left_over(parent: Path) -> None:
+def _remove_abandoned(parent: Path) -> None:
     """Remove folders of this user whose process has ended; one without a lock is another program's."""
     for folder in parent.glob(f"{_PREFIX}*"):
         with suppress(OSError):
@@ -87,20 +87,20 @@ def _remove_left_over(parent: Path) -> None:
 
 
 @contextmanager
-def temporary_home(prefix: str = _PREFIX) -> Iterator[Path]:
+def create_temporary_home(prefix: str = _PREFIX) -> Iterator[Path]:
     """Create a home folder for temporary runs, and delete it afterwards; its name begins with the prefix.
 
     Raises:
         LogError: it cannot be created.
     """
-    folder = owned_folder(prefix)
+    folder = create_owned_folder(prefix)
     try:
         yield folder
     finally:
         remove_tree(folder)
 
 
-def _new_folder(parent: Path, prefix: str = "") -> Path:
+def _create_folder(parent: Path, prefix: str = "") -> Path:
     try:
         return Path(tempfile.mkdtemp(prefix=prefix, dir=parent))
     except OSError as error:
@@ -110,7 +110,7 @@ def _new_folder(parent: Path, prefix: str = "") -> Path:
         ) from error
 
 
-def _parent() -> Path:
+def _find_parent() -> Path:
     default = Path(tempfile.gettempdir())
     try:
         space = os.statvfs(_MEMORY)
@@ -124,14 +124,14 @@ class TemporaryRun:
     """Folder of one run that is deleted at the end of a `with` block. It stands in for the store of a `RunHandle`.
 
     Args:
-        parent: Where it is created; see `batch_folder`.
+        parent: Where it is created; see `create_batch_folder`.
 
     Raises:
         LogError: it cannot be created.
     """
 
     def __init__(self, parent: Path) -> None:
-        self.folder = _new_folder(parent)
+        self.folder = _create_folder(parent)
         self._data: dict[str, Any] = {}
         """The contents of `run.json`: the program could change the file."""
         self._document = ""
@@ -149,7 +149,7 @@ class TemporaryRun:
     ) -> None:
         remove_tree(self.folder)
 
-    def new_run(
+    def create_run(
         self,
         program: Program,
         spec: RunSpec,
@@ -157,14 +157,14 @@ class TemporaryRun:
         options: Mapping[str, Any] | None = None,
         live: bool = False,
     ) -> NewRun:
-        """Write the `run.json` of a run that is about to start; arguments as in `RunStore.new_run`.
+        """Write the `run.json` of a run that is about to start; arguments as in `RunStore.create_run`.
 
         Raises:
             LogError: it cannot be written.
         """
         created = datetime.now(UTC).isoformat(timespec="milliseconds")
         run_id = self.folder.name
-        self._data = data = new_run_data(run_id, 0, created, program, spec, field, options, live)
+        self._data = data = build_run_data(run_id, 0, created, program, spec, field, options, live)
         self._document, self._spec = json.dumps(data), spec
         file = self.folder / RUN_FILE
         try:

@@ -41,9 +41,9 @@ from tuisim.engine.runs.records import (
     OutputRow,
     Stream,
     is_hole,
-    output_rows,
-    published_length,
-    raw_rows,
+    iterate_raw_rows,
+    iterate_rows,
+    read_published_length,
 )
 
 if TYPE_CHECKING:
@@ -56,7 +56,7 @@ _AGAIN_BYTES = 1 << 14
 """So much is read at a time of rows that are no longer in memory."""
 _MANY_TICKS = 1 << 13
 """From this number on it is worth importing numpy to check them."""
-_MOST_NUMBER = 1e12
+_MAX_NUMBER = 1e12
 """Larger than any position, angle or speed that a run can reach."""
 
 
@@ -83,7 +83,7 @@ class TickRecord:
         return Pose(self.x_mm, self.y_mm, self.heading_deg)
 
 
-def instant_of(record: TickRecord, spec: RunSpec, noise: NoiseSpec) -> Instant:
+def build_instant(record: TickRecord, spec: RunSpec, noise: NoiseSpec) -> Instant:
     """Return the instant of a record with the noise at its tick, for the functions of `engine.core.sensors`."""
     from tuisim.engine.core.drift import sense_turn_rate_dps
 
@@ -145,27 +145,27 @@ class _View(ABC):
     @property
     def damage(self) -> str:
         """Why the file, or the rest of it, is not a recording; empty as long as it is one."""
-        return self._damage if self.holds else self.read_on()
+        return self._damage if self.holds else self.read_new()
 
     @property
     def is_missing(self) -> bool:
         """Whether there is no recording, not even an empty one."""
-        return not self._extent() and not self._has_begun
+        return not self._measure_length() and not self._has_begun
 
     @property
     def note(self) -> str:
         """A description of what is missing in a truncated or damaged file, or empty."""
-        there = self._extent()
+        there = self._measure_length()
         if self._damage or self._published == there:
             return self._damage
-        return f"{self._path.name} was truncated: {self._lost(self._published - there)}"
+        return f"{self._path.name} was truncated: {self._describe_lost(self._published - there)}"
 
     @abstractmethod
-    def _lost(self, count: int) -> str:
+    def _describe_lost(self, count: int) -> str:
         """Return in words that `count` records, or bytes, are lost."""
 
     @abstractmethod
-    def _sound(self, data: memoryview, begin: int, end: int) -> int:
+    def _find_sound_end(self, data: memoryview, begin: int, end: int) -> int:
         """Return up to where the recording, already read up to `end`, is what the simulation writes.
 
         Args:
@@ -181,29 +181,29 @@ class _View(ABC):
 
     def _look(self) -> tuple[memoryview, int]:
         """Return the recording, and the length that exists."""
-        there = self._extent()
+        there = self._measure_length()
         return memoryview(self._copy).toreadonly(), there
 
-    def _extent(self) -> int:
+    def _measure_length(self) -> int:
         """Return the length that exists, unless it holds after a look at what has been published since."""
         if not self.holds:
-            self.read_on()
+            self.read_new()
         return self._there
 
-    def read_on(self) -> str:
+    def read_new(self) -> str:
         """Look at what has been published since. Return why it is not a recording; empty as long as it is one."""
         if not self._damage:
-            self._read_on()
+            self._read_new()
         return self._damage
 
-    def _known(self, count: int) -> memoryview | None:
+    def _get_known(self, count: int) -> memoryview | None:
         """Return the recording if `count` records that can no longer change have been read, else None."""
         return memoryview(self._copy).toreadonly() if count < self._there else None
 
-    def _read_on(self) -> None:
+    def _read_new(self) -> None:
         try:
             with open_regular(self._path) as handle:
-                self._read_from(handle.fileno())
+                self._read_file(handle.fileno())
         except FileNotFoundError:
             if self._is_checked and self._there:
                 self._damage = f"{self._path.name} was deleted"
@@ -220,13 +220,13 @@ class _View(ABC):
         except OSError:
             return False
 
-    def _read_from(self, fd: int) -> None:
-        head = _whole_header(fd)
+    def _read_file(self, fd: int) -> None:
+        head = _read_header(fd)
         # The writer sizes a new file before it writes the header. A file that has been emptied since is ignored.
         if not head.strip(b"\0") or (self._there and len(head) < HEADER_BYTES):
             return
         try:
-            published = published_length(head, self._magic, self._path.name)
+            published = read_published_length(head, self._magic, self._path.name)
         except LogError as error:
             self._damage = f"{error.message}: it cannot be read"
             return
@@ -237,33 +237,36 @@ class _View(ABC):
         room = max(0, os.fstat(fd).st_size - HEADER_BYTES) // self._record_bytes
         self._published = max(published, self._published)
         # The last record may have been rewritten.
-        kept = max(0, self._there - 1) if self._record_bytes > 1 else self._there
-        wanted = min(published, room)
+        count = max(0, self._there - 1) if self._record_bytes > 1 else self._there
+        published_count = min(published, room)
         step = _CHUNK_BYTES // self._record_bytes
-        while kept < wanted and not self._damage:
-            end = min(wanted, kept + step)
-            kept = self._read_chunk(fd, head, kept, end)
-            if kept < end:
+        while count < published_count and not self._damage:
+            end = min(published_count, count + step)
+            count = self._read_chunk(fd, head, count, end)
+            if count < end:
                 # A file that was truncated meanwhile, or never written, has no more; what was read before stays.
                 return
 
-    def _read_chunk(self, fd: int, head: bytes, kept: int, wanted: int) -> int:
+    def _read_chunk(self, fd: int, head: bytes, begin_count: int, end_count: int) -> int:
         """Read and check the records between two positions; return the position up to which there are sound ones."""
         begin, end = (
-            HEADER_BYTES + self._record_bytes * (count - self._dropped) for count in (kept, wanted)
+            HEADER_BYTES + self._record_bytes * (count - self._dropped)
+            for count in (begin_count, end_count)
         )
         if end > len(self._copy):
             begin, end = self._make_room(fd, head, begin, end)
-        at = HEADER_BYTES + self._record_bytes * kept
-        got = _read_into(fd, memoryview(self._copy)[begin:end], at) // self._record_bytes
+        offset = HEADER_BYTES + self._record_bytes * begin_count
+        got = _read_buffer(fd, memoryview(self._copy)[begin:end], offset) // self._record_bytes
         if self._is_checked:
-            sound = self._sound(memoryview(self._copy).toreadonly(), kept, kept + got)
+            sound = self._find_sound_end(
+                memoryview(self._copy).toreadonly(), begin_count, begin_count + got
+            )
         elif got * self._record_bytes == _CHUNK_BYTES and is_hole(
             memoryview(self._copy)[begin:end]
         ):
-            sound = kept
+            sound = begin_count
         else:
-            sound = kept + got
+            sound = begin_count + got
         self._there = max(self._there, sound)
         return sound
 
@@ -282,7 +285,7 @@ class _View(ABC):
         first = HEADER_BYTES + drops * self._record_bytes
         begin, end = begin - first + HEADER_BYTES, end - first + HEADER_BYTES
         # A new buffer instead of a resized one: arrays may still refer to the old one.
-        larger = _zeros(end if not self._there else 2 * end)
+        larger = _allocate(end if not self._there else 2 * end)
         larger[:HEADER_BYTES] = head
         larger[HEADER_BYTES:begin] = memoryview(self._copy)[first : first + begin - HEADER_BYTES]
         self._copy, self._dropped = larger, self._dropped + drops
@@ -293,12 +296,12 @@ def _are_few_sound(part: memoryview, begin: int, end: int) -> bool:
     """Return whether tick records have these ticks, and all their numbers are finite, and not beyond what a run can
     reach."""
     doubles, floats = part.cast("d"), part.cast("f")
-    columns = [doubles[at :: TICK_RECORD.size // 8] for at in range(1, 6)]
-    columns += [floats[at :: TICK_RECORD.size // 4] for at in range(12, 15)]
+    columns = [doubles[index :: TICK_RECORD.size // 8] for index in range(1, 6)]
+    columns += [floats[index :: TICK_RECORD.size // 4] for index in range(12, 15)]
     ticks = part.cast("I")[:: TICK_RECORD.size // 4].tolist()
     # No number is larger than the root of the sum of all squares; NaN is not below anything, nor is a sum with it.
     return ticks == list(range(begin, end)) and all(
-        hypot(*column.tolist()) <= _MOST_NUMBER for column in columns
+        hypot(*column.tolist()) <= _MAX_NUMBER for column in columns
     )
 
 
@@ -309,16 +312,16 @@ def _are_all_sound(part: memoryview, begin: int, end: int) -> bool:
     records = np.frombuffer(part, np.dtype(list(TICK_FIELDS)))
     numbers = [name for name, _ in TICK_FIELDS[1:]]
     return bool((records["tick"] == np.arange(begin, end)).all()) and all(
-        bool((np.abs(records[name]) <= _MOST_NUMBER).all()) for name in numbers
+        bool((np.abs(records[name]) <= _MAX_NUMBER).all()) for name in numbers
     )
 
 
-def _zeros(size: int) -> bytearray | mmap:
+def _allocate(size: int) -> bytearray | mmap:
     """Return a buffer; a large one takes memory only as it is filled."""
     return bytearray(size) if size < _LARGE_BYTES else mmap(-1, size, MAP_PRIVATE | MAP_ANONYMOUS)
 
 
-def _whole_header(fd: int) -> bytes:
+def _read_header(fd: int) -> bytes:
     """Return the header, read until two reads are equal: a number in it may be half written."""
     head = b""
     while (again := os.pread(fd, HEADER_BYTES, 0)) != head:
@@ -326,7 +329,7 @@ def _whole_header(fd: int) -> bytes:
     return head
 
 
-def _read_into(fd: int, place: memoryview, at: int) -> int:
+def _read_buffer(fd: int, place: memoryview, at: int) -> int:
     """Fill a buffer from a file position; return the number of bytes read."""
     done = 0
     while done < len(place) and (got := os.preadv(fd, [place[done:]], at + done)):
@@ -343,18 +346,18 @@ class TelemetryView(_View):
     @property
     def count(self) -> int:
         """Number of complete records; record k is that of tick k."""
-        return self._extent()
+        return self._measure_length()
 
-    def _lost(self, count: int) -> str:
+    def _describe_lost(self, count: int) -> str:
         return f"the last {count} of {self._published} records {'is' if count == 1 else 'are'} lost"
 
-    def _sound(self, data: memoryview, begin: int, end: int) -> int:
+    def _find_sound_end(self, data: memoryview, begin: int, end: int) -> int:
         first, after = (
             HEADER_BYTES + TICK_RECORD.size * (tick - self._dropped) for tick in (begin, end)
         )
-        return self._sound_ticks(data[first:after], begin)
+        return self._find_sound_ticks(data[first:after], begin)
 
-    def _sound_ticks(self, part: memoryview, begin: int) -> int:
+    def _find_sound_ticks(self, part: memoryview, begin: int) -> int:
         """Return up to which tick records, from that of tick `begin` on, are what the simulation writes."""
         end = begin + len(part) // TICK_RECORD.size
         # Ticks are numbered from 0; all other fields are finite numbers. Whole columns, for their speed.
@@ -362,7 +365,7 @@ class TelemetryView(_View):
         if are_all(part, begin, end):
             return end
         for tick, record in enumerate(TICK_RECORD.iter_unpack(part), begin):
-            if record[0] != tick or not all(abs(value) <= _MOST_NUMBER for value in record):
+            if record[0] != tick or not all(abs(value) <= _MAX_NUMBER for value in record):
                 what = f"record {tick} of {self._path.name} cannot come from the simulation"
                 self._damage = self._damage or what
                 return tick
@@ -376,14 +379,14 @@ class TelemetryView(_View):
         """
         assert self._source is not None
         size, step = TICK_RECORD.size, _CHUNK_BYTES // TICK_RECORD.size
-        found = memoryview(_zeros((end - begin) * size))
+        records = memoryview(_allocate((end - begin) * size))
         for first in range(begin, end, step):
-            part = found[(first - begin) * size : (first - begin + step) * size]
-            _read_into(self._source, part, HEADER_BYTES + first * size)
-            if lost := first + len(part) // size - (sound := self._sound_ticks(part, first)):
+            part = records[(first - begin) * size : (first - begin + step) * size]
+            _read_buffer(self._source, part, HEADER_BYTES + first * size)
+            if lost := first + len(part) // size - (sound := self._find_sound_ticks(part, first)):
                 oldest = memoryview(self._copy)[HEADER_BYTES : HEADER_BYTES + size]
                 part[(sound - first) * size :] = bytes(oldest) * lost
-        return found.toreadonly()
+        return records.toreadonly()
 
     def last(self) -> TickRecord | None:
         """Return the newest record; None if there is none."""
@@ -396,7 +399,7 @@ class TelemetryView(_View):
         Raises:
             IndexError: the record does not exist (yet).
         """
-        data = self._known(index + 1) if index >= 0 else None
+        data = self._get_known(index + 1) if index >= 0 else None
         if data is None:
             data, count = self._look()
             if not 0 <= index < count:
@@ -421,8 +424,8 @@ class TelemetryView(_View):
         if first >= count:
             return np.empty(0, kind)
         if first >= self._dropped:
-            at = HEADER_BYTES + (first - self._dropped) * TICK_RECORD.size
-            return np.frombuffer(data, kind, count - first, at)
+            offset = HEADER_BYTES + (first - self._dropped) * TICK_RECORD.size
+            return np.frombuffer(data, kind, count - first, offset)
         # Those that are still in memory, too: the whole array must be one buffer.
         return np.frombuffer(self._read_again(first, count), kind)
 
@@ -441,16 +444,16 @@ class OutputView(_View):
     @property
     def length(self) -> int:
         """Number of bytes of rows."""
-        return self._extent()
+        return self._measure_length()
 
-    def _lost(self, count: int) -> str:
+    def _describe_lost(self, count: int) -> str:
         return f"its last {counted(count, 'byte is', 'bytes are')} lost"
 
-    def _sound(self, data: memoryview, begin: int, end: int) -> int:
-        at, shift = self._checked, HEADER_BYTES - self._dropped
-        while at + OUTPUT_ROW.size <= end:
-            size, _, _, _, stream = OUTPUT_ROW.unpack_from(data, shift + at)
-            after = at + OUTPUT_ROW.size + size
+    def _find_sound_end(self, data: memoryview, begin: int, end: int) -> int:
+        position, shift = self._checked, HEADER_BYTES - self._dropped
+        while position + OUTPUT_ROW.size <= end:
+            size, _, _, _, stream = OUTPUT_ROW.unpack_from(data, shift + position)
+            after = position + OUTPUT_ROW.size + size
             if after > end and after <= self._published:
                 # The rest of the row has not been read yet, or is lost.
                 break
@@ -459,55 +462,57 @@ class OutputView(_View):
                 stream in DRAWN_STREAMS and not is_sound(Stream(stream), bytes(data[body]))
             ):
                 self._damage = (
-                    f"the row at byte {at} of {self._path.name} cannot come from the brick"
+                    f"the row at byte {position} of {self._path.name} cannot come from the brick"
                 )
-                return at
-            at = after
-        self._checked = at
+                return position
+            position = after
+        self._checked = position
         return end
 
     @property
     def _done(self) -> int:
         return self._checked
 
-    def new_rows(self, limit: int | None = None) -> list[OutputRow]:
+    def read_new_rows(self, limit: int | None = None) -> list[OutputRow]:
         """Return the rows since the last call, at most `limit`; the others follow with the next call."""
         rows: list[OutputRow] = []
-        for row, after in islice(self.rows_from(self._seen), limit):
+        for row, after in islice(self.read_rows(self._seen), limit):
             rows.append(row)
             self._seen = after
         return rows
 
-    def all_rows(self) -> list[OutputRow]:
+    def read_all_rows(self) -> list[OutputRow]:
         """Return all rows up to now; does not affect `new_rows`."""
         return list(self.rows())
 
-    def rows_from(self, position: int) -> Iterator[tuple[OutputRow, int]]:
+    def read_rows(self, position: int) -> Iterator[tuple[OutputRow, int]]:
         """Return the rows from a position on, 0 or one that was yielded before, each with the position after it."""
         data, end = self._look()
         if not self._dropped:
-            return output_rows(data, position, end)
-        return self._rows_of_two(data, position, end, self._dropped)
+            return iterate_rows(data, position, end)
+        return self._read_both_rows(data, position, end, self._dropped)
 
-    def _rows_of_two(
+    def _read_both_rows(
         self, data: memoryview, position: int, end: int, dropped: int
     ) -> Iterator[tuple[OutputRow, int]]:
         """Yield the rows that were dropped from memory, then those in it."""
-        for row, after in self._rows_again(position, dropped):
+        for row, after in self._read_dropped_rows(position, dropped):
             yield row, after
             position = after
         if position >= dropped:
-            for row, after in output_rows(data, position - dropped, end - dropped):
+            for row, after in iterate_rows(data, position - dropped, end - dropped):
                 yield row, dropped + after
 
-    def _rows_again(self, position: int, end: int) -> Iterator[tuple[OutputRow, int]]:
+    def _read_dropped_rows(self, position: int, end: int) -> Iterator[tuple[OutputRow, int]]:
         """Yield the rows between two positions that were dropped from memory, as far as the program left them."""
         size = _AGAIN_BYTES
         while position < end and self._source is not None:
             part = bytearray(HEADER_BYTES + size)
-            got = _read_into(self._source, memoryview(part)[HEADER_BYTES:], HEADER_BYTES + position)
+            got = _read_buffer(
+                self._source, memoryview(part)[HEADER_BYTES:], HEADER_BYTES + position
+            )
             begin = position
-            for row, after in output_rows(memoryview(part), 0, got):
+            for row, after in iterate_rows(memoryview(part), 0, got):
                 if row.stream in DRAWN_STREAMS and not is_sound(row.stream, row.text.encode()):
                     break
                 position = begin + after
@@ -524,18 +529,18 @@ class OutputView(_View):
                     return
                 size *= 4
 
-    def raw_rows(self) -> Iterator[tuple[int, bytes]]:
+    def read_raw_rows(self) -> Iterator[tuple[int, bytes]]:
         """Yield stream and text of each row, the text as bytes of the file."""
         data, end = self._look()
         if self._dropped:
             return ((row.stream, row.text.encode()) for row in self.rows())
-        return raw_rows(data, end)
+        return iterate_raw_rows(data, end)
 
     def rows(self) -> Iterator[OutputRow]:
         """Yield the rows of `all_rows` one by one: a run may print a million lines."""
-        return map(itemgetter(0), self.rows_from(0))
+        return map(itemgetter(0), self.read_rows(0))
 
 
-def views_of(folder: Path, is_checked: bool = False) -> tuple[TelemetryView, OutputView]:
+def open_views(folder: Path, is_checked: bool = False) -> tuple[TelemetryView, OutputView]:
     """Return both views of a run folder; see `_View` for `is_checked`."""
     return TelemetryView(folder, is_checked), OutputView(folder, is_checked)

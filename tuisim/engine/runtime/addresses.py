@@ -22,7 +22,7 @@ _LOWEST = 1 << 32 if sys.maxsize > 1 << 32 else 1 << 20
 """Addresses are at least this, except those of the heap."""
 _TEXT_BEFORE = 200
 """The name of an object's type is at most this far before its address."""
-_MOST_SEARCHED = 20_000_000
+_MAX_SEARCHED = 20_000_000
 """Objects that are looked at in vain before no more are: a few real seconds."""
 _STEPS, _MOST_REACHED = 3, 1_000
 """From the program's names: so many steps, each from at most so many objects."""
@@ -58,38 +58,40 @@ class Addresses:
         self._count = 0
         self._searched = 0
 
-    def stable(self, *texts: str) -> tuple[str, ...]:
+    def stabilize(self, *texts: str) -> tuple[str, ...]:
         """Return texts of one instant with their addresses replaced; doing that again changes nothing."""
         here: dict[int, int] = {}
 
         def replace(match: re.Match[str]) -> str:
             if match["hex"]:
                 before = match.string[max(0, match.start() - _TEXT_BEFORE) : match.start()]
-                return f"{match['before']}{self._of(int(match['hex'], 16), before, here):x}"
-            return match["thread"] + str(self._of_thread(match["thread"], int(match["number"])))
+                return f"{match['before']}{self._number_address(int(match['hex'], 16), before, here):x}"
+            return match["thread"] + str(self._number_thread(match["thread"], int(match["number"])))
 
         return tuple(_ADDRESS.sub(replace, text) for text in texts)
 
-    def _of(self, real: int, before: str, here: dict[int, int]) -> int:
+    def _number_address(self, real: int, before: str, here: dict[int, int]) -> int:
         if real in here:
             return here[real]
         if self._is_given(real) or (real < _LOWEST and real not in self._heap):
             return real
         known = self._given.get(real)
         if known is None or not known.is_same():
-            known = self._given[real] = _Given(self._next(), _watch(self._find(real, before)))
+            known = self._given[real] = _Given(
+                self._next_number(), _watch(self._find(real, before))
+            )
         here[real] = known.number
         return known.number
 
-    def _of_thread(self, text: str, real: int) -> int:
+    def _number_thread(self, text: str, real: int) -> int:
         if self._is_given(real):
             return real
         name = f"{text.rpartition(', ')[0]} {real}"
         if name not in self._threads:
-            self._threads[name] = self._next()
+            self._threads[name] = self._next_number()
         return self._threads[name]
 
-    def _next(self) -> int:
+    def _next_number(self) -> int:
         self._count += 1
         return _FIRST + (self._count - 1) * _STEP
 
@@ -98,32 +100,32 @@ class Addresses:
 
     def _find(self, real: int, before: str) -> object:
         """Return the object at an address, if there is one of which the text can be; None otherwise."""
-        if self._searched > _MOST_SEARCHED:
+        if self._searched > _MAX_SEARCHED:
             return None
         # Not all objects are known to the collector, and those that were made before the program are left out.
         by_age = [partial(gc.get_objects, generation) for generation in range(3)]
-        searches: list[Callable[[], list[Any]]] = [*by_age, self._reached]
+        searches: list[Callable[[], list[Any]]] = [*by_age, self._list_reached]
         for search in searches:
             objects = search()
             self._searched += len(objects)
-            for at, address in enumerate(map(id, objects)):
-                if address == real and _is_meant(objects[at], before):
-                    return objects[at]
+            for index, address in enumerate(map(id, objects)):
+                if address == real and _is_meant(objects[index], before):
+                    return objects[index]
         return None
 
-    def _reached(self) -> list[object]:
+    def _list_reached(self) -> list[object]:
         """Return what the program's names refer to, as far as a few steps reach."""
         left_out = (types.ModuleType, type)
-        level = [one for one in self._names().values() if not isinstance(one, left_out)]
-        found = level
+        level = [item for item in self._names().values() if not isinstance(item, left_out)]
+        objects = level
         for _ in range(_STEPS):
             level = [
-                one
-                for one in gc.get_referents(*level[:_MOST_REACHED])
-                if not isinstance(one, left_out)
+                item
+                for item in gc.get_referents(*level[:_MOST_REACHED])
+                if not isinstance(item, left_out)
             ]
-            found = found + level
-        return found
+            objects = objects + level
+        return objects
 
     @cached_property
     def _heap(self) -> range:

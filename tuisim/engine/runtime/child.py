@@ -15,7 +15,7 @@ from tuisim.engine.core.profile import NS_PER_S
 from tuisim.engine.core.simulation import Turn, build_simulation
 from tuisim.engine.core.tick_record import NoRecording
 from tuisim.engine.mat_cache import open_field
-from tuisim.engine.runs.brick_state import motors_row
+from tuisim.engine.runs.brick_state import build_motors_row
 from tuisim.engine.runs.command_records import CommandsWriter
 from tuisim.engine.runs.motor_records import MotorsWriter
 from tuisim.engine.runs.readings import ReadingsWriter
@@ -48,7 +48,7 @@ from tuisim.engine.runtime.patches.file_reads import FileReads
 from tuisim.engine.runtime.patches.file_waits import FileWaits
 from tuisim.engine.runtime.patches.randomness import finish_random, finish_uuid, patch_urandom
 from tuisim.engine.runtime.patches.replacement import PatchedModules, replace
-from tuisim.engine.runtime.run_config import RunConfig, next_config, read_config
+from tuisim.engine.runtime.run_config import RunConfig, derive_config, read_config
 from tuisim.engine.runtime.session import RunLimits, Session
 from tuisim.engine.runtime.stack import finish_inspect, finish_traceback
 from tuisim.engine.runtime.tracebacks import own_files
@@ -83,7 +83,7 @@ def main(arguments: list[str], prepared: Child | None = None) -> NoReturn:
     except OSError as error:
         for name in (TELEMETRY_FILE, OUTPUT_FILE, READINGS_FILE, MOTORS_FILE, COMMANDS_FILE):
             Path(arguments[0], name).unlink(missing_ok=True)
-        end, summary = protocol.End.DISK_FULL, _no_room(error)
+        end, summary = protocol.End.DISK_FULL, _build_memory_error(error)
         if not is_full(error):
             end, summary = protocol.End.CRASHED, f"the run cannot start: {error.strerror or error}"
         channel.send(protocol.Ended(end, 0, 0, 1, summary))
@@ -91,7 +91,7 @@ def main(arguments: list[str], prepared: Child | None = None) -> NoReturn:
     child.run()
 
 
-def _no_room(error: OSError) -> str:
+def _build_memory_error(error: OSError) -> str:
     return f"the recording cannot grow: {error.strerror}"
 
 
@@ -118,8 +118,8 @@ class Child:
         self._known_programs = KnownPrograms()
 
     def expect(self, folder: Path, changes: Mapping[str, Any]) -> None:
-        """Prepare for a run, as far as nothing of its program is executed; arguments as of `next_config`."""
-        self._config = config = next_config(self._config, folder, changes)
+        """Prepare for a run, as far as nothing of its program is executed; arguments as of `derive_config`."""
+        self._config = config = derive_config(self._config, folder, changes)
         drops_annotations = config.spec.profile.motor_law.library.drops_annotations
         self._runner.code = self._known_programs.code(config.program, drops_annotations)
 
@@ -176,7 +176,7 @@ class Child:
 
         self._leave = leave
         self._runner = ProgramRunner(session, self._output, scheduler, turn, leave)
-        session.make_debugger = lambda: _debugger(session, scheduler, self._runner)
+        session.make_debugger = lambda: _build_debugger(session, scheduler, self._runner)
 
     def connect(self, channel: Channel, raw_fds: Sequence[int] = ()) -> None:
         """Create the recording of the run, and connect everything with it.
@@ -215,7 +215,7 @@ class Child:
             *(self._telemetry, self._motors, self._output.writer, session.readings, self._commands)
         )
         self._output.place = lambda: (self._sim.tick, session.now, session.program_line(3))
-        self._output.after_write = self._after_write
+        self._output.after_write = self._handle_write
         self._sim.on_turns = self._write_turns
         remember_source(session.program_file, config.program.text)
         self._runner.connect(config)
@@ -234,19 +234,19 @@ class Child:
         """Let the run stop when there is no space for what it records."""
         for writer in filter(None, writers):
             writer.full = lambda error: self._session.request_stop(
-                protocol.End.DISK_FULL, _no_room(error)
+                protocol.End.DISK_FULL, _build_memory_error(error)
             )
 
     def _write_turns(self, turns: tuple[Turn, ...]) -> None:
         sim = self._sim
         # Not at the session's time: in a paced run it advances in smaller steps.
-        self._output.row_at(
-            motors_row(turns), Stream.MOTORS, sim.tick, sim.compute_due_ns(sim.tick), sim.line
+        self._output.write_row(
+            build_motors_row(turns), Stream.MOTORS, sim.tick, sim.compute_due_ns(sim.tick), sim.line
         )
 
-    def _after_write(self) -> None:
+    def _handle_write(self) -> None:
         if self._session.flags & (ATTENTION | STOPPING):
-            self._session.checkpoint()
+            self._session.check_stop()
 
     def run(self) -> NoReturn:
         """Run the program and end the process."""
@@ -276,7 +276,7 @@ class Child:
         wallclock.exit_process(0)
 
 
-def _debugger(session: Session, scheduler: Scheduler, runner: ProgramRunner) -> Debugger:
+def _build_debugger(session: Session, scheduler: Scheduler, runner: ProgramRunner) -> Debugger:
     from tuisim.engine.runtime.debugger.debugger import Debugger
 
     return Debugger(session, scheduler, runner.names, runner.prepared, runner.code)

@@ -79,13 +79,13 @@ class DebugHooks(Protocol):
     def enter(self) -> None:
         """Switch tracing in the current thread on or off as needed."""
 
-    def before_tick(self) -> None:
+    def check_goal(self) -> None:
         """Pause if the goal is reached. Called right before a tick, after user actions."""
 
-    def most_ticks(self, most: int) -> int:
+    def limit_ticks(self, most: int) -> int:
         """Return the number of ticks that may run before `after_ticks` has to be called."""
 
-    def after_ticks(self) -> None:
+    def check_breakpoints(self) -> None:
         """Pause if a breakpoint matches the tick that was just run."""
 
     def at_end(self) -> None:
@@ -120,7 +120,7 @@ class ControlledRun(Protocol):
     def debug(self) -> DebugHooks:
         """Return the debugger; it is created on first use."""
 
-    def checkpoint(self, before_tick: bool = False) -> None:
+    def check_stop(self, before_tick: bool = False) -> None:
         """Raise if the program has to stop."""
 
     def ask_stop(self, end: End, summary: str) -> None:
@@ -213,16 +213,17 @@ class RunControl:
 
     def begin_grace(self) -> None:
         """Start the grace period of a stop."""
-        self._stop_asked_at = self._grace_clock()
+        self._stop_asked_at = self._read_grace_clock()
 
-    def grace_is_over(self) -> bool:
+    def has_grace_ended(self) -> bool:
         """Whether the time for the program's cleanup is over."""
         most_s = STOP_GRACE_S if self.live else STOP_GRACE_CPU_S
         return (
-            self._stop_asked_at is not None and self._grace_clock() - self._stop_asked_at > most_s
+            self._stop_asked_at is not None
+            and self._read_grace_clock() - self._stop_asked_at > most_s
         )
 
-    def _grace_clock(self) -> float:
+    def _read_grace_clock(self) -> float:
         # A user waits in real time; what a program of a batch does must not depend on what else the machine does.
         return wallclock.monotonic() if self.live else wallclock.process_time()
 
@@ -233,7 +234,7 @@ class RunControl:
         """Whether it must be called before ticks: the run is live, actions are pending, or the debugger needs it."""
         return self.live or self.debugged or bool(self._script)
 
-    def before_ticks(self, session: ControlledRun, most: int) -> int:
+    def await_ticks(self, session: ControlledRun, most: int) -> int:
         """Block until ticks may run.
 
         Args:
@@ -249,15 +250,15 @@ class RunControl:
         self.receive(session)
         self._apply_actions(session)
         if session.stop_reason is not None:
-            session.checkpoint(before_tick=True)
+            session.check_stop(before_tick=True)
             return most
         if self._script:
             # The next action must find its tick.
             most = min(most, self._script[0].tick - session.sim.tick)
         if self.debugged:
             debugger = session.debug()
-            debugger.before_tick()
-            most = debugger.most_ticks(most)
+            debugger.check_goal()
+            most = debugger.limit_ticks(most)
         if self._paused and not self._steps:
             sim = session.sim
             self.hold(session, protocol.Paused(sim.tick, session.now, sim.line, self._reason))
@@ -266,7 +267,7 @@ class RunControl:
             return 1
         if not self._speed or self._rushing:
             return min(most, FAST_SLICE_TICKS)
-        return self._pace(session, most)
+        return self._keep_pace(session, most)
 
     def hold(self, session: ControlledRun, moment: protocol.Paused) -> None:
         """Pause the run; block until it is resumed or stopped.
@@ -302,7 +303,7 @@ class RunControl:
     def _raise_here(self, session: ControlledRun, before_tick: bool = False) -> None:
         """Raise a stop in the thread that has waited for commands, not in the main one, which the signal reaches."""
         try:
-            session.checkpoint(before_tick)
+            session.check_stop(before_tick)
         finally:
             self.holding = False
 
@@ -334,7 +335,7 @@ class RunControl:
         self.holding = True
         self._channel.send(question)
         while (
-            not (here := [one for one in self._waiting if isinstance(one, kind)])
+            not (here := [reply for reply in self._waiting if isinstance(reply, kind)])
             and session.stop_reason is None
         ):
             self._channel.wait(1.0)
@@ -346,7 +347,7 @@ class RunControl:
             self.apply(session, here[0])
         self._raise_here(session)
 
-    def _pace(self, session: ControlledRun, most: int) -> int:
+    def _keep_pace(self, session: ControlledRun, most: int) -> int:
         sim = session.sim
         # A command that is received meanwhile can change it, also to full speed.
         while speed := self._speed:
@@ -363,10 +364,10 @@ class RunControl:
                 self.receive(session)
                 self._apply_actions(session)
                 if session.stop_reason is not None:
-                    session.checkpoint(before_tick=True)
+                    session.check_stop(before_tick=True)
                     return most
                 if self._paused:
-                    return self.before_ticks(session, most)
+                    return self.await_ticks(session, most)
         return min(most, FAST_SLICE_TICKS)
 
     # User actions

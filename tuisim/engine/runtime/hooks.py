@@ -12,16 +12,16 @@ from typing import Any
 from tuisim.base.errors import LogError
 from tuisim.engine.runs.records import Stream
 from tuisim.engine.runtime import wallclock
-from tuisim.engine.runtime.loader import point_at_prelude
+from tuisim.engine.runtime.loader import add_prelude_note
 from tuisim.engine.runtime.output import LineStream, OutputRecorder
 from tuisim.engine.runtime.patches.replacement import replace
 from tuisim.engine.runtime.session import Session, StopProgram
-from tuisim.engine.runtime.tracebacks import ErrorReport, point_at_namesake, report_error
+from tuisim.engine.runtime.tracebacks import ErrorReport, add_namesake_note, report_error
 from tuisim.engine.shim.evdev.devices import point_at_gamepads
 from tuisim.engine.shim.unsupported.modules import point_at_package
 
 
-def safe_text(write: Callable[[object], str], value: object) -> str:
+def format_safely(write: Callable[[object], str], value: object) -> str:
     """Return the `str` or `repr` of a value, or a placeholder if that fails."""
     try:
         return write(value)
@@ -63,12 +63,12 @@ class ErrorHooks:
     def report(self, error: BaseException, alone: bool = False) -> ErrorReport:
         """Return the report of an error; `alone` as of `report_error`."""
         if not alone:
-            point_at_prelude(error)
-            point_at_namesake(error, self._session.program_file)
+            add_prelude_note(error)
+            add_namesake_note(error, self._session.program_file)
             point_at_package(error, os.path.dirname(self._session.program_file) or os.curdir)
             point_at_gamepads(error)
         report = report_error(error, self._session.program_file, self._source(), alone)
-        text, summary = self._output.stable(report.text, report.summary)
+        text, summary = self._output.stabilize(report.text, report.summary)
         return ErrorReport(text, report.line, summary)
 
     def show_uncaught(self, error: BaseException) -> ErrorReport:
@@ -90,9 +90,9 @@ class ErrorHooks:
                 raise
             except BaseException as further:  # as in Python, both are shown
                 further.__context__ = None
-                told = self.report(further).text
+                error_text = self.report(further).text
                 self.write(
-                    f"Error in sys.excepthook:\n{told}\nOriginal exception was:\n{report.text}"
+                    f"Error in sys.excepthook:\n{error_text}\nOriginal exception was:\n{report.text}"
                 )
         return report
 
@@ -115,7 +115,7 @@ class ErrorHooks:
         if isinstance(error, StopProgram):
             self._session.stop_lost()
             return
-        what = "" if ignored.object is None else f": {safe_text(repr, ignored.object)}"
+        what = "" if ignored.object is None else f": {format_safely(repr, ignored.object)}"
         text = "" if error is None else self.report(error, alone=True).text
         self.write(f"{ignored.err_msg or 'Exception ignored in'}{what}\n{text}")
 
@@ -157,7 +157,7 @@ class ErrorHooks:
 def flush_streams(own: tuple[LineStream, LineStream]) -> None:
     """Flush the streams that a program has put in the place of its own, as Python does at the end."""
     for stream in (vars(sys).get("stdout"), vars(sys).get("stderr")):
-        if stream is not None and not any(stream is one for one in own):
+        if stream is not None and not any(stream is own_stream for own_stream in own):
             # What is wrong with them is nobody's concern any more.
             with suppress(Exception):
                 stream.flush()

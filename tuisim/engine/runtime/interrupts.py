@@ -97,20 +97,20 @@ class Interrupts:
             # The thread whose turn it is takes the command in its turn, unless it computes without end.
             if not self._timer_on:
                 wallclock.set_timer(signal.ITIMER_REAL, LEFT_TO_OTHERS_S)
-        elif self._may_raise(frame):
-            self._checkpoint()
+        elif self._can_raise(frame):
+            self._check_stop()
 
     def _on_alarm(self, _number: int, frame: types.FrameType | None) -> None:
         session = self._session
         if self._removed or session.steering.holding:
             return
         session.flags |= ATTENTION
-        if self._may_raise(frame):
-            self._checkpoint()
+        if self._can_raise(frame):
+            self._check_stop()
 
-    def _checkpoint(self) -> None:
+    def _check_stop(self) -> None:
         try:
-            self._session.checkpoint()
+            self._session.check_stop()
         finally:
             self._raise_again_later()
 
@@ -133,11 +133,11 @@ class Interrupts:
         line = session.program_line()
         summary = f"no simulated time passed in {self._stall_s:g} s of computing, in line {line}"
         session.ask_stop(End.STALLED, summary, line)
-        if self._may_raise(frame):
+        if self._can_raise(frame):
             self._raise_again_later()
-            session.checkpoint()
+            session.check_stop()
 
-    def _may_raise(self, frame: types.FrameType | None) -> bool:
+    def _can_raise(self, frame: types.FrameType | None) -> bool:
         """Return whether code of the program, or of the library that it called, is running."""
         if self.main_is_parked or (frame is not None and frame.f_code in self._soft_codes):
             return True

@@ -11,9 +11,9 @@ from tuisim.base.source import Program
 from tuisim.engine.runtime import wallclock
 from tuisim.engine.runtime.loader import compile_program
 
-MOST_KNOWN = 8
-MOST_CHARACTERS = 1 << 16
-MOST_CPU_S = 1.0
+MAX_KNOWN = 8
+MAX_CHARACTERS = 1 << 16
+MAX_CPU_S = 1.0
 """A program that takes longer to compile ends this process; its runs are then started by themselves."""
 SPARE_FRAMES = 100
 """What can be compiled with this many frames less can be compiled by the process of a run."""
@@ -32,23 +32,23 @@ class KnownPrograms:
     def code(self, program: Program, drops_annotations: bool) -> types.CodeType | None:
         """Return the code of a program that is about to be run; None if its own process has to compile it."""
         key = program.text, program.file, drops_annotations
-        if len(program.text) > MOST_CHARACTERS:
+        if len(program.text) > MAX_CHARACTERS:
             return None
         if key not in self._seen:
-            if len(self._seen) >= MOST_KNOWN:
+            if len(self._seen) >= MAX_KNOWN:
                 self._seen.clear()
                 self._codes.clear()
             self._seen.add(key)
             return None
         if key not in self._codes:
-            self._codes[key] = _compiled(*key)
+            self._codes[key] = _compile(*key)
         return self._codes[key]
 
 
-def _compiled(text: str, file: str, drops_annotations: bool) -> types.CodeType | None:
+def _compile(text: str, file: str, drops_annotations: bool) -> types.CodeType | None:
     before = sys.getrecursionlimit()
     sys.setrecursionlimit(before - SPARE_FRAMES)
-    wallclock.set_timer(signal.ITIMER_VIRTUAL, MOST_CPU_S)
+    wallclock.set_timer(signal.ITIMER_VIRTUAL, MAX_CPU_S)
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("error")

@@ -45,16 +45,16 @@ def limit_memory(threads: int = 0) -> None:
     """Limit the process's address space, with additional room for the stacks of `threads` threads."""
     _, hard = resource.getrlimit(resource.RLIMIT_AS)
     stack = wallclock.stack_size() or STACK_BYTES
-    wanted = MEMORY_LIMIT_BYTES + (threads and threads + STACKS_KEPT) * stack
-    wanted = wanted if hard == resource.RLIM_INFINITY else min(hard, wanted)
+    limit = MEMORY_LIMIT_BYTES + (threads and threads + STACKS_KEPT) * stack
+    limit = limit if hard == resource.RLIM_INFINITY else min(hard, limit)
     try:
-        resource.setrlimit(resource.RLIMIT_AS, (wanted, hard))
+        resource.setrlimit(resource.RLIMIT_AS, (limit, hard))
     except (OSError, ValueError):
         # macOS accepts the limit without enforcing it; the run is merely less protected there.
         return
 
 
-def _refusal(name: str) -> Any:
+def _build_refusal(name: str) -> Any:
     def refuse(*_args: object, **_kwargs: object) -> NoReturn:
         raise PermissionError(
             f"a program on the simulated brick cannot start other processes: {name}"
@@ -67,6 +67,6 @@ def refuse_processes() -> None:
     """Make the functions of `os` that start processes raise PermissionError."""
     for name in _PROCESS_CALLS:
         if hasattr(os, name):
-            replace(os, name, _refusal(f"os.{name}"))
+            replace(os, name, _build_refusal(f"os.{name}"))
     # The debugger forks to inspect values: no code of the program may run then.
     replace(os, "register_at_fork", lambda **_functions: None)

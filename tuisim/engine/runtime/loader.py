@@ -31,10 +31,10 @@ class MissingPart:
     def __repr__(self) -> str:
         return f"<{self._name}: this robot has no such part>"
 
-    def _used(self, *_: Any, **__: Any) -> NoReturn:
+    def _refuse_use(self, *_: Any, **__: Any) -> NoReturn:
         raise self._error.with_traceback(None)
 
-    __getattr__ = __setattr__ = __delattr__ = __call__ = __str__ = _used
+    __getattr__ = __setattr__ = __delattr__ = __call__ = __str__ = _refuse_use
 
 
 PRELUDE_FILE = "<prelude>"
@@ -44,7 +44,7 @@ LOOP_HOOK = "__loop_turn__"
 class _LoopHooks(ast.NodeTransformer):
     """Inserts a call of the loop hook at the start of every loop body."""
 
-    def _hooked(self, node: ast.For | ast.While | ast.AsyncFor) -> ast.AST:
+    def _add_hook(self, node: ast.For | ast.While | ast.AsyncFor) -> ast.AST:
         self.generic_visit(node)
         call = ast.Expr(ast.Call(ast.Name(LOOP_HOOK, ast.Load()), [], []))
         first = node.body[0]
@@ -53,25 +53,27 @@ class _LoopHooks(ast.NodeTransformer):
         node.body.insert(0, call)
         return node
 
-    visit_For = visit_While = visit_AsyncFor = _hooked  # noqa: N815
+    visit_For = visit_While = visit_AsyncFor = _add_hook  # noqa: N815
 
 
 _FIRST_BYTE, _LAST_BYTE = "\udc80", "\udcff"
 """The lone surrogates that stand for bytes of a file that are not UTF-8."""
-_MOST_DECLARATION = 1000
+_MAX_DECLARATION = 1000
 """Characters at the beginning of a program in which it may declare its encoding."""
 
 
 def _check_encoding(text: str, file: str) -> None:
     """Raise the SyntaxError that Python raises for a file that is not text in the encoding that it declares."""
-    if "coding" in text[:_MOST_DECLARATION] and (declared := _declared_encoding(text)):
+    if "coding" in text[:_MAX_DECLARATION] and (declared := _find_declared_encoding(text)):
         number, encoding = declared
         if not _is_text_encoding(encoding):
             raise SyntaxError(f"encoding problem: {encoding}", (file, number, None, None))
     if text.isascii() and "\0" not in text:
         return
     for number, line in enumerate(text.split("\n"), start=1):
-        if wrong := next((one for one in line if _FIRST_BYTE <= one <= _LAST_BYTE), ""):
+        if wrong := next(
+            (character for character in line if _FIRST_BYTE <= character <= _LAST_BYTE), ""
+        ):
             byte = f"\\x{ord(wrong) & 0xFF:02x}"
             what = (
                 f"Non-UTF-8 code starting with '{byte}', but no encoding declared; save it as UTF-8"
@@ -81,13 +83,13 @@ def _check_encoding(text: str, file: str) -> None:
             raise SyntaxError("source code cannot contain null bytes", (file, number, None, None))
 
 
-def _declared_encoding(text: str) -> tuple[int, str] | None:
+def _find_declared_encoding(text: str) -> tuple[int, str] | None:
     """Return the line of a declaration and its encoding, by the rules of PEP 263; None if there is none."""
     import re
 
     for number, line in enumerate(text.split("\n", 2)[:2], start=1):
-        if found := re.match(r"[ \t\f]*#.*?coding[:=][ \t]*([-\w.]+)", line, re.ASCII):
-            return number, found[1]
+        if match := re.match(r"[ \t\f]*#.*?coding[:=][ \t]*([-\w.]+)", line, re.ASCII):
+            return number, match[1]
         if not re.match(r"[ \t\f]*(?:#|$)", line):
             break
     return None
@@ -144,11 +146,11 @@ def compile_prelude(name: str) -> Iterator[tuple[str, types.CodeType]]:
                 yield "", code
 
 
-def point_at_prelude(error: BaseException) -> None:
+def add_prelude_note(error: BaseException) -> None:
     """Add a note to an error about a name of the prelude: how the program can get that name."""
     if not isinstance(error, NameError) or not error.name:
         return
-    statement = _statement_of(error.name)
+    statement = _find_statement(error.name)
     if statement is None:
         return
     magic = "put `# %%sim_magic_preloaded` into its first line"
@@ -164,17 +166,17 @@ def point_at_prelude(error: BaseException) -> None:
     )
 
 
-def _statement_of(name: str) -> ast.stmt | None:
+def _find_statement(name: str) -> ast.stmt | None:
     for statement in ast.parse(PRELUDE_TEXTS["preloaded"]).body:
         match statement:
             case ast.ImportFrom(names=aliases):
-                made = [alias.name for alias in aliases]
+                new_names = [alias.name for alias in aliases]
             case ast.Assign(targets=[ast.Name(id=target)]):
-                made = [target]
+                new_names = [target]
             case ast.FunctionDef(name=function):
-                made = [function]
+                new_names = [function]
             case _:
-                made = []
-        if name in made:
+                new_names = []
+        if name in new_names:
             return statement
     return None

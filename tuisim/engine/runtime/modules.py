@@ -131,7 +131,7 @@ class OwnModules(PathFinder):
         )
 
 
-def find_modules_for(run_folder: Path, brick_folder: str, drops_annotations: bool) -> None:
+def install_finder(run_folder: Path, brick_folder: str, drops_annotations: bool) -> None:
     """Store modules that the program imports with its run; modules from a repeated run are loaded instead."""
     finders: list[Any] = sys.meta_path
     finders[finders.index(PathFinder)] = OwnModules(

@@ -35,16 +35,16 @@ class OutputRecorder:
         tick, now, line = self.place()
         if (" at 0x" in text or ", st" in text) and stream in TEXT_STREAMS:
             # Asked here first: most rows have no address.
-            (text,) = self.stable(text)
+            (text,) = self.stabilize(text)
         self.writer.write(text.encode("utf-8", "backslashreplace"), tick, now, line, stream)
         if self.watch is not None:
             self.watch(text, stream)
 
-    def stable(self, *texts: str) -> tuple[str, ...]:
+    def stabilize(self, *texts: str) -> tuple[str, ...]:
         """Return texts of one instant as they are written: with addresses that are the same in every run."""
-        return self._addresses.stable(*texts)
+        return self._addresses.stabilize(*texts)
 
-    def row_at(self, text: str, stream: Stream, tick: int, time_ns: int, line: int) -> None:
+    def write_row(self, text: str, stream: Stream, tick: int, time_ns: int, line: int) -> None:
         """Write one row that belongs to a tick, not to a time between two."""
         self.writer.write(text.encode(), tick, time_ns, line, stream)
 

@@ -22,9 +22,9 @@ from tuisim.engine.core.profile import NS_PER_S
 from tuisim.engine.protocol import NO_ANSWER, Answer, End, InputWanted
 from tuisim.engine.runs.records import Stream
 from tuisim.engine.runtime import wallclock
-from tuisim.engine.runtime.hooks import ErrorHooks, flush_streams, safe_text
+from tuisim.engine.runtime.hooks import ErrorHooks, flush_streams, format_safely
 from tuisim.engine.runtime.loader import LOOP_HOOK, MissingPart, compile_prelude, compile_program
-from tuisim.engine.runtime.modules import find_modules_for
+from tuisim.engine.runtime.modules import install_finder
 from tuisim.engine.runtime.output import LineStream, OutputRecorder
 from tuisim.engine.runtime.patches.home_folder import HomeFolder
 from tuisim.engine.runtime.patches.replacement import replace
@@ -33,7 +33,7 @@ from tuisim.engine.runtime.run_config import RunConfig
 from tuisim.engine.runtime.scheduler import Scheduler
 from tuisim.engine.runtime.session import Deadlock, Session, StopProgram
 from tuisim.engine.runtime.stack import patch_faulthandler
-from tuisim.engine.runtime.tracebacks import line_in
+from tuisim.engine.runtime.tracebacks import find_line
 from tuisim.engine.runtime.unended_moves import finish_moves
 from tuisim.engine.shim.waits import Wait, waits_for
 
@@ -73,7 +73,7 @@ def _add(outcome: ProgramOutcome, words: str) -> ProgramOutcome:
     return replace_fields(outcome, summary="; ".join(filter(None, (outcome.summary, words))))
 
 
-def _with_caught(outcome: ProgramOutcome) -> ProgramOutcome:
+def _add_caught(outcome: ProgramOutcome) -> ProgramOutcome:
     """Add to the summary what the program used that is not simulated, if it caught the error about it."""
     if not NotSimulated.first or outcome.end not in (End.FINISHED, End.TIME_LIMIT):
         return outcome
@@ -158,7 +158,7 @@ class ProgramRunner:
             return ProgramOutcome(stop.end, 0, stop.summary, error_line=stop.line)
 
     def _run(self) -> ProgramOutcome:
-        outcome = self._outcome(self._execute)
+        outcome = self._run_part(self._execute)
         joins = self._config.spec.profile.motor_law.library.joins_threads
         if (
             joins
@@ -166,7 +166,7 @@ class ProgramRunner:
             and outcome.end in (End.FINISHED, End.RAISED)
         ):
             # As in Python, also after an error or an exit of the main thread.
-            later = self._outcome(self._scheduler.join_all)
+            later = self._run_part(self._scheduler.join_all)
             outcome = outcome if later.end is End.FINISHED else later
         outcome = self._hold_at_end(outcome)
         self._shut_down()
@@ -177,13 +177,13 @@ class ProgramRunner:
         stop = self._session.stop_reason
         if stop is not None and outcome.end is End.FINISHED:
             outcome = ProgramOutcome(stop.end, 0, stop.summary)
-        return _with_caught(outcome)
+        return _add_caught(outcome)
 
-    def _outcome(self, part: Callable[[], None]) -> ProgramOutcome:
+    def _run_part(self, part: Callable[[], None]) -> ProgramOutcome:
         try:
             part()
         except BaseException as error:  # any uncaught exception is an outcome of the program
-            return self._outcome_of(error)
+            return self._build_outcome(error)
         return ProgramOutcome(End.FINISHED)
 
     def _hold_at_end(self, outcome: ProgramOutcome) -> ProgramOutcome:
@@ -257,7 +257,7 @@ class ProgramRunner:
         vars(sys).update(__stdout__=self.stdout, __stderr__=self.stderr)
         self.hooks.install()
         patch_faulthandler()
-        replace(builtins, "input", self._input, (0, 1))
+        replace(builtins, "input", self._read_input, (0, 1))
         replace(os, "write", self.raw.write, (2, 2))
         if self._has_brick_folder:
             HomeFolder(lambda: self._config.own_folder).patch()
@@ -275,7 +275,7 @@ class ProgramRunner:
         folder = self._config.own_folder
         sys.path[:0] = [folder, *self._config.program.python_path]
         brick_folder = folder if self._has_brick_folder else ""
-        find_modules_for(self._config.folder, brick_folder, drops_annotations)
+        install_finder(self._config.folder, brick_folder, drops_annotations)
         if self._starts_in_own_folder:
             # If a repeated run's folder no longer exists, only files that it opens there are missing.
             with suppress(OSError):
@@ -291,7 +291,7 @@ class ProgramRunner:
 
     # Ends
 
-    def _outcome_of(self, error: BaseException) -> ProgramOutcome:
+    def _build_outcome(self, error: BaseException) -> ProgramOutcome:
         stop = self._session.stop_reason
         if stop is not None:
             return ProgramOutcome(stop.end, 0, stop.summary, error_line=stop.line)
@@ -299,16 +299,18 @@ class ProgramRunner:
             case SystemExit():
                 return self._exit_outcome(error.code)
             case LogError():
-                line = line_in(error.__traceback__, self._session.program_file)
+                line = find_line(error.__traceback__, self._session.program_file)
                 return ProgramOutcome(End.OUTPUT_LIMIT, 0, error.message, error_line=line)
             case MemoryError():
-                return self._raised(
+                return self._report_error(
                     MemoryError("the program used all the memory that it may have"),
                     error.__traceback__,
                 )
-        return self._raised(error, error.__traceback__)
+        return self._report_error(error, error.__traceback__)
 
-    def _raised(self, error: BaseException, trace: types.TracebackType | None) -> ProgramOutcome:
+    def _report_error(
+        self, error: BaseException, trace: types.TracebackType | None
+    ) -> ProgramOutcome:
         self.stdout.finish()
         try:
             report = self.hooks.show_uncaught(error.with_traceback(trace))
@@ -326,7 +328,7 @@ class ProgramRunner:
             # As Python does for invalid exit statuses.
             number = number if abs(number) < 1 << 31 else -1
         else:
-            self.hooks.write(safe_text(str, code) + "\n")
+            self.hooks.write(format_safely(str, code) + "\n")
             number = 1
         return ProgramOutcome(
             End.FINISHED,
@@ -341,31 +343,31 @@ class ProgramRunner:
     # Input
 
     @waits_for(Wait.INPUT)
-    def _input(self, prompt: object = "") -> str:
+    def _read_input(self, prompt: object = "") -> str:
         """Replacement for input(): returns scripted answers, or the user's."""
         self.stdout.write(str(prompt))
-        (asked,) = self._output.stable(self.stdout.take_part())
+        (prompt_text,) = self._output.stabilize(self.stdout.take_part())
         answer: str | None
         if self._answers:
             answer = self._answers.pop(0)
         elif not self._config.options.asks_user:
             answer = None
         else:
-            answer = self._users_answer(asked)
-        self._output.row(asked + (answer or ""), Stream.INPUT)
+            answer = self._await_answer(prompt_text)
+        self._output.row(prompt_text + (answer or ""), Stream.INPUT)
         # Answers that exist already let no time pass: a stop is checked between them.
         self._output.after_write()
         if answer is None:
             raise EOFError(NO_ANSWER)
         return answer
 
-    def _users_answer(self, asked: str) -> str | None:
+    def _await_answer(self, prompt_text: str) -> str | None:
         session, steering = self._session, self._session.steering
         if not steering.replay_next(session, Answer):
             if self._config.options.time_waits:
-                steering.wait_for_reply(session, Answer, InputWanted(asked))
+                steering.wait_for_reply(session, Answer, InputWanted(prompt_text))
             else:
-                session.channel.send(InputWanted(asked))
+                session.channel.send(InputWanted(prompt_text))
         tick_ns = NS_PER_S // session.sim.spec.profile.tick_hz
         while not steering.answers:
             session.spend(tick_ns)

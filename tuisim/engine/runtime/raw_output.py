@@ -19,7 +19,7 @@ from tuisim.engine.runs.raw_files import RAW_BYTES, create_raw_file
 
 _NOTHING = b"\0"
 """What a descriptor begins with to which nothing has been written."""
-_LEAST_FD = 200
+_MIN_FD = 200
 """Our own descriptors are beyond those that programs count through."""
 _LINE_BUFFERED = 1
 
@@ -50,7 +50,7 @@ class RawFile:
         self._take = take
         created = create_raw_file(fd) if created is None else created
         try:
-            self._fd = fcntl.fcntl(created, fcntl.F_DUPFD_CLOEXEC, _LEAST_FD)
+            self._fd = fcntl.fcntl(created, fcntl.F_DUPFD_CLOEXEC, _MIN_FD)
             os.dup2(created, fd)
         finally:
             os.close(created)

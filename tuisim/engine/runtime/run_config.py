@@ -69,10 +69,10 @@ def read_config(folder: Path) -> RunConfig:
     Raises:
         OSError, ValueError, KeyError, TypeError: the host has not prepared the folder.
     """
-    return config_of(folder, json.loads((folder / "run.json").read_text("utf-8")))
+    return parse_config(folder, json.loads((folder / "run.json").read_text("utf-8")))
 
 
-def config_of(folder: Path, data: Mapping[str, Any]) -> RunConfig:
+def parse_config(folder: Path, data: Mapping[str, Any]) -> RunConfig:
     """Return the configuration in the contents of a `run.json`.
 
     Raises:
@@ -80,14 +80,14 @@ def config_of(folder: Path, data: Mapping[str, Any]) -> RunConfig:
     """
     return RunConfig(
         folder=folder,
-        program=_program_of(data["program"]),
+        program=_parse_program(data["program"]),
         spec=restore(data["spec"]),
         field=FieldFiles.from_plain(data["field"]),
         options=RunOptions.from_plain(data["options"]),
     )
 
 
-def next_config(last: RunConfig, folder: Path, changes: Mapping[str, Any]) -> RunConfig:
+def derive_config(last: RunConfig, folder: Path, changes: Mapping[str, Any]) -> RunConfig:
     """Return the configuration of another run of the same robot and world.
 
     Args:
@@ -99,7 +99,7 @@ def next_config(last: RunConfig, folder: Path, changes: Mapping[str, Any]) -> Ru
     return replace(
         last,
         folder=folder,
-        program=_program_of(changes["program"]) if "program" in changes else last.program,
+        program=_parse_program(changes["program"]) if "program" in changes else last.program,
         spec=put_all(last.spec, values) if values else last.spec,
         options=RunOptions.from_plain(changes["options"]) if "options" in changes else last.options,
     )
@@ -113,7 +113,7 @@ _VALUES: dict[str, tuple[str, Callable[[Any], object]]] = {
 """Values of a spec that may be different, by their names as changes: their paths, and what makes them."""
 
 
-def _program_of(plain: Mapping[str, Any]) -> Program:
+def _parse_program(plain: Mapping[str, Any]) -> Program:
     return Program(
         name=plain["name"],
         text=plain["text"],

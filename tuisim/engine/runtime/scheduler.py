@@ -19,7 +19,7 @@ from tuisim.engine.runtime.limits import limit_memory
 from tuisim.engine.runtime.session import Deadlock, Session, StopProgram
 from tuisim.engine.shim.waits import Wait, waits_for
 
-MOST_THREADS = 1000
+MAX_THREADS = 1000
 """Each is a real thread, and a machine limits their number."""
 FOREVER = -1
 """A wait without a time limit."""
@@ -114,7 +114,7 @@ class Scheduler:
             Whether another thread (or a motor) ended the wait before its time.
         """
         me = self.current
-        self._heed(me)
+        self._check_stop(me)
         while True:
             self._order += 1
             me.order, me.wake_ns, me.woken, me.on_change = self._order, until, False, on_change
@@ -125,10 +125,10 @@ class Scheduler:
             if queue is None:
                 self._sleep(me)
             else:
-                self._sleep_in(queue, me)
+                self._join_queue(queue, me)
             if not me.struck:
                 return me.woken
-            self._heed(me)
+            self._check_stop(me)
             if queue is not None or self._session.now >= until != FOREVER:
                 return False
 
@@ -144,7 +144,7 @@ class Scheduler:
             main.order, main.struck = 0, True
             self._ready.appendleft(main)
 
-    def _heed(self, me: ScheduledThread) -> None:
+    def _check_stop(self, me: ScheduledThread) -> None:
         if me.interrupt is None:
             return
         call, me.interrupt = me.interrupt, None
@@ -155,7 +155,7 @@ class Scheduler:
         finally:
             self._session.free = free
 
-    def _sleep_in(self, queue: Queue, me: ScheduledThread) -> None:
+    def _join_queue(self, queue: Queue, me: ScheduledThread) -> None:
         queue.append(me)
         try:
             self._sleep(me)
@@ -168,7 +168,7 @@ class Scheduler:
         session = self._session
         me.free, session.free = session.free, 0
         me.struck = False
-        self._hand_over(me)
+        self._switch_thread(me)
         session.free = me.free
         if self.entered is not None:
             self.entered()
@@ -192,14 +192,14 @@ class Scheduler:
             task.order, task.woken = 0, True
             self._ready.append(task)
 
-    def _hand_over(self, me: ScheduledThread) -> None:
+    def _switch_thread(self, me: ScheduledThread) -> None:
         chosen = self._choose()
         if chosen is not me:
             self.current = chosen
             chosen.gate.release()
-            self._park(me)
+            self._wait_turn(me)
 
-    def _park(self, me: ScheduledThread) -> None:
+    def _wait_turn(self, me: ScheduledThread) -> None:
         if me is not self.main:
             me.gate.acquire()
             return
@@ -217,7 +217,7 @@ class Scheduler:
             while self._timed and self._timed[0][2].order != self._timed[0][1]:
                 heapq.heappop(self._timed)
             if not self._timed:
-                return self._deadlocked()
+                return self._handle_deadlock()
             until, _, task = self._timed[0]
             self._on_change = [
                 waiting for waiting in self._on_change if waiting.on_change and waiting.order
@@ -236,7 +236,7 @@ class Scheduler:
             task.order = 0
             return task
 
-    def _deadlocked(self) -> ScheduledThread:
+    def _handle_deadlock(self) -> ScheduledThread:
         return self._send_to_main(
             Deadlock("every thread of the program is waiting for another one")
         )
@@ -265,8 +265,8 @@ class Scheduler:
             RuntimeError: too many threads, for the limit or for the machine.
         """
         count = len(self._alive) + 1
-        if count > MOST_THREADS:
-            raise RuntimeError(f"can't start new thread: a program may have {MOST_THREADS} at once")
+        if count > MAX_THREADS:
+            raise RuntimeError(f"can't start new thread: a program may have {MAX_THREADS} at once")
         self._session.flags |= THREADS
         task = ScheduledThread(daemon)
 

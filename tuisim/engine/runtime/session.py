@@ -229,7 +229,7 @@ class Session:
             self._commands = 0
             self.spend(COMMAND_BURST_NS)
         elif self.flags & (ATTENTION | STOPPING):
-            self.checkpoint()
+            self.check_stop()
 
     def wait_for_motor(self, timeout_ns: int, again: bool = False) -> None:
         """Block until a motor ends a move or the timeout is over.
@@ -284,7 +284,7 @@ class Session:
 
     def _pass(self, until: int, on_change: bool) -> None:
         if self.flags & (ATTENTION | STOPPING):
-            self.checkpoint()
+            self.check_stop()
         if self.flags & DEBUG:
             self.flags &= ~DEBUG
             self.debug().enter()
@@ -349,7 +349,7 @@ class Session:
                 return True
             if self.flags & ATTENTION:
                 self.now = max(self.now, sim.compute_due_ns(sim.tick))
-                self.checkpoint(before_tick=True)
+                self.check_stop(before_tick=True)
         return False
 
     def _run_live(self, until: int, on_change: bool) -> bool:
@@ -364,15 +364,15 @@ class Session:
                 return True
             # Never beyond the last tick of this wait.
             self.now = max(self.now, sim.compute_due_ns(sim.tick))
-            ticks = steering.before_ticks(self, target - sim.tick)
+            ticks = steering.await_ticks(self, target - sim.tick)
             sim.advance(ticks, on_change)
             if steering.debugged:
-                self.debug().after_ticks()
+                self.debug().check_breakpoints()
             if on_change and sim.changed:
                 return True
         return False
 
-    def rush_to(self, tick: int) -> None:
+    def skip_control(self, tick: int) -> None:
         """Do not call the control before this tick is due."""
         self.flags &= ~LIVE
         self._quick_ns = min(self._limit_ns, self.sim.compute_due_ns(tick) - 1)
@@ -386,7 +386,7 @@ class Session:
 
     # Stopping
 
-    def checkpoint(self, before_tick: bool = False) -> None:
+    def check_stop(self, before_tick: bool = False) -> None:
         """Process commands; raise if the program has to stop.
 
         Args:
@@ -406,7 +406,7 @@ class Session:
             if before_tick and reason.end is End.STOPPED:
                 self.steering.write_down_stop(self.sim.tick)
             raise reason
-        if self.steering.grace_is_over():
+        if self.steering.has_grace_ended():
             raise reason
 
     def request_stop(self, end: End, summary: str) -> StopProgram:

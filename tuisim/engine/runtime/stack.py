@@ -42,20 +42,20 @@ def show_whole_stacks() -> Iterator[None]:
         _shows_whole = False
 
 
-def _seen(walk: Iterable[Any], file_of: Callable[[Any], str]) -> Iterator[Any]:
+def _iterate_visible(walk: Iterable[Any], file_of: Callable[[Any], str]) -> Iterator[Any]:
     """Yield items whose frames a program may see: none of the runtime, and none below the program."""
-    for one in walk:
+    for item in walk:
         if _shows_whole:
-            yield one
+            yield item
             continue
-        file = file_of(one)
+        file = file_of(item)
         if file == _BOTTOM:
             return
         if not file.startswith(PACKAGE_FOLDER):
-            yield one
+            yield item
 
 
-def _frames_from(frame: types.FrameType | None) -> Iterator[types.FrameType]:
+def _walk_frames(frame: types.FrameType | None) -> Iterator[types.FrameType]:
     while frame is not None:
         yield frame
         frame = frame.f_back
@@ -67,8 +67,8 @@ def finish_traceback(module: types.ModuleType) -> None:
 
     def walk_stack(f: types.FrameType | None) -> Iterator[tuple[types.FrameType, int]]:
         """Walk a stack yielding the frame and line number for each frame."""
-        frames = _frames_from(sys._getframe(1) if f is None else f)
-        for frame in _seen(frames, lambda frame: frame.f_code.co_filename):
+        frames = _walk_frames(sys._getframe(1) if f is None else f)
+        for frame in _iterate_visible(frames, lambda frame: frame.f_code.co_filename):
             # Without a frame it starts at the caller of this module's function.
             if f is not None or frame.f_code.co_filename != module.__file__:
                 yield frame, frame.f_lineno
@@ -76,7 +76,9 @@ def finish_traceback(module: types.ModuleType) -> None:
     changed.walk_stack = wraps(changed.walk_stack)(walk_stack)
     for name in ("walk_tb", "_walk_tb_with_full_positions"):
         setattr(
-            changed, name, _filtered(getattr(changed, name), lambda row: row[0].f_code.co_filename)
+            changed,
+            name,
+            _build_filtered(getattr(changed, name), lambda row: row[0].f_code.co_filename),
         )
 
 
@@ -87,21 +89,21 @@ def finish_inspect(module: types.ModuleType) -> None:
         setattr(
             changed,
             name,
-            _listed(_filtered(getattr(changed, name), lambda info: str(info.filename))),
+            _build_listed(_build_filtered(getattr(changed, name), lambda info: str(info.filename))),
         )
 
 
-def _filtered(
+def _build_filtered(
     walk: Callable[..., Iterable[Any]], file_of: Callable[[Any], str]
 ) -> Callable[..., Iterator[Any]]:
     @wraps(walk)
     def filtered(*args: Any, **kwargs: Any) -> Iterator[Any]:
-        return _seen(walk(*args, **kwargs), file_of)
+        return _iterate_visible(walk(*args, **kwargs), file_of)
 
     return filtered
 
 
-def _listed(walk: Callable[..., Iterator[Any]]) -> Callable[..., list[Any]]:
+def _build_listed(walk: Callable[..., Iterator[Any]]) -> Callable[..., list[Any]]:
     @wraps(walk)
     def listed(*args: Any, **kwargs: Any) -> list[Any]:
         return list(walk(*args, **kwargs))
@@ -125,7 +127,7 @@ def patch_faulthandler() -> None:
         switch(True)
 
     def dump_traceback(file: Any = None, all_threads: bool = True, **_further: Any) -> None:
-        _write(_stacks_text(sys._getframe(1), all_threads), sys.stderr if file is None else file)
+        _write(_format_stacks(sys._getframe(1), all_threads), sys.stderr if file is None else file)
 
     replace(faulthandler, "enable", enable)
     replace(faulthandler, "disable", lambda: switch(False), (0, 0))
@@ -149,7 +151,7 @@ def _patch_registration() -> None:
 
         def handle(number: int, frame: types.FrameType | None) -> None:
             if frame is not None:
-                _write(_stacks_text(frame, all_threads), out)
+                _write(_format_stacks(frame, all_threads), out)
             if chain and callable(previous := before.get(number)):
                 previous(number, frame)
 
@@ -169,22 +171,26 @@ def _patch_registration() -> None:
     replace(faulthandler, "unregister", unregister, (1, 1))
 
 
-def _stacks_text(frame: types.FrameType, all_threads: bool) -> str:
+def _format_stacks(frame: types.FrameType, all_threads: bool) -> str:
     if not all_threads:
-        return _stack_text("Stack", frame)
+        return _format_stack("Stack", frame)
     import threading
 
     frames, here = sys._current_frames(), threading.current_thread()
-    others = [one for one in threading.enumerate() if one is not here and one.ident in frames]
-    others_text = [_stack_text(f"Thread {one.name}", frames[one.ident or 0]) for one in others]
-    return "\n".join([_stack_text(f"Current thread {here.name}", frame), *others_text])
+    others = [
+        thread for thread in threading.enumerate() if thread is not here and thread.ident in frames
+    ]
+    others_text = [
+        _format_stack(f"Thread {thread.name}", frames[thread.ident or 0]) for thread in others
+    ]
+    return "\n".join([_format_stack(f"Current thread {here.name}", frame), *others_text])
 
 
-def _stack_text(heading: str, frame: types.FrameType) -> str:
-    seen = _seen(_frames_from(frame), lambda frame: frame.f_code.co_filename)
+def _format_stack(heading: str, frame: types.FrameType) -> str:
+    seen = _iterate_visible(_walk_frames(frame), lambda frame: frame.f_code.co_filename)
     lines = [
-        f'  File "{one.f_code.co_filename}", line {one.f_lineno} in {one.f_code.co_name}\n'
-        for one in seen
+        f'  File "{own_frame.f_code.co_filename}", line {own_frame.f_lineno} in {own_frame.f_code.co_name}\n'
+        for own_frame in seen
     ]
     return f"{heading} (most recent call first):\n{''.join(lines)}"
 

@@ -18,7 +18,7 @@ from tuisim.engine.runtime.modules import OWN_FILES, is_own, remember_source
 from tuisim.engine.runtime.stack import show_whole_stacks
 
 _OUR_NAMES = ("tuisim.base.errors.", "tuisim.engine.runtime.session.")
-MOST_LINKED = 10
+MAX_LINKED = 10
 """Of a longer chain of causes, this many are shown at either end."""
 _MAX_CHARACTERS = 500_000
 """Of a traceback: the host takes a longer message for one that no program sends."""
@@ -66,7 +66,7 @@ def report_error(error: BaseException, file: str, source: str, alone: bool = Fal
                 _add_suggestions(trace, error)
             add_hint(trace, error)
         chain = _keep_program_frames(trace, own_files(file))
-        text, summary = _text_of(chain), _summary(trace)
+        text, summary = _format_chain(chain), _summarize(trace)
     except Exception as problem:
         # An error may be anything, and nested too deeply: it is reported nevertheless.
         stack = traceback.StackSummary.from_list(
@@ -76,12 +76,12 @@ def report_error(error: BaseException, file: str, source: str, alone: bool = Fal
                 if own_files(file)(frame.filename)
             ]
         )
-        summary = f"{_kind_of(error)}: <cannot be shown: {type(problem).__name__}>"
+        summary = f"{_name_kind(error)}: <cannot be shown: {type(problem).__name__}>"
         text = _HEADING + "".join(stack.format()) + summary + "\n"
     for name in _OUR_NAMES:
         text, summary = text.replace(name, ""), summary.replace(name, "")
     text, summary = _cut(text), _cut(summary)
-    line = line_in(error.__traceback__, file) or _line_of(error)
+    line = find_line(error.__traceback__, file) or _find_line(error)
     return ErrorReport(text, line, f"{summary} (line {line})" if line else summary)
 
 
@@ -95,7 +95,7 @@ def _cut(text: str) -> str:
 def _add_text(error: BaseException, file: str, source: str) -> None:
     """Add the program's line to a syntax error for which Python has looked for the file, which need not exist."""
     if type(error) in _SYNTAX_ERRORS and isinstance(error, SyntaxError) and error.text is None:
-        lines, line = source_lines(source), _line_of(error)
+        lines, line = source_lines(source), _find_line(error)
         if error.filename == file and 0 < line <= len(lines):
             # Bytes that are no text cannot be shown.
             error.text = (
@@ -103,7 +103,7 @@ def _add_text(error: BaseException, file: str, source: str) -> None:
             )
 
 
-def line_in(trace: Any, file: str) -> int:
+def find_line(trace: Any, file: str) -> int:
     """Return a file's last line in a traceback; 0 if there is none."""
     line = 0
     while trace is not None:
@@ -123,23 +123,23 @@ def _add_suggestions(trace: Trace, error: BaseException) -> None:
             continue
         kind = type(real)
         if kind is NameError or kind is AttributeError:
-            one._str = (one._str or "") + _suggestion(real)
+            one._str = (one._str or "") + _find_suggestion(real)
         elif kind in _SYNTAX_ERRORS:
-            _show_as_python(one, real)
+            _print_as_python(one, real)
         pairs += [(one.__cause__, real.__cause__), (one.__context__, real.__context__)]
         pairs += zip(one.exceptions or (), getattr(real, "exceptions", ()), strict=False)
 
 
-def _suggestion(error: Any) -> str:
+def _find_suggestion(error: Any) -> str:
     """Return what Python adds to the message of a NameError or an AttributeError."""
     kind = type(error)
     # Without a message, whose text might be written by the program.
     bare = kind(name=error.name) if kind is NameError else kind(name=error.name, obj=error.obj)
     bare.__traceback__ = error.__traceback__
-    return _shown(bare).removeprefix(kind.__name__).rstrip("\n")
+    return _print_error(bare).removeprefix(kind.__name__).rstrip("\n")
 
 
-def _show_as_python(trace: Trace, error: SyntaxError) -> None:
+def _print_as_python(trace: Trace, error: SyntaxError) -> None:
     """Let a syntax error be formatted by Python itself, whose carets differ."""
     bare: Any = type(error)()
     for name in (
@@ -153,15 +153,15 @@ def _show_as_python(trace: Trace, error: SyntaxError) -> None:
         "print_file_and_line",
     ):
         setattr(bare, name, getattr(error, name, None))
-    shown = _shown(bare)
+    printed = _print_error(bare)
 
-    trace._format_syntax_error = lambda _kind: [shown]
+    trace._format_syntax_error = lambda _kind: [printed]
 
 
-def _shown(error: BaseException) -> str:
+def _print_error(error: BaseException) -> str:
     """Return what Python prints of an error, without its frames."""
-    names, shown = vars(sys), io.StringIO()
-    meanwhile = {"stderr": shown, "tracebacklimit": 0}
+    names, printed = vars(sys), io.StringIO()
+    meanwhile = {"stderr": printed, "tracebacklimit": 0}
     before = {name: names[name] for name in meanwhile if name in names}
     names.update(meanwhile)
     try:
@@ -170,21 +170,21 @@ def _shown(error: BaseException) -> str:
         for name in meanwhile:
             del names[name]
         names.update(before)
-    return shown.getvalue()
+    return printed.getvalue()
 
 
-def _kind_of(error: BaseException) -> str:
+def _name_kind(error: BaseException) -> str:
     """Return the name of an error's class, even if its metaclass redefines it."""
     return str(type.__dict__["__name__"].__get__(type(error)))
 
 
-def _line_of(error: BaseException) -> int:
+def _find_line(error: BaseException) -> int:
     """Return the line of a syntax error; 0 if it has none or is another error."""
     line = error.lineno if isinstance(error, SyntaxError) else None
     return line if isinstance(line, int) else 0
 
 
-def _summary(trace: Trace) -> str:
+def _summarize(trace: Trace) -> str:
     only = source_lines("".join(trace.format_exception_only()).strip())
     # A syntax error starts with its location; of a message of several lines the first is the most useful.
     return only[-1] if only[0].startswith("File ") else only[0]
@@ -203,7 +203,7 @@ def own_files(file: str) -> Callable[[str], bool]:
     return own
 
 
-def point_at_namesake(error: BaseException, file: str) -> None:
+def add_namesake_note(error: BaseException, file: str) -> None:
     """Add a note to an error if a module beside the program shadows one of Python's.
 
     Args:
@@ -224,34 +224,36 @@ def _keep_program_frames(trace: Trace, own: Callable[[str], bool]) -> list[Trace
     """Remove all other frames from an error and the errors linked to it; return it and its causes, newest first."""
     chains = [[trace]]
     limit = vars(sys).get("tracebacklimit")
-    most = max(limit, 0) if isinstance(limit, int) else sys.maxsize
+    max_frames = max(limit, 0) if isinstance(limit, int) else sys.maxsize
     for chain in chains:
         for one in chain:
             was_raised = bool(one.stack)
-            kept = [frame for frame in one.stack if own(frame.filename)]
-            one.stack = traceback.StackSummary.from_list(kept[-most:] if most else [])
+            own_frames = [frame for frame in one.stack if own(frame.filename)]
+            one.stack = traceback.StackSummary.from_list(
+                own_frames[-max_frames:] if max_frames else []
+            )
             chains += [[inner] for inner in getattr(one, "exceptions", None) or ()]
             before = chain[-2] if one is not chain[0] else None
             # An error that never touched the program's code is a detail of the runtime or of the library.
-            if before is not None and was_raised and not kept:
+            if before is not None and was_raised and not own_frames:
                 before.__cause__ = before.__context__ = None
                 chain.pop()
-            elif (linked := _linked(one)) is not None:
+            elif (linked := _find_linked(one)) is not None:
                 chain.append(linked)
     return chains[0]
 
 
-def _linked(trace: Trace) -> Trace | None:
+def _find_linked(trace: Trace) -> Trace | None:
     """Return the error that is printed before this one."""
     return trace.__cause__ or (None if trace.__suppress_context__ else trace.__context__)
 
 
-def _text_of(chain: list[Trace]) -> str:
-    left_out = len(chain) - 2 * MOST_LINKED
+def _format_chain(chain: list[Trace]) -> str:
+    left_out = len(chain) - 2 * MAX_LINKED
     if left_out <= 0:
         return "".join(chain[0].format())
-    last_told: Any = chain[MOST_LINKED - 1]
+    last_told: Any = chain[MAX_LINKED - 1]
     last_told.__cause__ = last_told.__context__ = None
-    oldest, newest = "".join(chain[-MOST_LINKED].format()), "".join(chain[0].format())
+    oldest, newest = "".join(chain[-MAX_LINKED].format()), "".join(chain[0].format())
     between = counted(left_out, "more error, which", "more errors, each of which")
     return f"{oldest}\n[{between} led to the next one]\n\n{newest}"

@@ -24,11 +24,11 @@ from typing import Any
 from tuisim.base import data_class
 from tuisim.engine.core import noise
 from tuisim.engine.runtime.child import Child
-from tuisim.engine.runtime.run_config import config_of
+from tuisim.engine.runtime.run_config import parse_config
 
 LENGTH_BYTES = 4
 """Each request begins with its length."""
-MOST_FILES = 8
+MAX_FILES = 8
 _READ_BYTES = 1 << 16
 _NEEDED_LATER = (
     "tuisim.engine.runtime.patches.signals",
@@ -62,10 +62,10 @@ def serve(socket_fd: int) -> Child | None:
     prepared = None
     while True:
         gc.freeze()
-        request = ForkServer(socket_fd, prepared).next_request()
+        request = ForkServer(socket_fd, prepared).await_request()
         if not request["serves"]:
             break
-        prepared = Child(config_of(Path(request["folder"]), request["run"]))
+        prepared = Child(parse_config(Path(request["folder"]), request["run"]))
         (socket_fd,) = request["channel"]
     for name in _ONLY_HERE:
         sys.modules.pop(name, None)
@@ -88,7 +88,7 @@ class ForkServer:
         # Not `socket`: the program imports that with its functions patched.
         library: Any = import_module("_socket")
         self._socket: Any = library.socket(fileno=socket_fd)
-        self._attached_bytes: int = library.CMSG_SPACE(MOST_FILES * 4)
+        self._attached_bytes: int = library.CMSG_SPACE(MAX_FILES * 4)
         self._ended, self._wake = os.pipe()
         for fd in (self._ended, self._wake):
             os.set_blocking(fd, False)
@@ -98,7 +98,7 @@ class ForkServer:
         self._status_fds: dict[int, int] = {}
         """Where to report the end of each child, by process id."""
 
-    def next_request(self) -> dict[str, Any]:
+    def await_request(self) -> dict[str, Any]:
         """Fork a child for each request; return the request, with the descriptors of its `channel`, in each child."""
         while True:
             ready = wallclock.select_files([self._socket, self._ended], [], [])[0]
@@ -111,9 +111,9 @@ class ForkServer:
     def _receive(self) -> tuple[dict[str, Any], list[int]]:
         data, attached, _flags, _address = self._socket.recvmsg(_READ_BYTES, self._attached_bytes)
         files = [
-            int.from_bytes(part[at : at + 4], sys.byteorder)
+            int.from_bytes(part[offset : offset + 4], sys.byteorder)
             for _level, _kind, part in attached
-            for at in range(0, len(part) - len(part) % 4, 4)
+            for offset in range(0, len(part) - len(part) % 4, 4)
         ]
         while data and len(data) < LENGTH_BYTES + int.from_bytes(data[:LENGTH_BYTES], "little"):
             more = self._socket.recv(_READ_BYTES)
@@ -124,7 +124,7 @@ class ForkServer:
         return json.loads(data[LENGTH_BYTES:]), files
 
     def _fork(self, request: dict[str, Any], files: list[int]) -> dict[str, Any] | None:
-        status_fd, *given = files
+        status_fd, *attached = files
         if self._prepared is not None:
             self._prepared.expect(Path(request["folder"]), request["run"])
         try:
@@ -135,10 +135,10 @@ class ForkServer:
             _close(status_fd)
         else:
             if not pid:
-                self._become_child(request, given, status_fd)
+                self._become_child(request, attached, status_fd)
                 return request
             self._status_fds[pid] = status_fd
-        for fd in given:
+        for fd in attached:
             _close(fd)
         return None
 

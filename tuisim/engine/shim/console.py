@@ -6,7 +6,12 @@ import re
 import types
 from typing import Any
 
-from tuisim.engine.runs.brick_state import DISPLAY_HEIGHT, DISPLAY_WIDTH, TextScreen, console_row
+from tuisim.engine.runs.brick_state import (
+    DISPLAY_HEIGHT,
+    DISPLAY_WIDTH,
+    TextScreen,
+    build_console_row,
+)
 from tuisim.engine.runs.records import Stream
 from tuisim.engine.shim.display import Screen
 from tuisim.engine.shim.method_globals import rebind
@@ -172,7 +177,7 @@ class Terminal:
         return f"{self._grid.rows} {self._grid.columns}\n"
 
     def _show(self) -> None:
-        self._screen.show(console_row(self._grid.screen()), Stream.CONSOLE)
+        self._screen.show(build_console_row(self._grid.screen()), Stream.CONSOLE)
 
 
 def patch_console_module(module: types.ModuleType, terminal: Terminal) -> None:

@@ -14,7 +14,7 @@ from itertools import count
 from typing import Any
 
 from tuisim.engine.core.profile import MS, NS_PER_S
-from tuisim.engine.runs.brick_state import LED_NAMES, led_row
+from tuisim.engine.runs.brick_state import LED_NAMES, build_led_row
 from tuisim.engine.runs.records import Stream
 from tuisim.engine.shim.device_files import SimDevice, refuse
 from tuisim.engine.shim.method_globals import rebind
@@ -58,7 +58,7 @@ class Lights:
         brightness = self._brightness()
         if brightness != self._shown:
             self._shown = brightness
-            self.session.show(led_row(brightness), Stream.LED)
+            self.session.show(build_led_row(brightness), Stream.LED)
 
 
 class Light:

@@ -12,7 +12,7 @@ from tuisim.base.errors import ConfigError, LogError
 from tuisim.engine.core.profile import NS_PER_S
 from tuisim.engine.protocol import Unended
 from tuisim.engine.runs.run_folder import StoredRun
-from tuisim.engine.runs.samples import samples_of
+from tuisim.engine.runs.samples import list_samples
 from tuisim.engine.runs.views import TickRecord
 
 END_MS = 1000
@@ -102,7 +102,7 @@ class ClipRun:
         self._hz = run.spec.profile.tick_hz
         self.samples = [
             replace(sample, time_s=sample.time_ns / NS_PER_S)
-            for sample in samples_of(run.output.rows())
+            for sample in list_samples(run.output.rows())
         ]
         """What was printed, at the simulated times of the prints."""
         self._values: dict[str, tuple[list[int], list[float]]] = {}

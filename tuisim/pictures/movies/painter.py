@@ -12,8 +12,8 @@ from tuisim.base.errors import ConfigError, printable
 from tuisim.engine.core.spec import RobotSpec
 from tuisim.engine.mat_cache import mat_pixels
 from tuisim.engine.runs.recorded_run import Recording
-from tuisim.engine.runs.run_folder import mat_files, open_mat
-from tuisim.engine.runs.views import instant_of
+from tuisim.engine.runs.run_folder import find_mat_files, open_mat
+from tuisim.engine.runs.views import build_instant
 from tuisim.pictures.charts.files import draw_image
 from tuisim.pictures.charts.layout import (
     LETTER_PX,
@@ -257,7 +257,7 @@ class MovingWorld:
 
     def __init__(self, recorded: ClipRun, view: Viewport) -> None:
         self._recorded, self._spec, self._view = recorded, recorded.run.spec, view
-        mat = mat_pixels(mat_files(recorded.run))
+        mat = mat_pixels(find_mat_files(recorded.run))
         self._painter = build_painter(mat, has_floor=self._spec.world.is_open)
         self._traced = 0
         """Records whose pen traces are drawn."""
@@ -294,7 +294,7 @@ class SensorArrays:
         if read_pose(moment.record) is None:
             return []
         run = self._run
-        instant = instant_of(moment.record, run.spec, run.noise_at(moment.record))
+        instant = build_instant(moment.record, run.spec, run.find_noise(moment.record))
         return list_disc_faces(
-            run.spec, instant, self._recording.field_at(moment.tick, self._mat), run.program
+            run.spec, instant, self._recording.find_field(moment.tick, self._mat), run.program
         )

@@ -14,7 +14,7 @@ from tuisim.base.data_class import dataclass
 from tuisim.engine.core.css_colors import Rgb, parse_css_rgb
 from tuisim.engine.core.spec import PenSpec, RobotSpec, RunSpec
 from tuisim.engine.core.tick_record import FLAG_PEN_DOWN
-from tuisim.engine.runs.arrays import FloatArray, world_points_mm
+from tuisim.engine.runs.arrays import FloatArray, compute_world_points_mm
 from tuisim.pictures.scene.view import Viewport
 from tuisim.terminal.pixels import Pixels
 
@@ -189,7 +189,7 @@ class PenTrace:
 
 def place_pen_mm(robot: RobotSpec, telemetry: npt.NDArray[Any]) -> tuple[FloatArray, FloatArray]:
     """Return x and y of the pen in the world at each record of telemetry, up or down, each of shape (n,)."""
-    return world_points_mm(telemetry, robot.pen.x_mm, robot.pen.y_mm)
+    return compute_world_points_mm(telemetry, robot.pen.x_mm, robot.pen.y_mm)
 
 
 def place_drawn_mm(

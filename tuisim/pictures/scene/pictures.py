@@ -156,10 +156,10 @@ def draw_end(run: StoredRun) -> Image:
         LogError: the recording is damaged, or the mat no longer exists.
     """
     from tuisim.engine.mat_cache import mat_pixels
-    from tuisim.engine.runs.run_folder import mat_files
+    from tuisim.engine.runs.run_folder import find_mat_files
 
     last, records = run.telemetry.last(), run.telemetry.array()
-    mat, trace = mat_pixels(mat_files(run)), build_pen_trace(run.spec, records)
+    mat, trace = mat_pixels(find_mat_files(run)), build_pen_trace(run.spec, records)
     return draw_world(run.spec, mat, read_pose(last), (trace,), area=find_area(run.spec, records))
 
 
@@ -174,13 +174,13 @@ def draw_path(run: StoredRun, port: Viewport, outside_rgb: Rgb) -> Pixels:
         LogError: the recording is damaged, or the mat no longer exists.
     """
     from tuisim.engine.mat_cache import mat_pixels
-    from tuisim.engine.runs.run_folder import mat_files
+    from tuisim.engine.runs.run_folder import find_mat_files
 
     records = run.telemetry.array()
     some = records[:: max(1, len(records) // _MAX_PATH_POINTS)]
     trace = PenTrace()
     trace.add(Piece.from_points(some["x_mm"].astype(float), some["y_mm"].astype(float), _PATH))
-    mat, has_floor = mat_pixels(mat_files(run)), run.spec.world.is_open
+    mat, has_floor = mat_pixels(find_mat_files(run)), run.spec.world.is_open
     painter = ScenePainter(mat, outside_rgb, trace, has_floor=has_floor)
     area = find_area(run.spec, records)
     if area != FIELD:

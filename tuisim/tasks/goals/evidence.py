@@ -14,11 +14,11 @@ from tuisim.engine.core.field import Field
 from tuisim.engine.core.profile import NS_PER_S
 from tuisim.engine.mat_cache import open_field
 from tuisim.engine.protocol import End, Ended, Unended, UserAction
-from tuisim.engine.runs.frames import column_values, held, tick_times_s
+from tuisim.engine.runs.frames import compute_column_values, test_condition, tick_times_s
 from tuisim.engine.runs.readings import Readings, read_readings
 from tuisim.engine.runs.records import SAMPLE_STREAMS, OutputRow, Stream
 from tuisim.engine.runs.run_folder import StoredRun, open_mat
-from tuisim.engine.runs.samples import Sample, rows_when, samples_of
+from tuisim.engine.runs.samples import Sample, list_samples, select_rows
 from tuisim.engine.runs.side_files import read_actions
 from tuisim.tasks.goals.brick import (
     BRICK_COLUMNS,
@@ -138,7 +138,9 @@ class Evidence:
     def samples(self) -> list[tuple[int, Sample]]:
         """The samples, each with the index of its row."""
         return [
-            (number, sample) for number, row in enumerate(self.rows) for sample in samples_of([row])
+            (number, sample)
+            for number, row in enumerate(self.rows)
+            for sample in list_samples([row])
         ]
 
     def search(self, pattern: str) -> Search:
@@ -175,7 +177,7 @@ class Evidence:
                     name, len(self.records), self.brick_rows, actions
                 )
                 return self.column(name)
-            self.memo |= column_values((name,), self.records, self._run, actions, self.mat)
+            self.memo |= compute_column_values((name,), self.records, self._run, actions, self.mat)
         values: Array = self.memo[name]
         return values
 
@@ -194,7 +196,7 @@ class Evidence:
                 np.arange(len(self.records)), find_text_ticks(condition, self.brick_rows)
             )
         if condition.source is ValueSource.COLUMN:
-            return held(condition, self.column(condition.name))
+            return test_condition(condition, self.column(condition.name))
         return np.isin(
             np.arange(len(self.records)),
             [self.rows[number].tick for number in self.find_true_rows(condition)],
@@ -215,7 +217,7 @@ class Evidence:
                 if row.stream in SAMPLE_STREAMS and search(row.text)
             ]
         printed = [row for row in self.rows if row.stream in SAMPLE_STREAMS]
-        ids = set(map(id, rows_when(condition, printed)))
+        ids = set(map(id, select_rows(condition, printed)))
         return [number for number, row in enumerate(self.rows) if id(row) in ids]
 
     @cached_property

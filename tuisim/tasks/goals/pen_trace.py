@@ -57,9 +57,9 @@ def _sample_strokes(records: Array, pen: PenSpec, condition: DrawCondition) -> t
     down = (records["flags"] & FLAG_PEN_DOWN) != 0
     if not down.any():
         return np.empty((0, 2)), np.empty(0, np.int64)
-    from tuisim.engine.runs.arrays import world_points_mm
+    from tuisim.engine.runs.arrays import compute_world_points_mm
 
-    pen_mm = np.column_stack(world_points_mm(records, pen.x_mm, pen.y_mm))
+    pen_mm = np.column_stack(compute_world_points_mm(records, pen.x_mm, pen.y_mm))
     # A robot that was moved by hand draws no line.
     joined = down[1:] & down[:-1] & (np.diff(records["actions"].astype("i4")) == 0)
     way_mm = np.where(joined, np.hypot(*np.diff(pen_mm, axis=0).T), 0.0)

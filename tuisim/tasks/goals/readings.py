@@ -104,11 +104,11 @@ def _compute_light(records: Array, evidence: Evidence) -> Array:
     """Return the levels of light that each colour sensor would give without noise, shape (levels, ticks)."""
     import numpy as np
 
-    from tuisim.engine.runs.sensor_arrays import quiet_color_columns
+    from tuisim.engine.runs.sensor_arrays import measure_quiet_color
 
     rows = []
     for sensor in evidence.spec.robot.color_sensors:
-        channels = quiet_color_columns(records, sensor, evidence.spec, evidence.mat)
+        channels = measure_quiet_color(records, sensor, evidence.spec, evidence.mat)
         red, green, blue = (channel.astype("i8") for channel in channels.values())
         rows += [red / 255 * 100, (red + green + blue) / 765 * 100, red]
     return np.array(rows).reshape(len(rows), len(records))
@@ -174,9 +174,9 @@ def _compute_light_percent(records: Array, x_mm: float, y_mm: float, evidence: E
     import numpy as np
 
     mat = evidence.mat
-    from tuisim.engine.runs.arrays import world_points_mm
+    from tuisim.engine.runs.arrays import compute_world_points_mm
 
-    world_x_mm, world_y_mm = world_points_mm(records, x_mm, y_mm)
+    world_x_mm, world_y_mm = compute_world_points_mm(records, x_mm, y_mm)
     col, row = np.floor(world_x_mm), np.floor(FIELD_HEIGHT_MM - world_y_mm)
     inside = (col >= 0) & (col < mat.width_px) & (row >= 0) & (row < mat.height_px)
     pixels = np.frombuffer(mat.pixels, np.uint8).reshape(mat.height_px, mat.width_px, 3)
@@ -189,9 +189,9 @@ def _compute_reflected_percent(
     records: Array, sensor: ColorSensorSpec, evidence: Evidence
 ) -> Array:
     """Return what `reflected_light_intensity_pc` would be without noise, at every tick."""
-    from tuisim.engine.runs.sensor_arrays import quiet_color_columns
+    from tuisim.engine.runs.sensor_arrays import measure_quiet_color
 
-    red, *_ = quiet_color_columns(records, sensor, evidence.spec, evidence.mat).values()
+    red, *_ = measure_quiet_color(records, sensor, evidence.spec, evidence.mat).values()
     percent: Array = red.astype("i8") / 255 * 100
     return percent
 

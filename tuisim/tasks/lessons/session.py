@@ -267,7 +267,7 @@ class LessonSession:
         printed: tuple[str, ...] = ()
         if sight.recording is not None and check.printed:
             output = load_run(sight.recording.folder).output
-            printed = tuple(row.text for row in output.all_rows())
+            printed = tuple(row.text for row in output.read_all_rows())
         seen = frozenset(self.attempt.seen)
         typed = Typed(text, x_mm, seen, printed, sight.recording is not None)
         # What is measured elsewhere is not wrong, it is about something else.
@@ -448,12 +448,12 @@ def _read_notes(folder: Path) -> Iterator[Noted]:
         LogError: the notes or the recording are damaged.
     """
     from tuisim.analysis.source import NOTES_FILE, read_notes
-    from tuisim.engine.runs.samples import samples_of
+    from tuisim.engine.runs.samples import list_samples
 
     notes = read_notes(folder / NOTES_FILE)
     if not notes:
         return
-    samples = samples_of(load_run(folder).output.all_rows())
+    samples = list_samples(load_run(folder).output.read_all_rows())
     for note in notes:
         values = [
             sample.value

@@ -11,7 +11,7 @@ from tuisim.engine.runs.presses import press_actions
 from tuisim.engine.runs.recorded_run import Recording
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.engine.runs.store import RunStore
-from tuisim.engine.runs.temporary import temporary_home
+from tuisim.engine.runs.temporary import create_temporary_home
 from tuisim.programs.program_file import parse_program
 from tuisim.programs.program_settings import build_program_settings
 from tuisim.settings.build import build_run_spec
@@ -100,14 +100,14 @@ def run_model(lesson: Lesson, step: LessonStep | None) -> Recording:
     """
     text = (step.answer if step else "") or lesson.model_answer
     task = build_task(lesson, text, build_run_spec(merge_settings(lesson.settings)).seed)
-    with temporary_home() as home:
+    with create_temporary_home() as home:
         handle = start_run(task.program, task.spec, task.options, RunStore(home))
         try:
             handle.wait()
             run = handle.stored()
             # Its folder goes.
             for view in (run.telemetry, run.output):
-                view.read_on()
+                view.read_new()
                 view.holds = True
             return Recording(run, name="the model answer")
         finally:

@@ -13,9 +13,9 @@ from typing import Any
 
 from tuisim.base.data_class import dataclass
 from tuisim.engine.runs.child.isolation import MOST_BYTES
-from tuisim.engine.runs.child.supervisor import supervised
+from tuisim.engine.runs.child.supervisor import keep_running
 from tuisim.engine.runs.handle import RunOptions
-from tuisim.engine.runs.temporary import temporary_home
+from tuisim.engine.runs.temporary import create_temporary_home
 from tuisim.logs.export import EXPORTERS
 from tuisim.settings.options import merge_settings
 from tuisim.tasks.goals.files import GoalsFile
@@ -89,7 +89,7 @@ def open_marking(request: MarkRequest) -> Iterator[Marking]:
     Raises:
         ConfigError: a folder, the class list or the overrides are wrong.
     """
-    with temporary_home("tuisim-hand-ins-") as unpacked:
+    with create_temporary_home("tuisim-hand-ins-") as unpacked:
         yield Marking(request, unpacked.resolve())
 
 
@@ -159,7 +159,7 @@ class Marking:
         plan = replace(self._plan, isolate=isolate)
         counts = {entry.student.name: count_runs((), plan) for entry in self._entries}
         with (
-            nullcontext() if isolate else supervised(),
+            nullcontext() if isolate else keep_running(),
             Journal(
                 build_journal_path(self._request.task.path), resumes=self._request.resumes
             ) as known,

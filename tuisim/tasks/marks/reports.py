@@ -153,7 +153,7 @@ def _compute_digest(run: StoredRun) -> str:
     """Return a hash of what a run recorded, hexadecimal."""
     digest = hashlib.sha256(run.telemetry.array().tobytes())
     folder = run.program.working_directory.encode("utf-8", "surrogateescape")
-    for stream, row in run.output.raw_rows():
+    for stream, row in run.output.read_raw_rows():
         text = row.replace(folder, b"")
         digest.update(b"%d %d " % (stream, len(text)) + text)
     return digest.hexdigest()

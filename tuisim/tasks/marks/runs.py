@@ -16,7 +16,7 @@ from tuisim.engine.core.tree import dump_run
 from tuisim.engine.runs.handle import RunOptions
 from tuisim.engine.runs.presses import press_actions
 from tuisim.engine.runs.removal import remove_tree
-from tuisim.engine.runs.temporary import temporary_home
+from tuisim.engine.runs.temporary import create_temporary_home
 from tuisim.tasks.goals.trial_world import TrialWorld
 from tuisim.tasks.marks.journal import Journal
 from tuisim.tasks.marks.outcome import Outcome, build_outcome
@@ -160,7 +160,7 @@ def _run(turns: Sequence[_Turn], plan: MarkPlan, journal: Journal) -> Iterator[t
             unknown.append(turn)
     if not unknown:
         return
-    with temporary_home("tuisim-mark-") as home:
+    with create_temporary_home("tuisim-mark-") as home:
         # Its resolved path is what a program sees.
         workspace = home.resolve()
         uncopied: list[tuple[str, Outcome]] = []

@@ -11,7 +11,7 @@ from pathlib import Path
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ConfigError
 from tuisim.engine.runs.handle import RunOptions
-from tuisim.engine.runs.temporary import temporary_home
+from tuisim.engine.runs.temporary import create_temporary_home
 from tuisim.programs.program_file import find_program
 from tuisim.settings.options import merge_settings
 from tuisim.tasks.goals.answers import ASK, answer_lines
@@ -96,7 +96,7 @@ def run_trial(
         jobs=jobs,
         arguments=merge_settings(task.settings)["arguments"],
     )
-    with temporary_home("tuisim-try-") as home:
+    with create_temporary_home("tuisim-try-") as home:
         tried = [*_write_fakes(task, home), *_list_author_programs(task, wrong)]
         entries, students = build_entries([student for _, student in tried], task, {})
         outcomes: dict[str, list[Outcome]] = {student.name: [] for student in students}

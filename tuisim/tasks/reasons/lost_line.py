@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 
 from tuisim.base.data_class import dataclass
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, ColorSensorSpec
-from tuisim.engine.runs.arrays import find_spans, world_points_mm
-from tuisim.engine.runs.sensor_arrays import quiet_color_columns
+from tuisim.engine.runs.arrays import compute_world_points_mm, find_spans
+from tuisim.engine.runs.sensor_arrays import measure_quiet_color
 
 if TYPE_CHECKING:
     from tuisim.engine.core.field import Field
@@ -117,7 +117,7 @@ def _name_loss(
 
 def is_on_mat(records: Array, sensor: ColorSensorSpec) -> Bools:
     """Return at which ticks all that a sensor sees is on the mat, shape (n,)."""
-    x_mm, y_mm = world_points_mm(records, sensor.x_mm, sensor.y_mm)
+    x_mm, y_mm = compute_world_points_mm(records, sensor.x_mm, sensor.y_mm)
     edge_mm = sensor.diameter_mm / 2
     in_width = (x_mm >= edge_mm) & (x_mm <= FIELD_WIDTH_MM - edge_mm)
     is_on: Bools = in_width & (y_mm >= edge_mm) & (y_mm <= FIELD_HEIGHT_MM - edge_mm)
@@ -128,7 +128,7 @@ def compute_reflected_percent(
     records: Array, sensor: ColorSensorSpec, spec: RunSpec, mat: Field
 ) -> Array:
     """Return what a light sensor reads of the mat without noise, in percent, shape (n,)."""
-    red, *_ = quiet_color_columns(records, sensor, spec, mat).values()
+    red, *_ = measure_quiet_color(records, sensor, spec, mat).values()
     percent: Array = red / 2.55
     return percent
 

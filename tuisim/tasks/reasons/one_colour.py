@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from tuisim.base.data_class import dataclass
 from tuisim.engine.core.columns import COLOR_NAMES
 from tuisim.engine.core.sensors.color import find_color_code
-from tuisim.engine.runs.sensor_arrays import quiet_color_columns
+from tuisim.engine.runs.sensor_arrays import measure_quiet_color
 from tuisim.tasks.reasons.lost_line import is_on_mat
 
 if TYPE_CHECKING:
@@ -61,7 +61,7 @@ def find_one_color(
         if not len(ticks):
             continue
         way_mm = step_mm[ticks[0] : ticks[-1] + 1]
-        columns = quiet_color_columns(records[ticks], sensor, spec, mat).values()
+        columns = measure_quiet_color(records[ticks], sensor, spec, mat).values()
         channels = np.array([*columns])
         if np.ptp(channels, axis=1).max() > _SAME_LIGHT:
             return None

@@ -13,11 +13,11 @@ from tuisim.base.data_class import dataclass
 from tuisim.engine.core.profile import NS_PER_S
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 from tuisim.engine.protocol import End
-from tuisim.engine.runs.diff import parted_at_s
+from tuisim.engine.runs.diff import find_first_difference_s
 from tuisim.engine.runs.readings import MODES_BY_KIND, READING_PORTS, find_ticks, read_readings
 from tuisim.engine.runs.records import Stream
 from tuisim.engine.runs.run_folder import open_mat
-from tuisim.engine.runs.standstill import standstill_of
+from tuisim.engine.runs.standstill import find_standstill
 from tuisim.programs.facts import read_facts
 from tuisim.tasks.goals.judgement import GoalState, Judgement
 from tuisim.tasks.reasons.unmet import find_early_end, find_near_miss, find_recount
@@ -154,7 +154,7 @@ def _find_tracebacks(run: StoredRun) -> Iterator[Reason]:
 
 def _find_blocked(run: StoredRun, all_waits: Sequence[Wait]) -> Iterator[Reason]:
     """Yield where something solid stopped the robot, and what the program waited for in vain."""
-    if stood := standstill_of(run.telemetry, run.spec):
+    if stood := find_standstill(run.telemetry, run.spec):
         line = _find_line(run, stood.since_s)
         yield Reason(ReasonKind.BLOCKED, stood.since_s, line, f"the robot {stood.words}")
     waits = "waited" if run.end else "waits"
@@ -289,7 +289,7 @@ def _describe_loss(run: StoredRun, lost: LostLine) -> Reason:
 def _find_difference(run: StoredRun, earlier: Recording) -> Iterator[Reason]:
     """Yield where the robot left the way of an earlier run."""
     hz = run.spec.profile.tick_hz, earlier.spec.profile.tick_hz
-    time_s = parted_at_s(run.telemetry.array(), earlier.telemetry.array(), hz)
+    time_s = find_first_difference_s(run.telemetry.array(), earlier.telemetry.array(), hz)
     if time_s is not None:
         text = f"the robot left the path of {earlier.name}"
         yield Reason(ReasonKind.DIFFERS, time_s, _find_line(run, time_s), text)

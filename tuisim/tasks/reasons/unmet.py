@@ -19,7 +19,7 @@ from tuisim.engine.core.spec import (
     UltrasonicSpec,
 )
 from tuisim.engine.protocol import End
-from tuisim.engine.runs.frames import column_values
+from tuisim.engine.runs.frames import compute_column_values
 from tuisim.engine.runs.readings import READING_MODES, READING_PORTS, find_ticks, read_readings
 from tuisim.engine.runs.records import Stream
 from tuisim.engine.runs.run_folder import StoredRun, open_mat
@@ -441,7 +441,9 @@ class _Search:
         if spec.world.noise.light or spec.world.pen_marks:
             return None
         name, run, mat = f"{sensor.name}_{column}", self._run, self._field
-        columns = column_values((name,), self._records[ticks], run, run.actions, mat, lambda _: mat)
+        columns = compute_column_values(
+            (name,), self._records[ticks], run, run.actions, mat, lambda _: mat
+        )
         if name not in columns:
             return None
         values = columns[name] * factor

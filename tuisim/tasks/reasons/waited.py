@@ -35,7 +35,7 @@ from tuisim.engine.core.spec import (
     UltrasonicSpec,
 )
 from tuisim.engine.protocol import End, SetButtons, UserAction
-from tuisim.engine.runs.brick_state import BrickState, face_after
+from tuisim.engine.runs.brick_state import BrickState, update_face
 from tuisim.engine.runs.readings import (
     MODES_BY_KIND,
     READING_MODES,
@@ -45,7 +45,7 @@ from tuisim.engine.runs.readings import (
 )
 from tuisim.engine.runs.records import Stream
 from tuisim.engine.runs.run_folder import StoredRun, open_mat
-from tuisim.engine.runs.views import OutputView, TelemetryView, instant_of
+from tuisim.engine.runs.views import OutputView, TelemetryView, build_instant
 from tuisim.programs.facts import Question, read_facts
 from tuisim.tasks.reasons.hand_presses import HandPress, find_hits, find_presses
 
@@ -316,7 +316,7 @@ class _Search:
             if row.stream is Stream.MOTORS:
                 if row.tick > self._first:
                     return True
-                face = face_after(face, [row])
+                face = update_face(face, [row])
         return any(dps for _, dps in face.turns)
 
     def _describe(self, subject: Subject, port: str, rows: Array) -> Awaited | None:
@@ -436,7 +436,7 @@ class _Search:
         # Only a colour sensor looks at the mat.
         measure: Callable[..., tuple[float, ...]] = build_mounted_sensor(sensor).kind.measure
         for tick in poses[:: 1 + len(poses) // _MAX_POSES].tolist():
-            instant = instant_of(run.telemetry.record(tick), run.spec, run.spec.world.noise)
+            instant = build_instant(run.telemetry.record(tick), run.spec, run.spec.world.noise)
             yield measure(sensor, instant, run.spec, None)
 
     def _describe_distance(
@@ -462,11 +462,11 @@ class _Search:
         """Return the name of the one colour that a sensor saw; None if it saw more, or if that is not known."""
         import numpy as np
 
-        from tuisim.engine.runs.sensor_arrays import quiet_color_columns
+        from tuisim.engine.runs.sensor_arrays import measure_quiet_color
 
         if self._run.spec.world.pen_marks or (mat := self._run.open_mat()) is None:
             return None
-        columns = quiet_color_columns(self._records[ticks], sensor, self._run.spec, mat).values()
+        columns = measure_quiet_color(self._records[ticks], sensor, self._run.spec, mat).values()
         channels = np.array(list(columns))
         if np.ptp(channels, axis=1).max() > _SAME_LIGHT:
             return None

@@ -16,7 +16,7 @@ from tests.app.app_help import notices, until
 from tuisim.analysis.source import LogRequest
 from tuisim.app.analyser.app import Analyser, AnalyserApp
 from tuisim.app.dialogs.save import FileDialog
-from tuisim.engine.runs.frames import samples_frame
+from tuisim.engine.runs.frames import build_samples_frame
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.logs.export import log_metadata
 from tuisim.logs.frames import read_log
@@ -71,7 +71,7 @@ async def test_everything_leaves_as_it_is_shown(run: StoredRun, tmp_path: Path) 
             pilot,
             lambda: "Report saved to" in "".join(notices(pilot.app)),
         )
-    frame = samples_frame([run])
+    frame = build_samples_frame([run])
     pd.testing.assert_frame_equal(read_log(rows), frame, check_exact=True)
     assert open_log(rows).metadata == json.loads(json.dumps(log_metadata("samples", frame, [run])))
     ticks = [

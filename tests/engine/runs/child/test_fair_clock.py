@@ -8,7 +8,7 @@ import sys
 import time
 
 from tests.running import PATIENCE_S
-from tuisim.engine.runs.child.fair_clock import computed_s, waited_s
+from tuisim.engine.runs.child.fair_clock import measure_computed_s, measure_waited_s
 
 
 def test_the_time_that_a_process_waits_for_a_processor_is_known() -> None:
@@ -23,15 +23,17 @@ def test_the_time_that_a_process_waits_for_a_processor_is_known() -> None:
     ]
     try:
         give_up = time.monotonic() + PATIENCE_S
-        while sum(waited_s(process.pid) for process in spinning) < 0.1:
+        while sum(measure_waited_s(process.pid) for process in spinning) < 0.1:
             assert time.monotonic() < give_up
             time.sleep(0.01)
-        assert sum(waited_s(one.pid) for one in spinning) <= 2 * (time.monotonic() - start_s)
+        assert sum(measure_waited_s(one.pid) for one in spinning) <= 2 * (
+            time.monotonic() - start_s
+        )
     finally:
         for process in spinning:
             process.kill()
             process.wait()
-    assert waited_s(spinning[0].pid) == computed_s(spinning[0].pid) == 0.0
+    assert measure_waited_s(spinning[0].pid) == measure_computed_s(spinning[0].pid) == 0.0
 
 
 def test_the_time_that_other_threads_wait_counts_too() -> None:
@@ -42,9 +44,9 @@ def test_the_time_that_other_threads_wait_counts_too() -> None:
     ]
     try:
         give_up = time.monotonic() + PATIENCE_S
-        while sum(waited_s(process.pid) for process in spinning) < 0.1 or not computed_s(
-            spinning[0].pid
-        ):
+        while sum(
+            measure_waited_s(process.pid) for process in spinning
+        ) < 0.1 or not measure_computed_s(spinning[0].pid):
             assert time.monotonic() < give_up
             time.sleep(0.01)
     finally:

@@ -160,7 +160,7 @@ def test_the_guide_names_the_limits_that_are_set() -> None:
     page = (ROOT / "tuisim" / "guide" / "pages" / "security.md").read_text(encoding="utf-8")
     limits = {
         "memory": f"{isolation._MEMORY_BYTES >> 30} GiB",
-        "processes, threads": f"1, {isolation._MOST_THREADS:,}",
+        "processes, threads": f"1, {isolation._MAX_THREADS:,}",
         "its `/tmp`": f"{isolation._TMP_BYTES >> 20} MiB",
         "its files and its recording together": f"{isolation.MOST_BYTES >> 30} GiB, {isolation.MOST_FILES:,} files",
         "one file": f"{isolation.MOST_BYTES >> 30} GiB",
@@ -176,7 +176,7 @@ def test_the_guide_names_the_limits_that_are_set() -> None:
 
 def test_what_is_open_and_has_no_name_is_counted(tmp_path: Path) -> None:
     def sizes() -> list[int]:
-        return sorted(isolation.Quota(os.getpid(), [tmp_path])._without_a_name())
+        return sorted(isolation.Quota(os.getpid(), [tmp_path])._measure_nameless())
 
     before = sizes()
     with (tmp_path / "file").open("wb") as file:

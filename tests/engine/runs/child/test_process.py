@@ -23,7 +23,7 @@ from tuisim.settings.options import Settings
 
 
 def test_runs_of_many_threads_share_one_warm_process(monkeypatch: pytest.MonkeyPatch) -> None:
-    process.cool_down()
+    process.end_warm_process()
     begin, started, meeting = WarmProcess.__init__, [], Barrier(2)
 
     def counted(self: WarmProcess, *args: Any) -> None:
@@ -54,6 +54,6 @@ def test_a_stack_is_awaited_until_it_is_whole(
     path, parts = tmp_path / STACK_FILE, iter(["", "File", "File a", "File a", "late"])
     clock = SimpleNamespace(monotonic=lambda: 8.0, sleep=lambda _: path.write_text(next(parts)))
     monkeypatch.setattr(process, "time", clock)
-    monkeypatch.setattr(process, "waited_s", lambda _: 1.0)
+    monkeypatch.setattr(process, "measure_waited_s", lambda _: 1.0)
     process.await_stack(tmp_path, os.getpid())
     assert next(parts) == "late"

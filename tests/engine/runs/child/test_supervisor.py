@@ -36,18 +36,22 @@ def test_stopped_processes_go_on_at_the_second_look() -> None:
         try:
             # Before that its parent waits for the child's new program, and cannot be stopped.
             assert parent.stdout is not None and parent.stdout.readline() == b"started\n"
-            every = set(supervisor.tree(parent.pid, supervisor.processes()))
+            every = set(supervisor.walk_processes(parent.pid, supervisor.list_processes()))
             assert len(every) == 2
             for pid in every:
                 os.kill(pid, signal.SIGSTOP)
             _until(
-                lambda: {supervisor.processes()[pid][1] for pid in every} == {supervisor.STOPPED}
+                lambda: (
+                    {supervisor.list_processes()[pid][1] for pid in every} == {supervisor.STOPPED}
+                )
             )
             first = supervisor.continue_stopped(parent.pid, set())
             assert first == every
             supervisor.continue_stopped(parent.pid, first)
             _until(
-                lambda: supervisor.STOPPED not in {supervisor.processes()[pid][1] for pid in every}
+                lambda: (
+                    supervisor.STOPPED not in {supervisor.list_processes()[pid][1] for pid in every}
+                )
             )
         finally:
             os.killpg(parent.pid, signal.SIGKILL)
@@ -86,7 +90,7 @@ def test_a_command_that_the_user_suspends_stays_so() -> None:
         try:
             assert process.stdout is not None
             assert process.stdout.readline() == b"ready\n"
-            _until(lambda: supervisor.processes()[process.pid][1] == supervisor.STOPPED)
+            _until(lambda: supervisor.list_processes()[process.pid][1] == supervisor.STOPPED)
             # Its supervisor looks twice before it would continue it.
             looks = [supervisor.continue_stopped(process.pid, set()) for _ in range(2)]
             assert looks[1] == {process.pid}
@@ -105,6 +109,6 @@ def test_a_machine_that_can_start_no_more_processes_is_told(
     monkeypatch.setattr(subprocess, "Popen", refuse)
     with (
         pytest.raises(HostError, match="cannot be started: Too many open files"),
-        supervisor.supervised(),
+        supervisor.keep_running(),
     ):
         pass

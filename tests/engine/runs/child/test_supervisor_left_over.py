@@ -97,7 +97,7 @@ def test_nothing_is_left_after_a_stop(start: Start, file: Path, name: str, how: 
     handle = start(
         program(LEFT[name], file, "while True: time.sleep(1)"), prelude="none", live=True
     )
-    until(handle, lambda: any(row.text == "A: 1" for row in handle.output.all_rows()))
+    until(handle, lambda: any(row.text == "A: 1" for row in handle.output.read_all_rows()))
     if how == "stop":
         handle.stop()
     else:

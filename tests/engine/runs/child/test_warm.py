@@ -29,7 +29,7 @@ def printed(text: str, of_many: bool = False, prelude: str = "none") -> list[str
     over(handle)
     assert handle.ended is not None
     assert handle.ended.end == "finished", handle.ended.error
-    return [row.text for row in handle.output.all_rows()]
+    return [row.text for row in handle.output.read_all_rows()]
 
 
 def _start(text: str = "import time\ntime.sleep(1e6)\n") -> RunHandle:
@@ -42,11 +42,11 @@ def _start(text: str = "import time\ntime.sleep(1e6)\n") -> RunHandle:
 def warm(monkeypatch: pytest.MonkeyPatch) -> Iterator[WarmProcess]:
     """A warm process that the test may end."""
     monkeypatch.setattr(process._Starts, "warm", None)
-    process.warm_up()
+    process.start_warm_process()
     mine = process._Starts.warm
     assert mine is not None
     yield mine
-    process.cool_down()
+    process.end_warm_process()
 
 
 def test_without_its_warm_process_a_run_is_started_by_itself(warm: WarmProcess) -> None:
@@ -89,9 +89,9 @@ SLOW = "import os, time; lead = os.setsid; os.setsid = lambda: (time.sleep(0.2),
 def test_a_child_that_was_just_forked_can_be_killed_with_its_group(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    process.cool_down()
+    process.end_warm_process()
     monkeypatch.setattr(process, "BOOT", SLOW + process.BOOT)
-    process.warm_up()
+    process.start_warm_process()
     handle = _start()
     leads = os.getpgid(handle._process.pid) == handle._process.pid
     handle._process.send_signal(signal.SIGKILL)
@@ -141,7 +141,7 @@ def test_runs_that_are_over_leave_no_descriptor_open(text: str) -> None:
         if "while" in text:
             handle.stop()
         over(handle)
-        _ = handle.stored().telemetry.array(), handle.output.all_rows()
+        _ = handle.stored().telemetry.array(), handle.output.read_all_rows()
 
     one_run()
     before = len(os.listdir("/proc/self/fd"))

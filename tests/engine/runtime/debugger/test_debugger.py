@@ -177,7 +177,7 @@ def test_conditions_are_evaluated_without_moving_anything(
     event = driver.wait_for(Paused, Ended)
     if i is None:
         assert isinstance(event, Ended)
-        assert [row.text for row in driver.run.output.all_rows()] == [
+        assert [row.text for row in driver.run.output.read_all_rows()] == [
             "Total: 1",
             "Total: 3",
             "Total: 6",
@@ -273,7 +273,7 @@ def test_a_user_action_at_a_line_waits_for_the_next_tick(debug: Callable[..., Dr
     driver.paused()
     driver.run.send(SetPose(1500.0, 500.0, 0.0))
     assert driver.finish(Resume()).end == "finished"
-    assert [row.text for row in driver.run.output.all_rows()] == ["1"]
+    assert [row.text for row in driver.run.output.read_all_rows()] == ["1"]
     assert driver.run.telemetry.record(0).actions == 1
 
 

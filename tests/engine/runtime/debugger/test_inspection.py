@@ -35,7 +35,7 @@ def test_hostile_values_are_cut_safely(
     ended = driver.finish(StepLine(LineStep.OUT))
     assert ended.end == "finished"
     # What was done for a look is undone.
-    assert driver.run.output.all_rows()[-1].text in ("on", "0", "49995000", "10000000")
+    assert driver.run.output.read_all_rows()[-1].text in ("on", "0", "49995000", "10000000")
 
 
 @pytest.mark.quick_cases("repr that ends the program")

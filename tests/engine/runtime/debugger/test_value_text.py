@@ -10,14 +10,14 @@ import pytest
 
 from tests.cases import cases
 from tuisim.engine.runtime.debugger.value_text import (
-    MOST_CHARACTERS,
-    MOST_ITEMS,
+    MAX_CHARACTERS,
+    MAX_ITEMS,
     Renderer,
     cut,
     describe,
     evaluate,
     evaluate_truth,
-    kind_of,
+    name_type,
 )
 
 
@@ -39,7 +39,7 @@ TEXTS: dict[str, tuple[object, str]] = {
     "frozen": (frozenset({1}), "frozenset({1})"),
     "pairs": ({"a": [1.5, True]}, "{'a': [1.5, True]}"),
     "deep": ([[[[1, 2]]]], "[[[[… 2 items]]]]"),
-    "many": (list(range(100)), f"[{', '.join(map(str, range(MOST_ITEMS)))}, … 100 items]"),
+    "many": (list(range(100)), f"[{', '.join(map(str, range(MAX_ITEMS)))}, … 100 items]"),
     "array": (np.zeros((2, 3)), "array(shape=(2, 3), dtype=float64)"),
     "text of its own kind": (Text("x"), "'x'"),
 }
@@ -56,7 +56,7 @@ def test_addresses_are_left_out() -> None:
 
 def test_long_texts_are_cut() -> None:
     shown = Renderer(1.0).render("x" * 10_000)
-    assert len(shown) == MOST_CHARACTERS and shown.endswith("…")
+    assert len(shown) == MAX_CHARACTERS and shown.endswith("…")
     assert cut("abc", 3) == "abc" and cut("abcd", 3) == "ab…"
 
 
@@ -68,7 +68,7 @@ def test_the_kind_is_the_real_one() -> None:
     class Liar:
         __class__ = int  # type: ignore[assignment]
 
-    assert kind_of(Liar()) == "Liar"
+    assert name_type(Liar()) == "Liar"
 
 
 def test_an_error_whose_text_raises_is_its_kind() -> None:

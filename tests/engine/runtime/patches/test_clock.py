@@ -106,7 +106,7 @@ def test_time_and_threads(run: Run, text: str, lines: list[str] | None) -> None:
 
 def test_lines_of_the_program_are_recorded(run: Run) -> None:
     done = run("import time\n\nprint('A: 1')\ntime.sleep(0.1)\nprint('A: 2')\n")
-    rows = done.run.output.all_rows()
+    rows = done.run.output.read_all_rows()
     assert [(row.text, row.line, row.time_ns, row.tick) for row in rows] == [
         ("A: 1", 3, 0, 0),
         ("A: 2", 5, 100_000_000, 10),

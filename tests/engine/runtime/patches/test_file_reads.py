@@ -8,7 +8,7 @@ import pytest
 
 from tests.cases import cases
 from tests.running import Run
-from tuisim.engine.runs.side_files import MOST_READS, FileRead, read_reads, state_of
+from tuisim.engine.runs.side_files import MAX_READS, FileRead, read_reads, read_state
 
 SETUP = "import io, os, pathlib, shutil\n"
 READS = {
@@ -53,7 +53,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 @cases("text", READS)
 def test_a_file_that_was_there_is_noted_as_it_was(run: Run, folder: Path, text: str) -> None:
-    before = state_of(str(folder / "data.txt"))
+    before = read_state(str(folder / "data.txt"))
     done = run(SETUP + text, prelude="none")
     assert done.ended.end == "finished", done.errors
     assert read_reads(done.run.folder).files == (before,)
@@ -74,9 +74,9 @@ def test_a_file_that_is_not_there_is_noted(run: Run, folder: Path) -> None:
 
 
 def test_further_files_are_counted(run: Run, folder: Path) -> None:
-    text = f"for n in range({MOST_READS + 7}):\n    try:\n        open(f'n{{n}}')\n    except OSError:\n        pass"
+    text = f"for n in range({MAX_READS + 7}):\n    try:\n        open(f'n{{n}}')\n    except OSError:\n        pass"
     read = read_reads(run(text, prelude="none").run.folder)
-    assert (len(read.files), read.left_out) == (MOST_READS, 7)
+    assert (len(read.files), read.left_out) == (MAX_READS, 7)
 
 
 def test_what_no_path_is_raises_the_errors_of_python(run: Run, folder: Path) -> None:

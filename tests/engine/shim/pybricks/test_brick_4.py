@@ -20,7 +20,7 @@ def lights(run_on: RunOn, text: str) -> list[tuple[int, str]]:
     """Return the times in ms, and what the light of the brick showed."""
     done = run_on(HEAD + text, profile=PROFILE)
     assert not done.errors
-    rows = [row for row in done.run.output.all_rows() if row.stream == Stream.LED]
+    rows = [row for row in done.run.output.read_all_rows() if row.stream == Stream.LED]
     return [(row.time_ns // 1_000_000, row.text) for row in rows]
 
 

@@ -25,7 +25,7 @@ def test_sounds_of_version_1(run_on: RunOn) -> None:
     )
     heard = [
         (row.text, row.time_ns // 1_000_000)
-        for row in done.run.output.all_rows()
+        for row in done.run.output.read_all_rows()
         if row.stream == Stream.SPEECH
     ]
     assert heard == [
@@ -97,5 +97,5 @@ def test_light_buttons_and_battery_of_version_1(run_on: RunOn) -> None:
         presses=("enter@0.5-1",),
     )
     assert done.lines == ["[Button.CENTER] True True"], done.errors
-    lights = [row.text for row in done.run.output.all_rows() if row.stream == Stream.LED]
+    lights = [row.text for row in done.run.output.read_all_rows() if row.stream == Stream.LED]
     assert len(lights) == 2

@@ -277,7 +277,7 @@ def seen() -> dict[str, Seen]:
     spec = RunSpec(PLAIN, FAR_WALL, PROFILES["ev3"])
     with closing(start_run(program, spec, RunOptions(time_limit_s=900.0))) as handle:
         assert handle.wait(60.0)
-        rows = handle.output.all_rows()
+        rows = handle.output.read_all_rows()
     begins = [at for at, row in enumerate(rows) if row.text == "# case"]
     parts = [
         rows[begin + 1 : end] for begin, end in zip(begins, [*begins[1:], len(rows)], strict=True)
@@ -323,7 +323,9 @@ def test_commands_for_the_text_screen(run_on: RunOn) -> None:
         "os.system('setfont')\nprint(os.popen('stty size').read().split())"
     )
     rows = [
-        json.loads(row.text) for row in done.run.output.all_rows() if row.stream == Stream.CONSOLE
+        json.loads(row.text)
+        for row in done.run.output.read_all_rows()
+        if row.stream == Stream.CONSOLE
     ]
     shown = [(columns, count, lines[0]) for columns, count, lines, _ in rows]
     assert shown == [(14, 5, ""), (14, 5, "Hello"), (22, 9, "Hello"), (22, 9, ""), (22, 8, "")]

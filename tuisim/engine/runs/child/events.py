@@ -28,13 +28,13 @@ from tuisim.engine.protocol import (
 )
 from tuisim.engine.runs.run_options import RunOptions
 
-MOST_EVENT_BYTES = 8 << 20
+MAX_EVENT_BYTES = 8 << 20
 """More than any event has."""
-MOST_AT_ONCE_BYTES = 1 << 20
+MAX_BURST_BYTES = 1 << 20
 """As much as a pipe of Linux can hold; of a flood of events the rest follows with the next read."""
 _CHUNK_BYTES = 1 << 16
-_MOST_SHOWN = 60
-_MOST_NUMBER = 1 << 53
+_MAX_SHOWN = 60
+_MAX_NUMBER = 1 << 53
 """Larger than any integer in an event, in either direction; that of nanoseconds is 104 days."""
 
 _Kinds = tuple[type[Message], ...]
@@ -62,7 +62,7 @@ def decode_event(line: bytes) -> Message:
             build_part(event)
     except (msgspec.MsgspecError, ValueError, KeyError, RecursionError) as error:
         raise HostError(
-            f"the program's process sent an invalid message: {line[:_MOST_SHOWN]!r}"
+            f"the program's process sent an invalid message: {line[:_MAX_SHOWN]!r}"
         ) from error
     return event
 
@@ -80,7 +80,7 @@ def _is_sound(value: object) -> bool:
     """Return whether all integers in a part of an event are ones that catalogue, files and screen can hold."""
     match value:
         case int():
-            return abs(value) < _MOST_NUMBER
+            return abs(value) < _MAX_NUMBER
         case dict():
             return all(map(_is_sound, value.values()))
         case tuple() | list():
@@ -114,16 +114,16 @@ class EventStream:
     def read(self) -> list[Message]:
         """Return the events that have arrived; see `falsified`."""
         events: list[Message] = []
-        for line in self._lines():
-            event = self._decoded(line)
+        for line in self._split_lines():
+            event = self._decode_event(line)
             if event is None:
                 break
             events.append(event)
             self._last = event
         return events
 
-    def _lines(self) -> list[bytes]:
-        data, left = self._rest, MOST_AT_ONCE_BYTES
+    def _split_lines(self) -> list[bytes]:
+        data, left = self._rest, MAX_BURST_BYTES
         while left > 0 and not self.at_end and not self.falsified:
             try:
                 chunk = os.read(self._descriptor, _CHUNK_BYTES)
@@ -133,11 +133,11 @@ class EventStream:
             data += chunk
             left -= len(chunk)
         *lines, self._rest = data.split(b"\n")
-        if len(self._rest) > MOST_EVENT_BYTES:
+        if len(self._rest) > MAX_EVENT_BYTES:
             self.falsified = "the program's process sent a message without an end"
         return lines
 
-    def _decoded(self, line: bytes) -> Message | None:
+    def _decode_event(self, line: bytes) -> Message | None:
         """Return the event in a line; None if there is none that can come now."""
         try:
             event = decode_event(line)
@@ -161,7 +161,7 @@ class EventStream:
         return None if self.falsified else event
 
 
-def allowed_events(options: RunOptions, *, plugs: bool) -> _Kinds:
+def list_allowed_events(options: RunOptions, *, plugs: bool) -> _Kinds:
     """Return the classes of events that a run can send besides its start, its sounds and its end.
 
     Args:

@@ -26,29 +26,31 @@ class FairClock:
         self._started_s = self._looked_s = time.monotonic()
         self._waits_s = self._without_s = 0.0
 
-    def now_s(self) -> float:
+    def read_s(self) -> float:
         """Return the seconds since the start, without the waits."""
-        now_s, waits_s = time.monotonic(), waited_s(self._pid)
+        now_s, waits_s = time.monotonic(), measure_waited_s(self._pid)
         self._without_s += min(max(0.0, waits_s - self._waits_s), now_s - self._looked_s)
         self._waits_s, self._looked_s = waits_s, now_s
-        return max(now_s - self._started_s - self._without_s, computed_s(self._pid))
+        return max(now_s - self._started_s - self._without_s, measure_computed_s(self._pid))
 
 
-def waited_s(pid: int) -> float:
+def measure_waited_s(pid: int) -> float:
     """Return how long the threads of a process have waited for their turn on a processor, together.
 
     It is 0 if the process is gone, or where that is unknown; what a thread that has ended waited is lost.
     """
-    found = 0
+    total_ns = 0
     with suppress(OSError):
         for thread in os.listdir(f"/proc/{pid}/task"):
             # Nanoseconds on a processor, and in the queue: Documentation/scheduler/sched-stats.rst of Linux.
             with suppress(OSError, ValueError, IndexError):
-                found += int(Path(f"/proc/{pid}/task/{thread}/schedstat").read_bytes().split()[1])
-    return found / NS_PER_S
+                total_ns += int(
+                    Path(f"/proc/{pid}/task/{thread}/schedstat").read_bytes().split()[1]
+                )
+    return total_ns / NS_PER_S
 
 
-def computed_s(pid: int) -> float:
+def measure_computed_s(pid: int) -> float:
     """Return the time that a process has spent on processors; 0 if it is gone, or where that is unknown."""
     try:
         # The name, in parentheses, may contain anything. Then the state, and 10 more: proc_pid_stat(5).

@@ -59,7 +59,7 @@ for kind, most in (
 del resource, kind, most, hard
 """
 """Code for the start of the process: it sets limits that cannot be raised again."""
-_MOST_THREADS = 2_000
+_MAX_THREADS = 2_000
 """Threads that it may have: more than the simulation allows."""
 _MAX_SOCKETS = 512
 """Sockets that it may have: one of which it has no descriptor any more still holds what was sent."""
@@ -83,7 +83,7 @@ def check_isolation() -> None:
         raise ConfigError(f"{BWRAP} is not installed", f"install bubblewrap; {hint}", key=_KEY)
     try:
         done = subprocess.run(
-            [*_confined(Path("/"), (), ()), sys.executable, "-c", ""],
+            [*_build_command(Path("/"), (), ()), sys.executable, "-c", ""],
             stdin=subprocess.DEVNULL,
             capture_output=True,
             text=True,
@@ -115,7 +115,7 @@ class IsolatedChild:
 
     def poll(self) -> int | None:
         """Return the exit status, negative for a signal; None while it runs."""
-        return self._ended(self._process.poll())
+        return self._handle_end(self._process.poll())
 
     def wait(self, timeout: float | None = None) -> int:
         """Block until it has ended.
@@ -123,7 +123,7 @@ class IsolatedChild:
         Raises:
             subprocess.TimeoutExpired: it is still running after `timeout` seconds.
         """
-        status = self._ended(self._process.wait(timeout))
+        status = self._handle_end(self._process.wait(timeout))
         assert status is not None
         return status
 
@@ -133,7 +133,7 @@ class IsolatedChild:
             with suppress(ProcessLookupError):
                 os.kill(self.pid, number)
 
-    def _ended(self, status: int | None) -> int | None:
+    def _handle_end(self, status: int | None) -> int | None:
         if status is not None:
             self.returncode = _SIGNALLED - status if status > _SIGNALLED else status
         return self.returncode
@@ -153,7 +153,7 @@ class Quota:
         self._next_look_s = 0.0
         self._sockets = self._count_sockets()
         self._files = self._bytes = 0
-        self._files, self._bytes = self._more(MOST_FILES, MOST_BYTES)
+        self._files, self._bytes = self._count_growth(MOST_FILES, MOST_BYTES)
 
     def exceeded(self, now_s: float) -> str:
         """Return which limit is exceeded; empty if none is, or if it has been looked at a moment ago.
@@ -166,12 +166,12 @@ class Quota:
         self._next_look_s = now_s + _LOOK_EVERY_S
         with suppress(OSError):
             # A folder has a link more for each folder in it, and two of its own.
-            if os.stat(f"{self._process}/task").st_nlink - 2 > _MOST_THREADS:
-                return f"the program has started more than {_MOST_THREADS:,} threads"
+            if os.stat(f"{self._process}/task").st_nlink - 2 > _MAX_THREADS:
+                return f"the program has started more than {_MAX_THREADS:,} threads"
         if self._count_sockets() - self._sockets > _MAX_SOCKETS:
             return f"the program has opened more than {_MAX_SOCKETS} sockets"
-        files, size = self._more(MOST_FILES, MOST_BYTES)
-        size += sum(self._without_a_name())
+        files, size = self._count_growth(MOST_FILES, MOST_BYTES)
+        size += sum(self._measure_nameless())
         if files > MOST_FILES or size > MOST_BYTES:
             return (
                 f"the program has written more than {MOST_FILES:,} files or {MOST_BYTES >> 30} GiB"
@@ -186,16 +186,16 @@ class Quota:
                 return int(first.removeprefix(_SOCKETS_USED))
         return 0
 
-    def _more(self, most_files: int, most_bytes: int) -> tuple[int, int]:
+    def _count_growth(self, most_files: int, most_bytes: int) -> tuple[int, int]:
         """Return how many files and bytes there are more than at the beginning; it stops counting at these numbers."""
         files, size = -self._files, -self._bytes
-        for one in self._blocks():
-            files, size = files + 1, size + one
+        for block in self._measure_blocks():
+            files, size = files + 1, size + block
             if files > most_files or size > most_bytes:
                 break
         return files, size
 
-    def _blocks(self) -> Iterator[int]:
+    def _measure_blocks(self) -> Iterator[int]:
         """Yield the bytes that each file and folder takes."""
         folders = list(self._folders)
         while folders:
@@ -212,14 +212,14 @@ class Quota:
                     # Whatever it holds: too much.
                     yield MOST_BYTES + 1
 
-    def _without_a_name(self) -> Iterator[int]:
+    def _measure_nameless(self) -> Iterator[int]:
         """Yield the bytes of open files that have no name, or none any more: also those in memory."""
         with suppress(OSError):
             for entry in os.scandir(f"{self._process}/fd"):
                 with suppress(OSError):
-                    found = entry.stat()
-                    if stat.S_ISREG(found.st_mode) and not found.st_nlink:
-                        yield _BLOCK_BYTES * found.st_blocks
+                    status = entry.stat()
+                    if stat.S_ISREG(status.st_mode) and not status.st_nlink:
+                        yield _BLOCK_BYTES * status.st_blocks
 
 
 def spawn_isolated(
@@ -250,7 +250,7 @@ def spawn_isolated(
     try:
         process = subprocess.Popen(
             [
-                *_confined(writable[-1], writable, readable),
+                *_build_command(writable[-1], writable, readable),
                 "--as-pid-1",
                 *filtered,
                 "--info-fd",
@@ -279,7 +279,7 @@ def spawn_isolated(
         raise OSError(f"{BWRAP} has not started the program") from error
 
 
-def _confined(cwd: Path, writable: Sequence[Path], readable: Sequence[Path]) -> list[str]:
+def _build_command(cwd: Path, writable: Sequence[Path], readable: Sequence[Path]) -> list[str]:
     """Return the command of bubblewrap, up to its last options; what it starts ends when bubblewrap is ended.
 
     Args:
@@ -291,7 +291,7 @@ def _confined(cwd: Path, writable: Sequence[Path], readable: Sequence[Path]) -> 
     # It leaves them to root, who could mount again for writing what is mounted for reading.
     words += ["--cap-drop", "ALL"]
     words += ["--proc", "/proc", "--dev", "/dev", "--size", str(_TMP_BYTES), "--tmpfs", "/tmp"]
-    for place in (*_SYSTEM, *_python(), *map(str, readable)):
+    for place in (*_SYSTEM, *_list_python_folders(), *map(str, readable)):
         words += ["--ro-bind-try", place, place]
     for folder in writable:
         words += ["--bind", str(folder), str(folder)]
@@ -301,7 +301,7 @@ def _confined(cwd: Path, writable: Sequence[Path], readable: Sequence[Path]) -> 
     return [*words, "--chdir", str(cwd)]
 
 
-def _python() -> list[str]:
+def _list_python_folders() -> list[str]:
     """Return the folders that Python and its packages are in."""
     package = Path(__file__).parents[3]
     packages = [folder for folder in sys.path if Path(folder).name in _PACKAGES]

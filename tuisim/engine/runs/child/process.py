@@ -19,10 +19,10 @@ from typing import IO, TYPE_CHECKING, Any, ClassVar
 from tuisim.base.atomic import private
 from tuisim.base.regular_file import read_regular
 from tuisim.base.source import source_lines
-from tuisim.engine.runs.child.fair_clock import waited_s
+from tuisim.engine.runs.child.fair_clock import measure_waited_s
 from tuisim.engine.runs.child.isolation import LIMITS, spawn_isolated
 from tuisim.engine.runs.raw_files import create_raw_file
-from tuisim.engine.runs.side_files import LOG_FILE, MOST_BYTES, STACK_FILE
+from tuisim.engine.runs.side_files import LOG_FILE, MAX_BYTES, STACK_FILE
 
 if TYPE_CHECKING:
     from tuisim.engine.runs.child.warm import ChildProcess, Template, WarmProcess
@@ -36,9 +36,9 @@ BOOT = (
 )
 """Startup code of the child: the package comes last in the path, so that nothing beside it shadows Python's modules."""
 
-MOST_TEMPLATES = 4
+MAX_TEMPLATES = 4
 
-FEW_IDS = 32
+MAX_ID_GAP = 32
 """So many process ids are tried one by one: it takes longer to list all processes of the machine."""
 FILE_LOCKS = 10
 """Number of a limit that every process inherits on Linux, and that is unused since 2.4.25."""
@@ -48,7 +48,7 @@ STACK_WRITTEN_WITHIN_S, STACK_AWAITED_S, LOOK_AGAIN_S = 0.05, 0.1, 0.003
 
 _DIGITS = 10
 """Fewer than these has the number of a line."""
-MOST_SHOWN = 500
+MAX_SHOWN = 500
 """Stacks contain at most this many characters of a file name."""
 
 
@@ -63,20 +63,20 @@ class _Starts:
     """Held while they are looked up or changed: threads of an app start runs at the same time."""
 
 
-def warm_up() -> None:
+def start_warm_process() -> None:
     """Start the warm process, from which all later children are forked, unless it is running. Does not block."""
     with _Starts.lock:
         if _Starts.warm is None or not _Starts.warm.is_usable:
-            cool_down()
+            end_warm_process()
             # Imported on demand: it imports what most commands need not.
             from tuisim.engine.runs.child.warm import WarmProcess
 
             # If it cannot be started, each child is started by itself.
             with suppress(OSError):
-                _Starts.warm = WarmProcess(_command(), _environment())
+                _Starts.warm = WarmProcess(_build_command(), _build_environment())
 
 
-def cool_down() -> None:
+def end_warm_process() -> None:
     """End the warm process and all templates; their children go on."""
     with _Starts.lock:
         while _Starts.templates:
@@ -115,12 +115,12 @@ def start_child(
     """
     _Starts.count += 1
     if _Starts.count > 1 and isolated_with is None:
-        warm_up()
+        start_warm_process()
     with ExitStack() as theirs, ExitStack() as ours:
         theirs.callback(os.close, lock_fd)
-        command_read, command_fd = _pipe(theirs, ours)
-        event_fd, event_write = _pipe(ours, theirs)
-        lifeline_read, lifeline_fd = _pipe(theirs, ours)
+        command_read, command_fd = _open_pipe(theirs, ours)
+        event_fd, event_write = _open_pipe(ours, theirs)
+        lifeline_read, lifeline_fd = _open_pipe(theirs, ours)
         inherited = [command_read, event_write, lifeline_read, lock_fd]
         with open(folder / LOG_FILE, "wb", opener=private) as log:
             cwd = working_directory if os.path.isdir(working_directory) else None
@@ -135,10 +135,10 @@ def start_child(
                     # It may create none itself: they could outlive their descriptors.
                     inherited.append(raw_fd := create_raw_file(fd))
                     theirs.callback(os.close, raw_fd)
-                command = [*_command(LIMITS), str(folder), *map(str, inherited)]
+                command = [*_build_command(LIMITS), str(folder), *map(str, inherited)]
                 writable = [folder, Path(cwd)] if cwd else [folder]
                 process = spawn_isolated(
-                    command, _environment(), log, inherited, writable, isolated_with
+                    command, _build_environment(), log, inherited, writable, isolated_with
                 )
         ours.pop_all()
     os.set_blocking(event_fd, False)
@@ -146,7 +146,7 @@ def start_child(
     return process, command_fd, event_fd, lifeline_fd
 
 
-def _pipe(reader: ExitStack, writer: ExitStack) -> tuple[int, int]:
+def _open_pipe(reader: ExitStack, writer: ExitStack) -> tuple[int, int]:
     """Return the ends of a pipe, which are closed with these stacks."""
     read_fd, write_fd = os.pipe()
     reader.callback(os.close, read_fd)
@@ -166,10 +166,10 @@ def prepare_template(key: Hashable, folder: Path, run: Mapping[str, Any]) -> Non
         if _Starts.warm is not None and _Starts.warm.is_usable:
             # Without a template, children are forked from the warm process.
             with suppress(OSError):
-                _template(_Starts.warm, key, folder, run)
+                _get_template(_Starts.warm, key, folder, run)
 
 
-def _command(first: str = "") -> list[str]:
+def _build_command(first: str = "") -> list[str]:
     """Return the command of a child without its arguments; `first` is code for its start."""
     return [sys.executable, "-s", "-P", "-c", first + BOOT, str(Path(__file__).parents[4])]
 
@@ -191,31 +191,33 @@ def _fork(
         # The working directory no longer exists; only a process that is started there can be in it.
         return None
     try:
-        server = _Starts.warm if key is None else _template(_Starts.warm, key, folder, run)
-        return server.fork(str(folder), here, _environment(), [log_fd, *inherited], run)
+        server = _Starts.warm if key is None else _get_template(_Starts.warm, key, folder, run)
+        return server.fork(str(folder), here, _build_environment(), [log_fd, *inherited], run)
     except OSError:
-        cool_down()
+        end_warm_process()
         return None
 
 
-def _template(warm: WarmProcess, key: Hashable, folder: Path, run: Mapping[str, Any]) -> Template:
+def _get_template(
+    warm: WarmProcess, key: Hashable, folder: Path, run: Mapping[str, Any]
+) -> Template:
     templates = _Starts.templates
     if key not in templates:
-        if len(templates) >= MOST_TEMPLATES:
+        if len(templates) >= MAX_TEMPLATES:
             templates.popitem(last=False)[1].close()
-        templates[key] = warm.template(str(folder), run)
+        templates[key] = warm.fork_template(str(folder), run)
     templates.move_to_end(key)
     return templates[key]
 
 
 def _spawn(folder: Path, cwd: str | None, log: IO[bytes], inherited: Sequence[int]) -> ChildProcess:
     return subprocess.Popen(
-        [*_command(), str(folder), *map(str, inherited)],
+        [*_build_command(), str(folder), *map(str, inherited)],
         pass_fds=inherited,
         stdin=subprocess.DEVNULL,
         stdout=subprocess.DEVNULL,
         stderr=log,
-        env=_environment(),
+        env=_build_environment(),
         cwd=cwd,
         start_new_session=True,
     )
@@ -227,13 +229,13 @@ def mark(pid: int) -> int:
     Returns:
         The mark; 0 if that is not supported.
     """
-    wanted = 1 << 62 | int.from_bytes(os.urandom(7))
+    new_mark = 1 << 62 | int.from_bytes(os.urandom(7))
     try:
-        resource.prlimit(pid, FILE_LOCKS, (wanted, wanted))
+        resource.prlimit(pid, FILE_LOCKS, (new_mark, new_mark))
     # Not Linux, exited already, or a limit is set.
     except (AttributeError, OSError, ValueError):
         return 0
-    return wanted
+    return new_mark
 
 
 def end_group(pid: int) -> None:
@@ -244,17 +246,21 @@ def end_group(pid: int) -> None:
         return
 
 
-def end_left_over(pid: int, marked: int) -> None:
+def end_descendants(pid: int, marked: int) -> None:
     """Kill all processes that an exited child has left behind; without a mark not those in sessions of their own."""
     ended = {pid}
     try:
         while marked and (
-            found := {one for one in _younger_than(pid) - ended if _has_mark(one, marked)}
+            descendants := {
+                descendant
+                for descendant in _list_younger(pid) - ended
+                if _has_mark(descendant, marked)
+            }
         ):
-            ended |= found
-            for one in found:
+            ended |= descendants
+            for descendant in descendants:
                 with suppress(ProcessLookupError, PermissionError):
-                    os.kill(one, signal.SIGKILL)
+                    os.kill(descendant, signal.SIGKILL)
     except OSError:
         # No such file system, or no permission to read it.
         marked = 0
@@ -262,14 +268,14 @@ def end_left_over(pid: int, marked: int) -> None:
         end_group(pid)
 
 
-def _younger_than(pid: int) -> set[int]:
+def _list_younger(pid: int) -> set[int]:
     """Return the processes that may have been started after a process, and ids that may belong to none."""
     last = int(Path("/proc/loadavg").read_text("ascii").split()[-1])
     # Process ids increase, and wrap around when they are used up.
-    if pid <= last < pid + FEW_IDS:
+    if pid <= last < pid + MAX_ID_GAP:
         return set(range(pid + 1, last + 1))
     there = {int(name) for name in os.listdir("/proc") if name.isdigit()}
-    return {one for one in there if one > pid} if last >= pid else there
+    return {process for process in there if process > pid} if last >= pid else there
 
 
 def _has_mark(pid: int, marked: int) -> bool:
@@ -279,15 +285,15 @@ def _has_mark(pid: int, marked: int) -> bool:
         return False
 
 
-def _environment() -> dict[str, str]:
+def _build_environment() -> dict[str, str]:
     """Return the child's environment: isolated from the user's, with reproducible hashes."""
-    kept = {
+    inherited = {
         name: os.environ[name]
         for name in ("PATH", "HOME", "LD_LIBRARY_PATH", "TMPDIR")
         if name in os.environ
     }
     return {
-        **kept,
+        **inherited,
         "PYTHONHASHSEED": "0",
         "PYTHONUTF8": "1",
         # One thread runs at a time: a further heap would only use address space.
@@ -316,10 +322,10 @@ def write_command(fd: int, data: bytes) -> bool:
 
 def await_stack(folder: Path, pid: int) -> None:
     """Block for a short time until a stuck child has written its stack."""
-    start_s, waited_before_s = time.monotonic(), waited_s(pid)
+    start_s, waited_before_s = time.monotonic(), measure_waited_s(pid)
     size, path = 0, folder / STACK_FILE
     while (passed_s := time.monotonic() - start_s) < STACK_AWAITED_S and passed_s - (
-        waited_s(pid) - waited_before_s
+        measure_waited_s(pid) - waited_before_s
     ) < STACK_WRITTEN_WITHIN_S:
         time.sleep(LOOK_AGAIN_S)
         before, size = size, path.stat().st_size if path.exists() else 0
@@ -327,36 +333,36 @@ def await_stack(folder: Path, pid: int) -> None:
             return
 
 
-def stuck_line(folder: Path, program_file: str) -> int:
+def find_stuck_line(folder: Path, program_file: str) -> int:
     """Return the program's line in the stack that a stuck child wrote; 0 if there is none."""
     try:
-        stack = read_regular(folder / STACK_FILE, MOST_BYTES).decode("utf-8", "replace")
+        stack = read_regular(folder / STACK_FILE, MAX_BYTES).decode("utf-8", "replace")
     except OSError:
         return 0
     # In the format of that file: ASCII, truncated.
-    shown = program_file.encode("ascii", "backslashreplace").decode()
+    ascii_file = program_file.encode("ascii", "backslashreplace").decode()
     for line in source_lines(stack):
-        if f'"{shown}"' in line or (
-            len(program_file) > MOST_SHOWN and f'"{shown[:MOST_SHOWN]}' in line
+        if f'"{ascii_file}"' in line or (
+            len(program_file) > MAX_SHOWN and f'"{ascii_file[:MAX_SHOWN]}' in line
         ):
             number = line.partition(", line ")[2].partition(" ")[0]
             return int(number) if number.isdecimal() and len(number) < _DIGITS else 0
     return 0
 
 
-def what_ended(exit_status: int, folder: Path, line: int) -> str:
+def describe_end(exit_status: int, folder: Path, line: int) -> str:
     """Return the reason why a child ended without an event: a signal and a line, or exit status and error text."""
     if exit_status < 0:
         where = f" in line {line}" if line else ""
-        return f"the program's process was killed by {_signal_name(-exit_status)}{where}"
+        return f"the program's process was killed by {_name_signal(-exit_status)}{where}"
     log = ""
     with suppress(OSError):
-        log = read_regular(folder / LOG_FILE, MOST_BYTES).decode("utf-8", "replace").strip()
+        log = read_regular(folder / LOG_FILE, MAX_BYTES).decode("utf-8", "replace").strip()
     last = f": {source_lines(log)[-1]}" if log else ""
     return f"the program's process ended with exit status {exit_status}{last}"
 
 
-def _signal_name(number: int) -> str:
+def _name_signal(number: int) -> str:
     try:
         return signal.Signals(number).name
     except ValueError:

@@ -13,7 +13,7 @@ def is_readable(descriptor: int, timeout_s: float | None) -> bool:
     """
     poll = select.poll()
     poll.register(descriptor, select.POLLIN)
-    found = poll.poll(None if timeout_s is None else max(0, round(timeout_s * 1000)))
-    if found and found[0][1] & select.POLLNVAL:
+    events = poll.poll(None if timeout_s is None else max(0, round(timeout_s * 1000)))
+    if events and events[0][1] & select.POLLNVAL:
         raise OSError(9, "Bad file descriptor")
-    return bool(found)
+    return bool(events)

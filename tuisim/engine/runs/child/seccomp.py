@@ -51,57 +51,57 @@ _MACHINES = {
 }
 
 
-def no_processes_filter() -> bytes | None:
+def build_filter() -> bytes | None:
     """Return the filter as bubblewrap takes it; None for a processor whose calls are not known here."""
     machine = _MACHINES.get(platform.machine())
     if machine is None:
         return None
     fails, unknown, nothing = _FAIL | errno.EPERM, _FAIL | errno.ENOSYS, _FAIL
     program = [
-        _instruction(_LOAD, _ARCHITECTURE_AT),
+        _pack_instruction(_LOAD, _ARCHITECTURE_AT),
         # Calls of another architecture have other numbers.
-        _instruction(_EQUAL, machine.architecture, 1, 0),
-        _instruction(_RETURN, fails),
-        _instruction(_LOAD, _NUMBER_AT),
-        _instruction(_AT_LEAST, _X32, 0, 1),
-        _instruction(_RETURN, unknown),
+        _pack_instruction(_EQUAL, machine.architecture, 1, 0),
+        _pack_instruction(_RETURN, fails),
+        _pack_instruction(_LOAD, _NUMBER_AT),
+        _pack_instruction(_AT_LEAST, _X32, 0, 1),
+        _pack_instruction(_RETURN, unknown),
         # Its flags lie in memory, where a filter cannot look; the C library then uses clone.
-        _instruction(_EQUAL, machine.clone3, 0, 1),
-        _instruction(_RETURN, unknown),
+        _pack_instruction(_EQUAL, machine.clone3, 0, 1),
+        _pack_instruction(_RETURN, unknown),
     ]
     for number in (*machine.refused, *machine.refused_everywhere):
-        program += [_instruction(_EQUAL, number, 0, 1), _instruction(_RETURN, fails)]
+        program += [_pack_instruction(_EQUAL, number, 0, 1), _pack_instruction(_RETURN, fails)]
     program += [
         # The buffers of a socket keep their size: they are memory, too. The program hears that it has been changed.
-        _instruction(_EQUAL, machine.setsockopt, 0, 7),
-        _instruction(_LOAD, _SECOND_AT),
-        _instruction(_EQUAL, socket.SOL_SOCKET, 0, 4),
-        _instruction(_LOAD, _THIRD_AT),
-        _instruction(_EQUAL, socket.SO_SNDBUF, 1, 0),
-        _instruction(_EQUAL, socket.SO_RCVBUF, 0, 1),
-        _instruction(_RETURN, nothing),
-        _instruction(_RETURN, _ALLOW),
-        _instruction(_EQUAL, machine.clone, 1, 0),
-        _instruction(_RETURN, _ALLOW),
-        _instruction(_LOAD, _FIRST_AT),
-        _instruction(_BITS, _CLONE_THREAD, 0, 1),
-        _instruction(_RETURN, _ALLOW),
-        _instruction(_RETURN, fails),
+        _pack_instruction(_EQUAL, machine.setsockopt, 0, 7),
+        _pack_instruction(_LOAD, _SECOND_AT),
+        _pack_instruction(_EQUAL, socket.SOL_SOCKET, 0, 4),
+        _pack_instruction(_LOAD, _THIRD_AT),
+        _pack_instruction(_EQUAL, socket.SO_SNDBUF, 1, 0),
+        _pack_instruction(_EQUAL, socket.SO_RCVBUF, 0, 1),
+        _pack_instruction(_RETURN, nothing),
+        _pack_instruction(_RETURN, _ALLOW),
+        _pack_instruction(_EQUAL, machine.clone, 1, 0),
+        _pack_instruction(_RETURN, _ALLOW),
+        _pack_instruction(_LOAD, _FIRST_AT),
+        _pack_instruction(_BITS, _CLONE_THREAD, 0, 1),
+        _pack_instruction(_RETURN, _ALLOW),
+        _pack_instruction(_RETURN, fails),
     ]
     return b"".join(program)
 
 
-def _instruction(code: int, operand: int, if_true: int = 0, if_false: int = 0) -> bytes:
+def _pack_instruction(code: int, operand: int, if_true: int = 0, if_false: int = 0) -> bytes:
     return struct.pack("=HBBI", code, if_true, if_false, operand)
 
 
 def filter_descriptor() -> int | None:
-    """Return a descriptor from which the filter can be read once; None as of `no_processes_filter`.
+    """Return a descriptor from which the filter can be read once; None as of `build_filter`.
 
     Raises:
         OSError: this process can open no more files.
     """
-    content = no_processes_filter()
+    content = build_filter()
     if content is None:
         return None
     read_fd, write_fd = os.pipe()

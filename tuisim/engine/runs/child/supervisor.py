@@ -21,9 +21,9 @@ LOOK_EVERY_S = 0.5
 STOPPED = "T"
 
 
-def processes() -> dict[int, tuple[int, str]]:
+def list_processes() -> dict[int, tuple[int, str]]:
     """Return parent and state of each process of this machine, by process id."""
-    found = {}
+    states = {}
     for name in os.listdir("/proc"):
         if name.isdigit():
             try:
@@ -32,26 +32,30 @@ def processes() -> dict[int, tuple[int, str]]:
                     state, parent = file.read().rpartition(b")")[2].split()[:2]
             except (OSError, ValueError):
                 continue
-            found[int(name)] = int(parent), state.decode("latin-1")
-    return found
+            states[int(name)] = int(parent), state.decode("latin-1")
+    return states
 
 
-def tree(root: int, known: dict[int, tuple[int, str]]) -> Iterator[int]:
+def walk_processes(root: int, known: dict[int, tuple[int, str]]) -> Iterator[int]:
     """Yield a process and all that descend from it."""
     children: dict[int, list[int]] = {}
     for pid, (parent, _) in known.items():
         children.setdefault(parent, []).append(pid)
-    found = [root] if root in known else []
-    while found:
-        pid = found.pop()
+    pending = [root] if root in known else []
+    while pending:
+        pid = pending.pop()
         yield pid
-        found += children.get(pid, [])
+        pending += children.get(pid, [])
 
 
 def continue_stopped(root: int, before: set[int]) -> set[int]:
     """Continue the processes that were stopped at the last look, too; return those that are stopped now."""
-    known = processes()
-    stopped = {pid for pid in tree(root, known) if known[pid][1] == STOPPED and pid != os.getpid()}
+    known = list_processes()
+    stopped = {
+        pid
+        for pid in walk_processes(root, known)
+        if known[pid][1] == STOPPED and pid != os.getpid()
+    }
     for pid in stopped & before:
         try:
             os.kill(pid, signal.SIGCONT)
@@ -66,15 +70,15 @@ def supervise(root: int) -> None:
     is_suspended = False
     while True:
         if select.select([sys.stdin], [], [], LOOK_EVERY_S)[0]:
-            told = os.read(sys.stdin.fileno(), 1)
-            if not told:
+            command = os.read(sys.stdin.fileno(), 1)
+            if not command:
                 return
-            is_suspended = told == b"s"
+            is_suspended = command == b"s"
         stopped = set() if is_suspended else continue_stopped(root, stopped)
 
 
 @contextmanager
-def supervised() -> Iterator[None]:
+def keep_running() -> Iterator[None]:
     """Continue this process, and those that it starts in the block, when a program stops them.
 
     Without `/proc` nothing is continued.
@@ -101,15 +105,15 @@ def supervised() -> Iterator[None]:
         ) from error
     with process:
         assert process.stdin is not None
-        told = process.stdin.fileno()
+        fd = process.stdin.fileno()
 
         def suspend(number: int, frame: FrameType | None) -> None:
             # By the user: the supervisor leaves it so.
             with suppress(OSError):
-                os.write(told, b"s")
+                os.write(fd, b"s")
             os.kill(os.getpid(), signal.SIGSTOP)
             with suppress(OSError):
-                os.write(told, b"c")
+                os.write(fd, b"c")
 
         before = signal.signal(signal.SIGTSTP, suspend)
         try:

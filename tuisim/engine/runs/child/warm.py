@@ -73,7 +73,7 @@ class ForkedChild:
                     self.returncode = -signal.SIGKILL
             elif self.returncode is None and (now_s := time.monotonic()) >= self._look_at_s:
                 self._look_at_s = now_s + LOOK_EVERY_S
-                _continue_parent_of(self.pid)
+                _continue_parent(self.pid)
         return self.returncode
 
     def wait(self, timeout: float | None = None) -> int:
@@ -99,7 +99,7 @@ class ForkedChild:
                 os.kill(self.pid, number)
 
 
-def _continue_parent_of(pid: int) -> None:
+def _continue_parent(pid: int) -> None:
     """Continue the process that has to report the end of a child: a program may have stopped it."""
     # Without /proc, or with another user's process, nothing can be done.
     with suppress(OSError, ValueError):
@@ -162,7 +162,7 @@ class ForkClient:
         try:
             with open(os.devnull, "r+b", buffering=0) as null, self._lock:
                 data = json.dumps(
-                    {**request, "run": run if serves else self._changes(run)}
+                    {**request, "run": run if serves else self._select_changes(run)}
                 ).encode()
                 message = len(data).to_bytes(_LENGTH_BYTES, "little") + data
                 sent = socket.send_fds(self._socket, [message], [theirs, null.fileno(), *files])
@@ -184,7 +184,7 @@ class ForkClient:
             )
         return ForkedChild(pid, status_fd)
 
-    def _changes(self, _run: Mapping[str, Any]) -> dict[str, Any]:
+    def _select_changes(self, _run: Mapping[str, Any]) -> dict[str, Any]:
         """Return what the server has to know of a run, whose process reads the rest."""
         return {}
 
@@ -221,15 +221,15 @@ class Template(ForkClient):
         self, connection: socket.socket, process: ChildProcess, run: Mapping[str, Any]
     ) -> None:
         super().__init__(connection, process)
-        self._last = _varying(run)
+        self._last = _select_varying(run)
         """What it knows of the last run."""
 
-    def _changes(self, run: Mapping[str, Any]) -> dict[str, Any]:
-        last, self._last = self._last, _varying(run)
+    def _select_changes(self, run: Mapping[str, Any]) -> dict[str, Any]:
+        last, self._last = self._last, _select_varying(run)
         return {name: value for name, value in self._last.items() if last[name] != value}
 
 
-def _varying(run: Mapping[str, Any]) -> dict[str, Any]:
+def _select_varying(run: Mapping[str, Any]) -> dict[str, Any]:
     """Return all in which two runs of a template may differ, from the contents of a `run.json`."""
     spec, world = run["spec"], run["spec"]["world"]
     return {
@@ -270,7 +270,7 @@ class WarmProcess(ForkClient):
         """Whether it runs, and belongs to this process, not to one that has forked this one."""
         return super().is_usable and self._process.poll() is None
 
-    def template(self, folder: str, run: Mapping[str, Any]) -> Template:
+    def fork_template(self, folder: str, run: Mapping[str, Any]) -> Template:
         """Fork a template for the robot and the world of a run. Does not block until it is ready.
 
         Args:

@@ -13,7 +13,7 @@ from tuisim.engine.core.conditions import Edge, Operator, ValueCondition, ValueS
 from tuisim.engine.core.profile import NS_PER_S
 from tuisim.engine.core.sensors import build_reader, list_columns
 from tuisim.engine.runs.records import SAMPLE_STREAMS, Stream
-from tuisim.engine.runs.samples import value_reader
+from tuisim.engine.runs.samples import build_value_reader
 from tuisim.engine.runtime.debugger.value_text import evaluate_truth
 from tuisim.engine.runtime.session import Session
 
@@ -86,7 +86,7 @@ class LineCondition:
                 if value is not self or name in frame.f_builtins
             }
             if all(type(value) in _SCALARS for value in values.values()):
-                return self._at_once(values)
+                return self._evaluate_here(values)
         answer = apart(
             lambda: evaluate_truth(
                 self._text, {**frame.f_globals, **names}, frame.f_builtins
@@ -94,7 +94,7 @@ class LineCondition:
         )
         return "takes too long" if answer is None else answer.decode()[1:]
 
-    def _at_once(self, values: dict[str, Any]) -> str:
+    def _evaluate_here(self, values: dict[str, Any]) -> str:
         try:
             return "is true" if eval(self._code, {"__builtins__": {}}, values) else ""
         except NameError:
@@ -134,26 +134,28 @@ class Watcher:
         """Replace the breakpoints; those that stay keep their state."""
         ticks, rows = self._after_tick, self._on_row
         self._after_tick, self._on_row = {}, {}
-        for one in breaks:
-            match one.rule:
+        for break_point in breaks:
+            match break_point.rule:
                 case LineBreak():
                     pass
                 case ValueCondition(source=ValueSource.SAMPLE | ValueSource.PRINT) as condition:
-                    self._on_row[one.text] = rows.get(one.text) or _row_check(condition)
+                    self._on_row[break_point.text] = rows.get(break_point.text) or _build_row_check(
+                        condition
+                    )
                 case rule:
-                    check = ticks.get(one.text) or self._tick_check(rule)
+                    check = ticks.get(break_point.text) or self._tick_check(rule)
                     if check is not None:
-                        self._after_tick[one.text] = check
+                        self._after_tick[break_point.text] = check
 
-    def after_tick(self) -> tuple[str, str] | None:
+    def match_tick(self) -> tuple[str, str] | None:
         """Return text and value of a breakpoint that matches after this tick."""
-        return _first((text, check()) for text, check in self._after_tick.items())
+        return _find_first((text, check()) for text, check in self._after_tick.items())
 
-    def after_row(self, row: str, stream: Stream) -> tuple[str, str] | None:
+    def match_row(self, row: str, stream: Stream) -> tuple[str, str] | None:
         """Return text and value of a breakpoint that matches this printed row."""
         if stream not in SAMPLE_STREAMS:
             return None
-        return _first((text, check(row)) for text, check in self._on_row.items())
+        return _find_first((text, check(row)) for text, check in self._on_row.items())
 
     # Checks
 
@@ -167,9 +169,12 @@ class Watcher:
                     "time", Operator.GREATER_EQUAL, repr(time_s - 0.5 / NS_PER_S)
                 )
             case StallBreak():
-                value, condition = self._stalled, ValueCondition("stall", Operator.GREATER, "0")
+                value, condition = (
+                    self._list_stalled,
+                    ValueCondition("stall", Operator.GREATER, "0"),
+                )
             case ValueCondition():
-                value, condition = self._value_of(rule.name), rule
+                value, condition = self._build_reader(rule.name), rule
         if value is None:
             return None
         edge = Edge(condition)
@@ -186,11 +191,11 @@ class Watcher:
     def _time_s(self) -> float:
         return self._session.sim.compute_due_ns(self._session.sim.tick) / NS_PER_S
 
-    def _stalled(self) -> float:
+    def _list_stalled(self) -> float:
         sim = self._session.sim
         return float(sum(motor.blocked_ticks >= sim.stall_ticks for motor in sim.motors))
 
-    def _value_of(self, column: str) -> Value | None:
+    def _build_reader(self, column: str) -> Value | None:
         """Return a function that reads a column; None if this robot does not have it."""
         session, sim = self._session, self._session.sim
         spec = sim.spec
@@ -200,14 +205,14 @@ class Watcher:
         return lambda: read(sim.build_instant(with_motors=True), sim.spec, session.field)
 
 
-def _first(found: Iterator[tuple[str, str]]) -> tuple[str, str] | None:
+def _find_first(matches: Iterator[tuple[str, str]]) -> tuple[str, str] | None:
     """Return the first match; every check is called nevertheless."""
-    met = [(text, value) for text, value in found if value]
+    met = [(text, value) for text, value in matches if value]
     return met[0] if met else None
 
 
-def _row_check(condition: ValueCondition) -> Callable[[str], str]:
-    read, edge = value_reader(condition), Edge(condition)
+def _build_row_check(condition: ValueCondition) -> Callable[[str], str]:
+    read, edge = build_value_reader(condition), Edge(condition)
 
     def check(row: str) -> str:
         value = read(row)

@@ -21,7 +21,7 @@ from tuisim.engine.protocol import (
 from tuisim.engine.runs.records import Stream
 from tuisim.engine.runtime.control import ATTENTION, DEBUG, LIVE
 from tuisim.engine.runtime.debugger.conditions import LineCondition, Watcher
-from tuisim.engine.runtime.debugger.fork import apart
+from tuisim.engine.runtime.debugger.fork import run_apart
 from tuisim.engine.runtime.debugger.inspection import Inspector
 from tuisim.engine.runtime.debugger.tracer import Tracer
 from tuisim.engine.runtime.scheduler import ScheduledThread, Scheduler
@@ -51,7 +51,7 @@ ENDLESS_DEPTH = 1 << 30
 """Larger than the depth of any stack."""
 
 
-def step_from(how: LineStep, task: ScheduledThread, depth: int) -> Step:
+def build_step(how: LineStep, task: ScheduledThread, depth: int) -> Step:
     """Return the step that starts at a line.
 
     Args:
@@ -74,22 +74,22 @@ NEXT_LINE = Step(None, ENDLESS_DEPTH)
 """Complete at the next line of any thread."""
 
 
-def line_with_code(program: types.CodeType | None, line: int) -> int:
+def find_code_line(program: types.CodeType | None, line: int) -> int:
     """Return `line` or, if it has no code in the program, the next line that has: any other would never be hit.
 
     After the last such line, and for 0, return `line`.
     """
     if program is None or not line:
         return line
-    return min((one for one in _lines_of(program) if one >= line), default=line)
+    return min((code_line for code_line in _list_lines(program) if code_line >= line), default=line)
 
 
-def _lines_of(code: types.CodeType) -> Iterator[int]:
+def _list_lines(code: types.CodeType) -> Iterator[int]:
     left = [code]
     while left:
-        one = left.pop()
-        yield from (line for _, _, line in one.co_lines() if line)
-        left += [part for part in one.co_consts if isinstance(part, types.CodeType)]
+        code_ = left.pop()
+        yield from (line for _, _, line in code_.co_lines() if line)
+        left += [part for part in code_.co_consts if isinstance(part, types.CodeType)]
 
 
 CONDITION_LIMIT_S = 0.2
@@ -120,7 +120,7 @@ class Debugger:
     ) -> None:
         self._session, self._scheduler = session, scheduler
         self._code = code
-        self._tracer = Tracer(session, scheduler, self._at_line)
+        self._tracer = Tracer(session, scheduler, self._handle_line)
         self._looker = Inspector(session, scheduler, self._tracer, module, prepared)
         self._watcher = Watcher(session)
         self._by_line: dict[int, list[tuple[Breakpoint, LineCondition | None]]] = {}
@@ -152,16 +152,16 @@ class Debugger:
             case protocol.StepLine(how=how):
                 self._forget_goals()
                 # A paused run waits for commands in the thread that was paused.
-                depth = self._tracer.depth_of(_getframe())
+                depth = self._tracer.count_depth(_getframe())
                 self._step = (
-                    step_from(how, self._scheduler.current, depth)
+                    build_step(how, self._scheduler.current, depth)
                     if steering.holding
                     else NEXT_LINE
                 )
                 steering.resume()
             case protocol.RunToLine(line=line):
                 self._forget_goals()
-                self._line = line_with_code(self._code, line)
+                self._line = find_code_line(self._code, line)
                 steering.resume()
             case protocol.RunToInstant(tick=tick, ordinal=ordinal):
                 self._forget_goals()
@@ -185,11 +185,11 @@ class Debugger:
     def answer(self) -> None:
         """Answer the requests received while paused."""
         looks, self._looks = self._looks, []
-        for asked in looks:
-            if isinstance(asked, protocol.Inspect):
-                self._session.channel.send(self._looker.look(asked, self._take_more))
-            elif isinstance(asked, protocol.RequestHistory):
-                lines = self._tracer.history(max(0, asked.count), self._looker.name_of)
+        for request in looks:
+            if isinstance(request, protocol.Inspect):
+                self._session.channel.send(self._looker.look(request, self._take_more))
+            elif isinstance(request, protocol.RequestHistory):
+                lines = self._tracer.history(max(0, request.count), self._looker.name_thread)
                 self._session.channel.send(protocol.LineHistory(lines))
 
     def _take_more(self) -> bool:
@@ -220,19 +220,21 @@ class Debugger:
             self._trace_from = tick if self._trace_from is None else min(tick, self._trace_from)
 
     def _set_breaks(self, breaks: Iterable[Breakpoint]) -> None:
-        wanted = [one for one in breaks if not one.disabled]
+        enabled = [break_point for break_point in breaks if not break_point.disabled]
         before = {
-            one.text: condition for found in self._by_line.values() for one, condition in found
+            break_point.text: condition
+            for line_breaks in self._by_line.values()
+            for break_point, condition in line_breaks
         }
         self._by_line = {}
-        for one in wanted:
-            if isinstance(one.rule, LineBreak):
-                text = one.rule.condition
-                condition = before.get(one.text) or (LineCondition(text) if text else None)
-                line = line_with_code(self._code, one.rule.line)
-                self._by_line.setdefault(line, []).append((one, condition))
-        self._watcher.set(wanted)
-        self._session.output.watch = self._after_row if self._watcher.rows else None
+        for break_point in enabled:
+            if isinstance(break_point.rule, LineBreak):
+                text = break_point.rule.condition
+                condition = before.get(break_point.text) or (LineCondition(text) if text else None)
+                line = find_code_line(self._code, break_point.rule.line)
+                self._by_line.setdefault(line, []).append((break_point, condition))
+        self._watcher.set(enabled)
+        self._session.output.watch = self._handle_row if self._watcher.rows else None
 
     def _trace(self, at_tick: bool) -> None:
         tracer, tick = self._tracer, self._session.sim.tick
@@ -244,7 +246,7 @@ class Debugger:
 
     def _update_session(self) -> None:
         """Let the session call the debugger at ticks only when needed."""
-        session, goals = self._session, self._goal_ticks()
+        session, goals = self._session, self._list_goal_ticks()
         session.steering.debugged = self._watcher.ticks or bool(goals)
         session.flags |= DEBUG
         if (
@@ -253,33 +255,33 @@ class Debugger:
             and not self._watcher.ticks
             and min(goals) > session.sim.tick
         ):
-            session.rush_to(min(goals))
+            session.skip_control(min(goals))
         elif session.steering.debugged:
             session.flags |= LIVE
 
-    def _goal_ticks(self) -> list[int]:
+    def _list_goal_ticks(self) -> list[int]:
         goals = [] if self._instant is None else [self._instant[0]]
         return goals if self._trace_from is None or self._tracer.on else [*goals, self._trace_from]
 
     # Ticks
 
-    def most_ticks(self, most: int) -> int:
+    def limit_ticks(self, most: int) -> int:
         """Return the number of ticks that may run before `after_ticks` has to be called."""
         tick = self._session.sim.tick
         if self._watcher.ticks:
             return 1
-        return min([most, *(goal - tick for goal in self._goal_ticks() if goal > tick)])
+        return min([most, *(goal - tick for goal in self._list_goal_ticks() if goal > tick)])
 
-    def before_tick(self) -> None:
+    def check_goal(self) -> None:
         """Pause if the goal is reached. Called right before a tick, after user actions."""
         tick = self._session.sim.tick
         if self._instant is not None and self._instant <= (tick, BEFORE_NEXT_TICK):
             self._hold_at_tick(PauseReason.INSTANT, BEFORE_NEXT_TICK)
 
-    def after_ticks(self) -> None:
+    def check_breakpoints(self) -> None:
         """Pause if a breakpoint matches the tick that was just run."""
         tick = self._session.sim.tick
-        met = self._watcher.after_tick() if self._watcher.ticks else None
+        met = self._watcher.match_tick() if self._watcher.ticks else None
         self._trace(at_tick=True)
         if met is not None:
             self._hold_at_tick(PauseReason.BREAK, AFTER_TICK, *met)
@@ -301,16 +303,16 @@ class Debugger:
 
     # Lines and rows
 
-    def _at_line(self, frame: types.FrameType, line: int) -> None:
+    def _handle_line(self, frame: types.FrameType, line: int) -> None:
         session = self._session
         if session.flags & ATTENTION:
-            session.checkpoint()
+            session.check_stop()
         if session.stop_reason is not None:
             return
         own = frame.f_code.co_filename == session.program_file
         reason: PauseReason | None = None
         text = value = ""
-        depth = self._tracer.depth_of(frame) if self._step is not None else 0
+        depth = self._tracer.count_depth(frame) if self._step is not None else 0
         if self._instant is not None and self._is_reached(self._tracer.ordinal):
             reason = PauseReason.INSTANT
         elif self._step is not None and self._step.is_done(self._scheduler.current, depth):
@@ -318,34 +320,34 @@ class Debugger:
         elif own and line == self._line:
             reason = PauseReason.LINE
         elif own:
-            for one, condition in self._by_line.get(line, ()):
-                value = condition.holds(frame, self._apart) if condition is not None else ""
+            for break_point, condition in self._by_line.get(line, ()):
+                value = condition.holds(frame, self._run_apart) if condition is not None else ""
                 if condition is None or value:
-                    reason, text = PauseReason.BREAK, one.text
+                    reason, text = PauseReason.BREAK, break_point.text
                     break
         if reason is not None:
             file = "" if own else frame.f_code.co_filename
-            moment = self._moment(line, reason, text, value, self._tracer.ordinal, file)
+            moment = self._build_moment(line, reason, text, value, self._tracer.ordinal, file)
             self._hold(moment)
 
     def _is_reached(self, ordinal: int) -> bool:
         assert self._instant is not None
-        tick, wanted = self._instant
+        tick, goal_ordinal = self._instant
         now = self._session.sim.tick
-        return now > tick or (now == tick and wanted > AFTER_TICK and ordinal >= wanted)
+        return now > tick or (now == tick and goal_ordinal > AFTER_TICK and ordinal >= goal_ordinal)
 
-    def _after_row(self, row: str, stream: Stream) -> None:
-        met = self._watcher.after_row(row, stream)
+    def _handle_row(self, row: str, stream: Stream) -> None:
+        met = self._watcher.match_row(row, stream)
         if met is not None and self._session.stop_reason is None:
             line = self._session.program_line()
-            self._hold(self._moment(line, PauseReason.BREAK, *met, self._tracer.ordinal))
+            self._hold(self._build_moment(line, PauseReason.BREAK, *met, self._tracer.ordinal))
 
-    def _apart(self, work: Callable[[], bytes]) -> bytes | None:
-        return apart(self._session, self._scheduler, work, CONDITION_LIMIT_S, self._take_more)
+    def _run_apart(self, work: Callable[[], bytes]) -> bytes | None:
+        return run_apart(self._session, self._scheduler, work, CONDITION_LIMIT_S, self._take_more)
 
     # Pausing
 
-    def _moment(
+    def _build_moment(
         self,
         line: int,
         reason: PauseReason,
@@ -355,7 +357,7 @@ class Debugger:
         file: str = "",
     ) -> Paused:
         session = self._session
-        thread = self._looker.name_of(self._scheduler.current)
+        thread = self._looker.name_thread(self._scheduler.current)
         return Paused(
             session.sim.tick, session.now, line, reason, text, value, ordinal, thread, file
         )
@@ -365,7 +367,7 @@ class Debugger:
     ) -> None:
         session = self._session
         session.now = max(session.now, session.sim.compute_due_ns(session.sim.tick))
-        self._hold(self._moment(session.sim.line, reason, text, value, ordinal))
+        self._hold(self._build_moment(session.sim.line, reason, text, value, ordinal))
 
     def _hold(self, moment: Paused) -> None:
         session = self._session

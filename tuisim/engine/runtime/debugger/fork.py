@@ -21,7 +21,7 @@ from tuisim.engine.runtime.raw_output import silence_descriptors
 from tuisim.engine.runtime.scheduler import Scheduler
 from tuisim.engine.runtime.session import Session
 
-MOST_BYTES = 4 << 20
+MAX_BYTES = 4 << 20
 """A longer answer is discarded."""
 BLOCKED_LIMIT_S = 2.0
 """Real seconds after which a copy that uses no CPU time is killed, for instance when it waits for a lock."""
@@ -31,7 +31,7 @@ class TooLong(BaseException):
     """Evaluating a value takes too long. Not an `Exception`, so that the program's handlers do not catch it."""
 
 
-def apart(
+def run_apart(
     session: Session,
     scheduler: Scheduler,
     work: Callable[[], bytes],
@@ -63,7 +63,7 @@ def apart(
         os.close(answer_write)
         return None
     if not pid:
-        _be_the_copy(session, scheduler, work, answer_write, limit_s)
+        _run_copy(session, scheduler, work, answer_write, limit_s)
     os.close(answer_write)
     try:
         return _answer(session.channel, answer_fd, wallclock.monotonic() + BLOCKED_LIMIT_S, go_on)
@@ -84,12 +84,12 @@ def _answer(channel: Channel, fd: int, until_s: float, go_on: Callable[[], bool]
             if not chunk:
                 return data or None
             data += chunk
-            if len(data) > MOST_BYTES:
+            if len(data) > MAX_BYTES:
                 return None
     return None
 
 
-def _be_the_copy(
+def _run_copy(
     session: Session,
     scheduler: Scheduler,
     work: Callable[[], bytes],
@@ -143,10 +143,10 @@ def _refuse(*_args: object, **_kwargs: object) -> NoReturn:
 def time_limit(seconds: float) -> Iterator[None]:
     """Raise `TooLong` in the body after `seconds` of real time, repeatedly; only for use in a copy."""
 
-    def too_long(_number: int, _frame: object) -> None:
+    def raise_too_long(_number: int, _frame: object) -> None:
         raise TooLong
 
-    signal.signal(signal.SIGVTALRM, too_long)
+    signal.signal(signal.SIGVTALRM, raise_too_long)
     wallclock.set_timer(signal.ITIMER_VIRTUAL, seconds, seconds / 10)
     try:
         yield

@@ -14,19 +14,19 @@ from typing import Any
 from tuisim.base.data_class import dataclass
 from tuisim.engine.core.sensors import build_reader
 from tuisim.engine.protocol import FrameState, Inspect, Inspected, ThreadState, Variable, Watched
-from tuisim.engine.runtime.debugger.fork import apart
+from tuisim.engine.runtime.debugger.fork import run_apart
 from tuisim.engine.runtime.debugger.tracer import Tracer
-from tuisim.engine.runtime.debugger.value_text import Renderer, cut, evaluate, kind_of
-from tuisim.engine.runtime.debugger.wait_reason import waiting_note
+from tuisim.engine.runtime.debugger.value_text import Renderer, cut, evaluate, name_type
+from tuisim.engine.runtime.debugger.wait_reason import describe_wait
 from tuisim.engine.runtime.scheduler import ScheduledThread, Scheduler
 from tuisim.engine.runtime.session import Session
 
 LOOK_LIMIT_S = 0.3
 """Time for the program's own code to render all values together, in real seconds."""
 TOO_LONG = "values that the program's own code computes take too long"
-MOST_NAMES = 200
-MOST_FRAMES = 200
-MOST_WATCHES = 50
+MAX_NAMES = 200
+MAX_FRAMES = 200
+MAX_WATCHES = 50
 _UNSHOWN = (types.ModuleType, types.FunctionType, types.BuiltinFunctionType, type)
 """Types of globals that are not listed: imports and definitions, not data."""
 
@@ -88,28 +88,30 @@ class Inspector:
         """
         tops = sys._current_frames()
         place = self._place(wanted, tops)
-        shown, note = self._values(place, wanted.watches[:MOST_WATCHES], go_on)
+        values, note = self._collect_values(place, wanted.watches[:MAX_WATCHES], go_on)
         frame = place.frame
         scope = (
             (frame.f_code.co_filename, frame.f_code.co_qualname) if frame is not None else ("", "")
         )
-        variables = self._marked(("local", *scope), shown["locals"])
-        found_globals = self._marked(("global", "", ""), shown["globals"])
+        variables = self._mark_changes(("local", *scope), values["locals"])
+        found_globals = self._mark_changes(("global", "", ""), values["globals"])
         return Inspected(
             tick=self._session.sim.tick,
             time_ns=self._session.now,
-            thread=self.name_of(place.task),
+            thread=self.name_thread(place.task),
             frame=place.at,
-            waiting=waiting_note(self._session, place.task, place.top),
-            threads=tuple(self._thread_state(task, tops) for task in self._scheduler.tasks),
-            stack=tuple(self._frame_state(found) for found in place.frames[:MOST_FRAMES]),
+            waiting=describe_wait(self._session, place.task, place.top),
+            threads=tuple(self._build_thread_state(task, tops) for task in self._scheduler.tasks),
+            stack=tuple(
+                self._build_frame_state(own_frame) for own_frame in place.frames[:MAX_FRAMES]
+            ),
             variables=variables,
             globals=found_globals,
-            watches=tuple(Watched(*one) for one in shown["watches"]),
+            watches=tuple(Watched(*watch) for watch in values["watches"]),
             note=note,
         )
 
-    def name_of(self, task: ScheduledThread) -> str:
+    def name_thread(self, task: ScheduledThread) -> str:
         """Return the name of a thread, as the program sees it."""
         threads: Any = threading
         thread = threads._active.get(task.ident)
@@ -121,14 +123,15 @@ class Inspector:
     def _place(self, wanted: Inspect, tops: Mapping[int, types.FrameType]) -> _Place:
         tasks = self._scheduler.tasks
         task = next(
-            (task for task in tasks if wanted.thread and self.name_of(task) == wanted.thread), None
+            (task for task in tasks if wanted.thread and self.name_thread(task) == wanted.thread),
+            None,
         )
         task = task or self._scheduler.current
         top = tops.get(task.ident)
         frames = self._tracer.own_frames(top)
         return _Place(task, top, frames, max(0, min(wanted.frame, len(frames) - 1)))
 
-    def _thread_state(
+    def _build_thread_state(
         self, task: ScheduledThread, tops: Mapping[int, types.FrameType]
     ) -> ThreadState:
         top = tops.get(task.ident)
@@ -139,41 +142,41 @@ class Inspector:
         ]
         line = frames[0].f_lineno if frames else 0
         return ThreadState(
-            self.name_of(task), line or 0, waiting_note(self._session, task, top), paused
+            self.name_thread(task), line or 0, describe_wait(self._session, task, top), paused
         )
 
-    def _frame_state(self, frame: types.FrameType) -> FrameState:
+    def _build_frame_state(self, frame: types.FrameType) -> FrameState:
         file = frame.f_code.co_filename
-        shown = "" if file == self._session.program_file else file
-        return FrameState(frame.f_code.co_name, frame.f_lineno or 0, shown)
+        shown_file = "" if file == self._session.program_file else file
+        return FrameState(frame.f_code.co_name, frame.f_lineno or 0, shown_file)
 
     # Variables
 
-    def _values(
+    def _collect_values(
         self, place: _Place, watches: tuple[str, ...], go_on: Callable[[], bool]
     ) -> tuple[dict[str, Any], str]:
         frame = place.frame
         # The locals of a frame of this thread are read in the copy: read here, they would be kept alive.
         local = None if frame is None or place.task is self._scheduler.current else frame.f_locals
 
-        def shown(seconds: float, expressions: tuple[str, ...]) -> dict[str, Any] | None:
+        def read_values(seconds: float, expressions: tuple[str, ...]) -> dict[str, Any] | None:
             def work() -> bytes:
-                return json.dumps(self._shown(frame, local, expressions, seconds)).encode(
+                return json.dumps(self._collect_names(frame, local, expressions, seconds)).encode(
                     "utf-8", "replace"
                 )
 
-            answer = apart(self._session, self._scheduler, work, LOOK_LIMIT_S, go_on)
-            found: dict[str, Any] | None = None if answer is None else json.loads(answer)
-            return found
+            answer = run_apart(self._session, self._scheduler, work, LOOK_LIMIT_S, go_on)
+            values: dict[str, Any] | None = None if answer is None else json.loads(answer)
+            return values
 
-        whole = shown(LOOK_LIMIT_S / 2, watches)
+        whole = read_values(LOOK_LIMIT_S / 2, watches)
         if whole is not None:
             return whole, ""
         # Again without the program's own code, which may be what does not return.
-        plain = shown(0.0, ()) or {"locals": [], "globals": []}
+        plain = read_values(0.0, ()) or {"locals": [], "globals": []}
         return {**plain, "watches": [(text, "", "takes too long") for text in watches]}, TOO_LONG
 
-    def _shown(
+    def _collect_names(
         self,
         frame: types.FrameType | None,
         local: Mapping[str, Any] | None,
@@ -185,23 +188,25 @@ class Inspector:
         names = inside if frame is None else frame.f_locals if local is None else local
         own_module = names is inside
         renderer = Renderer(seconds)
-        plain = _plain(names)
+        plain = _copy_names(names)
         visible = {**inside, **plain}
         builtin = frame.f_builtins if frame is not None else self._module.get("__builtins__", {})
-        watched = {**self._columns_in(watches), **visible}
+        watched = {**self._read_columns(watches), **visible}
         return {
             "watches": [(text, *evaluate(renderer, text, watched, builtin)) for text in watches],
-            "locals": _texts(
+            "locals": _render_names(
                 renderer, self._own_names(plain) if own_module else plain, whole=not own_module
             ),
-            "globals": [] if own_module else _texts(renderer, self._own_names(inside), whole=False),
+            "globals": []
+            if own_module
+            else _render_names(renderer, self._own_names(inside), whole=False),
         }
 
-    def _columns_in(self, watches: tuple[str, ...]) -> dict[str, float]:
+    def _read_columns(self, watches: tuple[str, ...]) -> dict[str, float]:
         """Return the values of the recording's columns that watches name."""
         sim, field = self._session.sim, self._session.field
         readers = {
-            name: build_reader(name, sim.spec) for text in watches for name in _names_in(text)
+            name: build_reader(name, sim.spec) for text in watches for name in _find_names(text)
         }
         return {
             name: read(sim.build_instant(with_motors=True), sim.spec, field)
@@ -213,7 +218,7 @@ class Inspector:
         prepared = self._prepared
         return {name: value for name, value in names.items() if prepared.get(name) != id(value)}
 
-    def _marked(self, scope: tuple[str, ...], names: Names) -> tuple[Variable, ...]:
+    def _mark_changes(self, scope: tuple[str, ...], names: Names) -> tuple[Variable, ...]:
         key = (scope[0], "\0".join(scope[1:]))
         before = self._seen.get(key)
         if names:
@@ -224,7 +229,7 @@ class Inspector:
         )
 
 
-def _names_in(expression: str) -> set[str]:
+def _find_names(expression: str) -> set[str]:
     with suppress(SyntaxError, ValueError, RecursionError, MemoryError):
         return {
             node.id
@@ -234,7 +239,7 @@ def _names_in(expression: str) -> set[str]:
     return set()
 
 
-def _plain(names: Mapping[str, Any]) -> dict[str, Any]:
+def _copy_names(names: Mapping[str, Any]) -> dict[str, Any]:
     """Return names as a dict; a class body may use a mapping of the program."""
     try:
         return dict(names)
@@ -242,15 +247,15 @@ def _plain(names: Mapping[str, Any]) -> dict[str, Any]:
         return {}
 
 
-def _texts(renderer: Renderer, names: Mapping[str, Any], whole: bool) -> Names:
+def _render_names(renderer: Renderer, names: Mapping[str, Any], whole: bool) -> Names:
     """Return names with their values as text; without hidden names and, unless `whole`, without modules etc."""
-    found: Names = []
+    texts: Names = []
     for name, value in list(names.items()):
         if not isinstance(name, str) or name.startswith(("__", ".")):
             continue
         if not whole and issubclass(type(value), _UNSHOWN):
             continue
-        found.append((cut(name, 80), kind_of(value), renderer.render(value)))
-        if len(found) == MOST_NAMES:
+        texts.append((cut(name, 80), name_type(value), renderer.render(value)))
+        if len(texts) == MAX_NAMES:
             break
-    return found
+    return texts

@@ -71,13 +71,13 @@ class Tracer:
 
     def enter(self) -> None:
         """Switch tracing in the thread that starts to run on or off as needed."""
-        found = wallclock.gettrace()
-        if found is not None and getattr(found, "__self__", None) is not self:
+        trace_function = wallclock.gettrace()
+        if trace_function is not None and getattr(trace_function, "__self__", None) is not self:
             # The program traces itself: keep its trace function.
             return
         self._frame_id = 0
         if not self.on:
-            if found is not None:
+            if trace_function is not None:
                 wallclock.settrace(None)
             return
         frame: types.FrameType | None = _getframe(1)
@@ -85,7 +85,7 @@ class Tracer:
             if self.is_own(frame):
                 frame.f_trace = self._on_event
             frame = frame.f_back
-        if found is None:
+        if trace_function is None:
             wallclock.settrace(self._on_call)
 
     def is_own(self, frame: types.FrameType) -> bool:
@@ -118,7 +118,7 @@ class Tracer:
             self._ordinal += 1
             if id(frame) != self._frame_id:
                 # Every call and return clears it, so that no frame is mistaken for another.
-                self._frame_id, self._depth = id(frame), self.depth_of(frame)
+                self._frame_id, self._depth = id(frame), self.count_depth(frame)
             self._met.append((tick, self._ordinal, line, self._scheduler.current, self._depth))
             if self.closely or line in self.lines:
                 self._check(frame, line)
@@ -136,7 +136,7 @@ class Tracer:
             return UNKNOWN_ORDINAL
         return self._ordinal if tick == self._tick else 0
 
-    def depth_of(self, frame: types.FrameType | None) -> int:
+    def count_depth(self, frame: types.FrameType | None) -> int:
         """Return the number of open calls of the program's own code in a thread."""
         depth = 0
         while frame is not None:
@@ -146,12 +146,12 @@ class Tracer:
 
     def own_frames(self, frame: types.FrameType | None) -> list[types.FrameType]:
         """Return the frames of the program's own files, innermost first."""
-        found = []
+        frames = []
         while frame is not None:
             if self.is_own(frame):
-                found.append(frame)
+                frames.append(frame)
             frame = frame.f_back
-        return found
+        return frames
 
     def history(
         self, count: int, name_of: Callable[[ScheduledThread], str]

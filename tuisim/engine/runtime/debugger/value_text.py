@@ -11,12 +11,12 @@ from typing import Any
 from tuisim.engine.runtime import wallclock
 from tuisim.engine.runtime.debugger.fork import TooLong, time_limit
 
-MOST_CHARACTERS = 400
-MOST_ITEMS = 24
-MOST_DEPTH = 3
+MAX_CHARACTERS = 400
+MAX_ITEMS = 24
+MAX_DEPTH = 3
 VALUE_LIMIT_S = 0.04
 """CPU time for the program's own code to render one value."""
-MOST_DIGITS = 200
+MAX_DIGITS = 200
 """Integers with more digits are shown by their size: converting them takes long."""
 
 _ADDRESS = re.compile(r" at 0x[0-9a-f]{6,}")
@@ -30,13 +30,13 @@ _BRACKETS = {
 }
 
 
-def kind_of(value: object) -> str:
+def name_type(value: object) -> str:
     """Return the name of a value's type."""
     name = type.__dict__["__name__"].__get__(type(value))
     return cut(str(name), 60)
 
 
-def cut(text: str, most: int = MOST_CHARACTERS) -> str:
+def cut(text: str, most: int = MAX_CHARACTERS) -> str:
     """Return a text on one line, truncated."""
     return text if len(text) <= most else text[: most - 1] + "…"
 
@@ -52,7 +52,7 @@ class Renderer:
         self._until_s = wallclock.process_time() + seconds
 
     def render(self, value: object, depth: int = 0) -> str:
-        """Return a value as text of at most `MOST_CHARACTERS` characters; never raises."""
+        """Return a value as text of at most `MAX_CHARACTERS` characters; never raises."""
         exact: Any = type(value)
         if exact in (bool, types.NoneType, float, complex, types.EllipsisType):
             return repr(value)
@@ -60,7 +60,7 @@ class Renderer:
             return _render_int(value)  # type: ignore[arg-type]
         if exact in (str, bytes, bytearray):
             text: Any = value
-            return cut(repr(text[:MOST_CHARACTERS]) + ("…" if len(text) > MOST_CHARACTERS else ""))
+            return cut(repr(text[:MAX_CHARACTERS]) + ("…" if len(text) > MAX_CHARACTERS else ""))
         if exact in _BRACKETS:
             return self._render_container(value, exact, depth)
         return self._render_foreign(value)
@@ -70,26 +70,26 @@ class Renderer:
         size = len(value)
         if not size:
             return {set: "set()", frozenset: "frozenset()"}.get(exact, opening + closing)
-        if depth >= MOST_DEPTH:
+        if depth >= MAX_DEPTH:
             return f"{opening}… {size} items{closing}"
-        shown: list[str] = []
-        room = MOST_CHARACTERS
-        for item in islice(_items(value, exact), MOST_ITEMS):
+        texts: list[str] = []
+        room = MAX_CHARACTERS
+        for item in islice(_iterate_items(value, exact), MAX_ITEMS):
             part = ": ".join(self.render(piece, depth + 1) for piece in item)
-            shown.append(part)
+            texts.append(part)
             room -= len(part) + 2
             if room < 0:
                 break
-        if size > len(shown):
-            shown.append(f"… {size} items")
-        inside = ", ".join(shown) + ("," if exact is tuple and size == 1 else "")
+        if size > len(texts):
+            texts.append(f"… {size} items")
+        inside = ", ".join(texts) + ("," if exact is tuple and size == 1 else "")
         text = f"{opening}{inside}{closing}"
         return cut(f"frozenset({text})" if exact is frozenset else text)
 
     def _render_foreign(self, value: object) -> str:
         left_s = self._until_s - wallclock.process_time()
         if left_s <= 0:
-            return f"<{kind_of(value)}, not shown: values take too long>"
+            return f"<{name_type(value)}, not shown: values take too long>"
         try:
             with time_limit(min(VALUE_LIMIT_S, left_s)):
                 return _own_text(value)
@@ -105,10 +105,10 @@ class Renderer:
 
 def _render_int(value: int) -> str:
     bits = value.bit_length()
-    return str(value) if bits < 3.3 * MOST_DIGITS else f"<whole number of {bits} bits>"
+    return str(value) if bits < 3.3 * MAX_DIGITS else f"<whole number of {bits} bits>"
 
 
-def _items(value: Any, exact: Any) -> Iterable[tuple[Any, ...]]:
+def _iterate_items(value: Any, exact: Any) -> Iterable[tuple[Any, ...]]:
     return value.items() if exact is dict else ((item,) for item in value)
 
 
@@ -117,8 +117,8 @@ def _own_text(value: Any) -> str:
     if kind.__module__ == "numpy" and kind.__name__ == "ndarray":
         return cut(f"array(shape={value.shape}, dtype={value.dtype})")
     # An exact str, even if the program returned a subclass.
-    text = _ADDRESS.sub("", str.__str__(repr(value))[: 2 * MOST_CHARACTERS])
-    return cut(text[:MOST_CHARACTERS] + ("…" if len(text) > MOST_CHARACTERS else ""))
+    text = _ADDRESS.sub("", str.__str__(repr(value))[: 2 * MAX_CHARACTERS])
+    return cut(text[:MAX_CHARACTERS] + ("…" if len(text) > MAX_CHARACTERS else ""))
 
 
 def describe(error: BaseException) -> str:
@@ -128,7 +128,7 @@ def describe(error: BaseException) -> str:
             message = str(error)
     except BaseException:  # formatting the message may run code of the program
         message = ""
-    return cut(f"{kind_of(error)}: {message}" if message else kind_of(error), 200)
+    return cut(f"{name_type(error)}: {message}" if message else name_type(error), 200)
 
 
 def evaluate(

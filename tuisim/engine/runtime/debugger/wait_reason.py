@@ -19,7 +19,7 @@ _LIBRARIES = tuple(os.sep + name + os.sep for name in ("ev3dev2", "ev3dev"))
 _ADVANCING = (Session._pass.__code__, Session.advance.__code__)
 
 
-def waiting_note(session: Session, task: ScheduledThread, frame: types.FrameType | None) -> str:
+def describe_wait(session: Session, task: ScheduledThread, frame: types.FrameType | None) -> str:
     """Return what a thread waits for and until when; empty if it is ready to run.
 
     Args:
@@ -27,17 +27,17 @@ def waiting_note(session: Session, task: ScheduledThread, frame: types.FrameType
         task: The thread.
         frame: Its innermost frame.
     """
-    frames = list(_frames(frame))
-    until_ns = _until_ns(session, task, frames)
+    frames = list(_walk_frames(frame))
+    until_ns = _find_end_ns(session, task, frames)
     until = f" until {until_ns / NS_PER_S:.2f} s" if until_ns is not None else ""
-    for at, found in enumerate(frames):
-        note = _note_of(session, found, frames[at + 1 :], until)
+    for depth, library_frame in enumerate(frames):
+        note = _describe_call(session, library_frame, frames[depth + 1 :], until)
         if note:
             return note
     return f"waits{until}" if until else ""
 
 
-def _frames(frame: types.FrameType | None) -> Iterator[types.FrameType]:
+def _walk_frames(frame: types.FrameType | None) -> Iterator[types.FrameType]:
     while frame is not None:
         file = frame.f_code.co_filename
         if (
@@ -56,7 +56,9 @@ def _is_library(file: str) -> bool:
     return file.startswith((folder, "<frozen"))
 
 
-def _until_ns(session: Session, task: ScheduledThread, frames: list[types.FrameType]) -> int | None:
+def _find_end_ns(
+    session: Session, task: ScheduledThread, frames: list[types.FrameType]
+) -> int | None:
     """Return when the wait ends; None if it has no end time, or there is no wait."""
     if task.order:
         return None if task.wake_ns == FOREVER else task.wake_ns
@@ -67,7 +69,7 @@ def _until_ns(session: Session, task: ScheduledThread, frames: list[types.FrameT
     return None
 
 
-def _note_of(
+def _describe_call(
     session: Session, frame: types.FrameType, outer: list[types.FrameType], until: str
 ) -> str:
     """Return what a call of the runtime or the library waits for; empty if this frame does not show it."""
@@ -81,17 +83,17 @@ def _note_of(
         case Wait.LOOP:
             return "computes without letting time pass"
         case Wait.MOTOR:
-            return _motor_note(session, outer, until)
+            return _describe_motors(session, outer, until)
         case Wait.INPUT:
             return "waits in input()"
         case Wait.BUTTONS:
-            return _button_note(frame.f_locals)
+            return _describe_buttons(frame.f_locals)
         case Wait.BUTTON_EVENT:
             return "waits for a button"
         case Wait.SOUND:
             return f"sounds{until}"
         case Wait.READING:
-            return f"reads {_reading_words(frame, outer)}{until}"
+            return f"reads {_describe_reading(frame, outer)}{until}"
         case Wait.THREAD:
             return f"waits for the thread {getattr(frame.f_locals['self'], 'name', '')}{until}"
         case Wait.LOCK:
@@ -100,7 +102,7 @@ def _note_of(
             assert_never(other)
 
 
-def _reading_words(read: types.FrameType, outer: list[types.FrameType]) -> str:
+def _describe_reading(read: types.FrameType, outer: list[types.FrameType]) -> str:
     """Return what is read as the program names it, such as `gyro.angle`; the attribute if no property reads it."""
     properties = [frame for frame in outer if _is_property(frame)]
     if not properties:
@@ -129,50 +131,52 @@ def _lock_owner(outer: list[types.FrameType]) -> str:
     return "a condition" if ("threading.py", "Condition.wait") in names else "a lock"
 
 
-def _button_note(names: dict[str, Any]) -> str:
+def _describe_buttons(names: dict[str, Any]) -> str:
     parts = []
     for key, verb in (("to_press", ""), ("to_release", " to be released")):
-        wanted = names.get(key) or ()
-        buttons = [wanted] if isinstance(wanted, str) else list(wanted)
+        names_ = names.get(key) or ()
+        buttons = [names_] if isinstance(names_, str) else list(names_)
         if buttons:
             parts.append(f"{' and '.join(map(str, buttons))}{verb}")
     return f"waits for the button {', '.join(parts)}" if parts else "waits for a button"
 
 
-def _motors(session: Session) -> list[tuple[str, Motor]]:
+def _sort_motors(session: Session) -> list[tuple[str, Motor]]:
     return sorted(session.sim.motors_by_port.items(), key=lambda one: one[0])
 
 
-def _motor_note(session: Session, outer: list[types.FrameType], until: str) -> str:
-    every = _motors(session)
+def _describe_motors(session: Session, outer: list[types.FrameType], until: str) -> str:
+    every = _sort_motors(session)
     owners = [frame.f_locals.get("self") for frame in outer]
-    waited = {path for owner in owners for path in _paths(owner)}
+    waited = {path for owner in owners for path in _list_paths(owner)}
     of_pybricks = [getattr(owner, "simulated", None) for owner in owners]
     named = [
-        found
-        for at, found in enumerate(every)
-        if any(path.endswith(f"/motor{at}") for path in waited)
-        or any(found[1] is motor for motor in of_pybricks)
+        motor_pair
+        for index, motor_pair in enumerate(every)
+        if any(path.endswith(f"/motor{index}") for path in waited)
+        or any(motor_pair[1] is motor for motor in of_pybricks)
     ]
-    moving = [found for found in named or every if found[1].mode]
+    moving = [motor_pair for motor_pair in named or every if motor_pair[1].mode]
     if not moving:
         return f"waits for a motor{until}"
-    return "waits for " + " and ".join(_goal(session, port, motor) for port, motor in moving)
+    return "waits for " + " and ".join(
+        _describe_goal(session, port, motor) for port, motor in moving
+    )
 
 
-def _paths(owner: object) -> list[str]:
+def _list_paths(owner: object) -> list[str]:
     attributes = getattr(owner, "__dict__", {})
     if isinstance(path := attributes.get("_path"), str):
         return [path]
     motors = attributes.get("motors")
     return (
-        [path for motor in motors.values() for path in _paths(motor)]
+        [path for motor in motors.values() for path in _list_paths(motor)]
         if isinstance(motors, dict)
         else []
     )
 
 
-def _goal(session: Session, port: str, motor: Motor) -> str:
+def _describe_goal(session: Session, port: str, motor: Motor) -> str:
     if motor.mode == POSITION:
         return f"motor {port} to reach {motor.goal_deg:.0f}°"
     if motor.mode == TIMED:

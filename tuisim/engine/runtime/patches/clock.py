@@ -23,7 +23,7 @@ from tuisim.engine.shim.waits import Wait, waits_for
 EPOCH_S = 1_577_836_800
 """Every run starts on 1 January 2020, 00:00 UTC."""
 
-LONGEST_SLEEP_S = 9_000_000_000
+MAX_SLEEP_S = 9_000_000_000
 """The real functions count nanoseconds in 63 bits."""
 
 
@@ -52,7 +52,7 @@ def patch_time(session: Session) -> None:
     @waits_for(Wait.SLEEP)
     def sleep(seconds: Any) -> None:
         length = seconds if isinstance(seconds, float) else operator.index(seconds)
-        if not 0 <= length < LONGEST_SLEEP_S:
+        if not 0 <= length < MAX_SLEEP_S:
             # Raises the proper error.
             real_sleep(seconds)
         session.spend(round(length * NS_PER_S))
@@ -108,7 +108,7 @@ def patch_datetime(session: Session, folder: Callable[[], str]) -> None:
     real_import = builtins.__import__
     shadow: list[types.ModuleType] = []
 
-    def wants_simulated(importer: Mapping[str, Any]) -> bool:
+    def needs_simulated(importer: Mapping[str, Any]) -> bool:
         name = str(importer.get("__name__", ""))
         if name == "__main__" or name.partition(".")[0] == "ev3dev2":
             return True
@@ -122,17 +122,17 @@ def patch_datetime(session: Session, folder: Callable[[], str]) -> None:
         fromlist: Any = (),
         level: int = 0,
     ) -> Any:
-        found = real_import(name, globals, locals, fromlist, level)
-        if name != "datetime" or level or globals is None or not wants_simulated(globals):
-            return found
+        module = real_import(name, globals, locals, fromlist, level)
+        if name != "datetime" or level or globals is None or not needs_simulated(globals):
+            return module
         if not shadow:
-            shadow.append(_simulated_datetime(session, found))
+            shadow.append(_build_simulated_datetime(session, module))
         return shadow[0]
 
     replace(builtins, "__import__", import_module)
 
 
-def _simulated_datetime(session: Session, module: types.ModuleType) -> types.ModuleType:
+def _build_simulated_datetime(session: Session, module: types.ModuleType) -> types.ModuleType:
     """Return a copy of `datetime` whose `now`, `utcnow` and `today` return simulated time."""
     cost = session.sim.spec.profile.clock_read_ns
     real_datetime, real_date = module.datetime, module.date
@@ -182,7 +182,7 @@ def _simulated_datetime(session: Session, module: types.ModuleType) -> types.Mod
     vars(shadow).update(vars(module))
     real_of: dict[type, type] = {datetime: real_datetime, date: real_date}
     for replacement, replaced in real_of.items():
-        _look_like(replacement, replaced)
+        _copy_looks(replacement, replaced)
         setattr(shadow, replaced.__name__, replacement)
 
     def reduce_class(one: Any) -> Any:
@@ -193,7 +193,7 @@ def _simulated_datetime(session: Session, module: types.ModuleType) -> types.Mod
     return shadow
 
 
-def _look_like(replacement: Any, real: Any) -> None:
+def _copy_looks(replacement: Any, real: Any) -> None:
     """Give a replaced class and its instances the repr and pickle form of the real one."""
     replacement.__module__, replacement.__qualname__, replacement.__doc__ = (
         "datetime",

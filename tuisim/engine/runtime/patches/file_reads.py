@@ -14,27 +14,27 @@ from pathlib import Path
 from typing import Any
 
 from tuisim.engine.runs.side_files import (
-    MOST_READS,
+    MAX_READS,
     FileRead,
     note_read,
     note_reads_left_out,
-    state_of,
+    read_state,
 )
 from tuisim.engine.runtime.modules import OWN_FILES, is_own
 from tuisim.engine.runtime.patches.replacement import replace
 
-MOST_KNOWN = 100_000
+MAX_KNOWN = 100_000
 """Of so many files it is remembered that they were opened."""
-LONGEST_PATH = 4096
+MAX_PATH = 4096
 """No system opens a file of a longer one."""
 _SYSTEM = ("/usr", "/etc", "/proc", "/sys", "/dev")
 _SHARED = "/dev/shm/"
 _MODES = frozenset("rwxabt+")
 
 
-def _given(at: int, name: str, given: Sequence[Any], named: Mapping[str, Any]) -> Any:
+def _get_argument(index: int, name: str, given: Sequence[Any], named: Mapping[str, Any]) -> Any:
     """Return an argument of a call; None if it is not given, which is then for the real function to judge."""
-    return given[at] if at < len(given) else named.get(name)
+    return given[index] if index < len(given) else named.get(name)
 
 
 class FileReads:
@@ -58,34 +58,40 @@ class FileReads:
 
         def open_noted(*given: Any, **named: Any) -> Any:
             if self._folder is not None:
-                self._opens(
-                    *(_given(at, name, given, named) for at, name in enumerate(("file", "mode")))
+                self._note_open(
+                    *(
+                        _get_argument(index, name, given, named)
+                        for index, name in enumerate(("file", "mode"))
+                    )
                 )
             return real_open(*given, **named)
 
         def os_open_noted(*given: Any, **named: Any) -> Any:
             # A path in a folder that is given by its descriptor is not known.
             if self._folder is not None and named.get("dir_fd") is None:
-                self._os_opens(
-                    *(_given(at, name, given, named) for at, name in enumerate(("path", "flags")))
+                self._note_os_open(
+                    *(
+                        _get_argument(index, name, given, named)
+                        for index, name in enumerate(("path", "flags"))
+                    )
                 )
             return real_os_open(*given, **named)
 
         replace(builtins, "open", open_noted)
         replace(os, "open", os_open_noted)
         for name in ("rename", "replace"):
-            replace(os, name, self._moving(getattr(os, name)))
+            replace(os, name, self._note_move(getattr(os, name)))
 
-    def _moving(self, real: Any) -> Any:
+    def _note_move(self, real: Any) -> Any:
         def move(*given: Any, **named: Any) -> None:
             real(*given, **named)
             if (
                 self._folder is not None
                 and len(given) == 2
                 and not named
-                and self._absolute(given[0]) in self._made
+                and self._resolve_path(given[0]) in self._made
             ):
-                self._make(self._absolute(given[1]))
+                self._make(self._resolve_path(given[1]))
 
         return move
 
@@ -114,47 +120,47 @@ class FileReads:
             with suppress(OSError):
                 note_reads_left_out(self._folder, self._left_out)
 
-    def _opens(self, file: Any, mode: Any) -> None:
+    def _note_open(self, file: Any, mode: Any) -> None:
         mode = "r" if mode is None else mode
         if isinstance(mode, str) and _MODES.issuperset(mode):
             makes = "w" in mode or "x" in mode
-            self._opened(
+            self._note_opened(
                 file, "r" in mode or "+" in mode, makes or "a" in mode or "+" in mode, makes
             )
 
-    def _os_opens(self, path: Any, flags: Any) -> None:
+    def _note_os_open(self, path: Any, flags: Any) -> None:
         if isinstance(flags, int):
             access = flags & os.O_ACCMODE
             makes = bool(flags & (os.O_TRUNC | os.O_EXCL))
-            self._opened(path, access != os.O_WRONLY, access != os.O_RDONLY or makes, makes)
+            self._note_opened(path, access != os.O_WRONLY, access != os.O_RDONLY or makes, makes)
 
-    def _opened(self, file: Any, reads: bool, writes: bool, makes: bool) -> None:
-        path = self._absolute(file)
+    def _note_opened(self, file: Any, reads: bool, writes: bool, makes: bool) -> None:
+        path = self._resolve_path(file)
         if not path or path in self._made or path in self._seen or not self._is_data(path):
             return
         if makes:
             self._make(path)
             return
-        was = self._before.get(path) or state_of(path)
+        was = self._before.get(path) or read_state(path)
         if was is None:
             return
         if writes and not was.there:
             self._make(path)
         elif reads:
             self._note(was)
-        elif len(self._before) < MOST_KNOWN:
+        elif len(self._before) < MAX_KNOWN:
             self._before[path] = was
 
     def _make(self, path: str) -> None:
-        if len(self._made) < MOST_KNOWN:
+        if len(self._made) < MAX_KNOWN:
             self._made.add(path)
 
     @staticmethod
-    def _absolute(file: Any) -> str:
+    def _resolve_path(file: Any) -> str:
         """Return the absolute path; empty for a descriptor, and for what is no path."""
         if isinstance(file, os.PathLike):
             file = os.fspath(file)
-        if not isinstance(file, str | bytes) or len(file) > LONGEST_PATH:
+        if not isinstance(file, str | bytes) or len(file) > MAX_PATH:
             return ""
         try:
             return os.path.abspath(os.fsdecode(file))
@@ -171,10 +177,10 @@ class FileReads:
 
     def _note(self, read: FileRead) -> None:
         assert self._folder is not None
-        if len(self._seen) >= MOST_KNOWN:
+        if len(self._seen) >= MAX_KNOWN:
             return
         self._seen.add(read.path)
-        if self._noted >= MOST_READS:
+        if self._noted >= MAX_READS:
             self._left_out += 1
             return
         self._noted += 1

@@ -57,7 +57,7 @@ class FileWaits:
         self._classes = {name: getattr(select, name, None) for name in _SELECTORS.values()}
 
     @waits_for(Wait.FILES)
-    def until_found(
+    def poll_files(
         self, look: Callable[[], Found], timeout_ns: int | None, devices: bool = False
     ) -> Found:
         """Poll until something is found or the timeout is over; return the last result.
@@ -68,20 +68,20 @@ class FileWaits:
             devices: Whether device files are among those polled: a tick may change them.
         """
         session = self._session
-        found = look()
-        if found or (timeout_ns is not None and timeout_ns <= 0):
-            if not found:
+        ready = look()
+        if ready or (timeout_ns is not None and timeout_ns <= 0):
+            if not ready:
                 session.command()
-            return found
+            return ready
         until = None if timeout_ns is None else session.now + timeout_ns
-        while not found and (until is None or session.now < until):
+        while not ready and (until is None or session.now < until):
             rest = POLL_NS if until is None else until - session.now
             if devices:
                 to_tick = session.sim.find_next_change_ns(session.now) - session.now
                 rest = to_tick if until is None else min(rest, to_tick)
             session.spend(min(rest, POLL_NS) if session.flags & THREADS else rest)
-            found = look()
-        return found
+            ready = look()
+        return ready
 
     # select
 
@@ -104,8 +104,8 @@ class FileWaits:
             devices = sockets != groups
             if timeout == 0 and not devices:
                 return look() or ([], [], [])
-            limit = _nanoseconds(timeout, NS_PER_S)
-            return self.until_found(look, limit, devices) or ([], [], [])
+            limit = _convert_to_ns(timeout, NS_PER_S)
+            return self.poll_files(look, limit, devices) or ([], [], [])
 
         replace(select, "select", simulated, (3, 4))
         if (real_poll := self._classes["poll"]) is not None:
@@ -138,23 +138,23 @@ class FileWaits:
         selector: Any = module
         selector.SelectSelector._select = staticmethod(self._select)
         for name in ("SelectSelector", *_SELECTORS):
-            found = getattr(module, name, None)
-            if found is None:
+            selector_class = getattr(module, name, None)
+            if selector_class is None:
                 continue
             if name in _SELECTORS:
-                found._selector_cls = self._selector_class(_SELECTORS[name])
-            found.select = self._selector_select(found.select)
+                selector_class._selector_cls = self._build_selector_class(_SELECTORS[name])
+            selector_class.select = self._build_select(selector_class.select)
 
-    def _selector_class(self, name: str) -> Any:
+    def _build_selector_class(self, name: str) -> Any:
         """Return what a selector polls with; it waits itself."""
         real: Any = self._classes[name]
         return staticmethod(lambda: _AtOnce(self, real())) if name in ("poll", "epoll") else real
 
-    def _selector_select(self, look: Callable[[Any, float], Any]) -> Callable[..., Any]:
+    def _build_select(self, look: Callable[[Any, float], Any]) -> Callable[..., Any]:
         @wraps(look)
         def select_simulated(selector: Any, timeout: float | None = None) -> Any:
-            limit = _nanoseconds(timeout, NS_PER_S)
-            return self.until_found(lambda: look(selector, 0), limit, _polls_devices(selector))
+            limit = _convert_to_ns(timeout, NS_PER_S)
+            return self.poll_files(lambda: look(selector, 0), limit, _has_devices(selector))
 
         return select_simulated
 
@@ -167,10 +167,10 @@ class FileWaits:
         for names, writes in ((_READS, False), (_WRITES, True)):
             for name in names:
                 if hasattr(sockets, name):
-                    setattr(sockets, name, self._after_wait(getattr(sockets, name), writes))
-        sockets.sendall = self._sendall(sockets.sendall, sockets.send)
+                    setattr(sockets, name, self._wait_first(getattr(sockets, name), writes))
+        sockets.sendall = self._build_sendall(sockets.sendall, sockets.send)
         if hasattr(sockets, "sendmsg"):
-            sockets.sendmsg = _as_one(self._after_wait(sockets.sendmsg, writes=True))
+            sockets.sendmsg = _join_parts(self._wait_first(sockets.sendmsg, writes=True))
         sockets.connect = self._connect(sockets.connect, sockets.connect_ex)
 
     def _wait_for_socket(self, socket: Any, writes: bool, code: int | None = None) -> None:
@@ -186,10 +186,10 @@ class FileWaits:
                 self._session.note_reading(code)
             return is_ready
 
-        if not self.until_found(look, _nanoseconds(timeout_s, NS_PER_S)):
+        if not self.poll_files(look, _convert_to_ns(timeout_s, NS_PER_S)):
             raise TimeoutError("timed out")
 
-    def _after_wait(self, real: Any, writes: bool) -> Callable[..., Any]:
+    def _wait_first(self, real: Any, writes: bool) -> Callable[..., Any]:
         mode = "accept" if real.__name__ == "_accept" else "receive"
         code = None if writes else READING_CODES[SOCKET_PORT, mode]
 
@@ -200,13 +200,13 @@ class FileWaits:
 
         return method
 
-    def _sendall(self, real: Any, send: Callable[..., int]) -> Callable[..., Any]:
+    def _build_sendall(self, real: Any, send: Callable[..., int]) -> Callable[..., Any]:
         @wraps(real)
         def sendall(socket: Any, data: Any, flags: int = 0) -> None:
             rest = memoryview(data).cast("B")
             # As much at a time as fits: the reader may be another thread of the program.
             while len(rest):
-                rest = rest[send(socket, rest, flags | _dont_wait()) :]
+                rest = rest[send(socket, rest, flags | _get_dont_wait()) :]
 
         return sendall
 
@@ -224,20 +224,20 @@ class FileWaits:
                 socket.settimeout(timeout_s)
             if code in (errno.EINPROGRESS, errno.EALREADY, errno.EAGAIN):
                 self._wait_for_socket(socket, writes=True)
-                code = _pending_error(socket)
+                code = _fetch_pending_error(socket)
             if code:
                 raise OSError(code, os.strerror(code))
 
         return connect
 
 
-def _descriptor(file: Any) -> int:
+def _find_descriptor(file: Any) -> int:
     return file if isinstance(file, int) else int(file.fileno())
 
 
 def _is_socket(file: Any) -> bool:
     try:
-        return stat.S_ISSOCK(os.fstat(_descriptor(file)).st_mode)
+        return stat.S_ISSOCK(os.fstat(_find_descriptor(file)).st_mode)
     except (AttributeError, OSError, TypeError, ValueError):
         # The real function raises its error.
         return True
@@ -256,19 +256,19 @@ class _RefusedEpoll:
         raise NotSimulated("select.epoll is not part of the simulated brick", "use select.poll")
 
 
-def _pending_error(socket: Any) -> int:
+def _fetch_pending_error(socket: Any) -> int:
     import socket as module
 
     return int(socket.getsockopt(module.SOL_SOCKET, module.SO_ERROR))
 
 
-def _dont_wait() -> int:
+def _get_dont_wait() -> int:
     import socket as module
 
     return int(module.MSG_DONTWAIT)
 
 
-def _nanoseconds(timeout: Any, per_unit: int) -> int | None:
+def _convert_to_ns(timeout: Any, per_unit: int) -> int | None:
     return None if timeout is None else round(timeout * per_unit)
 
 
@@ -299,33 +299,33 @@ class _Polling:
         if opened is None:
             self._real.register(file, *events)
         else:
-            self._polled[_descriptor(file)] = opened, events[0] if events else _ALL_EVENTS
+            self._polled[_find_descriptor(file)] = opened, events[0] if events else _ALL_EVENTS
 
     def modify(self, file: Any, events: int) -> None:
         """Change what is asked for of a file."""
-        if _descriptor(file) not in self._polled:
+        if _find_descriptor(file) not in self._polled:
             self._real.modify(file, events)
         else:
             self.register(file, events)
 
     def unregister(self, file: Any) -> None:
         """Remove a file."""
-        if self._polled.pop(_descriptor(file), None) is None:
+        if self._polled.pop(_find_descriptor(file), None) is None:
             self._real.unregister(file)
 
     def poll(self, timeout_ms: Any = None) -> Any:
         """Return the events; blocks in simulated time."""
         # Negative means without limit, as in the real one.
         unlimited = timeout_ms is None or timeout_ms < 0
-        limit = None if unlimited else _nanoseconds(timeout_ms, _NS_PER_MS)
-        return self._waits.until_found(self._look, limit, self.has_devices)
+        limit = None if unlimited else _convert_to_ns(timeout_ms, _NS_PER_MS)
+        return self._waits.poll_files(self._look, limit, self.has_devices)
 
     def _look(self, *more: Any) -> Any:
-        found = self._real.poll(0, *more)
-        for fd, (opened, wanted) in self._polled.items():
-            if ready := opened.file.ready(opened) & (wanted | select.POLLERR):
-                found.append((fd, ready))
-        return found
+        polled_events = self._real.poll(0, *more)
+        for fd, (opened, wanted_events) in self._polled.items():
+            if ready := opened.file.ready(opened) & (wanted_events | select.POLLERR):
+                polled_events.append((fd, ready))
+        return polled_events
 
 
 class _AtOnce(_Polling):
@@ -336,12 +336,12 @@ class _AtOnce(_Polling):
         return self._look(*more)
 
 
-def _polls_devices(selector: Any) -> bool:
+def _has_devices(selector: Any) -> bool:
     poll = getattr(selector, "_selector", None)
     return isinstance(poll, _Polling) and poll.has_devices
 
 
-def _as_one(real: Any) -> Callable[..., int]:
+def _join_parts(real: Any) -> Callable[..., int]:
     """Return a method that sends parts as one, which an isolated program may, unlike to send descriptors with them."""
 
     @wraps(real)

@@ -11,8 +11,8 @@ from typing import Any
 from tuisim.engine.brick_home import HOME, find_beside, parts_in_home, place_folder
 from tuisim.engine.runtime.patches.replacement import replace
 
-_OF_FILES = ("open", "stat", "lstat", "access")
-_OF_FOLDERS = ("listdir", "scandir", "chdir")
+_FILE_CALLS = ("open", "stat", "lstat", "access")
+_FOLDER_CALLS = ("listdir", "scandir", "chdir")
 """Functions of `os` that take the path of a folder: one that is not there is that of the program."""
 
 
@@ -28,12 +28,12 @@ class HomeFolder:
 
     def patch(self) -> None:
         """Replace the functions."""
-        self._wrap(builtins, "open", self._file)
+        self._wrap(builtins, "open", self._find_file)
         vars(io)["open"] = builtins.open
-        for name in _OF_FILES:
-            self._wrap(os, name, self._file)
-        for name in _OF_FOLDERS:
-            self._wrap(os, name, self._folder)
+        for name in _FILE_CALLS:
+            self._wrap(os, name, self._find_file)
+        for name in _FOLDER_CALLS:
+            self._wrap(os, name, self._find_folder)
 
     @staticmethod
     def _wrap(module: Any, name: str, moved: Callable[[Any], Any]) -> None:
@@ -44,9 +44,9 @@ class HomeFolder:
 
         replace(module, name, call)
 
-    def _file(self, path: Any) -> Any:
+    def _find_file(self, path: Any) -> Any:
         """Return the path of a file; one that is not there is to be made in the program's folder."""
-        if not (text := _text_in_home(path)):
+        if not (text := _parse_home_path(path)):
             return path
         own_folder = self._own_folder()
         if (parts := parts_in_home(text, own_folder)) is None:
@@ -58,12 +58,12 @@ class HomeFolder:
                 return os.path.join(folder, parts[-1])
         return os.path.join(own_folder, parts[-1])
 
-    def _folder(self, path: Any) -> Any:
+    def _find_folder(self, path: Any) -> Any:
         """Return the path of a folder; one that is not there is that of the program."""
-        return place_folder(text, self._own_folder()) if (text := _text_in_home(path)) else path
+        return place_folder(text, self._own_folder()) if (text := _parse_home_path(path)) else path
 
 
-def _text_in_home(path: Any) -> str:
+def _parse_home_path(path: Any) -> str:
     """Return the text of a path that begins in the home folder; empty for another one, and for a descriptor."""
     text = os.fspath(path) if isinstance(path, os.PathLike) else path
     return text if isinstance(text, str) and text.startswith(HOME) else ""

@@ -47,7 +47,7 @@ class _Replacement:
         return str(self._real.__qualname__)
 
 
-def replacement_for(
+def build_replacement(
     real: Any, does: Callable[..., Any], takes: tuple[int, int] | None = None
 ) -> Any:
     """Return a replacement for a builtin function.
@@ -62,10 +62,10 @@ def replacement_for(
         does.__qualname__ = real.__qualname__
         call = does
     else:
-        least, most = takes
+        min_count, max_count = takes
 
         def call(*given: Any, **named: Any) -> Any:
-            if named or not least <= len(given) <= most:
+            if named or not min_count <= len(given) <= max_count:
                 return real(*given, **named)
             return does(*given)
 
@@ -83,13 +83,13 @@ def replace(
     Args:
         module: Such as `os`, most of whose functions come from `posix`.
         name: Name of the function, a builtin or one in Python.
-        does, takes: As for `replacement_for`.
+        does, takes: As for `build_replacement`.
     """
     real = getattr(module, name)
     replacement = (
         wraps(real)(does)
         if isinstance(real, types.FunctionType)
-        else replacement_for(real, does, takes)
+        else build_replacement(real, does, takes)
     )
     for place in (module, sys.modules.get(real.__module__)):
         if place is not None and getattr(place, name, None) is real:

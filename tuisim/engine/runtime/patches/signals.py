@@ -46,9 +46,9 @@ class Interrupt:
         if self.handler == signal.SIG_DFL:
             wallclock.set_signal(signal.SIGINT, self.handler)
             wallclock.signals.raise_signal(signal.SIGINT)
-        self.handler(int(signal.SIGINT), self._program_frame())
+        self.handler(int(signal.SIGINT), self._find_program_frame())
 
-    def _program_frame(self) -> types.FrameType | None:
+    def _find_program_frame(self) -> types.FrameType | None:
         frame: types.FrameType | None = _getframe(1)
         while frame is not None and frame.f_code.co_filename != self._session.program_file:
             frame = frame.f_back
@@ -116,9 +116,9 @@ def _patch_handlers(interrupt: Interrupt) -> None:
         before, interrupt.handler = interrupt.handler, handler
         return before
 
-    def handler_of(number: Any) -> Any:
+    def get_handler(number: Any) -> Any:
         return interrupt.handler if number == signal.SIGINT else real_getsignal(number)
 
     # Those of `signal` call them, and convert numbers to enum members and back.
     replace(wallclock.signals, "signal", set_handler, (2, 2))
-    replace(wallclock.signals, "getsignal", handler_of, (1, 1))
+    replace(wallclock.signals, "getsignal", get_handler, (1, 1))

@@ -45,7 +45,7 @@ def patch_threads(scheduler: Scheduler, ended_by: EndedBy) -> None:
     for name in ("allocate_lock", "allocate"):
         replace(low, name, LockType, (0, 0))
     for name in ("start_new_thread", "start_new"):
-        replace(low, name, _starter(scheduler, ended_by), (2, 3))
+        replace(low, name, _build_starter(scheduler, ended_by), (2, 3))
     low.LockType = LockType
     if hasattr(low, "lock"):
         low.lock = LockType
@@ -60,7 +60,7 @@ def patch_threads(scheduler: Scheduler, ended_by: EndedBy) -> None:
     _patch_thread_class(scheduler, module.Thread)
 
 
-def _starter(scheduler: Scheduler, ended_by: EndedBy) -> Callable[..., int]:
+def _build_starter(scheduler: Scheduler, ended_by: EndedBy) -> Callable[..., int]:
     """Return what starts a thread of `_thread`."""
 
     def start_new_thread(function: Any, args: Any, kwargs: Any = None) -> int:

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from tuisim.engine.core.profile import MS, NS_PER_S
-from tuisim.engine.runs.brick_state import HUB_LIGHT_NAMES, PIXEL_NAMES, SIDE_PIXELS, led_row
+from tuisim.engine.runs.brick_state import HUB_LIGHT_NAMES, PIXEL_NAMES, SIDE_PIXELS, build_led_row
 from tuisim.engine.runs.records import Stream
 from tuisim.engine.shim.leds import MAX_BRIGHTNESS
 from tuisim.engine.shim.pybricks.brick import Connected, whole
@@ -37,7 +37,7 @@ class Face(Connected):
         levels = {**self._levels, **levels}
         if levels != self._levels:
             self._levels = levels
-            self.brick.session.show(led_row(levels), Stream.LED)
+            self.brick.session.show(build_led_row(levels), Stream.LED)
 
 
 class Animation:
