@@ -90,7 +90,7 @@ WRONG = {
     "ultrasonic < nan": "not a finite number",
     "time -1": "not possible",
     "time": "is not a number",
-    "print hello": "only be matched",
+    "print hello": "only be compared with `matches`",
     "print matches (": "not a regular expression",
     "sample 1x < 3": "a sample has a name",
     "sample": "a sample has a name",

@@ -185,7 +185,7 @@ WRONG: dict[str, tuple[str, str]] = {
     ),
     "robot: kind of motor": (
         "[motors]\noutA = 'huge'",
-        "motors.outA: no such value 'huge' (one of large, medium)",
+        "motors.outA: no such value 'huge' (one of large, medium",
     ),
     "robot: motor on an input": ("[motors]\nin1 = 'large'", "motors.in1: no such key"),
     "robot: infrared port": ("[infrared]\nport = 'in9'", "infrared.port: no such port 'in9'"),

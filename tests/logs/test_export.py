@@ -379,7 +379,7 @@ def test_the_log_of_a_run_is_read_without_pandas(
 ) -> None:
     run = noisy_run(record, noisy_spec)
     code = (
-        "import sys; from tuisim import load_run; from tuisim.logs.reader import build_log\n"
+        "import sys; from tuisim.engine.runs.store import load_run; from tuisim.logs.reader import build_log\n"
         f"log = build_log([load_run({str(run.folder)!r})])\n"
         "print([len(log.series(name).values) for name in log.names], 'pandas' in sys.modules)"
     )

@@ -5,11 +5,11 @@ from __future__ import annotations
 from hypothesis import strategies as st
 
 from tuisim.engine.core.css_colors import load_css_colors
+from tuisim.engine.core.hub_spec import EV3_MOTORS
 from tuisim.engine.core.remote_spec import RemotePress
 from tuisim.engine.core.spec import (
     INPUT_PORTS,
     MOTOR_ENDS,
-    MOTOR_KINDS,
     OUTPUT_PORTS,
     STRATEGIES,
     ColorSensorSpec,
@@ -55,7 +55,7 @@ presses = st.builds(
 def further_motors(port: str) -> st.SearchStrategy[MotorSpec]:
     """Motors on a port with both end stops, one or none."""
     kinds, low, high = (
-        st.sampled_from(MOTOR_KINDS),
+        st.sampled_from(EV3_MOTORS),
         st.none() | mm(-1e5, -5),
         st.none() | mm(0, 1e5),
     )

@@ -68,7 +68,7 @@ def test_threads_create_homes_at_the_same_time(place: Path) -> None:
 def test_the_first_folder_of_a_process_deletes_what_killed_ones_have_left(place: Path) -> None:
     code = (
         "import os, tempfile, tuisim.engine.runs.temporary as t; tempfile.tempdir = os.getcwd(); "
-        "t.owned_folder(); os.kill(os.getpid(), 9)"
+        "t.create_owned_folder(); os.kill(os.getpid(), 9)"
     )
     subprocess.run(
         [sys.executable, "-c", code], cwd=place, env={"PYTHONPATH": str(ROOT)}, check=False

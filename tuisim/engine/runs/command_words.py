@@ -42,6 +42,7 @@ _MILLI_COUNTS = Quantity("°", 1 / COUNTS_PER_DEG / MILLI)
 _POWER, _US, _TICKS = Quantity(" %", 100 / FULL_ACTUATION), Quantity(" s", 1e-6), Quantity(" s")
 _MM, _MM_PER_S, _MM_PER_S2 = Quantity(" mm"), Quantity(" mm/s"), Quantity(" mm/s²")
 _ENDING = Quantity(names=[ending.name.lower().replace("none", "go on") for ending in Ending])
+_SWITCH = Quantity(names=("off", "on"))
 _SETTING = Quantity(names=[name.replace("_", " ") for name in SETTINGS])
 
 
@@ -98,6 +99,7 @@ def _name_driver_calls() -> dict[Call, CallWords]:
 
 CALL_WORDS: Mapping[Call, CallWords] = {
     Call.RESET_GYRO: CallWords("reset", part="gyro"),
+    Call.SET_GYRO: CallWords("set angle {0}", (_DEG,), part="gyro"),
     Call.MOVE_PEN: CallWords("{0}", (Quantity(names=("up", "down")),), part="pen"),
     Call.PLUG: CallWords("plug in", part="ports"),
     Call.RUN: CallWords("run {0}", (_DPS,), aim=Aim.SPEED),
@@ -135,6 +137,8 @@ CALL_WORDS: Mapping[Call, CallWords] = {
     Call.MOVE_BASE: CallWords(
         "drive {0}, turn {1}, then {2}", (_MM, _DEG, _ENDING), aim=Aim.BASE_WAY
     ),
+    Call.SET_SLOWING: CallWords("set slowing {0}, {1}", (_PLAIN, _PLAIN)),
+    Call.USE_GYRO: CallWords("use gyro {0}", (_SWITCH,)),
     Call.DRIVE_BASE: CallWords("drive {0}, turn {1}", (_MM_PER_S, _DPS), 1, Aim.BASE_SPEED),
     Call.STOP_BASE: CallWords("stop, power {0}", (_POWER,), aim=Aim.BASE_WAY),
     Call.SET_BASE: CallWords("set {0}, {1}, {2}, {3}", (_MM_PER_S, _MM_PER_S2, _DPS, _DPS2)),

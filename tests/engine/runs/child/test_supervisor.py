@@ -59,8 +59,8 @@ def test_stopped_processes_go_on_at_the_second_look() -> None:
 
 SUPERVISED = """
 import os, signal
-from tuisim.engine.runs.child.supervisor import supervised
-with supervised():
+from tuisim.engine.runs.child.supervisor import keep_running
+with keep_running():
     os.kill(os.getpid(), signal.SIGSTOP)
     print("goes on")
 """
@@ -75,8 +75,8 @@ def test_a_command_that_was_stopped_goes_on_and_leaves_no_supervisor() -> None:
 
 SUSPENDED = """
 import os, signal, sys
-from tuisim.engine.runs.child.supervisor import LOOK_EVERY_S, supervised
-with supervised():
+from tuisim.engine.runs.child.supervisor import LOOK_EVERY_S, keep_running
+with keep_running():
     print("ready", flush=True)
     os.kill(os.getpid(), signal.SIGTSTP)
     print("goes on", flush=True)
