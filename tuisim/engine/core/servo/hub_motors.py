@@ -9,7 +9,6 @@ from collections.abc import Mapping
 
 from tuisim.base.data_class import dataclass
 from tuisim.engine.core.driver.plant import PlantSpec
-from tuisim.engine.core.servo.settings import COUNTS_PER_DEG, FULL_ACTUATION, MotorModel, ServoKind
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,22 +24,6 @@ class HubMotor:
     """kp, ki and kd, in micro-Nm per degree (and second)."""
     plant: PlantSpec
     max_voltage_mv: int = 9000
-
-    @property
-    def model(self) -> MotorModel:
-        """What it can do at most."""
-        plant = self.plant
-        return MotorModel(
-            plant.resistance_ohm, plant.back_emf_v_s, plant.torque_nm_per_a, plant.friction_nm
-        )
-
-    @property
-    def servo(self) -> ServoKind:
-        """Its settings as the controller takes them: gains in hundredths of a percent of the power per count."""
-        kp, ki, kd = (
-            round(gain * FULL_ACTUATION / self.torque_unm / COUNTS_PER_DEG) for gain in self.gains
-        )
-        return ServoKind(self.speed_dps, 2000, (kp, ki, kd), 0, self.tolerance_deg)
 
 
 def _build_plant(

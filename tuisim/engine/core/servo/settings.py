@@ -165,7 +165,7 @@ def compute_motor_settings(law: MotorLaw, kind: str, gear_ratio: float = 1.0) ->
         gear_ratio: Turns of the motor per turn of what it drives.
     """
     firmware = FIRMWARES[law]
-    motor = firmware.motors.get(kind) or _find_hub_motor(kind).servo
+    motor = firmware.motors.get(kind) or _build_hub_kind(kind)
     tolerance_deg = motor.position_tolerance_deg or firmware.position_tolerance_deg
     kp, ki, kd = motor.gains
     return ControlSettings(
@@ -189,7 +189,21 @@ def compute_motor_settings(law: MotorLaw, kind: str, gear_ratio: float = 1.0) ->
 
 def find_model(kind: str) -> MotorModel:
     """Return what a kind of motor can do at most."""
-    return MODELS.get(kind) or _find_hub_motor(kind).model
+    if kind in MODELS:
+        return MODELS[kind]
+    plant = _find_hub_motor(kind).plant
+    return MotorModel(
+        plant.resistance_ohm, plant.back_emf_v_s, plant.torque_nm_per_a, plant.friction_nm
+    )
+
+
+def _build_hub_kind(kind: str) -> ServoKind:
+    """Return the settings of a hub's motor, its gains in hundredths of a percent of the power per count."""
+    motor = _find_hub_motor(kind)
+    kp, ki, kd = (
+        round(gain * FULL_ACTUATION / motor.torque_unm / COUNTS_PER_DEG) for gain in motor.gains
+    )
+    return ServoKind(motor.speed_dps, 2000, (kp, ki, kd), 0, motor.tolerance_deg)
 
 
 def _find_hub_motor(kind: str) -> HubMotor:
