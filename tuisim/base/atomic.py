@@ -33,8 +33,8 @@ def make_private_folder(folder: Path) -> None:
     missing = [folder]
     while not missing[-1].parent.exists():
         missing.append(missing[-1].parent)
-    for one in reversed(missing):
-        one.mkdir(_OWNER_FOLDER, exist_ok=True)
+    for parent in reversed(missing):
+        parent.mkdir(_OWNER_FOLDER, exist_ok=True)
 
 
 @contextmanager

@@ -57,7 +57,7 @@ def closest(name: str, known: Iterable[str], most: int = 3, likeness: float = 0.
     """
     from difflib import get_close_matches
 
-    by_lower = {one.lower(): one for one in known}
+    by_lower = {known_name.lower(): known_name for known_name in known}
     return [by_lower[lower] for lower in get_close_matches(name.lower(), by_lower, most, likeness)]
 
 
@@ -91,7 +91,9 @@ def printable(text: str) -> str:
     """
     if text.isprintable():
         return text
-    return "".join(one if one.isprintable() else " " if one.isspace() else "\ufffd" for one in text)
+    return "".join(
+        letter if letter.isprintable() else " " if letter.isspace() else "\ufffd" for letter in text
+    )
 
 
 def _without_middle(line: str) -> str:

@@ -57,10 +57,10 @@ def cache_folder() -> Path:
 
 
 def _folder(name: str) -> Path:
-    given = os.environ.get("TUISIM_ASSETS")
-    places = [Path(given)] if given else [_PACKAGE.parent, _PACKAGE / "_assets"]
+    assets = os.environ.get("TUISIM_ASSETS")
+    places = [Path(assets)] if assets else [_PACKAGE.parent, _PACKAGE / "_assets"]
     # Beside the package, a single folder of such a name may belong to something else.
-    needed = (name,) if given else _FOLDERS
+    needed = (name,) if assets else _FOLDERS
     for place in places:
         if all((place / each).is_dir() for each in needed):
             return place / name

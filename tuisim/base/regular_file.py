@@ -38,12 +38,12 @@ def read_regular(path: Path, most_bytes: int, follow_links: bool = False) -> byt
         OSError: it cannot be read, or is longer than `most_bytes`: then EFBIG.
     """
     with open_regular(path, follow_links) as handle:
-        found = bytearray()
-        while chunk := handle.read(most_bytes + 1 - len(found)):
-            found += chunk
-    if len(found) > most_bytes:
+        content = bytearray()
+        while chunk := handle.read(most_bytes + 1 - len(content)):
+            content += chunk
+    if len(content) > most_bytes:
         raise OSError(errno.EFBIG, f"it is larger than {most_bytes} bytes")
-    return bytes(found)
+    return bytes(content)
 
 
 def of_the_machine(error: OSError) -> bool:

@@ -114,7 +114,12 @@ def find_code_line(lines: Sequence[str], line: int) -> int:
     """Return a line, or the next one below it, that is more than a comment, a magic or blank; from 1, 0 if none is."""
     rest = enumerate(lines[line - 1 :], line)
     return next(
-        (at for at, text in rest if text.strip() and not text.lstrip().startswith(("#", "%"))), 0
+        (
+            number
+            for number, text in rest
+            if text.strip() and not text.lstrip().startswith(("#", "%"))
+        ),
+        0,
     )
 
 

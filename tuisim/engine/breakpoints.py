@@ -131,12 +131,12 @@ def check_line(one: Breakpoint, lines: Sequence[str]) -> None:
 
 def break_lines(breaks: Iterable[Breakpoint]) -> dict[int, Breakpoint]:
     """Return the line breakpoints by line; of several on one line, an enabled one takes precedence."""
-    found: dict[int, Breakpoint] = {}
-    for one in sorted(breaks, key=lambda one: not one.disabled):
-        line = break_line_of(one)
+    by_line: dict[int, Breakpoint] = {}
+    for point in sorted(breaks, key=lambda point: not point.disabled):
+        line = break_line_of(point)
         if line:
-            found[line] = one
-    return found
+            by_line[line] = point
+    return by_line
 
 
 def break_line_of(one: Breakpoint) -> int:
@@ -162,8 +162,8 @@ def _rule(text: str, run: RunSpec | None) -> BreakRule:
     if not text:
         raise _refuse(text, "is empty")
     word, _, rest = text.partition(" ")
-    if found := _LINE.fullmatch(text):
-        return _line_rule(text, int(found[1]), found[2])
+    if match := _LINE.fullmatch(text):
+        return _line_rule(text, int(match[1]), match[2])
     if text == "stall":
         return StallBreak()
     if word == "time":
@@ -204,20 +204,20 @@ def parse_watch(text: str) -> str:
 
 
 def _condition(text: str, word: str, run: RunSpec | None) -> ValueCondition:
-    found = parse_run_condition(text)
-    if found is None or (found.source is ValueSource.SAMPLE and not found.name):
+    condition = parse_run_condition(text)
+    if condition is None or (condition.source is ValueSource.SAMPLE and not condition.name):
         raise _refuse(text, *_NO_CONDITION.get(word, ("is not a breakpoint",)))
-    name = found.name
-    match found.source:
+    name = condition.name
+    match condition.source:
         case ValueSource.PRINT:
             try:
-                re.compile(found.value)
+                re.compile(condition.value)
             except (re.error, OverflowError, RecursionError) as error:
                 raise _refuse(text, f"not a regular expression: {error}", _PRINT_FORM) from error
         case ValueSource.COLUMN:
-            name = _column(text, found.name, run)
+            name = _column(text, condition.name, run)
     try:
-        return found.format_condition(name)
+        return condition.format_condition(name)
     except ValueError as error:
         raise _refuse(text, str(error)) from None
 

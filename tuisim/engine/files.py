@@ -223,12 +223,12 @@ def parse_toml(text: str, file: str, error: type[ConfigError]) -> Any:
 
 def _json(text: str, file: str, error: type[ConfigError]) -> Any:
     def unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-        found: dict[str, Any] = {}
+        entries: dict[str, Any] = {}
         for key, value in pairs:
-            if key in found:
+            if key in entries:
                 raise error("is given twice", file=file, key=quote(key)[1:-1])
-            found[key] = value
-        return found
+            entries[key] = value
+        return entries
 
     try:
         return json.loads(text, object_pairs_hook=unique)
@@ -322,15 +322,15 @@ def read_part(data: object, base: _Spec | type[_Spec], at: Location, **given: ob
     values = {
         key: value for key, value in list_values(kind).items() if key not in given and key != "name"
     }
-    found = {
-        key: read_value(one, values[key], at.at(key))
-        for key, one in table(data, at, values).items()
+    given_values = {
+        key: read_value(part_value, values[key], at.at(key))
+        for key, part_value in table(data, at, values).items()
     }
     if isinstance(base, type):
         for key in values:
             if kind.__dataclass_fields__[key].default is MISSING:
-                required(found, key, at)
-    return with_values(base, found | given, at)
+                required(given_values, key, at)
+    return with_values(base, given_values | given, at)
 
 
 def with_values(base: _Spec | type[_Spec], values: Mapping[str, Any], at: Location) -> _Spec:
@@ -360,7 +360,7 @@ def convert(data: object, kind: type[_Kind], at: Location) -> _Kind:
     """
     import msgspec
 
-    found = dict(_walk(data, _type_info(kind), at))  # type: ignore[arg-type]  # a type is hashable
+    converted = dict(_walk(data, _type_info(kind), at))  # type: ignore[arg-type]  # a type is hashable
     try:
         return msgspec.convert(data, kind)
     except ConfigError as error:
@@ -374,7 +374,7 @@ def convert(data: object, kind: type[_Kind], at: Location) -> _Kind:
         where = at.at(path) if path else at
         if missing := re.fullmatch(r"Object missing required field `(\w+)`", message):
             raise where.at(missing[1]).wrong("is missing") from None
-        value, info = found[where.key]
+        value, info = converted[where.key]
         raise _mismatch(value, info, where) from None
 
 
@@ -504,11 +504,13 @@ def toml_lines(
 def value_lines(part: Spec, keys: Iterable[str]) -> list[str]:
     """Return the lines of some values of a spec, with their help as comments."""
     values = list_values(type(part))
-    found = {key: getattr(part, key) for key in keys}
+    part_values = {key: getattr(part, key) for key in keys}
     shown_values = {
-        key: toml_form(values[key], one) for key, one in found.items() if one is not None
+        key: toml_form(values[key], part_value)
+        for key, part_value in part_values.items()
+        if part_value is not None
     }
-    return toml_lines(shown_values, {key: values[key].help for key in found})
+    return toml_lines(shown_values, {key: values[key].help for key in part_values})
 
 
 def toml_form(value: Value, found: Any) -> Scalar:
@@ -603,8 +605,8 @@ def _update(old: Any, new: Any, kept: Collection[str] = (), whole: bool = False)
         if not whole and isinstance(before, Mapping) and isinstance(value, Mapping):
             _update(before, value)
         elif not whole and isinstance(before, AoT) and isinstance(value, AoT):
-            for one, other in zip(before, value, strict=False):
-                _update(one, other)
+            for before_item, other in zip(before, value, strict=False):
+                _update(before_item, other)
             del before[len(value) :]
             for other in value[len(before) :]:
                 before.append(other)

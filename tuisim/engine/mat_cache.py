@@ -73,21 +73,21 @@ class FieldFiles:
 
     def identities(self) -> tuple[tuple[int, ...], ...]:
         """Return what changes when a file is written to, or made again; a missing file has none."""
-        found = []
+        identities = []
         for path in (self.pixels, *(path for _, path in self.sums)):
             with suppress(OSError):
-                found.append(_identity(path.stat()))
-        return tuple(found)
+                identities.append(_identity(path.stat()))
+        return tuple(identities)
 
     @property
     def are_sound(self) -> bool:
         """Whether the cache still has all files, undamaged; if so, they are marked as used now."""
         width, height = self.width_px, self.height_px
-        wanted = [(self.pixels, 3 * width * height)]
-        wanted += [
+        files = [(self.pixels, 3 * width * height)]
+        files += [
             (path, 12 * (width + diameter) * (height + diameter)) for diameter, path in self.sums
         ]
-        return all(_in_use(path, size) for path, size in wanted)
+        return all(_in_use(path, size) for path, size in files)
 
     def to_plain(self) -> dict[str, Any]:
         """Return the files as JSON-compatible data."""
@@ -130,8 +130,8 @@ def prepare(image: Path, diameters: Iterable[int], fit: str = "stretch") -> Fiel
     """
     import hashlib
 
-    wanted = sorted(set(diameters))
-    for diameter in wanted:
+    sizes = sorted(set(diameters))
+    for diameter in sizes:
         if not 1 <= diameter <= MAX_DIAMETER_PX:
             raise BackgroundError(
                 f"disc diameter must be from 1 to {MAX_DIAMETER_PX} pixels, got {diameter}"
@@ -141,7 +141,7 @@ def prepare(image: Path, diameters: Iterable[int], fit: str = "stretch") -> Fiel
     folder = cache_folder() / "fields"
     how = "" if fits_as_it_is(content) else f"{fit}-"
     stem = f"{hashlib.sha256(content).hexdigest()[:24]}-{how}{_LAYOUT}"
-    sums = tuple((diameter, folder / f"{stem}-{diameter}.sums") for diameter in wanted)
+    sums = tuple((diameter, folder / f"{stem}-{diameter}.sums") for diameter in sizes)
     files = FieldFiles(FIELD_WIDTH_MM, FIELD_HEIGHT_MM, folder / f"{stem}.rgb", sums)
     missing = [
         (diameter, path) for diameter, path in sums if not _in_use(path, _sums_size(diameter))
@@ -156,16 +156,16 @@ def _in_use(path: Path, size: int) -> bool:
     try:
         noted = _noted(path)
         with open_regular(path) as stream:
-            found = os.fstat(stream.fileno())
-            if found.st_size != size or noted is None:
+            status = os.fstat(stream.fileno())
+            if status.st_size != size or noted is None:
                 return False
             checksum, identity = noted
-            if identity == _identity(found):
+            if identity == _identity(status):
                 os.utime(_note_of(path))
                 return True
             if _checksum(stream.fileno()) != checksum:
                 return False
-        _note(path, checksum, found)
+        _note(path, checksum, status)
     except OSError:
         return False
     return True
@@ -195,10 +195,10 @@ def _note(path: Path, checksum: int, found: os.stat_result) -> None:
 
 
 def _checksum(descriptor: int) -> int:
-    found = at = 0
-    while part := os.pread(descriptor, _READ_BYTES, at):
-        found, at = zlib.crc32(part, found), at + len(part)
-    return found
+    checksum = offset = 0
+    while part := os.pread(descriptor, _READ_BYTES, offset):
+        checksum, offset = zlib.crc32(part, checksum), offset + len(part)
+    return checksum
 
 
 def _make(files: FieldFiles, missing: list[tuple[int, Path]], pixels: NDArray[np.uint8]) -> None:
@@ -279,14 +279,14 @@ def _trim(folder: Path, keep: set[Path]) -> None:
 def _mapped(path: Path, size: int) -> memoryview:
     try:
         with open_regular(path) as stream:
-            found = os.fstat(stream.fileno())
-            if found.st_size != size:
-                what = f"has {found.st_size} bytes, not {size}"
+            status = os.fstat(stream.fileno())
+            if status.st_size != size:
+                what = f"has {status.st_size} bytes, not {size}"
                 raise BackgroundError(what, "remove it to recreate it", file=str(path))
             noted = _noted(path)
             # The note is that of another file if that has just been made again by another process.
             if noted is None or (
-                noted[1] != _identity(found) and noted[0] != _checksum(stream.fileno())
+                noted[1] != _identity(status) and noted[0] != _checksum(stream.fileno())
             ):
                 raise BackgroundError("is damaged", "the next run makes it again", file=str(path))
             return memoryview(mmap.mmap(stream.fileno(), size, access=mmap.ACCESS_READ))

@@ -51,22 +51,22 @@ def check_file(path: Path) -> None:
         BackgroundError: it does not exist, is not a regular file, is empty or too large.
     """
     try:
-        found = path.stat()
+        status = path.stat()
     except OSError as error:
         raise _error(f"cannot be read: {error.strerror or error}", path) from error
     except ValueError as error:
         # A null character.
         raise _error(f"is not a file name: {error}", path) from error
-    if stat.S_ISDIR(found.st_mode):
+    if stat.S_ISDIR(status.st_mode):
         raise _error("is a folder, not an image", path)
     # Reading from a pipe or a device might block forever.
-    if not stat.S_ISREG(found.st_mode):
+    if not stat.S_ISREG(status.st_mode):
         raise _error("is not a regular file", path)
-    if not found.st_size:
+    if not status.st_size:
         raise _error("is empty, not an image", path)
-    if found.st_size > MAX_FILE_MB * 1_000_000:
+    if status.st_size > MAX_FILE_MB * 1_000_000:
         raise _error(
-            f"is too large: {found.st_size / 1e6:,.0f} MB, the limit is {MAX_FILE_MB} MB", path
+            f"is too large: {status.st_size / 1e6:,.0f} MB, the limit is {MAX_FILE_MB} MB", path
         )
 
 
@@ -100,7 +100,7 @@ def fits_as_it_is(content: bytes) -> bool:
 
     Reads only the header of a PNG file: cheap enough to be called before every run.
     """
-    size = tuple(int.from_bytes(content[at : at + 4], "big") for at in (16, 20))
+    size = tuple(int.from_bytes(content[offset : offset + 4], "big") for offset in (16, 20))
     return content.startswith(_PNG) and size == _FIELD and b"eXIf" not in content
 
 

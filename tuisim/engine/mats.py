@@ -70,17 +70,17 @@ class _MatEntry:
 
 
 def _background(name: str, data: object, file: Path) -> Background:
-    at = Location(str(file), BackgroundError, name)
-    entry = convert(data, _MatEntry, at)
+    location = Location(str(file), BackgroundError, name)
+    entry = convert(data, _MatEntry, location)
     return Background(
         name=name,
         title=entry.title,
         start=entry.start,
         image=file.parent / f"{name}.png",
-        obstacles=obstacles_from_sides(entry.obstacles, at.at("obstacles")),
+        obstacles=obstacles_from_sides(entry.obstacles, location.at("obstacles")),
         brick_start=entry.brick_start,
         sensor_x_mm={
-            sensor: convert(x_mm, float, at.at(f"sensor_x_mm.{sensor}"))
+            sensor: convert(x_mm, float, location.at(f"sensor_x_mm.{sensor}"))
             for sensor, x_mm in entry.sensor_x_mm.items()
         },
         original=entry.original,
@@ -129,10 +129,10 @@ def background(name: str) -> Background:
         if is_image_path(name):
             return own_background(Path(name))
         raise BackgroundError(f"no such mat {name!r}", names_hint(name, list(known)))
-    found = known[name]
-    if not os.path.isfile(found.image):
-        raise BackgroundError(f"the mat {name!r} has no image", file=str(found.image))
-    return found
+    mat = known[name]
+    if not os.path.isfile(mat.image):
+        raise BackgroundError(f"the mat {name!r} has no image", file=str(mat.image))
+    return mat
 
 
 def is_image_path(name: str) -> bool:
@@ -205,12 +205,12 @@ def find_mat(word: str, folder: str | None = None) -> Background:
         ConfigError: there is no folder of mats.
     """
     known = mats(folder)
-    if (found := known.get(word)) is not None:
-        if not found.shipped and not os.path.isfile(found.image):
-            names = " or ".join(dict.fromkeys((found.original, f"{found.name}.png")))
+    if (mat := known.get(word)) is not None:
+        if not mat.shipped and not os.path.isfile(mat.image):
+            names = " or ".join(dict.fromkeys((mat.original, f"{mat.name}.png")))
             hint = f"save it as {names} in {own_folder()}, or name its folder with --mats FOLDER"
             raise BackgroundError(f"the mat {word!r} comes without its image", hint)
-        return found if found.is_own else background(word)
+        return mat if mat.is_own else background(word)
     if not is_image_path(word):
         raise BackgroundError(f"no such mat {word!r}", names_hint(word, list(known)))
     if os.sep not in word and not os.path.exists(word):
@@ -238,8 +238,8 @@ def mat_of_spec(name: str) -> tuple[str, Background]:
         # The user's image now replaces ours, which is the one meant.
         ours = background(name)
         return str(ours.image), ours
-    if (found := _of_path(name, known)) is not None:
-        return found.name if found.is_own else name, found
+    if (mat := _of_path(name, known)) is not None:
+        return mat.name if mat.is_own else name, mat
     return name, background(name)
 
 
@@ -255,28 +255,28 @@ def import_originals(source: Path) -> tuple[list[Taken], list[str]]:
     """
     known = catalogue()
     files = _pictures(source)
-    found = {name: mat.image for name, mat in _in_folder(source, known).items() if name in known}
-    if not found:
+    images = {name: mat.image for name, mat in _in_folder(source, known).items() if name in known}
+    if not images:
         hint = f"such as {known['Loop'].original} or Loop.png; subfolders are not searched"
         raise BackgroundError("has no image of a mat of the catalogue", hint, file=str(source))
     contents: dict[str, bytes] = {}
     taken: list[Taken] = []
-    for name in (name for name in known if name in found):
-        content = contents[name] = read_image(found[name])
+    for name in (name for name in known if name in images):
+        content = contents[name] = read_image(images[name])
         # All are checked before the first is written.
-        decode(content, found[name], AS_THERE)
-        taken.append(Taken(name, found[name].name, size_of(content)))
+        decode(content, images[name], AS_THERE)
+        taken.append(Taken(name, images[name].name, size_of(content)))
     target = own_folder()
     try:
         make_private_folder(target)
-        for one in taken:
-            with replacing(target / one.file, owner_only=True) as file:
-                file.write(contents[one.name])
+        for image in taken:
+            with replacing(target / image.file, owner_only=True) as file:
+                file.write(contents[image.name])
     except OSError as error:
         raise BackgroundError(
             f"cannot be written: {error.strerror or error}", file=str(target)
         ) from error
-    return taken, [file.name for file in files if file not in found.values()]
+    return taken, [file.name for file in files if file not in images.values()]
 
 
 def _places(folder: str | None) -> list[Path]:
@@ -313,19 +313,19 @@ def _in_folder(folder: Path, known: Mapping[str, Background]) -> dict[str, Backg
     """Return the mats with an image in a folder, by name."""
     by_original = {mat.original.lower(): mat for mat in known.values() if mat.original}
     by_name = {name.lower(): mat for name, mat in known.items()}
-    found: dict[str, Background] = {}
+    mats_by_name: dict[str, Background] = {}
     originals: dict[str, Background] = {}
     for file in _pictures(folder):
         if (mat := by_original.get(file.name.lower())) is not None:
             originals[mat.name] = replace(mat, image=file, fit=AS_THERE, is_own=True)
         elif (mat := by_name.get(file.stem.lower())) is not None:
-            found.setdefault(mat.name, replace(mat, image=file, fit=None, is_own=True))
+            mats_by_name.setdefault(mat.name, replace(mat, image=file, fit=None, is_own=True))
         else:
-            found.setdefault(
+            mats_by_name.setdefault(
                 file.stem,
                 Background(file.stem, f"The image {file.name}", OWN_START, file, is_own=True),
             )
-    return found | originals
+    return mats_by_name | originals
 
 
 def _of_path(path: str, known: Mapping[str, Background]) -> Background | None:

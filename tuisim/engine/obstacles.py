@@ -40,8 +40,8 @@ def load_obstacles(word: str, key: str = "") -> tuple[Obstacle, ...]:
     """
     if word in OBSTACLES:
         return OBSTACLES[word]
-    data, _, at = files.read_named(word, "obstacles", OBSTACLES, ObstacleError, key)
-    return (obstacles_from_sides if word.lower().endswith(".json") else _from_table)(data, at)
+    data, _, location = files.read_named(word, "obstacles", OBSTACLES, ObstacleError, key)
+    return (obstacles_from_sides if word.lower().endswith(".json") else _from_table)(data, location)
 
 
 def _from_table(data: object, at: Location) -> tuple[Obstacle, ...]:
@@ -86,12 +86,12 @@ def save_obstacles(obstacles: Sequence[Obstacle], path: Path | str) -> None:
         raise ObstacleError(
             f"cannot hold {len(obstacles)} obstacles", f"at most {MAX_OBSTACLES}", file=str(path)
         )
-    at = Location(str(path), ObstacleError)
+    location = Location(str(path), ObstacleError)
     files.save_toml(
         Path(path),
         obstacle_file(obstacles),
-        at,
-        lambda data: _from_table(data, at),
+        location,
+        lambda data: _from_table(data, location),
         tuple(obstacles),
     )
 

@@ -29,8 +29,8 @@ def parse_press(text: str) -> Press:
     Raises:
         WrongValue: nothing of that name can be pressed, or the times are wrong.
     """
-    name, at, times = text.partition("@")
-    if not at:
+    name, sign, times = text.partition("@")
+    if not sign:
         raise WrongValue(f"must be NAME@FROM or NAME@FROM-UNTIL, got {text!r}", "such as enter@1.5")
     if name not in PRESSABLE:
         raise WrongValue(f"{name!r} cannot be pressed", nearest(name, PRESSABLE))

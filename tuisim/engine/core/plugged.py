@@ -118,13 +118,15 @@ def _plug_part(robot: RobotSpec, part: PluggedPart) -> RobotSpec:
     others = _leave_out(robot.extra_motors, (part.port,))
     if part.port in (robot.left_port, robot.right_port):
         # A robot with a wheel on one side only drives nowhere.
-        robot = _put_wheels(robot, *(replace(one, port=NO_PORT) for one in robot.wheel_motors))
+        robot = _put_wheels(
+            robot, *(replace(wheel_motor, port=NO_PORT) for wheel_motor in robot.wheel_motors)
+        )
     return replace(robot, extra_motors=(*others, motor))
 
 
 def _change_wheels(robot: RobotSpec, left: PluggedPart, right: PluggedPart) -> RobotSpec:
     others = _leave_out(robot.extra_motors, (left.port, right.port))
-    wheels = (MotorSpec(one.port, MOTOR_KIND_OF[one.part]) for one in (left, right))
+    wheels = (MotorSpec(side.port, MOTOR_KIND_OF[side.part]) for side in (left, right))
     return _put_wheels(replace(robot, extra_motors=others), *wheels)
 
 

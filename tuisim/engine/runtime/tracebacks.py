@@ -118,16 +118,16 @@ def find_line(trace: Any, file: str) -> int:
 def _add_suggestions(trace: Trace, error: BaseException) -> None:
     """Add the names that Python suggests to an error and those linked to it."""
     pairs: list[tuple[Trace, Any]] = [(trace, error)]
-    for one, real in pairs:
-        if one is None or real is None:
+    for printed, real in pairs:
+        if printed is None or real is None:
             continue
         kind = type(real)
         if kind is NameError or kind is AttributeError:
-            one._str = (one._str or "") + _find_suggestion(real)
+            printed._str = (printed._str or "") + _find_suggestion(real)
         elif kind in _SYNTAX_ERRORS:
-            _print_as_python(one, real)
-        pairs += [(one.__cause__, real.__cause__), (one.__context__, real.__context__)]
-        pairs += zip(one.exceptions or (), getattr(real, "exceptions", ()), strict=False)
+            _print_as_python(printed, real)
+        pairs += [(printed.__cause__, real.__cause__), (printed.__context__, real.__context__)]
+        pairs += zip(printed.exceptions or (), getattr(real, "exceptions", ()), strict=False)
 
 
 def _find_suggestion(error: Any) -> str:

@@ -95,12 +95,12 @@ class Connection:
 def find_connections(robot: RobotSpec) -> dict[str, Connection]:
     """Return the devices on the robot's ports, by short name such as `in1`."""
     motors = [motor for motor in robot.motors if motor.port != NO_PORT]
-    found = {
+    connections = {
         motor.port: Connection(KINDS[motor.kind].driver_name, "tacho-motor") for motor in motors
     }
     for kind, sensor, *_ in list_mounted(robot):
-        found[sensor.port] = Connection(kind.driver_name, kind.port_mode)
-    return found
+        connections[sensor.port] = Connection(kind.driver_name, kind.port_mode)
+    return connections
 
 
 class LegoPort:

@@ -131,11 +131,11 @@ def font_size(name: str) -> tuple[int, int] | None:
     Returns:
         None if the name is not a font, or the size does not fit the screen.
     """
-    found = _FONT.fullmatch(name)
-    if found is None:
+    match = _FONT.fullmatch(name)
+    if match is None:
         return None
-    sizes = int(found[1]), int(found[2] or USUAL_WIDTH)
-    width, height = (min(sizes), max(sizes)) if found[2] else (USUAL_WIDTH, sizes[0])
+    sizes = int(match[1]), int(match[2] or USUAL_WIDTH)
+    width, height = (min(sizes), max(sizes)) if match[2] else (USUAL_WIDTH, sizes[0])
     return (width, height) if 0 < width <= DISPLAY_WIDTH and 0 < height <= DISPLAY_HEIGHT else None
 
 

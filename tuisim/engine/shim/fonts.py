@@ -97,8 +97,8 @@ def plain_font() -> ImageFont:
 
     # Newer versions default to a smooth font, whose grey edges look ragged on a black and white display.
     plain: Any = getattr(ImageFont, "load_default_imagefont", ImageFont.load_default)
-    found: ImageFont.ImageFont = plain()
-    return found
+    font: ImageFont.ImageFont = plain()
+    return font
 
 
 def quiet_pillow(_module: types.ModuleType) -> None:

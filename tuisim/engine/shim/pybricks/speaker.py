@@ -42,10 +42,10 @@ def note_of(text: Any, whole_ms: int) -> Tone:
         TypeError: it is no text.
         ValueError: it is no note.
     """
-    found = NOTE.fullmatch(text_of(text))
-    if found is None:
+    match = NOTE.fullmatch(text_of(text))
+    if match is None:
         raise ValueError(f"{text!r} is no note such as 'C4/4', 'F#5/8.' or 'R/2'")
-    name, accidental, octave, fraction, dot, tied = found.groups()
+    name, accidental, octave, fraction, dot, tied = match.groups()
     if f"{name}{accidental}" in NO_NOTES or not int(fraction):
         raise ValueError(f"{text!r} is no note that the brick knows")
     length_ms = whole_ms // int(fraction)

@@ -164,10 +164,10 @@ def refused_device(device: Any, class_name: str, missing: type[Exception]) -> Ex
             what there is.
     """
     wanted: Mapping[str, object] = device.kwargs
-    found = _refused(class_name, _texts(wanted.get("driver_name")), _texts(wanted.get("address")))
-    if found is None:
+    refusal = _refused(class_name, _texts(wanted.get("driver_name")), _texts(wanted.get("address")))
+    if refusal is None:
         return None
-    return refused_as(missing, *_told(_named(type(device)), *found))
+    return refused_as(missing, *_told(_named(type(device)), *refusal))
 
 
 def _refused(
