@@ -133,3 +133,18 @@ async def test_the_same_pose_is_not_drawn_again_another_robot_is_and_without_a_m
         assert view._cells.size > 0
         app.panel.show(moment(POSE, spec=one))
         assert view._cells.size == 0
+
+
+async def test_a_robot_without_colour_sensors_is_not_waited_for() -> None:
+    app = PanelApp(Arrays())
+    async with app.run_test(size=(40, 10)) as pilot:
+        now = moment(POSE, field=FIELD)
+        robot = replace(now.spec.robot, color_sensors=())
+        app.panel.show(replace(now, spec=replace(now.spec, robot=robot)))
+        await pilot.pause()
+        text = "\n".join(screen_text(app))
+        assert "no colour sensor" in text
+        assert "mat" not in text
+        app.panel.show(now)
+        await pilot.pause()
+        assert "no colour sensor" not in "\n".join(screen_text(app))

@@ -98,12 +98,16 @@ class Arrays(Widget):
         self.call_after_refresh(self._draw)
 
     def render(self) -> str:
-        """Return what stands there before the first disc."""
+        """Return what stands there without any disc."""
+        if self._snapshot is not None and not self._snapshot.spec.robot.color_sensors:
+            return "The robot has no colour sensor"
         return "" if self._discs else "Preparing the mat"
 
     def show(self, snapshot: Snapshot) -> None:
         """Show a moment."""
-        self._snapshot = snapshot
+        shown, self._snapshot = self._snapshot, snapshot
+        if shown is None or shown.spec.robot is not snapshot.spec.robot:
+            self.refresh()
         self._draw()
 
     def _draw(self) -> None:
@@ -129,7 +133,11 @@ class Arrays(Widget):
         has_limits = any(face.thresholds for face in faces)
         self._arrange(faces)
         names = [face.name for face in faces]
-        usual = list_border_names(names, self._where, has_limits=has_limits) if self._where else ""
+        usual = (
+            list_border_names(names, self._where, has_limits=has_limits)
+            if names and self._where
+            else ""
+        )
         self.border_subtitle = name_sensors(now, self.size.width) or usual
         for disc, face in zip(self._discs, faces, strict=True):
             disc.show(face, has_limits=has_limits)

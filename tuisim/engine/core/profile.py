@@ -335,7 +335,7 @@ LEGO_MICROPYTHON = replace(
 PYBRICKS_4 = replace(
     LEGO_MICROPYTHON,
     name="pybricks4",
-    title="Pybricks 4 on the EV3: faster ramps, more names",
+    title="Pybricks 4, on the EV3 and on other hubs: faster ramps, more names",
     motor_law=MotorLaw.PYBRICKS_4,
 )
 
