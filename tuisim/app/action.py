@@ -248,7 +248,7 @@ def fit_actions(
     Args:
         actions: The available ones, the most useful first.
         width: Cells.
-        most: Entries.
+        max_count: Entries.
     """
     always = [action for action in actions if action.id in _ALWAYS]
     left = width - sum(map(_measure_action, always))

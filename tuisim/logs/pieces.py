@@ -95,8 +95,8 @@ def _join_seams(
         values: The log.
         pieces: Its pieces.
         seams: Shape (n, 2): a piece, and the one at or after it that may continue the one before it.
-        least_samples: Fewest samples on either side.
-        least_step: The smallest step between levels.
+        min_samples: Fewest samples on either side.
+        min_step: The smallest step between levels.
         sigma: Standard deviation of the noise.
     """
     left, right = pieces[seams[:, 0] - 1], pieces[seams[:, 1]]

@@ -101,7 +101,7 @@ def _measure_levels(plateaus: PlateauArray, part: FloatArray, keep: BoolArray) -
     """Return plateaus of one length with their level, spread and drift.
 
     Args:
-        found: The plateaus.
+        plateaus: The plateaus.
         part: Their samples, shape (m, length).
         keep: Which of them are no strays: the same number of each plateau.
     """
@@ -189,7 +189,7 @@ def split_still(
 
     Args:
         values: The log.
-        found: Its pieces.
+        plateaus: Its pieces.
         cut: The parts of which they were joined, without gaps between them.
         ground: What they are judged by.
     """

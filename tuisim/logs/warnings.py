@@ -41,8 +41,8 @@ class Notes:
         """Add a warning about some rows.
 
         Args:
-            one: The problem, such as `cell is not a number`.
-            many: The same in the plural.
+            singular: The problem, such as `cell is not a number`.
+            plural: The same in the plural.
             rows: Rows of the file, from 1; the first few are enough if `count` is given.
             count: Number of occurrences; without any, nothing is added.
         """

@@ -63,7 +63,7 @@ def save_setting(setting: Setting, value: Scalar | None) -> None:
     """Set a setting in the file, which is made if it does not exist; comments and everything else in it stay.
 
     Args:
-        one: The setting.
+        setting: The setting.
         value: None to remove it.
 
     Raises:

@@ -57,7 +57,7 @@ def is_flat(picture: Pixels, glyphs: GlyphSet, places: CellIndex) -> npt.NDArray
     """Return whether some cells are of one colour, so that no glyph shows more of them than another.
 
     Args:
-        picture, glyphs, at: As for `fit_cells`.
+        picture, glyphs, places: As for `fit_cells`.
 
     Returns:
         Shape (n,).

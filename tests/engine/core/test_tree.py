@@ -201,10 +201,10 @@ def with_friction(tmp_path: Path) -> Said:
 
 FORM = """
 from tuisim.app.setup.fields import find
-from tuisim.app.setup.next_run import plan_of
+from tuisim.app.setup.next_run import build_plan
 from tuisim.settings.options import Settings
-edit = find(plan_of(Settings()), "friction")
-print(edit.label, edit.read(edit.write(plan_of(Settings()), "0,75")))
+edit = find(build_plan(Settings()), "friction")
+print(edit.label, edit.read(edit.write(build_plan(Settings()), "0,75")))
 """
 
 SAVE = """

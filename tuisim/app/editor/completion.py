@@ -282,7 +282,7 @@ def _rank(completion: Completion, word: str, owner: str) -> tuple[int, ...]:
     """Return what sorts a candidate: names in the case that is typed first; private, constant and general ones last.
 
     Args:
-        one: The candidate.
+        completion: The candidate.
         word: What has been typed of it.
         owner: The class behind the dot, whose own names come before inherited ones; empty if there is none.
     """

@@ -100,7 +100,7 @@ class LineMap:
 
     Args:
         run: Lines of the running text.
-        shown: Lines of the text shown.
+        shown_lines: Lines of the text shown.
     """
 
     def __init__(self, run: Sequence[str], shown_lines: Sequence[str]) -> None:

@@ -44,7 +44,7 @@ class AnswerList(OptionList):
 
         Args:
             question: What was asked; its words stand out.
-            found: The best one first.
+            results: The best one first.
             size: Columns and rows of the list.
         """
         self._found, self._asked = results, compile_pattern(question)

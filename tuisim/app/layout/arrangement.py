@@ -148,7 +148,7 @@ def choose_panels(
 
     Args:
         preset: The arrangement.
-        asked: Panels that were shown or hidden by the user, the latest last.
+        switched: Panels that the user has shown or hidden, the latest last.
         width: Columns of the area.
         height: Rows of the area.
     """
@@ -364,7 +364,7 @@ def make_room(
     Args:
         panel: The one.
         panels: Ids, the most wanted first.
-        least: Columns and rows that are room enough.
+        min_size: Columns and rows that are room enough.
         size: Columns and rows of the screen.
         preset: The arrangement.
     """

@@ -158,8 +158,8 @@ def measure_divergence(
     """Return the distance between two robots at the ticks of the first run that both runs cover.
 
     Args:
-        one: Records of the first run, at least one.
-        two: Records of the second, at least one; if the tick rates differ, its poses are interpolated.
+        left: Records of the first run, at least one.
+        right: Records of the second, at least one; if the tick rates differ, its poses are interpolated.
         tick_hz: Ticks per second of each.
     """
     import numpy as np

@@ -197,7 +197,7 @@ class _MechanicsReader:
         """Note an end stop of a motor.
 
         Args:
-            said: Whether the motor turns forwards there, for each time; empty if its movements say it.
+            ways: Whether the motor turns forwards there, for each time; empty if its movements say it.
         """
         for port in self._find_motors(base, scope):
             forwards = next(iter(ways or self._find_ways(scope.body, [port], scope)), None)

@@ -408,7 +408,7 @@ def _find_prompt(text: str, answer: str, typed: str | None) -> str | None:
     """Return the prompt in a row of input, which the answer follows; None if another answer was given.
 
     Args:
-        given: The answer, if it is known.
+        typed: The answer, if it is known.
     """
     if not text.endswith(answer) or (typed is not None and typed != answer):
         return None
@@ -425,7 +425,7 @@ def _find_reply(
     """Return the row that completes a turn or None, and what is wrong with a turn that got its answer.
 
     Args:
-        asked: The rows of the turn, from the question to the next one.
+        span: The rows of the turn, from the question to the next one.
     """
     if turn.prompt and not build_search(turn.prompt)(prompt):
         return (

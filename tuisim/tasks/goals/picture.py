@@ -142,7 +142,7 @@ def compare(cells: Array, points: Array, within_mm: float) -> tuple[Array, Array
     """Compare a drawing with a picture.
 
     Args:
-        wanted: Indices of the picture's cells, shape (n,).
+        cells: Indices of the picture's cells, shape (n,).
         points: Points of the drawing in mm, shape (m, 2); they may be off the field.
         within_mm: How far they may be apart.
 

@@ -94,7 +94,7 @@ def parse_other_worlds(
     Args:
         data: The list of tables.
         goals: Names of the goals that count where a table names none: in a lesson, if it has none of its own, either.
-        at: The place of the list in the file.
+        location: The place of the list in the file.
         path: The file, for the files that a world names.
         read_goals: Reads the goals of a table.
         of_task: Whether they are those of a task, which may be hidden, not of a lesson.

@@ -97,7 +97,7 @@ def find_similar(
 
     Args:
         programs: The texts of the main program and its modules, by the student's name; of them, `MAX_TOKENS` count.
-        given: Texts that everybody was given, such as a skeleton: what is in them is left out.
+        handed_out: Texts that everybody was given, such as a skeleton: what is in them is left out.
     """
     tokens = {
         name: program_tokens

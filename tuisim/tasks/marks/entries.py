@@ -30,9 +30,9 @@ def build_entries(
     """Return the students whose programs can be run, and all students.
 
     Args:
-        found: The students.
+        submissions: The students.
         task: The task.
-        given: Settings that take precedence over those of the task, by path.
+        options: Settings that take precedence over those of the task, by path.
 
     Raises:
         ConfigError: the world of the goals, or an option, is wrong, or none of the programs can run by its profile.

@@ -123,7 +123,7 @@ class Sheet:
         """Return heads and rows of the text table; the reason comes last.
 
         Args:
-            most_name, most_goal: Characters of the names of students and goals; the middle of longer ones is left out.
+            max_name, max_goal: Characters of the names of students and goals; the middle of longer ones is left out.
         """
         goals = [_cut_middle(column.name, max_goal) for column in self.columns]
         heads = ["student", "points", "robustness", *goals, "reason"]

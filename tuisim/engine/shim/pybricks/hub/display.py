@@ -144,7 +144,6 @@ class Menu(Connected):
 
     Args:
         display: Shows it.
-        pressed: Returns the pressed buttons by their names in the session.
     """
 
     current: Menu | None = None
