@@ -119,7 +119,7 @@ def export_frame(frame: pd.DataFrame, path: str | Path, metadata: Metadata) -> N
 
 
 def export_samples(runs: Sequence[StoredRun], path: str | Path) -> None:
-    """Write the samples of one or more runs, see `frames.samples_frame`.
+    """Write the samples of one or more runs, see `frames.build_samples_frame`.
 
     Raises:
         ExportError: it cannot be written.
@@ -133,7 +133,7 @@ def export_samples(runs: Sequence[StoredRun], path: str | Path) -> None:
 
 
 def export_telemetry(run: StoredRun, path: str | Path) -> None:
-    """Write every tick of a run, see `frames.telemetry_frame`.
+    """Write every tick of a run, see `frames.build_telemetry_frame`.
 
     Raises:
         ExportError: it cannot be written.
@@ -168,7 +168,7 @@ def export_log(log: Log, table: LogTable, path: str | Path) -> None:
 
 
 def build_typed_frame(table: LogTable) -> pd.DataFrame:
-    """Return a table as a frame whose columns have the types of `frames.samples_frame`, also if it was read as text.
+    """Return a table as a frame with the types of `frames.build_samples_frame`, also if it was read as text.
 
     A column keeps its type if another would change a value.
     """

@@ -23,7 +23,7 @@ IMAGE_COLUMNS = ("side", "vals", "clock", "run")
 
 
 def get_dataframe_from_datalog(log: Iterable[StoredRun]) -> pd.DataFrame:
-    """Return the samples of runs as one long frame, see `engine.runs.frames.samples_frame`."""
+    """Return the samples of runs as one long frame, see `engine.runs.frames.build_samples_frame`."""
     from tuisim.engine.runs.frames import build_samples_frame
     from tuisim.notebook.eds import use_seconds
 

@@ -40,7 +40,7 @@ def execute(task: Task, folder: Path) -> Result:
 
     Args:
         task: The task.
-        folder: Where its recording is until it has been evaluated; see `engine.runs.temporary.batch_folder`.
+        folder: Where its recording is until it has been evaluated; see `engine.runs.temporary.create_batch_folder`.
     """
     try:
         return _run_task(task, folder)

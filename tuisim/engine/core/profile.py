@@ -5,7 +5,7 @@ simulator. A profile is only data: the code that reads it never checks its name.
 
 To add a rule: add a field with a default at the end of `ProfileSpec`, with the source of its numbers and `later=True`.
 To add a motor law: add it to `MotorLaw`; write the class of its motor and, if wheels move differently, of its drive in
-`engine.core.drive`; add a case to `motor_of` and `drive_of` in `engine.core.motion`; write its device in
+`engine.core.drive`; add a case to `create_motor` and `build_drive` in `engine.core.motion`; write its device in
 `engine.shim.motor`, with a case in
 `tacho_of` in `engine.shim.brick`; add it to the source of `motor_law`; say in `MotorLaw.library` which library drives
 it.

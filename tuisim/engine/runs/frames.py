@@ -144,7 +144,7 @@ def build_telemetry_columns(
 
     Args:
         field: The mat; by default that of the run.
-        names: Some of `columns_of` the run, in place of those after `time`.
+        names: Some of `list_columns` the run, in place of those after `time`.
 
     Raises:
         LogError: a recording is damaged, or the mat no longer exists.

@@ -72,7 +72,7 @@ from tuisim.engine.runs.store import NewRun, RunStore
 from tuisim.engine.runs.views import TelemetryView, open_views
 
 STUCK_AFTER_S = 0.3
-"""A child that has not ended this long after a stop is killed; see `RunHandle._fair_time_s`."""
+"""A child that has not ended this long after a stop is killed; see `RunHandle.time_used_s`."""
 ASK_AGAIN_S = 0.05
 LOOK_EVERY_S = 0.03
 """What a child records is looked at this often while it runs: most are over before the first look."""

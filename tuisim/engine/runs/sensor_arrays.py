@@ -168,7 +168,7 @@ def _cut_off(
     step: tuple[Array, Array],
     echoes: Array,
 ) -> Array:
-    """Return the lengths of rays that end at the first of some edges, as `engine.core.sensors.ultrasonic.first_hit_mm`.
+    """Return the lengths of rays that end at the first of some edges, as `ultrasonic.find_first_hit_mm`.
 
     Args:
         nearest_mm: Their lengths without the edges, shape (n,).

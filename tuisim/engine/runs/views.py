@@ -133,7 +133,7 @@ class _View(ABC):
         self._is_checked = is_checked
         self._damage = ""
         self.holds = False
-        """Whether it stays as it is until the next `read_on`, so that all who look at it see the same."""
+        """Whether it stays as it is until the next `read_new`, so that all who look at it see the same."""
         self._copy: bytearray | mmap = bytearray()
         """Starts like the file, with spare capacity; without the first `_dropped` records."""
         self._dropped = 0
@@ -537,7 +537,7 @@ class OutputView(_View):
         return iterate_raw_rows(data, end)
 
     def rows(self) -> Iterator[OutputRow]:
-        """Yield the rows of `all_rows` one by one: a run may print a million lines."""
+        """Yield the rows of `read_all_rows` one by one: a run may print a million lines."""
         return map(itemgetter(0), self.read_rows(0))
 
 

@@ -83,7 +83,7 @@ class DebugHooks(Protocol):
         """Pause if the goal is reached. Called right before a tick, after user actions."""
 
     def limit_ticks(self, most: int) -> int:
-        """Return the number of ticks that may run before `after_ticks` has to be called."""
+        """Return the number of ticks that may run before `check_breakpoints` has to be called."""
 
     def check_breakpoints(self) -> None:
         """Pause if a breakpoint matches the tick that was just run."""

@@ -55,7 +55,7 @@ class Plot:
 
     def measure_across(self, times_s: FloatArray, width: int) -> _Points:
         """Return how far from the left edge of the canvas times are, for cells of that width."""
-        # As `axes.column_of`, so that a label is below its tick.
+        # As `axes.find_column`, so that a label is below its tick.
         low, high = self.x_limits
         return (times_s - low) / (high - low) * (self.columns - 0.5) * width + 1
 

@@ -165,7 +165,7 @@ class Evidence:
         )
 
     def column(self, name: str) -> Array:
-        """Return a column of `columns_of` the run, or one of `BRICK_COLUMNS`, at every tick.
+        """Return a column of `list_columns` the run, or one of `BRICK_COLUMNS`, at every tick.
 
         Raises:
             LogError, ConfigError: the mat no longer exists, or its image has changed.

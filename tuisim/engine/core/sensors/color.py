@@ -378,7 +378,7 @@ def _mean_of_mat(spec: ColorSensorSpec, instant: Instant, field: Field) -> Color
 
 
 disc_pixels_of = lru_cache(maxsize=16)(count_disc_pixels)
-"""`field.disc_pixels`, cached."""
+"""`field.count_disc_pixels`, cached."""
 
 
 def read_pixel_array(spec: ColorSensorSpec, instant: Instant, field: Field) -> bytes:

@@ -303,7 +303,7 @@ class ServoMotor:
 
     @property
     def ramping_ticks(self) -> int:
-        """Number of ticks that the last `quiet_ticks` allowed: a servo motor always glides along its trajectory."""
+        """Ticks that the last `count_quiet_ticks` allowed: a servo motor always glides along its trajectory."""
         return 0 if self.mode == STOPPED else self._quiet
 
     def count_quiet_ticks(self, tick: int) -> int:

@@ -266,7 +266,7 @@ class Debugger:
     # Ticks
 
     def limit_ticks(self, most: int) -> int:
-        """Return the number of ticks that may run before `after_ticks` has to be called."""
+        """Return the number of ticks that may run before `check_breakpoints` has to be called."""
         tick = self._session.sim.tick
         if self._watcher.ticks:
             return 1
