@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from tests.cases import cases
+from tests.conftest import Command
 from tests.running import Run, Start, over
 from tuisim.app.snapshot import end_words
 from tuisim.base.source import SPIKE_MODULES
@@ -199,6 +200,12 @@ def test_a_name_that_no_hub_has_is_missing(run: Run) -> None:
 def test_another_hub_is_refused_on_the_ev3(run: Run, text: str) -> None:
     errors = run(text, profile="pybricks4", prelude="none").errors
     assert "the robot of this run has an EV3" in errors[-1]
+
+
+def test_another_hub_than_that_of_the_robot_is_refused(here: Command, tmp_path: Path) -> None:
+    (tmp_path / "hubs.py").write_text("from pybricks.hubs import PrimeHub, MoveHub\n")
+    done = here("run", "hubs.py")
+    assert "MoveHub: the hub of this run's robot is PrimeHub" in done.stderr
 
 
 @pytest.mark.parametrize(

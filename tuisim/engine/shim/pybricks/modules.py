@@ -35,8 +35,8 @@ from tuisim.engine.shim.pybricks.unsimulated import (
     IO_DEVICES,
     NXT_DEVICES,
     OtherHub,
+    refuse_hub,
     refused_classes,
-    refused_hub,
 )
 from tuisim.engine.shim.pybricks.unsimulated import (
     MODULES as REFUSED,
@@ -145,7 +145,7 @@ def install(
     made = {name: types.ModuleType(name) for name in names}
     made |= {name: HardwareModule(name, hardware) for name, hardware in REFUSED.items()}
     vars(made["pybricks.bluetooth"]).update(BLUETOOTH)
-    vars(made["pybricks.hubs"])["__getattr__"] = refused_hub
+    vars(made["pybricks.hubs"])["__getattr__"] = partial(refuse_hub, hub)
     for name, module in made.items():
         vars(module).update(names.get(name, {}))
         parent, _, last = name.rpartition(".")

@@ -83,19 +83,27 @@ class OtherHub:
             raise _refusal(fullname)
 
 
-def refused_hub(name: str) -> NoReturn:
+def refuse_hub(hub: str, name: str) -> NoReturn:
     """Raise the error about a name that `pybricks.hubs` does not have here.
+
+    Args:
+        hub: The hub of the robot; empty for the EV3.
+        name: The name.
 
     Raises:
         NotSimulated: it is that of another hub; it is an ImportError, too.
         AttributeError: it is none.
     """
     if name in HUBS:
-        raise _refusal(f"pybricks.hubs.{name}")
+        raise _refusal(f"pybricks.hubs.{name}", hub)
     raise AttributeError(f"module 'pybricks.hubs' has no attribute {name!r}")
 
 
-def _refusal(name: str) -> Exception:
+def _refusal(name: str, hub: str = "") -> Exception:
+    """Return the error about a name of another hub than that of the robot, which is empty for the EV3."""
+    if hub:
+        hint = "a program gets the first hub that it imports, unless -r names a robot"
+        return refused_as(ImportError, f"{name}: the hub of this run's robot is {hub}", hint)
     hint = "a program that uses no part of the EV3 gets the hub that it imports, unless -r names a robot"
     return refused_as(ImportError, f"{name}: the robot of this run has an EV3", hint)
 
