@@ -24,7 +24,7 @@ from tuisim.engine.core.field import Field
 from tuisim.engine.core.sensors import find_named_column, list_column_names, list_columns
 from tuisim.engine.runs.brick_state import BrickState, update_face
 from tuisim.engine.runs.command_events import parse_command_search
-from tuisim.engine.runs.frames import compute_column_values, find_begins, test_condition
+from tuisim.engine.runs.frames import compute_column_values, evaluate_condition, find_begins
 from tuisim.engine.runs.records import TEXT_STREAMS, Mark, OutputRow
 from tuisim.engine.runs.samples import parse_sample, select_rows
 
@@ -351,7 +351,7 @@ def _find_line(search: _Search, line: int) -> int:
     # Of consecutive ticks at one line, the first is meant: that is when the program reached the line.
     at_it = ValueCondition("line", Operator.EQUAL, str(line))
     came = find_begins(
-        at_it, test_condition(at_it, search.recording.telemetry.array()["line"])
+        at_it, evaluate_condition(at_it, search.recording.telemetry.array()["line"])
     ).tolist()
     tick = search.find_nearest(sorted({*came, *search.recording.rows.list_ticks(line)}))
     if tick is None:
@@ -403,7 +403,7 @@ def _find_change(search: _Search, condition: ValueCondition, mat: Field | None) 
         (name,), recording.telemetry.array(), recording, recording.actions(), mat
     )
     tick = search.find_nearest(
-        find_begins(condition, test_condition(condition, values[name])).tolist()
+        find_begins(condition, evaluate_condition(condition, values[name])).tolist()
     )
     if tick is None:
         becomes = "" if condition.is_momentary else " becomes true"

@@ -23,7 +23,7 @@ from tuisim.engine.core.conditions import (
 )
 from tuisim.engine.core.profile import PROFILES
 from tuisim.engine.core.spec import RobotSpec
-from tuisim.engine.runs.frames import find_begins, test_condition
+from tuisim.engine.runs.frames import evaluate_condition, find_begins
 from tuisim.engine.runs.records import OutputRow, Stream
 from tuisim.logs.columns import Layout
 from tuisim.logs.expressions import evaluate
@@ -111,7 +111,7 @@ def test_an_edge_is_found_in_a_recording_where_it_was_met_during_the_run(conditi
     assert found is not None
     edge = Edge(found)
     met = [at for at, value in enumerate(values.tolist()) if edge.update(value)]
-    assert find_begins(found, test_condition(found, values)).tolist() == met
+    assert find_begins(found, evaluate_condition(found, values)).tolist() == met
     assert 50 < len(met) < 250
 
 

@@ -217,7 +217,7 @@ def compute_owner_column(
     return np.array(of(rows, spec), np.float64)
 
 
-def test_condition(condition: ValueCondition, values: Array) -> Array:
+def evaluate_condition(condition: ValueCondition, values: Array) -> Array:
     """Return whether a condition on a column is true at each tick, from its values there.
 
     Raises:

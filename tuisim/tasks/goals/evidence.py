@@ -14,7 +14,7 @@ from tuisim.engine.core.field import Field
 from tuisim.engine.core.profile import NS_PER_S
 from tuisim.engine.mat_cache import open_field
 from tuisim.engine.protocol import End, Ended, Unended, UserAction
-from tuisim.engine.runs.frames import compute_column_values, test_condition, tick_times_s
+from tuisim.engine.runs.frames import compute_column_values, evaluate_condition, tick_times_s
 from tuisim.engine.runs.readings import Readings, read_readings
 from tuisim.engine.runs.records import SAMPLE_STREAMS, OutputRow, Stream
 from tuisim.engine.runs.run_folder import StoredRun, open_mat
@@ -196,7 +196,7 @@ class Evidence:
                 np.arange(len(self.records)), find_text_ticks(condition, self.brick_rows)
             )
         if condition.source is ValueSource.COLUMN:
-            return test_condition(condition, self.column(condition.name))
+            return evaluate_condition(condition, self.column(condition.name))
         return np.isin(
             np.arange(len(self.records)),
             [self.rows[number].tick for number in self.find_true_rows(condition)],
