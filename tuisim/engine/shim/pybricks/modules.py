@@ -130,10 +130,10 @@ def install(
     micropython.install(session)
     plugs.missing = OSError
     brick = Brick(session, built, plugs, screen, mixer, partial(ports_hint, session))
-    if session.sim.spec.profile.motor_law != MotorLaw.PYBRICKS_4:
+    law, hub = session.sim.spec.profile.motor_law, session.sim.spec.robot.hub
+    if law != MotorLaw.PYBRICKS_4:
         brick.find_later_class = _find_later_class
     Connected.brick = brick
-    law, hub = session.sim.spec.profile.motor_law, session.sim.spec.robot.hub
     if hub:
         from tuisim.engine.shim.pybricks.hub.modules import find_names
 
