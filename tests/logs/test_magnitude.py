@@ -112,6 +112,8 @@ def test_every_number_is_exported(tmp_path: Path, suffix: str) -> None:
 @pytest.mark.filterwarnings("error")
 @given(values=EVERY)
 @example(values=[HUGE, -HUGE])
+@example(values=[4.90790065654301e16] * 3)
+@example(values=[4.907900656543009e16, 4.90790065654301e16, 4.90790065654301e16])
 def test_every_number_is_summed(values: Sequence[float]) -> None:
     samples = np.array(values, np.float64)
     for found in (

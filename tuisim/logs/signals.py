@@ -233,8 +233,8 @@ def compute_summary(values: FloatArray, quantiles: Sequence[float] = QUANTILES) 
     low, high = float(finite.min()), float(finite.max())
     scale = find_scale(low, high)
     scaled = finite if scale == 1.0 else finite / scale
-    # The mean of equal values may be off by rounding.
-    mean = low if low == high else float(scaled.mean(dtype=np.float64)) * scale
+    # Rounding may lead out of the range of the values.
+    mean = min(max(float(scaled.mean(dtype=np.float64)) * scale, low), high)
     std = 0.0 if low == high else float(scaled.std(ddof=1, dtype=np.float64)) * scale
     quantile_values = tuple((np.quantile(scaled, quantiles) * scale).tolist()) if quantiles else ()
     return Summary(len(finite), left_out, low, mean, high, std, quantile_values)

@@ -229,8 +229,8 @@ def _compute_variable(values: Sequence[float]) -> VariableStatistics:
     count, low, high = len(values), min(values), max(values)
     scale = find_scale(low, high)
     scaled = [value / scale for value in values]
-    # Exact sums: the result does not depend on the order of equal values.
-    mean = math.fsum(scaled) / count
+    # Exact sums: the result does not depend on the order of equal values. Rounding may lead out of their range.
+    mean = min(max(math.fsum(scaled) / count, min(scaled)), max(scaled))
     std = math.sqrt(math.fsum((value - mean) ** 2 for value in scaled) / count)
     return VariableStatistics(values[-1], count, mean * scale, std * scale, low, high)
 

@@ -121,7 +121,7 @@ async def test_choices_are_stepped_through_with_the_arrows() -> None:
     async with open_settings() as (pilot, app):
         await pilot.press("right")
         await until(pilot, lambda: app.run_controller.next_run.spec.robot.name == "Small_Robot")
-        await pilot.press("left", "left", "left")
+        await pilot.press(*["left"] * 4)
         await until(
             pilot, lambda: app.run_controller.next_run.spec.robot.name == "Sensor_Diameter_Config"
         )

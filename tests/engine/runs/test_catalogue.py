@@ -37,7 +37,7 @@ from tuisim.base.source import Program
 store = RunStore(Path(sys.argv[1]))
 spec = RunSpec(RobotSpec(), WorldSpec(), ROBOLAB)
 for _ in range(12):
-    run = store.new_run(Program("p.py", ""), spec)
+    run = store.create_run(Program("p.py", ""), spec)
     store.runs()
     store.finish(run, Ended(End.FINISHED, 1, 1))
     print(run.number, flush=True)
