@@ -1,37 +1,76 @@
-"""`EV3Brick` of version 4: a light that blinks, a speaker with a volume, and the settings of a hub."""
+"""What each hub of version 4 has, a light, a speaker and settings, and `EV3Brick` of that version."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import _thread
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from enum import Enum
 from typing import Any
 
+from tuisim.engine.core.profile import MS, NS_PER_S
 from tuisim.engine.shim.pybricks import hubs
+from tuisim.engine.shim.pybricks import speaker as tones
+from tuisim.engine.shim.pybricks.brick import Connected, Waiting, invalid_argument, whole
 from tuisim.engine.shim.pybricks.hsv_color import Color
-from tuisim.engine.shim.pybricks.hub import hubs as other_hubs
-from tuisim.engine.shim.pybricks.hub.face import Animation
 from tuisim.engine.shim.pybricks.parameters import Button
+from tuisim.engine.shim.tones import Tone, song_of, tones_heard
 
 DARK = (0, 0)
 HUES: Mapping[int, str] = {15: "RED", 45: "ORANGE", 90: "YELLOW", 180: "GREEN", 330: "", 360: "RED"}
 """The colour of the light for a hue, by the highest of its hues; others leave it dark."""
 
 
-class Buttons(hubs.Buttons):
-    """The buttons of the brick."""
-
-    def pressed(self) -> set[Button]:  # type: ignore[override]
-        """Return the pressed buttons."""
-        return set(super().pressed())
-
-
-class Light(hubs.Light):
-    """The light around the buttons, which has four colours."""
+class Animation:
+    """Frames that are shown one after another in the background, until the next ones."""
 
     def __init__(self) -> None:
-        self._animation = Animation()
+        self._number = 0
 
-    def on(self, color: Any) -> None:  # type: ignore[override]
-        """Turn it on in the colour that is nearest."""
+    def stop(self) -> None:
+        """Show no further frame."""
+        self._number += 1
+
+    def play(self, show: Callable[[Any], None], frames: Sequence[tuple[Any, int]]) -> None:
+        """Show frames again and again.
+
+        Args:
+            show: Shows a frame.
+            frames: Each with the time in ms that it stays.
+
+        Raises:
+            ValueError: there is no frame, or one has no time.
+        """
+        if not frames or any(whole(time) <= 0 for _, time in frames):
+            raise ValueError("Invalid argument")
+        self._number += 1
+        _thread.start_new_thread(self._keep_on, (self._number, show, frames))
+
+    def _keep_on(
+        self, number: int, show: Callable[[Any], None], frames: Sequence[tuple[Any, int]]
+    ) -> None:
+        # A lock that is never released: waiting on it does not count as a program line that spends time.
+        alarm = _thread.allocate_lock()
+        alarm.acquire()
+        while number == self._number:
+            for frame, time in frames:
+                if number != self._number:
+                    return
+                show(frame)
+                alarm.acquire(True, whole(time) * MS / NS_PER_S)
+
+
+class AnimatedLight:
+    """A light that can blink.
+
+    Args:
+        show: Shows a colour; None for darkness.
+    """
+
+    def __init__(self, show: Callable[[Any], None]) -> None:
+        self._show, self._animation = show, Animation()
+
+    def on(self, color: Any) -> None:
+        """Turn it on in a colour, or in the nearest that it has."""
         self._animation.stop()
         self._show(color)
 
@@ -42,14 +81,114 @@ class Light(hubs.Light):
 
     def blink(self, color: Any, durations: Sequence[int]) -> None:
         """Blink in a colour: durations in ms, on and off in turn."""
-        shown = [color if at % 2 == 0 else None for at in range(len(durations))]
-        self._animation.play(self._show, [*zip(shown, durations, strict=True)])
+        colors = [None if number % 2 else color for number in range(len(durations))]
+        self._animation.play(self._show, [*zip(colors, durations, strict=True)])
 
     def animate(self, colors: Sequence[Any], interval: int) -> None:
         """Show colours one after another, each for a time in ms."""
         self._animation.play(self._show, [(color, interval) for color in colors])
 
-    def _show(self, color: Color | None) -> None:
+
+class Speaker(Connected):
+    """The speaker."""
+
+    def __init__(self) -> None:
+        self._tones, self._volume = tones.Speaker(), 100
+
+    def volume(self, volume: int | None = None) -> int | None:
+        """Return the volume in percent, or set it."""
+        if volume is None:
+            return self._volume
+        self.brick.command()
+        self._volume = max(0, min(100, whole(volume)))
+        return None
+
+    def beep(self, frequency: float = 500, duration: float = 100) -> None:
+        """Play a tone of a frequency in Hz for a duration in ms."""
+        if whole(duration) < 0:
+            return self._tones.beep(frequency, duration)
+        return self._play([Tone(max(0, whole(frequency)), whole(duration))])
+
+    def play_notes(self, notes: Iterable[str], tempo: float = 120) -> None:
+        """Play notes such as `C4/4`, in quarter notes per minute."""
+        if whole(tempo) <= 0:
+            raise invalid_argument()
+        return self._play(
+            [tones.note_of(note, tones.WHOLE_NOTE_MS_AT_1 // whole(tempo)) for note in notes]
+        )
+
+    def _play(self, tones: Sequence[Tone]) -> None:
+        return self.brick.finish(self._sound(tones))
+
+    def _sound(self, tones: Sequence[Tone]) -> Waiting[None]:
+        heard = song_of([*tones]) if len(tones) != 1 else tones_heard(tones)
+        self.brick.session.speak(heard.text, 0, heard.tones_row, heard.file)
+        yield self.brick.now_us + heard.length_ns // 1000
+
+
+class System(Connected):
+    """The hub's own settings.
+
+    Args:
+        name: The name of the hub.
+        buttons: Its buttons by their names in the session.
+    """
+
+    def __init__(self, name: str, buttons: Mapping[str, Enum]) -> None:
+        self._name, self._stored = name, bytearray(512)
+        self._session_names = {button: name for name, button in buttons.items()}
+
+    def set_stop_button(self, button: Any) -> None:
+        """Let a button, or several at once, stop the program; None: none does."""
+        buttons = [] if button is None else [button] if isinstance(button, Enum) else [*button]
+        self.brick.stop_buttons = frozenset(self._session_names[pressed] for pressed in buttons)
+
+    def name(self) -> str:
+        """Return the name of the hub."""
+        return self._name
+
+    def info(self) -> dict[str, Any]:
+        """Return what the hub tells of itself."""
+        return {
+            "name": self._name,
+            "reset_reason": 0,
+            "host_connected_ble": False,
+            "program_start_type": 1,
+        }
+
+    def storage(
+        self, offset: int, *, read: int | None = None, write: bytes | None = None
+    ) -> bytes | None:
+        """Read or write bytes that stay when the program ends."""
+        if write is not None:
+            self._stored[offset : offset + len(write)] = write
+            return None
+        return bytes(self._stored[offset : offset + whole(read)])
+
+    def shutdown(self) -> None:
+        """Turn the hub off: the program ends."""
+        raise SystemExit
+
+    def reset_reason(self) -> int:
+        """Return why the hub was last turned off."""
+        return 0
+
+
+class Buttons(hubs.Buttons):
+    """The buttons of the brick."""
+
+    def pressed(self) -> set[Button]:  # type: ignore[override]
+        """Return the pressed buttons."""
+        return set(super().pressed())
+
+
+class Light(AnimatedLight, hubs.Light):  # type: ignore[misc]
+    """The light around the buttons, which has four colours."""
+
+    def __init__(self) -> None:
+        super().__init__(self._show_nearest)
+
+    def _show_nearest(self, color: Color | None) -> None:
         if color is None or color.v <= 0 or not color.s:
             self._shine(*DARK)
             return
@@ -57,20 +196,10 @@ class Light(hubs.Light):
         self._shine(*hubs.LIGHTS.get(name, DARK))
 
 
-class System(other_hubs.System):
-    """The settings of the brick."""
-
-    def set_stop_button(self, button: Any) -> None:
-        """Let a button, or several at once, stop the program; None: none does."""
-        buttons = [] if button is None else [button] if isinstance(button, Button) else [*button]
-        names = {known: name for name, known in hubs.BUTTON_NAMES.items()}
-        self.brick.stop_buttons = frozenset(names[one] for one in buttons)
-
-
 class EV3Brick(hubs.EV3Brick):
     """The brick."""
 
     buttons = Buttons()
     light = Light()
-    speaker = other_hubs.Speaker()  # type: ignore[assignment]
-    system = System("EV3")
+    speaker = Speaker()  # type: ignore[assignment]
+    system = System("EV3", hubs.BUTTON_NAMES)

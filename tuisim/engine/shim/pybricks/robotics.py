@@ -117,8 +117,12 @@ class DriveBase(Connected):
 
     def stop(self) -> None:
         """Stop, and let the motors coast."""
+        self._end(None)
+
+    def _end(self, actuation: int | None) -> None:
+        """Stop with a power of the motors: None lets them coast, 0 brakes them."""
         self.brick.command()
-        self.tell(Call.STOP_BASE, None)
+        self.tell(Call.STOP_BASE, actuation)
 
     # Readings
 

@@ -317,8 +317,7 @@ class DriveBase(robotics.DriveBase):
 
     def brake(self) -> None:
         """Stop and let the motors brake themselves."""
-        self.brick.command()
-        self.tell(Call.STOP_BASE, 0)
+        self._end(0)
 
     def hold(self) -> None:
         """Stop and hold the wheels."""

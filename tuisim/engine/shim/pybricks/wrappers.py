@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from tuisim.engine.core.commands.calls import Call
 from tuisim.engine.shim.pybricks import motor, robotics
 from tuisim.engine.shim.pybricks.parameters import Stop
 from tuisim.engine.shim.pybricks.tools import wait
@@ -72,8 +71,7 @@ class DriveBase(robotics.DriveBase):
             case Stop.COAST:
                 super().stop()
             case Stop.BRAKE:
-                self.brick.command()
-                self.tell(Call.STOP_BASE, 0)
+                self._end(0)
             case Stop.HOLD:
                 self.straight(0)
             case _:

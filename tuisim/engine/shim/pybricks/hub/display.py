@@ -8,7 +8,8 @@ from typing import Any
 from tuisim.engine.runs.brick_state import SIDE_PIXELS
 from tuisim.engine.runs.readings import BUTTONS_PORT
 from tuisim.engine.shim.pybricks.brick import Connected, Waiting, invalid_argument, text_of, whole
-from tuisim.engine.shim.pybricks.hub.face import DARK, Animation, Face, Pixels
+from tuisim.engine.shim.pybricks.brick_4 import Animation
+from tuisim.engine.shim.pybricks.hub.face import DARK, Face, Pixels
 from tuisim.engine.shim.pybricks.hub.pictures import CHARACTERS, DIGITS, ICONS
 from tuisim.engine.shim.pybricks.matrix import Matrix, Side
 from tuisim.engine.shim.pybricks.tools import wait
@@ -25,10 +26,14 @@ PLACES: Mapping[Side, Callable[[int, int], tuple[int, int]]] = {
 """Where a pixel of a picture is on the matrix, by the side that is up."""
 
 
-def _bits(picture: str, columns: int = SIDE_PIXELS) -> list[list[int]]:
-    """Return the rows of a picture of `pictures`: 0 or 100 for each pixel."""
-    rows = (int(digit, 32) for digit in picture)
-    return [[100 * (row >> columns - 1 - at & 1) for at in range(columns)] for row in rows]
+def _spread_bits(rows: Iterable[int], columns: int = SIDE_PIXELS) -> list[list[int]]:
+    """Return 0 or 100 for each pixel of rows that are numbers, whose highest bit is on the left."""
+    return [[100 * (row >> columns - 1 - column & 1) for column in range(columns)] for row in rows]
+
+
+def _read_picture(picture: str, columns: int = SIDE_PIXELS) -> list[list[int]]:
+    """Return the pixels of one of `pictures`, row by row."""
+    return _spread_bits((int(digit, 32) for digit in picture), columns)
 
 
 class Icon:
@@ -36,14 +41,13 @@ class Icon:
 
     def __new__(cls, bits: int) -> Any:
         """Return a picture."""
-        picture = ((bits >> SIDE_PIXELS * (LAST - row)) & 31 for row in range(SIDE_PIXELS))
         return Matrix(
-            [[100 * (row >> LAST - at & 1) for at in range(SIDE_PIXELS)] for row in picture]
+            _spread_bits(bits >> SIDE_PIXELS * (LAST - row) for row in range(SIDE_PIXELS))
         )
 
 
 for _name, _picture in ICONS.items():
-    setattr(Icon, _name, Matrix(_bits(_picture)))
+    setattr(Icon, _name, Matrix(_read_picture(_picture)))
 
 
 def _read_icon(icon: Any) -> Pixels:
@@ -71,8 +75,8 @@ class Display(Connected):
     def _draw(self, pixels: Pixels) -> None:
         self._pixels = pixels
         turned = [*DARK]
-        for at, value in enumerate(pixels):
-            row, column = PLACES[self._up](*divmod(at, SIDE_PIXELS))
+        for number, value in enumerate(pixels):
+            row, column = PLACES[self._up](*divmod(number, SIDE_PIXELS))
             turned[SIDE_PIXELS * row + column] = value
         self._face.draw(tuple(turned))
 
@@ -110,7 +114,7 @@ class Display(Connected):
         """Show a character."""
         if len(text_of(char)) != 1 or not " " <= char <= "~":
             raise invalid_argument()
-        rows = _bits(CHARACTERS[ord(char) - ord(" ")])
+        rows = _read_picture(CHARACTERS[ord(char) - ord(" ")])
         self._show(tuple(pixel for row in rows for pixel in row))
 
     def number(self, number: int) -> None:
@@ -120,9 +124,9 @@ class Display(Connected):
             self.char(">" if value > 0 else "<")
             return
         tens, ones = divmod(abs(value), 10)
-        left = _bits(DIGITS[tens], 2) if tens else [[0, 0]] * SIDE_PIXELS
-        rows = zip(left, _bits(DIGITS[ones], 2), strict=True)
-        pixels = [pixel for one, other in rows for pixel in (*one, 0, *other)]
+        left = _read_picture(DIGITS[tens], 2) if tens else [[0, 0]] * SIDE_PIXELS
+        rows = zip(left, _read_picture(DIGITS[ones], 2), strict=True)
+        pixels = [pixel for first, second in rows for pixel in (*first, 0, *second)]
         if value < 0:
             pixels[len(DARK) // 2] = 50
         self._show(tuple(pixels))
@@ -159,20 +163,21 @@ class Menu(Connected):
     def choose(self, symbols: Sequence[Any]) -> Any:
         """Let the user choose a symbol by the buttons, and return it."""
         before, self.brick.stop_buttons = self.brick.stop_buttons, frozenset()
-        at, held = 0, self._pressed()
-        self._show(symbols[at])
+        place, held = 0, self._pressed()
+        self._show(symbols[place])
         while True:
             pressed = self._pressed()
             if "enter" in held - pressed:
                 break
-            if step := len({"right"} & (pressed - held)) - len({"left"} & (pressed - held)):
-                at = (at + step) % len(symbols)
-                self._show(symbols[at])
+            begun = pressed - held
+            if step := ("right" in begun) - ("left" in begun):
+                place = (place + step) % len(symbols)
+                self._show(symbols[place])
             held = pressed
             wait(POLL_MS)
         self._display.off()
         self.brick.stop_buttons = before
-        return symbols[at]
+        return symbols[place]
 
     def _show(self, symbol: Any) -> None:
         show = self._display.char if isinstance(symbol, str) else self._display.number
