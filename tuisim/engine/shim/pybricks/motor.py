@@ -22,7 +22,7 @@ from tuisim.engine.shim.pybricks.brick import (
     not_permitted,
     whole,
 )
-from tuisim.engine.shim.pybricks.parameters import Direction, Port, Stop
+from tuisim.engine.shim.pybricks.parameters import AnyPort, Direction, Port, Stop
 from tuisim.engine.shim.pybricks.unsimulated import LOGGER
 from tuisim.engine.shim.unsupported.modules import refused_part
 
@@ -50,10 +50,9 @@ def gear_ratio(gears: Any) -> float:
 
 
 def _port(port: Any) -> str:
-    if type(port).__name__ != "Port":
+    if not isinstance(port, AnyPort):
         raise TypeError(f"a Port is needed, not {type(port).__name__}")
-    name: str = port.device_port
-    return name
+    return port.device_port
 
 
 def ending_of(known: Mapping[Any, Ending], then: Any) -> Ending:

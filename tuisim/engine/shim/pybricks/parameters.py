@@ -18,8 +18,17 @@ def shown_by_name(members: Members) -> Members:
     return members
 
 
+class AnyPort(Enum):
+    """The ports of a brick or a hub."""
+
+    @property
+    def device_port(self) -> str:
+        """The name of the port in a robot."""
+        return self.name
+
+
 @shown_by_name
-class Port(Enum):
+class Port(AnyPort):
     """The ports of the brick."""
 
     A, B, C, D = map(ord, "ABCD")

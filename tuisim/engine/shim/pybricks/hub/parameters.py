@@ -4,19 +4,14 @@ from __future__ import annotations
 
 from enum import Enum
 
-from tuisim.engine.shim.pybricks.parameters import shown_by_name
+from tuisim.engine.shim.pybricks.parameters import AnyPort, shown_by_name
 
 
 @shown_by_name
-class Port(Enum):
+class Port(AnyPort):
     """The ports of the hub, for motors and sensors alike."""
 
     A, B, C, D, E, F = map(ord, "ABCDEF")
-
-    @property
-    def device_port(self) -> str:
-        """The name of the port in a robot."""
-        return self.name
 
 
 @shown_by_name
