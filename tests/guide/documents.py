@@ -14,6 +14,8 @@ from tuisim.guide.tables import build_markdown
 
 _FENCE = re.compile(r"^```([^\n]*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 _NAME = re.compile(r"# ([\w-]+\.\w+)\n")
+NARROW_PAGE_COLUMNS = 74
+"""The columns of a page in a terminal of 80 columns."""
 
 
 @dataclass(frozen=True)

@@ -14,12 +14,20 @@ import click
 import pytest
 
 from tests.conftest import ROOT, Command
-from tests.guide.documents import DOCUMENTS, Block, blocks, commands_in_text, program
+from tests.guide.documents import (
+    DOCUMENTS,
+    NARROW_PAGE_COLUMNS,
+    Block,
+    blocks,
+    commands_in_text,
+    program,
+)
 from tuisim.app import app as lab_app
 from tuisim.cli import COMMANDS
 from tuisim.commands import app as app_command
 from tuisim.guide.catalogue import load_pages
 from tuisim.settings.command_line import Group
+from tuisim.tasks.lessons.markdown import render_markdown
 
 
 def _class(where: Path) -> None:
@@ -115,6 +123,14 @@ def test_blocks_that_are_not_run_here_are_run_elsewhere() -> None:
 def test_blocks_without_a_kind_are_drawings() -> None:
     plain = [block.code for name in DOCUMENTS for block in blocks(name) if block.kind == ""]
     assert ["tuisim" in code.split() for code in plain] == [False] * len(plain)
+
+
+@pytest.mark.parametrize("name", load_pages())
+def test_no_line_of_code_is_broken_in_a_narrow_terminal(name: str) -> None:
+    lines = "\n".join(block.code for block in blocks(name)).splitlines()
+    drawn = render_markdown("\n".join(["```", *lines, "```"]), NARROW_PAGE_COLUMNS)
+    rows = ["".join(text for text, _ in row).strip() for row in drawn]
+    assert [line for line in lines if line and line.strip() not in rows] == []
 
 
 @cache

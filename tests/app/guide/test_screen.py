@@ -14,6 +14,7 @@ from textual.widgets import Input, Tree
 
 from tests.app.app_help import lab, open_lab, screen_text, until, until_shown
 from tests.cases import cases
+from tests.guide.documents import NARROW_PAGE_COLUMNS
 from tests.running import PATIENCE_S
 from tuisim.app.guide.answers import STANDS_OUT, AnswerList
 from tuisim.app.guide.screen import KEYS, TOPICS, GuideScreen
@@ -121,6 +122,7 @@ async def test_the_scroll_bar_covers_no_letter() -> None:
                 page.max_scroll_y > 0 and page.scrollable_content_region.width == page.drawn_columns
             ),
         )
+        assert page.drawn_columns == NARROW_PAGE_COLUMNS
 
 
 async def test_a_page_is_drawn_again_when_only_its_own_width_changes() -> None:
