@@ -59,7 +59,10 @@ def test_the_number_of_processes_does_not_matter() -> None:
     pd.testing.assert_frame_equal(first, second, check_exact=True)
 
 
-def test_an_interrupted_experiment_goes_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("columns", [[], ["x_mm", "left_red"]])
+def test_an_interrupted_experiment_goes_on(
+    columns: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     out, run = tmp_path / "runs.parquet", Workers.run
 
     def stop_soon(workers: Workers, tasks: Any) -> Any:
@@ -70,24 +73,27 @@ def test_an_interrupted_experiment_goes_on(tmp_path: Path, monkeypatch: pytest.M
 
     measured: list[int] = []
 
-    def call() -> pd.DataFrame:
-        return tuisim.experiment(
-            PROGRAM,
-            seeds=range(5),
-            metrics={"end_mm": lambda run: measured.append(1) or run.pose.x_mm},  # type: ignore[func-returns-value]
-            jobs=1,
-            out=out,
-        )
-
+    how: dict[str, Any] = {
+        "seeds": range(5),
+        "metrics": {"end_mm": lambda run: measured.append(1) or run.pose.x_mm},  # type: ignore[func-returns-value]
+        "columns": columns,
+        "jobs": 1,
+    }
     with monkeypatch.context() as patch:
         patch.setattr(Workers, "run", stop_soon)
         with pytest.raises(KeyboardInterrupt):
-            call()
+            tuisim.experiment(PROGRAM, **how, out=out)
     assert len(measured) == 2
-    frame = call()
-    assert (len(measured), len(frame)) == (5, 5)
-    assert frame["end_mm"].equals(frame["x_mm"].rename("end_mm"))
-    assert len(tuisim.read_log(out)) == 5
+    with pytest.raises(ConfigError, match="is of another batch"):
+        tuisim.experiment(PROGRAM, **how | {"metrics": {}}, out=out)
+    frame = tuisim.experiment(PROGRAM, **how, out=out)
+    assert (len(measured), frame["run"].nunique()) == (5, 5)
+    assert (
+        frame.groupby("run").last()["x_mm"].tolist()
+        == frame.groupby("run").last()["end_mm"].tolist()
+    )
+    pd.testing.assert_frame_equal(frame, tuisim.experiment(PROGRAM, **how), check_exact=True)
+    pd.testing.assert_frame_equal(frame, tuisim.read_log(out), check_exact=True)
 
 
 @cases(
@@ -95,7 +101,7 @@ def test_an_interrupted_experiment_goes_on(tmp_path: Path, monkeypatch: pytest.M
     {
         "column": ({"columns": ["x_m"]}, "this robot has no 'x_m'"),
         "metric": ({"metrics": {"x_mm": len}}, "'x_mm' is a column already"),
-        "both": ({"columns": ["x_mm"], "metrics": {"n": len}}, "columns: go without metrics"),
+        "seeds twice": ({"parameters": {"seed": [1]}}, "the seed varies by seeds="),
         "no values": ({"sensornoise": []}, "sensornoise: has no values"),
         "constant": ({"constants": {"GAINS": 1}}, "has no constant GAINS"),
         "keep": ({"keep": "some"}, "keep: no such value 'some'"),

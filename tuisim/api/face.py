@@ -264,12 +264,14 @@ def experiment(
             after `--set`, such as `"latin(54, 58, 20)"`.
         metrics: Further columns by name, as functions of a run: `{"end_x_mm": lambda run: run.pose.x_mm}`. What one
             raises ends the experiment.
-        columns: Columns of the telemetry, such as `x_mm`: the table then has one row for each tick of each run.
+        columns: Columns of the telemetry, such as `x_mm`: the table then has one row for each tick of each run, and of
+            the values of a run only metrics and expressions.
         expressions: Further columns by name, such as `{"error_mm": "hypot(x_mm - 750, y_mm - 850)"}`.
         goals: A goals file; its world is used without a `world`, where no option says otherwise.
         keep: Which runs to store.
         jobs: Number of worker processes; 0 is one for each processor. The results do not depend on it.
-        out: A file for the table; an interrupted experiment that is called again goes on with the rows so far.
+        out: A file for the table, in any format of a log; an interrupted experiment that is called again goes on with
+            the rows so far.
         scheduler: Address of a Dask scheduler whose workers run the programs, such as `tcp://host:8786`.
         arguments, answers, timeout_s, world: As for `simulate`.
         background: A mat from `tuisim backgrounds`, or an image file.
@@ -297,10 +299,11 @@ def experiment(
     Returns:
         One row for each run: the seed varies fastest, before it `parameters`, constants, options and programs. Columns
         as in `tuisim batch`, and one for each constant and option that varies. With `columns`, one row for each tick:
-        `run`, what varies, `seed`, `time` in s, and the columns.
+        `run`, what varies, `seed`, metrics, expressions, `time` in s, and the columns.
 
     Raises:
         ConfigError: a program, an option, a parameter, an expression or a goal is wrong; nothing was run.
+        ExportError: the table cannot be written; checked before anything is run.
         HostError: the scheduler is lost.
         KeyboardInterrupt: ctrl-C; the runs have been stopped.
     """

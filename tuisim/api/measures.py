@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import sys
+from base64 import b64decode, b64encode
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
+from io import BytesIO
 from typing import TYPE_CHECKING, Any
 
 from tuisim.api.descriptions import plain
 from tuisim.api.run import Run
 from tuisim.base.errors import ConfigError
 from tuisim.batch.plan import Plan
-from tuisim.batch.table import list_usual_columns
+from tuisim.batch.table import Row, list_usual_columns
 from tuisim.engine.core.sensors import find_named_column
 from tuisim.engine.runs.frames import build_telemetry_columns
 from tuisim.engine.runs.run_folder import read_run
@@ -22,6 +24,8 @@ if TYPE_CHECKING:
     import pandas as pd
 
 Metric = Callable[[Run], Any]
+_TICKS = "(columns)"
+"""The cell of a row that holds the columns of its run over time, until the table is made."""
 
 
 class Measures:
@@ -30,14 +34,15 @@ class Measures:
     Args:
         metrics: Functions of a run by the names of their columns.
         columns: Columns of telemetry.
-
-    Attributes:
-        frames: The columns of each run, by the index of its task.
     """
 
     def __init__(self, metrics: Mapping[str, Metric], columns: Sequence[str]) -> None:
         self._metrics, self._columns = metrics, columns
-        self.frames: dict[int, pd.DataFrame] = {}
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """What is taken of each run."""
+        return *self._metrics, *self._columns
 
     @property
     def needs_files(self) -> bool:
@@ -58,8 +63,8 @@ class Measures:
             spec = plan.build_spec(subject, {})
             self._columns = [find_named_column(name, spec) for name in self._columns]
 
-    def measure(self, result: Result) -> dict[str, Any]:
-        """Return the metrics of a run by name, and remember its columns."""
+    def measure(self, result: Result) -> Row:
+        """Return the metrics of a run by name, and its columns, packed, in a cell of their own."""
         if not result.files:
             return dict.fromkeys(self._metrics)
         import pandas as pd
@@ -68,10 +73,23 @@ class Measures:
             for name, data in result.files.items():
                 (folder / name).write_bytes(data)
             run = Run(read_run(folder))
+            row = {name: plain(metric(run)) for name, metric in self._metrics.items()}
             if self._columns:
-                columns = build_telemetry_columns(run.stored, names=self._columns)
-                self.frames[result.index] = pd.DataFrame(columns)
-            return {name: plain(metric(run)) for name, metric in self._metrics.items()}
+                frame = pd.DataFrame(build_telemetry_columns(run.stored, names=self._columns))
+                frame.to_feather(packed := BytesIO(), compression="zstd")
+                row[_TICKS] = b64encode(packed.getvalue()).decode()
+            return row
+
+
+def take_columns(rows: Mapping[int, Row]) -> dict[int, pd.DataFrame]:
+    """Return the columns over time by the index of their run, and leave them out of the rows."""
+    import pandas as pd
+
+    return {
+        index: pd.read_feather(BytesIO(b64decode(rows[index].pop(_TICKS))))
+        for index in sorted(rows)
+        if _TICKS in rows[index]
+    }
 
 
 @contextmanager

@@ -11,14 +11,16 @@ from typing import TYPE_CHECKING, Any
 
 from tuisim.api.calls import check_timeout, prepare_program, read_source
 from tuisim.api.descriptions import plain, read_options, read_world
-from tuisim.api.measures import Measures, Metric, show_progress
+from tuisim.api.measures import Measures, Metric, show_progress, take_columns
 from tuisim.base.errors import ConfigError
+from tuisim.base.folders import user_path
 from tuisim.batch.parameters import SEED, Choice, check_seeds, parse_values
 from tuisim.batch.plan import Plan, Subject
 from tuisim.batch.sweep import Sweep, Workers, is_interrupted
 from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.runs.handle import RunOptions
 from tuisim.engine.runs.presses import press_actions
+from tuisim.logs.export import check_target
 from tuisim.programs.constants import set_constants
 from tuisim.programs.program_file import ProgramSource
 from tuisim.settings.options import Settings
@@ -49,23 +51,25 @@ def run_experiment(
     """Run an experiment; arguments as of `tuisim.experiment`."""
     if jobs not in range(MAX_JOBS + 1):
         raise ConfigError(f"must be a whole number from 0 to {MAX_JOBS}, got {jobs!r}", key="jobs")
-    if columns and (metrics or expressions or out):
-        hint = "without columns there is one row for each run"
-        raise ConfigError("go without metrics, expressions and out", hint, key="columns")
     named = program if isinstance(program, list | tuple) else [program]
     study = Study([read_source(each) for each in named], constants or {}, **how)
-    measures = Measures(metrics or {}, columns)
+    metrics, expressions = metrics or {}, expressions or {}
+    measures = Measures(metrics, columns)
     plan = study.build_plan(seeds, keep, returns_files=measures.needs_files)
-    plan.check_expressions(expressions or {})
+    plan.check_expressions(expressions)
     measures.check(plan)
-    target = Path(out) if out is not None else None
+    own = *metrics, *expressions
+    target = check_target(user_path(str(out))) if out is not None else None
     resumes = target is not None and is_interrupted(target)
-    sweep = Sweep(plan, expressions or {}, target, version("tuisim"), resumes=resumes)
+    sweep = Sweep(
+        plan, expressions, target, version("tuisim"), resumes=resumes, measured=measures.names
+    )
     with show_progress(len(plan) - len(sweep.rows)) as tell:
         sweep.run(Workers(jobs, scheduler), tell, measures.measure)
-    if columns:
-        return study.join_columns(sweep.build_frame(), measures.frames)
+    frames = take_columns(sweep.rows)
     frame = study.add_variants(sweep.build_frame())
+    if columns:
+        frame = join_columns(frame, frames, own)
     sweep.export(frame)
     sweep.finish()
     return frame
@@ -105,6 +109,8 @@ class Study:
         self._parameters = {
             name: _read_choice(name, values) for name, values in (parameters or {}).items()
         }
+        if SEED in self._parameters:
+            raise ConfigError("the seed varies by seeds=", key="parameters")
         self._task = load_goals(goals) if goals is not None else None
         self._world = world
         self._options = RunOptions(
@@ -165,18 +171,25 @@ class Study:
         is_named = len(self._programs) > 1 or "program" not in frame
         return frame if is_named else frame.drop(columns="program")
 
-    def join_columns(self, frame: pd.DataFrame, frames: Mapping[int, pd.DataFrame]) -> pd.DataFrame:
-        """Return the columns of all runs below each other, after what distinguishes each run."""
-        import pandas as pd
 
-        table = self.add_variants(frame)
-        table = table.loc[:, :"seed"].set_index(table["run"] - 1, drop=True)
-        order = sorted(frames)
-        repeated = table.loc[order].loc[
-            [index for index in order for _ in range(len(frames[index]))]
-        ]
-        joined = pd.concat([frames[index] for index in order], ignore_index=True)
-        return pd.concat([repeated.reset_index(drop=True), joined], axis=1)
+def join_columns(
+    table: pd.DataFrame, frames: Mapping[int, pd.DataFrame], names: Sequence[str]
+) -> pd.DataFrame:
+    """Return the columns of all runs below each other, after what distinguishes each run, and some of its values.
+
+    Args:
+        table: One row for each run.
+        frames: The columns over time by the index of their run, in its order.
+        names: The values.
+    """
+    import pandas as pd
+
+    if not frames:
+        return table.iloc[:0]
+    runs = [index + 1 for index, frame in frames.items() for _ in range(len(frame))]
+    values = table[[*table.loc[:, :"seed"], *names]].set_index("run", drop=False).loc[runs]
+    joined = pd.concat(frames.values(), ignore_index=True)
+    return pd.concat([values.reset_index(drop=True), joined], axis=1)
 
 
 def list_variants(options: Mapping[str, Any]) -> list[dict[str, Any]]:

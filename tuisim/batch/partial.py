@@ -45,7 +45,7 @@ class PartialTable:
         except OSError as error:
             raise ConfigError(f"cannot be read: {error.strerror}", file=str(self._path)) from None
         if _decode_line(head) != self._identity:
-            hint = "--resume needs the same programs, parameters, goals and limits; to start again, remove the file"
+            hint = "it needs the same programs, parameters, goals, limits and columns; to start again, remove it"
             raise ConfigError("is of another batch", hint, file=str(self._path))
         # The last line of a killed process may be incomplete.
         rows = [row for line in lines if isinstance(row := _decode_line(line), dict) and RUN in row]

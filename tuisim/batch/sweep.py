@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Generator, Iterable, Mapping
+from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
 from contextlib import closing
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -66,6 +66,7 @@ class Sweep:
         out: The table that is written; None for none.
         version: That of tuisim: a batch goes on with the same.
         resumes: Whether an interrupted batch goes on.
+        measured: The columns that `run` measures.
 
     Attributes:
         rows: What is done, by the index of the task.
@@ -83,6 +84,7 @@ class Sweep:
         version: str = "",
         *,
         resumes: bool = False,
+        measured: Sequence[str] = (),
     ) -> None:
         self._plan, self._expressions, self._out = plan, expressions, out
         self.rows: dict[int, Row] = {}
@@ -91,6 +93,8 @@ class Sweep:
         self._partial: PartialTable | None = None
         if out is not None:
             self._identity = plan.build_identity()
+            if measured:
+                self._identity["measured"] = [*measured]
             self._partial = self._open_partial(out, version, resumes)
 
     def _open_partial(self, out: Path, version: str, resumes: bool) -> PartialTable:
