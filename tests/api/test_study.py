@@ -96,11 +96,21 @@ def test_an_interrupted_experiment_goes_on(
     pd.testing.assert_frame_equal(frame, tuisim.read_log(out), check_exact=True)
 
 
+def test_a_mean_that_is_known_needs_no_further_seeds() -> None:
+    how: dict[str, Any] = {"metrics": {"end_mm": lambda run: run.pose.x_mm}, "jobs": 1}
+    with pytest.warns(UserWarning, match="1 mean known only to"):
+        frame = tuisim.experiment(
+            PROGRAM, seeds=range(12), motornoise=[0, 500], until="end_mm ± 0.0001", **how
+        )
+    assert frame.groupby("motornoise").size().tolist() == [10, 12]
+
+
 @cases(
     "given, words",
     {
         "column": ({"columns": ["x_m"]}, "this robot has no 'x_m'"),
         "metric": ({"metrics": {"x_mm": len}}, "'x_mm' is a column already"),
+        "until": ({"until": "n ± 1"}, "until: there will be no column 'n'"),
         "seeds twice": ({"parameters": {"seed": [1]}}, "the seed varies by seeds="),
         "no values": ({"sensornoise": []}, "sensornoise: has no values"),
         "constant": ({"constants": {"GAINS": 1}}, "has no constant GAINS"),

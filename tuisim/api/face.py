@@ -26,6 +26,7 @@ File: TypeAlias = str | Path
 """The name of something built in, or a file."""
 Program: TypeAlias = str | Path | Callable[[], object]
 Sizes: TypeAlias = str | Mapping[str, Any]
+Values: TypeAlias = Mapping[str, Any]
 Metrics: TypeAlias = Mapping[str, Callable[[Run], Any]]
 Keep: TypeAlias = Literal["all", "failed", "none"]
 BackgroundFit: TypeAlias = Literal["stretch", "fit", "centre", "corner"]
@@ -215,8 +216,8 @@ def experiment(
     program: Program | Sequence[Program],
     *,
     seeds: Iterable[int] = (),
-    constants: Mapping[str, Any] | None = None,
-    parameters: Mapping[str, Any] | None = None,
+    constants: Values | None = None,
+    parameters: Values | None = None,
     metrics: Metrics | None = None,
     columns: Sequence[str] = (),
     expressions: Mapping[str, str] | None = None,
@@ -225,6 +226,7 @@ def experiment(
     jobs: int = 0,
     scheduler: str = "",
     out: File | None = None,
+    until: str = "",
     arguments: Sequence[str] = (),
     answers: Sequence[str] = (),
     timeout_s: float = DEFAULT_TIME_LIMIT_S,
@@ -272,6 +274,9 @@ def experiment(
         jobs: Number of worker processes; 0 is one for each processor. The results do not depend on it.
         out: A file for the table, in any format of a log; an interrupted experiment that is called again goes on with
             the rows so far.
+        until: A column of the runs and how well its mean is to be known, such as `"x_mm ± 2"` or `"error_mm +- 2"`:
+            each combination takes the seeds in their order, ten or more, until the mean is within this margin with
+            95 % (Student's t). Warns if the seeds do not suffice.
         scheduler: Address of a Dask scheduler whose workers run the programs, such as `tcp://host:8786`.
         arguments, answers, timeout_s, world: As for `simulate`.
         background: A mat from `tuisim backgrounds`, or an image file.

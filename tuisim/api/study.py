@@ -6,16 +6,19 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from importlib.metadata import version
 from itertools import product
+from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+from warnings import warn
 
 from tuisim.api.calls import check_timeout, prepare_program, read_source
 from tuisim.api.descriptions import plain, read_options, read_world
 from tuisim.api.measures import Measures, Metric, show_progress, take_columns
-from tuisim.base.errors import ConfigError
+from tuisim.base.errors import ConfigError, counted
 from tuisim.base.folders import user_path
 from tuisim.batch.parameters import SEED, Choice, check_seeds, parse_values
 from tuisim.batch.plan import Plan, Subject
+from tuisim.batch.rounds import Rounds, parse_precision
 from tuisim.batch.sweep import Sweep, Workers, is_interrupted
 from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.runs.handle import RunOptions
@@ -46,26 +49,28 @@ def run_experiment(
     jobs: int,
     scheduler: str,
     out: str | Path | None,
+    until: str,
     **how: Any,
 ) -> pd.DataFrame:
     """Run an experiment; arguments as of `tuisim.experiment`."""
-    if jobs not in range(MAX_JOBS + 1):
-        raise ConfigError(f"must be a whole number from 0 to {MAX_JOBS}, got {jobs!r}", key="jobs")
-    named = program if isinstance(program, list | tuple) else [program]
-    study = Study([read_source(each) for each in named], constants or {}, **how)
+    workers = build_workers(jobs, scheduler)
+    study = Study(program, constants or {}, **how)
     metrics, expressions = metrics or {}, expressions or {}
     measures = Measures(metrics, columns)
     plan = study.build_plan(seeds, keep, returns_files=measures.needs_files)
     plan.check_expressions(expressions)
     measures.check(plan)
     own = *metrics, *expressions
+    precision = parse_precision(until, "until", plan, own) if until else None
     target = check_target(user_path(str(out))) if out is not None else None
     resumes = target is not None and is_interrupted(target)
     sweep = Sweep(
         plan, expressions, target, version("tuisim"), resumes=resumes, measured=measures.names
     )
+    rounds = Rounds(plan, sweep, precision) if precision else None
     with show_progress(len(plan) - len(sweep.rows)) as tell:
-        sweep.run(Workers(jobs, scheduler), tell, measures.measure)
+        sweep.run(workers, tell, measures.measure, rounds)
+    warn_unknown(until, rounds.unknown if rounds else ())
     frames = take_columns(sweep.rows)
     frame = study.add_variants(sweep.build_frame())
     if columns:
@@ -75,11 +80,31 @@ def run_experiment(
     return frame
 
 
+def build_workers(jobs: int, scheduler: str) -> Workers:
+    """Return the processes that run the programs.
+
+    Raises:
+        ConfigError: there cannot be so many.
+    """
+    if jobs not in range(MAX_JOBS + 1):
+        raise ConfigError(f"must be a whole number from 0 to {MAX_JOBS}, got {jobs!r}", key="jobs")
+    return Workers(jobs, scheduler)
+
+
+def warn_unknown(until: str, margins: Sequence[float]) -> None:
+    """Warn that the means of some combinations are not known well enough."""
+    if not margins:
+        return
+    known = f"only to ± {max(margins):.3g}" if max(margins) < inf else "not at all"
+    text = f"until {until!r}: {counted(len(margins), 'mean')} known {known}, after all seeds"
+    warn(text, stacklevel=5)
+
+
 class Study:
     """The programs of an experiment, and what varies besides seeds and parameters.
 
     Args:
-        programs: They.
+        program: As of `tuisim.experiment`.
         constants: Values of the programs' constants, or several of each.
         goals: The goals file; None for none.
         world, arguments, answers, timeout_s: As of `tuisim.experiment`.
@@ -91,7 +116,7 @@ class Study:
 
     def __init__(
         self,
-        programs: Sequence[ProgramSource],
+        program: Any,
         constants: Mapping[str, Any],
         *,
         parameters: Mapping[str, Any] | None,
@@ -103,9 +128,11 @@ class Study:
         **options: Any,
     ) -> None:
         check_timeout(timeout_s)
-        if not programs:
+        named = program if isinstance(program, list | tuple) else [program]
+        if not named:
             raise ConfigError("no program is named", key="program")
-        self._programs, self._constants, self._arguments = programs, constants, arguments
+        self._programs = [read_source(each) for each in named]
+        self._constants, self._arguments = constants, arguments
         self._parameters = {
             name: _read_choice(name, values) for name, values in (parameters or {}).items()
         }

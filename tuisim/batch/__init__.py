@@ -4,6 +4,7 @@ __all__ = [
     "batch_file",
     "parameters",
     "plan",
+    "rounds",
     "sweep",
     "table",
 ]

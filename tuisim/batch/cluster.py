@@ -46,7 +46,7 @@ def run_on_cluster(
     A result does not depend on the worker. Tasks of a worker that has died are executed on another one.
 
     Args:
-        tasks: The tasks; they are consumed as they are handed over.
+        tasks: The tasks; they are consumed as they are handed over, as by `run_many`.
         scheduler: Address of a scheduler, such as `tcp://host:8786`; empty starts a cluster on this machine.
         workers: Its number of worker processes.
 

@@ -156,6 +156,11 @@ class Plan:
             if index not in done:
                 yield self.task(index)
 
+    def count_seeds(self) -> int:
+        """Return how many runs with consecutive indices differ in the seed only, if it varies fastest."""
+        last = self.grid.axes[-1] if self.grid.axes else None
+        return len(last.points) if last and last.names == (SEED,) else 1
+
     def task(self, index: int) -> Task:
         """Return one task; `index` counts from 0."""
         subject, values = self.find_subject(index), self.grid.find_values(index % len(self.grid))

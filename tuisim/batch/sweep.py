@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from contextlib import closing
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -113,6 +113,7 @@ class Sweep:
         workers: Workers,
         on_row: Callable[[Row], None] = lambda _: None,
         measure: Callable[[Result], Row] = lambda _: {},
+        due: Iterator[int] | None = None,
     ) -> None:
         """Execute the tasks that are not done, and block until they are.
 
@@ -122,6 +123,7 @@ class Sweep:
             workers: The processes that execute the tasks.
             on_row: Called with each new row.
             measure: Returns further columns of a run by name.
+            due: The indices of the tasks; None is all. It may go on after it has stopped, when there are further rows.
 
         Raises:
             ConfigError, HostError: there is no such cluster, or it is lost.
@@ -130,7 +132,8 @@ class Sweep:
         """
         plan, several = self._plan, len(self._plan.subjects) > 1
         # What is done by now is taken out of the tasks before the first new row comes.
-        tasks = plan.iterate_tasks(frozenset(self.rows))
+        every = plan.iterate_tasks(frozenset(self.rows))
+        tasks = every if due is None else map(plan.task, due)
         try:
             # Closed, the results stop the tasks that are running.
             with closing(workers.run(tasks)) as results:
@@ -145,13 +148,14 @@ class Sweep:
             if self._partial is not None:
                 self._partial.close()
 
-    def build_frame(self) -> pd.DataFrame:
-        """Return the table of what is done.
+    def build_frame(self, indices: Iterable[int] | None = None) -> pd.DataFrame:
+        """Return the table of what is done, or of the tasks with some indices.
 
         Raises:
             LogError: an expression is invalid, or names a column that there is not.
         """
-        return build_frame(self.rows.values(), self._expressions if self.rows else {})
+        rows = [self.rows[index] for index in (self.rows if indices is None else indices)]
+        return build_frame(rows, self._expressions if rows else {})
 
     def export(self, frame: pd.DataFrame) -> None:
         """Write the table.

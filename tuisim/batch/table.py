@@ -149,9 +149,14 @@ def quote_names(text: str, columns: Iterable[str]) -> str:
     return _DOTTED.sub(lambda found: f"`{found[0]}`" if found[0] in dotted else found[0], text)
 
 
+def name_goals(goals: Iterable[str]) -> list[str]:
+    """Return the columns of goals, by their names."""
+    return [f"{GOAL}{name}" for name in goals]
+
+
 def list_usual_columns(parameters: Iterable[str], goals: Iterable[str]) -> list[str]:
     """Return the columns of a table that are known before the first run: all but those of sample variables."""
-    goal_columns = [f"{GOAL}{name}" for name in goals]
+    goal_columns = name_goals(goals)
     names = (
         RUN,
         PROGRAM,

@@ -48,7 +48,8 @@ def run_many(tasks: Iterable[Task], jobs: int = 0) -> Generator[Result]:
     iterator stops what is running.
 
     Args:
-        tasks: The tasks; they are consumed as workers become free.
+        tasks: The tasks; they are consumed as workers become free. An iterator without any is asked again after each
+            result.
         jobs: Number of workers; 0 is one for each processor. A single one is this process.
 
     Raises:
