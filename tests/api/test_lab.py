@@ -59,6 +59,16 @@ def test_recorded_commands_give_the_same_poses_to_the_bit(
     assert len(np.unique(expected, axis=0)) > 20
 
 
+def test_sensors_see_what_the_pen_draws() -> None:
+    pen = {"x_mm": -20, "y_mm": 30, "color": "black", "down": True}
+    robot, world = tuisim.Robot(parts={"pen": pen}), tuisim.World(pen_marks=True)
+    run = tuisim.simulate(PROGRAM, world=world, robot=robot, timeout_s=30)
+    ends, rows = go_through(run, 0.13)
+    expected = run.telemetry[[*COLUMNS]].to_numpy()[ends]
+    assert np.array_equal(rows, expected)
+    assert expected[:, COLUMNS.index("left_red")].min() < 200
+
+
 @pytest.mark.parametrize(
     "profile", ["robolab", "ev3", "nbev3devsim", "lego-micropython", "pybricks4"]
 )
@@ -109,7 +119,6 @@ def test_a_lab_is_one_line() -> None:
         "column": ({"columns": ["left_redd"]}, "this robot has no 'left_redd'"),
         "keyword": ({"sed": 3}, "no such argument 'sed'"),
         "robot": ({"robot": "Nope"}, "no such robot"),
-        "trace": ({"world": tuisim.World(pen_marks=True)}, "pen_marks"),
     },
 )
 def test_what_is_wrong_is_refused(given: dict[str, Any], words: str) -> None:

@@ -10,16 +10,16 @@ from typing import TYPE_CHECKING
 
 from tuisim.api.descriptions import Description, read_options, read_world
 from tuisim.api.keywords import check_keywords
-from tuisim.base.errors import ConfigError
 from tuisim.engine.core.commands.calls import Call, SimulationCommand
 from tuisim.engine.core.commands.table import DRIVEN_LAWS, obey
 from tuisim.engine.core.motors import find_top_speed_dps
+from tuisim.engine.core.pen_marks import PenMarks
 from tuisim.engine.core.profile import NS_PER_S, MotorLaw
 from tuisim.engine.core.sensors import build_reader, find_named_column
 from tuisim.engine.core.servo.control import Ending
 from tuisim.engine.core.servo.motor import ServoMotor
 from tuisim.engine.core.simulation import Simulation, build_simulation
-from tuisim.engine.core.tick_record import NoRecording
+from tuisim.engine.core.tick_record import MemoryRecording, NoRecording
 from tuisim.engine.mat_cache import open_field
 from tuisim.engine.runs.replay import give_command
 from tuisim.engine.runs.run_folder import field_files
@@ -72,8 +72,6 @@ class Lab:
         return lab
 
     def _open(self, spec: RunSpec, columns: Sequence[str]) -> None:
-        if spec.world.pen_marks:
-            raise ConfigError("a Lab's sensors do not see the pen's trace", key="pen_marks")
         self.columns = tuple(find_named_column(name, spec) for name in columns)
         """What `step` returns."""
         self._readers = {
@@ -111,7 +109,9 @@ class Lab:
         """Begin again, with another seed if one is given; return the columns at the start."""
         if seed is not None:
             self._spec = replace(self._spec, seed=seed)
-        self._sim = build_simulation(self._spec, NoRecording())
+        has_marks = self._spec.world.pen_marks
+        self._sim = build_simulation(self._spec, MemoryRecording() if has_marks else NoRecording())
+        self._marks = PenMarks(self._field, self._spec) if has_marks else None
         self._run = _find_run(self._sim)
         self._asked: tuple[float, float] | None = None
         return self.read()
@@ -153,10 +153,11 @@ class Lab:
             return {"x_mm": drive.x_mm, "y_mm": drive.y_mm, "heading_deg": drive.heading_deg}
         if not self.columns:
             return {}
-        instant = self._sim.build_instant()
-        return {
-            name: read(instant, self._spec, self._field) for name, read in self._readers.items()
-        }
+        instant, field = self._sim.build_instant(), self._field
+        if self._marks is not None:
+            self._marks.add_records(self._sim.read_records(self._marks.records))
+            field = self._marks.field
+        return {name: read(instant, self._spec, field) for name, read in self._readers.items()}
 
 
 def _find_run(sim: Simulation) -> Callable[[int, int, float], None]:

@@ -57,6 +57,25 @@ class TickSink(Protocol):
         """Make the first `count` records visible to readers."""
 
 
+class MemoryRecording:
+    """Keeps tick records in memory."""
+
+    def __init__(self) -> None:
+        self.count = 0
+        self.buffer = bytearray(TICK_RECORD.size)
+
+    def reserve(self, records: int) -> bytearray:
+        """Return the buffer, with room for further records."""
+        need = TICK_RECORD.size * (1 + self.count + records)
+        if need > len(self.buffer):
+            self.buffer += bytes(2 * need)
+        return self.buffer
+
+    def publish(self, count: int) -> None:
+        """Make the first `count` records visible to readers."""
+        self.count = count
+
+
 class NoRecording:
     """Discards tick records: for a simulation that is prepared before its run is known."""
 

@@ -17,7 +17,7 @@ from tuisim.engine.core.commands.table import CALLS, obey
 from tuisim.engine.core.motor_columns import MOTOR_RECORD, name_motors
 from tuisim.engine.core.profile import NS_PER_S
 from tuisim.engine.core.simulation import Simulation, build_simulation
-from tuisim.engine.core.tick_record import TICK_RECORD, NoRecording
+from tuisim.engine.core.tick_record import TICK_RECORD, MemoryRecording, NoRecording
 from tuisim.engine.protocol import Stop, UserAction
 from tuisim.engine.runs.motor_records import arrange_records
 from tuisim.engine.runs.records import HEADER_BYTES
@@ -43,23 +43,6 @@ class ReplayedTicks:
     """Of the motors' records of one tick."""
     robot: RobotSpec
     """With all parts that were plugged in."""
-
-
-class _Ticks:
-    """Tick records in memory."""
-
-    def __init__(self) -> None:
-        self.count = 0
-        self.buffer = bytearray(HEADER_BYTES)
-
-    def reserve(self, records: int) -> bytearray:
-        need = HEADER_BYTES + TICK_RECORD.size * (self.count + records)
-        if need > len(self.buffer):
-            self.buffer += bytes(2 * need)
-        return self.buffer
-
-    def publish(self, count: int) -> None:
-        self.count = count
 
 
 class _Motors:
@@ -102,7 +85,7 @@ def replay(
     Raises:
         LogError: no program can have given these commands, or they take longer than they may.
     """
-    ticks, motors = _Ticks(), _Motors(spec.robot)
+    ticks, motors = MemoryRecording(), _Motors(spec.robot)
     sim = build_simulation(spec, NoRecording())
     sim.restart(spec, ticks, motors if sim.notices else None)
     advance, check = _build_advance(sim, actions), CommandCheck(sim)
