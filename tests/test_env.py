@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import gymnasium
@@ -12,6 +13,19 @@ from gymnasium.utils.env_checker import check_env
 import tuisim
 from tuisim.env import LabEnv
 
+GOALS = """\
+[[goal]]
+name = "place"
+points = 3
+reach = { x_mm = 300, within_mm = 10 }
+before = 5
+[[goal]]
+name = "free"
+touch_nothing = true
+[start]
+x_mm = 100
+heading_deg = 0
+"""
 TASKS = ("LineFollower", "Bands", "Obstacles")
 
 
@@ -71,3 +85,18 @@ def test_a_function_rewards_and_ends() -> None:
     assert total == pytest.approx(values["x_mm"] - before["x_mm"])
     assert values["x_mm"] > 200
     assert observation.tolist() == pytest.approx([values["left_red_pc"]])
+
+
+@pytest.mark.parametrize("speed, points", [(0.2, 3.0), (0.0, 0.0)])
+def test_goals_reward_and_end(speed: float, points: float, tmp_path: Path) -> None:
+    (tmp_path / "goals.toml").write_text(GOALS)
+    env = gymnasium.make(
+        "tuisim/Goals-v0", goals=tmp_path / "goals.toml", columns=("ultrasonic_mm",)
+    )
+    env.reset(seed=0)
+    total, steps, is_over = 0.0, 0, False
+    while not is_over:
+        _, reward, is_over, is_cut, _ = env.step(np.full(2, speed, np.float32))
+        total, steps = total + float(reward), steps + 1
+        assert not is_cut
+    assert (total, steps > 50) == (points, not points)

@@ -36,26 +36,33 @@ class LabEnv(gymnasium.Env[Vector, Vector]):
         columns: What the robot observes, such as `left_red_pc`.
         reward: Takes the values before and after a step, and returns its reward.
         is_over: Takes the values after a step, and returns whether the task has ended.
+        goals: A goals file. The points that a step gains or loses, if the run ended after it, are added to its reward,
+            and the task has also ended when no goal can be met any more.
         world, robot, profile: As for `Lab`.
         period_s: Simulated seconds of a step.
+
+    Raises:
+        ConfigError: as for `Lab`.
     """
 
     def __init__(
         self,
         columns: tuple[str, ...],
-        reward: Callable[[Values, Values], float],
+        reward: Callable[[Values, Values], float] = lambda *_: 0.0,
         is_over: Callable[[Values], bool] = lambda _: False,
         *,
+        goals: str | Path | None = None,
         world: World | str | Path | None = None,
         robot: Robot | str | Path | None = None,
-        profile: str | Path = "robolab",
+        profile: str | Path | None = None,
         period_s: float = 0.1,
     ) -> None:
         every = tuple(dict.fromkeys((*columns, *MOTION)))
-        self.lab = Lab(world, robot, profile=profile, columns=every)
+        self.lab = Lab(world, robot, profile=profile, columns=every, goals=goals)
         self.columns = columns
         self._reward, self._is_over, self._period_s = reward, is_over, period_s
         self._before: Values = self.lab.read()
+        self._points, _ = self.lab.judge()
         bounds = [_BOUNDS.get(name.rpartition("_")[2], (-_FARTHEST, _FARTHEST)) for name in columns]
         low, high = zip(*bounds, strict=True)
         self.observation_space = Box(np.array(low, np.float32), np.array(high, np.float32))
@@ -68,15 +75,18 @@ class LabEnv(gymnasium.Env[Vector, Vector]):
         super().reset(seed=seed)
         drawn = int(self.np_random.integers(MAX_SEED)) if seed is None else seed
         self._before = self.lab.reset(drawn)
+        self._points, _ = self.lab.judge()
         return self._observe(self._before), dict(self._before)
 
     def step(self, action: Vector) -> tuple[Vector, float, bool, bool, dict[str, Any]]:
         """Drive for a period; return observation, reward, whether it is over, False, and all columns."""
         left, right = (float(share) * self.lab.max_speed_dps for share in action)
         values = self.lab.step(left, right, period_s=self._period_s)
-        reward = float(self._reward(self._before, values))
-        self._before = values
-        return self._observe(values), reward, bool(self._is_over(values)), False, dict(values)
+        points, has_all = self.lab.judge()
+        reward = float(self._reward(self._before, values)) + points - self._points
+        self._before, self._points = values, points
+        is_over = has_all or bool(self._is_over(values))
+        return self._observe(values), reward, is_over, False, dict(values)
 
     def _observe(self, values: Values) -> Vector:
         return np.array([values[name] for name in self.columns], np.float32)
@@ -140,6 +150,7 @@ def _build_task(
     )
 
 
+gymnasium.register("tuisim/Goals-v0", entry_point="tuisim.env:LabEnv", max_episode_steps=600)
 for _name, _task in (
     ("LineFollower", follow_line),
     ("Bands", stop_on_band),

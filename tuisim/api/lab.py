@@ -25,11 +25,14 @@ from tuisim.engine.runs.replay import give_command
 from tuisim.engine.runs.run_folder import field_files
 from tuisim.settings.build import build_run_spec
 from tuisim.settings.options import merge_settings
+from tuisim.tasks.goals.files import load_goals
+from tuisim.tasks.goals.live import LiveGoals, check_goals
 
 if TYPE_CHECKING:
     from tuisim.api.run import Run
     from tuisim.engine.core.geometry import Pose
     from tuisim.engine.core.spec import RunSpec
+    from tuisim.tasks.goals.spec import Goal
 
 MOTION = ("x_mm", "y_mm", "heading_deg")
 
@@ -44,12 +47,15 @@ class Lab:
         world: A world, or its file; by default an empty mat.
         robot: A robot, its name, or its file.
         seed: Seed of noise and drift.
-        profile: A profile from `tuisim profiles`, or a file.
+        profile: A profile from `tuisim profiles`, or a file; by default that of the world, or `robolab`.
         columns: What `step` returns: names of columns as in `Run.telemetry`, such as `left_red_pc`.
+        goals: A goals file for `judge`; its world is used without a `world`.
 
     Raises:
-        ConfigError: a description or a column is wrong.
+        ConfigError: a description, a column or a goal is wrong, or a goal is about a program.
     """
+
+    _goals: Sequence[Goal] = ()
 
     @check_keywords
     def __init__(
@@ -58,11 +64,18 @@ class Lab:
         robot: str | Path | Description | None = None,
         seed: int = 0,
         *,
-        profile: str | Path = "robolab",
+        profile: str | Path | None = None,
         columns: Sequence[str] = MOTION,
+        goals: str | Path | None = None,
     ) -> None:
         chosen = read_options({"robot": robot, "seed": seed, "profile": profile})
-        self._open(build_run_spec(merge_settings(read_world(world, None), chosen)), columns)
+        in_world = read_world(world, None)
+        if goals is not None:
+            task = load_goals(goals)
+            check_goals(task.goals)
+            self._goals = task.goals
+            in_world = task.settings if world is None else in_world
+        self._open(build_run_spec(merge_settings(in_world, chosen)), columns)
 
     @classmethod
     def of_run(cls, run: Run, columns: Sequence[str] = MOTION) -> Lab:
@@ -109,9 +122,13 @@ class Lab:
         """Begin again, with another seed if one is given; return the columns at the start."""
         if seed is not None:
             self._spec = replace(self._spec, seed=seed)
-        has_marks = self._spec.world.pen_marks
-        self._sim = build_simulation(self._spec, MemoryRecording() if has_marks else NoRecording())
+        has_marks, recording = self._spec.world.pen_marks, MemoryRecording()
+        is_recorded = has_marks or self._goals
+        self._sim = build_simulation(self._spec, recording if is_recorded else NoRecording())
         self._marks = PenMarks(self._field, self._spec) if has_marks else None
+        self._live = (
+            LiveGoals(self._goals, self._sim, recording, self._field) if self._goals else None
+        )
         self._run = _find_run(self._sim)
         self._asked: tuple[float, float] | None = None
         return self.read()
@@ -158,6 +175,10 @@ class Lab:
             self._marks.add_records(self._sim.read_records(self._marks.records))
             field = self._marks.field
         return {name: read(instant, self._spec, field) for name, read in self._readers.items()}
+
+    def judge(self) -> tuple[float, bool]:
+        """Return the points of the goals if the run ended now, and whether no goal can be met any more."""
+        return self._live.judge() if self._live is not None else (0.0, False)
 
 
 def _find_run(sim: Simulation) -> Callable[[int, int, float], None]:

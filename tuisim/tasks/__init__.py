@@ -7,6 +7,7 @@ __all__ = [
     "goals.files",
     "goals.judge",
     "goals.judgement",
+    "goals.live",
     "goals.spec",
     "lessons.catalogue",
     "lessons.files",
