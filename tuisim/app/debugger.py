@@ -73,10 +73,9 @@ class DebugController:
         """The instant that the replay debugger was last sent to."""
         self._is_stepping = False
         """Whether a step of the live run is on its way."""
-        self._steps: deque[Message] = deque()
-        """The steps that wait until the one on its way has arrived, in the past as well."""
-        self._more_back = 0
-        """Number of further lines back that were requested while the first ones were being computed."""
+        self._steps: deque[Message | int] = deque()
+        """The steps that wait until the one on its way has arrived, in the past as well; a number is one of lines
+        back."""
         self._panels_opened = False
         self._breakpoints_unsent = False
         """Whether the live run has not yet received the breakpoints, because a branch is still on the way to its
@@ -203,7 +202,6 @@ class DebugController:
         self._run_controller.chosen_line = None
         self._frame, self._thread, self._wanted = 0, "", None
         self._panels_opened, self._breakpoints_unsent = False, bool(self.breaks)
-        self._more_back = 0
         self._forget_steps()
         if (
             self._run_controller.in_run
@@ -242,10 +240,13 @@ class DebugController:
         paused = self._set_tick_time(paused)
         self._paused, self.position = paused, None
         self._frame, self._thread = 0, ""
-        if self._steps and paused.reason in _GOES_ON and not self.looks_back:
-            self._send_step(self._steps.popleft())
-            return
-        self._forget_steps()
+        self._is_stepping = False
+        # In the past they wait for an instant, and this pause is none of theirs.
+        if not self.is_away:
+            if self._steps and paused.reason in _GOES_ON:
+                self._take_step()
+                return
+            self._steps.clear()
         if paused.reason in SHOWS_PANELS:
             self._open_panels()
         if paused.reason is PauseReason.BREAK:
@@ -350,7 +351,7 @@ class DebugController:
 
     def go_to_now(self) -> None:
         """Return to the newest instant, also from earlier lines of its own tick."""
-        self.position, self._more_back = None, 0
+        self.position = None
         self._steps.clear()
         if self.replay.busy:
             # The result still being computed is no longer wanted.
@@ -401,10 +402,7 @@ class DebugController:
             paused = replace(paused, line=chosen[1], file="")
         self._set_paused(PauseView(self._set_tick_time(paused), inspected, True))
         self._app.handle_situation_change()
-        if self._more_back:
-            self.step_back(0)
-        elif self._steps:
-            self._step_past(self._steps.popleft())
+        self._take_step()
 
     def _is_past(self, at: Position) -> bool:
         """Return whether an instant is in the past; a re-run may get farther than the current run."""
@@ -418,11 +416,11 @@ class DebugController:
         self._app.go_to_now()
         self._return_to_now()
         if self._paused is not None:
-            for step in steps:
-                self.go_on(step)
+            self._steps.extend(steps)
+            self._take_step()
 
     def _report_missing(self, why: str) -> None:
-        self._wanted, self._more_back = None, 0
+        self._wanted = None
         self._steps.clear()
         self._app.say(why)
         self.show()
@@ -506,22 +504,34 @@ class DebugController:
         self.replay.go_on(timeline.recording, here, command, self.inspect_request)
         self.show()
 
-    def step_back(self, count: int) -> None:
-        """Go back by a number of executed lines."""
+    def step_back(self) -> None:
+        """Go back by an executed line, once the step on its way in the past has arrived."""
+        if not self.replay.busy:
+            self._forget_steps()
+            self._go_back(1)
+        elif self._steps and isinstance(self._steps[-1], int):
+            self._steps[-1] += 1
+        else:
+            self._steps.append(1)
+
+    def _take_step(self) -> None:
+        """Take the next of the steps that wait."""
+        match self._steps.popleft() if self._steps else None:
+            case int(count):
+                self._go_back(count)
+            case Message() as command:
+                self.go_on(command)
+
+    def _go_back(self, count: int) -> None:
         here, recording = self._find_position(), self._run_controller.timeline.recording
         if here is None or recording is None:
             self._app.say("No run yet: {run} runs the program")
             return
-        self._forget_steps()
-        if self.replay.busy:
-            self._more_back += count
-        else:
-            self._run_controller.pause()
-            self._open_panels()
-            self.position = self._wanted = self._run_controller.chosen_line = None
-            count, self._more_back = count + self._more_back, 0
-            self.replay.lines_back(recording, here, count, self.inspect_request)
-            self.show()
+        self._run_controller.pause()
+        self._open_panels()
+        self.position = self._wanted = self._run_controller.chosen_line = None
+        self.replay.lines_back(recording, here, count, self.inspect_request)
+        self.show()
 
     def close(self) -> None:
         """Stop the debugger's processes."""

@@ -215,7 +215,7 @@ def _build_debug_actions() -> list[LabAction]:
         Action(
             "line-back",
             *line_back,
-            lambda lab: lab.debugger.step_back(1),
+            lambda lab: lab.debugger.step_back(),
             _can_look_back,
             "line back",
         ),
