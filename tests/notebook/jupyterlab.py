@@ -83,9 +83,14 @@ class Lab:
 
     async def copy_by_key(self) -> str:
         """Click into the world of the live robot and press ctrl+c; return what is on the clipboard then."""
-        left, top = await self._page.js(_LIVE_PLACE)
-        await self._page.click(left + 60, top + 40)
-        return await self._page.copy_by_key()
+        return await self._page.copy_by_key(self._focus_app)
+
+    async def _focus_app(self) -> None:
+        """Click into the live robot unless it has the keys: JupyterLab may activate the notebook after an earlier
+        click, which takes them away."""
+        if not await self._page.js(f"document.activeElement === {_LIVE}"):
+            left, top = await self._page.js(_LIVE_PLACE)
+            await self._page.click(left + 60, top + 40)
 
     async def until_says(self, name: str, words: str) -> None:
         """Scroll to a cell, and wait until its outputs say something."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from base64 import b64decode
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Awaitable, Callable
 from contextlib import asynccontextmanager
 from io import BytesIO
 from pathlib import Path
@@ -75,14 +75,20 @@ class Chromium:
                 "Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", clickCount=1
             )
 
-    async def copy_by_key(self) -> str:
-        """Press ctrl+c until something is on the clipboard; return that."""
+    async def copy_by_key(self, focus: Callable[[], Awaitable[None]] | None = None) -> str:
+        """Press ctrl+c until something is on the clipboard; return that.
+
+        Args:
+            focus: Gives the keys to what is copied from, before each press; None where nothing takes them away.
+        """
         allowed = ["clipboardReadWrite", "clipboardSanitizedWrite"]
         await self.do("Browser.grantPermissions", permissions=allowed)
         key = {"modifiers": 2, "key": "c", "code": "KeyC", "windowsVirtualKeyCode": 67}
         copied = ""
         async with asyncio.timeout(PATIENCE_S):
             while not copied:
+                if focus is not None:
+                    await focus()
                 for kind in ("rawKeyDown", "keyUp"):
                     await self.do("Input.dispatchKeyEvent", type=kind, **key)
                 await asyncio.sleep(0.3)
