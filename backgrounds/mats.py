@@ -13,6 +13,7 @@ from itertools import pairwise
 import numpy as np
 from courses import junction_handling_test, line_following_test, obstacles_test, thruxton_circuit
 from digits import mnist_digits, mnist_digits_black
+from harbour import harbour
 from harvest import harvest_trail
 from lollipop import LOWER_BRANCH, OPENING, UPPER_BRANCH
 from numpy.typing import NDArray
@@ -232,6 +233,7 @@ MATS: Mapping[str, Callable[[], Canvas]] = {
     "MNIST_Digits_Black": mnist_digits_black,
     "Harvest_Trail": harvest_trail,
     "Space_Port": space_port,
+    "Harbour": harbour,
 }
 """Every mat by name."""
 

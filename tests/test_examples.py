@@ -26,6 +26,7 @@ EXAMPLES: dict[str, dict[str, object]] = {
     "pybricks_data_log.py": {"background": "Grey_bands", "y_mm": 500.0},
     "pybricks_line_follower.py": {"background": "Lollipop", "samples": 1},
     "pybricks_mission.py": {"background": "Empty_Map", "samples": 1},
+    "pybricks_prime_missions.py": {"background": "Harbour", "lines": 10, "samples": 1},
     "read_once.py": {"background": "Grey_bands", "x_mm": 325.0, "lines": 6},
     "square.py": {"background": "Empty_Map", "lines": 4},
     "stop_at_wall.py": {"background": "Empty_Map", "lines": 1, "samples": 1},
@@ -39,6 +40,8 @@ RUNS = [
     if (profile.motor_law.library is Library.PYBRICKS) == name.startswith("pybricks_")
     # It drives until the light is 0, which a brick's sensor never reads.
     and (name, profile.name) != ("until_black.py", "ev3")
+    # A hub has Pybricks 4 only.
+    and (name, profile.name) != ("pybricks_prime_missions.py", "lego-micropython")
 ]
 """Each example under the profiles of its library."""
 

@@ -46,6 +46,7 @@ STARTS = {
     "MNIST_Digits_Black": (400, 50, 90),
     "Harvest_Trail": (210, 188, 0),
     "Space_Port": (190, 178, 0),
+    "Harbour": (200, 190, 0),
 }
 
 
