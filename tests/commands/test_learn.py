@@ -201,7 +201,7 @@ BAD = {
     "no lessons in it": (("list", "--folder", "."), "no lessons in ."),
     "new exists": (("new", "there.md"), "there.md: exists already"),
     "new is no Markdown": (("new", "there.txt"), "is not a .md file"),
-    "no such number": (("22",), "there is no lesson 22 (1 to 21. See `tuisim learn list`)"),
+    "no such number": (("23",), "there is no lesson 23 (1 to 22. See `tuisim learn list`)"),
     "no telling": (
         ("2", "--library", "pybricks"),
         "--library: the lesson sensor-eyes has no version for pybricks (one of first-",
@@ -259,9 +259,9 @@ def test_missing_wrong_way_is_a_warning(here: Command, tmp_path: Path) -> None:
 def test_check_without_a_file_is_of_the_lessons_of_tuisim(here: Command) -> None:
     lines = here("learn", "check", "--no-runs", "--strict").stdout.splitlines()
     assert (len(lines), lines[0].partition(":")[0], lines[-1].partition(":")[0]) == (
-        21,
+        22,
         "first-run",
-        "too-far",
+        "prime-hub",
     )
 
 

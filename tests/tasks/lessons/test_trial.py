@@ -74,6 +74,7 @@ MEASURED: dict[str, Callable[[Lesson], float]] = {
         lesson, f"tank_drive.on_for_rotations(-30, -30, 160 / 175.93)\n{LIGHT}"
     ),
     "export rows": lambda lesson: _rows(lesson),
+    "prime-hub heading": lambda lesson: _end(lesson, lesson.program, "heading_deg"),
     "dead-reckoning true-y": lambda lesson: _end(lesson, lesson.program, "y_mm", seed=1),
     "pid-line error": lambda lesson: _read(
         lesson,

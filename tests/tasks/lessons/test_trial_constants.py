@@ -47,7 +47,7 @@ def _misses(lesson: Lesson, check: RunCheck, other: TrialWorld | None, text: str
 
 
 def test_there_are_such_steps() -> None:
-    assert len(STEPS) == 10
+    assert len(STEPS) == 11
 
 
 @pytest.mark.quick_cases("read-errors mend")
