@@ -83,6 +83,7 @@ OF_NO_MODULE = {
     "guide/test_claims.py": "what the pages claim",
     "guide/test_documents.py": "what the pages run and name",
     "guide/test_ev3dev2_and_pybricks.py": "the table with the calls of both libraries",
+    "guide/test_pybricks_hubs.py": "the tables of what each hub has and refuses",
     "guide/test_the_real_robot_sensors.py": "the table of what sensors do on bricks and here",
     "guide/test_readme_film.py": "README's film",
     "guide/test_the_real_robot.py": "the tables of what was measured on bricks",

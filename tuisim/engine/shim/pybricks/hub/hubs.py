@@ -87,6 +87,8 @@ class PrimeHub(Hub):
 
     def __init__(self, *given: Any, **named: Any) -> None:
         super().__init__(*given, **named)
+        # Only a hub with a single button has it by this name, too.
+        del self.button
         self.speaker, self.charger = Speaker(), Charger()
         self.display = Display(self._face)
         Menu(self.display)
@@ -105,7 +107,11 @@ class TechnicHub(Hub):
 
 
 class CityHub(Hub):
-    """The hub of trains."""
+    """The hub of trains, which has no gyro."""
+
+    def __init__(self, *given: Any, **named: Any) -> None:
+        super().__init__(*given, **named)
+        del self.imu
 
 
 class MoveHub(Hub):
