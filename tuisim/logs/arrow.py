@@ -37,7 +37,7 @@ def build_text_array(texts: Sequence[str]) -> pa.Array:
 
 
 def build_table(columns: Mapping[str, Any]) -> pa.Table:
-    """Return columns as a table as if they came from a frame: lists of texts, or arrays of numbers, NaN as nulls."""
+    """Return columns, lists of texts or arrays of numbers, as a table as if from a frame: NaN becomes null."""
     return pa.table({name: _build_column(cells) for name, cells in columns.items()})
 
 
@@ -289,7 +289,7 @@ def _check_columns(schema: pa.Schema) -> None:
 
 
 def _validate_batch(batch: pa.RecordBatch) -> pa.Table:
-    """Return a validated batch as a table."""
+    """Return a batch as a table, after a check of its data, which may be damaged."""
     part = pa.Table.from_batches([batch])
     part.validate(full=True)
     return part
@@ -310,7 +310,7 @@ def _name_columns(part: pa.Table, notes: Notes) -> pa.Table:
 
 
 def _choose_type(kind: pa.DataType) -> pa.DataType:
-    """Return the type in which columns of a type are processed; mostly the same."""
+    """Return the type to which columns of a type are converted, such as decimals to floats; mostly the same."""
     if pa.types.is_decimal(kind):
         return pa.float64()
     # Times of day have no nanoseconds in pandas.
@@ -320,7 +320,7 @@ def _choose_type(kind: pa.DataType) -> pa.DataType:
 
 
 def convert_to_frame(table: pa.Table) -> pd.DataFrame:
-    """Return a table as a frame, without the types that pandas has stored with it if they are damaged."""
+    """Return a table as a frame; the types that pandas has stored in its metadata are ignored if they are damaged."""
     try:
         frame = table.to_pandas()
         # The names of columns may have become anything; pandas needs them to be hashable.

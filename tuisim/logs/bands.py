@@ -88,12 +88,12 @@ class BandReport:
 
     @cached_property
     def bands(self) -> tuple[Band, ...]:
-        """The bands one by one; a long log has a hundred thousand, which take long to make."""
+        """The bands as objects; a long log has a hundred thousand, which take long to make."""
         return tuple(map(Band, *map(unpack_column, self.columns.values())))
 
 
 def count_samples(band: Band) -> str:
-    """Return how many samples a band has, with its strays, which its level and its spread leave out."""
+    """Return how many samples a band has, such as `12, 1 stray`. Its level and its spread leave out the strays."""
     strays = f", {counted(band.strays, 'stray')}" if band.strays else ""
     return f"{band.samples}{strays}"
 
@@ -104,7 +104,10 @@ def unpack_column(column: Column) -> Sequence[Any]:
 
 
 def build_band_report(log: Log, name: str, search: Search = find_plateaus) -> BandReport:
-    """Return the bands of a variable, whose plateaus `search` returns.
+    """Return the bands of a variable.
+
+    Args:
+        search: Returns the plateaus of an array of samples: the bands.
 
     Raises:
         LogError: there is no such variable.
@@ -141,7 +144,7 @@ def build_band_report(log: Log, name: str, search: Search = find_plateaus) -> Ba
 def _measure_places(
     driven: FloatArray | None, values: FloatArray, levels: Levels
 ) -> dict[str, FloatArray]:
-    """Return where bands begin and end, and their widths."""
+    """Return `start_mm`, `stop_mm` and `width_mm` of bands, as in `Band`; all are NaN without `driven`."""
     if driven is None:
         unknown = np.full(len(levels.start), NAN)
         return dict.fromkeys(("start_mm", "stop_mm", "width_mm"), unknown)
@@ -153,18 +156,18 @@ def _measure_places(
 
 
 def describe_width(band: Band) -> str:
-    """Return the width of a band in mm, or why there is none; empty for a log without positions."""
+    """Return the width of a band in mm, `CUT_OFF`, or `–` if it is unknown; empty for a log without positions."""
     if not isfinite(band.start_mm):
         return ""
     return f"{band.width_mm:.0f}" if isfinite(band.width_mm) else CUT_OFF if band.cut_off else "–"
 
 
 def read_light(metadata: Mapping[str, Any], run: int) -> Light:
-    """Return what stands between the mat and the readings of a run, as far as the metadata of a log say.
+    """Return the light noise of a run, and the response of its colour sensor; the defaults if the metadata lack them.
 
     Args:
         metadata: Those of the log.
-        run: Its number in the log; 0 for the first.
+        run: Number of the run in the log, from 1; 0 if the log does not number its runs.
     """
     spec = read_spec(metadata, max(run - 1, 0))
     return find_light(spec) if spec else Light()

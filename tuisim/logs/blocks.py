@@ -36,7 +36,7 @@ _GUESSES = {"cp1252": "Windows-1252", "gbk": "GBK", "shift_jis": "Shift-JIS"}
 
 @dataclass(frozen=True, slots=True)
 class Block:
-    """Whole lines of a file."""
+    """Whole lines of a file that follow each other."""
 
     first_row: int
     """Row of the first line in the file, from 1."""
@@ -166,7 +166,7 @@ class LineCutter:
         return Block(first, text, self._newline)
 
     def _guess_text(self, text: bytes) -> str:
-        """Return a text that is not UTF-8 in the first encoding that it may have, which counts from then on."""
+        """Return a text that is not UTF-8, decoded; the rest of the file is read in the encoding found first."""
         guesses = {self._encoding: ""} if self._encoding else _GUESSES
         for encoding in guesses:
             try:
@@ -222,10 +222,10 @@ MAGIC_BYTES = max(map(len, MAGICS))
 
 
 def unpack(head: bytes, handle: Any, notes: Notes) -> Readable | None:
-    """Return the text in a compressed file, None if it is not compressed.
+    """Return the text in a compressed file, to be read; None if it is not compressed.
 
     Args:
-        head: Its first `MAGIC_BYTES` bytes.
+        head: The first `MAGIC_BYTES` bytes of the file.
         handle: The file, open at its beginning.
 
     Raises:
@@ -245,7 +245,7 @@ class _Unpacked:
     """A compressed file, read as far as it is intact.
 
     Args:
-        file: Returns what it unpacks; raises one of `_ERRORS` where it is damaged or cut off.
+        file: The open file, which unpacks; reading raises one of `_ERRORS` where it is damaged or cut off.
     """
 
     def __init__(self, file: Any, notes: Notes) -> None:

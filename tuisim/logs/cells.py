@@ -86,7 +86,7 @@ def parse_numbers(cells: pa.Array, form: NumberForm) -> tuple[pa.Array, pa.Array
 
 
 def _drop_infinite(numbers: pa.Array, texts: Any, wrong: Any) -> tuple[pa.Array, pa.Array]:
-    """Return numbers without those that are too large, and a mask that has them, too."""
+    """Return numbers with null where the text is too large for a float, and the mask `wrong` with these cells added."""
     infinite = pc.fill_null(pc.is_inf(numbers), False)
     if not pc.any(infinite).as_py():
         return numbers, wrong
@@ -96,7 +96,7 @@ def _drop_infinite(numbers: pa.Array, texts: Any, wrong: Any) -> tuple[pa.Array,
 
 
 def _trim(cells: pa.Array) -> tuple[Any, Any]:
-    """Return texts without blanks around them, null where they are empty, and a mask of those."""
+    """Return texts without blanks around them, with null for the empty ones, and a mask of the empty ones."""
     texts: Any = pc.utf8_trim_whitespace(cells)
     empty = pc.or_(pc.is_null(texts), pc.is_in(texts, value_set=build_text_array(EMPTY_CELLS)))
     return pc.if_else(empty, pa.nulls(len(texts), pa.string()), texts), empty
@@ -126,7 +126,7 @@ def find_form(cells: pa.Array, separator: str, decimal: str) -> NumberForm | Non
 
 
 def _find_unit_form(texts: pa.Array, forms: Sequence[NumberForm]) -> NumberForm | None:
-    """Return the form of numbers with a unit behind them; None if most of the texts are none."""
+    """Return the form of numbers with a unit behind them, such as `12 cm`; None if most of the texts lack it."""
     parts: Any = pc.extract_regex(texts, _UNIT)
     units = pc.value_counts(pc.struct_field(parts, "unit").drop_null())
     if not len(units):

@@ -19,7 +19,7 @@ WORDS = {"unit": tuple(SECONDS), "separator": tuple(SIGNS), "decimal": DECIMAL_S
 
 @dataclass(frozen=True, slots=True)
 class ReadChoices:
-    """How a log is to be read; what has its default is found.
+    """What the user has chosen for reading a log; what is at its default is found out from the file.
 
     Raises:
         LogError: there is no such unit, separator or decimal sign.

@@ -77,7 +77,7 @@ UNIT_NAMES = {seconds: words[-1] for seconds, words in _UNIT_WORDS_S.items()}
 
 
 class TimeName(NamedTuple):
-    """A column name, split into its parts."""
+    """A column name, split into its base and its unit of time."""
 
     base: str
     """Lower case, without its unit and without surrounding punctuation."""
@@ -108,9 +108,10 @@ def has_time_word(name: str) -> bool:
 
 
 def find_epoch_unit_s(column: pa.ChunkedArray, unit_s: float | None) -> float | None:
-    """Return the unit in seconds of a column of numbers; None if they are not times since the beginning of 1970.
+    """Return the unit in seconds of numbers that are times since the beginning of 1970; None if they are not.
 
-    The unit may be given in seconds; None guesses it from the size of the numbers.
+    Args:
+        unit_s: The unit, if it is known; None guesses it from the size of the numbers.
     """
     first = _find_first(column)
     units: tuple[float, ...] = (1.0, 1e-3, 1e-6, 1e-9) if unit_s is None else (unit_s,)
@@ -156,12 +157,12 @@ def read_seconds(column: pa.ChunkedArray, unit_s: float, since_first: bool = Fal
 
 
 def read_times(column: pa.ChunkedArray, unit_s: float, since_first: bool) -> Times:
-    """Return a time column: dates since the first of them, numbers times their unit.
+    """Return a time column in seconds: dates since the first of them, numbers times their unit.
 
     Args:
         column: Numbers, dates, time spans, or texts with dates or time spans.
         unit_s: Unit of numbers in seconds.
-        since_first: Whether numbers are dates, too.
+        since_first: Whether numbers are dates, too, and count from the first.
     """
     kind = column.type
     if pa.types.is_date(kind):
@@ -189,7 +190,12 @@ def read_times(column: pa.ChunkedArray, unit_s: float, since_first: bool) -> Tim
 
 
 def _unwrap(seconds: FloatArray, period: float, words: str) -> Times:
-    """Return times of a clock or counter that begins again at 0 after its period, without going back."""
+    """Return times to which a period is added each time that their clock or counter begins again at 0.
+
+    Args:
+        period: That of the clock or counter, in the unit of the times.
+        words: The period in words.
+    """
     with np.errstate(invalid="ignore"):
         if not len(seconds) or not 0.9 * period < np.nanmax(seconds, initial=0.0) < period:
             return Times(seconds)
@@ -249,7 +255,7 @@ def _parse_dates(texts: Any) -> FloatArray:
 
 
 def _apply_signs(seconds: FloatArray, parts: Any) -> FloatArray:
-    """Return seconds, negative ones where the sign of the parts is a minus."""
+    """Return seconds, negative where the part `sign` of the text is a minus."""
     minus = pc.fill_null(pc.equal(pc.struct_field(parts, "sign"), "-"), False)
     return np.where(minus.to_numpy(), -seconds, seconds)
 
@@ -290,7 +296,7 @@ _NO_VALUES = ("run", "line", "row", "x_mm", "y_mm", "heading_deg")
 
 @dataclass(frozen=True, slots=True)
 class Layout:
-    """The roles of the columns."""
+    """Which columns of a table are the time, the variable, the values and the run."""
 
     time: str = ROW
     """Column with the time; `ROW` if the samples are counted."""
@@ -361,7 +367,7 @@ def guess_columns(table: pa.Table) -> Layout:
 
 
 def _find_named(table: pa.Table, names: Sequence[str], fits: Callable[[pa.DataType], bool]) -> str:
-    """Return the first column with one of the names, in upper or lower case, whose type fits; empty if none has."""
+    """Return the column with the first of the names, in upper or lower case, if its type fits; empty if none has."""
     columns = {field.name.strip().lower(): field.name for field in table.schema if fits(field.type)}
     return next((columns[name] for name in names if name in columns), "")
 
@@ -399,7 +405,7 @@ def _find_named_time(table: pa.Table) -> str:
 
 
 def find_texts(table: pa.Table, fits: Callable[[str], bool]) -> Iterator[str]:
-    """Yield the columns of texts whose first cells all fit; less than half of them may be missing."""
+    """Yield the columns of texts whose first cells all fit; less than half of these cells may be missing."""
     for field in table.schema:
         if is_text(field.type):
             cells = table.column(field.name).slice(0, _JUDGED_CELLS).cast(pa.string())
@@ -413,7 +419,7 @@ def _is_rising_time(table: pa.Table, name: str) -> bool:
 
 
 def find_unread_time(table: pa.Table, layout: Layout) -> str:
-    """Return the column that is the time by its name but has no readable times; empty if there is none."""
+    """Return the column of texts with the name of a time, if no column could be read as the time; otherwise empty."""
     if layout.time:
         return ""
     named = (name for name in table.column_names if parse_time_name(name).base in _TEXT_TIMES)
@@ -421,7 +427,7 @@ def find_unread_time(table: pa.Table, layout: Layout) -> str:
 
 
 def has_guessed_order(table: pa.Table, layout: Layout) -> bool:
-    """Return whether the times are dates that could begin with the day or with the month, read as the day."""
+    """Return whether the times are dates such as 03/04/2024, whose first number is only guessed to be the day."""
     if not layout.time or not is_text(table.schema.field(layout.time).type):
         return False
     return order_is_guessed(table.column(layout.time).cast(pa.string()))
@@ -436,7 +442,7 @@ def time_in_words(layout: Layout) -> str:
 
 
 def _find_rising(table: pa.Table) -> str:
-    """Return the first column if no column has a name and it rises; else `ROW`."""
+    """Return the first column if no column has a name, and its numbers rise; else `ROW`."""
     names = table.column_names
     nameless = all(name == f"column {number}" for number, name in enumerate(names, 1))
     first = names[0] if nameless and len(names) > 1 else ROW

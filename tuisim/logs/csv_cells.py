@@ -21,7 +21,7 @@ _is_number = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?").fullmatch
 
 
 def escape_formula(text: str) -> str:
-    """Return a text as a spreadsheet shows it and does not compute it; numbers stay numbers."""
+    """Return a text with a ' before it if a spreadsheet would compute it, so that it is shown; numbers stay numbers."""
     return f"'{text}" if _is_risky(text) and not _is_number(text) else text
 
 
@@ -31,7 +31,7 @@ def restore_formula(text: str) -> str:
 
 
 def write_csv(frame: pd.DataFrame, handle: Any) -> None:
-    """Write a frame as CSV in which no text, also of its heading, is a formula.
+    """Write a frame as CSV; in cells and names of columns, what a spreadsheet would take for a formula is escaped.
 
     Args:
         handle: An open file, of text or of bytes.

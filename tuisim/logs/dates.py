@@ -69,9 +69,9 @@ def is_clock(cell: str) -> bool:
 
 
 def normalize_dates(texts: Any) -> Any:
-    """Return texts with their dates as year-month-day, without blanks and brackets; what is no date may change, too.
+    """Return texts with dates as year-month-day, without blanks and brackets around them; other texts may change, too.
 
-    Dates with the year at the end begin with the day, unless one of them can only begin with the month.
+    Dates with the year at the end begin with the day, unless one of the texts can only begin with the month.
     """
     texts = pc.utf8_trim_whitespace(texts)
     if not pc.any(pc.invert(pc.match_substring_regex(texts, _USUAL))).as_py():
@@ -85,7 +85,7 @@ def normalize_dates(texts: Any) -> Any:
 
 
 def order_is_guessed(texts: Any) -> bool:
-    """Return whether there are several dates, each of which could begin with the day or with the month."""
+    """Return whether there are different dates with the year at the end, all of which could begin with day or month."""
     texts = _replace_patterns(texts, _REWRITTEN[:1])
     first, second = _find_largest_parts(texts)
     if not 0 < max(first, second) <= _LAST_MONTH:
@@ -107,7 +107,7 @@ def _replace_patterns(texts: Any, changes: Sequence[tuple[str, str]]) -> Any:
 
 
 def _find_largest_parts(texts: Any) -> tuple[int, int]:
-    """Return the largest first and second number of the dates with the year at the end, 0 without any."""
+    """Return the largest first and the largest second number of dates with the year at the end; 0 if there are none."""
     parts: Any = pc.extract_regex(texts, _YEAR_AT_END)
     numbers = (pc.cast(pc.struct_field(parts, name), pa.int64()) for name in ("first", "second"))
     first, second = (pc.max(number).as_py() or 0 for number in numbers)

@@ -80,12 +80,15 @@ def parse_definition(text: str) -> Definition:
 
 
 def compute_derived(log: Log, definition: Definition, otherwise: str) -> list[Series]:
-    """Return the series of a definition, one for each run that has its first variable, `otherwise` if it has none.
+    """Return the series of a definition, one for each run that has the first variable of its expression.
 
     Variables sampled at other times are forward-filled; columns are read in the row of each sample.
 
+    Args:
+        otherwise: The variable whose samples count if the expression has none.
+
     Raises:
-        LogError: the expression is invalid, or names an unknown variable.
+        LogError: the expression is invalid, or names an unknown variable; or the name exists already.
     """
     if definition.name in log.table.column_names or definition.name in log.names:
         raise LogError(
@@ -147,7 +150,7 @@ def _sample_column(log: Log, name: str, base: Series) -> FloatArray:
 
 
 def find_computed_columns(log: Log) -> dict[str, Callable[[], FloatArray]]:
-    """Return what computes those columns of a recording that a log of telemetry has not, but can compute, by name."""
+    """Return functions that compute columns which a log of telemetry lacks, by the names of the columns."""
     if (spec := read_spec(log.metadata)) is None:
         return {}
     there = set(list_numeric_columns(log.table.schema))
@@ -167,14 +170,14 @@ def _compute_column(of: Any, columns: Sequence[Column], log: Log, spec: RunSpec)
 
 
 def find_named_columns(log: Log, text: str) -> list[str]:
-    """Return those of `find_computed_columns` that a text names."""
+    """Return the names in `find_computed_columns` that a text contains."""
     if not text.strip():
         return []
     return [name for name in find_computed_columns(log) if re.search(rf"\b{name}\b", text)]
 
 
 def add_named_columns(log: Log, text: str) -> Log:
-    """Return a log with those columns that are computed for it because a text names them."""
+    """Return a log with the computed columns that a text names, see `find_named_columns`."""
     for name in find_named_columns(log, text):
         log = log.add_derived(name, compute_derived(log, Definition(name, name), log.names[0]))
         # A damaged file may have something else as its units.
@@ -186,10 +189,10 @@ def add_named_columns(log: Log, text: str) -> Log:
 
 
 def read_spec(metadata: Mapping[str, Any], run: int = 0) -> RunSpec | None:
-    """Return the specification of a run in the metadata of a log; None if they have none, or are damaged.
+    """Return the specification of a run from the metadata of a log; None if they have none, or are damaged.
 
     Args:
-        run: The number of the run among those of the log.
+        run: Index of the run among those of the log, from 0.
     """
     try:
         entry = metadata["runs"][run]

@@ -28,7 +28,7 @@ def is_json_start(lines: Sequence[str]) -> bool:
 
 
 def has_objects(lines: Sequence[str]) -> bool:
-    """Return whether most of the lines are an object each."""
+    """Return whether most of the lines are a JSON object each."""
     return 2 * sum(line.lstrip().startswith("{") and _is_row(line) for line in lines) > len(lines)
 
 
@@ -54,7 +54,7 @@ def _is_row(line: str) -> bool:
 
 
 class DocumentReader:
-    """Collects the blocks of one file until its end."""
+    """Reads one file of JSON: collects its blocks, and parses them at the end."""
 
     def __init__(self, notes: Notes) -> None:
         self._notes, self._lines = notes, JsonReader(notes)
@@ -62,7 +62,7 @@ class DocumentReader:
         self._is_too_large = False
 
     def read(self, block: Block) -> pa.Table | None:
-        """Keep a block; return rows only if the file is too large for a document."""
+        """Keep a block and return None; once the file is too large for one document, return the rows on its lines."""
         if self._is_too_large:
             return self._lines.read(block)
         self._first_row = self._first_row if self._text else block.first_row
@@ -74,7 +74,7 @@ class DocumentReader:
         return self._lines.read(Block(self._first_row, self._text))
 
     def finish(self) -> pa.Table | None:
-        """Return the rows of the document, None if it has none; if it is damaged, those that have a line of their own.
+        """Return the rows of the document, None if it has none; of a damaged one, the rows that have their own line.
 
         Raises:
             LogError: it is no table.
@@ -105,7 +105,7 @@ def _parse_values(text: str) -> list[Any]:
 
 
 def _build_table(value: Any, notes: Notes) -> pa.Table | None:
-    """Return the table that a JSON value is, None if it has no row."""
+    """Return a JSON value as a table, None if it has no row."""
     if isinstance(value, list):
         return _build_table_from_rows(value, notes)
     if not isinstance(value, dict):
@@ -148,7 +148,7 @@ def _is_number(value: Any) -> bool:
 
 
 def _is_record(cells: Mapping[str, Any]) -> bool:
-    """Return whether an object is one row, not columns: it has no list, or numbers beside lists that are one cell."""
+    """Return whether an object is one row, not columns: without lists, or with numbers beside lists that are cells."""
     lists = [cell for cell in cells.values() if isinstance(cell, list)]
     numbers = [name for name, cell in cells.items() if _is_number(cell)]
     if not lists or not numbers:
@@ -174,7 +174,11 @@ def _build_table_from_columns(value: Mapping[str, Any], notes: Notes) -> pa.Tabl
 def _build_table_from_rows(
     rows: Sequence[Any], notes: Notes, names: Sequence[str] = ()
 ) -> pa.Table | None:
-    """Return the table of rows that are objects, lists or single values; the names are those of the cells in lists."""
+    """Return rows that are objects, lists or single values as a table; None if they have no cells.
+
+    Args:
+        names: Names of the cells of lists.
+    """
     if rows and not any(isinstance(row, list | dict) for row in rows):
         notes.say("a list of single values is read as one column")
         rows = [[row] for row in rows]
@@ -192,7 +196,7 @@ def _build_table_from_rows(
 
 
 def _convert_lists(rows: Sequence[Any], names: Sequence[str]) -> list[Any]:
-    """Return rows that are lists as objects; without names, the first row may have them."""
+    """Return rows with lists as objects. Without names, the first list may have them."""
     lists = [row for row in rows if isinstance(row, list)]
     first = lists[0]
     if not names and len(lists) > 1 and first and all(isinstance(cell, str) for cell in first):

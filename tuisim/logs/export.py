@@ -55,7 +55,7 @@ def check_target(path: str | Path, others: Sequence[str] = ()) -> Path:
 
 
 def check_targets(targets: Iterable[str | Path]) -> None:
-    """Raise if a file cannot be written, or is named twice.
+    """Check that all files can be written, and that none is named twice.
 
     Raises:
         ConfigError: two of them are the same file.
@@ -73,7 +73,7 @@ def check_targets(targets: Iterable[str | Path]) -> None:
 
 
 def check_place(place: Path) -> None:
-    """Check that a file can be written; nothing is left behind.
+    """Check that a file can be written, without creating it.
 
     Raises:
         ExportError: no such folder, a folder that cannot be written, or an existing target that may not be replaced.
@@ -168,9 +168,9 @@ def export_log(log: Log, table: LogTable, path: str | Path) -> None:
 
 
 def build_typed_frame(table: LogTable) -> pd.DataFrame:
-    """Return a table as a frame with the types of `frames.build_samples_frame`, also if it was read as text.
+    """Return a table as a frame with the types of `frames.build_samples_frame`, even if it was read as text.
 
-    A column keeps its type if another would change a value.
+    A column keeps its type if another type would change a value.
     """
     import numpy as np
     import pandas as pd
@@ -250,7 +250,7 @@ def describe_files(target: Path) -> str:
 
 
 def is_companion(path: Path) -> bool:
-    """Return whether a file is the second one of an export, by its name."""
+    """Return whether a file has the name of one with the metadata of an export."""
     return path.suffix.lower() == ".json" and Path(path.stem).suffix.lower() in EXPORTERS
 
 

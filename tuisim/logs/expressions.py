@@ -125,7 +125,7 @@ def find_names(text: str) -> list[str]:
 
 
 def _read(text: str) -> tuple[ast.Expression, dict[str, str]]:
-    """Return a parsed expression, and the names in backticks by their placeholders."""
+    """Return a parsed expression, and the names in backticks by the placeholders that replace them."""
     if len(text) > MAX_CHARS:
         raise LogError(f"the expression has {len(text)} characters", f"at most {MAX_CHARS}")
     names: dict[str, str] = {}

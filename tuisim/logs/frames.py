@@ -45,7 +45,7 @@ def read_log(
 ) -> pd.DataFrame:
     """Return the table in a file. Without choices, an export of tuisim is as it was written, to the last bit.
 
-    Of another file, and with choices, the index is the time in seconds, if there is one; warnings say what was guessed
+    Of another file, or with choices, the index is the time in seconds, if there is one; warnings say what was guessed
     or left out. The choices are the options of the `log` commands: see `ReadChoices`.
 
     Args:
@@ -53,7 +53,7 @@ def read_log(
         value: Columns with values: beside them, only times, names of variables and runs are kept.
 
     Raises:
-        LogError: it cannot be read, has no row, there is no such column, or a choice is none.
+        LogError: it cannot be read, has no row, there is no such column, or a choice is not allowed.
     """
     choices = ReadChoices(time, unit, tuple(value), header, table, encoding, separator, decimal)
     source = Path(path)
@@ -122,7 +122,7 @@ def build_sampled_frame(
 
 
 def build_computed_frame(log: Log, expression: str) -> pd.DataFrame:
-    """Return a log with one column per variable, and the value of an expression over them.
+    """Return a log with one column per variable, and a column `result` with the value of an expression over them.
 
     Raises:
         LogError: the expression is invalid, or names a column that there is not.
@@ -134,7 +134,7 @@ def build_computed_frame(log: Log, expression: str) -> pd.DataFrame:
 
 
 def _build_wide_frame(log: Log) -> pd.DataFrame:
-    """Return a log in wide format; rows of a long log are forward-filled."""
+    """Return a log with one column per variable; if its variables share a column, they are forward-filled."""
     import pandas as pd
 
     if not log.layout.variable:

@@ -48,7 +48,7 @@ _MAX_LINES = 10
 
 @dataclass(frozen=True, slots=True)
 class Heading:
-    """The format of a table."""
+    """Where a table begins in a text, and how it is written."""
 
     names: tuple[str, ...] = ()
     """Names of the columns; empty if there were only comments."""
@@ -74,7 +74,7 @@ class _Line(NamedTuple):
 
 
 class _Rank(NamedTuple):
-    """How certainly some lines are the rows of a table, what matters most first."""
+    """How certainly some lines are the rows of a table, to be compared: what matters most comes first."""
 
     is_table: bool
     """Whether there are several columns, and numbers."""
@@ -89,7 +89,7 @@ class _Rank(NamedTuple):
 
 
 class _Run(NamedTuple):
-    """Lines that follow each other, with the same number of cells of the same kinds."""
+    """Lines that follow each other, with the same number and kinds of cells."""
 
     start: int
     length: int
@@ -118,14 +118,15 @@ def _classify_cell(cell: str) -> str:
 def find_heading(
     lines: Sequence[tuple[int, str]], notes: Notes, separator: str, header_row: int
 ) -> Heading:
-    """Find the table in the first lines of a text that are not blank, each with its number in the file.
+    """Find the table in the first lines of a text.
 
     Args:
+        lines: Those that are not blank, each with its number in the file.
         separator: One of `SEPARATORS` or `BLANKS`; empty to find it.
         header_row: Number of the line with the heading; 0 to find it.
 
     Raises:
-        LogError: `header_row` is no line of the beginning.
+        LogError: `header_row` is not the number of one of the lines.
     """
     if header_row:
         return _read_heading(lines, notes, separator, header_row)
@@ -159,7 +160,7 @@ def find_heading(
 def _read_excel_line(
     lines: Sequence[tuple[int, str]], separator: str
 ) -> tuple[str, Sequence[tuple[int, str]]]:
-    """Return the separator, which Excel names in a line of its own, and the lines without that."""
+    """Return the separator, and the lines without a first one such as `sep=;`, in which Excel names the separator."""
     excel = _EXCEL.fullmatch(lines[0][1]) if lines else None
     return (separator or excel[1], lines[1:]) if excel else (separator, lines)
 
@@ -195,12 +196,12 @@ def _read_heading(
 
 
 def _clean_names(names: Sequence[str], notes: Notes) -> tuple[str, ...]:
-    """Return names of columns in one line each, all different."""
+    """Return names of columns without line breaks, all different."""
     return tuple(make_names_unique([" ".join(name.split()) for name in names], notes))
 
 
 def _find_comment_sign(texts: Sequence[str]) -> str:
-    """Return the sign that the first line begins with, if lines that do so are comments; else nothing."""
+    """Return the sign of comments with which the first line begins; empty if it has none, or separates cells by it."""
     sign = next((sign for sign in _COMMENT_SIGNS if texts and texts[0].startswith(sign)), "")
     if sign in SEPARATORS and any(sign in text for text in texts if not text.startswith(sign)):
         return ""
@@ -220,13 +221,13 @@ def split_cells(line: str, separator: str) -> list[str]:
 
 
 def close_quotes(text: bytes, separator: str) -> bytes:
-    """Return a text without blanks between quotes and separators."""
+    """Return a text without blanks between separators and the quotes of cells."""
     sign = re.escape(separator.encode())
     return re.sub(rb'(?m)(?:^|(?<=%b))[ \t]+(?=")|(?<=")[ \t]+(?=%b)' % (sign, sign), b"", text)
 
 
 def _split_lines(lines: Sequence[tuple[int, str]], separator: str) -> Iterator[_Line]:
-    """Yield the lines in cells; quoted names with line breaks make a single one of several lines."""
+    """Yield the lines, split into cells; a heading with line breaks in quoted names is a single line."""
     after, is_first = 0, True
     for index, (row, text) in enumerate(lines):
         if index < after:
@@ -242,7 +243,7 @@ def _split_lines(lines: Sequence[tuple[int, str]], separator: str) -> Iterator[_
 
 
 def _join_heading(lines: Sequence[tuple[int, str]], separator: str) -> tuple[list[str], int] | None:
-    """Return the cells of a heading on several lines, and their number; None if it is none."""
+    """Return the cells of a heading with line breaks in quotes, and its number of lines; None if there is none."""
     texts = [text + "\n" for _, text in lines[:_MAX_LINES]]
     if separator == BLANKS:
         return None
@@ -257,7 +258,7 @@ def _join_heading(lines: Sequence[tuple[int, str]], separator: str) -> tuple[lis
 
 
 def sniff_separator(lines: Sequence[str]) -> str:
-    """Return the separator that makes the most certain rows; blanks only if no other makes any."""
+    """Return the separator with which lines are most certainly rows of a table, one of `SEPARATORS` or `BLANKS`."""
     if len(lines) == 1:
         return _sniff_line(lines[0])
     ranks = {sign: _rank_separator(lines, sign) for sign in (*SEPARATORS, BLANKS)}
@@ -287,7 +288,7 @@ def _rank_separator(lines: Sequence[str], separator: str) -> _Rank:
 
 
 def _has_inner_commas(lines: Sequence[str]) -> bool:
-    """Return whether the commas between blanks are parts of numbers and times in most of the lines."""
+    """Return whether, in at least half of the lines, all commas are inside of numbers and times."""
     outside = 0
     for line in lines:
         words = [word for word in split_cells(line, BLANKS) if "," in word]
@@ -342,7 +343,7 @@ def _merge_kinds(kinds: str, others: str) -> str | None:
 
 
 def _find_first_row(table: Sequence[_Line], run: _Run) -> int:
-    """Return the index of the table's first row: above a run there may be rows with a cell of another kind."""
+    """Return the index of the table's first row: rows above a run belong to it even if a cell is of another kind."""
     start = run.start
     while start and _is_row(table[start - 1].kinds, run.kinds):
         start -= 1
@@ -361,7 +362,7 @@ def is_words(kinds: str) -> bool:
 
 
 def _find_comment_names(text: str, table: Sequence[_Line], separator: str) -> list[str] | None:
-    """Return column names from the last comment, if they match the number of cells."""
+    """Return the column names in a comment; None if it has more or fewer names than the rows have cells."""
     width = len(table[0].cells)
     names = [name.strip() for name in split_cells(text.strip(), separator)]
     if len(names) != width:
@@ -377,7 +378,7 @@ def _find_comment_names(text: str, table: Sequence[_Line], separator: str) -> li
 def _find_names(
     table: Sequence[_Line], above: list[_Line], start: int, run: _Run
 ) -> tuple[list[str] | None, list[_Line], int]:
-    """Return the names of the columns, the lines above their heading, and the index of the first row."""
+    """Return the names of the columns, None without a heading; the lines above it; and the index of the first row."""
     width = len(run.kinds)
     if above:
         *before, last = above
@@ -402,7 +403,7 @@ def _find_names(
 
 
 def _join_unit(name: str, unit: str) -> str:
-    """Return a name with the unit below it, unless it has one itself."""
+    """Return a name with the unit from the row below it in brackets, unless the name has a unit itself."""
     name, unit = name.strip(), unit.strip(" ()[]")
     has_unit = unit in ("", "-", "1") or name.endswith((")", "]")) or _OWN_UNIT.search(name)
     return name if has_unit else f"{name} [{unit}]"
@@ -414,7 +415,7 @@ def _has_units(cells: Sequence[str], names: _Line) -> bool:
 
 
 def _has_names(rows: Sequence[_Line]) -> bool:
-    """Return whether the first row is a heading although it is of the same kind as the others."""
+    """Return whether the first row is a heading although its cells are of the same kinds as those of the other rows."""
     first = rows[0]
     if first.kinds[0] == "t" and (len(rows) < 2 or rows[1].kinds[0] == "t"):
         return False
@@ -439,7 +440,11 @@ def _has_numbers_as_names(rows: Sequence[_Line]) -> bool:
 
 
 def _number_columns(cells: Sequence[str], notes: Notes) -> list[str]:
-    """Return the names of columns from the cells of their first row: `date` and `time` once, else numbers."""
+    """Return names for columns without a heading: one `date`, one `time`, the others with numbers.
+
+    Args:
+        cells: Those of the first row.
+    """
     notes.say("no header: the columns are numbered")
     names: list[str] = []
     for number, cell in enumerate(cells, 1):

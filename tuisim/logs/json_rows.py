@@ -15,7 +15,7 @@ _NAMELESS = "(no name)"
 
 
 class JsonReader:
-    """Reads blocks of one file; names and types of the columns are fixed by the first.
+    """Reads blocks of JSON lines of one file; names and types of the columns are fixed by the first block.
 
     Columns are texts or numbers; if `exact`, each has the type that all its cells have, as in an export.
     """
@@ -51,7 +51,7 @@ class JsonReader:
         return self.build_table(numbered_rows) if numbered_rows else None
 
     def build_table(self, numbered_rows: list[tuple[int, dict[str, Any]]]) -> pa.Table:
-        """Return the table of objects, each with its row in the file."""
+        """Return a table of objects, each of which comes with its row in the file."""
         names = dict.fromkeys(name for _, cells in numbered_rows for name in cells)
         return pa.table(
             {

@@ -92,7 +92,7 @@ def find_light_scale(values: FloatArray) -> float:
 
 
 class Light(NamedTuple):
-    """What stands between the readings of a colour sensor and the mat."""
+    """How a colour sensor reads the mat: the noise, and what it reads of black and white."""
 
     noise: int = 0
     """Light noise of the run, 0 to 128."""
@@ -119,7 +119,7 @@ PLAIN_LIGHT = Light()
 
 
 def find_light(spec: RunSpec) -> Light:
-    """Return what stands between the mat and the first colour sensor of a run."""
+    """Return how the first colour sensor of a run reads the mat; without one, only the noise is known."""
     noise = spec.world.noise.light
     for sensor in spec.robot.color_sensors:
         dark, span = find_response(sensor, spec.profile)
@@ -148,12 +148,12 @@ class Levels:
 def measure_levels(
     values: FloatArray, light: Light | None = PLAIN_LIGHT, search: Search = find_plateaus
 ) -> Levels:
-    """Return the plateaus of samples, which `search` finds.
+    """Return the plateaus of samples, with their levels and greys.
 
     Args:
         values: Shape (n,).
-        light: What stands between them and the greys of the mat; None if they are no light.
-        search: Finds them.
+        light: How they were read from the mat; None if they are not levels of light.
+        search: Finds the plateaus.
     """
     finite = values[np.isfinite(values)]
     magnitude = find_scale(float(finite.min()), float(finite.max())) if len(finite) else 1.0

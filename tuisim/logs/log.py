@@ -25,7 +25,7 @@ _NO_ROWS: IntArray = np.empty(0, np.int64)
 
 @dataclass(frozen=True, slots=True)
 class Member:
-    """One series of a log."""
+    """A variable of a run, and its rows in the table."""
 
     name: str
     """The variable; with several runs followed by ` #` and the run's number."""
@@ -137,7 +137,7 @@ def _has_rows(member: Member) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class Log:
-    """A log."""
+    """A table with the roles of its columns, and its variables as series."""
 
     title: str
     table: pa.Table
@@ -235,7 +235,7 @@ class Log:
         return self._cache.numbers[column]
 
     def pick_numbers(self, column: str, rows: IntArray) -> FloatArray:
-        """Return the numbers of a column in some rows, as `numbers`, but without keeping those of the others."""
+        """Return the numbers of a column in some rows, as `numbers`, but without caching the whole column."""
         return convert_to_floats(
             self.table.column(column).take(wrap_int64(np.ascontiguousarray(rows, np.int64)))
         )

@@ -53,7 +53,7 @@ class _Channel(NamedTuple):
 
 
 def load_writer() -> ModuleType:
-    """Return the library's module that writes.
+    """Return the module of the library mcap that writes files.
 
     Raises:
         ConfigError: it is not installed.
@@ -69,10 +69,10 @@ def load_writer() -> ModuleType:
 def export_mcap(
     log: Log, names: Sequence[str], path: Path, tell: Callable[[float], None], *, has_pose: bool
 ) -> int:
-    """Write variables of a log; an existing file is replaced. Missing values have no message.
+    """Write variables of a log as an MCAP file, which replaces an existing one. Missing values have no message.
 
     Args:
-        names: The variables; those of the pose are written as poses.
+        names: The variables; x, y and heading are written as poses if `has_pose`.
         tell: Is given the fraction that has been written.
         has_pose: Whether to write the pose, if the log has one.
 

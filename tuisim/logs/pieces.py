@@ -89,12 +89,12 @@ def _join_seams(
     min_step: float,
     sigma: float,
 ) -> Pieces:
-    """Join pieces at the seams across which the log goes on, the first ones first.
+    """Join the pieces on both sides of a seam if the log goes on across it, from the first seam to the last.
 
     Args:
         values: The log.
         pieces: Its pieces.
-        seams: Shape (n, 2): a piece, and the one at or after it that may continue the one before it.
+        seams: Shape (n, 2): index of the piece after the left side, and of the right side, which is it or a later one.
         min_samples: Fewest samples on either side.
         min_step: The smallest step between levels.
         sigma: Standard deviation of the noise.
@@ -102,7 +102,7 @@ def _join_seams(
     left, right = pieces[seams[:, 0] - 1], pieces[seams[:, 1]]
     firsts = np.arange(len(pieces))
     goes_on, unsure = np.zeros(len(seams), bool), np.ones(len(seams), bool)
-    # If what is before a seam was itself joined to what is before it, more samples tell how it goes on.
+    # A join makes the piece on the left of the next seam longer: judge that seam again, with more samples.
     while unsure.any():
         goes_on[unsure] = _find_continued(
             values, left[unsure], right[unsure], min_samples, min_step, sigma
@@ -118,7 +118,7 @@ def _join_seams(
 
 
 def _find_firsts(count: int, seams: IntArray) -> IntArray:
-    """Return for each piece the first one of those that it is joined to; a seam inside an earlier one is none."""
+    """Return for each piece the index of the first one that it is joined to; seams inside earlier ones are left out."""
     taken = []
     reached = -1
     for piece, after in seams.tolist():
@@ -154,7 +154,7 @@ def _find_continued(
 
 
 class _Lines(NamedTuple):
-    """What a straight line through the samples of each piece needs, without strays; each of shape (n,)."""
+    """Means and sums for a straight line through the samples of each piece, without strays; each of shape (n,)."""
 
     samples: FloatArray
     place: FloatArray

@@ -185,7 +185,7 @@ def find_plateaus(values: FloatArray) -> list[Plateau]:
 def _join_pieces(
     values: FloatArray, pieces: Pieces, min_step: float, sigma: float, *, has_strays: bool
 ) -> Pieces:
-    """Return pieces joined where the log goes on, also across strays if it has some."""
+    """Return pieces, joined where the log goes on from one to the next; across strays, too, if it has some."""
     # Twice: a stray may be hidden between short pieces of a drift.
     for _ in range(2):
         count = len(pieces)
@@ -200,9 +200,9 @@ def _join_pieces(
 def _settle(
     values: FloatArray, plateaus: PlateauArray, parts: PlateauArray, ground: Ground, min_step: float
 ) -> PlateauArray:
-    """Return plateaus that have grown to their ends, and the still parts of slopes."""
+    """Return plateaus, extended to their ends and joined, together with `parts`: slopes' parts that stand still."""
     if len(plateaus):
-        # After growing, two may be separated by no more than a stray.
+        # Two plateaus that have grown may be separated by no more than a stray.
         grown = _extend_pieces(values, read_spans(plateaus), ground.sigma)
         spans = join_drifting(values, grown, min_step, ground.sigma)
         plateaus = drop_moving(
@@ -212,7 +212,7 @@ def _settle(
 
 
 def _find_extremes(values: FloatArray) -> tuple[float, float]:
-    """Return the lowest and the highest level, whatever the values of strays."""
+    """Return the lowest and the highest level; strays do not count."""
     if len(values) > STRAY_SAMPLES:
         windows = sliding_window_view(values, STRAY_SAMPLES + 1).T
         low, high = float(windows.max(axis=0).min()), float(windows.min(axis=0).max())
@@ -235,10 +235,10 @@ def _cut(values: FloatArray, sigma: float) -> Pieces:
 def _choose_places(scaled: FloatArray) -> IntArray:
     """Return the positions of possible cuts, from 0 to the length, both included.
 
-    In a long log these are the peaks of the difference between the means of the samples before and after a position,
-    higher than `CERTAINTY` of its standard deviations. Each width is about three times the one before it, so that one
-    of them fits into a level of any length without losing much of its weight; 24 samples show a step of 1.2 times the
-    noise. The neighbours of a peak may be cuts, too: noise shifts it.
+    In a long log these are the positions where the means of the samples before and after differ most, by more than
+    `CERTAINTY` standard deviations. Each width of the means is about three times the one before it, so that one of them
+    fits into a level of any length without losing much of its weight; 24 samples show a step of 1.2 times the noise.
+    The neighbours of a peak may be cuts, too: noise shifts it.
     """
     count = len(scaled)
     if count <= MAX_SAMPLES_CUT_ANYWHERE:
@@ -316,7 +316,7 @@ def _partition(scaled: FloatArray, places: IntArray) -> Pieces:
 def _measure_again(
     values: FloatArray, pieces: Pieces, plateaus: PlateauArray, sigma: float
 ) -> PlateauArray:
-    """Return the pieces as plateaus; those that are found already are taken over."""
+    """Return pieces as plateaus; those that are in `plateaus` are copied from there, the others measured."""
     known = np.minimum(np.searchsorted(plateaus["start"], pieces[:, 0]), len(plateaus) - 1)
     measured = plateaus[known]
     changed = (read_spans(measured) != pieces).any(axis=1)
@@ -325,7 +325,7 @@ def _measure_again(
 
 
 def _find_edges(plateaus: PlateauArray) -> BoolArray:
-    """Return which are short pieces that are only the edge between two plateaus."""
+    """Return which plateaus are short and only the edge between their neighbours."""
     edges = np.zeros(len(plateaus), bool)
     lengths, level = count_samples(read_spans(plateaus)), plateaus["level"]
     low, high = np.minimum(level[:-2], level[2:]), np.maximum(level[:-2], level[2:])
@@ -336,7 +336,7 @@ def _find_edges(plateaus: PlateauArray) -> BoolArray:
 
 
 def _find_ramps(values: FloatArray, plateaus: PlateauArray, sigma: float) -> BoolArray:
-    """Return which are short pieces that rise or fall from each sample to the next."""
+    """Return which plateaus are short and rise or fall from each sample to the next."""
     ramps = count_samples(read_spans(plateaus)) <= _EDGE_SAMPLES + 1
     short = np.flatnonzero(ramps)
     for some, part in group_by_length(values, read_spans(plateaus[short])):

@@ -54,7 +54,7 @@ Values = tuple[tuple[str, float], ...]
 
 
 class ProgramLine(NamedTuple):
-    """What a line tells."""
+    """The time, and the samples or numbers, in a line that a program printed."""
 
     time: float | str | None
     """Its time: seconds behind a sample, or what stands before; None without one."""
@@ -64,7 +64,7 @@ class ProgramLine(NamedTuple):
 
 
 def parse_line(line: str) -> ProgramLine | None:
-    """Return what a line tells; None if it has neither samples nor a time with numbers."""
+    """Parse a line that a program printed; return None if it has neither samples nor a time with numbers."""
     if len(line) > _MAX_CHARACTERS:
         return None
     if (sample := parse_sample(line)) is not None:
@@ -80,7 +80,7 @@ def parse_line(line: str) -> ProgramLine | None:
 
 
 def _split_time(line: str) -> tuple[str | None, str, bool]:
-    """Return the time that a line begins with, the rest, and whether it is certainly a time."""
+    """Return the time with which a line begins, None without one; the rest; and whether it is certainly a time."""
     match = _STAMPED.fullmatch(line)
     if match is None:
         return None, line, False
@@ -101,7 +101,7 @@ def _strip_prefixes(text: str) -> str:
 
 
 def _parse_samples(text: str) -> Values:
-    """Return the samples that a text consists of; none if there is anything else in it."""
+    """Return the samples in a text, after prefixes such as a logger's; none if it has anything else in it."""
     text = text.strip()
     while True:
         if (sample := parse_sample(text)) is not None and sample[2] is None:
@@ -144,10 +144,10 @@ def _is_row(line: str) -> bool:
 def choose_reader(
     lines: Sequence[str], is_table: bool, notes: Notes, choices: ReadChoices
 ) -> RowReader | SampleReader | None:
-    """Return what reads a file with these first lines; None if they are no lines of a program.
+    """Return a reader for a file with these first lines; None if a program has not printed them.
 
     Args:
-        is_table: Whether the file's name is that of a table, so that only lines with times are a program's.
+        is_table: Whether the file has the name of a table: then only lines with times are taken for a program's.
     """
     by_line = [parse_line(line) for line in lines]
     parsed = [line for line in by_line if line is not None]
@@ -223,10 +223,10 @@ def has_tuples(lines: Sequence[str]) -> bool:
 
 
 class RowReader:
-    """Reads blocks of one file whose lines are rows of a table when they are rewritten.
+    """Reads blocks of one file whose lines become rows of a table by rewriting them.
 
     Args:
-        rewrite: Returns a line with nothing but cells; other lines as they are.
+        rewrite: Returns the cells of a line as text; a line that it does not know as it is.
         choices: How the table is to be read.
     """
 
@@ -241,13 +241,13 @@ class RowReader:
 
 
 def strip_brackets(line: str) -> str:
-    """Return the cells of a tuple or list."""
+    """Return a tuple or list without its brackets; other lines as they are."""
     match = _TUPLE.fullmatch(line)
     return line if match is None else match["tuple"] or match["list"] or ""
 
 
 def split_stamped(line: str) -> str:
-    """Return a time and the numbers behind it, or their names, with tabs between them."""
+    """Return a time and the numbers behind it, or their names, with tabs between them; other lines as they are."""
     parsed = parse_line(line)
     if parsed is not None and parsed.rest:
         return "\t".join((str(parsed.time), *_SEPARATOR.split(parsed.rest)))

@@ -79,7 +79,7 @@ _JUDGED_LINES = 30
 
 @dataclass(frozen=True, slots=True)
 class Loaded:
-    """Progress of the reading."""
+    """How far a log has been read, and what of it is there."""
 
     part: float
     """Fraction of the file that has been read, 0 to 1; NaN if the size is unknown."""
@@ -114,7 +114,7 @@ def read_beginning(path: str, choices: ReadChoices) -> Log:
 
 
 def read_pieces(source: str | Path, choices: ReadChoices = NO_CHOICES) -> Iterator[Loaded]:
-    """Read a log; yield the log so far, soon after the start and then repeatedly; arguments are those of `open_log`."""
+    """Read a log; yield the log so far, soon after the start and then repeatedly. Arguments are as for `open_log`."""
     title = _name_source(source)
     notes = Notes()
     parts: list[pa.Table] = []
@@ -176,7 +176,7 @@ def _build_log(title: str, parts: Sequence[pa.Table], notes: Notes, choices: Rea
 
 
 def _tell_odd_columns(table: pa.Table, layout: Layout, unread: str, notes: Notes) -> None:
-    """Say which columns are text, and how many values are infinite."""
+    """Note which columns are text, and how many values are infinite."""
     used = (layout.time, layout.variable, layout.run, unread)
     texts = [
         repr(field.name) for field in table.schema if is_text(field.type) and field.name not in used
@@ -205,7 +205,7 @@ def read_companion(path: Path) -> Mapping[str, Any]:
 
 
 def read_first_lines(path: str, encoding: str) -> list[tuple[int, str]]:
-    """Return lines of the beginning of a text that are not blank, each with its number; none of another file.
+    """Return the first lines of a text that are not blank, each with its number; none of Parquet and Arrow files.
 
     Raises:
         LogError: it cannot be read.
@@ -228,7 +228,7 @@ def join_tables(parts: Sequence[pa.Table]) -> pa.Table:
 
 
 def _fill_types(table: pa.Table) -> pa.Table:
-    """Return a table in which columns without any cell are numbers."""
+    """Return a table with numbers as the type of columns without any cell."""
     kinds = [
         field.with_type(pa.float64()) if field.type == pa.null() else field
         for field in table.schema
@@ -239,7 +239,7 @@ def _fill_types(table: pa.Table) -> pa.Table:
 def read_parts(
     source: str | Path, notes: Notes, choices: ReadChoices = NO_CHOICES
 ) -> Iterator[tuple[float, pa.Table | None]]:
-    """Yield the rows of a file, with the fraction of it that has been read.
+    """Yield the fraction of a file that has been read, with the rows that are new; None if there are none.
 
     Raises:
         LogError: it cannot be read.
@@ -248,7 +248,7 @@ def read_parts(
         if str(source) != STDIN:
             yield from _read_file(Path(source), notes, choices)
             return
-        # None if the shell closed it.
+        # The standard input is None if the shell closed it.
         if cast("Any", sys.stdin) is None:
             raise LogError("is closed", "name a file instead of -")
         yield from read_text_parts(sys.stdin.buffer, 0, "", notes, choices)
@@ -301,7 +301,7 @@ def _read_file(
 def read_text_parts(
     handle: Readable, size: int, suffix: str, notes: Notes, choices: ReadChoices = NO_CHOICES
 ) -> Iterator[tuple[float, pa.Table | None]]:
-    """Yield the rows of a text, with the fraction of it that has been read.
+    """Yield the fraction of a text that has been read, with the rows that are new; None if there are none.
 
     Args:
         handle: The bytes.
@@ -327,7 +327,7 @@ def read_text_parts(
             and data
             and len(list(islice(block.lines(), 2))) < 2
         ):
-            # What a single line is depends on whether another one follows.
+            # A single line is held back: it may be a heading or a row, depending on whether another one follows.
             block, held = None, block
         part = min(1.0, read / size) if size else float("nan")
         if block is not None:
@@ -344,7 +344,7 @@ def read_text_parts(
 
 
 def _skip_hole(handle: BinaryIO, position: int) -> int:
-    """Skip what was never written to a file, which may seem to be of any length; return the position after it."""
+    """Skip a hole in a sparse file, which may be of any length; return the position after it."""
     # Not every file system can tell.
     with suppress(OSError, AttributeError):
         try:

@@ -57,7 +57,7 @@ FIELDS = np.dtype(
 
 
 def measure_noise_of_slopes(values: FloatArray) -> float:
-    """Return the noise as `measure_noise`, but from second differences, in which a slope leaves nothing."""
+    """Return the noise as `measure_noise`, but from second differences, which are 0 on a slope."""
     bends = np.abs(np.diff(values, 2))
     return estimate_noise(bends, 6.0) if len(bends) else 0.0
 
@@ -79,12 +79,12 @@ def estimate_noise(differences: FloatArray, variance: float) -> float:
 
 
 def read_spans(plateaus: PlateauArray) -> Pieces:
-    """Return the spans of plateaus."""
+    """Return where plateaus start and stop, shape (n, 2)."""
     return np.stack((plateaus["start"], plateaus["stop"]), axis=1)
 
 
 def measure(values: FloatArray, pieces: Pieces, sigma: float) -> PlateauArray:
-    """Return the pieces as plateaus."""
+    """Return the pieces as plateaus, with level, spread, drift and strays."""
     plateaus = np.zeros(len(pieces), FIELDS)
     plateaus["start"], plateaus["stop"] = pieces.T
     for some, part in group_by_length(values, pieces):
@@ -103,7 +103,7 @@ def _measure_levels(plateaus: PlateauArray, part: FloatArray, keep: BoolArray) -
     Args:
         plateaus: The plateaus.
         part: Their samples, shape (m, length).
-        keep: Which of them are no strays: the same number of each plateau.
+        keep: Which samples are no strays: the same number of each plateau.
     """
     count, length = part.shape
     samples = part[keep].reshape(count, -1)
@@ -128,7 +128,7 @@ def go_one_way(part: FloatArray) -> BoolArray:
 
 
 class Ground(NamedTuple):
-    """What the pieces of a log are judged by."""
+    """Range and noise of a log, by which its pieces are judged."""
 
     range: float
     """From the lowest level to the highest."""
@@ -139,7 +139,7 @@ class Ground(NamedTuple):
 
 
 def drop_moving(values: FloatArray, plateaus: PlateauArray, ground: Ground) -> PlateauArray:
-    """Return the pieces that have a level: none that rises, falls or bends, nor a few samples far apart."""
+    """Return the pieces that have a level: without those that rise, fall or bend, or are a few samples far apart."""
     return plateaus[~_find_moving(values, plateaus, ground)]
 
 
@@ -166,7 +166,7 @@ def _find_moving(values: FloatArray, plateaus: PlateauArray, ground: Ground) -> 
 
 
 def _find_wandering(part: FloatArray, spread: FloatArray, sigma: float) -> BoolArray:
-    """Return which rows go somewhere, shape (m, length): neighbours are nearer to each other than the spread tells."""
+    """Return which rows, shape (m, length), move: their neighbours differ less than noise of their spread would."""
     is_short = part.shape[1] < _SHORT_SAMPLES
     max_fraction = _SHORT_WANDERS if is_short else _WANDERS
     wanders: BoolArray = _compare_neighbours(part, sigma) < max_fraction * spread**2
@@ -174,7 +174,7 @@ def _find_wandering(part: FloatArray, spread: FloatArray, sigma: float) -> BoolA
 
 
 def _compare_neighbours(part: FloatArray, sigma: float) -> FloatArray:
-    """Return the variance of each row, shape (m, length), as far as neighbours differ, without strays."""
+    """Return the variance of each row, shape (m, length), from the differences of neighbours, without strays."""
     keep = ~find_strays(part, sigma)
     pairs = keep[:, 1:] & keep[:, :-1]
     squares = (np.diff(part, axis=1) ** 2 * pairs).sum(axis=1)
@@ -185,13 +185,13 @@ def _compare_neighbours(part: FloatArray, sigma: float) -> FloatArray:
 def split_still(
     values: FloatArray, plateaus: PlateauArray, cut: Pieces, ground: Ground
 ) -> tuple[PlateauArray, PlateauArray]:
-    """Return the pieces that have a level, and the parts that stand still of the others.
+    """Return the plateaus that have a level, and of the others the parts that stand still.
 
     Args:
         values: The log.
-        plateaus: Its pieces.
-        cut: The parts of which they were joined, without gaps between them.
-        ground: What they are judged by.
+        plateaus: Its plateaus.
+        cut: The pieces from which they were joined, without gaps between them.
+        ground: Range and noise of the log.
     """
     moving = _find_moving(values, plateaus, ground)
     return plateaus[~moving], _find_still_parts(values, plateaus[moving], cut, ground)
@@ -200,7 +200,7 @@ def split_still(
 def _find_still_parts(
     values: FloatArray, moving: PlateauArray, cut: Pieces, ground: Ground
 ) -> PlateauArray:
-    """Return the parts that stand still of pieces that have no level, such as the top between two slopes."""
+    """Return the parts that stand still in pieces that have no level, such as the top between two slopes."""
     if not len(moving):
         return moving
     owners = np.maximum(np.searchsorted(moving["start"], cut[:, 0], side="right") - 1, 0)

@@ -184,7 +184,7 @@ class Rows:
         self.columns.insert(self.column, name)
 
     def set_log(self, log: Log) -> None:
-        """Switch to the same log with other columns; new ones are shown."""
+        """Switch to the same log with other columns: new ones are shown; conditions on removed ones are dropped."""
         before, names = self._log.table.column_names, log.table.column_names
         chosen = self.chosen
         self._log = log

@@ -71,7 +71,7 @@ class _Column:
 
 
 def choose_text_kind(cells: pa.Array) -> pa.DataType:
-    """Return the type for a text column, from its first cells."""
+    """Return the type for a text column: `CODED` if its first cells often repeat, else a string."""
     often = len(cells) > _MIN_CELLS and _MIN_REPEATED * pc.count_distinct(cells).as_py() <= len(
         cells
     )
@@ -79,7 +79,7 @@ def choose_text_kind(cells: pa.Array) -> pa.DataType:
 
 
 class CsvReader:
-    """Reads blocks of one file; names and types of the columns are fixed by the first."""
+    """Reads blocks of one file; names and types of the columns are fixed by the first block."""
 
     def __init__(self, notes: Notes, choices: ReadChoices) -> None:
         self._notes, self._choices = notes, choices
@@ -120,7 +120,7 @@ class CsvReader:
         return None
 
     def finish(self) -> None:
-        """Say it if there were too few tables.
+        """Raise if the file has fewer tables than the user has asked for.
 
         Raises:
             LogError: the table that was asked for does not exist.
@@ -188,9 +188,9 @@ class CsvReader:
     # Where the table ends
 
     def _cut_table(self, block: Block) -> tuple[Block, Block | None]:
-        """Return the rows of this table, and what begins with another table's heading, None if there is none.
+        """Return the rows of this table, and the rest from another table's heading on, None without one.
 
-        Where the same heading is repeated, the table goes on.
+        A repeated heading does not end the table.
         """
         if not set(self._heading.kinds) & set("nt") or not _MAY_BE_NAMES.search(block.text):
             return block, None
@@ -219,7 +219,7 @@ class CsvReader:
         return Block(block.first_row + start, text, block.newline)
 
     def _find_names(self, line: str) -> list[str]:
-        """Return the cells of a line that may be the heading of a table, none if it is not."""
+        """Return the cells of a line that may be the heading of a table; none if the line cannot be one."""
         if not line or line.isspace():
             return []
         cells = [cell.strip() for cell in split_cells(line, self._separator)]
@@ -241,7 +241,7 @@ class CsvReader:
     # Cells
 
     def _choose_kinds(self) -> dict[str, pa.DataType]:
-        """Return the types with which pyarrow reads the columns itself; the others are texts."""
+        """Return the columns that pyarrow can parse, with their types; the others are read as texts."""
         commas = self._has_decimal_commas
         forms = (PLAIN, DECIMAL_COMMA) if commas else (PLAIN,)
         return {
@@ -312,7 +312,7 @@ class CsvReader:
             )
 
     def _join(self, lines: Sequence[str], row: int, newline: str) -> tuple[list[str] | None, int]:
-        """Return the cells of a row of several lines, or None for a single line, and the index of the next row."""
+        """Return the cells of a row, None if it is on a single line, and the index of the next row."""
         ahead = [line + newline for line in lines[row : row + _MAX_LINES]]
         reader = csv.reader(
             ahead if self._joins_left else ahead[:1], delimiter=self._separator, strict=True
@@ -341,7 +341,7 @@ class CsvReader:
         return '"' not in line or parse_kinds(cells[:1]) == "n"
 
     def _find_columns(self, columns: Sequence[pa.Array]) -> None:
-        """Find the type of each column that has cells for the first time, and how its numbers are written."""
+        """Find type and number format of each column that has cells for the first time."""
         forms: dict[str, NumberForm | None] = {}
         texts = {
             name: cells
@@ -393,7 +393,7 @@ class CsvReader:
 
 
 def _count_words(texts: Sequence[pa.Array], typed: Sequence[pa.Array]) -> int:
-    """Return how many rows at the end have words instead of all their numbers: a sentence below the table."""
+    """Return how many rows at the end have words where the numbers should be: they are sentences below the table."""
     numbers = [index for index, column in enumerate(typed) if pa.types.is_floating(column.type)]
     numbers = [index for index in numbers if pa.types.is_string(texts[index].type)]
     count = 0
@@ -416,7 +416,7 @@ def _is_empty(cells: pa.Array) -> bool:
 
 
 def _split_only_line(lines: Sequence[tuple[int, str]], notes: Notes) -> bytes:
-    """Return the numbers on the only line of a file, each on a line of its own; nothing if there is more in it."""
+    """Return the numbers on the only line of a file, each on a line of its own; nothing if it has anything else."""
     body = [text for _, text in lines if not text.startswith("#")]
     if len(body) != 1:
         return b""

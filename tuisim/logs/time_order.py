@@ -43,7 +43,7 @@ _MIN_STEPS = {1e-9: 1e7, 1e-6: 1e4, 1e-3: 5.0}
 
 
 class Ordered(NamedTuple):
-    """A table whose time does not go back without a word."""
+    """A table with its times; if they begin again, it has a column of runs."""
 
     table: pa.Table
     layout: Layout
@@ -52,7 +52,7 @@ class Ordered(NamedTuple):
 
 
 def join_times(table: pa.Table) -> pa.Table:
-    """Return a table with one column for a time that stands in two: seconds and their parts, or date and clock."""
+    """Return a table whose time is in one column; two are joined: seconds and their parts, or date and time of day."""
     for name, base in _list_matches(table, _SECONDS):
         for per_s, pattern in _PARTS.items():
             other = next((part for part, own in _list_matches(table, pattern) if own == base), "")
@@ -67,7 +67,7 @@ def join_times(table: pa.Table) -> pa.Table:
 
 
 def _list_matches(table: pa.Table, pattern: re.Pattern[str]) -> list[tuple[str, str]]:
-    """Return the columns whose names match, each with what the pattern's group has found."""
+    """Return the columns whose names match a pattern, each with the text of the pattern's group."""
     matches = ((name, pattern.fullmatch(name)) for name in table.column_names)
     return [(name, match[1]) for name, match in matches if match]
 
@@ -97,7 +97,7 @@ def _join_parts(table: pa.Table, seconds: str, parts: str, per_s: int) -> pa.Chu
 
 
 def guess_unit_s(table: pa.Table, layout: Layout) -> float | None:
-    """Return the unit of a time column that names none, if its steps are whole and too large for seconds."""
+    """Return the unit in s of a time column that names none, from whole steps too large for seconds; else None."""
     if layout.time in (ROW, *COUNTS) or layout.since_first or "line" in table.column_names:
         return None
     if parse_time_name(layout.time).unit_s is not None or not is_numeric(
@@ -113,7 +113,7 @@ def guess_unit_s(table: pa.Table, layout: Layout) -> float | None:
 
 
 def order_times(table: pa.Table, layout: Layout, notes: Notes) -> Ordered:
-    """Return a table with a column of runs if its time begins again; `notes` receives where it goes back."""
+    """Return a table, with a column of runs if its time begins again; `notes` receives the rows where it goes back."""
     if layout.time in (ROW, "row"):
         return Ordered(table, layout, None)
     times = read_times(table.column(layout.time), layout.unit_s, layout.since_first)
@@ -145,7 +145,11 @@ def _tell_wraps(times: Times, notes: Notes) -> None:
 
 
 def _find_restarts(seconds: FloatArray, back: IntArray) -> IntArray:
-    """Return those of the rows where the time goes back at which it begins again."""
+    """Return the rows at which the time begins again.
+
+    Args:
+        back: The rows at which it is less than before.
+    """
     start, restarts = 0, []
     for row in back.tolist():
         passed = seconds[row - 1] - seconds[start]
@@ -156,7 +160,7 @@ def _find_restarts(seconds: FloatArray, back: IntArray) -> IntArray:
 
 
 def _is_one_clock(table: pa.Table, layout: Layout, back: IntArray) -> bool:
-    """Return whether the rows of a table follow each other in time, not one variable after the other."""
+    """Return whether all rows are in the order of one clock; not if one variable is listed after the other."""
     if not layout.variable:
         return True
     names = table.column(layout.variable)

@@ -56,7 +56,7 @@ class Notes:
         named += numbers[: ROWS_NAMED - len(named)]
 
     def say_rows(self, text: str, rows: Sequence[int]) -> None:
-        """Add a warning about some rows of which nothing is left out; none without rows."""
+        """Add a warning about rows that were read all the same; none without rows."""
         if rows:
             self.say(f"{text} ({list_rows(rows)})")
 

@@ -19,8 +19,8 @@ _FAR_OF_STEP, _FAR_OF_SPREAD = 0.75, 4.0
 def measure_widths(values: FloatArray, driven_mm: FloatArray, levels: Levels) -> FloatArray:
     """Return the widths of levels in mm, shape (n,), each from the edge before it to the edge after it.
 
-    NaN where an edge is not known: before the first level, after the last one, and between two levels with something of
-    a third one between them.
+    NaN where an edge is not known: before the first level, after the last one, and between two levels with samples of
+    another level between them.
 
     Args:
         values: Samples, shape (m,).
@@ -62,7 +62,7 @@ def _find_edges(
 def _find_pairs(last: IntArray, first: IntArray) -> tuple[IntArray, IntArray]:
     """Return the pairs of neighbouring samples from the last one of each level to the first one of the next.
 
-    Returns: Positions of levels, and the first row of each pair.
+    Returns: For each pair, the position of the level, and the row of its first sample.
     """
     sizes = first - last
     level = np.repeat(np.arange(len(sizes)), sizes)
