@@ -36,7 +36,7 @@ MAX_OUTPUT_BYTES = 16 << 20
 
 
 def execute(task: Task, folder: Path) -> Result:
-    """Run a task and return its result. Blocks until the run is over; whatever goes wrong is told by the result.
+    """Run a task and return its result, which also tells whatever went wrong. Blocks until the run is over.
 
     Args:
         task: The task.
@@ -65,7 +65,7 @@ def _run_task(task: Task, folder: Path) -> Result:
         try:
             ended = _run_to_end(handle, task.real_time_limit_s)
             run = handle.stored()
-            # Each is read once: nothing changes any more.
+            # The run has ended: reading each of these once is enough.
             for view in (run.telemetry, run.output):
                 view.read_new()
                 view.holds = True
@@ -77,7 +77,7 @@ def _run_task(task: Task, folder: Path) -> Result:
         except LogError as error:
             if has_machine_cause(error):
                 return build_unjudged(task, str(error))
-            # Where the recording was differs from machine to machine.
+            # The path of the recording differs from machine to machine, and results must not.
             text = error.message.replace(f"{temporary.folder}{os.sep}", "")
             return build_unknown_result(task, End.FALSIFIED, describe_falsified(text))
         finally:
@@ -117,7 +117,7 @@ def _load_field_files(spec: RunSpec) -> FieldFiles:
 
 
 def _replay_run(task: Task, run: StoredRun, ended: Ended) -> tuple[StoredRun, Ended]:
-    """Return the run that is to be judged, and how it ended.
+    """Return the run that is to be judged, and how it ended; if the task says so, it is replayed from its commands.
 
     Raises:
         LogError: no program can have given the commands.
@@ -162,7 +162,7 @@ def _read_files(temporary: TemporaryRun, ended: Ended) -> dict[str, bytes]:
 
 
 def _keep(temporary: TemporaryRun, ended: Ended) -> str:
-    """Store a run; return its id, or none if its program has left nothing to be stored: it has been judged, and counts.
+    """Store a run; return its id, or "" if its program has damaged it: the run has been judged, and counts.
 
     Raises:
         LogError: the machine refuses to store it.
@@ -177,14 +177,14 @@ def _keep(temporary: TemporaryRun, ended: Ended) -> str:
 
 
 def build_unjudged(task: Task, why: str) -> Result:
-    """Return the result of a run that says nothing about the program."""
+    """Return the result of a run that could not be judged, for which the program is not to blame."""
     return Result(
         task.index, task.parameters, "", 2, why, why, 0, 0, 0.0, math.nan, math.nan, math.nan
     )
 
 
 def build_unknown_result(task: Task, end: End, why: str) -> Result:
-    """Return the result of a run of which nothing is recorded, by the program's own doing."""
+    """Return the result of a run of which the program has left no recording."""
     return Result(
         task.index, task.parameters, end.value, 1, why, why, 0, 0, 0.0, math.nan, math.nan, math.nan
     )

@@ -71,10 +71,10 @@ def run_many(tasks: Iterable[Task], jobs: int = 0) -> Generator[Result]:
 
 
 class _Pool:
-    """Worker processes that are replaced when one has died.
+    """Worker processes; one that has died is replaced.
 
     Args:
-        jobs: Their number.
+        jobs: Number of workers.
         folder: For the recordings.
     """
 
@@ -114,14 +114,14 @@ class _Pool:
                 yield from self._start_again()
 
     def _take_chunk(self, tasks: Iterator[Task]) -> list[Task]:
-        """Return the tasks that are next."""
+        """Return the next tasks for a worker; one by one if they are to be run alone."""
         return [self._alone.pop()] if self._alone else list(islice(tasks, CHUNK))
 
     def _submit(self, chunk: list[Task]) -> None:
         self._pending[self._executor.submit(_execute_all, chunk, self._folder)] = chunk
 
     def _start_again(self) -> Iterator[Result]:
-        """Replace all workers, and submit what was not done; yield results for tasks that end every worker."""
+        """Replace all workers and submit unfinished tasks again; yield finished results and tasks given up."""
         unfinished = [
             task
             for future, chunk in self._pending.items()
@@ -163,7 +163,7 @@ def _take_results(future: Future[list[Result]], tasks: Sequence[Task]) -> list[R
 
 
 def _is_unsent(future: Future[list[Result]]) -> bool:
-    """Return whether results cannot be sent, or are too large."""
+    """Return whether a worker could not send its results, for instance because they are too large."""
     error = future.exception()
     return isinstance(error, Exception) and not isinstance(error, BrokenProcessPool)
 
@@ -173,14 +173,14 @@ def _is_done(future: Future[list[Result]]) -> bool:
 
 
 def _prepare_worker() -> None:
-    # The process that waits for the results ends this one.
+    # Ctrl+C reaches every process of the terminal: the parent ends this one itself.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_end_with_parent, daemon=True).start()
     start_warm_process()
 
 
 def _end_with_parent() -> None:
-    """End this worker when the process that waits for its results has been killed: the other workers keep its pipe."""
+    """End this worker once its parent has been killed: it would not notice, since other workers keep its pipe open."""
     parent = parent_process()
     assert parent is not None
     parent.join()
@@ -192,7 +192,7 @@ def _execute_all(tasks: Sequence[Task], folder: Path) -> list[Result]:
 
 
 class _Worker(SpawnProcess):
-    """A worker that does not import the main module again: a script that starts a batch would start it once more."""
+    """A worker that does not import the main module again: a script that starts a batch would start another one."""
 
     @staticmethod
     def _Popen(process_obj: Any) -> Any:  # noqa: N802 - its name in the library

@@ -71,7 +71,7 @@ class VariableStatistics:
 
 @dataclass(frozen=True, slots=True)
 class Result:
-    """What is known of a task's run after its end. Does not depend on the process that ran it."""
+    """What is known of a task's run after its end. It is the same whichever process ran it."""
 
     index: int
     parameters: Mapping[str, Value]

@@ -23,12 +23,12 @@ _LETTERS = "a1 .:-AZ_"
 
 
 def answer_lines(goals: Sequence[Goal]) -> list[str]:
-    """Return the lines that the goals ask for, those of goals that come after others last; `ASK` is a question."""
+    """Return the lines that meet the goals, in an order that their `after` allows; `ASK` stands for a question."""
     by_name = {goal.name: goal for goal in goals}
     ordered: dict[str, Goal] = {}
 
     def add(goal: Goal) -> None:
-        # A goal that has a place needs no second visit: they refer to each other in no circle.
+        # This ends: goals do not refer to each other in a circle.
         if goal.name not in ordered:
             if isinstance(goal.after, str):
                 add(by_name[goal.after])
@@ -75,7 +75,7 @@ def _build_line(condition: ValueCondition) -> str:
 
 
 def build_matching_line(pattern: str) -> str:
-    """Return a line in which a regular expression is found; its words, if none is found easily."""
+    """Return a line that a regular expression matches; if none is found easily, the words of the expression."""
     plain = re.sub(r"[\\^$.|?*+(){}\[\]]", "", pattern)
     with suppress(re.error, RecursionError, IndexError, OverflowError, UnjudgedError):
         line = _build_text(_parser.parse(pattern), {})
@@ -84,7 +84,7 @@ def build_matching_line(pattern: str) -> str:
 
 
 def _build_text(parsed: Any, groups: dict[int, str]) -> str:
-    """Return a text that fits a parsed expression; what looks around it is left out."""
+    """Return a text that matches a parsed expression; its lookarounds are ignored."""
     return "".join(_build_part(kind, value, groups) for kind, value in parsed)
 
 
@@ -115,7 +115,11 @@ def _build_part(kind: object, value: Any, groups: dict[int, str]) -> str:
 
 
 def _pick_character(members: Any) -> str:
-    """Return a character of a class."""
+    """Return a character that a class such as `[a-z]` matches.
+
+    Args:
+        members: The parsed class.
+    """
     inside = [(kind, value) for kind, value in members if kind is not op.NEGATE]
     is_negated = len(inside) < len(members)
     candidates = [

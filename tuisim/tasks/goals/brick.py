@@ -33,7 +33,7 @@ _GREEN = 255
 
 
 def resolve_column(condition: ValueCondition, run: RunSpec) -> ValueCondition:
-    """Return a condition with the name of its column.
+    """Return a condition with the full name of its column.
 
     Raises:
         ConfigError: the run has no such column.
@@ -48,9 +48,9 @@ def resolve_column(condition: ValueCondition, run: RunSpec) -> ValueCondition:
 
 
 def parse_goal_condition(text: str) -> ValueCondition | None:
-    """Return the condition that a text of a goal is, None if it is none.
+    """Parse a condition of a goal; return None if the text is not one.
 
-    As `parse_run_condition`, and `sound matches REGEX`, `display matches REGEX`.
+    It is one of `parse_run_condition`, or `sound matches REGEX` or `display matches REGEX`.
     """
     word, _, rest = text.strip().partition(" ")
     verb, _, pattern = rest.strip().partition(" ")
@@ -60,7 +60,7 @@ def parse_goal_condition(text: str) -> ValueCondition | None:
 
 
 def find_text_ticks(condition: ValueCondition, rows: Iterable[OutputRow]) -> list[int]:
-    """Return the ticks in which a sound was played, or a text written on the display, that matches.
+    """Return the ticks in which a sound was played, or a text written on the display, that matches a condition.
 
     Raises:
         UnjudgedError: the regular expression takes too long.

@@ -53,7 +53,7 @@ def _refuse(text: str, comparison: ValueCondition, error: ConfigError | ValueErr
 
 
 def _describe_nearest(comparison: ValueCondition, evidence: Evidence, span: EvidenceSpan) -> str:
-    """Return how near a column came to what it is compared with, as the end of a sentence; empty for what is not."""
+    """Return how near a column came to the number of its comparison, to end a sentence; empty for other conditions."""
     import numpy as np
 
     if comparison.source is not ValueSource.COLUMN or comparison.is_momentary:
@@ -64,7 +64,7 @@ def _describe_nearest(comparison: ValueCondition, evidence: Evidence, span: Evid
 
 
 def find_lapse(condition: KeepCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
-    """Find when conditions were violated, or at the end of a span that they were for too large a share of the time."""
+    """Find when conditions were first violated; with a share, whether they were true for too little of the time."""
     import numpy as np
 
     records = evidence.records[span.ticks]
@@ -102,7 +102,7 @@ def find_lapse(condition: KeepCondition, evidence: Evidence, span: EvidenceSpan)
 
 
 def _check_samples(named: ValueCondition, evidence: Evidence) -> tuple[Array, Array]:
-    """Return whether a condition is true of all samples in each tick, and whether there are any."""
+    """Return for each tick whether a condition is true of all samples in it, and whether it has any."""
     import numpy as np
 
     seen = evidence.find_true_rows(replace(named, sign=Operator.SEEN, value=""))
@@ -128,7 +128,7 @@ def _measure_gaps_mm(records: Array, evidence: Evidence) -> Array:
 
 
 def find_miscount(condition: CountCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
-    """Find when something had happened too often, or at the end of a span that it had not often enough."""
+    """Find when something happened once too often, or at the end of a span that it happened too seldom."""
     comparison = condition.condition
     try:
         named = resolve_column(comparison, evidence.spec)
@@ -152,7 +152,7 @@ def find_miscount(condition: CountCondition, evidence: Evidence, span: EvidenceS
 def _find_moments(
     named: ValueCondition, evidence: Evidence, span: EvidenceSpan
 ) -> list[EvidencePoint]:
-    """Return when a condition came true in a span: each line or sample of which it is, else when it began to be."""
+    """Return each moment in a span at which a condition came true; for lines and samples, each that meets it."""
     import numpy as np
 
     if named.source is not ValueSource.COLUMN:

@@ -34,15 +34,15 @@ class WhenCondition(Condition):
 
     @property
     def conditions(self) -> tuple[ValueCondition, ...]:
-        """What the texts mean."""
+        """The comparisons, parsed."""
         return tuple(_parse_comparison(text, "") for text in self.comparisons)
 
 
 def _parse_comparison(text: str, key: str) -> ValueCondition:
-    """Return what a comparison means.
+    """Return a comparison, parsed.
 
     Raises:
-        ConfigError: it is none, or its regular expression is wrong.
+        ConfigError: the text is not a comparison, or its regular expression is wrong.
     """
     condition = parse_goal_condition(text)
     if condition is None:
@@ -86,7 +86,7 @@ class KeepCondition(Condition):
 
     @property
     def conditions(self) -> tuple[ValueCondition, ...]:
-        """What the texts mean."""
+        """The comparisons, parsed."""
         return tuple(_parse_comparison(text, "") for text in self.comparisons)
 
 
@@ -110,13 +110,13 @@ class CountCondition(Condition):
 
     @property
     def condition(self) -> ValueCondition:
-        """What the text means."""
+        """The text `of`, parsed."""
         return _parse_comparison(self.of, "")
 
 
 @dataclass(frozen=True, slots=True)
 class StructureCondition(Condition):
-    """How the program's text is made."""
+    """The program's text has a structure, such as a loop or few lines."""
 
     KIND: ClassVar[ConditionKind] = ConditionKind.FIXED
     SHORT: ClassVar[str] = "comparisons"
@@ -147,5 +147,5 @@ class StructureCondition(Condition):
 
     @property
     def conditions(self) -> tuple[ValueCondition, ...]:
-        """What the texts mean."""
+        """The comparisons, parsed."""
         return tuple(condition for text in self.comparisons if (condition := parse_condition(text)))

@@ -30,7 +30,7 @@ Number = Annotated[float, Meta(ge=-1e15, le=1e15)]
 
 
 class UnjudgedError(Exception):
-    """Whether a condition is met cannot be said; its text is the reason, without the stop at its end."""
+    """It is not known whether a condition is met; the error's text says why, without a full stop."""
 
 
 class ConditionKind(StrEnum):
@@ -69,7 +69,7 @@ def check_count(entries: tuple[object, ...], key: str) -> None:
 
 @dataclass(frozen=True, slots=True)
 class Condition:
-    """What is asked of a run."""
+    """What a goal asks of a run."""
 
     KIND: ClassVar[ConditionKind] = ConditionKind.REACHED
     SHORT: ClassVar[str] = ""

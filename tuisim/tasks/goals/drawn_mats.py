@@ -30,7 +30,7 @@ _LINE_START_MM, _LINE_END_MM = 150.0, 2200.0
 
 @dataclass(frozen=True, slots=True)
 class DrawnMat:
-    """A mat, and what the author of a task needs to know of it."""
+    """A mat that was drawn at random, and what the author of a task needs to know of it."""
 
     pixels: Array
     """A mm each, shape (h, w, 3)."""

@@ -78,7 +78,7 @@ class EvidenceSpan:
 
 
 class Evidence:
-    """A recording as far as it has been written.
+    """What a run has recorded so far, by which goals are judged.
 
     Args:
         run: The run.
@@ -88,7 +88,7 @@ class Evidence:
     def __init__(self, run: JudgedRun, field: Field | None = None) -> None:
         self._run, self._field = run, field
         self.spec, self.program = run.spec, run.program
-        # Before the recording is read: what an ended run has recorded is complete.
+        # The end is looked up before the recording is read, so that the recording of an ended run is complete.
         if isinstance(run, StoredRun):
             self.end: Ended | None = run.end
             self.ended = run.end is not None or run.state is not Unended.RUNNING
@@ -96,7 +96,7 @@ class Evidence:
         else:
             self.end = run.ended
             self.ended = run.ended is not None
-            # Those that are known: what the user typed is only in the rows.
+            # Only answers given beforehand: those that the user typed are in the rows.
             self.answers = run.answers
         self.records: Array = run.telemetry.array()
         self.memo: dict[str, Any] = {}
@@ -104,7 +104,7 @@ class Evidence:
 
     @cached_property
     def falsified(self) -> str:
-        """What the program has falsified, as a sentence without its end; empty if its recording can be trusted."""
+        """What the program has falsified, a sentence without a full stop; empty if its recording can be trusted."""
         return self.end.summary if self.end is not None and self.end.end is End.FALSIFIED else ""
 
     @property
@@ -182,7 +182,7 @@ class Evidence:
         return values
 
     def held(self, condition: ValueCondition) -> Array:
-        """Return whether a condition is true in each tick; one on printed lines is where such a line was printed.
+        """Return whether a condition is true in each tick; one on printed lines is true where such a line was printed.
 
         Raises:
             ValueError: what it compares with is no number.
@@ -203,7 +203,7 @@ class Evidence:
         )
 
     def find_true_rows(self, condition: ValueCondition) -> list[int]:
-        """Return the indices of the rows of which a condition on printed lines is true.
+        """Return the indices of the rows for which a condition on printed lines is true.
 
         Raises:
             ValueError: what it compares with is no number.
@@ -262,7 +262,7 @@ class Evidence:
         )
 
     def span(self, start: EvidencePoint, stop: EvidencePoint | None) -> EvidenceSpan:
-        """Return the part of the run between two moments, both exclusive; None: as far as the recording goes."""
+        """Return the part of the run between two moments, without both; `stop` is None for the end of the recording."""
         end = self.last if stop is None else stop
         return EvidenceSpan(
             first_tick=start.tick + 1,
@@ -296,7 +296,7 @@ class Evidence:
         return float(record["x_mm"]), float(record["y_mm"])
 
     def line(self, moment: EvidencePoint) -> int:
-        """Return the program's line at a moment; 0 if there is none."""
+        """Return the program's line that ran at a moment; 0 if there is none."""
         if moment.row >= 0 and moment.time_s < 0:
             return self.rows[moment.row].line
         if moment == self.last and self.end is not None and self.end.error_line:

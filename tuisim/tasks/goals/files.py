@@ -49,7 +49,7 @@ _LIMITS = ("before", "after", "until")
 
 @dataclass(frozen=True, slots=True)
 class GoalsFile:
-    """The contents of a goals file."""
+    """A task: what a goals file contains."""
 
     path: Path
     title: str
@@ -66,24 +66,24 @@ class GoalsFile:
 
     @property
     def presses(self) -> Mapping[str, Any]:
-        """The setting of what is pressed by hand, if it says so: that holds in any world."""
+        """The setting `press`, if the file has it: it holds in every world."""
         return {path: value for path, value in self.settings.items() if path == "press"}
 
     @property
     def answers(self) -> tuple[str, ...]:
-        """The answers to `input()` in its own world."""
+        """The answers to `input()` in the first world."""
         return self.worlds[0].answers
 
     @property
     def worlds(self) -> tuple[TrialWorld, ...]:
-        """All worlds in which programs are tried, its own first, each with all that it has."""
+        """All worlds in which programs are tried, the file's own first, each with all settings, goals and inputs."""
         names = tuple(goal.name for goal in self.goals)
         own = TrialWorld("", self.settings, names, self.goals, self.inputs)
         return (own, *(other.beside(own) for other in self.others))
 
     @property
     def every_goal(self) -> tuple[Goal, ...]:
-        """Its goals, and those that only another world has."""
+        """The goals of the first world, and those that only other worlds have."""
         goals_by_name = {
             goal.name: replace(goal, hidden=goal.hidden or world.hidden)
             for world in reversed(self.worlds)
@@ -130,7 +130,7 @@ def load_task(path: Path | str, mats: str | None = None) -> tuple[WorldFile, Goa
 
 @contextmanager
 def add_line_to_errors(path: Path, text: str | None = None) -> Iterator[None]:
-    """Add the line to an error in a file that names only its key.
+    """Add the number of the line to errors in the block that name the file and a key.
 
     Args:
         path: The file, as errors name it.
@@ -176,7 +176,7 @@ def list_examples() -> list[Path]:
 
 
 def _find_file(path: Path) -> Path:
-    """Return the file of an example if there is no other file of its name."""
+    """Return the file of an example if a path is its name and no such file exists; otherwise the path."""
     if path.parent != Path() or os.path.exists(path):
         return path
     name = path.name.removesuffix(_EXAMPLE)
@@ -184,7 +184,7 @@ def _find_file(path: Path) -> Path:
 
 
 def _build_goals_file(data: Any, path: Path, world: WorldFile) -> GoalsFile | None:
-    """Return the task in a file, with that of the file that it is based on; None if there is none."""
+    """Return the task in a file, together with the one of the world file that it names; None if it has no goals."""
     location = Location(str(path))
     base = load_task(path.parent / user_path(data["world"]))[1] if "world" in data else None
     if base is None and "goal" not in data:
@@ -324,7 +324,7 @@ def _parse_condition(
 
 
 def _check_lists(kind: type[Condition], data: object, location: Location) -> None:
-    """Raise ConfigError for what is no list of texts, or of ranges, with what can be written for it."""
+    """Raise ConfigError, with a hint, for a key that must be a list of texts or of ranges and is none."""
     for key, value in data.items() if isinstance(data, dict) else ():
         field = kind.__dataclass_fields__.get(key)
         if field is None:
@@ -360,7 +360,7 @@ _UNFIT = {
 
 
 def _check_limits(goal: Goal, location: Location) -> None:
-    """Raise ConfigError for a limit that applies to none of the conditions, or comes before the goal counts."""
+    """Raise ConfigError for a limit that fits none of the goal's conditions, or is not later than `after`."""
     kinds = [part.KIND for part in goal.parts]
     fitting = {limit for kind in kinds for limit in goal.limits(kind)}
     if goal.within_s is not None and not set(kinds) & set(WINDOWED):
@@ -381,7 +381,7 @@ def _check_limits(goal: Goal, location: Location) -> None:
 
 
 def _check_names(goals: Sequence[Goal], places: Sequence[Location]) -> None:
-    """Raise ConfigError for two goals of one name, and for references to no goal or in a circle."""
+    """Raise ConfigError for two goals of one name, and for references to a goal that does not exist or in a circle."""
     by_name: dict[str, Goal] = {}
     for goal, location in zip(goals, places, strict=True):
         if goal.name in by_name:
@@ -406,7 +406,7 @@ def _check_names(goals: Sequence[Goal], places: Sequence[Location]) -> None:
 
 
 def _find_reference(goal: Goal, name: str, location: Location) -> Location:
-    """Return the location of a reference to a goal; of the goal if the reference is farther away."""
+    """Return the location of the key in which a goal refers to another; the goal's if no key of it does."""
     limits = (limit for limit in _LIMITS if getattr(goal, limit) == name)
     combined = (
         key
@@ -421,7 +421,13 @@ def _find_reference(goal: Goal, name: str, location: Location) -> Location:
 def _find_circle(
     name: str, goals: Mapping[str, Goal], above: tuple[str, ...], checked: set[str]
 ) -> tuple[str, ...]:
-    """Return the names on a circle that begins with a goal or one that it needs; empty if there is none."""
+    """Return the names on a circle of references that can be reached from a goal; empty if there is none.
+
+    Args:
+        name: The goal.
+        above: The goals that have led to it.
+        checked: Goals that lead to no circle; more are added.
+    """
     if name in above:
         return (*above[above.index(name) :], name)
     if name in checked:
@@ -455,7 +461,7 @@ def find_key_line(text: str, key: str) -> int:
     ends = [*starts, len(lines)]
 
     def begun(count: int) -> bool:
-        """Whether the value begins in the first statements; a value that they cut off is read to its end."""
+        """Return whether the value begins in the first `count` statements; one that is cut off is read to its end."""
         while (parsed := _parse_lines(lines[: ends[count]])) is None:
             count += 1
         return _has(parsed, path)
@@ -481,7 +487,7 @@ def _has(data: Any, path: list[int | str]) -> bool:
 
 
 def build_runs(worlds: Sequence[TrialWorld]) -> list[RunSpec]:
-    """Return runs in some worlds, each with all columns that it can have."""
+    """Return a run in each world, with all columns that runs with its robot can have."""
     chosen = [world.settings.get("robot", DEFAULT_ROBOT) for world in worlds]
     robots = [
         chosen_robot if isinstance(chosen_robot, RobotChoice) else choose_robot(chosen_robot)
@@ -492,10 +498,13 @@ def build_runs(worlds: Sequence[TrialWorld]) -> list[RunSpec]:
 
 
 def check_columns(goals: Sequence[Goal], runs: Sequence[RunSpec], location: Location) -> None:
-    """Check the goals in a list of tables, in its order.
+    """Check that every column that a goal names is in at least one of the runs.
+
+    Args:
+        location: That of the list of goals; errors add the goal's number to it.
 
     Raises:
-        ConfigError: one names a column that none of the runs has.
+        ConfigError: a goal names a column that none of the runs has.
     """
     for number, goal in enumerate(goals, start=1):
         for part in goal.parts:

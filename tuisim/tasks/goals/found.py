@@ -8,7 +8,7 @@ from tuisim.tasks.goals.evidence import EvidencePoint
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """When a condition was reached or, if it is one to hold, violated."""
+    """When a condition was reached or, if it must hold, violated."""
 
     moment: EvidencePoint | None = None
     """None: not up to now."""
@@ -26,5 +26,5 @@ def format_distance(distance_mm: float) -> str:
 
 
 def share_words(share: float) -> str:
-    """Return a share for a sentence, such as `45 %`; never rounded up to one that is not reached."""
+    """Return a share for a sentence, such as `45 %`; rounded down, so that it names none that was not reached."""
     return f"{int(share * 1000) / 10:g} %"

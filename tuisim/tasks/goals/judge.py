@@ -119,7 +119,7 @@ class _Judge:
         return Judgement(goal, changes, outcome.reason, self._find_line(outcome), happened)
 
     def _change(self, moment: EvidencePoint, state: GoalState) -> Change:
-        # What begins after the last tick is decided in it.
+        # A moment after the last tick has no record of its own.
         tick = max(0, min(moment.tick, self._evidence.last.tick))
         return Change(tick, self._evidence.time_s(moment), state, *self._evidence.place_mm(tick))
 
@@ -127,7 +127,7 @@ class _Judge:
         return self._evidence.line(outcome.moment) if outcome.line is None else outcome.line
 
     def _find_outcome(self, name: str, if_missed: str = "") -> _Outcome:
-        """Return the outcome of a goal, if it is missed perhaps with another reason."""
+        """Return the outcome of a goal; if it is missed and `if_missed` is not empty, with that as its reason."""
         if name not in self._goals:
             raise ConfigError(f"there is no goal {name!r}")
         if name not in self._outcomes:
@@ -141,7 +141,7 @@ class _Judge:
 
     def _judge(self, goal: Goal) -> _Outcome:
         if self._evidence.falsified:
-            # What is recorded may not have happened.
+            # The recording may show what has not happened.
             return _Outcome(
                 GoalState.MISSED, reason=f"It does not count: {self._evidence.falsified}."
             )
@@ -172,7 +172,7 @@ class _Judge:
         return outcomes[0] if len(outcomes) == 1 else _pick_deciding(outcomes, GoalState.MISSED)
 
     def _judge_part(self, condition: Condition, goal: Goal, start: EvidencePoint) -> _Outcome:
-        """Return the outcome of one condition of a goal, which counts after a moment."""
+        """Return the outcome of one condition of a goal, judged on what happens after `start`."""
         if isinstance(condition, AllOf | AnyOf | NoneOf):
             return self._judge_combined(condition, goal)
         stop = self._stop(goal, condition.KIND, start)
@@ -197,7 +197,11 @@ class _Judge:
     def _stop(
         self, goal: Goal, kind: ConditionKind, start: EvidencePoint = START
     ) -> EvidencePoint | None:
-        """Return the moment that limits a goal's conditions of a kind, if it has come; `start` begins them."""
+        """Return the first limit up to which a goal's conditions of a kind count; None if none has been reached.
+
+        Args:
+            start: The moment after which they count.
+        """
         stops = []
         for limit in (getattr(goal, limit) for limit in goal.limits(kind) if limit != "after"):
             if isinstance(limit, str):
@@ -213,7 +217,7 @@ class _Judge:
         return _Outcome(GoalState.UNKNOWN, self._evidence.last, reason)
 
     def _judge_missing(self, reason: str) -> _Outcome:
-        """Return the outcome of what has not happened: open, or missed if the run has ended."""
+        """Return the outcome of a condition that was not met: open while the run goes on, then missed."""
         if not self._evidence.ended:
             return _Outcome(GoalState.OPEN, reason="")
         return _Outcome(GoalState.MISSED, self._evidence.last, reason)
@@ -267,7 +271,7 @@ class _Judge:
 
 
 def _invert(name: str, outcome: _Outcome) -> _Outcome:
-    """Return the outcome of not meeting a goal."""
+    """Return the outcome of `none`: met if the goal is missed, and the other way round."""
     match outcome.state:
         case GoalState.MET:
             return replace(
@@ -286,7 +290,7 @@ def _invert(name: str, outcome: _Outcome) -> _Outcome:
 def _pick_deciding(parts: Sequence[_Outcome], deciding: GoalState) -> _Outcome:
     """Return the outcome of a combination: the first part with the deciding state, else the last one to be decided.
 
-    One that is open, or not known, leaves it so unless another one decides.
+    Without a deciding part, one that is open or not known makes the combination so, too.
     """
     decided = [part for part in parts if part.state is deciding]
     if decided:
@@ -299,7 +303,11 @@ def _pick_deciding(parts: Sequence[_Outcome], deciding: GoalState) -> _Outcome:
 
 
 def _explain_lateness(goal: Goal, reason: str) -> str:
-    """Return the reason of a goal that was not met before its limit."""
+    """Return why a goal was not met, with the limit before which it should have been.
+
+    Args:
+        reason: What was missing at the limit; may be empty.
+    """
     if goal.before is None:
         limit = f"within {goal.within_s:g} s"
         return (

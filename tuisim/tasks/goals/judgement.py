@@ -52,14 +52,14 @@ class Judgement:
 
     @property
     def is_good(self) -> bool:
-        """Whether it is met, or not met if it takes points off."""
+        """Whether the goal is met or, if it takes points off, not met."""
         if self.state is GoalState.UNKNOWN:
             return False
         return (self.state is GoalState.MET) is (self.goal.points >= 0)
 
     @property
     def event(self) -> Change | None:
-        """When and where it was met or missed, for whoever reads of it; None while it is open."""
+        """When and where what decided the goal happened; None while it is open."""
         return self.happened or (self.changes[-1] if self.changes else None)
 
     def at(self, tick: int) -> GoalState:
@@ -81,14 +81,14 @@ def compute_points(judgements: Iterable[Judgement]) -> float:
 def sum_points(met: Iterable[float]) -> float:
     """Return the sum of the points of goals that are met, some of which may be negative; never less than 0.
 
-    NaN stands for what is not known, and makes the sum NaN.
+    NaN stands for points that are not known, and makes the sum NaN.
     """
-    # In this order: the other one makes 0 of NaN.
+    # In this order: `max(0.0, nan)` would be 0.
     return max(math.fsum(met), 0.0)
 
 
 def compute_max_points(goals: Iterable[Goal]) -> float:
-    """Return the points of a run that meets every goal but those whose points are negative."""
+    """Return the points of a run that meets every goal with positive points, and no other."""
     return math.fsum(goal.points for goal in goals if goal.points > 0)
 
 

@@ -41,11 +41,11 @@ _MAX_TRIED = 1000
 
 
 def _describe_pattern(pattern: str) -> str:
-    """Return how a line that fits a pattern is named in a reason: by its words, if it is nothing but words."""
+    """Return words for a line that must match a pattern: `matches “done”`, or that it says what the goal needs."""
     words = re.sub(r"\(\?i\)|\\b|[\^$]", "", pattern)
     if words == re.escape(words).replace("\\ ", " "):
         return f"matches {_quote(words)}"
-    # What a line must not say is told by the goal's own words, and no student reads it from the pattern.
+    # A lookaround often says what a line must not have: the goal's own words tell the student.
     return (
         "says what the goal needs"
         if re.search(r"\(\?<?[=!]", pattern)
@@ -71,7 +71,7 @@ def find_printed(condition: PrintCondition, evidence: Evidence, span: EvidenceSp
     """Find when the last of the lines was printed."""
     rows = _list_printed(evidence, span)
     next_place, last, line = 0, -1, None
-    # The row before, since which a reading must have been taken.
+    # Tick of the line before, since which a reading must have been taken.
     since = -1
     for count, pattern in enumerate(condition.lines):
         search = evidence.search(pattern)
@@ -85,7 +85,7 @@ def find_printed(condition: PrintCondition, evidence: Evidence, span: EvidenceSp
                 break
             fault = fault if fault.reason else Finding(None, problem, row.line)
         else:
-            # Of the line that the reason quotes.
+            # The program's line that printed what the reason quotes.
             about = rows[-1][1].line if rows and line is None else line
             if fault.reason:
                 return fault
@@ -108,7 +108,7 @@ def _check_once(
     span: EvidenceSpan,
     evidence: Evidence,
 ) -> Finding | None:
-    """Return what is missing of a condition whose lines come only once; None if nothing is."""
+    """Return why lines that must come only once do not meet a condition so far; None if they do."""
     searches = list(map(evidence.search, condition.lines))
     fits = [(row, sum(search(row.text) for search in searches)) for _, row in rows]
     if several := [row for row, count in fits if count > 1]:
@@ -126,7 +126,7 @@ def _check_once(
 def _find_repeated_line(
     condition: PrintCondition, rows: list[OutputRow], evidence: Evidence
 ) -> Finding:
-    """Return which of some rows is the first that says again what one before it says."""
+    """Return the first of the rows that matches the same pattern as one before it."""
     seen: set[str] = set()
     for row in rows:
         pattern = next(pattern for pattern in condition.lines if evidence.search(pattern)(row.text))
@@ -149,7 +149,7 @@ def _explain_fault(
 
     Args:
         count: Index of the pattern.
-        since: Tick of the line before; -1 if there is none.
+        since: Tick at which the line for the pattern before was printed; -1 if there is none.
     """
     when = f"{_quote(row.text)} was printed at {row.time_ns / NS_PER_S:.2f} s"
     if fault := _describe_wrong_place(condition, count, row.tick, evidence):
@@ -160,7 +160,7 @@ def _explain_fault(
         return ""
     noun = NOUNS[condition.reading]
     ticks = read_ticks(condition.reading, evidence)
-    # A reading just before the line before may decide both.
+    # A reading in the tick of the line before counts: it may have decided both lines.
     if not ((ticks >= since) & (ticks <= row.tick)).any():
         ago = "since the line before it" if since >= 0 else "before that"
         return f"{when}, but the program did not read the {noun} {ago}."
@@ -168,7 +168,7 @@ def _explain_fault(
 
 
 def _speed_mm_s(tick: int, evidence: Evidence) -> float:
-    """Return how fast the robot moves when it is slowest, from a tick on as long as a stop may take."""
+    """Return the lowest speed of the robot during the ticks that a stop may take, from a tick on."""
     ticks = range(max(0, tick), min(tick + _STOP_TICKS, len(evidence.records)))
     return min(
         (_measure_speed_mm_s(first, then, evidence) for first, then in pairwise(ticks)), default=0.0
@@ -183,7 +183,7 @@ def _measure_speed_mm_s(first: int, then: int, evidence: Evidence) -> float:
 def _describe_wrong_place(
     condition: PrintCondition | LogCondition, count: int, tick: int, evidence: Evidence
 ) -> str:
-    """Return where the robot was at a tick if that was wrong, as the end of a sentence; empty if it was right."""
+    """Return where the robot was at a tick and where it must be, to end a sentence; empty if it was there."""
     place = select_place(condition, count)
     x_mm, y_mm = evidence.place_mm(tick)
     position = {"x_mm": x_mm, "y_mm": y_mm}
@@ -254,14 +254,14 @@ def find_levels(condition: LogCondition, evidence: Evidence, span: EvidenceSpan)
 
 
 def _report_printed(moment: EvidencePoint, line: int, once: bool, evidence: Evidence) -> Finding:
-    """Return that what was asked for was printed; that it came only once, the end of the run decides."""
+    """Return that the lines were printed; with `once`, the end of the run decides, since none may come again."""
     return (
         Finding(evidence.last, line=line, happened=moment) if once else Finding(moment, line=line)
     )
 
 
 def _find_gap(condition: LogCondition, samples: list[Sample], evidence: Evidence) -> Finding | None:
-    """Return where samples are too far apart; None if they are nowhere."""
+    """Return the first two samples between which the robot drove too far; None if there are none."""
     for before, after in pairwise(samples):
         way_mm = math.dist(evidence.place_mm(before.tick), evidence.place_mm(after.tick))
         if way_mm > condition.apart_mm:
@@ -287,7 +287,7 @@ def _explain_unmeasured(
             f"{value}, but the program had printed {counted(printed, 'sample')} {condition.counts}."
         )
     reading, place = condition.reading, select_place(condition, count)
-    # What the motors count is of the place where it is printed.
+    # The count of a motor is judged by where it is printed, not where it was read.
     if reading in (None, Reading.MOTOR):
         fault = _describe_wrong_place(condition, count, sample.tick, evidence)
         if fault or reading is None:
@@ -318,9 +318,9 @@ def _find_missing_level(
     """Return which level is missing, the one after the first `count`, and why.
 
     Args:
-        samples: All of the variable.
-        start: The first that could have been it.
-        last: The last of the levels that were found; -1 for none.
+        samples: All samples of the variable, with the indices of their rows.
+        start: Index of the first sample that could have that level.
+        last: Index of the sample with the level before; -1 for none.
     """
     rest = [sample for _, sample in samples[start:]]
     nearest = min(
@@ -363,7 +363,7 @@ def _explain_missing_level(
 
 
 def _explain_form_fault(name: str, evidence: Evidence) -> str:
-    """Return why a line with the name and a number is no sample, as a further sentence; empty if there is none."""
+    """Return why a line with the name and a number is not a sample, as a further sentence; empty without a line."""
     like = re.compile(rf"(?:.*\W)?{re.escape(name)}\s*(?:[:=]\s*)?[+-]?\.?\d").match
     row = next(
         (row for row in evidence.rows if row.stream == Stream.STDOUT and like(row.text)), None
@@ -405,7 +405,7 @@ def find_dialogue(condition: DialogueCondition, evidence: Evidence, span: Eviden
 
 
 def _find_prompt(text: str, answer: str, typed: str | None) -> str | None:
-    """Return the prompt in a row of input, which the answer follows; None if another answer was given.
+    """Return the prompt in a row of input, which the answer follows; None if the row has another answer.
 
     Args:
         typed: The answer, if it is known.
@@ -422,7 +422,7 @@ def _find_prompt(text: str, answer: str, typed: str | None) -> str | None:
 def _find_reply(
     turn: DialogueTurn, prompt: str, rows: list[OutputRow], span: range, evidence: Evidence
 ) -> tuple[int | None, str]:
-    """Return the row that completes a turn or None, and what is wrong with a turn that got its answer.
+    """Return the row that completes a turn, None without one, and what is wrong with the question or the reply.
 
     Args:
         span: The rows of the turn, from the question to the next one.

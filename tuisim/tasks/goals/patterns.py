@@ -19,10 +19,10 @@ LIMIT_S = 2.0
 
 
 def build_search(pattern: str) -> Search:
-    """Return the search for a regular expression.
+    """Return a function that tells whether a regular expression is found in a text.
 
     Raises:
-        UnjudgedError: it is none for the engine that has a limit of time.
+        UnjudgedError: the engine that has a limit of time does not know the expression.
     """
     # Imported on demand: most goals have no regular expression.
     import regex

@@ -51,7 +51,7 @@ def find_drawn(condition: DrawCondition, evidence: Evidence, span: EvidenceSpan)
 
 
 def _sample_strokes(records: Array, pen: PenSpec, condition: DrawCondition) -> tuple[Array, Array]:
-    """Return the points that the pen drew, shape (n, 2) in mm, close enough for the comparison, and their ticks."""
+    """Return points on what the pen drew, shape (n, 2) in mm, at most a cell apart, and the tick of each."""
     import numpy as np
 
     down = (records["flags"] & FLAG_PEN_DOWN) != 0

@@ -102,7 +102,7 @@ def _sample_lines(lines: Sequence[Sequence[tuple[float, float]]], step_mm: float
 
 
 def compute_cell_mm(within_mm: float) -> float:
-    """Return the side of a cell for a tolerance."""
+    """Return the side of the cells in which pictures are compared with a tolerance."""
     return max(1.0, within_mm / 8)
 
 
@@ -147,13 +147,13 @@ def compare(cells: Array, points: Array, within_mm: float) -> tuple[Array, Array
         within_mm: How far they may be apart.
 
     Returns:
-        Whether each cell of the picture has a point near it, shape (n,), and each point such a cell, shape (m,).
+        For each cell whether a point is near it, shape (n,), and for each point whether a cell is, shape (m,).
     """
     import numpy as np
 
     side = compute_cell_mm(within_mm)
     reach = math.ceil(within_mm / side) + 1
-    # What is off the field lies in the inner half of the margin, what is near that in the outer half.
+    # Points off the field go into the inner half of the margin, cells near these into the outer half.
     margin = 2 * reach
     cols, rows = _count_cells(within_mm)
     wide = cols + 2 * margin

@@ -63,14 +63,14 @@ def find_reach(condition: ReachCondition, evidence: Evidence, span: EvidenceSpan
         return Finding(EvidencePoint(first + int(enough[0])))
     longest = int(np.argmax(stayed_s))
     text = f"The robot stayed there for at most {stayed_s[longest]:.2f} s, {condition.for_s:g} s are needed."
-    # What moved it away, else what brought it there.
+    # The line that moved the robot away, else the one that brought it there.
     return Finding(None, text, find_motion_line(records, longest + 1))
 
 
 def find_motion_line(records: Array, index: int) -> int:
     """Return the program's line of the last tick up to an index that moved the robot, else of the first after it.
 
-    A robot that stands where it is says nothing about the line at that time: 0, if it never moved.
+    The lines of ticks in which the robot stands still do not count. 0, if it never moved.
     """
     import numpy as np
 
@@ -83,7 +83,11 @@ def find_motion_line(records: Array, index: int) -> int:
 
 
 def _find_arrivals(there: Array) -> Array:
-    """Return for each tick since which index it has been there without a break."""
+    """Return for each tick the index since which the robot has been there without a break.
+
+    Args:
+        there: Whether the robot is there, shape (n,).
+    """
     import numpy as np
 
     begins = there & ~np.concatenate(([False], there[:-1]))
@@ -123,7 +127,7 @@ def _describe_miss(
 
 
 def _describe_side(condition: ReachCondition, record: Any) -> str:
-    """Return on which side of a line the robot is; a point has no sides."""
+    """Return on which side of a line the robot is, such as `left of`; `from` for a point."""
     if condition.x_mm is None:
         return "below" if record["y_mm"] < condition.y_mm else "above"
     if condition.y_mm is None:
@@ -168,7 +172,7 @@ def find_pass(condition: PassCondition, evidence: Evidence, span: EvidenceSpan) 
 
 
 def _measure_way_away_mm(records: Array, x_mm: float, y_mm: float) -> Array:
-    """Return how near the robot came to a place during each tick."""
+    """Return the least distance of the robot from a place during each tick."""
     import numpy as np
 
     x, y = records["x_mm"] - x_mm, records["y_mm"] - y_mm
@@ -231,7 +235,7 @@ def _find_first_wrong(
     tick = span.first_tick + int(wrong.argmax())
     x_mm, y_mm = evidence.place_mm(tick)
     what = f"{text} at {evidence.time_words(tick)}" if tick else at_start
-    # No line of the program has put it where it is at the start.
+    # At the start no line of the program is to blame.
     return Finding(
         EvidencePoint(tick),
         f"The robot {what}, at x {x_mm:.0f} mm, y {y_mm:.0f} mm.",
@@ -240,7 +244,7 @@ def _find_first_wrong(
 
 
 def _compute_points(part: BodyPart, records: Array, robot: RobotSpec) -> list[tuple[Array, Array]]:
-    """Return x and y of the points of the robot that matter, in mm, each at every tick."""
+    """Return x and y in mm of the robot's centre, or of the corners of its body, each at every tick."""
     import numpy as np
 
     x_mm, y_mm = records["x_mm"], records["y_mm"]
@@ -314,7 +318,8 @@ def _find_first_contact(
     Ticks during which the robot cannot have got so near are skipped.
 
     Args:
-        forgiven: Whether what is too near at the start counts only once it has been farther away.
+        solids: Obstacles and walls; each has a gap to the robot.
+        forgiven: Whether a gap that is too small at the start counts only after it has been larger.
     """
     import numpy as np
 

@@ -39,19 +39,19 @@ _NOISE_SHARE = 0.1
 
 
 def describe_ranges(place: Mapping[str, Range]) -> str:
-    """Return ranges of `select_place` for a sentence."""
+    """Return the ranges of `select_place` in words, such as `x from 100 to 200 mm`."""
     return " and ".join(
         f"{key[0]} from {low:g} to {high:g} mm" for key, (low, high) in place.items()
     )
 
 
 def read_ticks(reading: Reading, evidence: Evidence) -> Array:
-    """Return the tick of each such reading that the program took, in ascending order."""
+    """Return the tick of each reading of a kind that the program took, in ascending order."""
     return _find_readings(reading, evidence)[0]
 
 
 def _find_readings(reading: Reading, evidence: Evidence) -> tuple[Array, Array]:
-    """Return tick and source line of each such reading that the program took, in ascending order.
+    """Return tick and source line of each reading of a kind that the program took, in ascending order.
 
     Raises:
         UnjudgedError: they are not all recorded.
@@ -69,7 +69,7 @@ def _find_readings(reading: Reading, evidence: Evidence) -> tuple[Array, Array]:
 
 
 def filter_ticks(ticks: Array, place: Mapping[str, Range], evidence: Evidence) -> Array:
-    """Return those of some ticks at which the robot was in the ranges of `select_place`."""
+    """Return the ticks at which the robot was in the ranges of `select_place`."""
     for key, (low, high) in place.items():
         values = evidence.records[key][ticks]
         ticks = ticks[(values >= low) & (values <= high)]
@@ -83,11 +83,11 @@ def describe_place(tick: int, place: Mapping[str, Range], evidence: Evidence) ->
 
 
 def is_as_read(value: float, ticks: Array, evidence: Evidence) -> bool:
-    """Return whether a level of light is what a colour sensor gave in some of the ticks in which the program read it.
+    """Return whether a level of light is what a colour sensor measured in one of some ticks.
 
     Args:
         value: The level: of red or of all channels in percent, or of red from 0 to 255.
-        ticks: Some of `read_ticks`.
+        ticks: Ticks in which the program read a colour sensor, of `read_ticks`.
         evidence: The recording.
     """
     import numpy as np
@@ -170,7 +170,7 @@ def find_off_line(condition: FollowCondition, evidence: Evidence, span: Evidence
 
 
 def _compute_light_percent(records: Array, x_mm: float, y_mm: float, evidence: Evidence) -> Array:
-    """Return the light of the mat's pixel under a point of the robot, at every tick; 0 where there is nothing."""
+    """Return the light of the mat's pixel under a point of the robot, at every tick; beside the mat, that of no mat."""
     import numpy as np
 
     mat = evidence.mat

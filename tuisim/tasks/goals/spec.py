@@ -42,7 +42,7 @@ MAX_GOALS = 200
 
 
 class BodyPart(StrEnum):
-    """What of the robot must be in or out of an area."""
+    """Which part of the robot must be in or out of an area."""
 
     CENTRE = "centre"
     """The midpoint between its wheels."""
@@ -51,7 +51,7 @@ class BodyPart(StrEnum):
 
 
 class Reading(StrEnum):
-    """What a program can read, by the kind of the sensor."""
+    """The kinds of readings that a goal can ask for."""
 
     COLOR = "color"
     ULTRASONIC = "ultrasonic"
@@ -78,7 +78,11 @@ def _check_ranges(condition: PrintCondition | LogCondition | ReadCondition, coun
 def select_place(
     condition: PrintCondition | LogCondition | ReadCondition, count: int = 0
 ) -> dict[str, Range]:
-    """Return where the robot must be for one of the lines or levels: ranges by `x_mm` and `y_mm`, as far as given."""
+    """Return where the robot must be for a line or level: ranges by `x_mm` and `y_mm`; empty for anywhere.
+
+    Args:
+        count: Index of the line or level.
+    """
     places = {key: getattr(condition, key) for key in ("x_mm", "y_mm")}
     return {
         key: ranges[count if len(ranges) > 1 else 0] for key, ranges in places.items() if ranges
@@ -166,7 +170,7 @@ class OutsideCondition(AreaCondition):
 
 @dataclass(frozen=True, slots=True)
 class TouchNothingCondition(Condition):
-    """The robot touches no obstacle and no wall; what it touches at the start counts once it has left it."""
+    """The robot touches no obstacle and no wall; one that it touches at the start counts after it has moved away."""
 
     KIND: ClassVar[ConditionKind] = ConditionKind.HELD
 
@@ -224,7 +228,7 @@ class FollowCondition(Condition):
 
 @dataclass(frozen=True, slots=True)
 class DrawCondition(Condition):
-    """What the pen draws is near a picture: a share of the picture is drawn, and of the drawing lies on it."""
+    """The pen draws a picture: a share of the picture is drawn, and the same share of the drawing lies on it."""
 
     picture: bytes
     """Indices of the picture's cells on the field, 32-bit integers in ascending order; see `tasks/goals/picture.py`."""
@@ -261,7 +265,7 @@ class PrintCondition(Condition):
 
 @dataclass(frozen=True, slots=True)
 class LogCondition(Condition):
-    """The samples of a variable take levels."""
+    """The samples of a variable have certain levels."""
 
     name: str
     levels: tuple[Number, ...]
@@ -317,7 +321,7 @@ class FinishCondition(Condition):
 
 @dataclass(frozen=True, slots=True)
 class CallsCondition(Condition):
-    """Calls in the program's text, such as `tank_drive.on_for_rotations` or `time.sleep`, also under other names."""
+    """Calls in the program's text, such as `tank_drive.on_for_rotations` or `time.sleep`, by whatever name."""
 
     KIND: ClassVar[ConditionKind] = ConditionKind.FIXED
     SHORT: ClassVar[str] = "calls"
@@ -407,7 +411,7 @@ class NoneOf(Combination):
 
 @dataclass(frozen=True, slots=True)
 class Together(Condition):
-    """Several conditions of one goal, which are all met; in a file, several keys of a goal."""
+    """Several conditions of one goal, which must all be met: in a file, several keys of a goal."""
 
     KIND: ClassVar[ConditionKind] = ConditionKind.COMBINED
 
@@ -477,5 +481,5 @@ class Goal:
         )
 
     def limits(self, kind: ConditionKind) -> tuple[str, ...]:
-        """Return which of `before`, `after` and `until` apply to its conditions of a kind."""
+        """Return which of `before`, `after` and `until` the goal has, of those that apply to conditions of a kind."""
         return tuple(limit for limit in LIMITS[kind] if getattr(self, limit) is not None)

@@ -37,7 +37,7 @@ GoalReader = Callable[[object, Location, Path], tuple[Goal, ...]]
 
 @dataclass(frozen=True, slots=True)
 class TrialWorld:
-    """A world in which a program is tried. In several, one that knows the first world by heart fails."""
+    """A world in which a program is tried. A program that only fits the first one fails in another."""
 
     where: str
     """What is other than in the first one, for the student, such as `from 10 cm farther back`; empty for the first."""
@@ -54,7 +54,7 @@ class TrialWorld:
 
     @property
     def answers(self) -> tuple[str, ...]:
-        """The answers to `input()`: those of the dialogues among its own goals, in their order, else its inputs."""
+        """The answers to `input()`: those of the dialogues in `own_goals`, in their order, else `inputs`."""
         dialogues = (
             part
             for goal in self.own_goals
@@ -66,12 +66,12 @@ class TrialWorld:
         )
 
     def select_goals(self, goals: Sequence[Goal]) -> tuple[Goal, ...]:
-        """Return the goals that are judged there: those of the first world, which its own of the same name replace."""
+        """Return the goals of this world: `own_goals`, and those of the first world that these do not replace."""
         own = {goal.name: goal for goal in self.own_goals}
         return (*(own.pop(goal.name, goal) for goal in goals), *own.values())
 
     def beside(self, first: TrialWorld) -> TrialWorld:
-        """Return another world with all that it has from the first one: settings, goals and inputs."""
+        """Return this world completed by the first one: with the settings, goals and inputs that it does not change."""
         return replace(
             self,
             settings={**first.settings, **self.settings},
@@ -93,11 +93,11 @@ def parse_other_worlds(
 
     Args:
         data: The list of tables.
-        goals: Names of the goals that count where a table names none: in a lesson, if it has none of its own, either.
+        goals: Names of the goals that count in a world whose table names none; in a lesson, only if it defines none.
         location: The place of the list in the file.
         path: The file, for the files that a world names.
         read_goals: Reads the goals of a table.
-        of_task: Whether they are those of a task, which may be hidden, not of a lesson.
+        of_task: Whether the worlds are those of a task, which may be hidden, not of a lesson.
 
     Raises:
         ConfigError: one is wrong; the error names its key.

@@ -62,7 +62,7 @@ def find_lesson(word: str, folder: Path | str | None = None, others: Iterable[st
     Args:
         word: Its name, number or path.
         folder: As for `find_lesson_paths`.
-        others: Other words that may have been meant.
+        others: Other words that the error may propose.
 
     Raises:
         ConfigError: there is no such lesson.
@@ -87,7 +87,7 @@ def find_lesson(word: str, folder: Path | str | None = None, others: Iterable[st
 
 
 def find_telling(lesson: Path, library: Library, folder: Path | str | None = None) -> Path:
-    """Return the file that tells a lesson for a library.
+    """Return the file of a lesson's version for a library.
 
     Raises:
         ConfigError: there is none.

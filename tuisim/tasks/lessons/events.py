@@ -46,7 +46,7 @@ class TriedElsewhere:
 
 @dataclass(frozen=True, slots=True)
 class Typed:
-    """An answer was typed. Unless it is said, everything that the question needs has happened."""
+    """A student has typed an answer. At their defaults, the fields meet all that the question needs."""
 
     text: str
     x_mm: float | None = None
@@ -179,7 +179,7 @@ def count_good_runs(check: RunCheck, events: Sequence[Event]) -> int:
 
 
 def find_passed_runs(check: RunCheck, events: Sequence[Event]) -> list[JudgedRun]:
-    """Return the runs that have met the goals of a check, whatever their programs do in other worlds."""
+    """Return the runs that have met the goals of a check; how their programs do in other worlds does not matter."""
     runs = [event for event in events if isinstance(event, JudgedRun)]
     return [
         run for run in runs if set(check.goals) <= run.met and (run.from_start or check.anywhere)
@@ -278,7 +278,7 @@ def note_fault(check: NoteCheck, event: Noted) -> str:
 
 
 def parse_event(check: Check, text: str) -> Event:
-    """Return what a text in a lesson's file stands for: an answer, a breakpoint, an expression, a file name.
+    """Return the event that a text in a lesson's file stands for: an answer, a breakpoint, an expression, a file name.
 
     Raises:
         ValueError: the check is about runs, or needs a number and the text is none.
@@ -305,7 +305,7 @@ def parse_event(check: Check, text: str) -> Event:
 
 
 def build_model_event(check: Check, model: str) -> Event:
-    """Return what passes a check that is not about runs; `model` is needed for breakpoints and notes.
+    """Return an event that passes a check which is not about runs; breakpoints and notes need a `model`.
 
     Raises:
         ValueError: as for `parse_event`.

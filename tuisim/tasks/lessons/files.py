@@ -89,7 +89,7 @@ class _Section:
 
 
 def get_lesson_name(path: Path) -> str:
-    """Return the name of a lesson from its file: without suffix, and without a number that only sorts it."""
+    """Return the name of a lesson: that of its file without suffix, and without a number for sorting."""
     return files.name_of(Path(_NUMBERED.sub("", path.name) or path.name))
 
 
@@ -122,7 +122,7 @@ def parse_lesson(text: str, path: Path) -> Lesson:
     """Return the lesson in a text; `path` is its file, for errors, and for the files that it names.
 
     Raises:
-        ConfigError: it is wrong; the error names file, line and key.
+        ConfigError: the text is wrong; the error names file, line and key.
     """
     lines = text.split("\n")
     front, end = _split_front_matter(lines, path)
@@ -133,14 +133,14 @@ def parse_lesson(text: str, path: Path) -> Lesson:
 
 
 def _split_front_matter(lines: Sequence[str], path: Path) -> tuple[str, int]:
-    """Return the TOML, and the index of the line that ends it."""
+    """Return the TOML above the Markdown, and the index of the line that ends it."""
     end = _end_of_front(lines, path)
     # The line with `+++` becomes an empty one, so that the lines of the TOML keep their numbers.
     return "\n".join(["", *lines[1:end]]), end
 
 
 def _merge_told_lesson(data: Any, path: Path) -> Any:
-    """Return the TOML of a lesson; if it is a telling, together with that of the lesson that it tells."""
+    """Return the TOML of a lesson; of a version for another library, merged with that of the original lesson."""
     if TELLS not in data:
         return data
     location = Location(str(path)).at(TELLS)
@@ -156,7 +156,7 @@ def _merge_told_lesson(data: Any, path: Path) -> Any:
 
 
 def _end_of_front(lines: Sequence[str], path: Path) -> int:
-    """Return the index of the line that ends the TOML."""
+    """Return the index of the line that ends the TOML above the Markdown."""
     if not lines or lines[0].strip() != FENCE:
         raise ConfigError(
             f"does not begin with {FENCE}",
@@ -220,7 +220,7 @@ def _parse_role(info: str, location: Location) -> Role | None:
 
 
 def _parse_way(word: str, role: Role, location: Location) -> Way | None:
-    """Return the wrong way that a block of code goes."""
+    """Return the way in which a block's program is wrong; None if none is given."""
     if not word:
         return None
     if role is not Role.WRONG:
@@ -369,7 +369,7 @@ def _check_goals(check: Check, goals: set[str], location: Location) -> None:
 
 
 def _check_models(step: LessonStep, location: Location) -> None:
-    """Raise ConfigError if the model does not pass, or a wrong one does."""
+    """Raise ConfigError if a step's model answer does not pass its check, or one of the wrong answers does."""
     if isinstance(step.check, RunCheck):
         for key in ("model", "wrong"):
             if getattr(step, key):
@@ -398,7 +398,7 @@ def _check_models(step: LessonStep, location: Location) -> None:
 
 
 def _add_answers(steps: Sequence[LessonStep], location: Location) -> tuple[LessonStep, ...]:
-    """Give each step that runs a program its model answer: the next one in the text."""
+    """Give each step that runs a program a model answer: its own, or the next one in the text."""
     answer, completed = "", []
     for step in reversed(steps):
         answer = step.answer or answer
@@ -414,12 +414,12 @@ def _add_answers(steps: Sequence[LessonStep], location: Location) -> tuple[Lesso
 
 
 def build_telling_name(lesson: str, library: str) -> str:
-    """Return the name of the telling of a lesson for a library."""
+    """Return the name of a lesson's version for a library."""
     return f"{lesson}-{library}"
 
 
 def merge_telling(other: Any, own: Any) -> Any:
-    """Return values of TOML where those of the telling take precedence over those of the other lesson."""
+    """Return the TOML of a lesson's version merged with that of the original lesson; its own values take precedence."""
     match other, own:
         case dict(), dict():
             return {

@@ -26,7 +26,7 @@ _PAIR = 2
 
 
 class WholeTable(TableElement):
-    """A table whose columns are as wide as their longest word at least.
+    """A table whose columns are at least as wide as their longest word.
 
     Where there is no room for that, each row is a list: its first cell, and below it the others with their headings.
     """
@@ -53,13 +53,13 @@ class WholeTable(TableElement):
 def _measure_column(
     console: Console, options: ConsoleOptions, column: Sequence[Text]
 ) -> Measurement:
-    """Return the cells of the longest word and of the longest text of a column."""
+    """Return the widths of the longest word and of the longest text of a column, in cells."""
     cells = [Measurement.get(console, options, text) for text in column]
     return Measurement(max(cell.minimum for cell in cells), max(cell.maximum for cell in cells))
 
 
 def _compute_widths(columns: Sequence[Measurement], room: int) -> list[int] | None:
-    """Return the widths of columns; None if their longest words have no room beside each other."""
+    """Return the widths of columns; None if there is no room for their longest words beside each other."""
     min_total = sum(column.minimum for column in columns)
     if min_total > room:
         return None
@@ -95,7 +95,7 @@ def _build_list(headings: Sequence[Text], rows: Sequence[Sequence[Text]]) -> Gro
             yield Text.assemble((row[0].plain, "bold")) if not row[0].spans else row[0]
             for heading, cell in zip(headings[1:], row[1:], strict=False):
                 if cell.plain:
-                    # Of two columns, the second one needs no name.
+                    # In a table of two columns the cell needs no heading.
                     name = (heading, ": ") if len(headings) > _PAIR else ()
                     yield Padding(Text.assemble(*name, cell, overflow="fold"), (0, 0, 0, _INDENT))
 

@@ -166,10 +166,10 @@ def build_program_path(lesson: Lesson) -> Path:
 
 
 def prepare_program(lesson: Lesson, anew: bool = False) -> Path:
-    """Return the student's program of a lesson; the first time it is the lesson's program to complete.
+    """Return the file with the student's program of a lesson; a new file gets the lesson's program to complete.
 
     Args:
-        anew: Begin with the lesson's program again; the student's one is kept as `NAME.old.py`.
+        anew: Whether to begin with the lesson's program again; the student's one is kept as `NAME.old.py`.
 
     Raises:
         ConfigError: it cannot be written.

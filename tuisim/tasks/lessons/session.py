@@ -69,7 +69,7 @@ _PAUSE_S = 10.0
 
 
 class Change(StrEnum):
-    """What is to follow, once something has happened."""
+    """What must follow an event."""
 
     NONE = "none"
     SHOW = "show"
@@ -111,7 +111,7 @@ class WorldTrial:
     folder: Path
 
     def run(self) -> WorldJudgements:
-        """Return how the program does there; blocks meanwhile.
+        """Return the judgements of the program in the other worlds; blocks while it runs.
 
         Raises:
             TuisimError: the run is damaged, or its magic line is wrong there.
@@ -150,7 +150,7 @@ class LessonSession:
         progress: What is done; `save` stores it.
         done: The step that has just been done.
         attempt: What was done since the step began.
-        story: What the run did that has passed it; empty if it was not about a run.
+        story: What happened in the run that passed the last step; empty if the step was not about a run.
     """
 
     def __init__(self, lesson: Lesson) -> None:
@@ -188,7 +188,7 @@ class LessonSession:
             save_progress(self.lesson.name, self.progress)
 
     def begin_step(self, run_id: str) -> None:
-        """Begin the step to do; the run in view, if there is one, does not count."""
+        """Begin the next step; the run that is in view now does not count for it."""
         self.attempt = Attempt(run_id)
 
     # What is known
@@ -223,11 +223,11 @@ class LessonSession:
         return count_good_runs(step.check, self.attempt.events)
 
     def describe_elsewhere(self, pose: Pose, *, in_run: bool) -> str:
-        """Return why the last run does not count, in a sentence, and what to do; empty if it does.
+        """Return why the last run does not count, in a sentence, and what to do; empty if it counts.
 
         Args:
             pose: The robot's.
-            in_run: Whether a run has begun that is not over.
+            in_run: Whether a run is going on.
         """
         elsewhere = self.attempt.elsewhere
         if elsewhere is None:
@@ -270,7 +270,7 @@ class LessonSession:
             printed = tuple(row.text for row in output.read_all_rows())
         seen = frozenset(self.attempt.seen)
         typed = Typed(text, x_mm, seen, printed, sight.recording is not None)
-        # What is measured elsewhere is not wrong, it is about something else.
+        # An answer from another place is not counted as wrong: the question is not about that place.
         if first := explain_unready(check, typed):
             raise TuisimError(first)
         if self._take(typed):
@@ -284,7 +284,7 @@ class LessonSession:
         self.progress = self.progress.update_step(step.name, tries=tries)
 
     def show_hint(self) -> None:
-        """Show the next hint of the step, which has one."""
+        """Show the next hint of the step; the step must have one."""
         if self.step:
             self.progress = self.progress.update_step(self.step.name, hints=self.hints + 1)
 
@@ -296,11 +296,11 @@ class LessonSession:
         return step
 
     def take_export(self, name: str) -> Change:
-        """Take in that the log was written to a file of that name."""
+        """Note that the log was exported to a file of a name; return what follows."""
         return Change.GO_ON if self._take(Exported(name)) else Change.NONE
 
     def look(self, sight: Sight) -> Change:
-        """Check the step by what is to be seen.
+        """Check whether what the student sees passes the step.
 
         Raises:
             TuisimError: the notes on the run, or its recording, are damaged.
@@ -324,7 +324,7 @@ class LessonSession:
             case ShowCheck(panel=panel):
                 events = [Shown(panel, sight.is_paused)] if panel in sight.panels else []
             case QuestionCheck() | ExportCheck():
-                # The student's keys tell.
+                # `answer` and `take_export` check these.
                 pass
             case _:
                 assert_never(step.check)
@@ -354,7 +354,7 @@ class LessonSession:
         return Change.TRY
 
     def take_trial(self, trial: WorldTrial, judged: WorldJudgements) -> Change:
-        """Take in how a program did in other worlds, unless the student has gone on meanwhile."""
+        """Note how a program did in other worlds, unless the student has gone on to another step meanwhile."""
         if self.step is None or self.step.check is not trial.check:
             return Change.NONE
         remark = ""
@@ -369,7 +369,7 @@ class LessonSession:
             ]
             if missed and not remark:
                 remark = f"Also tried {other.where}, it does not work{_tell_start(other)}: {_explain_miss(missed[0])}"
-        # The student may have begun another run meanwhile: this one counts, but what is told is about that one.
+        # If the student has begun another run meanwhile, this one counts, but the remark must be on the other.
         if self.attempt.trial is trial:
             self.attempt.remark = remark
         return Change.SHOW
@@ -388,7 +388,7 @@ class LessonSession:
         return Change.SHOW if is_new else Change.NONE
 
     def _take(self, event: Event) -> bool:
-        """Add what has happened. Return whether the step is done now."""
+        """Add an event; return whether the step is done now."""
         step, events = self.step, self.attempt.events
         if step is None or event in events:
             return False
@@ -418,17 +418,17 @@ def _list_met(judgements: Sequence[Judgement]) -> frozenset[str]:
 
 
 def _list_world(spec: RunSpec) -> tuple[object, ...]:
-    """Return what must be as the lesson says for a run to count."""
+    """Return the values of a run that must be those of the lesson, or else the run does not count."""
     return (*_list_place(spec.world), spec.world.noise, spec.world.drift)
 
 
 def _list_place(world: WorldSpec) -> tuple[object, ...]:
-    """Return what of it is about places."""
+    """Return mat, start and obstacles of a world."""
     return world.background, world.start, world.obstacles
 
 
 def _explain_miss(missed: Judgement) -> str:
-    """Return why a goal is missed in another world, without the numbers and words that are asked for there."""
+    """Return why a goal is missed in another world, without the numbers and words that would give the answer away."""
     if any(isinstance(part, LogCondition | PrintCondition) for part in missed.goal.parts):
         return "it does not print what the robot sees there, where the robot sees it."
     return missed.reason

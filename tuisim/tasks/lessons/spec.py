@@ -302,7 +302,7 @@ class LessonStep:
         }
         match self.check:
             case QuestionCheck(choices=choices, at_x_mm=place, seen=seen, run=run):
-                # What must have happened is not there in the trials of `is_met`.
+                # Trials by `is_met` take what must happen before an answer as done: they cannot try it.
                 tried = {
                     Way.LITERAL: self.wrong or choices,
                     Way.PLACE: place,

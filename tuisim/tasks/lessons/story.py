@@ -43,7 +43,7 @@ def _list_parts(judgement: Judgement) -> Iterator[str]:
 
 
 def _describe_condition(condition: Condition, event: Change, line: int) -> str:
-    """Return what met a condition; empty for those that only the program's text meets."""
+    """Return how a run met a condition, in words; empty for conditions that only the program's text meets."""
     when, where = f"at {event.time_s:.2f} s", f"at x = {event.x_mm:.0f} mm, y = {event.y_mm:.0f} mm"
     match condition:
         case ReachCondition(at_end=True):

@@ -44,7 +44,7 @@ class Trial:
 
 
 def list_trials(lesson: Lesson) -> list[Trial]:
-    """Return what has to be tried: each model answer as often as its step asks for, and each wrong program once."""
+    """Return the programs to be tried: each model answer as often as its step asks for, and each wrong program once."""
     trials_to_run = []
     seed = build_run_spec(merge_settings(lesson.settings)).seed
     for step in lesson.steps:
@@ -62,7 +62,7 @@ def list_trials(lesson: Lesson) -> list[Trial]:
 def build_task(
     lesson: Lesson, text: str, seed: int, index: int = 0, other: TrialWorld | None = None
 ) -> Task:
-    """Return the run of a program in the world of a lesson, or in another world of a step, with a seed.
+    """Return the task to run a program in the world of a lesson, or in another world of a step, with a seed.
 
     Raises:
         ConfigError: its magic line, or the world, is wrong.
@@ -82,7 +82,7 @@ def build_task(
 def try_elsewhere(
     lesson: Lesson, check: RunCheck, run: StoredRun
 ) -> list[tuple[TrialWorld, tuple[Judgement, ...]]]:
-    """Try the program of a run in the other worlds of a check, and judge that; blocks meanwhile.
+    """Run the program of a run in the other worlds of a check; return the judgements in each. Blocks meanwhile.
 
     Raises:
         ConfigError: the program's magic line is wrong there.
@@ -93,7 +93,7 @@ def try_elsewhere(
 
 
 def run_model(lesson: Lesson, step: LessonStep | None) -> Recording:
-    """Run the model answer of a step, or else of the lesson, in the lesson's world; blocks meanwhile. It is not stored.
+    """Run the model answer of a step, or else of the lesson, in the lesson's world; blocks. The run is not stored.
 
     Raises:
         TuisimError: it cannot run.
@@ -105,7 +105,7 @@ def run_model(lesson: Lesson, step: LessonStep | None) -> Recording:
         try:
             handle.wait()
             run = handle.stored()
-            # Its folder goes.
+            # All is read now, because the run's folder is removed.
             for view in (run.telemetry, run.output):
                 view.read_new()
                 view.holds = True
@@ -115,7 +115,7 @@ def run_model(lesson: Lesson, step: LessonStep | None) -> Recording:
 
 
 def find_faults(lesson: Lesson) -> list[str]:
-    """Try a lesson out, and return what is wrong, each as a line; blocks while its programs run.
+    """Run a lesson's programs, and return what is wrong with the lesson, each fault as a line; blocks meanwhile.
 
     Raises:
         ConfigError: a program's magic line, or the world, is wrong.
@@ -159,7 +159,7 @@ def find_warnings(lesson: Lesson) -> list[str]:
 def _find_trial_faults(
     lesson: Lesson, trial: Trial, results: Mapping[_Key, Result]
 ) -> Iterator[str]:
-    """Yield what is wrong with a trial."""
+    """Yield a line if a model answer does not pass its step, or a wrong program does."""
     check = trial.step.check
     assert isinstance(check, RunCheck)
     tried = [(results[key], other) for key, other in _list_worlds(trial)]

@@ -31,21 +31,21 @@ class Miss:
 
 @dataclass(frozen=True, slots=True)
 class MissesOfRun:
-    """The misses of a stored run."""
+    """A stored run, and where it missed goals."""
 
     run: StoredRun
     misses: tuple[Miss, ...]
 
     @property
     def mat(self) -> str:
-        """The mat on which it was."""
+        """The mat on which the run was."""
         return self.run.spec.world.background
 
 
 def build_class_maps(runs: Sequence[MissesOfRun]) -> list[Picture]:
     """Return a picture of each mat on which goals were missed; the mat with the most misses first.
 
-    A mat that can no longer be drawn is left out: the reports of its runs say why.
+    A mat that can no longer be drawn is left out: the reports of the runs on it say why.
     """
     count = Counter[str]()
     for run_misses in runs:

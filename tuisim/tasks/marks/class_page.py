@@ -31,11 +31,11 @@ def write_class_page(
 
     Args:
         sheet: The marks.
-        worlds: Those of the task.
+        worlds: The worlds of the task.
         students: Those whose programs are compared.
         ignored: Names of files that are no programs.
         target: The page.
-        tell: Is told what is done, how much of it, and how much there is.
+        tell: Receives the progress: words, the number of reports that are written, and of all.
         movies: Whether reports of runs that missed a goal have movies.
 
     Raises:

@@ -55,7 +55,7 @@ class SimilarGroup:
 
 @dataclass(frozen=True, slots=True)
 class Similar:
-    """What resembles each other in a class."""
+    """Which programs of a class resemble each other."""
 
     groups: tuple[SimilarGroup, ...]
     """The largest first."""
@@ -74,7 +74,7 @@ def _read_tokens(texts: Iterable[str]) -> list[Token]:
 
 
 def _compute_prints(tokens: Sequence[Token]) -> _Prints:
-    """Return the fingerprints of a program: of each window the least hash, the rightmost of equal ones."""
+    """Return the fingerprints of a program, with their lines: the least hash of each window, the last of equal ones."""
     kinds = [token.kind for token in tokens]
     hashes = [
         zlib.crc32("\0".join(kinds[start : start + TOKENS]).encode("utf-8", "surrogatepass"))
@@ -96,8 +96,8 @@ def find_similar(
     """Return which programs resemble each other.
 
     Args:
-        programs: The texts of the main program and its modules, by the student's name; of them, `MAX_TOKENS` count.
-        handed_out: Texts that everybody was given, such as a skeleton: what is in them is left out.
+        programs: The texts of the main program and its modules, by the student's name; only `MAX_TOKENS` are compared.
+        handed_out: Texts that everybody was given, such as a skeleton: passages from them do not count.
     """
     tokens = {
         name: program_tokens
@@ -134,7 +134,7 @@ def find_similar(
 
 
 def _group_equal(contents: Mapping[str, tuple[str, ...]]) -> list[tuple[str, ...]]:
-    """Return the names with equal contents, the largest group first."""
+    """Return groups of the names whose contents are equal, the largest group first."""
     groups: dict[tuple[str, ...], list[str]] = defaultdict(list)
     for name, content in contents.items():
         groups[content].append(name)
@@ -142,7 +142,7 @@ def _group_equal(contents: Mapping[str, tuple[str, ...]]) -> list[tuple[str, ...
 
 
 def _find_common(prints: Mapping[str, _Prints]) -> set[int]:
-    """Return the fingerprints that say nothing, because so many programs have them."""
+    """Return the fingerprints that too many programs have to show a resemblance."""
     count = Counter(key for program_prints in prints.values() for key in program_prints)
     limit = max(MIN_COMMON, COMMON_SHARE * len(prints))
     return {key for key, programs in count.items() if programs > limit}

@@ -81,13 +81,13 @@ def _build_entry(
 def _resolve_settings(
     student: Student, world: TrialWorld, options: Mapping[str, Any]
 ) -> ProgramSettings:
-    """Return the settings of a student's program: in a world of the task if it is said, else in that of its magic line.
+    """Return the settings of a student's program: of the task's world if it has one, else of the program's magic line.
 
-    In a world of the task, the rules are those for the program's library where the goals name no others.
+    If the goals name no profile, it follows from the program's library.
 
     Raises:
         ConfigError: the line, or a file that it names, is wrong.
-        ProfileError: a profile is named for another library.
+        ProfileError: the profile is one for another library.
     """
     assert student.source is not None
     if has_world_values(world.settings):
@@ -99,19 +99,19 @@ def _resolve_settings(
 
 
 def _check_background(spec: RunSpec) -> None:
-    """Read a picture of the student's own, to detect a damaged one before the runs.
+    """Read a mat's image that is not one of tuisim's, so that a damaged one is noticed before the runs.
 
     Raises:
         ConfigError: it is no picture, or it cannot be read.
     """
     image = background(spec.world.background).image
     if not image.is_relative_to(backgrounds_folder()):
-        # A run for which it cannot be read is one that this machine could not make.
+        # An image that cannot be read in a run would look like a fault of this machine.
         decode(read_file(image), image, spec.world.background_fit)
 
 
 def _describe_error(error: ConfigError, student: Student) -> str:
-    """Return what is wrong, with the student's files named as they are in the folder."""
+    """Return the text of an error, with paths of the student's files relative to the folder."""
     folder = student.path if student.path.is_dir() else student.path.parent
     text = str(error)
     for place in (os.path.abspath(folder), os.path.realpath(folder), str(folder)):

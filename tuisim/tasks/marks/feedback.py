@@ -28,7 +28,7 @@ _FORBIDDEN = frozenset('/\\:*?"<>|')
 
 
 def build_file_stems(names: Iterable[str]) -> list[str]:
-    """Return a distinct name for the files of each student, without characters that are odd in file names."""
+    """Return a name for the files of each student: all distinct, without characters that are odd in file names."""
     stems: list[str] = []
     taken: set[str] = set()
     for name in names:
@@ -99,7 +99,7 @@ def _describe_frequency(row: SheetRow) -> list[str]:
 
 
 def _describe_hidden(cells: Sequence[tuple[Goal, Cell]]) -> list[str]:
-    """Return what is told of hidden goals: their points together."""
+    """Return the lines on hidden goals, of which a student is told only the sum of their points."""
     max_points = math.fsum(max(column.points, 0.0) for column, _ in cells)
     points = math.fsum(cell.points for _, cell in cells)
     return (

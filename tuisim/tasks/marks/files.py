@@ -65,7 +65,7 @@ def copy_tree(folder: Path, place: Path) -> None:
 
 
 def copy_file(source: Path, target: Path) -> None:
-    """Copy a regular file without its holes; one that cannot be read is left out.
+    """Copy a regular file, without filling its holes; a file that cannot be read is left out.
 
     Raises:
         LogError: the copy cannot be written.
@@ -88,7 +88,7 @@ def copy_file(source: Path, target: Path) -> None:
 
 
 def _find_data(file: BinaryIO, place: int, size: int) -> tuple[int, int]:
-    """Return the first and the last position of the next bytes that are no hole."""
+    """Return where the next data after a position begin and end, in a file that may have holes."""
     try:
         start = os.lseek(file.fileno(), place, os.SEEK_DATA)
         return start, min(os.lseek(file.fileno(), start, os.SEEK_HOLE), size)

@@ -47,17 +47,17 @@ _WORKSHEET = ("Identifier", "Full name", "Last modified (grade)")
 
 @dataclass(frozen=True, slots=True)
 class Roster:
-    """Who the students of a class are."""
+    """The class list: who the students of a class are."""
 
     people: Mapping[str, Mapping[str, str]]
     """By the name of the submission: the cells of the row by the column's name in lower case."""
 
     def missing(self, names: Sequence[str]) -> list[str]:
-        """Return which submissions have no row."""
+        """Return the names of submissions that have no row in the list."""
         return [name for name in names if name not in self.people]
 
     def absent(self, names: Sequence[str]) -> list[str]:
-        """Return which rows have no submission."""
+        """Return the names in the list that have no submission."""
         return [name for name in self.people if name not in names]
 
 
@@ -129,7 +129,7 @@ def write_gradebook(
         ExportError: it cannot be written.
     """
     item = sheet.title or ITEM
-    # Students see them: what is hidden, and what takes points off, is only in the total.
+    # Students see these columns: hidden goals, and those that take points off, are only in the total.
     indices = [
         index
         for index, column in enumerate(sheet.columns)
@@ -165,7 +165,10 @@ def write_gradebook(
 def _choose_heads(
     kind: GradebookKind, sheet: Sheet, roster: Roster
 ) -> tuple[Sequence[str], str, str]:
-    """Return the columns that say who a student is, that of the total if it is no task's, and that of the feedback."""
+    """Return the columns that say who a student is, then the names for the columns of the total and of the feedback.
+
+    The total's name is empty if it is the title of the task.
+    """
     has_numbers = kind is GradebookKind.MOODLE and any(kind in row.ids for row in sheet.rows)
     if has_numbers and not roster.people:
         return _WORKSHEET, "Grade", "Feedback comments"

@@ -44,7 +44,7 @@ class HandIn:
 
 
 def group_hand_ins(paths: Iterable[Path]) -> list[HandIn]:
-    """Return files and folders by student, in their order; of several attempts the newest."""
+    """Return files and folders grouped by student, in their order; of several attempts only the newest."""
     groups: dict[tuple[GradebookKind | Path, str], list[tuple[re.Match[str], Path]]] = {}
     for path in paths:
         if (match := _MOODLE.fullmatch(path.name)) and len(_MOODLE_NUMBER.findall(path.name)) == 1:
@@ -76,7 +76,7 @@ def _join(kind: GradebookKind, id_: str, parts: list[tuple[re.Match[str], Path]]
 
 
 def gather_files(hand_in: HandIn, place: Path) -> Path:
-    """Return the file or folder of a student; files of several names are copied into a new folder.
+    """Return the file or folder of a student; several files are copied into a new folder, `place`.
 
     Raises:
         LogError, OSError: the copy cannot be written.
@@ -85,7 +85,7 @@ def gather_files(hand_in: HandIn, place: Path) -> Path:
     if not hand_in.name:
         return next(iter(hand_in.paths.values()))
     if folder is not None and os.path.isdir(folder):
-        # The online text is a text for the tutor.
+        # Moodle's online text is left out: it is for the tutor.
         return folder
     place.mkdir()
     for file, path in hand_in.paths.items():

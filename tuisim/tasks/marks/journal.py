@@ -20,17 +20,17 @@ FOLDER = "marks"
 
 
 def build_journal_path(goals: Path) -> Path:
-    """Return the journal of a goals file, which depends on its path."""
+    """Return the file of the journal for a goals file, named after a hash of the goals file's path."""
     key = hashlib.sha256(bytes(goals.resolve())).hexdigest()[:32]
     return home_folder() / FOLDER / f"{key}.jsonl"
 
 
 class Journal:
-    """Outcomes by the key of their task, as a context manager that appends to a file.
+    """The outcomes of a marking so far, by a key of each run: a context manager that appends them to a file.
 
     Args:
         path: The file.
-        resumes: Whether earlier outcomes are read; otherwise they are discarded.
+        resumes: Whether outcomes in the file are read; otherwise they are discarded.
 
     Raises:
         LogError: by `__enter__` and `add`, if the file cannot be read or written.
@@ -68,7 +68,7 @@ class Journal:
             raise self._build_error(error) from error
 
     def _read(self) -> dict[str, Outcome]:
-        """Return what can be read: an interrupted process may have left an incomplete line."""
+        """Return the outcomes in the file, without incomplete lines that an interrupted process has left."""
         outcomes = {}
         try:
             lines = self._path.read_bytes().split(b"\n")

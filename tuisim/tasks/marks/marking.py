@@ -40,7 +40,7 @@ GRADEBOOKS: Sequence[str] = [*GradebookKind]
 
 @dataclass(frozen=True, slots=True)
 class MarkRequest:
-    """What is marked, how programs run, and what is written."""
+    """What is to be marked, how programs run, and which files are written."""
 
     task: GoalsFile
     folders: Sequence[str]
@@ -74,7 +74,7 @@ class MarkRequest:
     """A folder for what is told to each student."""
 
     def list_own_files(self) -> frozenset[Path]:
-        """Return what may lie among the students' files without being one: the goals, and results; resolved."""
+        """Return the marking's own files, which may lie among the students': goals, lists and results; resolved."""
         files = [self.task.path, self.roster, self.overrides, self.feedback]
         files += self.gradebooks.values()
         for target in self.exports:
@@ -84,7 +84,7 @@ class MarkRequest:
 
 @contextmanager
 def open_marking(request: MarkRequest) -> Iterator[Marking]:
-    """Read what was handed in; what is unpacked of it is there in the block.
+    """Yield a marking whose hand-ins are unpacked into a folder that is removed after the block.
 
     Raises:
         ConfigError: a folder, the class list or the overrides are wrong.
@@ -97,9 +97,9 @@ class Marking:
     """A class that is marked: `read_programs`, then `run`, then `build_sheet` and `list_exports`.
 
     Attributes:
-        students: In the order of the sheet; what is wrong with their programs is known once these are read.
+        students: In the order of the sheet; problems of their programs are known after `read_programs`.
         ignored: Names of files that are no programs.
-        left_out: Names of what nobody has handed in.
+        left_out: Names of what nobody has handed in, such as `__MACOSX`.
         unlisted: Names of students who are not in the class list.
         absent: Names in the class list without a submission.
         outcomes: Those of the runs so far, by the name of the student.
@@ -151,7 +151,7 @@ class Marking:
         )
 
     def run(self, tell: Tell, *, isolate: bool) -> None:
-        """Run what is to be run, until all outcomes are known.
+        """Run all programs, except what the journal has, until all outcomes are known.
 
         Raises:
             LogError: the journal cannot be read or written.
@@ -194,7 +194,7 @@ class Marking:
         return [(goal, reasons[goal], names[goal]) for goal in sorted(reasons)]
 
     def build_sheet(self) -> Sheet:
-        """Return the marks of the class, with what the tutor says."""
+        """Return the marks of the class, changed by the tutor's overrides."""
         return apply_overrides(self._build_sheet(self.students), self._overrides)
 
     def build_sheet_so_far(self) -> Sheet:
@@ -220,7 +220,7 @@ class Marking:
         )
 
     def list_exports(self, sheet: Sheet, tell: Tell) -> Iterator[tuple[Path, Callable[[], None]]]:
-        """Yield what is to be written: each file or folder, and what writes it, which may raise ExportError."""
+        """Yield each file or folder to be written, with the function that writes it, which may raise ExportError."""
         request = self._request
         sources = [student.text for student in self.students]
         for target in request.exports:

@@ -60,13 +60,13 @@ class GoalOutcome:
 
     @property
     def is_good(self) -> bool:
-        """Whether it is as it should be."""
+        """Whether the goal was met or, if it takes points off, not met; not if that is unknown."""
         return self.met is not self.is_penalty and not self.is_unknown
 
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """One run of a student's program, or with a seed all of its runs in the worlds of the task: see `merge_worlds`."""
+    """What came out of one run of a student's program, or of a seed in all worlds of the task: see `merge_worlds`."""
 
     seed: int
     end: str
@@ -89,19 +89,19 @@ class Outcome:
 
     @property
     def counts(self) -> bool:
-        """Whether it is the program's: not if this machine could not start it, or had no room for its recording."""
+        """Whether it counts: not if this machine could not start the program, or had no room for its recording."""
         return bool(self.end) and self.end != End.DISK_FULL
 
     @property
     def is_in_doubt(self) -> bool:
-        """Whether it does not count, and the program may have seen to that: it would leave out a run that it loses."""
+        """Whether it does not count, but the program may have caused that, to get rid of a run that it loses."""
         return self.end == End.DISK_FULL or (not self.end and self.failure.startswith(UNJUDGED))
 
     @property
     def gave_up(self) -> bool:
         """Whether it hung, flooded or died with nothing earned, so that further runs would only cost as much time.
 
-        One that has met a goal must meet it in the other runs, too.
+        Not of one that has met a goal: it must meet the goal in the other runs, too.
         """
         return self.end in _GIVEN_UP and not any(
             goal.met and not goal.is_penalty for goal in self.goals
@@ -115,9 +115,9 @@ def build_outcome(
 
     Args:
         result: The result of the task.
-        seed: Its seed.
+        seed: The seed of the task.
         folder: The folder in which the program ran; its path does not appear in the outcome.
-        world: Another world, of whose goals only some may count.
+        world: The world of the run, only some of whose goals may count; None for the first.
     """
     failure = (
         "" if result.end == End.FINISHED and not result.exit_code else _describe_failure(result)
@@ -159,11 +159,11 @@ def build_outcome(
 def merge_worlds(
     outcomes: Sequence[Outcome], seeds: Sequence[int], worlds: Sequence[str] = ("",)
 ) -> list[Outcome]:
-    """Return for each seed what came out of it: a goal is met if it is met in every world where it counts.
+    """Return for each seed one outcome of all worlds: a goal is met if it is met in every world where it counts.
 
-    One that takes points off is met if it is in any. Seeds are left out for which a run is missing, or does not count;
-    all are if one is in doubt.
-    Where the program gave up with the first seed, so it does with the others.
+    A goal that takes points off is met if it is met in any. A seed is left out if one of its runs is missing or does
+    not count; all seeds are if an outcome is in doubt. If the program gave up with the first seed in a world, that
+    outcome stands for the other seeds there, too.
 
     Args:
         outcomes: Those of one student, in any order.
@@ -191,7 +191,7 @@ def merge_worlds(
 
 
 def _merge(seed: int, parts: Sequence[Outcome]) -> Outcome:
-    """Return what came out of the runs with a seed, the one in the first world first."""
+    """Return one outcome of the runs with a seed in all worlds; `parts` begins with the one in the first world."""
     # What a student may be told comes before what is hidden.
     parts = sorted(parts, key=lambda part: part.hidden)
     goals: dict[str, GoalOutcome] = {}
@@ -215,7 +215,7 @@ def _merge(seed: int, parts: Sequence[Outcome]) -> Outcome:
 
 
 def _is_weightier(goal: GoalOutcome, before: GoalOutcome | None) -> bool:
-    """Return whether a world decides on a goal, not those before: a fault counts most, then what is not known."""
+    """Return whether a goal's outcome in a world overrides the one before: a fault first, then an unknown one."""
     if before is None or before.is_good:
         return True
     return before.is_unknown and not (goal.is_good or goal.is_unknown)
@@ -229,9 +229,9 @@ def find_unknown_goals(outcomes: Iterable[Outcome]) -> dict[str, str]:
 
 
 def make_portable(text: str, folder: Path | str) -> str:
-    """Return a text without addresses in memory, and without what its paths say about this machine.
+    """Return a text without addresses in memory, and without the parts of paths that depend on this machine.
 
-    Of files in the folder in which the program ran, in those of modules, and of Python, the path in the folder is left.
+    Paths in the folder in which the program ran, in those of modules, and in Python's become relative to it.
     """
     if "/" in text:
         modules = {
@@ -246,7 +246,7 @@ def make_portable(text: str, folder: Path | str) -> str:
 
 
 def _find_cause(judgement: Judgement, judgements: Mapping[str, Judgement]) -> Judgement:
-    """Return the judgement that says why a goal was missed: of goals that must all be met, the first that was not."""
+    """Return the judgement that says why a goal was missed; for `all`, that of the first of its goals not met."""
     if isinstance(judgement.goal.condition, AllOf):
         for name in judgement.goal.condition.goals:
             if judgements[name].state is not GoalState.MET:
@@ -259,7 +259,7 @@ def _describe_failure(result: Result) -> str:
     if result.end == End.STOPPED:
         return "stopped, because it took too long"
     if result.end == End.STALLED:
-        # Who has noticed it, the program's process or its host, depends on the machine.
+        # The summary depends on who noticed it first, the program's process or its host.
         return "stuck: no simulated time passed"
     lines = source_lines(result.error.rstrip("\n"))
     return (

@@ -28,7 +28,7 @@ TUTOR_REASON = "given by the tutor"
 
 @dataclass(frozen=True, slots=True)
 class Override:
-    """What a tutor says about one student."""
+    """A tutor's changes to the marks of one student."""
 
     points: float | None = None
     """Of the whole task; None if they follow from the goals."""
@@ -47,7 +47,7 @@ def read_overrides(
         students: The names of the students.
 
     Raises:
-        ConfigError: it cannot be read, or names a student, a goal or a key that there is not.
+        ConfigError: the file cannot be read, or names a student, a goal or a key that does not exist.
     """
     location = files.Location(str(path))
     overrides: dict[str, Override] = {}
@@ -64,7 +64,7 @@ def read_overrides(
 
 
 def apply_overrides(sheet: Sheet, overrides: Mapping[str, Override]) -> Sheet:
-    """Return the sheet with what the tutor says; what the runs have earned is kept in `earned`."""
+    """Return the sheet with a tutor's overrides; what the runs have earned is kept in `earned`."""
     rows = tuple(
         _override_row(row, sheet.columns, overrides[row.name]) if row.name in overrides else row
         for row in sheet.rows

@@ -28,7 +28,7 @@ Links = Mapping[tuple[str, str, int], str]
 
 @dataclass(frozen=True, slots=True)
 class GoalStatistics:
-    """How a class did with one goal."""
+    """How well a class did with one goal."""
 
     goal: Goal
     met: int
@@ -43,7 +43,7 @@ class GoalStatistics:
 
 @dataclass(frozen=True, slots=True)
 class _Mark:
-    """How a student did with one goal."""
+    """A cell of the page: how a student did with one goal."""
 
     points: float
     level: str
@@ -69,7 +69,7 @@ def build_page(
     similar: Similar | None = None,
     maps: Sequence[Picture] = (),
 ) -> str:
-    """Return the page.
+    """Return the page of a class in HTML.
 
     Args:
         links: The reports of runs that were kept.
@@ -119,7 +119,7 @@ def _mark(cell: Cell, column: Goal, runs: int) -> _Mark:
 
 
 def _find_reports(row: SheetRow, links: Links) -> dict[str, list[tuple[str, str]]]:
-    """Return the reports of a student by world: their paths, each with its seeds in words."""
+    """Return the reports of a student by world: the path of each, and the seeds of its runs in words."""
     seeds: dict[str, dict[str, list[int]]] = {}
     for outcome in row.outcomes:
         if path := links.get((row.name, outcome.world, outcome.seed)):
@@ -144,7 +144,7 @@ def _format_ranges(seeds: Sequence[int]) -> str:
 
 
 def _tabulate(similar: Similar) -> Mapping[str, object]:
-    """Return what the page shows of programs that resemble each other."""
+    """Return the tables of programs that resemble each other, by the names that the template of the page uses."""
     heads = ("", "equal except for names, numbers and texts", "of these exactly equal")
     groups = [
         (
@@ -180,7 +180,7 @@ def compute_goal_statistics(sheet: Sheet) -> tuple[GoalStatistics, ...]:
 def compute_distribution(sheet: Sheet) -> tuple[tuple[float, float, int], ...]:
     """Return how many students have how many points: lower end, upper end and number for equal parts of the scale.
 
-    The upper end belongs to the next part, but for the last one; fewer and more points count at the ends.
+    A student at the border of two parts counts in the upper one; one beyond the scale in the first or the last.
     """
     max_points = sheet.most_points
     known = [row.points for row in sheet.rows if not math.isnan(row.points)]
@@ -194,5 +194,5 @@ def compute_distribution(sheet: Sheet) -> tuple[tuple[float, float, int], ...]:
 
 
 def build_reports_folder(file: Path) -> Path:
-    """Return the folder of the reports that the page in a file links to."""
+    """Return the path of the folder with the reports to which a page links."""
     return file.with_name(f"{file.stem}-runs")

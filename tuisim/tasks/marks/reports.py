@@ -58,13 +58,11 @@ def write_reports(
     """Write the reports of kept runs; yield each once it is written.
 
     Runs of a student that recorded the same have one report. Runs that were removed from the store are left out.
-    Reports of an earlier page of this name are replaced.
+    Reports of an earlier page of this name are replaced. If a report cannot be made, its `fault` says why.
 
     Args:
         worlds: The worlds of the task, the first one first.
         movies: Whether the report of a run that missed a goal has a movie with the goals on it.
-
-    A report that cannot be made has a fault.
 
     Raises:
         ExportError: a report cannot be written.
@@ -137,7 +135,7 @@ def _load_stored(store: RunStore, run_id: str) -> StoredRun | None:
 
 
 def _make_portable(run: StoredRun) -> StoredRun:
-    """Return a run whose end is described without what differs from machine to machine."""
+    """Return a run with an end whose texts are the same on every machine, see `make_portable`."""
     if run.end is None:
         return run
     folder = run.program.working_directory
@@ -166,7 +164,7 @@ def _find_misses(
     outcome: Outcome,
     run: StoredRun,
 ) -> tuple[Miss, ...]:
-    """Return where a run missed goals: those that were decided nowhere, at the robot's last place."""
+    """Return where a run missed goals; a goal that was not decided at a place is put where the robot was last."""
     last = run.telemetry.last()
     missed = {goal.name: goal for goal in outcome.goals if not goal.is_good}
     misses = []
@@ -214,7 +212,7 @@ def _list_verdicts(
 
 
 def _judge_goals(goals: Sequence[Goal], outcome: Outcome, run: StoredRun) -> dict[str, Change]:
-    """Return when and where goals were met or missed, of those that were at a time and a place."""
+    """Return when and where goals were met or missed, without those that only the program's text decides."""
     if outcome.end == End.FALSIFIED:
         return {}
     # Judging is slow to import, and most runs have been judged.
@@ -223,7 +221,7 @@ def _judge_goals(goals: Sequence[Goal], outcome: Outcome, run: StoredRun) -> dic
     try:
         judgements = judge(goals, run)
     except LogError:
-        # What is known of the run is in its outcome.
+        # The recording is damaged: the outcome has what is known of the run.
         return {}
     return {
         judgement.goal.name: judgement.event

@@ -33,7 +33,7 @@ REAL_TIME_LIMIT_S = 120.0
 
 @dataclass(frozen=True, slots=True)
 class MarkPlan:
-    """What is run for each student."""
+    """How the programs of all students are run."""
 
     worlds: tuple[TrialWorld, ...]
     """Those of the task, the first one first."""
@@ -78,10 +78,8 @@ def run_entries(
     """Run every student's program with every seed; yield names of students and outcomes as they become known.
 
     A program that hangs, floods or dies with the first seed is not run with the others; if it does so in the first
-    world, nor in the others. Outcomes that the journal knows are not run again. Closing the iterator stops what is
-    running.
-
-    What goes wrong with one student is an outcome that does not count.
+    world, nor in the other worlds. Outcomes that the journal has are not run again. Closing the iterator stops what is
+    running. An unexpected error with one student gives an outcome that does not count.
 
     Raises:
         LogError: the journal cannot be read or written.
@@ -115,7 +113,7 @@ def run_entries(
 
 
 def count_runs(outcomes: Sequence[Outcome], plan: MarkPlan) -> int:
-    """Return how many runs a student's program has in all, as far as its outcomes tell."""
+    """Return how many runs a student's program has in all: fewer if outcomes show that it has given up."""
     given_up = {
         outcome.world for outcome in outcomes if outcome.gave_up and outcome.seed == plan.seeds[0]
     }
@@ -161,7 +159,7 @@ def _run(turns: Sequence[_Turn], plan: MarkPlan, journal: Journal) -> Iterator[t
     if not unknown:
         return
     with create_temporary_home("tuisim-mark-") as home:
-        # Its resolved path is what a program sees.
+        # A program sees the resolved path: `make_portable` must know that one.
         workspace = home.resolve()
         uncopied: list[tuple[str, Outcome]] = []
         for result in run_many(_build_tasks(unknown, plan, workspace, uncopied), plan.jobs):

@@ -35,7 +35,7 @@ GOAL_PREFIX = "goal_"
 
 @dataclass(frozen=True, slots=True)
 class Cell:
-    """One goal of one student."""
+    """How one student did with one goal."""
 
     points: float
     """Mean over the runs; NaN if one could not be judged."""
@@ -53,7 +53,7 @@ class Cell:
 
 @dataclass(frozen=True, slots=True)
 class SheetRow:
-    """One student."""
+    """The marks of one student."""
 
     name: str
     program: str
@@ -142,7 +142,7 @@ class Sheet:
 
 
 def list_columns(goals: Sequence[Goal]) -> list[Goal]:
-    """Return the goals that a student is shown, in words: not those that are only parts of others."""
+    """Return the goals that a student is shown, in words; others, without points and words, are parts of these."""
     return [replace(goal, say=goal.say or goal.name) for goal in goals if goal.points or goal.say]
 
 
@@ -214,7 +214,7 @@ def build_row(
 def _build_empty_row(
     student: Student, columns: Sequence[Goal], outcomes: Sequence[Outcome]
 ) -> SheetRow:
-    """Return the row of a student without marks; the points are NaN unless that is the student's doing."""
+    """Return the row of a student without runs that count: with NaN as points, or 0 if the hand-in is to blame."""
     failed = next(
         (
             outcome
@@ -238,7 +238,7 @@ def _build_empty_row(
 
 
 def _compute_points(columns: Sequence[Goal], outcome: Outcome) -> float:
-    """Return the points of one run; one of which nothing is recorded has no judgements, and no points."""
+    """Return the points of one run; a run without a recording has no judgements, and no points."""
     met = {goal.name for goal in outcome.goals if goal.met}
     unknown = {goal.name for goal in outcome.goals if goal.is_unknown}
     return sum_points(
@@ -275,7 +275,7 @@ def _has_missed(outcome: Outcome, columns: Sequence[Goal]) -> bool:
 
 
 def _find_reason(outcome: Outcome, columns: Sequence[Goal]) -> tuple[str, int]:
-    """Return why a run failed, and the program's line: an error comes before the goals that it prevented."""
+    """Return why a run failed, and the program's line: its error if it had one, else the first goal that it missed."""
     names = {column.name: column.say for column in columns}
     missed = [goal for goal in outcome.goals if not goal.is_good and goal.name in names]
     if outcome.failure:
@@ -285,13 +285,13 @@ def _find_reason(outcome: Outcome, columns: Sequence[Goal]) -> tuple[str, int]:
 
 
 def round_points(value: float) -> float:
-    """Return points or a share as they are shown and stored."""
-    # Without the sign of a zero.
+    """Return points or a share, rounded as they are shown and stored."""
+    # Adding 0 makes -0 a 0.
     return round(value, DIGITS) + 0.0
 
 
 def _cut_middle(name: str, max_length: int) -> str:
-    # Names of files that belong together differ at either end.
+    # Similar names differ at one of their ends: both are kept.
     end = max_length // 3
     return name if len(name) <= max_length else f"{name[: max_length - end - 1]}…{name[-end:]}"
 

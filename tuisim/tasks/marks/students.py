@@ -68,7 +68,7 @@ class Student:
 
 @dataclass(frozen=True, slots=True)
 class StudentsFound:
-    """The contents of the folders of a class."""
+    """The students in the folders of a class, and names of other files."""
 
     students: tuple[Student, ...]
     ignored: tuple[str, ...]
@@ -79,7 +79,7 @@ class StudentsFound:
 
 @dataclass(slots=True)
 class _Search:
-    """How hand-ins are read, and what is left out."""
+    """How hand-ins are read, and the names of what is left out."""
 
     program: str
     unpacked: Path | None
@@ -88,7 +88,7 @@ class _Search:
     places: int = 0
 
     def build_place(self, name: str) -> Path:
-        """Return the path of a folder for what is unpacked; it has the name, unless that leads elsewhere."""
+        """Return the path of a new folder for what is unpacked, with a name; names such as `..` are replaced."""
         assert self.unpacked is not None
         self.places += 1
         place = self.unpacked / str(self.places)
@@ -96,7 +96,7 @@ class _Search:
         return place / (name if name.strip(".") else "files")
 
     def unpack(self, path: Path) -> Path:
-        """Unpack a zip, if zips are unpacked; return the folder, or the path as it is."""
+        """Unpack a zip and return the folder; return other paths, or any without a folder to unpack to, as they are."""
         if self.unpacked is None or path.suffix.lower() != ZIP_SUFFIX or not os.path.isfile(path):
             return path
         place = self.build_place(path.stem)
@@ -104,7 +104,7 @@ class _Search:
         return place
 
     def list_names(self, folder: Path) -> list[str]:
-        """Return the names in a folder that may be a student's, in order."""
+        """Return the names in a folder that may be a student's, in order; note the others as left out."""
         names = os.listdir(folder)
         left_out = LEFT_OUT(str(folder), names)
         self.left_out |= dict.fromkeys(sorted(map(_quote_name, left_out)))
@@ -177,7 +177,7 @@ def _resolve_links(path: Path) -> Path:
 
 
 def _list_entries(folder: Path, excluded: Collection[Path], search: _Search) -> Iterator[Path]:
-    """Return the visible entries of a folder by name."""
+    """Return the entries of a folder that may belong to a student, in the order of their names."""
     try:
         names = search.list_names(folder)
     except OSError as error:
@@ -191,11 +191,10 @@ def _list_entries(folder: Path, excluded: Collection[Path], search: _Search) -> 
 
 
 def _make_names_unique(students: Iterable[_Submission]) -> Iterator[Student]:
-    """Return the students with names that are unique.
+    """Yield the students with unique names.
 
-    A file whose name without `.py` is also that of a neighbour keeps the ending. Where names are the same in several
-    folders, they have the name of the folder before them, and otherwise a number after them, that of the
-    gradebook where it gives one.
+    If the name of a file without `.py` is also that of a neighbour, it keeps the suffix. Equal names from several
+    folders get the name of the folder in front; those from a gradebook its number behind; others a number.
     """
     every = [(_resolve_links(folder), student, own) for folder, own, student in students]
     beside = Counter((folder, student.name) for folder, student, _ in every)
@@ -215,7 +214,7 @@ def _make_names_unique(students: Iterable[_Submission]) -> Iterator[Student]:
     taken: set[str] = set()
     for name, (_, student, _) in zip(full, every, strict=True):
         unique, number = name, 1
-        # Also the name with a number may be another one's.
+        # The name with a number may be taken, too.
         while unique in taken or (number > 1 and unique in full):
             number += 1
             unique = f"{name} ({number})"
@@ -250,7 +249,7 @@ def _read_student(path: Path, search: _Search) -> Student:
         if not os.path.isdir(path) and (why := _explain_no_program(own)):
             return Student(name, path, problem=f"{own}: {why}")
         if not os.path.isdir(path):
-            # Its copy has the name of the file.
+            # A program in one file is copied under that file's name.
             return _read(Student(name, path, own), path, cell)
         if refused := _explain_refusal(path, name, search):
             return Student(name, path, problem=refused)
@@ -262,7 +261,7 @@ def _read_student(path: Path, search: _Search) -> Student:
 
 
 def _enter_folder(path: Path, search: _Search) -> Path:
-    """Return the folder with a student's files: one that is alone in its folder is entered, and so is a zip, once.
+    """Return the folder with a student's files: a folder that is alone in its folder is entered, and one zip.
 
     Raises:
         ConfigError: a zip cannot be unpacked.
@@ -283,17 +282,17 @@ def _enter_folder(path: Path, search: _Search) -> Path:
 
 
 def _explain_no_program(name: str) -> str:
-    """Return what a student is to do with a file that is no program, but was meant as one; empty for others."""
+    """Return what a student must do if the suffix of a file shows that it was meant as a program; empty for others."""
     return next((why for ending, why in _NO_PROGRAM.items() if name.lower().endswith(ending)), "")
 
 
 def _own_name(path: Path) -> str:
-    """Return the name of a file or folder as it is shown; a path such as `.` ends in none."""
+    """Return the name of a file or folder as it is shown; for a path such as `.`, the name of the folder itself."""
     return _quote_name(path.name if path.name not in ("", "..") else _resolve_links(path).name)
 
 
 def _explain_refusal(folder: Path, name: str, search: _Search) -> str:
-    """Return why what is in a student's folder is not copied, as a sentence; empty if it is."""
+    """Return why a student's folder is not copied, as a sentence; empty if it is."""
     own = _resolve_links(folder)
     files = size = 0
     inside = [folder]
@@ -323,8 +322,8 @@ def _explain_refusal(folder: Path, name: str, search: _Search) -> str:
 def find_outside_option(student: Student) -> str:
     """Return the option of the student's magic line that names a file outside the folder; empty if there is none.
 
-    Such a file would be read with the rights of whoever marks. Beside a program that is a file, the folders and the
-    programs are those of other students.
+    That file would be read with the rights of whoever marks. If the hand-in is a single file, folders and programs
+    beside it are other students', and are outside, too.
     """
     assert student.source is not None
     is_file = not student.path.is_dir()
@@ -348,7 +347,7 @@ def _quote_name(name: str) -> str:
 
 
 def _read(student: Student, path: Path, cell: str) -> Student:
-    """Return a student with the program of a file.
+    """Return a student with the program in a file, or with the problem if it cannot be read.
 
     Args:
         cell: The number of the program cell, if the file is a notebook with several.
@@ -370,7 +369,7 @@ def _read_program_cell(path: Path, cell: str) -> ProgramSource:
     """Return the program of a notebook.
 
     Raises:
-        ConfigError: it cannot be read, has none, or it is not clear which one it is.
+        ConfigError: it cannot be read, has no program, or it is not clear which cell is the program.
     """
     cells = choose_programs(str(path))
     if len(cells) > 1 and cell:
@@ -391,7 +390,7 @@ def _find_main(folder: Path, program: str) -> str:
     """Return the name of a folder's main program.
 
     Raises:
-        ConfigError: there is none, or it is not clear which one it is.
+        ConfigError: there is none, or it is not clear which file is the main program.
         OSError: the folder cannot be read.
     """
     named = program.partition("#")[0]

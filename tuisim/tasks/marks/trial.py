@@ -40,7 +40,7 @@ STILL_S = 30.0
 
 
 class TrialRole(StrEnum):
-    """What a program that is tried is."""
+    """What a program is, with which a task is tried."""
 
     EMPTY = "empty program"
     STILL = "stands still"
@@ -59,7 +59,7 @@ _DOES = {
 
 @dataclass(frozen=True, slots=True)
 class TaskTrial:
-    """What the programs that were tried earn."""
+    """What the programs earned with which a task was tried."""
 
     rows: tuple[tuple[str, str, str], ...]
     """The name of each program, its points, and which goals it meets."""
@@ -80,7 +80,7 @@ def run_trial(
     Args:
         task: The task.
         wrong: Files or folders of programs that must not get all points.
-        seeds: Those with which each program is run.
+        seeds: The seeds with which each program is run.
         time_limit_s: Simulated seconds that a program may take.
         jobs: Number of workers; 0 is one for each processor.
 
@@ -115,7 +115,7 @@ def run_trial(
 
 
 def _describe_earned(sheet: Sheet, row: SheetRow) -> tuple[str, str]:
-    """Return the points of a program, and which goals it meets."""
+    """Return the points of a program, and the names of the goals that it meets, or `all`."""
     met = [column.name for column, cell in zip(sheet.columns, row.cells, strict=True) if cell.met]
     good = all(
         (cell.met == row.runs) is (column.points >= 0)
@@ -126,7 +126,7 @@ def _describe_earned(sheet: Sheet, row: SheetRow) -> tuple[str, str]:
 
 
 def _write_fakes(task: GoalsFile, folder: Path) -> Iterator[tuple[TrialRole, Student]]:
-    """Write the programs that do nothing of what is asked for."""
+    """Yield programs that do not do the task: an empty one, one that waits, and one that prints what goals ask for."""
     still = f"import time\n\ntime.sleep({STILL_S:g})\n"
     texts = {TrialRole.EMPTY: "", TrialRole.STILL: still}
     if lines := answer_lines(task.goals):
@@ -184,7 +184,7 @@ def _find_faults(sheet: Sheet, roles: Sequence[TrialRole]) -> Iterator[str]:
 
 
 def _suggest_remedy(goal: Goal) -> str:
-    """Return how to change a goal that a program meets without doing anything for it."""
+    """Return how to change a goal that a program meets although it does nothing for it."""
     for part in goal.parts:
         match part:
             case FinishCondition():

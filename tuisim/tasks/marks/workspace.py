@@ -40,11 +40,11 @@ def copy_files(student: Student, place: Path) -> Path:
 
 
 def build_program(student: Student, folder: Path, **changes: Any) -> Program:
-    """Return a student's main program as one of the copy in a folder, which is its working directory."""
+    """Return a student's main program, to be run from a copy of the files in a folder, its working directory."""
     assert student.source is not None
     program = student.source.program
     if program.module_folder:
-        # A cell of a notebook is no file.
+        # The program is a cell of a notebook, which has no file of its own.
         return replace(program, module_folder=str(folder), working_directory=str(folder), **changes)
     return replace(
         program, path=str(folder / student.main), working_directory=str(folder), **changes
@@ -58,7 +58,7 @@ def compute_digest(student: Student) -> str:
         relative = os.path.relpath(path, student.path.parent)
         digest.update(os.fsencode(relative) + b"\0")
         try:
-            # A link is what it says: what it leads to may be no file of the student's.
+            # Only the target's path: the target itself may not be the student's file.
             if path.is_symlink():
                 digest.update(hashlib.sha256(os.fsencode(os.readlink(path))).digest())
             else:
@@ -69,7 +69,7 @@ def compute_digest(student: Student) -> str:
 
 
 def read_modules(student: Student) -> Iterator[str]:
-    """Yield the texts of the main program and of other Python files of a student, as far as they are compared."""
+    """Yield the texts of a student's main program and other Python files, up to the size that is compared."""
     yield student.text
     left = _MAX_MODULES_BYTES
     for path in _list_files(student.path) if os.path.isdir(student.path) else ():

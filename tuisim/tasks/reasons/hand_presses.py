@@ -11,7 +11,7 @@ from tuisim.engine.protocol import SetButtons, UserAction
 
 @dataclass(frozen=True, slots=True)
 class HandPress:
-    """Something that was held by hand."""
+    """A button or touch sensor that was pressed by hand for some time."""
 
     name: str
     """One of `PRESSABLE`."""
@@ -22,13 +22,13 @@ class HandPress:
 def find_presses(
     actions: Iterable[UserAction], names: Sequence[str], hz: int, ticks: int
 ) -> tuple[HandPress, ...]:
-    """Return what was pressed of some names, in the order of the ends of the presses.
+    """Return the presses of some names, in the order in which they end.
 
     Args:
         actions: The user's actions in a run.
         names: Some of `PRESSABLE`.
         hz: Ticks in a second.
-        ticks: How long the run is; what is still held then ends there.
+        ticks: Length of the run, at which presses end that are still held.
     """
     since: dict[str, int] = {}
     presses: list[HandPress] = []
@@ -43,5 +43,5 @@ def find_presses(
 
 
 def find_hits(presses: Iterable[HandPress], names: Sequence[str]) -> list[HandPress]:
-    """Return the presses of some names, or of all touch sensors; all if there are no names."""
+    """Return the presses of some names, or of all touch sensors at once; every press if there are no names."""
     return [press for press in presses if not names or press.name in (*names, TOUCH)]

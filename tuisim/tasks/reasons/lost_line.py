@@ -50,7 +50,7 @@ _SOON_S, _MIN_TURN_DPS = 0.4, 5.0
 
 @dataclass(frozen=True, slots=True)
 class LostLine:
-    """A time in which a robot that followed a line did not see it."""
+    """A time in which a robot that followed a line did not see the line."""
 
     tick: int
     """The last one at which a sensor saw the line."""
@@ -97,14 +97,14 @@ def find_lost_lines(
 def _name_loss(
     dark: Mapping[str, Bools], watched: Collection[str], left: int, hz: int, is_black: bool
 ) -> LostLine:
-    """Return the loss after a tick by the sensor that saw the line last, if possible one that is read.
+    """Return a loss of the line, by the sensor that saw the line last; a sensor that the program reads is preferred.
 
     Args:
-        dark: Where each sensor saw the line, by name.
-        watched: The names of those that are read.
-        left: The tick.
+        dark: For each sensor, by name, whether it saw the line at each tick.
+        watched: The names of the sensors that the program reads.
+        left: The tick at which the line was last seen.
         hz: Ticks per second.
-        is_black: Whether the line is.
+        is_black: Whether the line is black.
     """
     seen = {name: _find_last(true[: left + 1]) for name, true in dark.items()}
     recent = [name for name in watched if seen[name] >= left - _MIN_GAP_S * hz]
@@ -116,7 +116,7 @@ def _name_loss(
 
 
 def is_on_mat(records: Array, sensor: ColorSensorSpec) -> Bools:
-    """Return at which ticks all that a sensor sees is on the mat, shape (n,)."""
+    """Return for each tick whether the whole spot that a sensor sees is on the mat, shape (n,)."""
     x_mm, y_mm = compute_world_points_mm(records, sensor.x_mm, sensor.y_mm)
     edge_mm = sensor.diameter_mm / 2
     in_width = (x_mm >= edge_mm) & (x_mm <= FIELD_WIDTH_MM - edge_mm)
@@ -135,7 +135,7 @@ def compute_reflected_percent(
 
 @dataclass(frozen=True, slots=True)
 class _Seen:
-    """Where the line was under the sensors and the points between them."""
+    """When the line was under each of some points: the sensors, and points between them."""
 
     is_dark: list[Bools]
     """Whether at least its edge was under each, at each tick."""
@@ -145,7 +145,7 @@ class _Seen:
 
 
 def _find_points(eyes: Sequence[ColorSensorSpec]) -> list[ColorSensorSpec]:
-    """Return the sensors, and sensors that would fill the space between them."""
+    """Return the sensors, and as many made-up sensors between them as it takes to fill the gaps."""
     points = [*eyes]
     for eye, other in pairwise(eyes):
         apart_mm = np.hypot(other.x_mm - eye.x_mm, other.y_mm - eye.y_mm)
@@ -160,7 +160,7 @@ def _find_points(eyes: Sequence[ColorSensorSpec]) -> list[ColorSensorSpec]:
 def _see_line(
     records: Array, spec: RunSpec, mat: Field, points: Sequence[ColorSensorSpec]
 ) -> _Seen | None:
-    """Return where the line was under some points; None if nothing on the mat that they saw has enough contrast."""
+    """Return when the line was under each point; None if what they saw of the mat has too little contrast."""
     on = [is_on_mat(records, point) for point in points]
     light = [compute_reflected_percent(records, point, spec, mat) for point in points]
     there = np.concatenate([percent[is_on] for percent, is_on in zip(light, on, strict=True)])
@@ -176,7 +176,7 @@ def _see_line(
 
 
 class _Way:
-    """The stretches of a run in which the robot moved, with and without a sensor over the dark.
+    """The stretches of a run in which a sensor was over the dark, and the gaps between; standing still does not count.
 
     Args:
         records: The telemetry.
@@ -197,25 +197,25 @@ class _Way:
         self._last_tick = len(records) - 1
 
     def find_long_gaps(self, hz: int) -> list[int]:
-        """Return the numbers of the stretches over the dark that a loss may follow."""
+        """Return the numbers of the stretches over the dark after which the gap is long enough for a loss."""
         gaps = self._next - self._ends
         longest = np.maximum.accumulate(np.append(0, gaps[:-1]))
         long_enough = (gaps >= _MIN_GAP_S * hz) & (gaps > _LONGER * longest)
         return np.flatnonzero(long_enough).tolist() if len(gaps) else []
 
     def find_gap(self, number: int) -> tuple[int, int]:
-        """Return the tick at which the dark was last seen in a stretch, and that at which it was seen again."""
+        """Return the last tick of a stretch over the dark, and the first of the next, or else the end of the run."""
         index = int(self._next[number])
         end = self._ticks[index] if index < len(self._ticks) else self._last_tick
         return int(self._ticks[self._ends[number] - 1]), int(end)
 
     def was_followed(self, number: int) -> bool:
-        """Return whether the dark was seen for a good part of the way up to the end of a stretch, or several times."""
+        """Return whether the robot followed the line up to a stretch: was over the dark mostly, or several times."""
         share = self._is_dark[self._starts[0] : self._ends[number]].mean()
         return number >= _MIN_RETURNS or bool(share >= _MIN_DARK_SHARE)
 
     def is_steered(self, is_dark: Bools, hz: int) -> bool:
-        """Return whether the robot mostly turned otherwise soon after what a sensor saw had changed.
+        """Return whether the robot changed its turning soon after most changes of what a sensor saw.
 
         Args:
             is_dark: Whether the sensor was over the line, at each tick.
@@ -232,6 +232,6 @@ class _Way:
 
 
 def _find_last(true: Bools) -> int:
-    """Return the last place of a true value, -1 if there is none."""
+    """Return the index of the last true value, -1 if there is none."""
     places = np.flatnonzero(true)
     return int(places[-1]) if len(places) else -1

@@ -20,7 +20,7 @@ _NEAREST_MM = 40.0
 
 
 def find_nearest(sensor: UltrasonicSpec, spec: RunSpec) -> float:
-    """Return the least distance in mm that an ultrasonic sensor reads when its robot stands at a wall."""
+    """Return the least distance in mm that an ultrasonic sensor can read of a wall: that with the robot at the wall."""
     front_mm = build_outline(spec.robot).front_mm if spec.profile.solid or spec.world.solid else 0.0
     return max(float(spec.profile.min_echo_mm), front_mm - sensor.y_mm)
 
@@ -28,7 +28,7 @@ def find_nearest(sensor: UltrasonicSpec, spec: RunSpec) -> float:
 def find_obstacle(
     sensor: UltrasonicSpec | InfraredSpec, spec: RunSpec, pose: Pose, limit: float | None
 ) -> str:
-    """Return the options that put an obstacle before a sensor; empty if no set of ours stands there.
+    """Return options that put an obstacle of `OBSTACLES` before a sensor; empty if none of them does.
 
     Args:
         sensor: The sensor.
@@ -57,7 +57,7 @@ def find_obstacle(
 def _measure(
     sensor: UltrasonicSpec | InfraredSpec, spec: RunSpec, world: WorldSpec, pose: Pose
 ) -> float:
-    """Return how far a sensor sees an obstacle of a world; infinite if it sees none, or the robot has no room there."""
+    """Return how far a sensor sees an obstacle of a world; infinite if it sees none or the robot would touch one."""
     bare = replace(world, obstacles=())
     if isinstance(sensor, UltrasonicSpec):
         distance, free = (

@@ -30,7 +30,7 @@ _SAME_LIGHT = 25
 
 @dataclass(frozen=True, slots=True)
 class OneColor:
-    """What the light sensors that a program read saw all the time."""
+    """The one colour that all light sensors which a program read saw all the time."""
 
     tick: int
     """When it read the first of them."""

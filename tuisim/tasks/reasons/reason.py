@@ -104,9 +104,9 @@ def find_reasons(
 
 
 def is_repeat(run: StoredRun | Recording, earlier: StoredRun | Recording) -> bool:
-    """Return whether a run is of the same text, with the same arguments and settings, as an earlier one.
+    """Return whether a run has the same program text, arguments and settings as an earlier one.
 
-    Only then has something gone wrong where the two part: another text means to drive another way.
+    Only then a difference between them is a fault: with another text the robot should drive another way.
     """
     program, before = run.program, earlier.program
     return (program.text, program.arguments, run.spec) == (
@@ -125,7 +125,7 @@ def _find_line(run: StoredRun, time_s: float) -> int:
 
 
 def _find_raised(run: StoredRun) -> Iterator[Reason]:
-    """Yield the error that ended the run, and those of threads, which did not."""
+    """Yield the error that ended the run, and errors of threads, which did not end it."""
     end = run.end
     ending = end.summary if end and end.end not in _EXPECTED_ENDS else ""
     for error in _find_tracebacks(run):
@@ -164,7 +164,7 @@ def _find_blocked(run: StoredRun, all_waits: Sequence[Wait]) -> Iterator[Reason]
 
 
 def _find_missed(judgements: Sequence[Judgement]) -> Iterator[Reason]:
-    """Yield the goals that were not met, and those that were but take points off; none that is hidden."""
+    """Yield the goals that were missed, and those met that take points off; hidden ones are left out."""
     for judged in judgements:
         is_known = judged.state is not GoalState.UNKNOWN
         if judged.event and is_known and not judged.is_good and not judged.goal.hidden:
@@ -174,12 +174,12 @@ def _find_missed(judgements: Sequence[Judgement]) -> Iterator[Reason]:
 
 
 def _find_lost(run: StoredRun, mat: Field | None, has_waited: bool) -> Iterator[Reason]:
-    """Yield where a robot that followed a line lost it, and what else its light sensors lost or never saw.
+    """Yield where a robot lost its line, where light just missed a limit, and where sensors saw only one colour.
 
     Args:
         run: The run.
         mat: Its mat; None opens it.
-        has_waited: Whether it waited for what a light sensor should see: what that saw is told already.
+        has_waited: Whether it waited for a light sensor in vain, which is told already: then one colour is not.
     """
     eyes = run.spec.robot.color_sensors
     if not eyes or run.telemetry.count < 2:
@@ -209,9 +209,9 @@ def _find_left_mat(run: StoredRun) -> Iterator[Reason]:
 
 
 def _find_mistaken(run: StoredRun, mat: Field | None, has_left_mat: bool) -> Iterator[Reason]:
-    """Yield what the program may not have been meant to do.
+    """Yield where the program probably did something else than it was meant to.
 
-    That is to turn the wheels by an angle of the robot, which may be why it left the mat, and to count a band twice.
+    It turned the wheels by an angle meant for the robot, which may be why it left the mat, or counted a band twice.
     """
     from tuisim.tasks.reasons.wheel_turn import find_mistaken_turn
 
@@ -223,7 +223,7 @@ def _find_mistaken(run: StoredRun, mat: Field | None, has_left_mat: bool) -> Ite
 
 
 def _find_ended(run: StoredRun, mat: Field | None) -> Iterator[Reason]:
-    """Yield that the program was over too early, or did not stop its motors."""
+    """Yield that the program was over too early, did not stop its motors, or has a line that does nothing."""
     for line, text in read_facts(run.program).slips if run.end else ():
         yield Reason(ReasonKind.ENDED, run.time_s, line, text)
     if early := find_early_end(run, mat):
@@ -234,10 +234,10 @@ def _find_ended(run: StoredRun, mat: Field | None) -> Iterator[Reason]:
 
 
 def describe_end(run: StoredRun) -> str:
-    """Return in a sentence without its full stop what a run ended with.
+    """Return how a run ended, in a sentence without its full stop; empty if there is nothing to say.
 
-    That is where it lost a line for good, if a limit or the user cut it off, where light just missed what it waited for
-    or came between two reads, or why it was over too early. Empty if nothing of this is so.
+    It says where a robot lost its line for good, if a limit or the user ended the run; where light just missed what the
+    program waited for, or came between two reads; or why the program was over too early.
     """
     if run.end is None:
         return ""
@@ -261,9 +261,10 @@ def _explain_lost(run: StoredRun, tick: int, text: str) -> Reason:
 
 
 def _find_read_ticks(run: StoredRun, count: int) -> dict[str, NDArray[Any]]:
-    """Return those of the first ticks at which the program read each light sensor, by its name, in ascending order.
+    """Return the ticks at which the program read each light sensor, by its name, in ascending order.
 
-    A run that goes on has more by now.
+    Args:
+        count: Ticks of the telemetry: a run that goes on may have later readings, which are left out.
     """
     readings = read_readings(run.folder, is_over=run.end is not None)
     rows = readings.find(MODES_BY_KIND["color"])
@@ -276,7 +277,7 @@ def _find_read_ticks(run: StoredRun, count: int) -> dict[str, NDArray[Any]]:
 
 
 def _describe_loss(run: StoredRun, lost: LostLine) -> Reason:
-    """Return what a sensor lost, and when it was seen again."""
+    """Return as a reason that a sensor lost the line, and when a sensor saw it again."""
     text = f"the {lost.sensor} sensor left the {'black' if lost.is_black else 'dark'}"
     if lost.seen_again is None:
         return _explain_lost(run, lost.tick, f"{text}, and did not see it again")
@@ -287,7 +288,7 @@ def _describe_loss(run: StoredRun, lost: LostLine) -> Reason:
 
 
 def _find_difference(run: StoredRun, earlier: Recording) -> Iterator[Reason]:
-    """Yield where the robot left the way of an earlier run."""
+    """Yield where the robot left the path of an earlier run."""
     hz = run.spec.profile.tick_hz, earlier.spec.profile.tick_hz
     time_s = find_first_difference_s(run.telemetry.array(), earlier.telemetry.array(), hz)
     if time_s is not None:

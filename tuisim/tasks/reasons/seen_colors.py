@@ -14,12 +14,12 @@ if TYPE_CHECKING:
 
 
 def describe_colors(loop: LoopEnd, device: str, codes: Array, has_codes: bool) -> str:
-    """Return the colour that a loop waited for and what was seen; empty if it came.
+    """Return the colour that a loop waited for and the ones that were seen; empty if the loop saw its colour.
 
     Args:
         loop: The loop.
-        device: What read them, in words.
-        codes: Those of the colours that it read, shape (n,).
+        device: The sensor that was read, in words.
+        codes: Codes of the colours that it read, shape (n,).
         has_codes: Whether `color` is a number in the program's library.
     """
     seen = name_seen(loop, codes)
@@ -35,12 +35,12 @@ def describe_colors(loop: LoopEnd, device: str, codes: Array, has_codes: bool) -
 
 
 def _is_text(loop: LoopEnd) -> bool:
-    """Return whether a loop compares with a text that is not the name of a constant, as it stands in a program."""
+    """Return whether a loop compares with a text such as `"Red"`, not with a constant such as `COLOR_RED`."""
     return isinstance(loop.limit, str) and not loop.limit.isupper()
 
 
 def name_seen(loop: LoopEnd, codes: Array) -> list[str]:
-    """Return the colours that were seen: as the program reads them if it compares them with a text."""
+    """Return the colours that were seen, in words; if the loop compares with a text, as the program reads them."""
     names = {COLOR_NAMES[int(code)]: f"{code:g}" for code in codes}
     if not _is_text(loop):
         return sorted("no colour" if name == COLOR_NAMES[0] else name.lower() for name in names)
@@ -48,5 +48,5 @@ def name_seen(loop: LoopEnd, codes: Array) -> list[str]:
 
 
 def name_limit(loop: LoopEnd) -> str:
-    """Return the colour that a loop compares with, in the same way."""
+    """Return the colour that a loop compares with: in words or, if it is a text, as it stands in the program."""
     return repr(loop.limit) if _is_text(loop) else loop.color

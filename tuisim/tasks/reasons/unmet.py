@@ -94,7 +94,7 @@ _NOUNS: Mapping[type[SensorSpec], str] = {
 
 @dataclass(frozen=True, slots=True)
 class _Series:
-    """What a loop read, as the program read it."""
+    """The values that a loop read of one sensor or motor, in the unit in which the program reads them."""
 
     device: str
     """Its kind and port."""
@@ -108,7 +108,7 @@ class _Series:
 
 @dataclass(frozen=True, slots=True)
 class Unmet:
-    """What a program waited for in vain, or just missed."""
+    """What a program waited for in vain or just missed, or another fault of a line."""
 
     time_s: float
     line: int
@@ -117,9 +117,9 @@ class Unmet:
 
 
 def find_unmet(run: StoredRun, mat: Field | None = None) -> Unmet | None:
-    """Return what a program waited for in the loop or the move that its run ended in, at a limit or by the user.
+    """Return what a program waits for in its last loop or move, if its run goes on or ended at a limit or by the user.
 
-    Of a run that goes on: what it waits for. None if for nothing, or if that is not known.
+    None if it waits for nothing, or if that is not known.
 
     Args:
         run: The run.
@@ -130,9 +130,9 @@ def find_unmet(run: StoredRun, mat: Field | None = None) -> Unmet | None:
 
 
 def find_near_miss(run: StoredRun, mat: Field | None = None) -> Unmet | None:
-    """Return where light just missed what a loop waited for, if the program has left the loop later.
+    """Return where light just missed what a loop waited for, or came between two reads, if the loop is over.
 
-    None if nowhere, or if that is not known.
+    None if that happened nowhere, or is not known.
 
     Args:
         run: The run.
@@ -142,7 +142,7 @@ def find_near_miss(run: StoredRun, mat: Field | None = None) -> Unmet | None:
 
 
 def find_recount(run: StoredRun, mat: Field | None = None) -> Unmet | None:
-    """Return where a line counted light twice on one band; None if nowhere, or if that is not known.
+    """Return a line that counted twice on one band of the mat; None if there is none, or if that is not known.
 
     Args:
         run: The run.
@@ -152,7 +152,7 @@ def find_recount(run: StoredRun, mat: Field | None = None) -> Unmet | None:
 
 
 def find_early_end(run: StoredRun, mat: Field | None = None) -> Unmet | None:
-    """Return that a program was over before the motors that it started could turn, or only defines; else None.
+    """Return why a program was over too early: before its motors could turn, or it only defines; None if it was not.
 
     Args:
         run: The run.
@@ -227,7 +227,7 @@ class _Search:
                 yield Unmet(stay[0] / self._hz, loop.line, text)
 
     def find_near_misses(self) -> Iterator[Unmet]:
-        """Yield where light just missed what a loop waited for that the program has left, or came between two reads."""
+        """Yield where light just missed what a finished loop waited for, or was so between two reads."""
         is_finished = self._run.end is not None and self._run.end.end is End.FINISHED
         for loop in self._loops:
             stay = self._find_stay(loop)
@@ -243,7 +243,7 @@ class _Search:
                 yield Unmet(tick / self._hz, loop.line, text)
 
     def find_met(self) -> Iterator[Unmet]:
-        """Yield the loops for whose end nothing had to happen: the first reading was what they waited for."""
+        """Yield the loops that ended at once: the first reading was what they waited for."""
         for loop in self._loops:
             series = self._measure(loop, (0, len(self._records)))
             if series is None:
@@ -262,7 +262,7 @@ class _Search:
                     yield Unmet(series.ticks[0] / self._hz, loop.line, text)
 
     def find_recounts(self) -> Iterator[Unmet]:
-        """Yield where a moving robot counted at two readings in a row."""
+        """Yield lines that counted at two readings in a row while the robot moved."""
         for line, test in read_facts(self._run.program).counts:
             series = self._measure(test, (0, len(self._records)))
             if series is None or series.column not in _LIGHT or isinstance(test.limit, str):
@@ -285,7 +285,7 @@ class _Search:
         return len(self._records) - tick >= _MIN_STAY_S * self._hz
 
     def _find_move(self) -> Unmet | None:
-        """Return the turning of the wheels that the program waits for; None if it waits for none."""
+        """Return the turn of the wheels that the program waits for; None if it waits for none."""
         import numpy as np
 
         line = int(self._records["line"][-1])
@@ -303,7 +303,7 @@ class _Search:
         return Unmet(first / self._hz, line, text)
 
     def _find_stay(self, loop: LoopEnd) -> tuple[int, int] | None:
-        """Return the first tick in a loop and the one after the last; None if it was entered twice, or never."""
+        """Return the first tick in a loop and the one after the last; None if it was not entered once only."""
         # Imported on demand, as numpy is.
         from tuisim.engine.runs.arrays import find_spans
 
@@ -313,7 +313,7 @@ class _Search:
         return (stays[0][0], stays[0][1]) if len(stays) == 1 else None
 
     def _describe(self, loop: LoopEnd, stay: tuple[int, int]) -> str:
-        """Return what a loop waited for, and what came; empty if that came, or is not known."""
+        """Return what a loop waited for, and what it read; empty if it came, or if that is not known."""
         if loop.set_line or loop.is_silent:
             goal = _name_goal(loop, str(loop.limit))
             why = (
@@ -336,7 +336,7 @@ class _Search:
         return f"{series.device} to read {goal}: {came}"
 
     def _name_nearest(self, loop: LoopEnd, series: _Series) -> str:
-        """Return what came nearest to a number, or where the values went if that was the first one."""
+        """Return which value came nearest to the limit of a loop; if it was the first one, how the values changed."""
         values = series.values
         nearest = int(abs(values - loop.limit).argmin())
         if values[nearest] != values[0] and values[nearest] == values[-1]:
@@ -348,7 +348,7 @@ class _Search:
         return f"it went from {_round(values[0])} to {_round(values[-1])}"
 
     def _find_miss(self, loop: LoopEnd, series: _Series) -> Unmet | None:
-        """Return where light came near to what a loop waited for, and went away again; None if nowhere."""
+        """Return where light came near the limit of a loop, and went away again; None if nowhere."""
         import numpy as np
 
         if isinstance(loop.limit, str):
@@ -369,7 +369,7 @@ class _Search:
     def _find_skip(
         self, loop: LoopEnd, stay: tuple[int, int], reads: _Series
     ) -> tuple[int, str] | None:
-        """Return the first tick at which light was what a loop waited for, but was not read, and in words how it came.
+        """Return the first tick at which light was as a loop wants it, but was not read; and why, in words.
 
         None if there is none.
         """
@@ -400,9 +400,9 @@ class _Search:
     def _measure(
         self, loop: LoopEnd, stay: tuple[int, int], *, is_between: bool = False
     ) -> _Series | None:
-        """Return what a loop read of what it waits for; with `is_between` what it would have read at each tick.
+        """Return the values that a loop read; with `is_between` those that it would have read at every tick.
 
-        None if that is not known, or if light noise or a pen would make it take long.
+        None if they are not known, or if light noise or a pen would make it take long.
         """
         import numpy as np
 
@@ -424,7 +424,7 @@ class _Search:
         return self._measure_sensor(loop, sensors[0], read, ticks)
 
     def _measure_wheel(self, loop: LoopEnd, wheel: str, port: str, ticks: Array) -> _Series | None:
-        """Return what the motor of a wheel had turned at some ticks; None if the loop reads something else of it."""
+        """Return the position of a wheel's motor at some ticks; None if the loop reads another attribute of it."""
         if loop.attribute not in _TURNS:
             return None
         column, factor, unit = _TURNS[loop.attribute]
@@ -455,10 +455,7 @@ class _Search:
         return _Series(device, column, unit, ticks, values)
 
     def _find_wheel(self, ports: list[str]) -> str:
-        """Return whether the only one of some ports is that of a wheel's motor: `left`, `right`, or nothing.
-
-        Nothing if it is reversed or geared, too.
-        """
+        """Return `left` or `right` if the only port is that of the wheel's motor; otherwise, or with gears, empty."""
         robot = self._run.spec.robot
         wheels = {
             robot.left_port: "" if robot.left_reversed else "left",

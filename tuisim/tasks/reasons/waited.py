@@ -71,7 +71,7 @@ _MAX_POSES = 4000
 
 
 class Subject(Enum):
-    """What can be waited for."""
+    """What a program can wait for."""
 
     BUTTONS = auto()
     TOUCH = auto()
@@ -122,7 +122,7 @@ _OUTSIDE_SUBJECTS = (Subject.CONNECTION, Subject.DATA, Subject.GAMEPAD)
 
 @dataclass(frozen=True, slots=True)
 class Awaited:
-    """Something that the program read and never saw change."""
+    """Something that the program read several times, and that never changed."""
 
     subject: Subject
     port: str
@@ -169,7 +169,7 @@ class Recorded:
 
 
 def find_awaited(run: StoredRun) -> tuple[Awaited, ...]:
-    """Return what a stored run waited for; of one that goes on, what it waits for."""
+    """Return what a stored run waited for or, if it still goes on, waits for."""
     recorded = Recorded(
         folder=run.folder,
         program=run.program,
@@ -183,7 +183,7 @@ def find_awaited(run: StoredRun) -> tuple[Awaited, ...]:
 
 
 def find_at_end(run: Recorded, end: End) -> tuple[Awaited, ...]:
-    """Return what a run waited for that was stopped, or stood still at its end; otherwise nothing."""
+    """Return what a run waited for, if it was stopped or its robot stood still at the end; otherwise nothing."""
     is_over = end is End.FINISHED and is_standing(run.telemetry, run.spec)
     return find_in_recording(run) if end in _ENDS or is_over else ()
 
@@ -195,9 +195,9 @@ def is_standing(telemetry: TelemetryView, spec: RunSpec) -> bool:
 
 
 def find_in_recording(run: Recorded) -> tuple[Awaited, ...]:
-    """Return what the program of a recording has read in its last seconds and never saw change; most important first.
+    """Return what a program read in its last seconds and never saw change, most important first.
 
-    What is damaged, or missing, was not waited for.
+    If readings are damaged or missing, nothing was waited for.
     """
     try:
         return tuple(_Search(run).find_awaited())[:MAX_AWAITED]
@@ -255,7 +255,7 @@ class _Search:
                     yield awaited
 
     def _find_readings(self, subject: Subject, port: str) -> Array:
-        """Return the indices of all readings of a subject on the lines that the program is busy with."""
+        """Return the indices of the readings of a subject, on those lines that the program is reading it now."""
         import numpy as np
 
         is_meant = self._select(subject, port)
@@ -267,7 +267,7 @@ class _Search:
         return rows
 
     def _select(self, subject: Subject, port: str) -> Array:
-        """Return of each reading whether it is one of a subject on a port."""
+        """Return for each reading whether it is of a subject and a port."""
         import numpy as np
 
         modes = [READING_MODES.index(mode) for mode in _MODES[subject]]
@@ -286,7 +286,7 @@ class _Search:
         return read_facts(self._run.program).find_question(line) if self._asks_text else Question()
 
     def _is_asking(self, subject: Subject, line: int) -> bool:
-        """Return whether the program waits for a subject on a line, if it waits at all."""
+        """Return whether a reading of a subject on a line can be what the program waits for."""
         question = self._ask(line)
         if subject in _OUTSIDE_SUBJECTS:
             return True
@@ -320,7 +320,7 @@ class _Search:
         return any(dps for _, dps in face.turns)
 
     def _describe(self, subject: Subject, port: str, rows: Array) -> Awaited | None:
-        """Return a subject with what the program asks of it; None if it changed, or came."""
+        """Return a subject as `Awaited`, with what the program asks of it; None if it changed, or came."""
         import numpy as np
 
         mode = READING_MODES[self._rows["mode"][rows[-1]]]
@@ -358,7 +358,7 @@ class _Search:
         return self._run.telemetry.record(int(self._ticks[row])).pose
 
     def _find_limit(self, mode: str, question: Question) -> float | None:
-        """Return the distance that the program asks for, in mm or in % for an infrared sensor."""
+        """Return the distance that the program compares with, in mm or in % for an infrared sensor; else None."""
         limit = question.find_limit()
         if limit is None or mode not in _MODES[Subject.DISTANCE]:
             return limit
@@ -375,7 +375,7 @@ class _Search:
         needs_all: bool,
         limit: float | None,
     ) -> str | None:
-        """Return what was read each time, in words; None if it changed, or was what a program waits for."""
+        """Return what was read each time, in words; None if it changed, or if what the program waits for came."""
         import numpy as np
 
         if subject in _OUTSIDE_SUBJECTS:
@@ -405,7 +405,7 @@ class _Search:
         return None
 
     def _is_pressed(self, ticks: Array, names: Sequence[str], needs_all: bool) -> bool:
-        """Return whether any of some names, or all at once, was pressed by hand at any of some ticks."""
+        """Return whether any name, or with `needs_all` all at once, was pressed by hand at one of some ticks."""
         import numpy as np
 
         enough = len(names) if needs_all else 1
@@ -427,7 +427,7 @@ class _Search:
         return in_world or self._is_pressed(ticks, sought or tuple(REMOTE_BY_HAND), needs_all)
 
     def _measure(self, sensor: SensorSpec, ticks: Array) -> Iterator[tuple[float, ...]]:
-        """Yield what a sensor that needs no mat measures at each pose that the robot had at some ticks."""
+        """Yield what a sensor other than a colour sensor measures at each pose that the robot had at some ticks."""
         import numpy as np
 
         run = self._run
@@ -447,9 +447,9 @@ class _Search:
         tolerance: float,
         limit: float | None,
     ) -> str | None:
-        """Return the smallest distance that was measured; None if the one that is asked for came.
+        """Return the smallest distance that was measured, such as `12 cm`; None if what the program waits for came.
 
-        If that is not known, distances that differ by more than a tolerance came.
+        With a `limit`, a distance came that is not larger; without one, distances that differ by more than `tolerance`.
         """
         low, high = math.inf, -math.inf
         for value, *_ in self._measure(sensor, ticks):
@@ -459,7 +459,7 @@ class _Search:
         return f"{low / per_unit:.0f} {'cm' if per_unit > 1 else '%'}"
 
     def _describe_color(self, sensor: ColorSensorSpec, ticks: Array) -> str | None:
-        """Return the name of the one colour that a sensor saw; None if it saw more, or if that is not known."""
+        """Return the name of the one colour that a sensor saw; None if it saw several, or if that is not known."""
         import numpy as np
 
         from tuisim.engine.runs.sensor_arrays import measure_quiet_color
@@ -477,16 +477,16 @@ class _Search:
 def _list_sought(
     subject: Subject, port: str, mode: str, questions: Iterable[Question]
 ) -> tuple[str, ...]:
-    """Return what a program asks for of a subject on several lines, in their order; empty for anything."""
+    """Return the names of what a program asks for of a subject on several lines, in their order; empty for anything."""
     names = dict.fromkeys(
         name for question in questions for name in _find_sought(subject, port, mode, question)
     )
-    # These usually end a program.
+    # Last, because these usually end a program.
     return tuple(sorted(names, key=("backspace", "remote.beacon").__contains__))
 
 
 def _find_sought(subject: Subject, port: str, mode: str, question: Question) -> tuple[str, ...]:
-    """Return what a program asks for of a subject; empty for anything."""
+    """Return the names of buttons, ports or colours that a program asks for; empty for anything."""
     match subject:
         case Subject.BUTTONS:
             return question.buttons

@@ -39,7 +39,7 @@ class Wait:
 
 
 def find_waits(run: StoredRun, mat: Field | None = None) -> list[Wait]:
-    """Return what a run waited for, most important first; of one that goes on, what it waits for.
+    """Return what a run waited for or, if it still goes on, waits for; most important first.
 
     Args:
         run: The run.
@@ -67,19 +67,19 @@ def _describe_unmet(unmet: Unmet, remedy: str = "", subject: Subject | None = No
 
 
 def describe_wait(run: StoredRun) -> str:
-    """Return what a run waited for in one sentence without its full stop; empty if for nothing."""
+    """Return what a run waited for in one sentence without its full stop; empty if it waited for nothing."""
     return "; ".join(wait.what for wait in find_waits(run))
 
 
 def describe_wait_with_keys(awaited: Iterable[Awaited], spec: RunSpec) -> str:
-    """Return the same for the app, with ids of actions in braces; empty if nothing was waited for."""
+    """Return what a run waited for, for the app: with ids of actions in braces; empty if it waited for nothing."""
     return "; ".join(
         f"{describe_awaited(wait)}: {name_remedy_with_keys(wait, spec)}" for wait in awaited
     )
 
 
 def describe_awaited(awaited: Awaited) -> str:
-    """Return what did not come."""
+    """Return in words what a program read in vain, such as `gyro on in4 was never turned`."""
     port, value = awaited.port, awaited.value
     match awaited.subject:
         case Subject.BUTTONS:
@@ -140,12 +140,12 @@ def _find_color(awaited: Awaited) -> str:
 
 
 def name_remedy(awaited: Awaited, spec: RunSpec, is_live: bool = False) -> str:
-    """Return the option or file that gives it, for users of the command line.
+    """Return the option or file that gives a program what it waited for, for users of the command line.
 
     Args:
         awaited: What was waited for.
         spec: The run.
-        is_live: Whether the run had as much time as another program has.
+        is_live: Whether the run took real time, as another program needs it.
     """
     match awaited.subject:
         case Subject.BUTTONS:
@@ -173,7 +173,7 @@ def name_remedy(awaited: Awaited, spec: RunSpec, is_live: bool = False) -> str:
 
 
 def _name_presses(awaited: Awaited, default: str) -> str:
-    """Return the options that press what the program asks for, when and as long as it looks."""
+    """Return the options that press what the program asks for at a time when it looks, for long enough."""
     names = awaited.sought or (default,)
     is_touch, is_remote = awaited.subject is Subject.TOUCH, awaited.subject is Subject.REMOTE
     from_s = math.floor(awaited.since_s) + (2 if is_touch else 1)
@@ -200,7 +200,7 @@ def _name_mat(awaited: Awaited, spec: RunSpec) -> str:
 
 
 def _name_obstacle(awaited: Awaited, spec: RunSpec) -> str:
-    # A robot that drives gets near by itself.
+    # A robot that drives gets near an obstacle by itself.
     limit = None if awaited.has_moved else awaited.limit
     pose = awaited.pose or spec.world.start
     options = ""
@@ -211,7 +211,7 @@ def _name_obstacle(awaited: Awaited, spec: RunSpec) -> str:
 
 
 def _name_nearest(awaited: Awaited, spec: RunSpec) -> str:
-    """Return what a sensor reads at a wall; empty if that is near enough, or if it is not an ultrasonic sensor."""
+    """Return what an ultrasonic sensor reads at a wall, if that is farther than the program asks for; else empty."""
     for sensor in spec.robot.sensors:
         if sensor.port == awaited.port and isinstance(sensor, UltrasonicSpec):
             nearest_mm = find_nearest(sensor, spec)
@@ -221,7 +221,7 @@ def _name_nearest(awaited: Awaited, spec: RunSpec) -> str:
 
 
 def name_remedy_with_keys(awaited: Awaited, spec: RunSpec) -> str:
-    """Return the key that gives it, as an id of an action in braces."""
+    """Return the key that gives a program what it waited for, as an id of an action in braces; else the option."""
     names = awaited.sought if awaited.needs_all else awaited.sought[:1]
     match awaited.subject:
         case Subject.BUTTONS if names:

@@ -20,7 +20,7 @@ from tuisim.tasks.reasons.waited_words import describe_wait_with_keys
 
 
 class WaitWatch:
-    """Watches the run in view for what its program waits for."""
+    """Watches the run in view, and tells once what its program waits for."""
 
     def __init__(self) -> None:
         self._run_id = ""
@@ -35,13 +35,13 @@ class WaitWatch:
         is_running: bool,
         open_mat: Callable[[RunSpec], Field | None],
     ) -> list[str]:
-        """Return what the program waits for, with ids of actions in braces; nothing if it was told already.
+        """Return what the program waits for, with ids of actions in braces; nothing if that was returned before.
 
         Args:
             recording: The recording in view.
-            ended: The end of its run, once.
+            ended: The end of its run, given once; None before and after.
             is_running: Whether its program runs, neither paused nor ended.
-            open_mat: Returns the mat of a run, None if it is not there.
+            open_mat: Returns the mat of a run, None if it is not at hand.
 
         Raises:
             LogError: the recording is damaged.
@@ -79,7 +79,7 @@ def _build_recorded(recording: Recording, open_mat: Callable[[RunSpec], Field | 
 
 
 def describe_so_far(recording: Recording) -> str:
-    """Return what a program that goes on is busy with, when there is no reason, with ids of actions in braces."""
+    """Return that nothing is wrong so far, and where a program that goes on is, with ids of actions in braces."""
     import numpy as np
 
     hz, last = recording.spec.profile.tick_hz, recording.newest

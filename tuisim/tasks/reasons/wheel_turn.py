@@ -23,7 +23,7 @@ _NEAR_DEG = 3.0
 
 @dataclass(frozen=True, slots=True)
 class MistakenTurn:
-    """A turn of the wheels that the program may have taken for one of the robot."""
+    """A turn of the wheels by an angle that was probably meant for the robot."""
 
     tick: int
     """When it began."""
@@ -33,7 +33,7 @@ class MistakenTurn:
 
 
 def find_mistaken_turn(run: StoredRun) -> MistakenTurn | None:
-    """Return the first turn on the spot whose wheels turned by an angle that the robot did not turn by.
+    """Return the first turn on the spot in which the wheels, but not the robot, turned by the angle in the program.
 
     Args:
         run: The run.
@@ -43,7 +43,7 @@ def find_mistaken_turn(run: StoredRun) -> MistakenTurn | None:
 
 
 def _measure(run: StoredRun, turn: WheelTurn) -> MistakenTurn | None:
-    """Return what a turn did to the robot when its line ran first; None if nothing is wrong with that."""
+    """Return how far a call turned the robot when it ran first; None if that seems to be meant."""
     records = run.telemetry.array()
     lines = records["line"]
     is_on = (lines >= turn.first_line) & (lines <= turn.last_line)
@@ -60,7 +60,7 @@ def _measure(run: StoredRun, turn: WheelTurn) -> MistakenTurn | None:
     is_on_the_spot = abs(left_deg + right_deg) <= (1 - _MIN_SHARE) * wheel_deg
     if not is_on_the_spot or wheel_deg < turn.angle_deg * _MIN_SHARE:
         return None
-    # The line may have run several times without another one between.
+    # The line may have run several times in a row: scale to one turn.
     robot_deg = abs(float(steps_deg.sum())) / wheel_deg * turn.angle_deg
     off_deg = abs(robot_deg - round(robot_deg / _ROUND_DEG) * _ROUND_DEG)
     if robot_deg < 1 or (robot_deg > _ROUND_DEG / 2 and off_deg <= _NEAR_DEG):
