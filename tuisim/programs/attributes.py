@@ -21,7 +21,7 @@ Members = Callable[[str, str, int, int], frozenset[str] | None]
 
 
 class AttributeCheck:
-    """Looks for unknown attributes, and remembers what objects have as long as their definitions stay.
+    """Looks for unknown attributes; caches the attributes of an object until the line that defines it changes.
 
     Args:
         members: Returns the names that an object has.
@@ -32,7 +32,7 @@ class AttributeCheck:
         self._known: dict[tuple[str, ...], frozenset[str] | None] = {}
 
     def find_unknown_attributes(self, text: str, path: str) -> tuple[UnknownName, ...]:
-        """Return the unknown attributes of names that are given an object once, in the program or its prelude.
+        """Return the unknown attributes of names that get an object only once, in the program or its prelude.
 
         Args:
             text: The program as it stands in the editor.
@@ -74,7 +74,7 @@ def _find_end(lines: Sequence[str], node: ast.expr) -> tuple[int, int]:
 
 
 def _find_definitions(tree: ast.Module) -> dict[str, str]:
-    """Return the statement that gives a name its object, by name, for those at the margin."""
+    """Return, by name, the statement at the top level that gives the name its object."""
     statements: dict[str, str] = {}
     for node in tree.body:
         match node:
@@ -86,7 +86,7 @@ def _find_definitions(tree: ast.Module) -> dict[str, str]:
 
 
 def _find_uses(tree: ast.Module) -> Iterator[tuple[ast.Attribute, ast.Name]]:
-    """Yield what is read of names that are given one object, and no further attributes."""
+    """Yield each attribute that is read of a name which gets one object only, and that name."""
     attributes = [node for node in ast.walk(tree) if isinstance(node, ast.Attribute)]
     assigned = {node.attr for node in attributes if not isinstance(node.ctx, ast.Load)}
     bound, definitions = Counter(_list_bound_names(tree)), _find_definitions(tree)
@@ -101,7 +101,7 @@ def _find_uses(tree: ast.Module) -> Iterator[tuple[ast.Attribute, ast.Name]]:
 
 
 def _list_bound_names(tree: ast.Module) -> Iterator[str]:
-    """Yield each name as often as it is given an object, of whatever scope."""
+    """Yield each name as often as it gets an object, in whatever scope."""
     for node in ast.walk(tree):
         match node:
             case ast.Name(id=name, ctx=ast.Store() | ast.Del()) | ast.arg(arg=name):

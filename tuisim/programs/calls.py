@@ -27,7 +27,7 @@ _DEFAULT_PRELUDE = "preloaded"
 
 @dataclass(slots=True)
 class _Names:
-    """What the names of a program stand for.
+    """Finds out what the names of a program stand for.
 
     Args:
         prelude: The scope of its prelude.
@@ -78,7 +78,7 @@ def _build_prelude_scope(prelude: str) -> Scope:
 
 
 def _name_prelude(name: str, prelude: str) -> str:
-    """Return what a name stands for in a prelude; itself if that does not define it."""
+    """Return what a name stands for in a prelude, or the name itself if the prelude does not define it."""
     names = _Names(_build_prelude_scope(prelude))
     return next(iter(names.list_meanings(ast.Name(name), names.prelude)))
 
@@ -94,7 +94,7 @@ def list_calls(tree: ast.Module, prelude: str, wanted: str) -> list[int]:
         tree: The program.
         prelude: Its prelude, a key of `PRELUDE_TEXTS`.
         wanted: The call: a name such as `time.sleep`, a method of an object that the prelude defines such as
-            `tank_drive.on`, or the name of a function or method alone. An object of the same class counts as well.
+            `tank_drive.on`, or the name of a function or method alone. Objects of the same class count as well.
     """
     scopes = _list_scopes(build_scope(Module("", "", tree)))
     names = _Names(_build_prelude_scope(prelude))
@@ -125,7 +125,7 @@ def list_calls(tree: ast.Module, prelude: str, wanted: str) -> list[int]:
     }:
         if own.partition(".")[0] == PYBRICKS:
             whole |= {f"{own}.{rest}", f"{own}().{rest}"}
-    # What is imported with everything else may be of any of these modules.
+    # A name that `import *` may bring can be of any of these modules.
     whole |= {
         meaning.removeprefix(f"{module}.")
         for module in (star for scope in scopes for star in scope.stars)

@@ -33,10 +33,10 @@ class _Breaks:
 
 
 def split_rows(program: str, width: int) -> Iterator[str]:
-    """Yield a program as rows of at most so many cells, as far as its words are not longer.
+    """Yield a program as rows of at most `width` cells, unless a word is longer.
 
     Rows are broken between words, in brackets if possible; elsewhere they end in a backslash. A comment behind a long
-    line comes before it. A program that Python cannot read keeps its lines.
+    line is put above the line. A program that Python cannot read keeps its lines.
     """
     try:
         breaks = _find_breaks(program)
@@ -97,7 +97,7 @@ def _split_line(line: str, breaks: _Breaks, width: int) -> Iterator[str]:
 
 
 def _end(line: str, start: int, room: int, inside: Mapping[int, bool]) -> int:
-    """Return the column that the next row begins at: in brackets if possible, before a dot if nothing else fits."""
+    """Return the column at which to break a line: in brackets if possible, before a dot only if nothing else fits."""
     later = [column for column in inside if column > start]
     fits = [
         column

@@ -15,7 +15,7 @@ def set_constants(source: ProgramSource, values: Mapping[str, object]) -> Progra
     """Return a program with other values of some constants; its lines keep their numbers.
 
     Raises:
-        ConfigError: the program assigns no value to a name, or several, or is not Python.
+        ConfigError: the program has no such constant, assigns several values to it, or is not Python.
     """
     if not values:
         return source
@@ -45,7 +45,7 @@ def set_constants(source: ProgramSource, values: Mapping[str, object]) -> Progra
 
 
 def _list_values(module: ast.Module) -> list[tuple[ast.expr, str]]:
-    """Return the values that are assigned outside functions and blocks, with the names that get them."""
+    """Return the values that are assigned outside functions and blocks, each with the name that gets it."""
     pairs: list[tuple[ast.expr, str]] = []
     for statement in module.body:
         match statement:

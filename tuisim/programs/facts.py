@@ -53,22 +53,25 @@ class ProgramFacts:
 
     @cached_property
     def _tree(self) -> ast.Module:
-        """The program; raises what `parse_module` does."""
+        """The syntax tree of the program; raises what `parse_module` does."""
         return parse_module(self._program.text)
 
     @cached_property
     def _short_tree(self) -> ast.Module:
-        """The program; without statements if it is not Python, or too long."""
+        """The syntax tree of the program, without statements if it is not Python, or too long."""
         text = self._program.text
         return (parse(text) if len(text) <= MAX_TEXT else None) or ast.Module([], [])
 
     @cached_property
     def fault(self) -> tuple[str, int] | None:
-        """Why it does not compile, and the line, 0 if there is none; None if it compiles."""
+        """Why the program does not compile, and the line, 0 if there is none; None if it compiles."""
         return find_fault(self._program.text)
 
     def count_structure(self, name: str) -> int:
-        """Return how much it has of one of `STRUCTURES`.
+        """Return how many loops, functions and so on the program has.
+
+        Args:
+            name: What to count, one of `STRUCTURES`.
 
         Raises:
             SyntaxError, ValueError, RecursionError: it is not Python.
@@ -92,7 +95,7 @@ class ProgramFacts:
         return QuestionReader(self._short_tree)
 
     def find_question(self, line: int) -> Question:
-        """Return what it asks on a line; `Question()` if its text does not tell."""
+        """Return what the program does with what a line reads; `Question()` if its text does not tell."""
         return self._question_reader.find_question(line)
 
     @cached_property
@@ -101,16 +104,16 @@ class ProgramFacts:
 
     @cached_property
     def loop_ends(self) -> tuple[LoopEnd, ...]:
-        """The loops of which its text tells what ends them, the inner ones first."""
+        """The loops that end by a comparison which the text shows, the inner ones first."""
         return list_loop_ends(self._short_tree, self._constants)
 
     @cached_property
     def counts(self) -> tuple[tuple[int, LoopEnd], ...]:
-        """The lines that only count in a loop while something compares with a constant, with the comparison."""
+        """The lines in loops that count each time that a comparison with a constant is true, with the comparison."""
         return tuple(list_counts(self._short_tree, self._constants))
 
     def find_turns(self, line: int) -> tuple[float, str] | None:
-        """Return how far a call on a line turns a motor or both wheels, and whether in rotations or in degrees."""
+        """Return by how much a call on a line turns a motor or both wheels, and the unit; None if there is none."""
         return find_turns(self._short_tree, self._constants, line)
 
     @cached_property
@@ -130,20 +133,20 @@ class ProgramFacts:
 
     @cached_property
     def idle_definition(self) -> tuple[int, str] | None:
-        """The last function or class of a program that only defines, and why nothing happens; None if it does more."""
+        """The last function or class of a program that only defines, and why nothing happens; None of another one."""
         return find_idle_definition(self._short_tree)
 
     @cached_property
     def light_read(self) -> LightRead:
-        """What it reads first of a colour sensor as a number; percent if it reads none."""
+        """The number of a colour sensor that the program reads first; percent if it reads none."""
         return find_light_read(self._program.text)
 
     def find_thresholds(self, robot: RobotSpec) -> Mapping[str, tuple[ProgramThreshold, ...]]:
-        """Return what it compares its colour sensors with, in the order of its lines, by name of the sensor."""
+        """Return what the program compares its colour sensors with, in order of its lines, by name of the sensor."""
         return find_thresholds(self._program, robot)
 
 
 @lru_cache(8)
 def read_facts(program: Program) -> ProgramFacts:
-    """Return what the text of a program says."""
+    """Return the facts that the text of a program shows."""
     return ProgramFacts(program)

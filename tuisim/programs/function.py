@@ -23,10 +23,10 @@ _IMPORTED = {*LIBRARIES, *sys.stdlib_module_names}
 
 
 def read_function(function: Callable[[], object]) -> ProgramSource:
-    """Return the program that calls a function.
+    """Return a program that calls a function.
 
     Each line has the number that it has in the file of the function. Imports of libraries for a brick and of Python's
-    own, plain constants, and functions that it uses go along; names that are nowhere are the predefined ones.
+    own, plain constants, and functions that it uses are copied; names without a definition are those of the prelude.
 
     Raises:
         ConfigError: it is no function with a name and a source, takes arguments, or uses something else.
@@ -54,7 +54,7 @@ def read_function(function: Callable[[], object]) -> ProgramSource:
 
 
 class _Reader:
-    """Collects the functions of a program, and the statements that give it all else."""
+    """Collects the functions of a program, and the statements that define the other names."""
 
     def __init__(self) -> None:
         self._functions: dict[str, FunctionType] = {}
@@ -92,7 +92,7 @@ class _Reader:
         self._lines |= dict(enumerate(lines, first))
 
     def _add(self, name: str, value: Any, user: str) -> None:
-        """Add what a function knows by a name."""
+        """Add the object that a function uses by a name: a statement that defines it, or another function."""
         if statement := _write_statement(name, value):
             self._statements[name] = statement
         elif not isinstance(value, FunctionType) or value.__name__ != name:
@@ -106,7 +106,7 @@ class _Reader:
     def write(self, name: str) -> str:
         """Return the program that calls a function."""
         numbered, last = {**self._lines}, max(self._lines)
-        # On one line, so that no other is moved; defaults of parameters need them first.
+        # All on one line, so that the functions keep theirs; on the first if it is free, since defaults need them.
         place = last + 1 if 1 in numbered else 1
         numbered[place] = "; ".join(self._statements.values())
         numbered[last + 2] = f"{name}()"
@@ -114,7 +114,7 @@ class _Reader:
 
 
 def _read_closure(function: FunctionType) -> dict[str, Any]:
-    """Return what a function knows of those around it, by name."""
+    """Return the variables that a function uses of the functions around it, by name."""
     values = {}
     for name, cell in zip(function.__code__.co_freevars, function.__closure__ or (), strict=True):
         with suppress(ValueError):  # not assigned yet
@@ -123,7 +123,7 @@ def _read_closure(function: FunctionType) -> dict[str, Any]:
 
 
 def _write_statement(name: str, value: Any) -> str:
-    """Return the statement that gives a program a value by a name; empty if there is none."""
+    """Return a statement that defines a name with a value; empty if no statement can."""
     if isinstance(value, ModuleType):
         return f"import {value.__name__} as {name}" if _is_imported(value.__name__) else ""
     with suppress(SyntaxError, ValueError, TypeError):

@@ -20,13 +20,13 @@ _OWN_NAMES = (ast.Lambda, ast.ClassDef, ast.ListComp, ast.SetComp, ast.DictComp,
 def map_line_values(text: str, inspected: Inspected) -> dict[int, tuple[Variable, ...]]:
     """Return the variables that each line of a program, from 1, has assigned.
 
-    Of the lines that may have run, above the current line of the function or in a loop with it, only the one that has
-    run last counts, and the current line itself. One that assigns a constant does not count if the variable has another
-    value by now.
+    Of the lines above the current one, or in a loop around it, that assign a variable, only the one that has run last
+    counts, and the current line itself. A line that assigns a constant does not count if the variable has another value
+    by now.
 
     Args:
         text: The program that runs.
-        inspected: Where it is paused. Of the selected function; those of the program itself stand beside its lines.
+        inspected: Where it is paused. It has the variables of the selected function, and those of the program itself.
     """
     tree = parse(text)
     frame = inspected.stack[inspected.frame] if inspected.frame < len(inspected.stack) else None
@@ -50,7 +50,7 @@ def map_line_values(text: str, inspected: Inspected) -> dict[int, tuple[Variable
 
 
 def _find_function(tree: ast.Module, frame: FrameState) -> _Function | None:
-    """Return the innermost function of a frame."""
+    """Return the definition of a frame's function; None if the program has none."""
     functions = [
         node
         for node in ast.walk(tree)
@@ -64,7 +64,11 @@ def _find_function(tree: ast.Module, frame: FrameState) -> _Function | None:
 def _find_values(
     scope: ast.Module | _Function, frame: FrameState | None, variables: Sequence[Variable]
 ) -> dict[int, tuple[Variable, ...]]:
-    """Return the variables that each line of a scope has assigned; without a frame, the scope has been left."""
+    """Return the variables that each line of a scope has assigned.
+
+    Args:
+        frame: The frame that runs the scope; None if it has been left.
+    """
     by_name = {variable.name: variable for variable in variables}
     here = frame.line if frame else 0
     loops = [
@@ -84,7 +88,7 @@ def _find_values(
             lines_of.setdefault(name, []).append(line)
 
     def rank_age(line: int) -> tuple[int, int]:
-        """Order lines by when they may have run last: in this round of the loop, in the one before, before the loop."""
+        """Return a sort key: first lines of this round of the loop, then of the round before, then those before it."""
         in_loop = first <= line <= last
         return (0 if in_loop and line < here else 1 if in_loop else 2), -line
 
@@ -107,7 +111,7 @@ def _walk_scope(scope: ast.AST) -> Iterator[ast.AST]:
 
 
 def _list_assignments(scope: ast.Module | _Function) -> Iterator[tuple[int, str, str | None]]:
-    """Yield the line of each assignment in a scope, the name, and the text of the value if it is a constant."""
+    """Yield line and name of each assignment in a scope, and the text of its value, None if it is no constant."""
     if not isinstance(scope, ast.Module):
         arguments = scope.args
         parameters = [

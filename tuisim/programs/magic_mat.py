@@ -27,11 +27,11 @@ class WrongMat(NamedTuple):
 
 
 def find_wrong_mat(text: str, name: str, folder: str | None) -> WrongMat | None:
-    """Return what is wrong with the mat in a magic line; None if nothing is, or if it is an image beside the program.
+    """Return what is wrong with the mat in a magic line; None if it is right, or an image beside the program.
 
     Args:
         text: The program.
-        name: Of its file.
+        name: The name of its file.
         folder: The user's own mats.
     """
     try:
@@ -56,7 +56,7 @@ def find_wrong_mat(text: str, name: str, folder: str | None) -> WrongMat | None:
 
 
 def drop_wrong_mat(source: ProgramSource, folder: str | None) -> ProgramSource:
-    """Return a program without the mat of its magic line if that is wrong, so that it can be opened and mended."""
+    """Return a program without the mat of its magic line if the mat is wrong, so that it can be opened and mended."""
     if find_wrong_mat(source.program.text, source.program.name, folder) is None:
         return source
     return replace(

@@ -37,7 +37,7 @@ _WORD = re.compile(r"[^\W\d]\w*")
 
 @dataclass(frozen=True, slots=True)
 class UnknownName:
-    """A name at a place of the text."""
+    """A name or an attribute that does not exist, and where it is in the text."""
 
     name: str
     row: int
@@ -63,7 +63,7 @@ class UnknownName:
 
 @dataclass(slots=True)
 class _SeenNames:
-    """Names in the code of a program."""
+    """The names that a program's code uses and defines."""
 
     loaded: dict[tuple[int, int, int], str] = field(default_factory=dict)
     """Globals that are read, by line, first and last byte."""
@@ -73,11 +73,11 @@ class _SeenNames:
 
 
 def find_unknown_names(text: str, name: str) -> tuple[UnknownName, ...] | None:
-    """Return the unknown names of a program; None if that cannot be told.
+    """Return the unknown names of a program; None if the program cannot be read.
 
     Args:
         text: The program as it stands in the editor.
-        name: Of its file.
+        name: The name of its file.
     """
     program = parse_unfinished(text, name)
     tree, guessed = parse_readable(program.text)
@@ -104,7 +104,7 @@ def find_unknown_names(text: str, name: str) -> tuple[UnknownName, ...] | None:
 
 
 def parse_readable(text: str) -> tuple[ast.Module | None, set[str]]:
-    """Return the tree of a program, without lines that are not Python yet, and the words of these lines."""
+    """Return the syntax tree of a program without the lines that are not Python yet, and the words of these lines."""
     lines = source_lines(text)
     readable, words = list(lines), set[str]()
     for _ in range(MAX_MENDED + 1):
@@ -122,7 +122,7 @@ def parse_readable(text: str) -> tuple[ast.Module | None, set[str]]:
 
 
 def _replace_line(lines: Sequence[str], index: int) -> str:
-    """Return a statement in place of a line: the head of a block if a block follows."""
+    """Return a statement to replace a line that is not Python: the head of a block if a block follows."""
     indent = _read_indent(lines[index])
     below = next((line for line in lines[index + 1 :] if line.strip()), "")
     return indent + ("if True:" if len(_read_indent(below)) > len(indent) else "pass")
@@ -143,7 +143,7 @@ def _has_unseen_names(tree: ast.Module) -> bool:
 
 
 def _search(code: types.CodeType, seen: _SeenNames, is_module: bool = True) -> None:
-    """Note the names that code reads from its module and gives to it; those of a class are its own."""
+    """Note the global names that code reads and those that it defines; names in the body of a class are not global."""
     own = set[str]()
     for instruction in dis.get_instructions(code):
         if instruction.opname in _STORES:
@@ -168,7 +168,7 @@ def _search(code: types.CodeType, seen: _SeenNames, is_module: bool = True) -> N
 
 
 def count_column(line: str, byte: int | None) -> int:
-    """Return the column in characters of a place that Python tells in bytes."""
+    """Return the column in characters for one that Python counts in bytes."""
     return len(line.encode()[:byte].decode(errors="ignore"))
 
 
@@ -207,7 +207,13 @@ def _is_function(module: types.ModuleType, name: str) -> bool:
 
 
 def _build_hint(name: str, follows: str, own: set[str], within: Mapping[str, str]) -> str:
-    """Return what may help with a name that is not defined; `follows` is the character after it."""
+    """Return what may help with a name that is not defined.
+
+    Args:
+        follows: The character after the name.
+        own: The names that the program defines.
+        within: Local variables, each with its function.
+    """
     if follows == "." and name in sys.stdlib_module_names:
         return f"`import {name}`"
     if function := within.get(name):
@@ -226,7 +232,7 @@ def _build_hint(name: str, follows: str, own: set[str], within: Mapping[str, str
 
 
 def guess_name(name: str, names: Set[str]) -> str:
-    """Return the name that may have been meant, empty if there is none."""
+    """Return the name that may have been meant; empty if none is near."""
     known = (
         candidate
         for candidate in sorted(names)

@@ -29,7 +29,7 @@ _HEADING = re.compile(r"#+\s+(.*\S)")
 
 @dataclass(frozen=True, slots=True)
 class NotebookProgram:
-    """One program cell."""
+    """A cell of a notebook that is a program."""
 
     number: int
     """From 1, among the program cells."""
@@ -44,7 +44,7 @@ class NotebookProgram:
 
 @dataclass(frozen=True, slots=True)
 class _Words:
-    """A magic line, as far as it can be evaluated outside the notebook."""
+    """A magic line of a notebook, without variables, which only the notebook knows."""
 
     magic: re.Match[str]
     settings: Mapping[str, Any]
@@ -97,7 +97,7 @@ def _read_cells(path: Path) -> Iterator[tuple[str, str]]:
 
 
 def read_notebook_programs(path: Path) -> list[NotebookProgram]:
-    """Return the programs in a notebook, from the top; what only the notebook knows is left out of their world.
+    """Return the programs in a notebook, from the top; settings with variables of the notebook are left out.
 
     Raises:
         ConfigError: it cannot be read, is no notebook, or a magic line in it is wrong.
@@ -156,7 +156,7 @@ def _parse_magics(text: str, where: str) -> Iterator[_Words]:
 
 
 def _drop_variables(words: str) -> tuple[str, str]:
-    """Return a magic line without the words that contain variables and their options, and those variables."""
+    """Return a magic line without the options that contain variables, and those variables."""
     unknown = ", ".join(_VARIABLE.findall(words))
     constant: list[str] = []
     # A word may contain a variable with blanks in its braces.

@@ -21,13 +21,13 @@ def describe_plugged(run: StoredRun) -> str:
 
 
 def _name_remedy(parts: Sequence[PluggedPart], spec: RunSpec) -> str:
-    """Return how a sensor for walls that was plugged in gets some; empty for none, or if there are walls."""
+    """Return the option that gives a sensor walls to see; empty if none needs walls, or if there are some."""
     is_blind = spec.world.is_open and any(DEVICES[part.part] in SENSES_WALLS for part in parts)
     return "; there are no walls: --walls on" if is_blind else ""
 
 
 def describe_newest(parts: Sequence[PluggedPart], spec: RunSpec) -> str:
-    """Return what was plugged in last; empty for a left wheel, which is told of together with the right one."""
+    """Return what was plugged in last; empty for a left wheel, which is described together with the right one."""
     last = parts[-2:] if parts[-1].role == RIGHT else parts[-1:]
     words = f"{list_parts(last)}{_name_remedy(last, spec)}"
     return "" if parts[-1].role == LEFT else f"— plugged in, because the program opened it: {words}"
@@ -40,7 +40,7 @@ def list_parts(parts: Sequence[PluggedPart]) -> str:
     wheels = {part.port: number for number, part in enumerate(parts) if part.role in (LEFT, RIGHT)}
     for number, part in enumerate(parts):
         if not part.role and wheels.get(part.port, 0) > number:
-            # It has become a wheel's.
+            # The motor has become that of a wheel, which comes later in the list.
             continue
         line = f" (line {part.line})" if part.line else ""
         kind = DEVICES[part.part]

@@ -130,7 +130,7 @@ def resolve_files(folder: Path, options: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def is_file_name(word: str) -> bool:
-    """Return whether the value of one of `FILE_FIELDS` names a file, and not something built in."""
+    """Return whether the value of one of `FILE_FIELDS` is the path of a file, not the name of something built in."""
     return os.sep in word or bool(Path(word).suffix)
 
 
@@ -159,15 +159,15 @@ def find_magic(text: str, name: str) -> Magic | None:
 
 
 def replace_mat(text: str, name: str, mat: str) -> str:
-    """Return a program whose magic line names a mat; if it has none, with a line for the preloaded prelude.
+    """Return a program whose magic line names a mat; a program without one gets a line for the preloaded prelude.
 
     Args:
         text: The program.
-        name: Of its file, for errors.
+        name: The name of its file, for errors.
         mat: Name of the mat, or path of its image.
 
     Raises:
-        ConfigError: the magic line that is there is wrong.
+        ConfigError: the magic line is wrong.
     """
     magic = find_magic(text, name)
     lines = text.split("\n")
@@ -179,7 +179,7 @@ def replace_mat(text: str, name: str, mat: str) -> str:
     line = lines[magic.line - 1].rstrip()
     new_options = {**magic.options, "background": mat}
     before, quoted = str(magic.options.get("background", "\n")), shlex.quote(mat)
-    # Of several the last one counts.
+    # If the line names several mats, the last one counts.
     named = (line.rpartition(word) for word in (f'"{before}"', shlex.quote(before), before))
     for changed in (
         *(f"{part[0]}{quoted}{part[2]}" for part in named if part[1]),
@@ -194,10 +194,10 @@ def replace_mat(text: str, name: str, mat: str) -> str:
 
 
 def _find_docstring_end(lines: list[str]) -> int:
-    """Return the index of the line after the docstring, or after the lines that Python wants to be first."""
+    """Return the index of the line after the docstring, or else after lines such as `#!` that must come first."""
     try:
         first = parse_module("\n".join(lines)).body[:1]
-    # It is being edited.
+    # The program is being edited, and cannot be parsed.
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         first = []
     match first:
@@ -209,15 +209,18 @@ def _find_docstring_end(lines: list[str]) -> int:
 
 
 def choose_prelude(text: str, path: str = "") -> str:
-    """Return the prelude of a program without a magic line, in a file or none.
+    """Return the prelude of a program without a magic line.
 
     It is `none` if the program imports the library, or uses no name of a prelude.
+
+    Args:
+        path: The program's file, beside which its modules are; empty for none.
     """
     if has_library_import(text):
         return "none"
     try:
         used, defined = list_global_names(text)
-    # Errors of the program are reported when it runs; here a search must do.
+    # Errors of the program are reported when it runs.
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         return "preloaded"
     _, ready = list_global_names(PRELUDE_TEXTS["preloaded"])
@@ -235,7 +238,7 @@ def has_library_import(text: str) -> bool:
     """Return whether a program imports a library for a brick."""
     try:
         tree = parse_module(text)
-    # As above.
+    # The program cannot be parsed: a search must do.
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         return _IMPORT.search(text) is not None
     for node in ast.walk(tree):
@@ -267,7 +270,7 @@ def parse_program(text: str, name: str, path: str = "") -> ProgramSource:
 
 
 def parse_unfinished(text: str, name: str) -> Program:
-    """Return a program that is being edited, with the prelude that it has, or would have if it used a name of it."""
+    """Return a program that is being edited; with the prelude unless it has a magic line or imports a library."""
     try:
         source = parse_program(text, name)
     except ConfigError:
@@ -293,7 +296,7 @@ def read_program(path: Path, *, as_python: bool = False, alone: bool = False) ->
     """Read a program file; files in its magic line are looked up beside it.
 
     Args:
-        alone: Whether no module lies beside it: a class's files may lie in one folder. Its path then is one in itself.
+        alone: Whether files beside it are not its modules, as in a folder with the files of a whole class.
         as_python: Whether a file that is not text is read all the same, its wrong bytes as lone surrogates: when it is
             run, it raises what Python raises.
 
@@ -327,18 +330,18 @@ def _is_python(text: str) -> bool:
 
 
 def build_program(text: str, path: Path | None, name: str, *, alone: bool = False) -> ProgramSource:
-    """Like `read_program`, from a text; files in its magic line are looked up beside `path`.
+    """Return a program from a text, as `read_program` does from a file.
 
     Args:
         text: The source, with `\\n` as line endings.
-        path: Its file, which may not exist; None if it has none.
+        path: Its file, which may not exist, and beside which files in its magic line are; None if it has none.
         name: Its name, for errors and tables.
         alone: As in `read_program`.
 
     Raises:
         ConfigError: its magic line is wrong.
     """
-    # In a file, nothing can be found.
+    # A path inside of a file has no modules beside it.
     where = path / name if path and alone else path
     source = parse_program(text, name, str(where) if where else "")
     return replace(

@@ -52,7 +52,7 @@ _NO_PRELUDE = "none"
 
 @dataclass(frozen=True, slots=True)
 class SourceFacts:
-    """What the source of a program says about its run."""
+    """What the source of a program shows about the run that it needs."""
 
     library: Library | None = None
     """The library for a brick that it imports, in itself or in its own modules."""
@@ -77,7 +77,7 @@ class SourceFacts:
 
     @property
     def brick_profile(self) -> str:
-        """The profile with the rules of a real brick that it is for; it imports a library."""
+        """The profile with the rules of the real brick for which the program is; it must import a library."""
         assert self.library is not None
         return PYBRICKS_4.name if self.version_4_name else PROFILES_BY_LIBRARY[self.library]
 
@@ -89,7 +89,7 @@ PROGRAM_PATHS = ("robot", "profile", "for_brick", *GROUND_PATHS)
 
 @dataclass(frozen=True, slots=True)
 class Decided:
-    """What the source of a program decides."""
+    """The settings that the source of a program decides, where nobody has chosen them."""
 
     layer: Mapping[str, Any] = field(default_factory=dict)
     """By path; below everything that somebody has chosen."""
@@ -108,7 +108,7 @@ class Decided:
 
     @property
     def note(self) -> str:
-        """What is decided and how to change it, in one line; empty for nothing."""
+        """What was decided and how to change it, in one line; empty if nothing was."""
         return f"{self.said}. {self.hint}" if self.said else ""
 
     @property
@@ -122,13 +122,13 @@ class Decided:
 
 @dataclass(frozen=True, slots=True)
 class ProgramSettings:
-    """The settings of a run of a program."""
+    """The settings of a run of a program, and which of them its source decided."""
 
     settings: Settings
     decided: Decided
 
     def apply(self, program: Program) -> Program:
-        """Return a program with the prelude and the arguments that are chosen, and what its text shows."""
+        """Return a program with the prelude and arguments of the settings, and the ports of the parts that it shows."""
         prelude = self.settings["preload"] or program.prelude
         return replace(
             program,
@@ -139,7 +139,7 @@ class ProgramSettings:
 
 
 def read_source_facts(program: Program) -> SourceFacts:
-    """Return what the source of a program says; nothing if it is not Python, or too deeply nested to be read."""
+    """Return what the source of a program shows; nothing if it is not Python, or too deeply nested to be read."""
     facts = SourceFacts()
     try:
         modules = read_modules(program)
@@ -198,7 +198,7 @@ def require_library(program: Program, profile: ProfileSpec) -> None:
     """Check that a profile is for the library that a program uses, if it uses one.
 
     Raises:
-        ProfileError: it is for another one.
+        ProfileError: it is for another library.
     """
     for_course = program.prelude != _NO_PRELUDE
     library = Library.EV3DEV2 if for_course else _find_library(program, read_modules(program))
@@ -216,25 +216,25 @@ def build_program_settings(
 
     Args:
         source: The program with the options of its magic line.
-        above: What takes precedence over them, such as a world file and the command line, by path.
-        below: What they take precedence over: the user's defaults.
-        insists: Whether what is chosen must be for the program's library; else another profile takes its place.
+        above: Layers that override these options, such as a world file and the command line, by path.
+        below: The layer that they override: the user's defaults.
+        insists: Whether a chosen profile must be for the program's library; else another profile takes its place.
 
     Raises:
-        ProfileError: the chosen profile is not, or the prelude is not.
+        ProfileError: the chosen profile or the prelude is for another library than the program's.
     """
     layers = (below or {}, source.options, *above)
     settings = merge_settings(*layers)
     if insists and (settings["preload"] or source.program.prelude) != _NO_PRELUDE:
         _check_prelude(source.program)
-    # A default of the user is no choice for this program.
+    # A profile in the user's defaults was not chosen for this program.
     is_chosen = any(layer.get("profile") is not None for layer in (source.options, *above))
     decided = decide(source, settings, find_free_paths(settings), insists=insists and is_chosen)
     return ProgramSettings(merge_settings(*layers, decided.layer), decided)
 
 
 def find_free_paths(settings: Settings) -> frozenset[str]:
-    """Return which of `PROGRAM_PATHS` nobody has chosen; who says whether there is a floor also decides on walls."""
+    """Return which of `PROGRAM_PATHS` nobody has chosen; walls are not free if the floor was chosen."""
     free = {path for path in PROGRAM_PATHS if settings.given.get(path) is None}
     return frozenset(free if "floor" in free else free - {*GROUND_PATHS})
 
@@ -246,9 +246,9 @@ def decide(
 
     Args:
         source: The program.
-        settings: What is chosen.
-        free: The fields that are not.
-        insists: Whether a chosen profile counts that is not for the program's library; else it is replaced.
+        settings: The settings that are chosen.
+        free: The paths that nobody has chosen.
+        insists: Whether a chosen profile for another library is an error; else it is replaced.
 
     Raises:
         ProfileError: the chosen profile is not for the program's library.
@@ -282,12 +282,12 @@ def decide(
 
 
 def has_brick_rules(profile: str | ProfileSpec) -> bool:
-    """Return whether a profile, or the one of a name, has the rules of a real brick."""
+    """Return whether a profile, given by itself or by name, has the rules of a real brick."""
     return profile in BRICK_PROFILES or profile in [PROFILES[name] for name in BRICK_PROFILES]
 
 
 def _decide_ground(facts: SourceFacts, free: Collection[str]) -> dict[str, bool]:
-    """Return whether a program for a brick drives on a floor, and whether there are walls."""
+    """Return the settings `floor` and `walls` of a program for a brick, if nobody has chosen them."""
     ground = {"floor": True, "walls": facts.senses_walls} if "floor" in free else {}
     return {path: value for path, value in ground.items() if path in free}
 
@@ -314,7 +314,7 @@ def _check_prelude(program: Program) -> None:
 
 
 def _find_law(named: str | ProfileSpec) -> MotorLaw | None:
-    """Return the motor law of a profile; None if there is no such profile, which is told later."""
+    """Return the motor law of a profile; None if there is no such profile, which is reported later."""
     try:
         return _load_profile(named).motor_law
     except ProfileError:
@@ -322,7 +322,7 @@ def _find_law(named: str | ProfileSpec) -> MotorLaw | None:
 
 
 def _is_fitting(settings: Settings, library: Library) -> bool:
-    """Return whether the chosen profile is for a library; also if there is no such profile."""
+    """Return whether the chosen profile is for a library; True if there is no such profile."""
     law = _find_law(settings["profile"])
     return law is None or law.library is library
 
@@ -347,10 +347,10 @@ def choose_robot(source: ProgramSource, name: str) -> ProgramRobot:
 
     Args:
         source: The program.
-        name: What the program is called.
+        name: The name of the program.
 
     Raises:
-        RobotError: the program has parts that its text does not show.
+        RobotError: the program has parts whose ports its text does not show.
     """
     from tuisim.programs.robot.report import ProgramRobot
 
@@ -365,10 +365,10 @@ def choose_robot(source: ProgramSource, name: str) -> ProgramRobot:
 
 
 def _read_run_facts(source: ProgramSource) -> SourceFacts:
-    """Return what the source of a program says that counts in its run.
+    """Return what the source of a program shows, as far as it counts in its run.
 
-    What it says of sizes, sides and mountings counts only where it also brings its rules, as one for Pybricks always
-    does. A program of the course keeps the default robot if that has every part on its port.
+    If a program of the course needs the parts of the default robot on the same ports, it gets the default robot: sizes,
+    sides and mountings in it do not count. They do in a program with the rules of a brick, and in all for Pybricks.
     """
     facts = read_source_facts(source.program)
     brings_rules = facts.library is Library.PYBRICKS or _has_brick_rules(source, facts)
@@ -385,9 +385,9 @@ def _has_brick_rules(source: ProgramSource, facts: SourceFacts) -> bool:
 def _describe_decision(
     program: Program, facts: SourceFacts, layer: Mapping[str, Any]
 ) -> tuple[str, str]:
-    """Return what the source of a program decided, and how to change it; both empty for nothing."""
+    """Return what the source of a program decided, and how to change it; both are empty if it decided nothing."""
     if facts.for_other_hub:
-        # Nothing of that helps.
+        # No profile is for that hub, so no setting helps.
         return "", ""
     profile = layer.get("profile", "")
     uses = f" with Pybricks 4, whose {facts.version_4_name} it uses"

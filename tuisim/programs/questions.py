@@ -60,7 +60,7 @@ _FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
 
 @dataclass(frozen=True, slots=True)
 class Question:
-    """What a program does with what a line reads."""
+    """What a program does with the value that a line reads."""
 
     decides: bool = True
     """Whether anything depends on it: it is not only shown or stored."""
@@ -75,17 +75,17 @@ class Question:
 
     @property
     def buttons(self) -> tuple[str, ...]:
-        """The brick's buttons that it asks for, in its order; empty for any."""
+        """The brick's buttons that the program asks for, in its order; empty for any."""
         return self._find_words(BUTTON_WORDS)
 
     @property
     def remote_buttons(self) -> tuple[str, ...]:
-        """Likewise those of the remote control, by the names of `REMOTE_BY_HAND`."""
+        """The remote control's buttons that the program asks for, by the names of `REMOTE_BY_HAND`; empty for any."""
         return self._find_words(REMOTE_WORDS)
 
     @property
     def colors(self) -> tuple[str, ...]:
-        """Likewise colours, in small letters."""
+        """The colours that the program asks for, in small letters; empty for any."""
         return self._find_words(COLOR_WORDS)
 
     def _find_words(self, names: Mapping[Word, str]) -> tuple[str, ...]:
@@ -93,18 +93,18 @@ class Question:
         return tuple(dict.fromkeys(names[word] for word in words if word in names))
 
     def find_limit(self) -> float | None:
-        """Return the first number above 0 that it is compared with."""
+        """Return the first number above 0 with which the value is compared; None without one."""
         numbers = (word for word in self.words if not isinstance(word, str))
         return next((number for number in numbers if number > 0), None)
 
 
 def shorten(word: Word) -> Word:
-    """Return a word of a library as it is in the tables of words, without what libraries put before it."""
+    """Return a word of a library as in the tables of words: in small letters, without `on_`, `color_` and the like."""
     return _PREFIX.sub("", word.lower(), count=1) if isinstance(word, str) else word
 
 
 class QuestionReader:
-    """Reads the text of a program. A step is one statement, of a compound one only what is before its colon."""
+    """Finds out what a program does with what it reads. A step is a statement, or the head of a compound one."""
 
     def __init__(self, tree: ast.Module) -> None:
         self._nodes = list(ast.walk(tree))
@@ -150,20 +150,20 @@ class QuestionReader:
             self._steps.setdefault(line, []).append(step)
 
     def find_question(self, line: int) -> Question:
-        """Return what the program asks on a line; `Question()` if its text does not tell."""
+        """Return what the program does with what a line reads; `Question()` if its text does not tell."""
         if line not in self._questions:
             self._questions[line] = self._read_question(self._steps.get(line, []))
         return self._questions[line]
 
     def _read_question(self, steps: Sequence[ast.stmt]) -> Question:
-        """Return what the steps of a line ask."""
+        """Return what the program does with what some steps read."""
         if not steps:
             return Question()
         flow = self._find_flow(steps)
         heads = [head for step in flow if not _is_recorder(step) for head in _list_heads(step)]
         words = tuple(word for head in heads for word in self._list_words(head))
         if "process" in words:
-            # It calls the functions that were given for each button.
+            # `process` calls the handlers that were assigned, such as `on_up`.
             words += tuple(self._list_handlers())
         return Question(
             decides=any(map(self._is_deciding, flow)),
@@ -174,7 +174,7 @@ class QuestionReader:
         )
 
     def _find_flow(self, steps: Iterable[ast.stmt]) -> list[ast.stmt]:
-        """Return some steps, and all that use what they assign, pass on or decide."""
+        """Return some steps, and all steps that use a value that comes from them, or run depending on it."""
         flow = dict.fromkeys(steps)
         queue, followed = [*flow], set[str]()
         for step in queue:
@@ -190,7 +190,7 @@ class QuestionReader:
         return queue
 
     def _is_deciding(self, step: ast.stmt) -> bool:
-        """Return whether a step does more with what it reads than to show, store or pass it on."""
+        """Return whether a step does more with a value than to show, store or pass it on."""
         match step:
             case ast.Expr(value=ast.Call()):
                 return not _is_recorder(step) and not self._find_names(step)
@@ -201,7 +201,7 @@ class QuestionReader:
         return not isinstance(step, ast.Pass)
 
     def _list_words(self, head: ast.AST) -> Iterator[Word]:
-        """Yield the attributes, texts and numbers in an expression, in their order; no numbers to compute with."""
+        """Yield the attributes, texts and numbers in an expression, in their order, without numbers in calculations."""
         nodes = [
             node
             for node in ast.walk(head)
@@ -228,7 +228,7 @@ class QuestionReader:
                 yield node.attr
 
     def _is_last(self, step: ast.stmt) -> bool:
-        """Return whether a step only ends a loop, and the program then."""
+        """Return whether a step only ends a loop after which the program does nothing more."""
         loop = step
         while not isinstance(loop, _LOOPS):
             if not isinstance(loop, ast.stmt) or isinstance(loop, _FUNCTIONS):
@@ -256,7 +256,7 @@ class QuestionReader:
         )
 
     def _find_names(self, step: ast.stmt) -> set[str]:
-        """Return what holds the value of a step then: names, and attributes with a dot before them."""
+        """Return the names that hold the value of a step after it; attributes have a dot before them."""
         match step:
             case ast.Assign(targets=targets):
                 return {name for target in targets for name in _list_names(target)}
@@ -317,7 +317,7 @@ def _is_test(step: ast.stmt) -> bool:
 
 
 def _is_noted(step: ast.stmt, compared: Set[str]) -> bool:
-    """Return whether a step only shows something, or stores it in what it was compared with, as the largest so far."""
+    """Return whether a step only shows a value, or stores it in a variable that it was compared with, as a maximum."""
     match step:
         case ast.Assign(targets=targets):
             return {name for target in targets for name in _list_names(target)} <= compared
@@ -338,7 +338,7 @@ def _name_function(func: ast.expr) -> str:
 
 
 def _list_names(target: ast.AST) -> set[str]:
-    """Return the names in the target of an assignment, attributes with a dot before them."""
+    """Return the names in the target of an assignment; attributes have a dot before them."""
     match target:
         case ast.Name(id=name):
             return {name}

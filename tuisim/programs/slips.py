@@ -8,14 +8,14 @@ from itertools import pairwise
 
 
 def list_slips(tree: ast.Module) -> Iterator[tuple[int, str]]:
-    """Yield the first line with each kind of slip, and why it is one, in words."""
+    """Yield the first line with each kind of slip, such as a stop without `()`, and what is wrong with it, in words."""
     for find_slip in _find_uncalled_stop, _find_equal_branches, _find_idle_comparison:
         if slip := find_slip(tree):
             yield slip
 
 
 def find_idle_definition(tree: ast.Module) -> tuple[int, str] | None:
-    """Return the last function of a program that only defines, and why nothing happens; None if it does more."""
+    """Return the last function or class of a program that only defines, and why nothing happens; else None."""
     last: ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef | None = None
     for node in tree.body:
         match node:
@@ -33,13 +33,13 @@ def find_idle_definition(tree: ast.Module) -> tuple[int, str] | None:
 
 
 def _only_makes(node: ast.AST) -> bool:
-    """Return whether all calls in a part of a program are of classes."""
+    """Return whether all calls in a node have the name of a class: they only make objects."""
     calls = (part.func for part in ast.walk(node) if isinstance(part, ast.Call))
     return all(ast.unparse(name).rpartition(".")[2][:1].isupper() for name in calls)
 
 
 def _find_uncalled_stop(tree: ast.Module) -> tuple[int, str] | None:
-    """Return the first line that names what stops motors without calling it."""
+    """Return the first line that names a method to stop motors without calling it."""
     for node in ast.walk(tree):
         match node:
             case ast.Expr(value=ast.Attribute(attr="off" | "stop" | "brake" | "hold") as name):
@@ -49,7 +49,7 @@ def _find_uncalled_stop(tree: ast.Module) -> tuple[int, str] | None:
 
 
 def _find_equal_branches(tree: ast.Module) -> tuple[int, str] | None:
-    """Return the first line with an `if` whose `else` does the same, or the `if` after it that asks the opposite."""
+    """Return the first line with an `if` whose `else`, or the next `if` with the opposite question, does the same."""
     pairs: list[tuple[int, str]] = []
     for node in ast.walk(tree):
         if isinstance(node, ast.If) and node.orelse and _dump(node.body) == _dump(node.orelse):
@@ -63,7 +63,7 @@ def _find_equal_branches(tree: ast.Module) -> tuple[int, str] | None:
 
 
 def _is_opposite(first: ast.stmt, second: ast.stmt) -> bool:
-    """Return whether two statements do the same, one if something is below a limit, the other if it is above."""
+    """Return whether two `if` do the same, one below a limit and the other above."""
     match first, second:
         case (
             ast.If(test=ast.Compare(ops=[way]) as test, orelse=[]),
@@ -82,9 +82,9 @@ def _dump(nodes: Sequence[ast.AST]) -> list[str]:
 
 
 def _find_idle_comparison(tree: ast.Module) -> tuple[int, str] | None:
-    """Return the first line that compares and does nothing with the answer.
+    """Return the first line that compares and does nothing with the result.
 
-    One in a `try` is left out: whether it raises is an answer too.
+    A comparison in a `try` is left out: whether it raises is a result, too.
     """
     nodes = [*ast.walk(tree)]
     tried = {part for node in nodes if isinstance(node, ast.Try) for part in ast.walk(node)}
@@ -103,7 +103,11 @@ def _find_idle_comparison(tree: ast.Module) -> tuple[int, str] | None:
 
 
 def _describe_idle(test: ast.Compare, function: str) -> str:
-    """Return why a comparison whose answer is lost is wrong; it may be the last line of a function."""
+    """Return what is wrong with a comparison whose result is not used.
+
+    Args:
+        function: The name of the function whose last line it is; empty for none.
+    """
     words = ast.unparse(test)
     match test:
         case ast.Compare() if function:

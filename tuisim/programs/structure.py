@@ -22,7 +22,7 @@ def _is_dead(node: ast.AST) -> bool:
         and not node.test.value
     ):
         return True
-    # A `while` that does nothing waits.
+    # A `while` with an empty body is not dead: it waits.
     return isinstance(node, ast.For | ast.If | _Function) and all(
         _is_idle(statement) for statement in node.body
     )
@@ -38,7 +38,7 @@ def _count(*kinds: type[ast.AST]) -> Callable[[ast.Module], int]:
 
 
 def _count_functions(tree: ast.Module) -> int:
-    """Return how many functions the program defines and names elsewhere."""
+    """Return how many functions the program defines and also uses."""
     defined = _list_nodes(tree, _Function)  # type: ignore[arg-type]
     named = [
         node.id if isinstance(node, ast.Name) else node.attr
@@ -51,7 +51,7 @@ def _count_functions(tree: ast.Module) -> int:
 
 
 def _count_lines(tree: ast.Module) -> int:
-    """Return how many lines have code, without comments and texts of documentation."""
+    """Return how many lines have code; comments and docstrings do not count."""
     statements = (
         node for node in ast.walk(tree) if isinstance(node, ast.stmt) and not _is_idle(node)
     )
@@ -59,7 +59,7 @@ def _count_lines(tree: ast.Module) -> int:
 
 
 def _list_span(statement: ast.stmt) -> Iterator[int]:
-    """Yield the lines of a statement, of a block only its first."""
+    """Yield the lines of a statement; of a block only the first."""
     is_block = isinstance(statement, _BLOCKS)
     yield from range(
         statement.lineno, statement.lineno + 1 if is_block else (statement.end_lineno or 0) + 1

@@ -39,7 +39,7 @@ class Token:
 
 
 def list_tokens(text: str) -> Iterator[Token]:
-    """Yield the tokens of a program, as far as Python can read it."""
+    """Yield the tokens of a program, up to where Python cannot read it."""
     try:
         for token in tokenize.generate_tokens(io.StringIO(text).readline):
             if token.type in _SKIPPED:

@@ -18,7 +18,7 @@ _Loop = ast.For | ast.While
 
 @dataclass(frozen=True, slots=True)
 class LoopEnd:
-    """A loop of a program that ends when something compares with a constant."""
+    """A loop of a program that ends when a value passes a comparison with a constant, as in `while light > 20`."""
 
     line: int
     """The line of the comparison."""
@@ -47,11 +47,11 @@ class LoopEnd:
 
 
 def list_loop_ends(tree: ast.Module, constants: Mapping[str, Word]) -> tuple[LoopEnd, ...]:
-    """Return the loops of a program of which its text tells what ends them, the inner ones first.
+    """Return the loops of a program that end by a comparison which the text shows, the inner ones first.
 
     Args:
         tree: The program.
-        constants: Those of its names; see `list_constants`.
+        constants: Values of names in the program; see `list_constants`.
     """
     loops = [node for node in ast.walk(tree) if isinstance(node, ast.While)]
     loops.sort(key=lambda loop: -loop.lineno)
@@ -59,9 +59,9 @@ def list_loop_ends(tree: ast.Module, constants: Mapping[str, Word]) -> tuple[Loo
 
 
 def list_counts(tree: ast.Module, constants: Mapping[str, Word]) -> Iterator[tuple[int, LoopEnd]]:
-    """Yield each line that only counts in a loop while something compares with a constant, and the comparison.
+    """Yield each line in a loop that counts each time that a comparison with a constant is true, and the comparison.
 
-    Its variable starts somewhere, and nothing else changes or divides it. Arguments as of `list_loop_ends`.
+    Nothing but its start and this line sets the variable, which is in no division. Arguments as of `list_loop_ends`.
     """
     loops = [node for node in ast.walk(tree) if isinstance(node, _Loop)]
     for loop in loops:
@@ -90,7 +90,7 @@ def _find_counted(node: ast.stmt) -> str:
 
 
 def _is_only_counted(name: str, tree: ast.Module) -> bool:
-    """Return whether a variable is set twice, so that one place counts it, and is no part of a share."""
+    """Return whether a variable is set in two places only, its start and its count, and is not part of a division."""
     nodes = [*ast.walk(tree)]
     places = [node for node in nodes if isinstance(node, ast.Name) and node.id == name]
     shares = [
@@ -103,7 +103,7 @@ def _is_only_counted(name: str, tree: ast.Module) -> bool:
 def find_turns(
     tree: ast.Module, constants: Mapping[str, Word], line: int
 ) -> tuple[float, str] | None:
-    """Return how far a call on a line turns a motor or both wheels, and whether in rotations or in degrees.
+    """Return by how much a call on a line turns a motor or both wheels, and `rotations` or `degrees`; else None.
 
     Arguments as of `list_loop_ends`.
     """
@@ -121,7 +121,7 @@ def find_turns(
 def find_first_drive(tree: ast.Module) -> int:
     """Return the first line of a program that starts motors; 0 for none.
 
-    A function that the program does not mention starts nothing.
+    Functions that the program does not mention do not count.
     """
     nodes = [*ast.walk(tree)]
     mentioned = {node.id for node in nodes if isinstance(node, ast.Name) and not _is_set(node)}
@@ -137,7 +137,7 @@ def find_first_drive(tree: ast.Module) -> int:
 def _is_drive(node: ast.AST) -> TypeGuard[ast.Call]:
     match node:
         case ast.Call(func=ast.Attribute(attr="on"), args=args):
-            # A lamp of Pybricks is turned on with a colour.
+            # `on` with an attribute such as `Color.RED` is for a lamp of Pybricks, not for motors.
             return not any(isinstance(part, ast.Attribute) for part in args)
         case ast.Call(func=ast.Attribute(attr=attr)) if attr.startswith(("on_for_", "run_")):
             return True
@@ -149,7 +149,7 @@ def _is_drive(node: ast.AST) -> TypeGuard[ast.Call]:
 def _find_ends(
     loop: ast.While, tree: ast.Module, constants: Mapping[str, Word]
 ) -> Iterator[LoopEnd]:
-    """Yield what ends a loop: what it goes on with, and in an endless one what leads to a `break`."""
+    """Yield what ends a loop: the condition of the loop or, in an endless one, the condition of a `break`."""
     is_endless = isinstance(loop.test, ast.Constant) and bool(loop.test.value)
     if not is_endless:
         yield from _find_end(loop, loop.test, tree, constants, is_break=False)
@@ -166,7 +166,13 @@ def _find_end(
     *,
     is_break: bool,
 ) -> Iterator[LoopEnd]:
-    """Yield what ends a loop, if something in a test is compared with a constant, or with one of some names' words."""
+    """Yield what ends a loop, if a condition compares something with a constant.
+
+    Args:
+        test: The condition.
+        words: Values of names in the program, which count as constants.
+        is_break: Whether the loop ends if the condition is true, and not if it is false.
+    """
     if isinstance(test, ast.BoolOp):
         ends = [_find_end(loop, part, tree, words, is_break=is_break) for part in test.values]
         if isinstance(test.op, ast.Or) is is_break:
@@ -196,7 +202,7 @@ def _find_end(
 def _read_comparison(
     test: ast.expr, constants: Mapping[str, Word], *, is_break: bool
 ) -> tuple[ast.expr, str, Word] | None:
-    """Return what a test compares, the operator that ends the loop, and the constant; None if it does not."""
+    """Return what a test compares, the operator that ends the loop, and the constant; None if it is no such test."""
     match test:
         case ast.Compare(left=left, ops=[operator], comparators=[right]):
             sign = SIGNS.get(type(operator), "")
@@ -218,7 +224,7 @@ def _find_last_line(node: ast.stmt) -> int:
 
 
 def list_constants(tree: ast.Module) -> dict[str, Word]:
-    """Return the names that are set once, to a text or a number, and parameters that each call gives the same one."""
+    """Return the values of names that are set once, to a text or number, and of parameters alike in all calls."""
     nodes = [*ast.walk(tree)]
     functions = [node for node in nodes if isinstance(node, ast.FunctionDef)]
     times_set = Counter(
@@ -257,7 +263,7 @@ def _is_set(node: ast.Name) -> bool:
 
 
 def _find_constant(node: ast.expr, constants: Mapping[str, Word]) -> Word | None:
-    """Return a text or a number in the program, the last part of a name in capitals; None for others."""
+    """Return the text or number that an expression stands for, or a name in capitals such as `RED`; None for others."""
     match node:
         case ast.Name(id=name):
             return constants.get(name)
@@ -276,7 +282,7 @@ def _find_constant(node: ast.expr, constants: Mapping[str, Word]) -> Word | None
 
 
 def _find_attribute(node: ast.expr) -> str:
-    """Return the attribute or the method that a value is, with no argument or a 0; empty for other values."""
+    """Return the attribute or method that an expression reads, without an argument or with 0; empty for others."""
     match node:
         case (
             ast.Attribute(attr=attr)
@@ -287,9 +293,9 @@ def _find_attribute(node: ast.expr) -> str:
 
 
 def _find_values(name: str, tree: ast.Module) -> list[tuple[int, ast.expr]]:
-    """Return the lines on which a variable is set anywhere, with its value; the name itself where that is not known.
+    """Return the lines that set a variable, with its value, or with the variable's own node if the value is not known.
 
-    Empty if it is shared by functions, which others may call.
+    Empty if the variable is shared by functions, which may be called from anywhere.
     """
     values: list[tuple[int, ast.expr]] = []
     for node in ast.walk(tree):

@@ -28,7 +28,7 @@ class WheelTurn:
 
 
 def list_wheel_turns(tree: ast.Module) -> Iterator[WheelTurn]:
-    """Yield the calls of a program that turn both wheels against each other by what robots are turned by."""
+    """Yield the calls of a program that turn the wheels in opposite directions by an angle such as robots turn by."""
     for node in ast.walk(tree):
         match node:
             case ast.Call(

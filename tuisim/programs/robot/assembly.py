@@ -84,10 +84,10 @@ class BuiltRobot:
 
 
 def build_robot(mentions: Mentions, name: str, usual: RobotSpec) -> BuiltRobot | None:
-    """Return the robot that a program talks about; None if the usual one has everything on its ports.
+    """Return the robot that a program needs; None if the usual one has every part on its port.
 
     Args:
-        name: What the program is called.
+        name: The name of the program.
         usual: The robot that is changed.
 
     Raises:
@@ -97,7 +97,7 @@ def build_robot(mentions: Mentions, name: str, usual: RobotSpec) -> BuiltRobot |
     if usual.hub:
         builder.parts.append(RobotPart(usual.hub, "hub"))
     motors = builder.motors()
-    # A wrong size is told as such, not as the wrong place of a sensor beside the wheels.
+    # Raises for a wrong size of the wheels here, not later for the place of a sensor beside them.
     replace(usual, **motors)
     changes = builder.add_presses({**motors, **builder.sensors(motors)})
     changes |= builder.find_sizes(motors)
@@ -115,7 +115,7 @@ def build_robot(mentions: Mentions, name: str, usual: RobotSpec) -> BuiltRobot |
 
 
 def find_shown_ports(mentions: Mentions, robot: RobotSpec) -> tuple[str, ...]:
-    """Return the ports of the parts that a program shows on its robot, also of those that it takes on any port."""
+    """Return the ports on the program's robot of the parts that its text shows, with or without their port."""
     pairs = [port for pair in mentions.pairs for port in (pair.left, pair.right)]
     ports = {device.port for device in mentions.devices} | {*pairs}
     taken_anywhere = {device.kind for device in mentions.devices if device.is_any}
@@ -146,7 +146,7 @@ class _Builder:
     # Motors
 
     def motors(self) -> dict[str, Any]:
-        """Return the fields of the robot that are about motors and wheels."""
+        """Return the fields of the robot on motors and wheels."""
         motors = (device for device in self.mentions.devices if device.kind.is_motor)
         kinds = add_tools(self._find_kinds([*self._list_pairs(), *motors]), self.mentions)
         where = {
@@ -197,7 +197,7 @@ class _Builder:
         return HUBS[self.usual.hub].motor if self.usual.hub else usual
 
     def _find_reversed(self, wheels: WheelMotors) -> dict[str, bool]:
-        """Return which wheels the program says to be mounted the other way round."""
+        """Return the fields for wheels whose motors are mounted the other way round, according to the program."""
         turned = self.mechanics.reversed
         sides = [
             side
@@ -213,7 +213,7 @@ class _Builder:
         return {f"{side}_reversed": True for side in sides}
 
     def _find_gears(self, wheels: WheelMotors) -> dict[str, float]:
-        """Return the gears between the wheels and their motors; a robot has the same on both sides."""
+        """Return the field for the gears of the wheels; empty if they are as usual, or differ between the sides."""
         motors = [
             motor
             for port in (wheels.left, wheels.right)
@@ -234,7 +234,7 @@ class _Builder:
         return {"gear_ratio": ratio}
 
     def add_presses(self, changes: dict[str, Any]) -> dict[str, Any]:
-        """Return the changes with the touch sensors that a motor presses at its end."""
+        """Return the fields with touch sensors that a motor presses at its end stop."""
         motors = {motor.port: motor for motor in changes["extra_motors"]}
         touches = list(changes["touch_sensors"])
         for press in self.mechanics.presses:
@@ -268,7 +268,11 @@ class _Builder:
         return next((device.where for device in self.mentions.devices if device.kind is kind), None)
 
     def _add_motors(self, kinds: dict[str, DeviceKind], wheels: tuple[str, str]) -> None:
-        """Add the motors that the program makes without saying the port, on free ports."""
+        """Add motors to `kinds` that the program makes without a port, on free ports.
+
+        Args:
+            wheels: The ports of the wheels.
+        """
         unknown = sum(
             device.kind is DeviceKind.MEDIUM and not device.port and not device.is_any
             for device in self.mentions.devices
@@ -284,7 +288,7 @@ class _Builder:
                 missing -= 1
 
     def _read_sizes(self, pair: Pair | None) -> dict[str, float]:
-        """Return what the class of the wheels says about them, if it differs from those of the usual robot."""
+        """Return the sizes that the program gives to the class of its wheels, if the usual robot has others."""
         sizes: dict[str, float] = {}
         if pair and pair.wheel_mm and pair.wheel_mm[0] != self.usual.wheel_diameter_mm:
             sizes["wheel_diameter_mm"], width_mm = pair.wheel_mm
@@ -294,7 +298,7 @@ class _Builder:
         return sizes
 
     def find_sizes(self, motors: Mapping[str, Any]) -> dict[str, float]:
-        """Return what constants of the program say about the wheels, where their class says nothing."""
+        """Return the sizes of the wheels that constants of the program give, where their class gives none."""
         sizes = self._find_sizes(motors)
         self._tell_sizes(
             {key: size.mm for key, size in sizes.items()},
@@ -315,7 +319,7 @@ class _Builder:
         }
 
     def _list_exact(self) -> Iterator[str]:
-        """Yield the sizes that a `DriveBase` says, also if they are as usual."""
+        """Yield the names of the sizes that a `DriveBase` gives, even if they are as usual."""
         for pair in self.mentions.pairs:
             if PAIRS[pair.class_name].takes_motors:
                 yield from ["wheel_diameter_mm"] if pair.wheel_mm else []
@@ -343,7 +347,7 @@ class _Builder:
         self._tell_sizes(changes, dict.fromkeys(changes, wheels.where))
 
     def _find_kinds(self, mentions: Iterable[Mention]) -> dict[str, DeviceKind]:
-        """Return the kind of device on each port that is named; of several the one that is named most often."""
+        """Return the kind of device on each port that the program names; of several kinds the one named most often."""
         votes: dict[str, Counter[DeviceKind]] = {}
         for mention in mentions:
             if mention.port:
@@ -362,10 +366,10 @@ class _Builder:
     # Sensors
 
     def sensors(self, motors: Mapping[str, Any]) -> dict[str, Any]:
-        """Return the fields of the robot that are about sensors.
+        """Return the fields of the robot on sensors.
 
         Args:
-            motors: The fields that are about motors and wheels.
+            motors: The fields on motors and wheels.
         """
         mentions = add_sides(
             [device for device in self.mentions.devices if not device.kind.is_motor]
@@ -427,7 +431,7 @@ class _Builder:
         placed: Mapping[str, SensorSpec],
         taken: set[str],
     ) -> list[tuple[str, Mention]]:
-        """Return the sensors that a program makes without saying the port, with ports for them."""
+        """Return the sensors that a program makes without a port, each with a free port for it."""
         ported: list[tuple[str, Mention]] = []
         for kind in dict.fromkeys(
             device.kind
@@ -452,7 +456,12 @@ class _Builder:
         return ported
 
     def _stay(self, left: list[SensorSpec], placed: dict[str, SensorSpec]) -> None:
-        """Keep the usual sensors that the program does not name where a port is free for them."""
+        """Put the usual sensors that the program does not name on their ports, or on others that are free.
+
+        Args:
+            left: These sensors.
+            placed: The sensors by port, to which they are added.
+        """
         moving = []
         for sensor in left:
             if sensor.port in placed:
@@ -496,7 +505,7 @@ def _is_there(sensor: SensorSpec, mention: Mention | None, *, by_side: bool) -> 
     """Return whether a sensor of the usual robot is the one that the program makes on its port.
 
     Args:
-        by_side: Whether the colour sensors are where their names say.
+        by_side: Whether a colour sensor must be on the side that the program's name for it says.
     """
     if mention is None or mention.kind not in (KINDS[type(sensor)], DeviceKind.SENSOR):
         return False

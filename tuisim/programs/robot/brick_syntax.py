@@ -38,7 +38,7 @@ def _find_refused(tree: ast.Module) -> Iterator[tuple[int, str]]:
 
 
 def _name_refused(node: ast.AST) -> str:
-    """Return what a node is that the brick refuses; empty if it takes it."""
+    """Return what syntax a node is that the brick refuses; empty if the brick accepts it."""
     match node:
         case ast.JoinedStr():
             return "f-string"

@@ -28,12 +28,12 @@ class CallOrder:
     _leads: dict[Scope, Order] = field(default_factory=dict)
 
     def find_order(self, line: int, scope: Scope) -> Order:
-        """Return how a line is reached; last of all if nothing in the text calls its function."""
+        """Return a sort key for when a line is reached; it is the highest if nothing in the text calls its function."""
         return *self._find_lead(scope), line
 
     def _find_lead(self, scope: Scope) -> Order:
         if scope not in self._leads:
-            # What calls only itself is not known.
+            # Ends recursion: a function that only calls itself keeps this.
             self._leads[scope] = _UNKNOWN
             self._leads[scope] = self._follow(scope)
         return self._leads[scope]

@@ -19,7 +19,7 @@ class Call:
 
 
 def find_argument_node(call: Call, name: str, position: int | None) -> ast.expr | None:
-    """Return the expression that a call gives for a parameter; None if it gives none by itself."""
+    """Return the expression that a call gives for a parameter; None if it gives none, or only by `*`."""
     for keyword in call.node.keywords:
         if keyword.arg == name:
             return keyword.value

@@ -32,7 +32,7 @@ def has_course_names(modules: Mapping[str, Module], text: str) -> bool:
     _, ready = list_global_names(PRELUDE_TEXTS["preloaded"])
     used, known = list_global_names(text)
     if any(_is_star(node) for node in ast.walk(modules[""].tree)):
-        # What a library or a module of the program may have defined is not the course's.
+        # After `import *`, names that a library or a module may define do not show that it is the course's.
         ready = {name for name in ready - defined if name[0].islower()}
     return bool((used - known) & ready)
 

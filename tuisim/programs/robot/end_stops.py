@@ -29,7 +29,7 @@ class EndStop:
 
 @dataclass(frozen=True, slots=True)
 class StopPress:
-    """A motor that presses a touch sensor at its end."""
+    """A motor that presses a touch sensor at its end stop."""
 
     touch: str
     """The port of the sensor; empty if the program does not say it."""
@@ -49,7 +49,7 @@ class Target:
 
 @dataclass(slots=True)
 class Mechanics:
-    """What a program says about its motors, by port; the port is empty if the program does not say it."""
+    """How the motors of a program's robot are mounted and move, by port; the port is empty if the program lacks it."""
 
     order: CallOrder = field(default_factory=CallOrder)
     """What the program does first."""
@@ -75,7 +75,7 @@ class Mechanics:
         return self.stops.get(port) or next(pressed, None)
 
     def find_range(self, port: str) -> tuple[float | None, float | None]:
-        """Return the end stops of a motor, from its position at the start; None for a side without one."""
+        """Return where the end stops of a motor are, from its position at the start; None for a side without one."""
         stop = self.find_stop(port)
         if stop is None:
             return None, None
@@ -91,16 +91,15 @@ class Mechanics:
         return max(back_deg, -_MAX_REACH_DEG) - _MARGIN_DEG, far
 
     def note_turn(self, port: str, turn: Target) -> None:
-        """Note a turn of a motor from where it stands."""
+        """Note how far the program turns a motor from where it stands: it must not meet an end stop before."""
         self.reach_deg[port] = max(self.reach_deg.get(port, 0.0), turn.deg)
         self.turns.setdefault(port, []).append(turn)
 
     def note_targets(self, port: str, targets: Sequence[Target], places: Collection[float]) -> None:
-        """Note how far a motor turns for some targets, and for its turns, once these are known.
+        """Note how far a motor must be able to turn for its targets; all its turns must have been noted before.
 
         Args:
-            places: The positions that the program says the motor has, as at an end stop. Once it is there, targets
-                count from the end stop.
+            places: Positions that the program gives the motor, as at an end stop: targets then count from the end stop.
         """
         far = max(
             (abs(target.deg - place) for target in targets for place in places or (0.0,)), default=0
@@ -108,14 +107,14 @@ class Mechanics:
         self.reach_deg[port] = max(self.reach_deg.get(port, 0.0), far)
         stop = self.find_stop(port)
         first = [target.deg for target in targets if not places or self._is_before(target, stop)]
-        # Which way they lead is not known.
+        # The direction of these turns is not known.
         turned_deg = sum(
             target.deg for target in self.turns.get(port, ()) if self._is_before(target, stop)
         )
         self.targets_deg[port] = min((0.0, *first)) - turned_deg, max((0.0, *first)) + turned_deg
 
     def _is_before(self, target: Target, stop: EndStop | None) -> bool:
-        """Return whether a motor turns to a target before it is driven to its end stop."""
+        """Return whether a motor turns to a target before the program drives it to its end stop."""
         if stop is None:
             return False
         before, driven = (
@@ -124,7 +123,12 @@ class Mechanics:
         return before < driven
 
     def turn_motor(self, port: str, gear_ratio: float, *, is_turned: bool) -> None:
-        """Change the angles of the program into those of a motor."""
+        """Change the angles of a motor from those of the program into its own.
+
+        Args:
+            gear_ratio: Turns of the motor per turn in the program.
+            is_turned: Whether the motor turns the other way than the program says.
+        """
         self.reach_deg[port] = self.reach_deg.get(port, 0.0) * gear_ratio
         back_deg, ahead_deg = (deg * gear_ratio for deg in self.targets_deg.get(port, (0.0, 0.0)))
         self.targets_deg[port] = (-ahead_deg, -back_deg) if is_turned else (back_deg, ahead_deg)

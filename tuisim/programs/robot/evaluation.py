@@ -42,7 +42,7 @@ _CONVERTED = {"str", "int", "float", "list", "tuple", "set", "sorted", "reversed
 
 @dataclass(slots=True)
 class Evaluation:
-    """The expressions of one program."""
+    """What the expressions of one program can be, without running it."""
 
     modules: Mapping[str, Scope]
     """Its own modules by name."""
@@ -67,7 +67,7 @@ class Evaluation:
         finally:
             self._open.discard(key)
         if not self._open:
-            # Inside another evaluation it may lack what that one is about to find.
+            # Not cached inside another evaluation: values that are still being evaluated may be missing.
             self._known[key] = values
         return values
 
@@ -102,13 +102,13 @@ class Evaluation:
             case ast.BinOp(left=left, op=sign, right=right):
                 yield from self._compute(left, sign, right, scope)
             case ast.ListComp(elt=item) | ast.SetComp(elt=item) | ast.GeneratorExp(elt=item):
-                # Its items are alike: one stands for all.
+                # The items of a comprehension are alike: one stands for all.
                 yield SourceCollection(ast.List([item]), scope)
             case ast.Call():
                 yield from self._call(node, scope)
 
     def within(self, function: Function, call: Call) -> Evaluation:
-        """Return the expressions of the same program as they are while one call of a function runs."""
+        """Return the evaluation for one call of a function: the parameters have only the values of that call."""
         return Evaluation(self.modules, {**self.calls, function: [call]})
 
     # Names
@@ -200,7 +200,7 @@ class Evaluation:
             case Instance(of=LibraryClass()) | LibraryClass() if name in library.CONSTANTS:
                 yield library.CONSTANTS[name]
             case str() | int() | float() if name == "value":
-                # Of an enumeration: its members are taken to be their values.
+                # `value` of a member of an enumeration: members are evaluated as their values.
                 yield value
 
     def _read_class(self, scope: Scope, name: str, *, is_bound: bool) -> Iterator[Value]:
@@ -224,12 +224,12 @@ class Evaluation:
         assert isinstance(scope.node, ast.ClassDef) and scope.outer is not None
         bases: list[Value] = []
         for base in scope.node.bases:
-            # One that is based on itself ends here.
+            # A class may seem to be its own base, if its name is bound twice.
             bases += [value for value in self.values(base, scope.outer) if value != OwnClass(scope)]
         return bases
 
     def method(self, scope: Scope, name: str) -> OwnFunction | LibraryClass | None:
-        """Return the method that a class has or inherits; the class of the library that has it instead."""
+        """Return the method that a class has or inherits; if a class of the library has it, that class."""
         seen: set[Scope] = set()
         while scope not in seen:
             seen.add(scope)
@@ -278,7 +278,7 @@ class Evaluation:
                             yield from self._read_class(inner, name, is_bound=False)
 
     def look_up(self, table: SourceCollection, wanted_keys: Sequence[Value]) -> Iterator[Value]:
-        """Yield what is in a table under one of these keys; everything if they are unknown."""
+        """Yield the items that a list or dict can have under one of some keys; all items if the keys are unknown."""
         keys = table.keys
         for key, item in zip(keys or range(len(table.items)), table.items, strict=True):
             of_key = (
@@ -330,7 +330,7 @@ class Evaluation:
                     yield from _add_call(node, self.find_returned(value))
 
     def _call_get(self, base: ast.expr, node: ast.Call, scope: Scope) -> Iterator[Value]:
-        """Yield what `get` of a dict returns, or of `os.environ`."""
+        """Yield what a call of `get` of a dict, or of `os.environ`, can return."""
         owners = self.values(base, scope)
         tables = [value for value in owners if isinstance(value, SourceCollection)]
         for table in tables:
@@ -347,7 +347,7 @@ class Evaluation:
     # Arguments
 
     def find_argument(self, call: Call, name: str, position: int | None) -> Sequence[Value] | None:
-        """Return what a call gives for a parameter; None if nothing, empty if unknown, as it is with `*…` and `**…`."""
+        """Return what a call gives for a parameter; None if nothing, empty if unknown because of `*` or `**`."""
         if (node := find_argument_node(call, name, position)) is not None:
             return self.values(node, call.scope)
         is_unpacked = any(isinstance(argument, ast.Starred) for argument in call.node.args) or any(
@@ -356,7 +356,7 @@ class Evaluation:
         return () if is_unpacked else None
 
     def arguments(self, parameter: Parameter) -> list[tuple[Value, Call | None]]:
-        """Return what a parameter can be, each with the call that says so; None for its default."""
+        """Return what a parameter can be, each value with the call that gives it; None for its default."""
         name = parameter.argument.arg
         function, owner = parameter.function, parameter.scope.outer
         arguments = [*function.args.posonlyargs, *function.args.args]
@@ -392,7 +392,7 @@ class Evaluation:
 
 
 def _add_call(call: ast.Call | None, values: Iterable[Value]) -> Iterator[Value]:
-    """Yield values with the call that makes them, where none nearer to them is known."""
+    """Yield values; instances without a call get the one that makes them."""
     for value in values:
         yield (
             replace(value, via=call) if isinstance(value, Instance) and value.via is None else value

@@ -18,7 +18,7 @@ COURSE_MODULE = "ev3dev2_glue"
 
 
 class DeviceKind(StrEnum):
-    """What a program asks for on a port; the value is what people call it."""
+    """A kind of device that a program asks for on a port; the value is what people call it."""
 
     LARGE = "large motor"
     MEDIUM = "medium motor"
@@ -34,7 +34,7 @@ class DeviceKind(StrEnum):
 
     @property
     def is_motor(self) -> bool:
-        """Whether it belongs on an output port."""
+        """Whether the device belongs on an output port."""
         return self in (DeviceKind.LARGE, DeviceKind.MEDIUM, DeviceKind.MOTOR)
 
 
@@ -266,14 +266,14 @@ def find_driver_kind(text: object) -> DeviceKind | None:
 
 
 def find_mode_kind(text: object) -> DeviceKind | None:
-    """Return the kind of sensor that has a mode."""
+    """Return the kind of sensor to which a mode such as `US-DIST-CM` belongs; None if it is unknown."""
     if not isinstance(text, str):
         return None
     return next((kind for prefix, kind in _MODES.items() if text.startswith(prefix)), None)
 
 
 def list_names(node: ast.AST) -> tuple[str, ...]:
-    """Return the names in an expression, such as that of the constant for a port."""
+    """Return the names and texts in an expression that may tell what a device is for; not those of ports."""
     names = []
     for inner in ast.walk(node):
         match inner:

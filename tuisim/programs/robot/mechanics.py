@@ -19,7 +19,7 @@ from tuisim.programs.robot.words import is_forwards
 
 
 def read_mechanics(mentions: Mentions) -> Mechanics:
-    """Return what a program says about how its motors are mounted."""
+    """Return what a program says about how its motors are mounted and how far they move."""
     if mentions.evaluation is None:
         return Mechanics()
     evaluation, moves = mentions.evaluation, library.MOVES[mentions.library]
@@ -60,7 +60,7 @@ class _MechanicsReader:
             if isinstance(scope.node, FUNCTIONS) and is_forwards(scope.node.name):
                 self._read_forwards(scope)
         for port in self.normal:
-            # A program that turns the polarity to and fro tries it out.
+            # A program that turns the polarity both ways only tries it out.
             self.found.reversed.pop(port, None)
         for port, where in self.backwards.items():
             # With the polarity turned as well, the motor is mounted the usual way.
@@ -101,7 +101,7 @@ class _MechanicsReader:
                 self._read_call(node, name, base, scope)
 
     def _read_call(self, call: ast.Call, name: str, base: ast.expr, scope: Scope) -> None:
-        """Note a move, or what a method of Pybricks says about a motor."""
+        """Note what a call of a method says about a motor: a move, an end stop or a position."""
         if name in self.moves.ending:
             self._note_reach(call, name, self._find_motors(base, scope), scope)
         elif name in self.moves.stalling:
@@ -135,7 +135,7 @@ class _MechanicsReader:
             self.places.setdefault(port, set()).update(self._find_numbers(value, scope))
 
     def _read_forwards(self, scope: Scope) -> None:
-        """Note motors that a function, which is named for driving forwards, turns backwards only."""
+        """Note motors that a function named for driving forwards turns only backwards."""
         speeds: dict[str, list[float]] = {}
         where: dict[str, Where] = {}
         for node in scope.body:
@@ -157,7 +157,7 @@ class _MechanicsReader:
                 self.backwards[port] = where[port]
 
     def _find_speeds(self, call: ast.Call, scope: Scope) -> Iterator[float]:
-        """Yield the speeds that a call gives, to one motor or to both of a pair."""
+        """Yield the speeds in a call that moves one motor, or both of a pair."""
         assert isinstance(call.func, ast.Attribute)
         pairs = self._find_pairs(call.func.value, scope)
         first, last = (0, 1) if not pairs or call.func.attr in self.moves.of_both else (0, 2)
@@ -171,7 +171,7 @@ class _MechanicsReader:
             )
 
     def _find_lengths(self, call: ast.Call, name: str, scope: Scope) -> list[ast.expr]:
-        """Return what a call of a movement gives for its length or its end."""
+        """Return the arguments that say how far, or to where, a call moves a motor."""
         named = [keyword.value for keyword in call.keywords if keyword.arg in self.moves.lengths]
         if name not in self.moves.length_at:
             return named
@@ -197,7 +197,7 @@ class _MechanicsReader:
         """Note an end stop of a motor.
 
         Args:
-            ways: Whether the motor turns forwards there, for each time; empty if its movements say it.
+            ways: Whether the motor turns forwards to it, for each time; empty to find that out from its movements.
         """
         for port in self._find_motors(base, scope):
             forwards = next(iter(ways or self._find_ways(scope.body, [port], scope)), None)
@@ -207,7 +207,7 @@ class _MechanicsReader:
                 self.found.closed.add(port)
 
     def _convert_way(self, port: str, forwards: bool | None) -> bool | None:
-        """Return a direction of the program as that of a motor."""
+        """Return whether a motor itself turns forwards, if `forwards` is so in the program; None if it is not known."""
         mention = self.mentions.find_motor(port)
         return not forwards if forwards is not None and mention and mention.is_turned else forwards
 
@@ -230,7 +230,7 @@ class _MechanicsReader:
         return bool(self._find_calls(scope.body, ports, names, scope))
 
     def _is_endless(self, base: ast.expr, scope: Scope) -> bool:
-        """Return whether a motor, in some part of the program, moves and never by itself ends to."""
+        """Return whether a motor moves in some part of the program, but only by calls without an end."""
         ports = self._find_motors(base, scope)
         return self._moves(scope, ports, self.moves.endless) and not self._moves(
             scope, ports, self.moves.ending
@@ -239,7 +239,7 @@ class _MechanicsReader:
     def _find_ways(
         self, nodes: Sequence[ast.AST], ports: Iterable[str], scope: Scope
     ) -> Iterator[bool]:
-        """Yield whether the movements without an end among some nodes are forwards."""
+        """Yield, for each movement without an end in some nodes, whether it is forwards."""
         ports = [*ports]
         for call in self._find_calls(nodes, ports, self.moves.endless, scope):
             named = [keyword.value for keyword in call.keywords if keyword.arg in self.moves.speeds]
@@ -281,7 +281,7 @@ class _MechanicsReader:
     # Touch sensors
 
     def _read_press(self, statements: list[ast.stmt], scope: Scope) -> None:
-        """Note a motor that runs until a touch sensor is pressed, while nothing else moves."""
+        """Note a motor that runs until a touch sensor is pressed, if no other motor moves before."""
         last = statements[-1]
         match last:
             case ast.While(
@@ -318,7 +318,7 @@ class _MechanicsReader:
     # Devices
 
     def _find_known(self, node: ast.expr, scope: Scope) -> list[str]:
-        """Return the ports of the motors that an expression can be; none if it stands for one of several in turn."""
+        """Return the ports of the motors that an expression can be; none if for several in turn, as in a loop."""
         calls = [
             value.call
             for value in self.evaluation.values(node, scope)
@@ -351,7 +351,7 @@ class _MechanicsReader:
         return list(dict.fromkeys(ports))
 
     def _evaluate(self, node: ast.expr, scope: Scope) -> Sequence[Value]:
-        """Return what an expression can be at its place: by the nearest assignment above, and in its own object."""
+        """Return what an expression can be at its place: by the nearest assignment above it, and within its object."""
         match node:
             case ast.Name(id=name):
                 known = [
@@ -379,7 +379,7 @@ class _MechanicsReader:
         return self.evaluation.values(node, scope)
 
     def _enter_object(self, value: Value) -> Evaluation:
-        """Return what the program's expressions can be in one object of a class of the program."""
+        """Return the evaluation of expressions within one object of a class of the program."""
         match value:
             case Instance(of=OwnClass(scope=scope), call=ast.Call() as call):
                 if call not in self.inside:
@@ -400,7 +400,7 @@ class _MechanicsReader:
 
 
 def _find_motor(node: ast.expr) -> ast.expr | None:
-    """Return the motor whose speed an expression is, or the amount of its speed; None if it is no speed."""
+    """Return the motor whose speed, or absolute speed, an expression is; None if it is not a speed."""
     match node:
         case ast.Call(func=ast.Name(id="abs"), args=[inner]):
             return _find_motor(inner)

@@ -67,7 +67,7 @@ class Mention:
     """Turns of the motor per turn of what it drives, as the program says."""
 
     def makes(self, value: Instance) -> bool:
-        """Return whether this makes an instance: itself, or from the `__init__` of its class."""
+        """Return whether this call makes an instance, or is in the `__init__` of its class."""
         return _is_maker(self.call, self.owner, value)
 
 
@@ -95,13 +95,13 @@ class Pair:
     """What the program gives for the polarity of its motors, for a class that takes it."""
 
     def makes(self, value: Instance) -> bool:
-        """Return whether this makes an instance: itself, or from the `__init__` of its class."""
+        """Return whether this call makes an instance, or is in the `__init__` of its class."""
         return _is_maker(self.call, self.owner, value)
 
 
 @dataclass(frozen=True, slots=True)
 class Mentions:
-    """The devices that a program makes, and what can tell more about them."""
+    """The devices that a program makes, and the code that can tell more about them."""
 
     devices: tuple[Mention, ...] = ()
     pairs: tuple[Pair, ...] = ()
@@ -169,7 +169,7 @@ class _Reader:
         pairs: list[Pair] = []
         whole = self.evaluation
         of_ports = [pair for pair in self.made if not _needs_motors(pair[0])]
-        # Its motors are known by then.
+        # Classes that take motors come last, when the motors are known.
         for name, call in (*of_ports, *(pair for pair in self.made if _needs_motors(pair[0]))):
             for inside, via in self._list_ways(name, call, whole):
                 self.evaluation, self.via = inside, via
@@ -181,7 +181,7 @@ class _Reader:
                 elif name in library.DEVICES:
                     devices += self._find_devices(name, call)
         self.evaluation = whole
-        # What is known in one call of a function may not be in another one, such as that in itself.
+        # A port may be known in one call of a function and not in another, such as its own recursive one.
         known = {pair.call for pair in devices if pair.port}
         devices = [pair for pair in devices if pair.port or pair.is_any or pair.call not in known]
         return Mentions(
@@ -191,7 +191,10 @@ class _Reader:
     def _list_ways(
         self, name: str, call: Call, whole: Evaluation
     ) -> Iterator[tuple[Evaluation, Call | None]]:
-        """Yield what is known in each call of the function in which something is made, with that call."""
+        """Yield the evaluation in each call of the function in which a device is made, with that call.
+
+        Without a call, the whole evaluation, if the function has fewer than two calls, or too many.
+        """
         function = call.scope.node
         calls = whole.calls.get(function, ()) if isinstance(function, FUNCTIONS) else ()
         if not 1 < len(calls) <= _MAX_WAYS or not isinstance(function, FUNCTIONS):
@@ -210,7 +213,7 @@ class _Reader:
     # Calls
 
     def _sort(self, call: Call, calls: dict[Function, list[Call]]) -> None:
-        """Note what a call calls: a function of the program, or a class of the library."""
+        """Note what a call calls: a function or class of the program, or a class of the library."""
         match call.node.func:
             case ast.Attribute(value=base, attr="__init__"):
                 for value in self.evaluation.values(base, call.scope):
@@ -226,7 +229,7 @@ class _Reader:
                     calls.setdefault(node, []).append(replace(call, is_bound=is_bound))
 
     def _sort_init(self, value: Value, call: Call, calls: dict[Function, list[Call]]) -> None:
-        """Note a call of `super().__init__` or `Base.__init__`."""
+        """Note the class on which a call of `super().__init__` or `Base.__init__` works."""
         match value:
             case Parent(of=scope):
                 for base in self.evaluation.bases(scope):
@@ -349,14 +352,14 @@ class _Reader:
             yield self._mount(placed, call) if kind.is_motor else placed
 
     def _mount(self, motor: Mention, call: Call) -> Mention:
-        """Return a motor with the direction and the gears that the call says."""
+        """Return a motor with the direction and the gears in the call that makes it."""
         is_turned = library.INVERSED in (
             self.evaluation.find_argument(call, library.DIRECTION, 1) or ()
         )
         return replace(motor, is_turned=is_turned, gear_ratio=self._read_gears(call))
 
     def _read_gears(self, call: Call) -> float:
-        """Return the turns of a motor per turn of what it drives: its gears are one train, or a list of trains."""
+        """Return the turns of a motor per turn of what it drives, from a list of gears, or a list of such lists."""
         parts = [*self._flatten(self.evaluation.find_argument(call, library.GEARS, 2) or ())]
         trains = [
             [*self._flatten([part])] for part in parts if isinstance(part, SourceCollection)
@@ -369,7 +372,7 @@ class _Reader:
         return ratio
 
     def _find_names(self, call: Call) -> tuple[str, ...]:
-        """Return what the program calls the thing that a call makes."""
+        """Return the program's names for the object that a call makes."""
         outside = self.hints.get(self.via.node, ()) if self.via else ()
         return tuple(dict.fromkeys((*self.hints.get(call.node, ()), *outside)))
 
@@ -383,7 +386,7 @@ class _Reader:
     def _find_ports(
         self, call: Call, name: str, position: int, names: tuple[str, ...]
     ) -> Iterator[tuple[str, tuple[str, ...]]]:
-        """Yield the ports that an argument can be, each with what the program calls the device."""
+        """Yield the ports that an argument can be, each with the program's names for the device."""
         node = find_argument_node(call, name, position)
         if node is None:
             values: Iterable[Value] = self.evaluation.find_argument(call, name, position) or ()
@@ -424,7 +427,7 @@ class _Reader:
                 yield value
 
     def _find_kind(self, call: Call) -> DeviceKind | None:
-        """Return the kind of a sensor whose mode the program sets."""
+        """Return the kind of a sensor from the mode that the program sets; None if it sets none."""
         names = self.hints.get(call.node, ())
         for scope in self.scopes:
             for node in scope.body:
@@ -471,7 +474,7 @@ class _Reader:
         """Yield the pairs of motors that a call makes.
 
         Args:
-            devices: What the program makes besides, with the motors of a class that takes motors.
+            devices: The devices that the program makes, among them the motors for a class that takes motors.
         """
         known, names = library.PAIRS[name], self._find_names(call)
         polarities = [
@@ -496,7 +499,7 @@ class _Reader:
     def _find_ends(
         self, known: PairClass, call: Call, names: tuple[str, ...], devices: Sequence[Mention]
     ) -> Iterable[tuple[str, str]]:
-        """Return the ports of the left and the right motor, for each pair that a call can make."""
+        """Return the ports of the left and the right motor of each pair that a call can make."""
         if known.takes_motors:
             left, right = (
                 self._find_driven(call, known.left, 0, devices),
@@ -540,7 +543,7 @@ class _Reader:
     def _read_sizes(
         self, known: PairClass, call: Call
     ) -> tuple[tuple[float, float | None] | None, float | None]:
-        """Return the size of the wheels, and their distance."""
+        """Return diameter and width of the wheels, and their distance, in mm; None for what the call does not give."""
         if known.takes_motors:
             diameter_mm = self._read_size(call, library.WHEEL_DIAMETER, 2)
             wheel_mm = (diameter_mm, None) if diameter_mm is not None else None
@@ -606,7 +609,7 @@ def _needs_motors(name: str) -> bool:
 
 
 def _is_maker(call: ast.Call | None, owner: Scope | None, value: Instance) -> bool:
-    """Return whether a call in a class makes an instance."""
+    """Return whether a call makes an instance: it is that of the instance, or of `__init__` in its class `owner`."""
     if value.call is not None and value.call is call:
         return True
     from_init = (

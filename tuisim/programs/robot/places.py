@@ -26,7 +26,7 @@ _ROW = (Side.LEFT, Side.MIDDLE, Side.RIGHT)
 
 
 def add_sides(mentions: Sequence[Mention]) -> list[Mention]:
-    """Return mentions with the sides of three colour sensors that one line makes: in a row, from left to right."""
+    """Return mentions; three colour sensors that one line makes without sides get them, from left to right."""
     calls = [
         mention.call for mention in mentions if mention.kind is DeviceKind.COLOR and mention.port
     ]
@@ -44,10 +44,10 @@ def add_sides(mentions: Sequence[Mention]) -> list[Mention]:
 
 
 def say_other_sides(mentions: Mapping[str, Mention], usual: Mapping[str, SensorSpec]) -> bool:
-    """Return whether a program has a colour sensor that the usual robot lacks, and others where that has another one.
+    """Return whether a program's colour sensors are placed otherwise: one is new, and one is on another side.
 
     Args:
-        mentions: What the program makes, by port.
+        mentions: The devices that the program makes, by port.
         usual: The sensors of the usual robot, by port.
     """
     colors = {
@@ -74,7 +74,7 @@ class NewSensors:
 
     @staticmethod
     def choose_likeliest(sensors: list[SensorSpec], mention: Mention) -> SensorSpec:
-        """Return the one of some sensors that a program means, by its name for it."""
+        """Return the sensor that a program most likely means, by its name for the sensor."""
         side = find_side(mention.names)
         return next((sensor for sensor in sensors if sensor.name == side), sensors[0])
 
@@ -82,7 +82,12 @@ class NewSensors:
 def place_sensors(
     new: NewSensors, placed: Mapping[str, SensorSpec], body: Body, doubts: list[str]
 ) -> dict[str, SensorSpec]:
-    """Return new sensors by port, at places and with names that no other sensor has."""
+    """Return new sensors by port, with places and names that no other sensor has.
+
+    Args:
+        placed: The other sensors, by port.
+        doubts: Gets a sentence for each sensor that cannot be built.
+    """
     sensors: dict[str, SensorSpec] = {}
     for kind, spec in SENSOR_SPECS.items():
         mentions = {
@@ -120,7 +125,11 @@ SENSOR_SPECS: Mapping[DeviceKind, type[SensorSpec]] = {
 def _choose_sides(
     mentions: Mapping[str, Mention], *, first_free: bool, kind: DeviceKind
 ) -> dict[str, Side]:
-    """Return the side of each sensor: that of its name, else the next one that is free."""
+    """Return the side of each sensor: the one that its name says, else the next that is free.
+
+    Args:
+        first_free: Whether no other sensor of the kind is on the robot.
+    """
     sides = {port: find_side(mention.names) for port, mention in mentions.items()}
     if kind is DeviceKind.TOUCH and first_free and len(sides) == 1 and Side.NONE in sides.values():
         return dict.fromkeys(sides, Side.FRONT)
@@ -143,7 +152,7 @@ def on_port(sensor: Any, port: str) -> SensorSpec:
 
 
 def mount(sensor: SensorSpec, mention: Mention) -> SensorSpec:
-    """Return a sensor that looks ahead, or aside or back if the program's name for it says so."""
+    """Return a sensor for distances that looks aside or back if the program's name for it says so; others unchanged."""
     side = find_side(mention.names) or (Side.RIGHT if is_aside(mention.names) else Side.NONE)
     if not isinstance(sensor, UltrasonicSpec | InfraredSpec) or side not in _ASIDE:
         return sensor

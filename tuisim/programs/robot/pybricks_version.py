@@ -47,7 +47,7 @@ def find_version_4_name(modules: Iterable[Module]) -> str:
 
 
 def _list_names(node: ast.AST, own: set[str]) -> Iterator[str]:
-    """Yield the names of version 4 in one node of a syntax tree.
+    """Yield the names of version 4 of Pybricks in one node of a syntax tree.
 
     Args:
         own: The names that the program defines itself.

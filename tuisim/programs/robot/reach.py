@@ -12,7 +12,7 @@ from tuisim.programs.robot.scopes import Scope
 def find_reachable(modules: Mapping[str, Scope]) -> list[Scope]:
     """Return the scopes that can run, those of the program itself first.
 
-    A function counts as soon as its name is used anywhere in what can run; the body of a class runs in any case.
+    A function can run if its name is used anywhere in code that can run; the body of a class runs in any case.
     """
     scopes: list[Scope] = []
     names: set[str] = set()
@@ -29,7 +29,7 @@ def find_reachable(modules: Mapping[str, Scope]) -> list[Scope]:
 
 
 def find_skipped(scope: Scope) -> set[ast.AST]:
-    """Return the nodes of a module that do not run because it is imported: those below `if __name__ == …`."""
+    """Return the nodes of a module below `if __name__ == …`, which do not run because the module is imported."""
     nodes: set[ast.AST] = set()
     if scope.outer is None and scope.module.name:
         for node in scope.module.tree.body:
@@ -63,7 +63,7 @@ def _is_used(scope: Scope, names: set[str]) -> bool:
         return False
     if node.name in names or node.decorator_list:
         return True
-    # Python, or a class that is not the program's, may call the others.
+    # Special methods are called by Python, others perhaps by a base class that is not the program's.
     return (node.name.startswith("__") and node.name.endswith("__")) or any(
         map(_is_foreign, owner.node.bases)
     )

@@ -31,7 +31,11 @@ USUAL = ROBOTS[DEFAULT_ROBOT]
 
 
 def find_usual(hub: str) -> RobotSpec:
-    """Return the robot that programs for a hub change; empty for the EV3."""
+    """Return the robot from which that of a program is made.
+
+    Args:
+        hub: One of `HUBS`; empty for the EV3.
+    """
     if not hub:
         return USUAL
     motor = HUBS[hub].motor
@@ -40,7 +44,7 @@ def find_usual(hub: str) -> RobotSpec:
 
 
 def has_hidden_parts(mentions: Mentions) -> bool:
-    """Return whether a program uses classes of motors or sensors, and its text shows no part that it makes."""
+    """Return whether a program uses classes of motors or sensors, but its text does not show any part that it makes."""
     if mentions.devices or mentions.pairs:
         return False
     for scope in mentions.scopes:
@@ -59,7 +63,7 @@ def describe_robot(built: BuiltRobot) -> str:
 
 @dataclass(frozen=True, slots=True)
 class ProgramRobot:
-    """The robot that a program talks about, as a robot file."""
+    """The robot that a program needs, as a robot file."""
 
     program: str
     """What the program is called."""
@@ -117,7 +121,7 @@ class ProgramRobot:
 
 
 def _build_table(spec: RobotSpec) -> dict[str, Any]:
-    """Return the robot as a file has it, with every value."""
+    """Return a robot as the table of a robot file, with every value."""
     return tomllib.loads("\n".join(format_robot(spec)))
 
 

@@ -37,7 +37,7 @@ class Defined:
 
 @dataclass(frozen=True, slots=True)
 class Imported:
-    """What an import binds a name to."""
+    """The module, or the name in it, to which an import binds a name."""
 
     module: str
     name: str = ""
@@ -82,7 +82,7 @@ class Scope:
         return self.outer.owner if self.outer is not None else None
 
     def find_bindings(self, name: str) -> list[Binding]:
-        """Return what a name may be bound to where this scope uses it; empty if the program does not bind it."""
+        """Return what a name can be bound to where this scope uses it; empty if the program does not bind it."""
         scope: Scope | None = self
         while scope is not None:
             # The names of a class are not seen in its methods.

@@ -46,7 +46,7 @@ def find_added_folders(tree: ast.Module, file: str) -> list[str]:
 
 
 def _find_added(tree: ast.Module) -> Iterator[ast.expr]:
-    """Yield the expressions of the folders that a module puts into `sys.path`."""
+    """Yield the expressions, for folders, that a module puts into `sys.path`."""
     for node in ast.walk(tree):
         match node:
             case ast.Call(func=ast.Attribute(value=base, attr="append"), args=[folder]):
@@ -71,7 +71,7 @@ def _is_name(node: ast.expr, name: str) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class _Folders:
-    """The paths that expressions of a module stand for; empty where its text does not say them.
+    """Works out the paths that expressions of a module stand for; empty where its text does not show them.
 
     Args:
         assigned: The last expression that is assigned to each name.
@@ -133,7 +133,7 @@ class _Folders:
 
 
 def _climb(path: str, steps: int) -> str:
-    """Return the folder some steps above a path; empty if that is not known."""
+    """Return the folder some steps above a path; empty for an empty path."""
     if not path:
         return ""
     path = os.path.abspath(path)

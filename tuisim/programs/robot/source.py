@@ -63,7 +63,11 @@ class Module:
     is_package: bool = False
 
     def absolute(self, name: str | None, level: int) -> str:
-        """Return the name of a module that this one imports, maybe relatively."""
+        """Return the absolute name of a module that this one imports.
+
+        Args:
+            level: The number of dots before the name: 0 for an absolute import.
+        """
         if not level:
             return name or ""
         parts = self.name.split(".") if self.name else []
@@ -73,7 +77,7 @@ class Module:
 
 @lru_cache(16)
 def parse(text: str) -> ast.Module | None:
-    """Return the syntax tree of a text, which nobody changes; None if it is not Python."""
+    """Return the syntax tree of a text, which callers must not change; None if the text is not Python."""
     try:
         with warnings.catch_warnings():
             # They are shown when the program runs.
@@ -85,7 +89,7 @@ def parse(text: str) -> ast.Module | None:
 
 
 def read_modules(program: Program) -> dict[str, Module]:
-    """Return a program and its own modules by name, the program first; empty if it is not Python."""
+    """Return a program and its own modules by name, the program first; empty if the program is not Python."""
     tree = parse(program.text)
     if tree is None:
         return {}
@@ -105,7 +109,7 @@ def read_modules(program: Program) -> dict[str, Module]:
 
 
 def find_missing_module(program: Program, modules: dict[str, Module]) -> str:
-    """Return how to find a module that a program imports and that lies elsewhere in its repository; empty for none."""
+    """Return in which folder of its repository a module is that a program imports and cannot find; empty for none."""
     known = {"", *modules, *LIBRARIES, *SPIKE_MODULES, *sys.stdlib_module_names}
     named = (name.split(".")[0] for module in modules.values() for name in _list_imported(module))
     for name in dict.fromkeys(named):
@@ -158,7 +162,7 @@ class _Search:
 
 
 def _list_imported(module: Module) -> Iterator[str]:
-    """Yield the names that may be modules in the imports of a module, packages before what is in them."""
+    """Yield the names in the imports of a module that can be modules, packages before what is in them."""
     for node in ast.walk(module.tree):
         match node:
             case ast.Import(names=names):
@@ -187,7 +191,7 @@ EV3_MODULES = frozenset({"pybricks.hubs.EV3Brick", "pybricks.ev3devices", "ev3de
 
 
 def find_hub(modules: dict[str, Module]) -> str:
-    """Return which of `HUBS` a program, with its own modules, is for; empty for the EV3, or none."""
+    """Return the hub, one of `HUBS`, that a program or one of its own modules is for; empty for the EV3, or none."""
     names = {name: None for module in modules.values() for name in _list_imported(module)}
     if not names.keys().isdisjoint(EV3_MODULES):
         return ""
@@ -196,7 +200,7 @@ def find_hub(modules: dict[str, Module]) -> str:
 
 
 def find_library(modules: dict[str, Module]) -> Library | None:
-    """Return the library for a brick that a program imports, in itself or in its own modules; None for none."""
+    """Return the library for a brick that a program or one of its own modules imports; None for none."""
     names = {
         name.split(".")[0] for module in modules.values() for name in _list_imported(module)
     } & {*LIBRARIES}

@@ -32,7 +32,7 @@ _PRELUDE = "*prelude"
 
 @dataclass(frozen=True, slots=True)
 class ProgramThreshold:
-    """What a program compares a reading with."""
+    """A comparison of a colour sensor's reading in a program, or a value that the program drives toward."""
 
     read: LightRead
     sign: str
@@ -43,7 +43,7 @@ class ProgramThreshold:
     """Where, in the program itself."""
 
     def holds(self, value: float) -> bool | None:
-        """Return whether the comparison is true for a value; None for a difference."""
+        """Return whether the comparison is true for a value; None if the program only drives toward its value."""
         return None if self.is_aim else bool(COMPARE[self.sign](value, self.value))
 
     @property
@@ -62,7 +62,7 @@ _READ = re.compile("|".join(rf"\.{read}\b" for read in LightRead if not read.is_
 
 
 def find_light_read(text: str) -> LightRead:
-    """Return what the text of a program reads first of a colour sensor as a number; percent if it reads none."""
+    """Return which number of a colour sensor the text of a program reads first; percent if it reads none."""
     match = _READ.search(text)
     return LightRead(match[0][1:]) if match else LightRead.PERCENT
 
@@ -73,8 +73,8 @@ def find_thresholds(
 ) -> Mapping[str, tuple[ProgramThreshold, ...]]:
     """Return what a program compares its colour sensors with, in the order of its lines, by name of the sensor.
 
-    Read from its syntax tree: the program does not run for it. What is computed while it runs is not known; nothing of
-    a program that is not Python, or too deeply nested to be read.
+    The values are read from its syntax tree, so those that it computes while it runs are missing. Empty for a program
+    that is not Python, or too deeply nested to be read.
     """
     try:
         return _find_thresholds(program, robot)
@@ -130,13 +130,13 @@ def _build_pair(
 ) -> Iterator[tuple[str, ProgramThreshold]]:
     for port, read in dict.fromkeys(_find_reads(mentions, scope, reading, 0)):
         values = _find_numbers(mentions, scope, other, read)
-        # What a reading drives toward is one number.
+        # An aim is a single number.
         if values and (sign != AIM or (len(values) == 1 and not read.is_color)):
             yield port, ProgramThreshold(read, sign, values[0], reading.lineno)
 
 
 def _find_numbers(mentions: Mentions, scope: Scope, node: ast.expr, read: LightRead) -> list[float]:
-    """Return the numbers that an expression can be, the likeliest first; for a colour its code."""
+    """Return the numbers that an expression can be, the likeliest first; a colour is its code."""
     assert mentions.evaluation is not None
     values = mentions.evaluation.values(node, scope)
     if not read.is_color:
@@ -158,7 +158,7 @@ def _parse_color(node: ast.expr) -> str | None:
 def _find_reads(
     mentions: Mentions, scope: Scope, node: ast.expr, steps: int
 ) -> Iterator[tuple[str, LightRead]]:
-    """Yield the ports and reads of colour sensors that an expression may be."""
+    """Yield port and kind of reading, for each reading of a colour sensor that an expression can be."""
     match node:
         case (
             ast.Attribute(value=base, attr=name)

@@ -12,7 +12,7 @@ from tuisim.programs.robot.scopes import Function, Scope
 
 @dataclass(frozen=True, slots=True)
 class LibraryModule:
-    """A module of a library for a brick."""
+    """A module of one of the libraries for a brick."""
 
     name: str
 
@@ -51,7 +51,7 @@ class OwnFunction:
 
 @dataclass(frozen=True, slots=True)
 class Instance:
-    """What a call of a class makes."""
+    """An object that a call of a class makes."""
 
     of: OwnClass | LibraryClass
     call: ast.Call | None = None

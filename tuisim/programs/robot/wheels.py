@@ -58,11 +58,11 @@ def find_wheels(
     usual: RobotSpec,
     tools: Collection[str] = (),
 ) -> WheelMotors:
-    """Return the motors that drive the wheels; none if every port is taken by a motor that does something else.
+    """Return the motors that drive the wheels; without any if every port is taken by a motor that does something else.
 
     Args:
         kinds: The motors that the program names, by port.
-        usual: The robot whose wheels stay where nothing says otherwise.
+        usual: The robot whose wheels are taken if nothing says otherwise.
         tools: Ports of motors that drive no wheel, unless the program drives them as a pair.
     """
     devices = mentions.devices
@@ -92,7 +92,7 @@ def _choose_pair(pairs: Sequence[Pair]) -> WheelMotors | None:
 def _choose_single(
     devices: Sequence[Mention], kinds: Mapping[str, DeviceKind], tools: Collection[str]
 ) -> WheelMotors | None:
-    """Return two motors that are made one by one, and that names, a class or their number show to be the wheels."""
+    """Return two motors that are made separately and must be the wheels, by names, class or number; None if unclear."""
     by_port: dict[str, Mention] = {}
     for device in devices:
         if device.kind.is_motor and device.port and device.port not in tools:
@@ -125,7 +125,7 @@ def _sort_sides(motors: Sequence[Mention], *, of_class: bool) -> WheelMotors | N
 
 
 def _order_motors(motors: Sequence[Mention]) -> WheelMotors:
-    """Return the usual two of some motors, the left one first unless a name says otherwise."""
+    """Return the two motors on usual ports for wheels; the left port is the left wheel unless names say otherwise."""
     by_port = {motor.port: motor for motor in motors}
     left, right = next(pair for pair in _USUAL if by_port.keys() >= set(pair))
     sides = find_side(by_port[left].names), find_side(by_port[right].names)
@@ -147,7 +147,7 @@ def _choose_usual(
     usual: RobotSpec,
     other_tools: Collection[str],
 ) -> WheelMotors:
-    """Return the usual wheels, on other ports if the program needs theirs."""
+    """Return the usual ports of the wheels, or others if motors of the program take these."""
     ports = (usual.left_port, usual.right_port)
     if not other_tools and all(
         port in ports and kind is not DeviceKind.MEDIUM for port, kind in kinds.items()
@@ -188,21 +188,21 @@ _MAX_MEDIUM = 2
 
 
 def add_tools(kinds: Mapping[str, DeviceKind], mentions: Mentions) -> dict[str, DeviceKind]:
-    """Return the kinds of motors by port: also of those whose names say that they move a tool."""
+    """Return the kinds of motors by port; motors whose names say that they move a tool become medium ones."""
     return _add_medium(
         kinds, mentions, [port for port in kinds if is_tool(_list_names(port, mentions))]
     )
 
 
 def add_others(kinds: Mapping[str, DeviceKind], mentions: Mentions) -> dict[str, DeviceKind]:
-    """Return the kinds of the motors that drive no wheel, by port."""
+    """Return the kinds of motors that drive no wheel, by port; those of an unknown kind become medium ones."""
     return _add_medium(kinds, mentions, [*kinds])
 
 
 def _add_medium(
     kinds: Mapping[str, DeviceKind], mentions: Mentions, others: list[str]
 ) -> dict[str, DeviceKind]:
-    """Return kinds with one or two other motors than those of the wheels as medium ones, as in LEGO's sets."""
+    """Return the kinds of motors; one or two unknown ones of `others` are medium in Pybricks, as in LEGO's EV3 sets."""
     if mentions.library is not Library.PYBRICKS or mentions.hub or len(others) > _MAX_MEDIUM:
         return dict(kinds)
     unsaid = [
@@ -232,14 +232,14 @@ class Size:
 
 @dataclass(frozen=True, slots=True)
 class Sizes:
-    """The sizes that a program names; None for one that it does not, or not clearly."""
+    """The sizes of the wheels in a program; None for one that it does not name, or not clearly."""
 
     wheel: Size | None = None
     spacing: Size | None = None
 
 
 def find_sizes(mentions: Mentions) -> Sizes:
-    """Return the diameter of the wheels and their distance, by the names of numbers in a program."""
+    """Return the diameter of the wheels and their distance, from numbers with such names in a program."""
     named = [*_find_named(mentions)]
     wheels = [
         *((name, size) for name, size in named if is_diameter(name)),
@@ -250,7 +250,7 @@ def find_sizes(mentions: Mentions) -> Sizes:
         for name, size in named
         if is_girth(name)
     ]
-    # A track alone may be one of music.
+    # A constant `track` without wheels may be a track of music.
     spacings = [
         pair
         for pair in named
@@ -263,7 +263,7 @@ def find_sizes(mentions: Mentions) -> Sizes:
 
 
 def _find_named(mentions: Mentions) -> Iterator[tuple[str, Size]]:
-    """Yield the numbers that have a name, as they are written."""
+    """Yield the numbers that have the name of a size, in the unit in which they are written."""
     evaluation = mentions.evaluation
     if evaluation is None:
         return
@@ -301,16 +301,16 @@ def _is_size(name: str) -> bool:
 
 
 def _read_number(value: object) -> float:
-    """Return a value as a number; 0 if it is none."""
+    """Return a value as a number; 0 if it is not one."""
     return float(value) if isinstance(value, int | float) and not isinstance(value, bool) else 0.0
 
 
 def _pick_only(named: list[tuple[str, Size]], limits: tuple[float, float]) -> Size | None:
-    """Return the one size that all these names stand for; None if they differ, or if it is too small or too large."""
+    """Return the size in mm that all names agree on; None if they differ, or it is not within the limits."""
     low, high = limits
     sizes: list[Size] = []
     for name, size in named:
-        # A name without a unit stands for whichever makes a robot.
+        # A number without a unit is in mm or cm: the one that is within the limits.
         units = [unit] if (unit := parse_unit_mm(name)) else [1.0, 10.0]
         sizes += [
             Size(round(size.mm * unit, 1), size.where)

@@ -74,7 +74,7 @@ def _split_name(name: str) -> list[str]:
 
 
 def find_side(names: Iterable[str]) -> Side:
-    """Return the side that one of some names says, the first first."""
+    """Return the side in the first name that says one, such as `left_motor`; `Side.NONE` if none does."""
     for name in names:
         for part in _split_name(name):
             if part in _SIDES_BY_WORD:
@@ -86,18 +86,18 @@ def find_side(names: Iterable[str]) -> Side:
 
 
 def is_aside(names: Iterable[str]) -> bool:
-    """Return whether names say that a part looks aside, whatever the side."""
+    """Return whether names say that a part looks aside, to whichever side."""
     return any(part in ("side", "aside") for name in names for part in _split_name(name))
 
 
 def is_diameter(name: str) -> bool:
-    """Return whether a number of that name is the diameter of a wheel."""
+    """Return whether a name is that of the diameter of a wheel."""
     parts = {*_split_name(name)}
     return parts <= _WHEEL | _DIAMETER and bool(parts & _WHEEL) and bool(parts & _DIAMETER)
 
 
 def is_radius(name: str) -> bool:
-    """Return whether a number of that name is the radius of a wheel."""
+    """Return whether a name is that of the radius of a wheel."""
     parts = {*_split_name(name)}
     return (
         parts <= _WHEEL | _RADIUS | _UNITS_MM.keys()
@@ -107,7 +107,7 @@ def is_radius(name: str) -> bool:
 
 
 def is_girth(name: str) -> bool:
-    """Return whether a number of that name is the circumference of a wheel."""
+    """Return whether a name is that of the circumference of a wheel."""
     parts = {*_split_name(name)}
     return (
         parts <= _WHEEL | _GIRTH | _UNITS_MM.keys()
@@ -117,7 +117,7 @@ def is_girth(name: str) -> bool:
 
 
 def is_spacing(name: str) -> bool:
-    """Return whether a number of that name is how far the wheels are apart."""
+    """Return whether a name is that of the distance between the wheels."""
     parts = {*_split_name(name)} - {"axle", "width"}
     if not parts <= _WHEEL | _TRACK | _APART | _UNITS_MM.keys():
         return False
@@ -125,7 +125,7 @@ def is_spacing(name: str) -> bool:
 
 
 def parse_unit_mm(name: str) -> float:
-    """Return the unit that a name ends with, in mm; 0 if it says none."""
+    """Return the unit with which a name ends, in mm; 0 if it has none."""
     return next((_UNITS_MM[part] for part in _split_name(name) if part in _UNITS_MM), 0.0)
 
 
@@ -141,5 +141,5 @@ def is_large(names: Iterable[str]) -> bool:
 
 
 def is_tool(names: Iterable[str]) -> bool:
-    """Return whether names say that a motor moves something else than a wheel."""
+    """Return whether names say that a motor moves a tool, not a wheel."""
     return any(part in _TOOLS for name in names for part in _split_name(name))
