@@ -39,8 +39,9 @@ def list_words(data: object) -> Iterator[str]:
 @cache
 def library_names() -> frozenset[str]:
     """Return the names that the brick's libraries give to functions."""
-    api = (ROOT / "tests" / "engine" / "shim" / "pybricks" / "api.json").read_bytes()
-    names = set(list_words(json.loads(api)))
+    names = set[str]()
+    for path in (ROOT / "tests" / "engine" / "shim" / "pybricks").rglob("api.json"):
+        names |= {*list_words(json.loads(path.read_bytes()))}
     for library in ("ev3dev2", "ev3dev"):
         spec = find_spec(library)
         for folder in spec.submodule_search_locations or () if spec else ():

@@ -128,8 +128,24 @@ def test_the_buttons_that_are_asked_for_are_known(
     text: str, buttons: tuple[str, ...], needs_all: bool
 ) -> None:
     question = ask(text)
-    assert question.buttons == buttons
+    assert question.find_buttons() == buttons
     assert question.needs_all is needs_all
+
+
+@pytest.mark.parametrize(
+    ("text", "port", "buttons"),
+    [
+        ("while Button.LEFT in rc.buttons.pressed(): pass  # reads", "remote", ("remote.left",)),
+        ("while x.joystick_left()[1] < 50: pass  # reads", "xbox", ("xbox.joystick_left_up",)),
+        ("while not x.dpad(): pass  # reads", "xbox", ("xbox.dpad_up",)),
+        ("while Button.A in x.buttons.pressed(): pass  # reads", "xbox", ("xbox.a",)),
+        ("while text == '': x.buttons.pressed()  # reads", "xbox", ()),
+    ],
+)
+def test_keys_of_controllers_that_are_asked_for_are_known(
+    text: str, port: str, buttons: tuple[str, ...]
+) -> None:
+    assert ask(text).find_buttons(port) == buttons
 
 
 @pytest.mark.parametrize(

@@ -8,8 +8,10 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 
 from tuisim.base.data_class import dataclass
 from tuisim.engine.core.columns import COLOR_NAMES
+from tuisim.engine.core.hub_spec import CONTROLLERS
 from tuisim.engine.core.remote_spec import REMOTE_BY_HAND
 from tuisim.engine.core.spec import BUTTONS
+from tuisim.engine.runs.readings import BUTTONS_PORT
 
 Word = str | float
 
@@ -29,12 +31,23 @@ _ENDINGS = _RECORDERS | {
 }
 """Functions with which programs end."""
 
-BUTTON_WORDS: Mapping[Word, str] = {
-    **{name: name for name in BUTTONS},
-    "center": "enter",
-    "back": "backspace",
+
+def _list_key_words(port: str, keys: Sequence[str]) -> dict[Word, str]:
+    """Return the keys of a controller by their words; what has several keys stands for the first of them."""
+    names = {key.removeprefix(f"{port}."): key for key in keys}
+    parts = {name.rpartition("_")[0]: key for name, key in reversed(names.items()) if "_" in name}
+    return {**parts, **names}
+
+
+BUTTON_WORDS: Mapping[str, Mapping[Word, str]] = {
+    BUTTONS_PORT: {
+        **{name: name for name in BUTTONS},
+        "center": "enter",
+        "back": "backspace",
+    },
+    **{port: _list_key_words(port, keys) for port, keys in CONTROLLERS.items()},
 }
-"""The brick's buttons, by the words of all libraries."""
+"""The brick's buttons, by the words of all libraries, and those of controllers, by where they are read."""
 REMOTE_WORDS: Mapping[Word, str] = {
     word: name
     for name, word_of_ev3dev2 in REMOTE_BY_HAND.items()
@@ -73,10 +86,9 @@ class Question:
     needs_all: bool = False
     """Whether several of them must hold at once."""
 
-    @property
-    def buttons(self) -> tuple[str, ...]:
-        """The brick's buttons that the program asks for, in its order; empty for any."""
-        return self._find_words(BUTTON_WORDS)
+    def find_buttons(self, port: str = BUTTONS_PORT) -> tuple[str, ...]:
+        """Return the buttons that the program asks for at one of `KEYS_BY_PORT`, in its order; empty for any."""
+        return self._find_words(BUTTON_WORDS[port])
 
     @property
     def remote_buttons(self) -> tuple[str, ...]:

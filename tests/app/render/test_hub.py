@@ -42,3 +42,17 @@ def test_a_click_finds_each_button() -> None:
     picture = draw_hub(FACE, (), 30, 10)
     assert [box.name for box in picture.buttons] == ["left", "enter", "right", "up"]
     assert {box.row for box in picture.buttons} == {5}
+
+
+@pytest.mark.parametrize(("width", "rows"), [(40, 1), (24, 2)])
+def test_the_keys_of_a_remote_control_cannot_be_clicked(width: int, rows: int) -> None:
+    connected = BrickState(leds={"remote red": 0, "remote green": 255, "remote blue": 0})
+    picture = draw_hub(connected, {"remote.left"}, width, 6 + rows)
+    texts = ["".join(text for text, _ in line) for line in picture.lines]
+    keys = [box for box in picture.buttons if box.name.startswith("remote.")]
+    assert [texts[box.row][box.first : box.end].strip() for box in keys] == [
+        *("L+", "L", "L-", "●", "R+", "R", "R-")
+    ]
+    assert {box.row for box in keys} == {*range(6, 6 + rows)}
+    assert max(map(len, texts)) <= width
+    assert len(draw_hub(connected, (), width, 6).lines) <= 6

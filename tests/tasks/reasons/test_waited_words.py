@@ -309,9 +309,19 @@ def test_a_batch_says_it_in_a_column(tmp_path: Path, here: Command) -> None:
 
 @pytest.mark.parametrize("subject", Subject)
 def test_there_are_words_for_everything(subject: Subject) -> None:
-    awaited = Awaited(subject, "in4", 3, 0.5, 7, "12 cm")
+    port = "buttons" if subject is Subject.BUTTONS else "in4"
+    awaited = Awaited(subject, port, 3, 0.5, 7, "12 cm")
     assert describe_awaited(awaited) and name_remedy(awaited, SPEC)
     assert describe_wait_with_keys([awaited], SPEC).startswith(describe_awaited(awaited))
+
+
+@pytest.mark.parametrize(("port", "key"), [("remote", "remote.left_plus"), ("xbox", "xbox.a")])
+def test_the_key_of_a_controller_is_named_for_the_shell_and_for_the_app(
+    port: str, key: str
+) -> None:
+    awaited = Awaited(Subject.BUTTONS, port, 3, 0.5, 7, sought=(key,))
+    assert name_remedy(awaited, SPEC) == f"--press {key}@1, or K in the app"
+    assert f"the mouse presses {key}" in describe_wait_with_keys([awaited], SPEC)
 
 
 def test_buttons_that_are_asked_for_at_once_are_pressed_at_once() -> None:

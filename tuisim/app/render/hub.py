@@ -1,8 +1,9 @@
-"""A hub as lines of text: its matrix, its status light and its buttons."""
+"""A hub as lines of text: its matrix, its status light and its buttons, and those of what is connected to it."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import replace
 from typing import Final
 
 from rich.color import Color
@@ -10,7 +11,15 @@ from rich.style import Style
 
 from tuisim.app.render.brick import BrickPicture, ButtonBox, draw_bumpers
 from tuisim.base import palette
-from tuisim.engine.runs.brick_state import HUB_LIGHT_NAMES, PIXEL_NAMES, SIDE_PIXELS, BrickState
+from tuisim.engine.core.hub_spec import CONTROLLERS
+from tuisim.engine.runs.brick_state import (
+    HUB_LIGHT_NAMES,
+    PIXEL_NAMES,
+    REMOTE_LIGHT_NAMES,
+    SIDE_PIXELS,
+    XBOX_LIGHT_NAMES,
+    BrickState,
+)
 from tuisim.terminal.text_runs import Run
 
 _PLAIN = Style()
@@ -19,6 +28,19 @@ _BUTTON = Style(color=palette.LIGHT, bgcolor=palette.BUTTON, bold=True)
 _PRESSED = Style(color=palette.BLACK, bgcolor=palette.PRESSED, bold=True)
 _SYMBOLS: Final = {"left": "◀", "enter": "●", "right": "▶", "up": "B"}
 """The buttons by their names in the session, from the left; the last one is that of Bluetooth."""
+_LIGHTS: Final = {"remote": REMOTE_LIGHT_NAMES, "xbox": XBOX_LIGHT_NAMES}
+"""The LEDs of what can be connected, by the keys of `CONTROLLERS`."""
+_SIDES: Final = {"left": "L", "right": "R", "dpad": "D", "center": "●"}
+_WAYS: Final = {
+    "up": "▲",
+    "down": "▼",
+    "left": "◀",
+    "right": "▶",
+    "plus": "+",
+    "minus": "-",
+    "": "",
+}
+"""Parts of the names of their keys on the panel."""
 _DARK, _LIT = 60, 255
 
 
@@ -36,15 +58,20 @@ def draw_hub(
     Args:
         face: What it shows.
         pressed: Buttons that are held down.
-        width, height: Columns and rows, at least 1; the buttons have priority, then the matrix, bumpers and sound.
+        width, height: Columns and rows, at least 1; the buttons have priority, then those of a connected remote control
+            or game controller, the matrix, bumpers and sound.
         bumpers: Ports of the force sensors.
         has_matrix: Whether it has a matrix, and more than one button.
     """
-    rows = SIDE_PIXELS if has_matrix and height > SIDE_PIXELS else 0
+    keys = [*_draw_controllers(face, pressed, width)][: height - 1]
+    rows = SIDE_PIXELS if has_matrix and height > SIDE_PIXELS + len(keys) else 0
     lines = [_draw_pixels(face, row, width) for row in range(rows)]
     names = [*_SYMBOLS] if has_matrix else ["enter"]
     line, boxes = _draw_buttons(face, pressed, names, width, len(lines))
     lines.append(line)
+    for key_line, key_boxes in keys:
+        boxes += tuple(replace(box, row=len(lines)) for box in key_boxes)
+        lines.append(key_line)
     if bumpers and height > len(lines):
         bumper_line, more = draw_bumpers(bumpers, pressed, width, len(lines))
         lines.append(bumper_line)
@@ -70,8 +97,7 @@ def _draw_buttons(
     face: BrickState, pressed: Collection[str], names: Sequence[str], width: int, row: int
 ) -> tuple[list[Run], tuple[ButtonBox, ...]]:
     """Return the row of the buttons between two pieces of the status light, and their areas."""
-    levels = [face.leds.get(name, 0) for name in HUB_LIGHT_NAMES]
-    light = ("   ", Style(bgcolor=Color.from_rgb(*(max(_DARK // 2, level) for level in levels))))
+    light = "   ", _mix_light(face, HUB_LIGHT_NAMES)
     first = max(0, (width - 4 * len(names) - 7) // 2)
     line: list[Run] = [(" " * first, _PLAIN), light, (" ", _PLAIN)]
     first += 4
@@ -81,3 +107,30 @@ def _draw_buttons(
         boxes.append(ButtonBox(row, first, first + 3, name))
         first += 4
     return [*line, light], tuple(boxes)
+
+
+def _mix_light(face: BrickState, names: Sequence[str]) -> Style:
+    """Return a light of three LEDs."""
+    levels = [max(_DARK // 2, face.leds.get(name, 0)) for name in names]
+    return Style(bgcolor=Color.from_rgb(*levels))
+
+
+def _draw_controllers(
+    face: BrickState, pressed: Collection[str], width: int
+) -> Iterator[tuple[list[Run], list[ButtonBox]]]:
+    """Yield the rows of the keys of what is connected, each row with its light before it, and their areas in it."""
+    for port, lights in _LIGHTS.items():
+        if lights[0] not in face.leds:
+            continue
+        light = " ", _mix_light(face, lights)
+        line, boxes = [light], list[ButtonBox]()
+        for key in CONTROLLERS[port]:
+            side, _, way = key.removeprefix(f"{port}.").removeprefix("joystick_").partition("_")
+            label = f" {_SIDES.get(side, side.upper())}{_WAYS[way]} "
+            first = boxes[-1].end + 1 if boxes else 2
+            if boxes and first + len(label) > width:
+                yield line, boxes
+                line, boxes, first = [light], [], 2
+            line += [(" ", _PLAIN), (label, _PRESSED if key in pressed else _BUTTON)]
+            boxes.append(ButtonBox(0, first, first + len(label), key))
+        yield line, boxes

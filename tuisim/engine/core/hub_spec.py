@@ -30,6 +30,24 @@ HUBS: Mapping[str, HubKind] = {
 """By the name of the class in `pybricks.hubs`."""
 HUBS_WITH_MATRIX = frozenset({"PrimeHub", "InventorHub"})
 """Those with a matrix of lights, a speaker, and more than one button."""
+WAYS = ("up", "down", "left", "right")
+CONTROLLERS: Mapping[str, tuple[str, ...]] = {
+    "remote": (
+        *("remote.left_plus", "remote.left", "remote.left_minus", "remote.center"),
+        *("remote.right_plus", "remote.right", "remote.right_minus"),
+    ),
+    "xbox": tuple(
+        f"xbox.{name}"
+        for name in (
+            *(f"joystick_left_{way}" for way in WAYS),
+            *("a", "b", "x", "y", "lb", "rb", "lt", "rt"),
+            *(f"joystick_right_{way}" for way in WAYS),
+            *(f"dpad_{way}" for way in WAYS),
+            *("view", "menu", "guide", "upload", "lj", "rj", "p1", "p2", "p3", "p4"),
+        )
+    ),
+}
+"""What can be pressed by hand on a remote control and on a game controller, by what stands for their port."""
 EV3_MOTORS = ("large", "medium")
 INSIDE = "inside"
 """In place of the port of a gyro that is in the hub."""

@@ -18,6 +18,7 @@ from tuisim.base.errors import ObstacleError, RobotError, require_one_of
 from tuisim.engine.core.drift_spec import NO_DRIFT, DriftSpec
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.hub_spec import (
+    CONTROLLERS,
     EV3_MOTORS,
     HUB_MOTORS,
     HUB_PORTS,
@@ -78,8 +79,11 @@ BUTTONS = ("up", "down", "left", "right", "enter", "backspace")
 TOUCH = "touch"
 """Presses every touch sensor by hand."""
 
-PRESSABLE = (*BUTTONS, TOUCH, *INPUT_PORTS, *REMOTE_BY_HAND, *HUB_PORTS)
-"""What can be pressed by hand: buttons, touch sensors by their ports, and the remote control."""
+PRESSABLE = (
+    *(*BUTTONS, TOUCH, *INPUT_PORTS, *REMOTE_BY_HAND, *HUB_PORTS),
+    *(key for keys in CONTROLLERS.values() for key in keys),
+)
+"""What can be pressed by hand: buttons, touch sensors by their ports, remote controls and a game controller."""
 
 MOTOR_ENDS = ("low", "high")
 """Ends of the range of a motor with end stops, for `TouchSpec.pressed_at`."""

@@ -25,6 +25,10 @@ ROW_BYTES = -(-DISPLAY_WIDTH // 8)
 LED_NAMES = ("left red", "left green", "right red", "right green")
 HUB_LIGHT_NAMES = ("red", "green", "blue")
 """The LEDs of a hub's status light."""
+REMOTE_LIGHT_NAMES = ("remote red", "remote green", "remote blue")
+"""The LEDs of a connected remote control."""
+XBOX_LIGHT_NAMES = ("xbox red", "xbox green", "xbox blue")
+"""The LEDs of a connected game controller."""
 SIDE_PIXELS = 5
 PIXEL_NAMES = tuple(f"{row}{column}" for row in range(SIDE_PIXELS) for column in range(SIDE_PIXELS))
 """The LEDs of a hub's matrix, row by row from the top."""

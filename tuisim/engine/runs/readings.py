@@ -1,7 +1,7 @@
 """What a program read, and when: `READINGS_FILE` of a run folder, and its writer and reader.
 
 Written in pure Python: the child imports it. The file is one of `records`: a header, then one record of 16 bytes for
-each reading of a sensor, an encoder or the brick's buttons, and for each vain look at a socket or for a gamepad. The
+each reading of a sensor, an encoder or buttons, and for each vain look at a socket or for a gamepad. The
 value follows from telemetry, world and user actions.
 """
 
@@ -16,9 +16,9 @@ from typing import TYPE_CHECKING, Any
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import LogError
 from tuisim.base.regular_file import of_the_machine, read_regular
-from tuisim.engine.core.hub_spec import HUB_PORTS, INSIDE
+from tuisim.engine.core.hub_spec import CONTROLLERS, HUB_PORTS, INSIDE
 from tuisim.engine.core.profile import NS_PER_S
-from tuisim.engine.core.spec import INPUT_PORTS, OUTPUT_PORTS
+from tuisim.engine.core.spec import BUTTONS, INPUT_PORTS, OUTPUT_PORTS
 from tuisim.engine.runs.records import HEADER_BYTES, MappedWriter, read_published_length
 from tuisim.engine.runs.side_files import READINGS_FILE
 
@@ -38,13 +38,15 @@ READING_FIELDS = (("time_ns", "<i8"), ("line", "<u4"), ("port", "u1"), ("mode", 
 
 BUTTONS_PORT = "buttons"
 """What stands for a port when the brick's buttons are read."""
+KEYS_BY_PORT: Mapping[str, tuple[str, ...]] = {BUTTONS_PORT: BUTTONS, **CONTROLLERS}
+"""Which of `PRESSABLE` are read there."""
 SOCKET_PORT = "socket"
 """What stands for a port when the program waits for a socket."""
 GAMEPAD_PORT = "gamepad"
 """What stands for a port when the program looks for input devices."""
 READING_PORTS = (
     *(*INPUT_PORTS, *OUTPUT_PORTS, BUTTONS_PORT, SOCKET_PORT, GAMEPAD_PORT),
-    *(*HUB_PORTS, INSIDE),
+    *(*HUB_PORTS, INSIDE, *CONTROLLERS),
 )
 MODES_BY_KIND: Mapping[str, tuple[str, ...]] = {
     "color": ("COL-REFLECT", "COL-AMBIENT", "COL-COLOR", "REF-RAW", "RGB-RAW", "COL-CAL"),

@@ -24,7 +24,6 @@ from tuisim.engine.core.remote_spec import REMOTE_BY_HAND
 from tuisim.engine.core.sensors import build_mounted_sensor
 from tuisim.engine.core.sensors.color import find_color_code
 from tuisim.engine.core.spec import (
-    BUTTONS,
     INPUT_PORTS,
     TOUCH,
     ColorSensorSpec,
@@ -37,6 +36,7 @@ from tuisim.engine.core.spec import (
 from tuisim.engine.protocol import End, SetButtons, UserAction
 from tuisim.engine.runs.brick_state import BrickState, update_face
 from tuisim.engine.runs.readings import (
+    KEYS_BY_PORT,
     MODES_BY_KIND,
     READING_MODES,
     READING_PORTS,
@@ -100,11 +100,10 @@ _MODES: dict[Subject, tuple[str, ...]] = {
     Subject.GAMEPAD: MODES_BY_KIND["gamepad"],
 }
 _HANDS: dict[Subject, tuple[str, ...]] = {
-    Subject.BUTTONS: BUTTONS,
     Subject.TOUCH: (TOUCH, *INPUT_PORTS),
     Subject.REMOTE: tuple(REMOTE_BY_HAND),
 }
-"""What can be pressed by hand for a subject."""
+"""What can be pressed by hand for a subject that is read at other places than `KEYS_BY_PORT`."""
 _HAND_SUBJECTS = (Subject.BUTTONS, Subject.REMOTE)
 """While the robot moves, a look at these is a guard, not a wait."""
 _PRESSED = (*_HAND_SUBJECTS, Subject.TOUCH)
@@ -332,7 +331,10 @@ class _Search:
         if value is None:
             return None
         presses = find_presses(
-            self._run.actions, _HANDS.get(subject, ()), self._hz, len(self._records)
+            self._run.actions,
+            _HANDS.get(subject, KEYS_BY_PORT.get(port, ())),
+            self._hz,
+            len(self._records),
         )
         times_s = self._rows["time_ns"][rows] / NS_PER_S
         first, last = map(self._find_pose, rows[[0, -1]])
@@ -343,9 +345,9 @@ class _Search:
             float(times_s[0]),
             int(self._rows["line"][rows[-1]]),
             value,
-            sought=sought,
-            needs_all=needs_all,
-            limit=limit,
+            sought,
+            needs_all,
+            limit,
             pace_s=float(np.median(np.diff(times_s))) if len(rows) > 1 else 0.0,
             pressed=presses,
             waits_again=self._has_seen(subject, port, find_hits(presses, sought)),
@@ -386,7 +388,9 @@ class _Search:
         )
         match subject, sensor:
             case Subject.BUTTONS, _:
-                return None if self._is_pressed(ticks, sought or BUTTONS, needs_all) else ""
+                return (
+                    None if self._is_pressed(ticks, sought or KEYS_BY_PORT[port], needs_all) else ""
+                )
             case Subject.REMOTE, InfraredSpec():
                 return None if self._is_remote_pressed(ticks, sought, needs_all) else ""
             case Subject.BEACON, InfraredSpec():
@@ -489,7 +493,7 @@ def _find_sought(subject: Subject, port: str, mode: str, question: Question) -> 
     """Return the names of buttons, ports or colours that a program asks for; empty for anything."""
     match subject:
         case Subject.BUTTONS:
-            return question.buttons
+            return question.find_buttons(port)
         case Subject.REMOTE:
             return question.remote_buttons
         case Subject.TOUCH:

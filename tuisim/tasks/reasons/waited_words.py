@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, assert_never
 
 from tuisim.base.data_class import dataclass
 from tuisim.engine.core.spec import EMPTY_MAT, InfraredSpec, RunSpec, UltrasonicSpec
+from tuisim.engine.runs.readings import BUTTONS_PORT, KEYS_BY_PORT
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.tasks.reasons.hand_presses import find_hits
 from tuisim.tasks.reasons.obstacle_advice import find_nearest, find_obstacle
@@ -21,6 +22,8 @@ COLORED_MAT = "Rainbow_bands"
 COLOR_PLACES_MM: Mapping[str, int] = {"red": 240, "green": 440, "blue": 740, "yellow": 1245}
 """Where on that mat, in x, a robot looks at a colour."""
 _KEYS = {"up": "↑", "down": "↓", "left": "←", "right": "→"}
+_OWNERS = {BUTTONS_PORT: "the brick's", "remote": "the remote's", "xbox": "the Xbox controller's"}
+"""Whose buttons are read at each of `KEYS_BY_PORT`."""
 _SHORT_PRESS_S = 0.1
 
 
@@ -84,7 +87,7 @@ def describe_awaited(awaited: Awaited) -> str:
     match awaited.subject:
         case Subject.BUTTONS:
             return _describe_presses(awaited) or (
-                f"read the brick's buttons {awaited.times:,} times, none was pressed"
+                f"read {_OWNERS[port]} buttons {awaited.times:,} times, none was pressed"
             )
         case Subject.TOUCH:
             presses = _describe_presses(awaited)
@@ -149,7 +152,8 @@ def name_remedy(awaited: Awaited, spec: RunSpec, is_live: bool = False) -> str:
     """
     match awaited.subject:
         case Subject.BUTTONS:
-            return f"{_name_presses(awaited, 'enter')}, or K in the app"
+            default = "enter" if awaited.port == BUTTONS_PORT else KEYS_BY_PORT[awaited.port][0]
+            return f"{_name_presses(awaited, default)}, or K in the app"
         case Subject.TOUCH:
             return _name_presses(awaited, awaited.port)
         case Subject.REMOTE:
@@ -224,6 +228,8 @@ def name_remedy_with_keys(awaited: Awaited, spec: RunSpec) -> str:
     """Return the key that gives a program what it waited for, as an id of an action in braces; else the option."""
     names = awaited.sought if awaited.needs_all else awaited.sought[:1]
     match awaited.subject:
+        case Subject.BUTTONS if awaited.port != BUTTONS_PORT:
+            return f"{{panel-brick}} opens the hub, where the mouse presses {' and '.join(names) or 'them'}"
         case Subject.BUTTONS if names:
             keys = " and ".join(_KEYS.get(name, name.capitalize()) for name in names)
             does = f"shift with {keys} holds" if awaited.needs_all else f"{keys} presses"

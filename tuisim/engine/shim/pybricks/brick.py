@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import errno
 import sys
-from collections.abc import Callable, Generator
+from collections.abc import Callable, Generator, Mapping
 from dataclasses import field
 from math import nan
 from typing import Any, ClassVar, Generic, TypeVar
@@ -66,6 +66,8 @@ class Brick:
     """What was said that is said once, by subject."""
     stop_buttons: frozenset[str] = frozenset()
     """The buttons that stop the program, by their names in the session: those of a hub."""
+    led_levels: Mapping[str, int] = field(default_factory=dict)
+    """Brightness of the LEDs of a hub, 0 to 255, by their names in `BrickState.leds`; empty until one was lit."""
     in_task: bool = False
     """Whether the program runs a task of version 4, in which nothing blocks."""
 

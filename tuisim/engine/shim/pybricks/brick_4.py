@@ -14,6 +14,7 @@ from tuisim.engine.shim.pybricks.brick import Connected, Waiting, invalid_argume
 from tuisim.engine.shim.pybricks.hsv_color import Color
 from tuisim.engine.shim.pybricks.parameters import Button
 from tuisim.engine.shim.tones import Tone, song_of, tones_heard
+from tuisim.engine.shim.unsupported.modules import Hardware, refused_part
 
 DARK = (0, 0)
 HUES: Mapping[int, str] = {15: "RED", 45: "ORANGE", 90: "YELLOW", 180: "GREEN", 330: "", 360: "RED"}
@@ -134,6 +135,10 @@ class System(Connected):
         buttons: Its buttons by their names in the session.
     """
 
+    umm_info = refused_part(
+        "System", "umm_info", Hardware("the hub's memory", "gc.mem_free() tells")
+    )
+
     def __init__(self, name: str, buttons: Mapping[str, Enum]) -> None:
         self._name, self._stored = name, bytearray(512)
         self._session_names = {button: name for name, button in buttons.items()}
@@ -164,6 +169,10 @@ class System(Connected):
             self._stored[offset : offset + len(write)] = write
             return None
         return bytes(self._stored[offset : offset + whole(read)])
+
+    def reset_storage(self) -> None:
+        """Make all bytes of the storage 0."""
+        self._stored = bytearray(len(self._stored))
 
     def shutdown(self) -> None:
         """Turn the hub off: the program ends."""

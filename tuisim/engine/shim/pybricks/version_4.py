@@ -158,6 +158,18 @@ class Control(motor.Control):
             return None
         return super().limits(speed, acceleration, actuation)
 
+    def pid(  # type: ignore[override]
+        self,
+        kp: float | None = None,
+        ki: float | None = None,
+        kd: float | None = None,
+        integral_deadzone: float | None = None,
+        integral_rate: float | None = None,
+    ) -> tuple[int, ...] | None:
+        """Return the gains of the controller, or set them."""
+        gains = super().pid(kp, ki, kd, integral_deadzone, integral_rate)
+        return gains and gains[:5]
+
     def load(self) -> int:
         """Return the load in mNm."""
         self.brick.read()

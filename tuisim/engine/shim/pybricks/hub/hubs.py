@@ -8,9 +8,9 @@ from typing import Any
 from tuisim.engine.runs.readings import BUTTONS_PORT
 from tuisim.engine.shim.pybricks import hubs
 from tuisim.engine.shim.pybricks.brick import Connected
-from tuisim.engine.shim.pybricks.brick_4 import Speaker, System
+from tuisim.engine.shim.pybricks.brick_4 import AnimatedLight, Speaker, System
 from tuisim.engine.shim.pybricks.hub.display import Display, Menu
-from tuisim.engine.shim.pybricks.hub.face import Face, Light
+from tuisim.engine.shim.pybricks.hub.face import Face
 from tuisim.engine.shim.pybricks.hub.imu import IMU
 from tuisim.engine.shim.pybricks.hub.parameters import Button
 from tuisim.engine.shim.pybricks.matrix import Axis
@@ -29,15 +29,33 @@ FULL_MV = 8190
 
 
 class Buttons(Connected):
-    """The buttons of the hub."""
+    """Buttons that a hand presses.
 
-    def __init__(self, names: Iterable[str]) -> None:
-        self._names = tuple(names)
+    Args:
+        buttons: They, by their names in the session.
+        port: Where they are, one of `READING_PORTS`.
+    """
+
+    def __init__(self, buttons: Mapping[str, Button], port: str = BUTTONS_PORT) -> None:
+        self._buttons, self._place = buttons, port
 
     def pressed(self) -> set[Button]:
         """Return the pressed buttons."""
-        self.brick.read("pressed", BUTTONS_PORT)
-        return {BUTTON_NAMES[name] for name in self._names if name in self.brick.session.pressed}
+        self.brick.read("pressed", self._place)
+        names = self.brick.session.pressed & self._buttons.keys()
+        return {self._buttons[name] for name in names}
+
+
+class Battery(hubs.Battery):
+    """The battery, which can be charged."""
+
+    temperature = refused_part(
+        "Battery", "temperature", Hardware("the temperature of the battery", "it stays as it is")
+    )
+
+    def type(self) -> str:
+        """Return its type."""
+        return "Li-ion"
 
 
 class Charger(Connected):
@@ -75,9 +93,9 @@ class Hub(Connected):
         )
         self._face = Face()
         self.brick.stop_buttons = frozenset({"enter"})
-        self.light = Light(self._face)
-        self.battery, self.system = hubs.Battery(), System(type(self).__name__, BUTTON_NAMES)
-        self.buttons = self.button = Buttons(self.BUTTONS)
+        self.light = AnimatedLight(self._face.shine)
+        self.battery, self.system = Battery(), System(type(self).__name__, BUTTON_NAMES)
+        self.buttons = self.button = Buttons({name: BUTTON_NAMES[name] for name in self.BUTTONS})
 
 
 class PrimeHub(Hub):

@@ -7,18 +7,17 @@ from typing import Any
 
 from tuisim.engine.shim.pybricks import matrix, tools, version_4
 from tuisim.engine.shim.pybricks import parameters as common
-from tuisim.engine.shim.pybricks.hub import display, hubs, parameters, pupdevices
+from tuisim.engine.shim.pybricks.hub import controllers, display, hubs, parameters, pupdevices
 from tuisim.engine.shim.unsupported.modules import Hardware, refused_part
 
 _NO_DEVICE = "use Motor, ColorSensor, UltrasonicSensor and ForceSensor"
 REFUSED: Mapping[str, tuple[str, ...]] = {
     "pybricks.pupdevices": (
         *("ColorDistanceSensor", "ColorLightMatrix", "DuploTrain", "InfraredSensor", "Light"),
-        *("MarioHub", "PFMotor", "Remote", "TechnicMoveHub", "TiltSensor"),
+        *("MarioHub", "PFMotor", "TechnicMoveHub", "TiltSensor"),
     ),
     "pybricks.iodevices": (
         *("AnalogSensor", "I2CDevice", "LUMPDevice", "LWP3Device", "PUPDevice", "UARTDevice"),
-        "XboxController",
     ),
     "pybricks.messaging": ("BLERadio",),
     "pybricks.tools": ("AppData",),
@@ -40,7 +39,9 @@ def find_names(hub: str) -> Mapping[str, Mapping[str, Any]]:
             "ColorSensor": pupdevices.ColorSensor,
             "UltrasonicSensor": pupdevices.UltrasonicSensor,
             "ForceSensor": pupdevices.ForceSensor,
+            "Remote": controllers.Remote,
         },
+        "pybricks.iodevices": {"XboxController": controllers.XboxController},
         "pybricks.parameters": {
             "Port": parameters.Port,
             "Button": parameters.Button,

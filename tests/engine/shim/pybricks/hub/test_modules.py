@@ -1,0 +1,51 @@
+"""What Pybricks has on a hub is there, or is refused by name.
+
+`api.json` has the members with the names of their parameters, as the firmware takes them.
+"""
+
+from __future__ import annotations
+
+import inspect
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.engine.shim.pybricks.lab import Lab
+from tuisim.base.errors import NotSimulated
+from tuisim.engine.core.profile import MotorLaw
+from tuisim.engine.shim.pybricks.hub.hubs import PrimeHub
+from tuisim.engine.shim.pybricks.hub.modules import REFUSED, find_names
+from tuisim.engine.shim.pybricks.hub.pupdevices import Lights
+from tuisim.engine.shim.pybricks.version_4 import Control
+
+API = json.loads(Path(__file__).with_name("api.json").read_text())
+PARTS: dict[str, Any] = {"Motor.control": Control, "ColorSensor.lights": Lights}
+"""Classes of what an object has."""
+NAMES = {name: value for names in find_names("PrimeHub").values() for name, value in names.items()}
+
+
+@pytest.fixture
+def hub() -> Any:
+    Lab(MotorLaw.PYBRICKS_4, {}, hub="PrimeHub")
+    return PrimeHub()
+
+
+@pytest.mark.parametrize("member", API)
+def test_a_member_cannot_be_called_by_the_names_of_its_parameters(hub: Any, member: str) -> None:
+    owner, _, name = member.rpartition(".")
+    place = (
+        getattr(hub, owner.removeprefix("hub."))
+        if owner.startswith("hub.")
+        else PARTS.get(owner) or NAMES[owner or name]
+    )
+    called = inspect.signature(getattr(place, name) if owner else place)
+    if "named" not in called.parameters:
+        assert {*API[member]} <= {*called.parameters}
+
+
+@pytest.mark.parametrize("name", [name for names in REFUSED.values() for name in names])
+def test_a_class_that_is_not_simulated_can_be_used(name: str) -> None:
+    with pytest.raises(NotSimulated, match=name):
+        NAMES[name]()

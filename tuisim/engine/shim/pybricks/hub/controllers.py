@@ -1,0 +1,192 @@
+"""`Remote` and `XboxController`: they are found at once, and what a hand presses is pressed on them."""
+
+from __future__ import annotations
+
+import errno
+from collections.abc import Sequence
+from typing import Any, ClassVar
+
+from tuisim.engine.core.hub_spec import CONTROLLERS, WAYS
+from tuisim.engine.runs.brick_state import REMOTE_LIGHT_NAMES, XBOX_LIGHT_NAMES
+from tuisim.engine.shim.pybricks.brick import Connected, FirmwareError, Waiting, text_of, whole
+from tuisim.engine.shim.pybricks.hsv_color import Color
+from tuisim.engine.shim.pybricks.hub.face import Face
+from tuisim.engine.shim.pybricks.hub.hubs import Buttons
+from tuisim.engine.shim.pybricks.hub.parameters import Button
+from tuisim.engine.shim.unsupported.modules import Hardware, refused_part
+
+DPAD = ((0, 0), (0, 1), (1, 1), (1, 0), (1, -1), (0, -1), (-1, -1), (-1, 0), (-1, 1))
+"""The directions that `dpad` tells, to the right and up: none, then clockwise from the top."""
+RAW = Hardware("the raw report of a game controller", "use its joysticks, triggers and buttons")
+FULL = 100
+"""How far a hand presses a stick or a trigger, in percent."""
+
+
+class Controller(Connected):
+    """What the hub is connected to by radio."""
+
+    PORT: ClassVar[str]
+    LEDS: ClassVar[Sequence[str]]
+    COLOR = Color.WHITE
+    """The LEDs show that it is connected."""
+
+    def __init__(self, name: str | None, connect: bool) -> None:
+        if self.brick.in_task:
+            raise RuntimeError("This can only be called before multitasking starts.")
+        self._face, self._name, self._is_connected = Face(), name or type(self).__name__, False
+        names = (key.removeprefix(f"{self.PORT}.") for key in CONTROLLERS[self.PORT])
+        known = Button.__members__
+        self.buttons = Keys(
+            self,
+            {f"{self.PORT}.{name}": known[name.upper()] for name in names if name.upper() in known},
+        )
+        if connect:
+            self._set_connected(True)
+
+    def _set_connected(self, is_connected: bool) -> None:
+        self._is_connected = is_connected
+        self._face.shine(self.COLOR if is_connected else None, self.LEDS)
+
+    def check(self) -> None:
+        """Check that it is connected.
+
+        Raises:
+            OSError: it is not.
+        """
+        if not self._is_connected:
+            raise FirmwareError(
+                errno.ENODEV, f"ENODEV:\n\nThe {type(self).__name__} is disconnected."
+            )
+
+    def connect(self) -> None:
+        """Connect it again."""
+        return self.brick.finish(self._change(True))
+
+    def disconnect(self) -> None:
+        """Disconnect it."""
+        return self.brick.finish(self._change(False))
+
+    def _change(self, is_connected: bool) -> Waiting[None]:
+        self._set_connected(is_connected)
+        yield self.brick.now_us
+
+
+class Keys(Buttons):
+    """The buttons of a controller."""
+
+    def __init__(self, controller: Controller, buttons: dict[str, Button]) -> None:
+        super().__init__(buttons, controller.PORT)
+        self._controller = controller
+
+    def pressed(self) -> set[Button]:
+        """Return the pressed buttons."""
+        self._controller.check()
+        return super().pressed()
+
+
+class RemoteLight(Connected):
+    """The light of a remote control."""
+
+    def __init__(self, remote: Controller, face: Face) -> None:
+        self._remote, self._face = remote, face
+
+    def on(self, color: Any) -> None:
+        """Turn it on in a colour."""
+        self._remote.check()
+        self._face.shine(color, REMOTE_LIGHT_NAMES)
+
+    def off(self) -> None:
+        """Turn it off."""
+        self.on(None)
+
+
+class Remote(Controller):
+    """The remote control of Powered Up."""
+
+    PORT, LEDS = "remote", REMOTE_LIGHT_NAMES
+
+    def __init__(
+        self, name: str | None = None, timeout: int | None = 10_000, connect: bool = True
+    ) -> None:
+        super().__init__(name, connect)
+        self.light = RemoteLight(self, self._face)
+
+    def name(self, name: str | None = None) -> str | None:
+        """Return its name, or set it."""
+        return self.brick.finish(self._rename(name))
+
+    def _rename(self, name: str | None) -> Waiting[str | None]:
+        self.check()
+        yield self.brick.command()
+        if name is None:
+            return self._name
+        self._name = text_of(name)
+        return None
+
+
+class XboxController(Controller):
+    """The controller of an Xbox."""
+
+    PORT, LEDS = "xbox", XBOX_LIGHT_NAMES
+    state = refused_part("XboxController", "state", RAW)
+
+    def __init__(
+        self,
+        joystick_deadzone: int = 10,
+        name: str | None = None,
+        timeout: int | None = 10_000,
+        connect: bool = True,
+        stay_connected: bool = False,
+    ) -> None:
+        super().__init__(name, connect)
+
+    def _read(self, *names: str) -> list[int]:
+        """Return 1 for each key that is pressed, else 0."""
+        self.check()
+        self.brick.read("pressed", self.PORT)
+        return [f"{self.PORT}.{name}" in self.brick.session.pressed for name in names]
+
+    def _find_direction(self, part: str) -> tuple[int, int]:
+        up, down, left, right = self._read(*(f"{part}_{way}" for way in WAYS))
+        return right - left, up - down
+
+    def joystick_left(self) -> tuple[int, int]:
+        """Return how far the left stick is to the right, and up, in percent."""
+        right, up = self._find_direction("joystick_left")
+        return FULL * right, FULL * up
+
+    def joystick_right(self) -> tuple[int, int]:
+        """Return how far the right stick is to the right, and up, in percent."""
+        right, up = self._find_direction("joystick_right")
+        return FULL * right, FULL * up
+
+    def triggers(self) -> tuple[int, int]:
+        """Return how far the left and the right trigger are pressed, in percent."""
+        left, right = self._read("lt", "rt")
+        return FULL * left, FULL * right
+
+    def dpad(self) -> int:
+        """Return the direction of the pad: 0 for none, then 1 to 8 clockwise from the top."""
+        return DPAD.index(self._find_direction("dpad"))
+
+    def profile(self) -> int:
+        """Return the chosen profile: 0, that of a controller without any."""
+        self.check()
+        return 0
+
+    def name(self) -> str:
+        """Return its name."""
+        return self._name
+
+    def rumble(
+        self,
+        power: int | Sequence[int] = 100,
+        duration: int = 200,
+        count: int = 1,
+        delay: int = 100,
+    ) -> None:
+        """Shake, which nothing shows."""
+        self.check()
+        for number in (duration, count, delay):
+            whole(number)
+        self.brick.command()
