@@ -27,6 +27,9 @@ RECORDED_PLANTS = {
 }
 """The motors of the recordings: with the firmware's own data, not with those of a brick's motors."""
 
+WHEEL_KG_M2 = 0.0003
+"""What a motor of a recorded drive base of a hub has to turn besides itself."""
+
 
 class MotorsOnly:
     """A simulation without a robot: it obeys commands to motors and drive bases."""
@@ -69,7 +72,10 @@ class Lab:
         hub: str = "",
         robot: dict[str, float] | None = None,
     ) -> None:
-        plants = RECORDED_PLANTS | {kind: motor.plant for kind, motor in MOTORS.items()}
+        load_kg_m2 = WHEEL_KG_M2 if robot else 0.0
+        plants = RECORDED_PLANTS | {
+            kind: motor.plant.add_load(load_kg_m2, 0.0) for kind, motor in MOTORS.items()
+        }
         self.motors = {
             port: ServoMotor(100, law, kind, Axle(plants[kind], BATTERY_V))
             for port, kind in kinds.items()

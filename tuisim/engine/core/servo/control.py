@@ -45,6 +45,7 @@ class Controller:
     __slots__ = (
         "_behind_milli",
         "_paused_us",
+        "_released",
         "_slips",
         "_stalled_us",
         "duty_limit",
@@ -70,6 +71,8 @@ class Controller:
         """How far a motion at a speed is behind its trajectory for good, in thousandths of a count."""
         self._stalled_us = 0
         """For how long it has hardly moved at its full power."""
+        self._released = 0, 0
+        """When it became passive, and the mean rate then, where the firmware begins a motion at a mean rate."""
 
     @property
     def actuation(self) -> int:
@@ -123,8 +126,11 @@ class Controller:
 
     # Commands
 
-    def release(self) -> None:
-        """Become passive."""
+    def release(self, now_us: int | None = None) -> None:
+        """Become passive; at a time from which on a motion may begin at the mean rate of the last one."""
+        window_us = self.settings.speed_window_ms * MS_US
+        if window_us and now_us is not None and self.trajectory is not None and not self._paused_us:
+            self._released = now_us, self._mean_rate(now_us, self.milli(now_us), window_us)
         self.trajectory, self.duty_limit, self._stalled_us = None, None, 0
 
     def hold(self, now_us: int, milli: int) -> None:
@@ -240,7 +246,13 @@ class Controller:
     def _find_start(self, now_us: int, measured: Measure) -> tuple[Segment, Segment | None]:
         """Return where a new trajectory begins, and where the running segment began, if it changes the speed."""
         if self.trajectory is None or (self._slips and self._behind_milli):
-            return measured(now_us), None
+            start, (then_us, rate) = measured(now_us), self._released
+            window_us = self.settings.speed_window_ms * MS_US
+            left_us = max(0, then_us + window_us - now_us)
+            if left_us:
+                rate = round(start.rate + (rate - start.rate) * left_us / window_us)
+                start = start._replace(rate=rate)
+            return start, None
         then_us = now_us - self._paused_us
         running = self.trajectory.find_segment(then_us)
         start = Segment(

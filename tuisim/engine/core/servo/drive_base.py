@@ -281,8 +281,8 @@ class DriveBase:
         """Let go of the motors, and run them with a power; see `ServoMotor.run_freely`."""
         for motor in self.motors:
             motor.run_freely(now_us, duty)
-        self.distance.release()
-        self.heading.release()
+        self.distance.release(now_us)
+        self.heading.release(now_us)
 
     def _measure_total(self, now_us: int) -> Segment:
         left, right = self.left.measure_start(now_us), self.right.measure_start(now_us)
@@ -299,8 +299,8 @@ class DriveBase:
             for motor in self.motors:
                 if motor.guide is self:
                     motor.run_freely(now_us, None)
-            self.distance.release()
-            self.heading.release()
+            self.distance.release(now_us)
+            self.heading.release(now_us)
 
     def _take(self, ending: Ending) -> None:
         self._at_us = self._behind_us = -1

@@ -220,7 +220,7 @@ class ServoMotor:
             self._free_dps = self.find_counts_per_s(now_us) * self.sign / COUNTS_PER_DEG
             self._jump_deg = there - self.position_deg
             self._guide = self._course = None
-            self.control.release()
+            self.control.release(now_us)
         self.duty = None if duty is None else duty * self.sign
         self.blocked_ticks = 0
         self.mode = FOREVER if self.duty or self._free_dps or self._jump_deg else STOPPED
@@ -394,7 +394,7 @@ class ServoMotor:
             return
         self.mode, self.speed_dps, self.blocked_ticks = STOPPED, 0.0, 0
         if not holds and guide is not None:
-            self.control.release()
+            self.control.release(now_us)
             self._guide, self._free_dps, self.duty = (
                 None,
                 0.0,

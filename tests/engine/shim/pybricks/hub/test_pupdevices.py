@@ -31,6 +31,17 @@ KINDS = {
 }
 EARLIEST_MS, LATEST_MS = -5, 35
 """A recorded call returned so much later than one here at least, and at most."""
+STILL_TURNING = {
+    "DB_turn_90_gyro_scale_1.02": "the gyro shows 93 when the turn is done, and 90 when the robot rests",
+    "DB_settings_900_straight": "at 488 mm/s the recorded robot was 5 mm and 4 degrees too far, and came back",
+    "DB_geo_56_80": "on a narrow track it was 4 degrees too far, and came back",
+    "DB_reset_500_90": "it was 3 degrees too far after a short turn, and came back",
+}
+"""Recordings whose robot was 2 mm and 2 degrees farther beyond its target when a call returned; here it is exact."""
+PAUSED_UNITS = 4
+"""The reference of a blocked motor pauses at a tick here, which is 10 ms, and at a loop of 5 ms there."""
+FAST_UNITS = {"DB_settings_900_straight": 3}
+"""At 3000 mm/s² a millisecond more makes 3 mm/s."""
 
 
 class Experiment:
@@ -47,7 +58,7 @@ class Experiment:
         self.lab = Lab(
             MotorLaw.PYBRICKS_4, kinds, min(stops), hub="PrimeHub", robot=recorded.get("true_robot")
         )
-        self.lab.until_ns = recorded["final"][0] * TICK_NS // 10 + TICK_NS // 2
+        self.lab.until_ns = recorded["final"][0] * TICK_NS // 10
         self.find_returned: list[tuple[str, int | None, Any]] = []
         self.references: dict[int, list[int]] = {}
         self.lab.looks.append(self._look)
@@ -76,10 +87,11 @@ class Experiment:
         )
         if now_ms % 50 == 0 and all(control.trajectory is not None for control in controls):
             now_us = now_ms * 1000
+            zeros = self.base._zeros if self.base else (0,)
             self.references[now_ms] = [
-                round(value / control.settings.counts_per_unit)
-                for control in controls
-                for value in (control.milli(now_us) / MILLI, control.rate(now_us))
+                int(value / control.settings.counts_per_unit)
+                for control, zero in zip(controls, zeros, strict=True)
+                for value in (control.milli(now_us) / MILLI - zero, control.rate(now_us))
             ]
 
     def run(self) -> Experiment:
@@ -126,10 +138,13 @@ def find_wrong_ends(experiment: Experiment) -> list[str]:
     returned = [one for one in recorded["returned"] if one[1] is not None]
     if len(returned) != len(experiment.find_returned):
         misses.append(f"{len(returned)} calls return, here {len(experiment.find_returned)}")
+    beyond = 2 if recorded["id"] in STILL_TURNING else 0
     for (call, at_ms, place), one in zip(returned, experiment.find_returned, strict=False):
         if not EARLIEST_MS <= at_ms - one[1] <= LATEST_MS:
             misses.append(f"{call} returns at {at_ms}, here {one[1]}")
-        if any(abs(a - b) > band + 2 for a, b, band in zip(place, one[2], places, strict=True)):
+        if any(
+            abs(a - b) > band + beyond for a, b, band in zip(place, one[2], places, strict=True)
+        ):
             misses.append(f"{call} ends at {place}, here {one[2]}")
     for a, b, band in zip(recorded["final"][1:], experiment.place, places, strict=True):
         if abs(a - b) > band:
@@ -144,19 +159,19 @@ def find_wrong_references(experiment: Experiment) -> list[str]:
         if None not in values and now_ms in experiment.references:
             for at, (a, b) in enumerate(zip(values, experiment.references[now_ms], strict=True)):
                 worst[at] = max(worst[at], abs(a - b))
-    return [f"reference {worst}"] if max(worst) > 3 else []
+    key = recorded["id"]
+    is_blocked = "blocked" in key or "stalled" in key
+    most_units = PAUSED_UNITS if is_blocked else FAST_UNITS.get(key, 1)
+    return [f"reference {worst}"] if max(worst) > most_units else []
 
 
 MISSED = {
-    "M_run_angle_500_360_NONE": "it runs on, and the recorded motor is 6 ms behind",
-    "M_coast_chain": "a recorded motor that coasts stops short of its target",
-    "M_battery_6_5V_1000_720": "the battery of the robot is full",
+    "M_coast_chain": "each move that coasts ends a degree short by friction, 3 in all; one call returns 15 ms late,"
+    " because a motor lets go at a tick, after the next command",
+    "M_battery_6_5V_1000_720": "at 6.5 V the recorded trajectory pauses; batteries are full here",
     "M_load_0.05Nm": "no torque from outside loads a simulated motor",
-    "DB_none_then_stop": "how far it rolls is of the recorded motors and wheels",
-    "DB_motor_command_ends_move": "how far the other wheel rolls is, too",
-    "DB_geo_88_112": "friction held the recorded robot 3 degrees from its target",
-    "DB_small_motors_56_112": "the recorded small motors were 60 ms behind",
-    "DB_reset_500_90": "the recorded robot still rolled when it was reset",
+    "DB_geo_88_112": "friction held the recorded robot 3 degrees from its target, for lack of an integral part",
+    "DB_small_motors_56_112": "the recorded motors followed 17 mm/s late, and were slow enough 60 ms after the end",
 }
 """Recordings outside the bands, with the reason."""
 
