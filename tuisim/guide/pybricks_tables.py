@@ -49,7 +49,7 @@ def list_drive_bases() -> Table:
                     compute_usual_settings(
                         profile.motor_law,
                         *compute_base_settings(motor, motor, diameter_mm, track_mm),
-                    )
+                    )[0]
                 )
             )
         rows.append((f"{diameter_mm:g} mm, {track_mm:g} mm", *usual))

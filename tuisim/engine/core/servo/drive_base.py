@@ -40,25 +40,33 @@ def compute_base_settings(
     )
 
 
+Pace = tuple[int, int, int, int]
+"""Speed, acceleration, rate of turn and its acceleration."""
+
+
 def compute_usual_settings(
     law: MotorLaw, distance: ControlSettings, heading: ControlSettings
-) -> tuple[int, int, int, int]:
-    """Return speed, acceleration, rate of turn and its acceleration of a new drive base, in mm and degrees."""
+) -> tuple[Pace, Pace]:
+    """Return how a new drive base moves, in mm and degrees, and in counts, which may be more exact."""
     firmware = FIRMWARES[law]
-
-    def scale(control: ControlSettings, counts: int, fraction: tuple[int, int]) -> int:
-        if firmware.divides_units:
-            return control.units(counts) * fraction[0] // fraction[1]
-        # As in the firmware, which has whole thousandths of a motor's degree per unit.
-        steps_per_unit = int(control.counts_per_unit / COUNTS_PER_STEP + 1e-3)
-        return int(counts * fraction[0] / fraction[1] / COUNTS_PER_STEP) // steps_per_unit
-
-    return (
-        scale(distance, distance.speed, firmware.straight_speed),
-        scale(distance, distance.acceleration, firmware.straight_acceleration),
-        scale(heading, heading.speed, firmware.turn_rate),
-        scale(heading, heading.acceleration, firmware.turn_acceleration),
+    limits = (
+        (distance, distance.speed, firmware.straight_speed),
+        (distance, distance.acceleration, firmware.straight_acceleration),
+        (heading, heading.speed, firmware.turn_rate),
+        (heading, heading.acceleration, firmware.turn_acceleration),
     )
+    if firmware.divides_units:
+        units = [control.units(limit) * part // whole for control, limit, (part, whole) in limits]
+        counts = [control.counts(unit) for unit, (control, *_) in zip(units, limits, strict=True)]
+    else:
+        exact = [limit * part / whole for _, limit, (part, whole) in limits]
+        # As in the firmware, which has whole thousandths of a motor's degree per unit.
+        units = [
+            int(count / COUNTS_PER_STEP) // int(control.counts_per_unit / COUNTS_PER_STEP + 1e-3)
+            for count, (control, *_) in zip(exact, limits, strict=True)
+        ]
+        counts = [int(count) for count in exact]
+    return (*units,), (*counts,)  # type: ignore[return-value]
 
 
 def _move_relative(
@@ -112,10 +120,9 @@ class DriveBase:
         """Controls the sum; its units are mm."""
         self.heading = Controller(heading, slips=True)
         """Controls the difference; its units are degrees."""
-        self.usual = compute_usual_settings(left.law, self.distance.settings, self.heading.settings)
-        """How it moves, unless the program says something else; in mm and degrees."""
-        self._pace = self._count_usual()
-        """The same in counts; until the program sets it, not rounded to whole units."""
+        self.usual, self._pace = compute_usual_settings(left.law, distance, heading)
+        """How it moves, unless the program says something else: in mm and degrees, and in counts; until the program
+        sets it, these are not rounded to whole units."""
         self._slowing: tuple[int | None, int | None] = None, None
         """How it stops straight moves and turns, in counts; None as it speeds up."""
         self._ending = Ending.HOLD
@@ -193,32 +200,11 @@ class DriveBase:
 
     # Commands
 
-    def _count_usual(self) -> tuple[int, int, int, int]:
-        """Return how a new base moves, in counts."""
-        firmware, distance, heading = (
-            FIRMWARES[self.left.law],
-            self.distance.settings,
-            self.heading.settings,
-        )
-        if firmware.divides_units:
-            return self._count(self.usual)
-        limits = (distance.speed, distance.acceleration, heading.speed, heading.acceleration)
-        fractions = (
-            firmware.straight_speed,
-            firmware.straight_acceleration,
-            firmware.turn_rate,
-            firmware.turn_acceleration,
-        )
-        speed, acceleration, rate, turn_acceleration = (
-            limit * part // whole for limit, (part, whole) in zip(limits, fractions, strict=True)
-        )
-        return speed, acceleration, rate, turn_acceleration
-
-    def _count(self, usual: tuple[int, int, int, int]) -> tuple[int, int, int, int]:
+    def _count(self, usual: Pace) -> Pace:
         distance, heading = self.distance.settings.counts, self.heading.settings.counts
         return distance(usual[0]), distance(usual[1]), heading(usual[2]), heading(usual[3])
 
-    def set_usual(self, usual: tuple[int, int, int, int]) -> None:
+    def set_usual(self, usual: Pace) -> None:
         """Set how it usually moves, in mm and degrees; a value that stays is as exact as before."""
         speed, acceleration, rate, turn_acceleration = (
             before if value == known else count
