@@ -9,8 +9,8 @@ from typing import Any
 from tuisim.engine.shim.pybricks.brick import whole
 
 
-def _limit(value: float, least: int) -> int:
-    return max(least, min(100, whole(value)))
+def _limit(value: float, lowest: int) -> int:
+    return max(lowest, min(100, whole(value)))
 
 
 class _NamedColors(type):

@@ -301,29 +301,31 @@ class DriveBase(robotics.DriveBase):
         turn_acceleration: Any = None,
     ) -> tuple[Any, ...] | None:
         """Return how it moves, or set it; an acceleration may be a pair: that of the start and that of the stop."""
-        given = straight_speed, straight_acceleration, turn_rate, turn_acceleration
-        pairs = [value if isinstance(value, tuple) else (value, value) for value in given]
-        told = super().settings(*(first for first, _ in pairs))
-        if told is not None:
-            stops = [*zip(told[1::2], self._stops or told[1::2], strict=True)]
-            one, other = (pair if pair[0] != pair[1] else pair[0] for pair in stops)
-            return told[0], one, told[2], other
+        values = straight_speed, straight_acceleration, turn_rate, turn_acceleration
+        pairs = [value if isinstance(value, tuple) else (value, value) for value in values]
+        current = super().settings(*(first for first, _ in pairs))
+        if current is not None:
+            stops = [*zip(current[1::2], self._stops or current[1::2], strict=True)]
+            straight, turn = (pair if pair[0] != pair[1] else pair[0] for pair in stops)
+            return current[0], straight, current[2], turn
         usual = self._base.usual
         self._stops = tuple(
-            usual[at] if pairs[at][1] is None else self._check_setting(abs(whole(pairs[at][1])), at)
-            for at in (1, 3)
+            usual[index]
+            if pairs[index][1] is None
+            else self._check_setting(abs(whole(pairs[index][1])), index)
+            for index in (1, 3)
         )
         if self._stops != usual[1::2]:
             self.tell(Call.SET_SLOWING, *self._stops)
         return None
 
-    def _check_setting(self, value: int, at: int) -> int:
-        control = (self._base.distance if at < 2 else self._base.heading).settings
+    def _check_setting(self, value: int, index: int) -> int:
+        control = (self._base.distance if index < 2 else self._base.heading).settings
         motor_units = value * control.counts_per_unit / (2 * COUNTS_PER_DEG)
-        least, most = (
-            (MIN_ACCELERATION_DPS2, MAX_ACCELERATION_DPS2) if at % 2 else (0, MAX_SPEED_DPS)
+        lowest, highest = (
+            (MIN_ACCELERATION_DPS2, MAX_ACCELERATION_DPS2) if index % 2 else (0, MAX_SPEED_DPS)
         )
-        if not least <= motor_units <= most:
+        if not lowest <= motor_units <= highest:
             raise invalid_argument()
         return value
 
@@ -370,8 +372,8 @@ class ColorSensor(EarlierColorSensor):
 
     def color(self, surface: bool = True) -> Any:
         """Return the colour; `Color.NONE` if there is none."""
-        found = super().color()
-        return Color.NONE if found is None else Color[found.name]
+        color = super().color()
+        return Color.NONE if color is None else Color[color.name]
 
 
 class InfraredSensor(EarlierInfraredSensor):
@@ -445,12 +447,12 @@ class multitask:  # noqa: N801 - as the library names it
         brick, results = Connected.brick, [None] * len(self._tasks)
         until_us = dict.fromkeys(range(len(self._tasks)), 0)
         while until_us:
-            for at in [at for at, until in until_us.items() if until <= brick.now_us]:
+            for number in [number for number, until in until_us.items() if until <= brick.now_us]:
                 try:
-                    until_us[at] = self._tasks[at].send(None)
+                    until_us[number] = self._tasks[number].send(None)
                 except StopIteration as end:
-                    results[at] = end.value
-                    del until_us[at]
+                    results[number] = end.value
+                    del until_us[number]
                     if self._race:
                         for other in until_us:
                             self._tasks[other].close()

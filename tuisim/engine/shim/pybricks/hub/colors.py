@@ -13,15 +13,16 @@ MAX_GREY_SATURATION, MAX_DARK_VALUE = 40, 1
 def measure_hsv(red: int, green: int, blue: int) -> tuple[int, int, int]:
     """Return hue, saturation and value of channels from 0 to 1024, as the firmware computes them."""
     channels = [channel / 4 for channel in (red, green, blue)]
-    most, least = max(channels), min(channels)
-    chroma = most - least
+    brightest = max(channels)
+    chroma = brightest - min(channels)
     hue = 0.0
     if chroma:
-        at = channels.index(most)
-        hue = 60 * (2 * at + (channels[(at + 1) % 3] - channels[(at + 2) % 3]) / chroma) % 360
+        first = channels.index(brightest)
+        second, third = channels[(first + 1) % 3], channels[(first + 2) % 3]
+        hue = 60 * (2 * first + (second - third) / chroma) % 360
     hue = int(hue)
-    saturation = int(100 * chroma / most) if most else 0
-    value = int(101 * most / 256)
+    saturation = int(100 * chroma / brightest) if brightest else 0
+    value = int(101 * brightest / 256)
     if hue >= 350:
         hue = (350 + 2 * (hue - 350)) % 360
     elif hue < 40:
@@ -35,7 +36,7 @@ def find_nearest(measured: tuple[int, int, int], colors: Sequence[Any]) -> Any:
     """Return the nearest of colours to a hue, a saturation and a value."""
     hue, saturation, value = measured
     if not all(_is_ideal(color) for color in colors):
-        return min(colors, key=lambda color: _cone_distance(measured, (color.h, color.s, color.v)))
+        return min(colors, key=lambda color: _measure_distance(measured, (*color,)))
     is_grey = saturation <= MAX_GREY_SATURATION or value <= MAX_DARK_VALUE
     alike = [color for color in colors if (color.s == 0) == is_grey] or colors
     if alike[0].s == 0:
@@ -47,12 +48,13 @@ def _is_ideal(color: Any) -> bool:
     return (color.s, color.v) == (100, 100) or (color.h, color.s) == (0, 0)
 
 
-def _cone_distance(one: tuple[int, int, int], other: tuple[int, int, int]) -> float:
+def _measure_distance(color: tuple[int, int, int], other: tuple[int, int, int]) -> float:
     """Return the squared distance of two colours in a double cone."""
-    return sum((a - b) ** 2 for a, b in zip(_place(one), _place(other), strict=True))
+    places = zip(_find_place(color), _find_place(other), strict=True)
+    return sum((place - other_place) ** 2 for place, other_place in places)
 
 
-def _place(color: tuple[int, int, int]) -> tuple[float, float, float]:
+def _find_place(color: tuple[int, int, int]) -> tuple[float, float, float]:
     hue, saturation, value = color
     chroma = max(0, value) * saturation
     angle = radians(hue)

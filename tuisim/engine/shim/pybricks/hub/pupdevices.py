@@ -138,9 +138,9 @@ class ForceSensor(Sensor):
 
     KIND = "touch"
 
-    def _push(self, most: Result, least: Result) -> Result:
+    def _push(self, pressed: Result, released: Result) -> Result:
         return self._read(
-            "TOUCH", lambda: most if self._sensor.modes["TOUCH"].measure()[0] else least
+            "TOUCH", lambda: pressed if self._sensor.modes["TOUCH"].measure()[0] else released
         )
 
     def force(self) -> float:
