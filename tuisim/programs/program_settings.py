@@ -392,7 +392,8 @@ def _describe_decision(
     profile = layer.get("profile", "")
     uses = f" with Pybricks 4, whose {facts.version_4_name} it uses"
     version = uses if profile == PYBRICKS_4.name else ""
-    rules = f"as on a brick{version} (profile {profile})" if profile else ""
+    brick = "hub" if facts.robot and facts.robot.choice.spec.hub else "brick"
+    rules = f"as on a {brick}{version} (profile {profile})" if profile else ""
     if facts.robot and "robot" in layer:
         from tuisim.programs.robot.report import describe_robot
 

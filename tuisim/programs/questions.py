@@ -8,10 +8,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 
 from tuisim.base.data_class import dataclass
 from tuisim.engine.core.columns import COLOR_NAMES
-from tuisim.engine.core.hub_spec import CONTROLLERS
 from tuisim.engine.core.remote_spec import REMOTE_BY_HAND
-from tuisim.engine.core.spec import BUTTONS
-from tuisim.engine.runs.readings import BUTTONS_PORT
+from tuisim.engine.runs.readings import BUTTONS_PORT, HUB_BUTTONS_PORT, KEYS_BY_PORT
 
 Word = str | float
 
@@ -34,18 +32,18 @@ _ENDINGS = _RECORDERS | {
 
 def _list_key_words(port: str, keys: Sequence[str]) -> dict[Word, str]:
     """Return the keys of a controller by their words; what has several keys stands for the first of them."""
-    names = {key.removeprefix(f"{port}."): key for key in keys}
-    parts = {name.rpartition("_")[0]: key for name, key in reversed(names.items()) if "_" in name}
-    return {**parts, **names}
+    names = [(key.removeprefix(f"{port}."), key) for key in keys]
+    parts = [(name.rpartition("_")[0], key) for name, key in reversed(names) if "_" in name]
+    return dict[Word, str]([*parts, *names])
 
 
+_OTHER_WORDS: Mapping[str, Mapping[Word, str]] = {
+    BUTTONS_PORT: {"center": "enter", "back": "backspace"},
+    HUB_BUTTONS_PORT: {"center": "enter", "bluetooth": "up"},
+}
 BUTTON_WORDS: Mapping[str, Mapping[Word, str]] = {
-    BUTTONS_PORT: {
-        **{name: name for name in BUTTONS},
-        "center": "enter",
-        "back": "backspace",
-    },
-    **{port: _list_key_words(port, keys) for port, keys in CONTROLLERS.items()},
+    port: {**_list_key_words(port, keys), **_OTHER_WORDS.get(port, {})}
+    for port, keys in KEYS_BY_PORT.items()
 }
 """The brick's buttons, by the words of all libraries, and those of controllers, by where they are read."""
 REMOTE_WORDS: Mapping[Word, str] = {

@@ -10,6 +10,7 @@ from textual.binding import Binding, BindingType
 from textual.message import Message
 from textual.timer import Timer
 
+from tuisim.app.panels.titles import build_title
 from tuisim.app.render.brick import BrickPicture, draw_brick
 from tuisim.app.render.hub import draw_hub
 from tuisim.app.snapshot import IN_RUN, RunPhase, Snapshot
@@ -28,6 +29,7 @@ TAP_S = 0.25
 SEEN_S = 0.05
 """Minimum hold in simulated time: programs poll the buttons only now and then."""
 
+_HUB_HELP = "← → enter ↑ press · shift holds · the mouse presses all · + size"
 _HELP = "arrows enter backspace press · shift holds · 1 … 4 press a touch sensor · + size"
 
 
@@ -74,7 +76,7 @@ class Brick(LinesPanel, can_focus=True):
         self._throttle = Throttle(self, _PERIOD_S, self._redraw)
 
     def on_focus(self) -> None:
-        self.border_subtitle = _HELP
+        self.border_subtitle = _HUB_HELP if self._hub else _HELP
 
     def on_blur(self) -> None:
         """Release the buttons that keys held; the keys belong to the app again."""
@@ -83,10 +85,17 @@ class Brick(LinesPanel, can_focus=True):
 
     def show(self, snapshot: Snapshot) -> None:
         """Show a moment; at most a few updates per second."""
-        self._snapshot = snapshot
+        former, self._snapshot = self._hub, snapshot
+        if self._hub != former:
+            self.border_title = build_title(self.app, "brick", self._hub)
         if not self.has_focus and self.border_subtitle != self._idle_words:
             self.border_subtitle = self._idle_words
         self._throttle.ask()
+
+    @property
+    def _hub(self) -> str:
+        """The robot's hub; empty for the EV3."""
+        return self._snapshot.spec.robot.hub if self._snapshot else ""
 
     @property
     def _idle_words(self) -> str:
@@ -102,8 +111,8 @@ class Brick(LinesPanel, can_focus=True):
         robot = now.spec.robot
         bumpers = [sensor.port for sensor in robot.touch_sensors]
         shown = now.face, now.pressed, max(1, size.width), max(1, size.height), bumpers
-        if robot.hub:
-            has_matrix = robot.hub in HUBS_WITH_MATRIX
+        if self._hub:
+            has_matrix = self._hub in HUBS_WITH_MATRIX
             self._picture = draw_hub(*shown, has_matrix=has_matrix)
         else:
             self._picture = draw_brick(*shown)

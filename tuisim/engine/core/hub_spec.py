@@ -30,6 +30,8 @@ HUBS: Mapping[str, HubKind] = {
 """By the name of the class in `pybricks.hubs`."""
 HUBS_WITH_MATRIX = frozenset({"PrimeHub", "InventorHub"})
 """Those with a matrix of lights, a speaker, and more than one button."""
+HUB_BUTTONS = ("enter", "left", "right", "up")
+"""What can be pressed by hand on a hub: the centre button, and where there is a matrix three more."""
 WAYS = ("up", "down", "left", "right")
 CONTROLLERS: Mapping[str, tuple[str, ...]] = {
     "remote": (

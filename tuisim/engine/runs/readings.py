@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import LogError
 from tuisim.base.regular_file import of_the_machine, read_regular
-from tuisim.engine.core.hub_spec import CONTROLLERS, HUB_PORTS, INSIDE
+from tuisim.engine.core.hub_spec import CONTROLLERS, HUB_BUTTONS, HUB_PORTS, INSIDE
 from tuisim.engine.core.profile import NS_PER_S
 from tuisim.engine.core.spec import BUTTONS, INPUT_PORTS, OUTPUT_PORTS
 from tuisim.engine.runs.records import HEADER_BYTES, MappedWriter, read_published_length
@@ -38,7 +38,13 @@ READING_FIELDS = (("time_ns", "<i8"), ("line", "<u4"), ("port", "u1"), ("mode", 
 
 BUTTONS_PORT = "buttons"
 """What stands for a port when the brick's buttons are read."""
-KEYS_BY_PORT: Mapping[str, tuple[str, ...]] = {BUTTONS_PORT: BUTTONS, **CONTROLLERS}
+HUB_BUTTONS_PORT = "hub"
+"""What stands for a port when the buttons of a hub are read."""
+KEYS_BY_PORT: Mapping[str, tuple[str, ...]] = {
+    BUTTONS_PORT: BUTTONS,
+    HUB_BUTTONS_PORT: HUB_BUTTONS,
+    **CONTROLLERS,
+}
 """Which of `PRESSABLE` are read there."""
 SOCKET_PORT = "socket"
 """What stands for a port when the program waits for a socket."""
@@ -46,7 +52,7 @@ GAMEPAD_PORT = "gamepad"
 """What stands for a port when the program looks for input devices."""
 READING_PORTS = (
     *(*INPUT_PORTS, *OUTPUT_PORTS, BUTTONS_PORT, SOCKET_PORT, GAMEPAD_PORT),
-    *(*HUB_PORTS, INSIDE, *CONTROLLERS),
+    *(*HUB_PORTS, INSIDE, *CONTROLLERS, HUB_BUTTONS_PORT),
 )
 MODES_BY_KIND: Mapping[str, tuple[str, ...]] = {
     "color": ("COL-REFLECT", "COL-AMBIENT", "COL-COLOR", "REF-RAW", "RGB-RAW", "COL-CAL"),

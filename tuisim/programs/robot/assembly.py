@@ -206,10 +206,9 @@ class _Builder:
         ]
         if sides:
             what = "both wheel motors" if len(sides) == 2 else f"the {sides[0]} wheel's motor"
+            way = "counterclockwise" if self.usual.hub else "the other way round"
             where = turned[wheels.left if "left" in sides else wheels.right]
-            self.parts.append(
-                RobotPart(f"{what} the other way round", f"{sides[0]}_reversed", where)
-            )
+            self.parts.append(RobotPart(f"{what} {way}", f"{sides[0]}_reversed", where))
         return {f"{side}_reversed": True for side in sides}
 
     def _find_gears(self, wheels: WheelMotors) -> dict[str, float]:

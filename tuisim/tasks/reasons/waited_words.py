@@ -7,8 +7,9 @@ from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, assert_never
 
 from tuisim.base.data_class import dataclass
+from tuisim.engine.core.hub_spec import CONTROLLERS
 from tuisim.engine.core.spec import EMPTY_MAT, InfraredSpec, RunSpec, UltrasonicSpec
-from tuisim.engine.runs.readings import BUTTONS_PORT, KEYS_BY_PORT
+from tuisim.engine.runs.readings import BUTTONS_PORT, HUB_BUTTONS_PORT, KEYS_BY_PORT
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.tasks.reasons.hand_presses import find_hits
 from tuisim.tasks.reasons.obstacle_advice import find_nearest, find_obstacle
@@ -22,7 +23,12 @@ COLORED_MAT = "Rainbow_bands"
 COLOR_PLACES_MM: Mapping[str, int] = {"red": 240, "green": 440, "blue": 740, "yellow": 1245}
 """Where on that mat, in x, a robot looks at a colour."""
 _KEYS = {"up": "↑", "down": "↓", "left": "←", "right": "→"}
-_OWNERS = {BUTTONS_PORT: "the brick's", "remote": "the remote's", "xbox": "the Xbox controller's"}
+_OWNERS = {
+    BUTTONS_PORT: "the brick's",
+    HUB_BUTTONS_PORT: "the hub's",
+    "remote": "the remote's",
+    "xbox": "the Xbox controller's",
+}
 """Whose buttons are read at each of `KEYS_BY_PORT`."""
 _SHORT_PRESS_S = 0.1
 
@@ -227,15 +233,16 @@ def _name_nearest(awaited: Awaited, spec: RunSpec) -> str:
 def name_remedy_with_keys(awaited: Awaited, spec: RunSpec) -> str:
     """Return the key that gives a program what it waited for, as an id of an action in braces; else the option."""
     names = awaited.sought if awaited.needs_all else awaited.sought[:1]
+    brick = "hub" if awaited.port == HUB_BUTTONS_PORT else "brick"
     match awaited.subject:
-        case Subject.BUTTONS if awaited.port != BUTTONS_PORT:
+        case Subject.BUTTONS if awaited.port in CONTROLLERS:
             return f"{{panel-brick}} opens the hub, where the mouse presses {' and '.join(names) or 'them'}"
         case Subject.BUTTONS if names:
             keys = " and ".join(_KEYS.get(name, name.capitalize()) for name in names)
             does = f"shift with {keys} holds" if awaited.needs_all else f"{keys} presses"
-            return f"{{panel-brick}} opens the brick, where {does} {' and '.join(names)}"
+            return f"{{panel-brick}} opens the {brick}, where {does} {' and '.join(names)}"
         case Subject.BUTTONS:
-            return "{panel-brick} opens the brick, whose buttons the arrows and Enter press"
+            return f"{{panel-brick}} opens the {brick}, whose buttons the arrows and Enter press"
         case Subject.TOUCH:
             return f"{{panel-brick}} opens the brick, where {awaited.port[2:]} presses it"
         case _:

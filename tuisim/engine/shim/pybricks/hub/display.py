@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 from tuisim.engine.runs.brick_state import SIDE_PIXELS
-from tuisim.engine.runs.readings import BUTTONS_PORT
+from tuisim.engine.runs.readings import HUB_BUTTONS_PORT
 from tuisim.engine.shim.pybricks.brick import Connected, Waiting, invalid_argument, text_of, whole
 from tuisim.engine.shim.pybricks.brick_4 import Animation
 from tuisim.engine.shim.pybricks.hub.face import DARK, Face, Pixels
@@ -157,7 +157,7 @@ class Menu(Connected):
         Menu.current = self
 
     def _pressed(self) -> frozenset[str]:
-        self.brick.read("pressed", BUTTONS_PORT)
+        self.brick.read("pressed", HUB_BUTTONS_PORT)
         return self.brick.session.pressed & {"left", "right", "enter"}
 
     def choose(self, symbols: Sequence[Any]) -> Any:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from tuisim.engine.runs.readings import BUTTONS_PORT
+from tuisim.engine.runs.readings import HUB_BUTTONS_PORT
 from tuisim.engine.shim.pybricks import hubs
 from tuisim.engine.shim.pybricks.brick import Connected
 from tuisim.engine.shim.pybricks.brick_4 import AnimatedLight, Speaker, System
@@ -36,7 +36,7 @@ class Buttons(Connected):
         port: Where they are, one of `READING_PORTS`.
     """
 
-    def __init__(self, buttons: Mapping[str, Button], port: str = BUTTONS_PORT) -> None:
+    def __init__(self, buttons: Mapping[str, Button], port: str = HUB_BUTTONS_PORT) -> None:
         self._buttons, self._place = buttons, port
 
     def pressed(self) -> set[Button]:
