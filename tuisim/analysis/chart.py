@@ -40,7 +40,7 @@ class View:
 def build_chart(model: AnalysisModel, view: View, columns: int, rows: int) -> ChartData:
     """Return the chart of a model: its visible variables within its limits.
 
-    What a picture of `columns` by `rows` pixels, or parts of characters, could not tell apart is left out.
+    Points are left out that a picture of `columns` by `rows` pixels, or parts of characters, could not show apart.
 
     Raises:
         LogError: no such variable to draw against.

@@ -102,7 +102,7 @@ def _find_changes(time_s: FloatArray, values: FloatArray) -> list[Crossing]:
 def _compute_crossing_s(
     time_s: FloatArray, values: FloatArray, first: int, last: int, threshold: float
 ) -> float:
-    # Halved, so that the difference is finite.
+    # Halved, so that the difference of huge values is finite.
     start, stop = float(values[first]) / 2.0, float(values[last]) / 2.0
     part = (threshold / 2.0 - start) / (stop - start) if stop != start else 1.0
     return float(time_s[first]) + min(max(part, 0.0), 1.0) * float(time_s[last] - time_s[first])
@@ -116,7 +116,7 @@ _WIDTH = re.compile(rf"(?P<comparison>.+?)(?:\+-|±)\s*(?P<width>{NUMBER})\s*")
 
 @dataclass(frozen=True, slots=True)
 class Threshold(ValueCondition):
-    """A condition on a variable: it falls below a value, rises above it, or either (EQUAL), or it changes."""
+    """A condition on a variable: that it falls below a value, rises above it, does either (EQUAL), or changes."""
 
     hysteresis: float = 0.0
     """The signal must pass the value by this margin on both sides."""
@@ -131,7 +131,7 @@ class Threshold(ValueCondition):
         return f"{float(self.value):g}" if self.value else ""
 
     def select_series(self, series: Sequence[Series]) -> list[Series]:
-        """Return the series of its variable: of all runs, unless it names one."""
+        """Return the series of the threshold's variable: those of all runs, unless it names a run."""
         return [
             candidate
             for candidate in series
@@ -139,7 +139,7 @@ class Threshold(ValueCondition):
         ]
 
     def find_crossings(self, series: Series) -> list[Crossing]:
-        """Return where a series crosses it, in order of time."""
+        """Return where a series crosses the threshold, in order of time."""
         if self.operator is Operator.CHANGES:
             return _find_changes(series.time_s, series.values)
         results = find_crossings(series.time_s, series.values, float(self.value), self.hysteresis)
@@ -164,7 +164,7 @@ class Event:
 
 @dataclass(frozen=True, slots=True)
 class CommandChoice:
-    """A choice of what the program asked of motors and sensors."""
+    """The user's choice of commands: what programs asked of motors and sensors."""
 
     words: str
     """In the names of part and call; empty for all."""
@@ -178,7 +178,7 @@ EventChoice: TypeAlias = Threshold | CommandChoice
 
 @dataclass(frozen=True)
 class CommandRow:
-    """What a program asked, once or repeatedly, and its place in a log."""
+    """What a program asked of a part, once or repeatedly, and its place in a log."""
 
     index: CommandIndex
     number: int
@@ -195,12 +195,12 @@ class CommandRow:
 
     @cached_property
     def event(self) -> CommandEvent:
-        """What it was: read when it is shown, and then kept."""
+        """What was asked; read on first use, and then cached."""
         return self.index.event(self.number)
 
 
 def parse_threshold(text: str) -> Threshold | None:
-    """Return the threshold in a text such as `Colour < 50`, None if it is none."""
+    """Parse a threshold such as `Colour < 50`; return None if the text is not one."""
     match = _WIDTH.fullmatch(text)
     condition = parse_condition(match["comparison"], value=NUMBER) if match else None
     width = float(match["width"]) if match and condition else 0.0
@@ -211,10 +211,10 @@ def parse_threshold(text: str) -> Threshold | None:
 
 
 def parse_events(text: str, log: Log) -> tuple[EventChoice, ...]:
-    """Return the events that a text chooses, see `FORM`; none in an empty one.
+    """Return the events that a text chooses, see `FORM`; none if it is empty.
 
     Raises:
-        LogError: one is not a threshold, or there is no such variable.
+        LogError: a part of it is not a threshold, or there is no such variable.
     """
     choices: list[EventChoice] = []
     for part in text.split(",") if text.strip() else ():
@@ -265,11 +265,11 @@ def find_events(
 def _find_commands(
     run: StoredRun, choice: CommandChoice, series: Sequence[Series], run_number: int
 ) -> list[CommandRow]:
-    """Return what the program of a run asked.
+    """Return what the program of a run asked of its parts.
 
     Args:
         run: The run.
-        choice: What is wanted of it.
+        choice: Which commands are wanted.
         series: The variables of the run in the log.
         run_number: As of `CommandRow.run`.
     """
@@ -288,7 +288,7 @@ def _find_commands(
 
 
 class Events:
-    """The current events; they are searched again when the log changes.
+    """The current events of a log; they are searched for again when the log changes.
 
     Args:
         runs: As of `find_events`.

@@ -43,7 +43,7 @@ class AnalysisModel:
     """The state of the analysis of one log.
 
     Raises:
-        LogError: it has rows but no numeric column, or its notes cannot be read.
+        LogError: the log has rows but no numeric column, or its notes cannot be read.
     """
 
     def __init__(self, opened: OpenedLog) -> None:
@@ -107,7 +107,7 @@ class AnalysisModel:
         return float(trace.places[self._sample(trace, self.row)])
 
     def find_place(self, row: int, time_s: float) -> float:
-        """Return the x position of a time in the run of a row."""
+        """Return the x position of a time in the run to which a row belongs."""
         if self.alignment == TIME:
             return time_s
         trace = self.trace_of_row(row)
@@ -121,7 +121,7 @@ class AnalysisModel:
 
     @staticmethod
     def _sample(trace: LogTrace, row: int) -> int:
-        """Return the index of a variable's sample in a row, or of the next one after it."""
+        """Return the index of a variable's sample in a row of the table, or of its next sample after that row."""
         rows = trace.series.rows
         return min(int(np.searchsorted(rows, row)), len(rows) - 1)
 
@@ -152,7 +152,7 @@ class AnalysisModel:
         return max(0, self.trace_of_row(row).series.run - 1)
 
     def find_printed_line(self) -> int:
-        """Return the line of the program that printed the row, 0 if the log does not say."""
+        """Return the line of the program that printed the current row, 0 if the log does not say."""
         if "line" not in self.log.table.column_names:
             return 0
         return int(self.log.table.column("line")[self.row].as_py() or 0)
@@ -163,7 +163,7 @@ class AnalysisModel:
             self.row = int(self.trace.series.rows[self.trace.pyramid.find_nearest(time_s)])
 
     def go_to_moment(self, time_s: float) -> None:
-        """Move the cursor to the selected variable's sample nearest to a time of its run."""
+        """Move the cursor to the selected variable's sample nearest to a time of the variable's run."""
         series = self.trace.series
         if len(series.rows):
             self.row = int(series.rows[int(np.nanargmin(np.abs(series.time_s - time_s)))])
@@ -181,7 +181,7 @@ class AnalysisModel:
             self.row = int(rows[min(max(index, 0), len(rows) - 1)])
 
     def restore(self, other: AnalysisModel) -> None:
-        """Restore the state of another model of the same log, which has grown since."""
+        """Take over the state of another model, made when the same log was shorter."""
         self.row, self.mark_s, self.limits = other.row, other.mark_s, other.limits
         if other.row == other.log.rows - 1:
             # The cursor stays at the end of a growing log.
@@ -198,7 +198,7 @@ class AnalysisModel:
             self._align_again(other.alignment)
 
     def copy_definitions(self, other: AnalysisModel) -> None:
-        """Compute the derived variables of another model of the same log. Slow for a long log: call it in a thread."""
+        """Derive the variables that another model of the same log has. Slow for a long log: call it in a thread."""
         for name, text in other.definitions.items():
             if name not in self.definitions:
                 # Definitions that need variables which no longer exist are dropped.
@@ -236,12 +236,12 @@ class AnalysisModel:
             self.selected = names[(names.index(self.selected) + step) % len(names)]
 
     def add_named_columns(self, text: str) -> None:
-        """Derive those columns of the recording that a text names, and that telemetry has only if it is asked."""
+        """Derive the columns of the recording that a text names, if the log lacks them but can compute them."""
         for name in find_named_columns(self.log, text):
             derive(self, name)
 
     def align(self, way: str) -> None:
-        """Align the runs by `time`; by `distance`, so far as each has driven; or by an event such as `Colour < 50`.
+        """Align the runs by `time`; by `distance`, how far each robot has driven; or by an event such as `Colour < 50`.
 
         Raises:
             LogError: the log does not say how far the robot drove, or no run has such an event.
@@ -332,7 +332,7 @@ class AnalysisModel:
         return min(self.mark_s, self.cursor_s), max(self.mark_s, self.cursor_s)
 
     def list_unsummed(self) -> list[str]:
-        """Return the visible variables whose statistics have not been computed yet."""
+        """Return the visible variables whose statistics must be computed first; none for a range, which is quick."""
         if self.find_measured_span() is not None:
             return []
         return [
@@ -384,7 +384,7 @@ class AnalysisModel:
         """Delete a note.
 
         Raises:
-            LogError: the others cannot be written.
+            LogError: the file with the other notes cannot be written.
         """
         notes = [other for other in self._notes[run] if other is not note]
         write_notes(self._place(run), notes)
@@ -410,7 +410,7 @@ def derive(model: AnalysisModel, text: str) -> None:
 
 
 def apply_definition(model: AnalysisModel, text: str, log: Log) -> None:
-    """Apply a derived log to a model."""
+    """Apply a definition to a model, with the log that `compute_definition` returned for it."""
     name = RECKONING if text == RECKONING else parse_definition(text).name
     model.definitions.pop(name, None)
     if text == RECKONING or parse_definition(text).expression:
@@ -424,7 +424,7 @@ def apply_definition(model: AnalysisModel, text: str, log: Log) -> None:
 
 
 def compute_definition(model: AnalysisModel, text: str) -> tuple[str, Log]:
-    """Return a definition as typed, and the log with the derived variable.
+    """Return a definition without blanks around it, and the log with its variable; an empty one removes the variable.
 
     Raises:
         LogError: the line is invalid, or names an unknown variable.

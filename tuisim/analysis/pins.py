@@ -23,7 +23,7 @@ _LETTER_PX = 0.62 * _TEXT_PX
 
 @dataclass(frozen=True, slots=True)
 class Pin:
-    """A place where something was decided."""
+    """A mark at a place where a goal or the like was decided."""
 
     label: str
     """A few characters."""
@@ -52,7 +52,7 @@ class Label:
 
 @dataclass(frozen=True, slots=True)
 class Ring:
-    """Pins at about one place, in pixels of the picture."""
+    """A ring around pins at about one place, in pixels of the picture."""
 
     x_px: float
     y_px: float
@@ -61,7 +61,7 @@ class Ring:
 
     @property
     def is_good(self) -> bool:
-        """Whether all was decided well."""
+        """Whether all of its pins are good."""
         return all(pin.is_good for pin in self.pins)
 
 
@@ -78,7 +78,7 @@ class Dot:
 
 @dataclass(frozen=True, slots=True)
 class Picture:
-    """A picture on a page; without a source it says why there is none."""
+    """A picture on a page; one without a source says in `text` why there is none."""
 
     text: str
     source: str = ""
@@ -103,10 +103,10 @@ def encode_data(kind: str, content: bytes) -> str:
 
 
 def place_pins(pins: Sequence[Pin], view: Viewport) -> tuple[Ring, ...]:
-    """Return the rings of pins on a picture of the world.
+    """Return rings around the pins on a picture of the world, with labels that do not overlap if there is room.
 
     Args:
-        view: What the picture shows.
+        view: The part of the world that the picture shows.
     """
     places: list[tuple[float, float, list[Pin]]] = []
     for pin in pins:
@@ -137,7 +137,7 @@ def place_pins(pins: Sequence[Pin], view: Viewport) -> tuple[Ring, ...]:
 
 
 def _place_label(x_px: float, baseline_px: float, pins: Sequence[Pin], width_px: int) -> Label:
-    """Return the place of the label of a ring at `x_px` on a picture of a width."""
+    """Return the place of the label of a ring at `x_px`, on a picture that is `width_px` wide."""
     length_px = sum(len(pin.label) + 2 for pin in pins) * _LETTER_PX
     is_at_end = x_px > 0.8 * width_px
     gap_px = _RING_PX + 4

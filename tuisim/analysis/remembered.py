@@ -25,7 +25,7 @@ _NAME = "logs"
 
 @dataclass(frozen=True, slots=True)
 class _Reading:
-    """How a file was read, and what tells whether it still is the same."""
+    """How a file was read, with its size and time, by which a changed file is noticed."""
 
     path: str
     size_bytes: int
@@ -34,13 +34,13 @@ class _Reading:
 
 
 def request_file(file: str, choices: ReadChoices = NO_CHOICES) -> LogRequest:
-    """Return the request for a file: without choices, with those that were made before."""
+    """Return the request for a file; without choices, it gets those that the user made for this file before."""
     remembered = find_choices(file) if choices == NO_CHOICES else None
     return LogRequest(file, choices=remembered or choices, is_remembered=remembered is not None)
 
 
 def find_choices(file: str) -> ReadChoices | None:
-    """Return the choices that were made for a file; None if there are none, or it has changed since."""
+    """Return the choices that the user made for a file; None if there are none, or the file has changed since."""
     reading = _look_up(file)
     return next(
         (old.choices for old in _load() if replace(old, choices=NO_CHOICES) == reading), None
@@ -48,10 +48,10 @@ def find_choices(file: str) -> ReadChoices | None:
 
 
 def remember_choices(file: str, choices: ReadChoices) -> None:
-    """Keep the choices for a file, in place of earlier ones; the oldest of too many are forgotten.
+    """Store the choices for a file in place of earlier ones; the oldest files are forgotten if there are too many.
 
     Raises:
-        OSError: they cannot be kept.
+        OSError: they cannot be stored.
     """
     if (reading := _look_up(file)) is not None:
         others = [old for old in _load() if old.path != reading.path]
@@ -60,7 +60,7 @@ def remember_choices(file: str, choices: ReadChoices) -> None:
 
 
 def read_doubtful(request: LogRequest) -> Log | None:
-    """Return the first rows of a file in which something was guessed or left out; None if nobody needs to see them.
+    """Return the first rows of a file if the user should check how it is read, since something was guessed; else None.
 
     Raises:
         LogError: it cannot be read, or has no row.
@@ -69,18 +69,18 @@ def read_doubtful(request: LogRequest) -> Log | None:
     if is_known or not is_readable_again(request.file):
         return None
     log = read_beginning(request.file, NO_CHOICES)
-    # Of lines of programs there is nothing to choose.
+    # The lines that a program printed are read in one way only: there is nothing to choose.
     is_guessed = not log.layout.sure or bool(log.form.separator and log.notes)
     return log if is_guessed and not log.metadata else None
 
 
 def is_readable_again(file: str) -> bool:
-    """Return whether a log is in a file, not in a pipe, which has its rows only once, nor in runs."""
+    """Return whether a log is a regular file; a pipe has its rows only once, and runs are not in a file."""
     return file not in ("", STDIN) and os.path.isfile(file)
 
 
 def _look_up(file: str) -> _Reading | None:
-    """Return a file as it is now; None if it is none."""
+    """Return path, size and time of a file; None if it is not a regular one."""
     try:
         status = os.stat(file) if is_readable_again(file) else None
     except OSError:
@@ -90,7 +90,7 @@ def _look_up(file: str) -> _Reading | None:
 
 
 def _load() -> list[_Reading]:
-    """Return what was kept, the newest last; what is damaged is left out."""
+    """Return the stored readings, the newest last; damaged ones are left out."""
     entries = get_preference(_NAME)
     readings = []
     for entry in entries if isinstance(entries, list) else ():

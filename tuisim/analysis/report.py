@@ -54,7 +54,7 @@ def check_report(path: Path) -> None:
     """Check that a report can be written to a path.
 
     Raises:
-        ExportError: it cannot, or the suffix is another one.
+        ExportError: it cannot be written, or its suffix is not that of a page.
     """
     if path.suffix.lower() not in SUFFIXES:
         raise ExportError(
@@ -136,13 +136,13 @@ def _find_bands(opened: OpenedLog, names: Sequence[str], search: Search) -> Anal
 
 
 def _choose_rows(opened: OpenedLog) -> tuple[OpenedLog, str]:
-    """The log of a report, and the facts about it."""
+    """Return the log of a report, and a sentence if it is the telemetry of the run."""
     if opened.log.rows:
         return opened, ""
     if not opened.runs:
         raise LogError("no rows", "a report needs a log or a run", file=opened.log.title)
     *_, telemetry = open_pieces(LogRequest(runs=(opened.runs[0].id,), telemetry=True))
-    # As given: they may be described in another way than they are stored.
+    # The run as it was given: its end may be described otherwise than in the store.
     telemetry = replace(telemetry, runs=opened.runs[:1])
     return (
         telemetry,
@@ -165,7 +165,7 @@ def _draw_world(run: StoredRun, pins: Sequence[Pin], *, many: bool) -> Picture:
 
 
 def _find_mat_name(run: StoredRun) -> str:
-    """Return the name of the mat: a page may be given away, and a path says something about its maker's machine."""
+    """Return the name of the mat without a path, which would tell readers of the page about its maker's machine."""
     return run.spec.world.background.rpartition(os.sep)[2]
 
 
@@ -194,7 +194,7 @@ def _draw_movie(run: StoredRun, pins: Sequence[Pin]) -> Picture | None:
     try:
         movie = make_small_movie(ClipRun(run))
     except LogError:
-        # Where there is no picture either, it says why.
+        # The page says why where its picture of the path would be.
         return None
     if movie is None:
         return None
@@ -300,7 +300,7 @@ Fact = tuple[str, ...]
 
 
 def list_run_facts(runs: Sequence[StoredRun]) -> list[Fact]:
-    """Return the facts of stored runs; facts that apply to no run are omitted."""
+    """Return the facts of stored runs, without facts that none of them has."""
     rows = [(name, *(fact(run) for run in runs)) for name, fact in _FACTS.items()]
     return [row for row in rows if any(row[1:])]
 

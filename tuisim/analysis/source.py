@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class LogRequest:
-    """The log to open: a file, or runs."""
+    """The request to open a log: that of a file, or of runs."""
 
     file: str = ""
     """Path, or `-` for the standard input; empty for runs."""
@@ -40,7 +40,7 @@ class LogRequest:
     """Whether the choices were made before, for a file that is still the same."""
 
     def mark(self, log: Log) -> Log:
-        """Return a log of this request with a note on choices that were remembered."""
+        """Return the log of this request with a note, if it was read with choices that were remembered."""
         if not self.is_remembered or self.choices == NO_CHOICES:
             return log
         options = " ".join(self.choices.format_options())
@@ -127,7 +127,9 @@ class Note:
 
 
 def find_notes_file(path: Path) -> Path:
-    """Return the file with the notes of a log file, which depends on its path and its beginning.
+    """Return where the notes on a log file are kept; there may be no file there yet.
+
+    The place depends on the path and the first line of the log: another log at the same path has other notes.
 
     Raises:
         LogError: the file cannot be read.

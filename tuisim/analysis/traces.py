@@ -28,7 +28,7 @@ _MAX_SPAN_RATIO = 5.0
 
 
 class LogTrace(Trace):
-    """One variable of one run, named as in `Log.names`; the number selects colour and mark."""
+    """A variable of one run, named as in `Log.names`; its number selects colour and mark."""
 
     def __init__(self, log: Log, name: str, number: int) -> None:
         super().__init__(name, number)
@@ -57,11 +57,11 @@ class LogTrace(Trace):
         return self.series.time_s if self._places is None else self._places
 
     def is_derived_otherwise(self, log: Log) -> bool:
-        """Whether a log has another derived variable of this name."""
+        """Return whether a log has a derived variable of this name with other samples."""
         return self.name in log.derived and log.derived[self.name] is not self.series
 
     def is_legible(self, others: Sequence[LogTrace]) -> bool:
-        """Return whether its values are legible on the common scale, which others use."""
+        """Return whether its values are legible on a common scale with those of others."""
         own = self._find_extremes()
         left = [other._find_extremes() for other in others if not other.scale]
         low, high = (
@@ -76,7 +76,7 @@ class LogTrace(Trace):
         return (float(values.min()), float(values.max())) if len(values) else (0.0, 0.0)
 
     def align(self, places: FloatArray | None) -> None:
-        """Set the x positions of its samples; None: their times."""
+        """Set the x positions of its samples; None sets their times."""
         self._places, self._pyramid = places, None
 
     def prepare(self, x_limits: Limits, columns: int, hold: bool) -> None:
@@ -163,7 +163,7 @@ class LogTraces(Traces):
         return self._by_log_name[name]
 
     def list_ticked(self) -> list[LogTrace]:
-        """Return the traces that are drawn if they have points."""
+        """Return the ticked traces, also those without points."""
         return [trace for trace in self if trace.on]
 
     def find_span_s(self) -> Limits:
@@ -184,7 +184,7 @@ FORM = f"time, distance, or an event: {THRESHOLD_FORM}"
 
 
 def align_series(log: Log, series: Sequence[Series], way: str) -> list[FloatArray | None]:
-    """Return the x positions of the samples of each series, None for their times; for `way`, see `FORM`.
+    """Return the x positions of the samples of each series; None stands for their times. `FORM` describes `way`.
 
     Raises:
         LogError: `way` is invalid, or the log cannot be aligned like that.
