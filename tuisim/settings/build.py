@@ -55,7 +55,11 @@ def _start(settings: Settings, mat: Background, robot: RobotSpec, walled: bool) 
 
 
 def _clamp_inside(at_mm: float, margin_mm: float, size_mm: float) -> float:
-    """Clamp a coordinate to whole mm inside the margins of a side of the field; the middle if the margins overlap."""
+    """Return a coordinate in whole mm, at least a margin inside the field; the middle if the margins overlap.
+
+    Args:
+        size_mm: Length of the field along this axis.
+    """
     low, high = math.ceil(margin_mm), math.floor(size_mm - margin_mm)
     return min(max(at_mm, low), high) if low <= high else size_mm / 2
 
@@ -106,7 +110,7 @@ def build_run_spec(settings: Settings) -> RunSpec:
 
 
 def extract_settings(spec: RunSpec) -> dict[str, Any]:
-    """Return the settings that give this run, by path; presets are given by name.
+    """Return the settings from which a run can be built again, by path; presets are given by name.
 
     `solid` is None where it equals the profile's default.
 
@@ -133,7 +137,7 @@ def extract_settings(spec: RunSpec) -> dict[str, Any]:
 
 
 def _name_robot(robot: RobotSpec, mat: Background) -> str | RobotChoice:
-    """Return the name of the preset that equals the robot except for its pen, else the robot itself."""
+    """Return the name of the preset that equals a robot on a mat except for its pen, else the robot itself."""
     for preset in ROBOTS.values():
         on_mat = place_robot(RobotChoice(preset, own_places=False), mat)
         place = replace(robot.pen, x_mm=on_mat.pen.x_mm, y_mm=on_mat.pen.y_mm)

@@ -37,8 +37,8 @@ class WordType(click.ParamType):  # type: ignore[type-arg]
     """The type of an option's or argument's value.
 
     Args:
-        convert: Convert the text; raises ConfigError.
-        names: Return the names that completion offers besides files.
+        convert: Converts the text; raises ConfigError.
+        names: Returns the names that completion offers besides files.
     """
 
     name = "value"
@@ -66,7 +66,7 @@ class WordType(click.ParamType):  # type: ignore[type-arg]
 
 
 def _add_files(completions: list[CompletionItem], incomplete: str) -> list[CompletionItem]:
-    """Add the matching files; if there is nothing else, leave them to the shell, which quotes them."""
+    """Return completions with the files that match; without any, let the shell complete files, since it quotes them."""
     if not completions:
         return [CompletionItem(incomplete, type="file")]
     return (
@@ -77,11 +77,11 @@ def _add_files(completions: list[CompletionItem], incomplete: str) -> list[Compl
 
 
 class GroupedOption(click.Option):
-    """An option under a heading of the help; only its first two names are listed there.
+    """An option under a heading of the help, which lists only its first two names.
 
     Args:
-        sets: The path of the setting that it makes, if any.
-        adds: The word that it adds to that setting, instead of its value.
+        sets: The path of the setting to which the option belongs, if any.
+        adds: A word that the option adds to that setting, which has no value of its own then.
     """
 
     def __init__(
@@ -117,7 +117,7 @@ AS_JSON = option("--json", "as_json", is_flag=True, help="Print JSON.")
 def argument(
     name: str, metavar: str, names: Callable[[], Iterable[str]] | None = None, **how: Any
 ) -> click.Argument:
-    """Return an argument that completion offers names for, besides files."""
+    """Return an argument; completion offers its names, besides files."""
     return click.Argument([name], metavar=metavar, type=WordType(names=names), **how)
 
 
@@ -150,7 +150,7 @@ _SYNONYMS = tuple(
 
 
 def _close_names(typed: str, names: Iterable[str]) -> list[str]:
-    """Return the names that may have been meant: those for the same, else like the typed word or ending like it."""
+    """Return up to two names that may have been meant: synonyms of the typed word, else similar names."""
     known = [*names]
     ends = {name[-len(typed) :] for name in known}
     close = [name for end in closest(typed, ends, 2, 0.75) for name in known if name.endswith(end)]
@@ -162,7 +162,7 @@ def _close_names(typed: str, names: Iterable[str]) -> list[str]:
 
 
 def _convert_error(error: click.UsageError, ctx: click.Context) -> ConfigError:
-    """Return what Click says as a ConfigError: what was wrong, and what is allowed."""
+    """Return an error of Click as a ConfigError: what was wrong, and what is allowed."""
     see = f"see `{ctx.command_path} --help`" if ctx.command.add_help_option else ""
     if isinstance(error, click.NoSuchOption):
         names = {flag.lstrip("-"): flag for param in ctx.command.params for flag in param.opts}
@@ -181,8 +181,8 @@ def _convert_error(error: click.UsageError, ctx: click.Context) -> ConfigError:
 class Command(click.Command):
     """A command whose help groups its options, and whose wrong use raises ConfigError.
 
-    Its callback gets the shared options as `settings`; if it `passes_arguments`, with the words after `--` as those of
-    the program. `instead` says what to use instead of options that it does not have.
+    Its callback gets the shared options as `settings`. With `passes_arguments`, these contain the words after `--`: the
+    arguments of the program. `instead` maps options that the command does not have to what to use instead.
     """
 
     def __init__(
@@ -202,7 +202,7 @@ class Command(click.Command):
         }
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        """Parse words as Click does, but also `-x=5`; refuse the name of an option as the value of another."""
+        """Parse words as Click does; also accept `-x=5`, and refuse the name of an option as another one's value."""
         ctx.meta[_WORDS] = tuple(args)
         ours, program = args, None
         if self._passes_arguments and ARGUMENTS_FOLLOW in args:
@@ -222,7 +222,7 @@ class Command(click.Command):
         return rest
 
     def _collect_settings(self, ctx: click.Context) -> dict[str, Any]:
-        """Move the shared options from the parameters to a dictionary of those that were given."""
+        """Remove the shared options from the parameters; return those that were given, by path."""
         settings: dict[str, Any] = {}
         for name in [name for name in ctx.params if name in self._shared]:
             value, option = ctx.params.pop(name), self._shared[name]
@@ -266,13 +266,13 @@ def command(*params: click.Parameter, **how: Any) -> Callable[[Callable[..., int
 
 
 class Group(click.Group):
-    """Subcommands that are loaded on use.
+    """Subcommands that are imported when they are used.
 
     Args:
         listing: The help line of each subcommand.
-        load: Return a subcommand by its name.
+        load: Returns a subcommand by its name.
         default: The subcommand that is meant if none is named; empty if one must be named.
-        instead: What to use instead of subcommands that there are not.
+        instead: For words that are no subcommands, what to use instead.
     """
 
     def __init__(
@@ -326,7 +326,7 @@ class Group(click.Group):
             raise _convert_error(error, ctx) from None
 
     def insert_command(self, ctx: click.Context, args: list[str]) -> list[str]:
-        """Return the words with the name of the subcommand first."""
+        """Return the words with the name of the subcommand first, even if its options came before it."""
         if args and (not args[0].startswith("-") or args[0] in ctx.help_option_names):
             return args
         every = [
@@ -362,7 +362,7 @@ class Group(click.Group):
         """Run the subcommand.
 
         Raises:
-            ConfigError: none is named.
+            ConfigError: no subcommand is named.
         """
         try:
             return super().invoke(ctx)
@@ -372,7 +372,7 @@ class Group(click.Group):
             ) from None
 
     def shell_complete(self, ctx: click.Context, incomplete: str) -> list[CompletionItem]:
-        """Return the matching subcommands, and what else the default subcommand may begin with."""
+        """Return the subcommands that match, and what may follow if the default subcommand is meant."""
         completions = [
             CompletionItem(name, help=text)
             for name, text in self.listing.items()
@@ -400,10 +400,10 @@ class Group(click.Group):
 
 
 def drop_options(options: Sequence[click.Option]) -> list[str]:
-    """Return the words of the command that is running, without the given options and their values.
+    """Return the words of the command that is running, without some options and their values.
 
     Args:
-        options: Options without a short name.
+        options: The options to leave out, which have no short names.
     """
     flags = {flag for option in options for flag in option.opts}
     alone = {flag for option in options if option.is_flag for flag in option.opts}
@@ -421,7 +421,7 @@ def drop_options(options: Sequence[click.Option]) -> list[str]:
 
 
 def parse(command: Command, words: Sequence[str]) -> Arguments:
-    """Return the arguments of a command that is not run by Click, such as a magic.
+    """Return the arguments of a command that Click does not run, such as a magic.
 
     Raises:
         ConfigError: a word is no option, or a value is wrong.

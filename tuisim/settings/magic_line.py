@@ -37,7 +37,7 @@ PERSISTENT = frozenset({"background", "mats", "robot", "obstacles", "profile", *
 
 @dataclass(frozen=True, slots=True)
 class AppWords:
-    """What a magic line says of the app in a cell."""
+    """How a magic line sets up the app in a cell."""
 
     height_px: int = DEFAULT_HEIGHT_PX
     origins: tuple[str, ...] = ()
@@ -156,7 +156,7 @@ def _build_app_options() -> list[GroupedOption]:
 def parse_line(line: str, magic: str) -> Arguments:
     """Parse the words after a magic that sets the world; `help` is the help text, if it was requested.
 
-    `app` is what the magic of the app says of that, None for other magics.
+    For the magic of the app, `app` is its `AppWords`; otherwise None.
 
     Raises:
         ConfigError: a word is no option, or a value is wrong.
@@ -256,7 +256,7 @@ def parse_log_line(line: str, magic: str) -> Arguments:
 
 
 def update_persistent(before: Mapping[str, Any], settings: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the persistent settings after a cell that has said these settings; another mat drops `RESET_BY_MAT`."""
+    """Return the persistent settings after a cell with some settings; a cell with a mat first drops `RESET_BY_MAT`."""
     persistent = dict(before)
     if "background" in settings:
         persistent = {

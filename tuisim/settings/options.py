@@ -36,7 +36,7 @@ DEFAULT_FPS = 20
 
 
 def parse(value: Value, text: str, key: str) -> Any:
-    """Return the value that the text after an option gives.
+    """Return the value for the text after an option.
 
     Raises:
         ConfigError: it is not allowed; `key` is to blame.
@@ -53,11 +53,11 @@ def _blame(error: WrongValue, key: str) -> ConfigError:
 
 
 class Name(Value):
-    """The name of something, or a path.
+    """A value that is the name of something, or a path.
 
     Args:
-        allowed: What it may name.
-        metavar: What stands for it in the help.
+        allowed: What it may name, for errors.
+        metavar: The word for it in the help.
     """
 
     __slots__ = ("_allowed", "_metavar")
@@ -127,7 +127,7 @@ RESET_BY_PROFILE = ("solid",)
 
 @dataclass(frozen=True, slots=True)
 class Option:
-    """An option."""
+    """An option of the command line, of magic lines and of Python."""
 
     group: str
     path: str
@@ -162,13 +162,13 @@ class Option:
 
     @property
     def metavar(self) -> str:
-        """What stands for its value in the help; empty if it takes none."""
+        """The word for its value in the help; empty if it takes none."""
         if self.constant is not None or self.panel:
             return ""
         return "on|off" if isinstance(self.value, Flag) else self.value.metavar
 
     def from_python(self, value: object, key: str) -> Any:
-        """Return the setting for a value of Python.
+        """Return the setting for a value that Python code gives.
 
         Raises:
             ConfigError: it is wrong; `key` is to blame.
@@ -376,7 +376,7 @@ _DEFAULTS: Mapping[str, Any] = {
         for option in OPTIONS
         if option.path not in RUN_VALUES and option.default != ""
     },
-    # The app has a memory of its own for these.
+    # No defaults: the app remembers these itself.
     **dict.fromkeys(("speed", "cells")),
     "seed": 0,
     "arguments": (),
@@ -390,7 +390,7 @@ _PATHS = frozenset({*_DEFAULTS, "beacon", "floor", *(option.path for option in O
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """Values by path, as options and files give them, and the defaults of all others."""
+    """The settings that options and files give, by path, with defaults for all others."""
 
     given: Mapping[str, Any] = field(default_factory=dict)
 
@@ -399,17 +399,17 @@ class Settings:
             raise LookupError(f"no such settings: {', '.join(unknown)}")
 
     def __getitem__(self, path: str) -> Any:
-        """Return a value; None if mat, robot, profile or program decides."""
+        """Return the value at a path; None if mat, robot, profile or program decides."""
         value = self.given.get(path)
         return _DEFAULTS.get(path) if value is None else value
 
     def changed(self, values: Mapping[str, Any]) -> Settings:
-        """Return the settings with other values; None leaves the decision to mat, robot, profile or program."""
+        """Return the settings with other values; None lets mat, robot, profile or program decide."""
         return Settings({**self.given, **values})
 
 
 def has_world_values(settings: Mapping[str, Any]) -> bool:
-    """Return whether settings say something of a world, and not only what a hand presses in it."""
+    """Return whether settings have anything besides `press`, which needs no world of its own."""
     return bool(settings.keys() - {"press"})
 
 

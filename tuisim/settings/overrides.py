@@ -40,8 +40,8 @@ def resolve_keys(values: Mapping[str, Any], chosen: Settings, path: Path) -> dic
     """Return the settings that some keys of a world file set, by path.
 
     Args:
-        values: By key; tables are written with dots. `arguments` is a text, split into words as a shell does.
-        chosen: The settings to be changed: a key of a robot or profile leaves the other keys as they are.
+        values: By key, with dots for tables. `arguments` is a text, split into words as a shell does.
+        chosen: The settings to be changed: a key of a robot or profile leaves its other keys unchanged.
         path: The file to blame in errors; paths are relative to its folder.
 
     Raises:
@@ -77,7 +77,7 @@ def resolve_keys(values: Mapping[str, Any], chosen: Settings, path: Path) -> dic
 
 
 def _nest(values: Mapping[str, Any], location: Location) -> dict[str, Any]:
-    """Return keys with dots as nested tables; a robot or profile that is also named has its name under `robot=`."""
+    """Return keys with dots as nested tables. If a robot or profile has keys and a name, the name is under `robot=`."""
     table: dict[str, Any] = {}
     for key, value in values.items():
         *outer, last = key.split(".")

@@ -40,7 +40,7 @@ def parse_profile(
     """Return the profile in a table, called `name` unless the table says otherwise; costs are in ms or ns.
 
     Args:
-        changes_to: The profile with the keys that the table leaves out, unless it names its base.
+        changes_to: The profile that provides keys missing in the table, unless the table names its base.
 
     Raises:
         ProfileError: a key or a value is wrong.

@@ -133,7 +133,7 @@ _TABLES: Mapping[str, type] = {
 
 
 def list_table_values(table: str) -> Mapping[str, Value]:
-    """Return the values that stand in a table of a robot file, by key."""
+    """Return the values that a table of a robot file can have, by key."""
     return list_values(_TABLES[table.partition(".")[0]])
 
 
@@ -153,7 +153,7 @@ def load_robot(word: str, key: str = "") -> RobotSpec:
 
 
 def choose_robot(word: str, key: str = "") -> RobotChoice:
-    """Like `load_robot`, with the other settings in the file.
+    """Return a robot as `load_robot` does, with the other settings in its file.
 
     Raises:
         RobotError: the name is unknown, or the file is wrong.
@@ -172,7 +172,7 @@ def parse_robot(
     """Return the robot in a table, called `name` unless the table says otherwise.
 
     Args:
-        changes_to: The robot with the keys that the table leaves out, unless it names its base.
+        changes_to: The robot that provides keys missing in the table, unless the table names its base.
 
     Raises:
         RobotError: a key or a value is wrong.
@@ -227,7 +227,7 @@ def _parse_motors(robot: Mapping[str, Any], base: RobotSpec, location: Location)
 
 
 def _parse_motor(data: object, base: MotorSpec, location: Location) -> MotorSpec:
-    """Return a motor with the values in a table, or of the kind that a text names."""
+    """Return a motor of the kind that a text names, or with the values in a table."""
     if not isinstance(data, dict):
         return replace(base, kind=files.one_of(data, location, MOTOR_KINDS))
     return files.read_part(data, base, location, port=base.port)
@@ -263,12 +263,12 @@ def _parse_named(
             sensors[name] = files.read_part(sensor, sensors[name], place)
         else:
             if isinstance(sensor, dict):
-                # No port is free by itself.
+                # A sensor that is added needs a port: there is no default.
                 files.required(
                     files.table(sensor, place, [*list_values(mount.spec)][1:]), "port", place
                 )
             sensors[name] = files.read_part(sensor, mount.spec, place, name=name)
-    # A file that names all of them also sets their order.
+    # A file that names all sensors also sets their order.
     order = [name for name in names if name in sensors]
     return tuple(sensors[name] for name in (order if len(order) == len(sensors) else sensors))
 
@@ -303,10 +303,10 @@ _WITHOUT_EFFECT = ("baseWeight", "width", "height")
 
 
 def parse_json_robot(data: object, name: str, location: Location) -> RobotChoice:
-    """Return the robot saved by the course's browser simulator.
+    """Return the robot in a file that the course's browser simulator saved.
 
-    Missing keys are as in Default_Robot; its noise settings become those of the run. A key that the simulator did not
-    know either is ignored, with a note. Keys are translated to those of a robot's TOML table, so both formats are
+    Missing keys are as in Default_Robot; its noise settings become those of the run. A key that the simulator does
+    not know either is ignored, with a note. Keys are translated to those of a robot's TOML table, so both formats are
     checked by the same rules.
 
     Raises:
@@ -319,7 +319,7 @@ def parse_json_robot(data: object, name: str, location: Location) -> RobotChoice
     for key, value in table.items():
         if key in _JSON_KEYS:
             if key == "weight" and value in (None, ""):
-                # Medium, as without the key.
+                # An empty weight is medium, as without the key.
                 continue
             ours[_JSON_KEYS[key]] = value
             theirs[_JSON_KEYS[key]] = key
@@ -363,7 +363,7 @@ def _parse_json_noise(
 def _parse_json_part(
     part: Mapping[str, object], keys: Mapping[str, str], location: Location
 ) -> dict[str, object] | bool:
-    """Return a sensor or the pen with the keys of a TOML table; False if it is not enabled."""
+    """Return the keys of a sensor or the pen as a TOML table has them; False if the part is not enabled."""
     if location.key != "pen" and not files.convert(
         part.get("enabled", True), bool, location.at("enabled")
     ):
@@ -450,7 +450,7 @@ def format_robot(
 
 
 def _is_left_out(spec: RobotSpec, key: str) -> bool:
-    """Return whether a file does without a value: of how the motors drive the wheels, where that is as usual."""
+    """Return whether a file leaves out a value: one that older files lack, and that has its default."""
     return _VALUES[key].later and getattr(spec, key) == RobotSpec.__dataclass_fields__[key].default
 
 
@@ -459,7 +459,7 @@ def _is_no_presser(sensor: SensorSpec, key: str) -> bool:
 
 
 def _format_motors(spec: RobotSpec, table: str) -> list[str]:
-    """Return the motors that differ from a large one on each wheel: by kind, or as tables with their end stops."""
+    """Return TOML lines for motors other than a large one on each wheel: by kind, or as tables with their end stops."""
     motors = (*(motor for motor in spec.wheel_motors if motor.kind != "large"), *spec.extra_motors)
     # In a file all tables follow the keys, and the order of the motors counts.
     plain = list(takewhile(lambda motor: motor.low_deg is motor.high_deg is None, motors))

@@ -44,9 +44,9 @@ def build_shared_options(
     """Return the Click options of `OPTIONS`.
 
     Args:
-        magic: Whether a magic line is parsed, not the command line.
+        magic: Whether they are for a magic line, not for the command line.
         hidden: Groups that are accepted but not listed in the help.
-        names: Return the names that completion offers for a path.
+        names: Returns the names that completion offers for a path.
     """
     return [
         _build_parameter(option, magic=magic, hidden=option.group in hidden, names=names)

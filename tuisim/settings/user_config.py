@@ -102,7 +102,7 @@ SETTINGS: Mapping[str, Setting] = {
 
 @dataclass(frozen=True, slots=True)
 class UserConfig:
-    """What `config.toml` says."""
+    """The contents of `config.toml`."""
 
     path: Path
     written: Mapping[str, Scalar] = field(default_factory=dict)
@@ -115,7 +115,7 @@ class UserConfig:
     """What is wrong; such entries count as missing."""
 
     def checked(self) -> UserConfig:
-        """Return it.
+        """Return the configuration itself if nothing in it is wrong.
 
         Raises:
             ConfigError: something in it is wrong.
@@ -129,7 +129,7 @@ class UserConfig:
         return self.written.get(path, SETTINGS[path].default)
 
     def layer(self, section: Section) -> dict[str, Any]:
-        """Return the settings of a table, by path, without the glyphs: the terminal has to show them."""
+        """Return the settings of a table, by path, without the set of glyphs, which depends on the terminal."""
         return {
             setting.sets: self.values[path]
             for path, setting in SETTINGS.items()
@@ -140,7 +140,7 @@ class UserConfig:
         }
 
     def keep_section(self, section: Section) -> UserConfig:
-        """Return it without the settings of other tables."""
+        """Return the configuration without the settings of other tables."""
         return replace(
             self,
             written={
@@ -156,7 +156,7 @@ class UserConfig:
         )
 
     def list_effective(self, *above: Mapping[str, Any]) -> list[str]:
-        """Return the simulation's settings that no layer above overrides, each with its value."""
+        """Return lines with the simulation's settings in the file that no layer above overrides."""
         return [
             f"{setting.name} = {quote(self.written[path])}"
             for path, setting in SETTINGS.items()
@@ -172,7 +172,7 @@ def find_config_file() -> Path:
 
 
 def load_config() -> UserConfig:
-    """Read the file; what is wrong is among the problems. Without it, or empty, everything is as usual."""
+    """Read the file, with its faults in `problems`. If it is missing or empty, all settings have their defaults."""
     path = find_config_file()
     try:
         stamp = path.stat()
@@ -183,7 +183,7 @@ def load_config() -> UserConfig:
 
 @lru_cache(maxsize=1)
 def _load(path: Path, _changed_ns: int, _size: int) -> UserConfig:
-    # The app asks for it several times while it starts.
+    # Cached, because the app reads the file several times while it starts.
     try:
         return parse_config(read_config_text(path), path)
     except ConfigError as error:
@@ -207,7 +207,7 @@ def read_config_text(path: Path) -> str:
 
 
 def parse_config(text: str, path: Path) -> UserConfig:
-    """Return what a text of the file says.
+    """Return the configuration in a text.
 
     Raises:
         ConfigError: it is not TOML.
@@ -238,7 +238,7 @@ def parse_config(text: str, path: Path) -> UserConfig:
 def _parse_entries(
     data: Any, location: Location, problems: list[ConfigError]
 ) -> Iterator[tuple[str, Any, Location]]:
-    """Yield name, value and location of the entries that exist; add an error for each of the others."""
+    """Yield name, value and location of each known entry; add an error to `problems` for each unknown one."""
     names = {
         section: [setting.name for setting in SETTINGS.values() if setting.section is section]
         for section in Section
@@ -264,7 +264,7 @@ def _parse_entries(
 
 
 def _build_hint(name: str, known: Any) -> str:
-    """Return the hint for an unknown name, and the table that has it if another one does."""
+    """Return the hint for an unknown name: the table to which it belongs, or a similar name."""
     elsewhere = [setting.section for setting in SETTINGS.values() if setting.name == name]
     return f"it belongs into [{elsewhere[0]}]" if elsewhere else nearest(name, known)
 
@@ -288,7 +288,7 @@ _NAMES = ("mats", "background", "robot", "obstacles", "profile")
 
 
 def _resolve(setting: Setting, value: Any, path: Path) -> Any:
-    """Return a value with the path in it relative to the folder of the file."""
+    """Return a value; if it is a path, with the folder of the file before it."""
     if setting.name not in _NAMES:
         return value
     word = user_path(value)

@@ -27,7 +27,7 @@ _KEYS = ('run = ["x", "f5"]', 'theme = "ctrl+y"')
 
 
 def build_template() -> str:
-    """Return a file with every setting as it is without the file, in comments."""
+    """Return the text of a file with every setting at its default, in comments."""
     lines = [
         f"# Your defaults for tuisim: {see_page(PAGE)}. Remove a # to make a setting your own."
     ]
@@ -94,7 +94,7 @@ def _change(text: str, setting: Setting, value: Scalar | None) -> str:
 
 
 def _uncomment(text: str, setting: Setting, value: Scalar) -> str:
-    """Return the text with the setting in place of its comment as `build_template` writes it, if it has only that."""
+    """Return the text with a setting in place of its comment, if the table does not have the setting yet."""
     head, header, rest = text.partition(f"[{setting.section}]\n")
     body, next_header, after = rest.partition("\n[")
     if re.search(rf"^{setting.name}\b", body, re.MULTILINE):

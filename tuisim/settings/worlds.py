@@ -46,7 +46,7 @@ Given: TypeAlias = _Value | UnsetType
 
 
 class _World(Struct):
-    """The keys of a world file that are no values of a run; `Any` where further functions check them."""
+    """The keys of a world file that are not values of a run; those of type `Any` are checked by other functions."""
 
     world: Given[str] = UNSET
     program: Given[str] = UNSET
@@ -112,7 +112,10 @@ def is_world_name(word: str) -> bool:
 
 
 def load_world(path: Path | str, mats: str | None = None) -> WorldFile:
-    """Read a world file. Paths in it are relative to its folder; it may name a folder of mats instead of `mats`.
+    """Read a world file. Paths in it are relative to its folder.
+
+    Args:
+        mats: A folder of mats, unless the file names one.
 
     Raises:
         ConfigError: the file, or a file that it refers to, cannot be read or is wrong.
@@ -143,7 +146,7 @@ def parse_world(
         path: The path of the file, which may not exist yet.
         mats: As for `load_world`.
         above: The world files that are based on this one.
-        changes: Whether it only changes another world; else it has no floor unless it says so.
+        changes: Whether the table only changes another world; else the world has no floor unless the table says so.
 
     Raises:
         ConfigError: a key or a value is wrong.
@@ -267,7 +270,7 @@ def _parse_argument(word: object, location: Location) -> str:
 
 
 def _find_program(word: str, folder: Path, resolve: Resolver) -> str:
-    """Resolve the path of a program; an example's name stays a name if there is no such file beside the world."""
+    """Return the resolved path of a program; an example's name stays, unless such a file is beside the world."""
     known = os.sep not in word and not os.path.exists(folder / word)
     if known and any(os.path.isfile(programs_folder() / name) for name in (word, f"{word}.py")):
         return word
@@ -284,7 +287,7 @@ def _resolve(folder: Path, referred: list[Path], word: str) -> str:
 def _parse_mat(
     world: Mapping[str, Any], location: Location, resolve: Resolver, mats: str | None
 ) -> dict[str, Any]:
-    """Return mat and folder of mats; the mat's start pose applies to what neither this nor another layer sets."""
+    """Return the settings of the mat and of the folder of mats."""
     settings: dict[str, Any] = {}
     if "mats" in world:
         settings["mats"] = resolve(world["mats"])
@@ -305,7 +308,7 @@ def _parse_mat(
 def _resolve_name(
     word: str, location: Location, resolve: Resolver, load: Callable[[str], object]
 ) -> str:
-    """Return a name or the path of a file; it is loaded once, so that errors name this file and key."""
+    """Return a name, or the resolved path of a file, after loading it once, so that errors name this file and key."""
     if files.means_file(word):
         word = resolve(word)
     with files.errors_at(location.file, location.key):
@@ -314,7 +317,7 @@ def _resolve_name(
 
 
 def _parse_infrared(world: Mapping[str, Any], location: Location) -> dict[str, Any]:
-    """Return beacon and remote control."""
+    """Return the settings of the beacon and of the remote control."""
     settings: dict[str, Any] = {}
     if "beacon" in world:
         settings["beacon"] = files.read_part(
@@ -392,7 +395,7 @@ def format_world(
         path: files.toml_form(option.value, tree.get_value(spec, option.spec_path))
         for path, option in RUN_VALUES.items()
     }
-    # What came later is left out at its default, so that files do not change.
+    # Values that older versions lack are left out at their defaults, so that saved files do not change.
     left_out = {
         path
         for path, option in RUN_VALUES.items()
