@@ -24,7 +24,7 @@ MAX_PROGRAMS = 10_000
 
 
 class _BatchTable(Struct):
-    """The keys of the table; `Any` where further functions check them."""
+    """The keys of the table `[batch]`; those of type `Any` are checked by other functions."""
 
     program: str | list[str] | UnsetType = UNSET
     world: str | UnsetType = UNSET
@@ -39,7 +39,7 @@ class _BatchTable(Struct):
 
 @dataclass(frozen=True, slots=True)
 class BatchFile:
-    """The contents of a batch file. Paths are relative to its folder, but resolved here."""
+    """The contents of a batch file, with paths resolved from its folder."""
 
     path: Path
     programs: tuple[str, ...] = ()
@@ -55,9 +55,9 @@ class BatchFile:
 
 
 def is_batch_file(word: str) -> bool:
-    """Return whether a word of the command line names a batch file; a file that cannot be read is none.
+    """Return whether a word of the command line names a batch file: one with a table `[batch]`, unlike a world file.
 
-    A world file has no table `[batch]`.
+    False for a file that cannot be read.
     """
     path = user_path(word)
     if path.suffix.lower() != WORLD_SUFFIX:
@@ -122,7 +122,7 @@ def load_batch(path: Path, mats: str | None = None) -> BatchFile:
 
 
 def _find_program_beside(folder: Path, word: str) -> str:
-    """Return the path of a program beside the file; a name without such a file may be that of an example."""
+    """Return the path of a program beside the file; a name without such a file stays, since it may be an example's."""
     path, _, cell = word.partition("#")
     file = folder / user_path(path)
     return (
@@ -174,7 +174,7 @@ def _flatten_table(table: Mapping[str, Any], prefix: str = "") -> dict[str, Any]
 
 
 def _parse_choice(values: object, location: Location) -> Choice:
-    """Return the values of a list as they are; a text is read as on the command line."""
+    """Return the values of a parameter: those of a list, or of a text such as on the command line."""
     try:
         if isinstance(values, str):
             return parse_values(values, "")

@@ -71,7 +71,7 @@ def run_on_cluster(
                 threads_per_worker=1,
                 processes=True,
                 dashboard_address=None,
-                # Its server takes a fixed port otherwise, also without a dashboard, and warns if that is in use.
+                # Otherwise the scheduler's web server takes a fixed port, even without a dashboard, or warns.
                 scheduler_kwargs={"dashboard_address": "127.0.0.1:0"},
             )
             client = distributed.Client(cluster, set_as_default=False)
@@ -91,9 +91,9 @@ def _build_client(distributed: Any, scheduler: str) -> Any:
     client = object.__new__(distributed.Client)
     try:
         client.__init__(scheduler, timeout=CONNECT_S, set_as_default=False)
-    # All of them: it is raised again.
+    # Every exception, since it is raised again.
     except BaseException:
-        # Deleted, it would wait for the end of a connection that it never had.
+        # The client would wait for the end of a connection that it never had, when it is deleted.
         client.status = "closed"
         raise
     return client
@@ -106,7 +106,7 @@ def _load_dask() -> Any:
         raise ConfigError(
             "needs Dask", "pip install -e '.[cluster]' in the clone of tuisim", key="--scheduler"
         ) from error
-    # It logs a lost connection with tracebacks; it is told as one error.
+    # Dask logs a lost connection with tracebacks; we report it as one error.
     for name in ("asyncio", *logging.root.manager.loggerDict):
         if name.partition(".")[0] in ("asyncio", "distributed", "tornado"):
             logging.getLogger(name).setLevel(logging.CRITICAL + 1)
@@ -116,7 +116,7 @@ def _load_dask() -> Any:
 def _build_scheduler_error(scheduler: str, error: Exception) -> ConfigError:
     why = str(error).partition("\n")[0] or type(error).__name__
     if isinstance(error, MemoryError):
-        # It takes any greeting for the size of a message.
+        # Dask takes the greeting of another kind of server for the size of a message.
         why = "what answers there is not a scheduler"
     if scheduler:
         return ConfigError(
@@ -160,7 +160,7 @@ def _iterate_results(client: Any, watch: ClusterWatch, tasks: Iterator[Task]) ->
         except TuisimError:
             raise
         except Exception as error:  # Workers die, and packages on them may be wrong, in any manner.
-            # A lost scheduler cancels what is pending: then this tells it.
+            # If the scheduler is lost, it has cancelled the pending tasks: then this raises that as the reason.
             watch.explain()
             why = str(error).partition("\n")[0]
             raise HostError(

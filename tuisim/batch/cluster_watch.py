@@ -21,10 +21,10 @@ _GOES_ON = "with --out, --resume continues with the rows so far"
 
 
 def call_within_s(seconds: float, call: Callable[..., _Found], *args: Any, **named: Any) -> _Found:
-    """Return what a call returns.
+    """Call a function in a thread, and return what it returns.
 
     Raises:
-        TimeoutError: it takes longer; it goes on in a thread.
+        TimeoutError: it takes longer than `seconds`; it goes on in its thread.
     """
     answers: queue.SimpleQueue[tuple[_Found | None, BaseException | None]] = queue.SimpleQueue()
 
@@ -45,12 +45,12 @@ def call_within_s(seconds: float, call: Callable[..., _Found], *args: Any, **nam
 
 
 class ClusterWatch:
-    """Looks from time to time at a cluster.
+    """Checks from time to time whether a cluster can work.
 
     Args:
-        client: Its client.
-        name: Its address, for errors.
-        clock: The time in seconds.
+        client: The client of the cluster.
+        name: The address of the cluster, for errors.
+        clock: Returns the time in seconds.
         sleep: Waits for some seconds.
     """
 
@@ -65,7 +65,7 @@ class ClusterWatch:
     ) -> None:
         self.name = name
         self._client, self._clock, self._sleep = client, clock, sleep
-        # Its public names reach everything, so that it cannot be imported here.
+        # An import statement would break the order of rooms, since `tuisim` imports all of them.
         self._version = import_module("tuisim").__version__
         self._known: set[str] = set()
         self._look_at = 0.0
@@ -84,7 +84,7 @@ class ClusterWatch:
             self._sleep(self.EVERY_S)
 
     def look(self) -> None:
-        """Look at the cluster, unless it was looked at just before.
+        """Check the cluster, unless it was checked just before.
 
         Raises:
             HostError: it has had no scheduler or no worker for a while, or a worker has no tuisim or another version.

@@ -37,7 +37,7 @@ ALLOWED = "0,20,50 or 54:58:0.5 or 0..199 or random(0, 50, 20) or latin(0, 50, 2
 
 
 class RandomDraw(StrEnum):
-    """How the values of a sample are spread over its interval."""
+    """How random values are spread over their interval."""
 
     RANDOM = "random"
     """Independent of each other."""
@@ -47,7 +47,7 @@ class RandomDraw(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class SampleValues:
-    """A number of values drawn from an interval, with a seed of their own."""
+    """A number of random values from an interval, drawn with a seed of their own."""
 
     draw: RandomDraw
     low: float
@@ -59,7 +59,7 @@ class SampleValues:
         """Return the values in the order in which they are drawn.
 
         Args:
-            name: The parameter: parameters with the same seed are independent of each other.
+            name: The parameter, on which the values depend: two with the same seed get different ones.
             whole: Whether to draw whole numbers.
 
         Raises:
@@ -128,11 +128,11 @@ def build_grid(
     """Return the grid of some parameters, in their order.
 
     Args:
-        choices: What each parameter takes.
-        is_whole: Whether a parameter takes only whole numbers; asked for samples, with a number inside the interval.
+        choices: The values of each parameter.
+        is_whole: Returns whether a parameter takes only whole numbers; asked with one of random values.
 
     Raises:
-        ConfigError: the samples of a Latin hypercube differ in number or seed, or there are too many combinations.
+        ConfigError: the parameters of a Latin hypercube differ in number of values or seed, or the grid is too large.
     """
     axes: list[ParameterAxis] = []
     drawn = {name: choice for name, choice in choices.items() if _is_latin(choice)}
@@ -185,7 +185,7 @@ def _list_values(
 
 
 def parse_set(text: str) -> tuple[str, Choice]:
-    """Parse `NAME=VALUES`; return the name and what it takes.
+    """Parse `NAME=VALUES`; return the name and the values.
 
     Raises:
         ConfigError: there is no name, or the values are wrong; errors blame `--set`.
@@ -286,7 +286,7 @@ def _expand_piece(piece: str, key: str) -> Sequence[Value]:
 def _expand_range(
     low: Decimal, high: Decimal, step: Decimal, piece: str, key: str
 ) -> Sequence[Value]:
-    """Return the values from `low` to `high`; in decimal, so that none is off by a rounding error."""
+    """Return the values from `low` to `high`, computed in decimal, so that none is off by a rounding error."""
     if step == 0 or (high - low) / step < 0:
         raise ConfigError(
             f"{piece} has no values: a step of {step} does not lead from {low} to {high}", key=key
@@ -307,7 +307,11 @@ def _expand_range(
 
 
 def _sample(name: str, inside: str, key: str) -> SampleValues:
-    """Parse `random(LOW, HIGH, COUNT, seed=N)`, without the name."""
+    """Return the random values that a call such as `random(LOW, HIGH, COUNT, seed=N)` stands for.
+
+    Args:
+        inside: The text between the parentheses.
+    """
     if name not in [*RandomDraw]:
         raise ConfigError(f"no such sample {name}(…)", nearest(name, [*RandomDraw]), key=key)
     words = [word.strip() for word in inside.split(",")]

@@ -16,16 +16,16 @@ SUFFIX = ".part"
 
 
 def find_partial(target: Path) -> Path:
-    """Return the file of the rows that are done, beside the table that is to be written."""
+    """Return the file for the finished rows of a batch, beside the table that it will become."""
     return target.with_name(target.name + SUFFIX)
 
 
 class PartialTable:
-    """The rows of a batch that are done, as JSON lines after a line that identifies the batch.
+    """A file with the finished rows of a batch: JSON lines after a line that identifies the batch.
 
     Args:
         path: The file.
-        identity: What identifies the batch.
+        identity: What identifies the batch, see `Plan.build_identity`.
     """
 
     def __init__(self, path: Path, identity: Mapping[str, Any]) -> None:
@@ -52,7 +52,7 @@ class PartialTable:
         return _select_started(rows)
 
     def open(self, rows: Mapping[int, Row]) -> Self:
-        """Begin a file with rows that are done; close it with `close` or `remove`.
+        """Begin a file, with some finished rows; close it with `close` or `remove`.
 
         Raises:
             ExportError: it cannot be written.
@@ -81,7 +81,7 @@ class PartialTable:
     def close(self) -> None:
         """Close the file, and leave it for `--resume`."""
         if self._file is not None:
-            # What could not be written has been reported.
+            # Errors of writing have been reported by `add`.
             with suppress(OSError):
                 self._file.close()
             self._file = None
@@ -100,11 +100,11 @@ class PartialTable:
 
 
 def read_rows(path: Path, identity: Mapping[str, Any], columns: Iterable[str]) -> dict[int, Row]:
-    """Return the rows of the whole table of a batch by the index of their task; empty if the file is another one.
+    """Return the rows of a complete table by the index of their task; empty if the table is not that of the batch.
 
     Args:
         identity: What identifies the batch.
-        columns: The columns that rows have besides those of sample variables; others have been computed.
+        columns: The columns of rows besides those of sample variables; further columns of the table are left out.
     """
     from tuisim.logs.frames import read_log
     from tuisim.logs.reader import open_log
@@ -131,14 +131,14 @@ def read_rows(path: Path, identity: Mapping[str, Any], columns: Iterable[str]) -
 
 
 def _read(name: str, value: Any) -> Any:
-    """Return a cell as it was written: beside an empty cell, whole numbers are read as floats."""
+    """Return a cell as it was written: a whole number is read as a float if its column has empty cells."""
     if value != value:
         return None
     return int(value) if name.endswith("_count") and isinstance(value, float) else value
 
 
 def _select_started(rows: Iterable[Row]) -> dict[int, Row]:
-    """Return rows by the index of their task, without those of runs that could not be started: they may now."""
+    """Return rows by the index of their task, without runs that could not be started: these are tried again."""
     return {int(row[RUN]) - 1: row for row in rows if row.get("end")}
 
 

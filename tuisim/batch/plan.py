@@ -39,7 +39,7 @@ class Subject:
 
     @property
     def label(self) -> str:
-        """What the table calls it."""
+        """The name of the program in the table."""
         return self.name or self.program.name
 
 
@@ -88,7 +88,7 @@ class Plan:
             self._check(subject)
 
     def _check(self, subject: Subject) -> None:
-        """Build the specification of every combination of a program except for the seeds."""
+        """Check every combination of parameters of a program, except for seeds, by building its specification."""
         own = [axis for axis in self.grid.axes if axis.names != (SEED,)]
         for name in self.choices:
             if name in subject.given:
@@ -108,10 +108,10 @@ class Plan:
         return self.grid.names
 
     def check_expressions(self, expressions: Mapping[str, str]) -> None:
-        """Check the expressions of further columns of the table, by name, before anything is run.
+        """Check the expressions for further columns of the table, by name, before anything is run.
 
         Raises:
-            ConfigError: one cannot be read, names a column that there will not be, or is called like one.
+            ConfigError: one cannot be read, names a column that there will not be, or has the name of such a column.
         """
         check_expressions(expressions, self.names, [goal.name for goal in self.goals])
 
@@ -151,7 +151,7 @@ class Plan:
         return subject.settings.changed(remaining)
 
     def iterate_tasks(self, done: Collection[int] = ()) -> Iterator[Task]:
-        """Yield the tasks whose index is not among those that are done."""
+        """Yield the tasks whose index is not in `done`."""
         for index in range(len(self)):
             if index not in done:
                 yield self.task(index)
@@ -169,7 +169,7 @@ class Plan:
         if "arguments" in values:
             program = replace(program, arguments=self._merge_settings(subject, values)["arguments"])
         if any(name.partition(".")[0] == "robot" for name in values):
-            # It is a named one.
+            # As if the user had named the robot: its parts do not depend on the ports that the program shows.
             program = replace(program, shown_ports=None)
         return Task(
             index,
@@ -183,9 +183,9 @@ class Plan:
         )
 
     def build_identity(self) -> dict[str, Any]:
-        """Return what identifies the batch, ready for JSON: equal for batches with equal rows.
+        """Return what identifies the batch, ready for JSON: it is equal for batches with equal rows.
 
-        Goals belong to it, expressions do not: they are computed from the rows.
+        Goals belong to it; expressions do not, since they are computed from the rows.
         """
         programs = [
             {

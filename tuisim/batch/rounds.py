@@ -24,7 +24,7 @@ _FORM = re.compile(rf"\s*(?P<column>[^±]+?)\s*(?:±|\+-)\s*(?P<margin>{NUMBER})
 
 @dataclass(frozen=True, slots=True)
 class Precision:
-    """How well a mean is to be known."""
+    """How precisely a mean must be known."""
 
     column: str
     margin: float
@@ -38,7 +38,7 @@ def parse_precision(text: str, key: str, plan: Plan, columns: Iterable[str]) -> 
         text: The text; `+-` is the same as `±`.
         key: What errors blame.
         plan: The runs.
-        columns: The columns that their table has besides those of every run.
+        columns: The columns that the table has besides those of every batch.
 
     Raises:
         ConfigError: it cannot be read, there will be no such column of numbers, or the seeds are too few.
@@ -57,15 +57,15 @@ def parse_precision(text: str, key: str, plan: Plan, columns: Iterable[str]) -> 
 
 
 class Rounds(Iterator[int]):
-    """The indices of the tasks that are due.
+    """The indices of the tasks to run until each mean is known precisely enough.
 
-    It stops when it has to wait for results, and goes on after them: what is due follows from the rows of a
-    combination alone, whatever the order in which they come.
+    The iterator stops when it has to wait for results, and goes on after them. Which tasks come next depends only on
+    the rows of their combination, not on the order in which rows come.
 
     Args:
         plan: All runs that there may be.
-        sweep: What is done.
-        precision: How well the mean of each combination is to be known.
+        sweep: The finished runs.
+        precision: How precisely the mean of each combination must be known.
     """
 
     def __init__(self, plan: Plan, sweep: Sweep, precision: Precision) -> None:
@@ -86,7 +86,7 @@ class Rounds(Iterator[int]):
         return self._due.popleft()
 
     def _ask(self, indices: range) -> None:
-        """Ask for further runs of a combination, if those so far are done and do not suffice."""
+        """Add further runs of a combination, if all of its runs so far are done and its mean is not precise enough."""
         rows = self._sweep.rows
         while all(index in rows for index in indices[: self._counts[indices]]):
             count = self._counts[indices]
@@ -101,7 +101,7 @@ class Rounds(Iterator[int]):
             ]
 
     def _find_next_count(self, count: int, margin: float) -> int:
-        """Return how many runs a combination needs, as far as it is known; at most twice those that it has."""
+        """Return how many runs a combination probably needs; at most twice as many as it has."""
         share = (margin / self._precision.margin) ** 2
         return max(MIN_RUNS, count + _MIN_MORE, math.ceil(count * min(share, 2)))
 
@@ -116,7 +116,7 @@ class Rounds(Iterator[int]):
 
 
 def compute_margin(values: list[float]) -> float:
-    """Return half the width of the interval in which the mean is with 95 %; infinite for fewer than two values."""
+    """Return half the width of the 95 % confidence interval of a mean; infinite for fewer than two values."""
     count = len(values)
     if count < 2:
         return math.inf
@@ -124,7 +124,7 @@ def compute_margin(values: list[float]) -> float:
 
 
 def _compute_quantile(freedom: int) -> float:
-    """Return the quantile of Student's t by its expansion, within 0.1 % from nine degrees of freedom on."""
+    """Return the quantile of Student's t from its series expansion, within 0.1 % from nine degrees of freedom on."""
     z = NormalDist().inv_cdf((1 + _CONFIDENCE) / 2)
     terms = (
         z,

@@ -53,26 +53,25 @@ class Workers:
 
 
 def is_interrupted(out: Path) -> bool:
-    """Return whether there are rows of an interrupted batch whose table would be written to a file."""
+    """Return whether an interrupted batch has left rows for the table in a file."""
     return os.path.exists(find_partial(out))
 
 
 class Sweep:
-    """The runs of a plan: those that are done, and the table that they become.
+    """The runs of a plan: the rows of those that are done, and the table that they become.
 
     Args:
         plan: The plan.
-        expressions: Columns of the table, by name.
+        expressions: Further columns of the table, by name.
         out: The table that is written; None for none.
-        version: That of tuisim: a batch goes on with the same.
-        resumes: Whether an interrupted batch goes on.
-        measured: The columns that `run` measures.
+        version: Version of tuisim: an interrupted batch is resumed only with the same.
+        resumes: Whether to resume an interrupted batch.
 
     Attributes:
-        rows: What is done, by the index of the task.
+        rows: The finished rows, by the index of the task.
 
     Raises:
-        ConfigError: there is an interrupted batch that does not go on, or the rows are of another one.
+        ConfigError: an interrupted batch is there and not to be resumed, or its rows are of another batch.
         ExportError: the rows cannot be written.
     """
 
@@ -117,13 +116,13 @@ class Sweep:
     ) -> None:
         """Execute the tasks that are not done, and block until they are.
 
-        An interrupt stops the tasks that are running and is raised; the rows of those that are done stay.
+        An interrupt stops the tasks that are running and is raised again; finished rows stay.
 
         Args:
             workers: The processes that execute the tasks.
             on_row: Called with each new row.
             measure: Returns further columns of a run by name.
-            due: The indices of the tasks; None is all. It may go on after it has stopped, when there are further rows.
+            due: The indices of the tasks; None for all. After it has stopped, it may go on when there are further rows.
 
         Raises:
             ConfigError, HostError: there is no such cluster, or it is lost.
@@ -131,11 +130,11 @@ class Sweep:
             LogError: the folder for the recordings cannot be created.
         """
         plan, several = self._plan, len(self._plan.subjects) > 1
-        # What is done by now is taken out of the tasks before the first new row comes.
+        # A copy: `rows` grows while the tasks are iterated.
         every = plan.iterate_tasks(frozenset(self.rows))
         tasks = every if due is None else map(plan.task, due)
         try:
-            # Closed, the results stop the tasks that are running.
+            # Closing the results stops the tasks that are running.
             with closing(workers.run(tasks)) as results:
                 for result in results:
                     label = plan.find_subject(result.index).label if several else ""
@@ -149,7 +148,7 @@ class Sweep:
                 self._partial.close()
 
     def build_frame(self, indices: Iterable[int] | None = None) -> pd.DataFrame:
-        """Return the table of what is done, or of the tasks with some indices.
+        """Return the table of the finished rows, or of those with some indices.
 
         Raises:
             LogError: an expression is invalid, or names a column that there is not.
@@ -176,6 +175,6 @@ class Sweep:
             self._partial.remove()
 
     def summarize(self, frame: pd.DataFrame) -> list[ColumnSummary]:
-        """Return statistics of what a summary is about, for each combination of parameters unless these are many."""
+        """Return statistics of `list_result_columns`, for each combination of parameters unless these are many."""
         parameters = [*([PROGRAM] if PROGRAM in frame.columns else []), *self._plan.names]
         return build_summaries(frame, parameters, list_result_columns(frame, self._expressions))

@@ -74,7 +74,7 @@ def build_frame(rows: Iterable[Row], expressions: Mapping[str, str] | None = Non
 
     Args:
         rows: In any order.
-        expressions: By the name of their column; a later one may use an earlier one.
+        expressions: Expressions by the name of their column; a later one may use an earlier one.
 
     Raises:
         LogError: an expression is invalid, or names a column that there is not.
@@ -96,7 +96,7 @@ def _move_statistics(columns: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _build_column(values: Sequence[Any]) -> Any:
-    """Return a column with the narrowest type that holds all values: truth, whole number, number or text."""
+    """Return a column of the narrowest type that holds all values: truth value, whole number, number or text."""
     import numpy as np
     import pandas as pd
 
@@ -139,7 +139,7 @@ def _is_numeric(column: Any) -> bool:
 
 
 def is_statistic(name: str) -> bool:
-    """Return whether a name may be a column of a sample variable."""
+    """Return whether a name can be that of a column of a sample variable, such as `Light_mean`."""
     return name.endswith(tuple(f"_{statistic}" for statistic in STATISTICS))
 
 
@@ -180,7 +180,7 @@ def check_expressions(
         goals: The names of the goals.
 
     Raises:
-        ConfigError: an expression cannot be read, names a column that there will not be, or is called like one.
+        ConfigError: one cannot be read, names a column that there will not be, or has the name of such a column.
     """
     known = list_usual_columns(parameters, goals)
     for name, text in expressions.items():
@@ -190,7 +190,7 @@ def check_expressions(
             raise ConfigError("cannot be the name of a new column", hint, key=key)
         try:
             used = find_names(quote_names(text, known))
-            # With no rows, this finds whatever is not allowed.
+            # Evaluating no rows finds whatever is not allowed in the expression.
             evaluate_expression(
                 text, {column_name: _build_column([]) for column_name in {*known, *used}}, 0
             )
@@ -207,7 +207,7 @@ def check_expressions(
 
 @dataclass(frozen=True, slots=True)
 class ColumnSummary:
-    """One line of a summary."""
+    """One line of a summary: the statistics of a column for some runs."""
 
     group: Mapping[str, Value]
     """The values of the parameters; empty for all runs."""
@@ -240,14 +240,14 @@ def build_summaries(
 
 
 def list_result_columns(frame: pd.DataFrame, expressions: Iterable[str]) -> list[str]:
-    """Return the columns of a table that a summary is about: expressions, points, pose, time and last values."""
+    """Return the columns of a table to summarize: expressions, points, pose, time and last values."""
     first = [*expressions, POINTS, *POSE, "time_s"]
     lasts = [name for name in frame.columns if name.endswith("_last")]
     return [name for name in (*first, *lasts) if name in frame.columns]
 
 
 def build_metadata(frame: pd.DataFrame, batch: Mapping[str, Any]) -> dict[str, Any]:
-    """Return what is stored with a table: its columns, their units, and what identifies the batch."""
+    """Return the metadata to store with a table: its columns, their units, and what identifies the batch."""
     units = {
         name: unit.words
         for name in frame.columns

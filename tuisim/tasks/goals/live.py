@@ -53,11 +53,11 @@ _OF_PROGRAM = (
 
 
 class LiveRun:
-    """What judges look at of a run, for a simulation that ends now. It is its own recording.
+    """A run as judges see it, for a simulation that ends now; it is also its own recording.
 
     Args:
         sim: The simulation.
-        recording: Its ticks.
+        recording: The ticks so far.
     """
 
     program = Program("script", "")
@@ -71,7 +71,7 @@ class LiveRun:
 
     @property
     def ended(self) -> Ended:
-        """The end."""
+        """The end of the run: now."""
         return Ended(End.FINISHED, self._sim.tick, self._sim.compute_due_ns(self._sim.tick))
 
     def array(self) -> np.ndarray[Any, Any]:
@@ -116,7 +116,7 @@ class LiveGoals:
         return compute_points(judgements), bool(ends) and all(ends)
 
     def _is_lost(self, judgement: Judgement) -> bool:
-        """Return whether a goal was missed earlier, not by the end."""
+        """Return whether a goal was missed before the end, and not only because the simulation ends."""
         return judgement.state is GoalState.MISSED and judgement.changes[-1].tick < self._sim.tick
 
 
