@@ -16,15 +16,15 @@ Limits = tuple[float, float]
 
 
 def choose_step(span: float, count: int) -> float:
-    """Return a round distance that divides `span` (above 0) into about `count` parts, at most."""
-    # A part of the smallest numbers would be 0.
+    """Return a round step that divides `span` (above 0) into at most about `count` parts."""
+    # At least 1e-300: a part of the smallest span would be 0.
     rough = max(span / max(count, 1), 1e-300)
     magnitude = 10.0 ** math.floor(math.log10(rough))
     return next(step * magnitude for step in _STEPS if step * magnitude >= rough * 0.999)
 
 
 def choose_limits(low: float, high: float, from_zero: bool = False) -> Limits:
-    """Return round limits around values, and 0 if `from_zero`, so that they seldom change while values come in."""
+    """Return round limits around values, so that they seldom change while values come in; `from_zero` includes 0."""
     if from_zero:
         low = min(low, 0.0)
     size = max(abs(low), abs(high), 1.0)
@@ -41,7 +41,7 @@ _MORE_PARTS = 4
 
 
 def find_ticks(limits: Limits, count: int) -> list[float]:
-    """Return at most about `count` round positions inside limits, but two at least: one tells no distance."""
+    """Return about `count` round positions at most inside limits, but at least two, which show a distance."""
     low, high = limits
     positions: list[float] = []
     for parts in range(count, count + _MORE_PARTS):
@@ -60,7 +60,7 @@ _MAX_CHARACTERS = 20
 
 def label(value: float, step: float) -> str:
     """Return a tick's label with no more digits than the distance between ticks needs."""
-    # The distance may come from two positions far from 0.
+    # With a tolerance: the distance may be the difference of two positions far from 0.
     exact = (
         count
         for count in range(_MAX_DIGITS)
@@ -74,7 +74,7 @@ def label(value: float, step: float) -> str:
 
 
 def _label_shortly(value: float, step: float) -> str:
-    """Return a tick's label as few digits, which tell it from the next one, and a power of ten."""
+    """Return a tick's label as a few digits and a power of ten: enough digits to differ from the next tick."""
     digits = math.floor(math.log10(max(abs(value) / step, 1.0))) + 2
     return f"{value:.{max(digits, 4)}g}"
 
@@ -103,7 +103,7 @@ def grow_limits(end_s: float) -> Limits:
 
 
 def time_limits(end_s: float) -> Limits:
-    """Return limits from 0 to a round time after `end_s`, which grow in steps."""
+    """Return limits from 0 to a round time after `end_s`; there are few such times, so that axes seldom change."""
     for span_s in _SPANS_S:
         if end_s <= span_s:
             return 0.0, span_s
@@ -118,7 +118,7 @@ _MIN_TIME_SHARE, _MIN_SPAN_S = 1e-14, 1e-100
 
 
 def widen_times(low_s: float, high_s: float) -> Limits:
-    """Return the first and the last time as limits, which are apart also if the times are equal."""
+    """Return the first and the last time as limits, which are moved apart if the times are equal."""
     size_s = max(abs(low_s), abs(high_s))
     if high_s - low_s > max(_MIN_TIME_SHARE * size_s, _MIN_SPAN_S):
         return low_s, high_s
@@ -157,12 +157,12 @@ def extend_limits(limits: Limits, rows: int) -> Limits:
     """Return limits, extended as little as possible, that have round ticks in the middle of rows, at equal distances.
 
     For 2 to 6 parts, the axis begins at a multiple of the round step below the values; the rows between two ticks
-    are as many as fit. The shortest axis is the best one; `_SPARSE` is added to its length, and the whole span of
-    the values if its ticks are in neighbouring rows.
+    are as many as fit. The shortest axis is chosen; `_SPARSE` is added to the length of one with few parts, and the
+    whole span of the values to one whose ticks are in neighbouring rows.
 
     Args:
-        limits: Of the values.
-        rows: Height of the canvas in characters, at least 1; few rows need no ticks between the limits.
+        limits: Those of the values.
+        rows: Height of the canvas in characters, at least 1; if it is small, the limits are not extended.
     """
     if rows < _MIN_ROUND_ROWS:
         return limits
@@ -186,7 +186,7 @@ def extend_limits(limits: Limits, rows: int) -> Limits:
 
 
 def find_row_ticks(limits: Limits, rows: int) -> list[float]:
-    """Return the positions that a vertical axis has a label for."""
+    """Return the values at which a vertical axis has a label."""
     if rows < _MIN_ROUND_ROWS:
         return list(limits)
     low, high = limits
@@ -206,7 +206,7 @@ Places = TypeVar("Places", float, "FloatArray")
 
 
 def measure_row(values: Places, limits: Limits, rows: int) -> Places:
-    """Return how far from the top of a canvas values are, in rows: limits are in the middle of the outermost ones."""
+    """Return how many rows below the top of a canvas values are; limits are in the middle of the outermost rows."""
     low, high = limits
     return 0.5 + (high - values) / (high - low) * (rows - 1)
 
@@ -217,7 +217,7 @@ def time_ticks(limits: Limits, columns: int) -> list[float]:
 
 
 def label_rows(limits: Limits, rows: int) -> dict[int, str]:
-    """Return labels of a vertical axis by row, 0 at the top."""
+    """Return the labels of a vertical axis by row; row 0 is at the top."""
     low, high = limits
     if rows < _MIN_ROUND_ROWS:
         step = choose_step(high - low, 4)

@@ -37,11 +37,11 @@ def build_band_span(name: str, start: float, stop: float, level: float, grey: st
 
 
 def find_spans(trace: Trace, light: Light) -> tuple[Span, ...]:
-    """Return the bands of a trace, none if it has more than `MAX_SAMPLES`.
+    """Return the bands of a trace as spans, none if it has more than `MAX_SAMPLES`.
 
     Args:
         trace: A variable over time.
-        light: What stands between it and the greys of the mat.
+        light: How the colour sensor reads the mat.
     """
     if len(trace.times_s) > MAX_SAMPLES:
         return ()
@@ -69,14 +69,14 @@ def place_names(
     is_free: Callable[[int, int, int], bool],
     avoided: Sequence[int] = (),
 ) -> list[tuple[int, int, str]]:
-    """Return the names of spans on a canvas: row, first column and text, each in the lowest place that is free.
+    """Return the names of spans on a canvas: row, first column and text, each in the lowest free row.
 
     Args:
-        spans: What is named.
-        places: Their columns.
+        spans: The spans.
+        places: The columns of each span.
         rows, columns: Size of the canvas.
         is_free: Returns whether nothing is drawn in a row between two columns.
-        avoided: Columns, such as that of a cursor, beside which a name stands rather than in them.
+        avoided: Columns, such as that of a cursor, which names do not cover if they have room beside them.
     """
     names: list[tuple[int, int, str]] = []
     letters = [len(place) if len(place) >= _MIN_COLUMNS else 0 for place in places]
@@ -111,15 +111,15 @@ def shade_rows(
     cursors: Sequence[int] = (),
     style: Style = NAME,
 ) -> list[list[Run]]:
-    """Return the rows of a canvas with shaded spans, each with its name in the lowest place where nothing is drawn.
+    """Return the rows of a canvas with shaded spans, each with its name in the lowest row where nothing is drawn.
 
     Args:
         rows: The canvas.
         spans: What is shaded.
-        x_limits: Of the canvas.
-        columns: Its width.
+        x_limits: Those of the canvas.
+        columns: Width of the canvas.
         cursors: Columns of cursors, beside which names stand.
-        style: Of the names.
+        style: Style of the names.
     """
     texts = ["".join(text for text, _ in row) for row in rows]
     places = [find_columns(span, x_limits, columns) for span in spans]

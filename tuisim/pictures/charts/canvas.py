@@ -72,7 +72,7 @@ def draw_canvas(
 ) -> list[list[TextRun]]:
     """Return curves as rows of text, without axes.
 
-    Where several lines share cells, these have the colours of the lines in turns, so that none is hidden. Of
+    Where several lines share cells, the cells have the colours of these lines in turns, so that none is hidden. Of
     points that are not joined, the topmost is seen.
 
     Args:
@@ -116,7 +116,7 @@ def draw_canvas(
 
 
 def choose_owners(covered: npt.NDArray[np.bool_], width: int) -> npt.NDArray[np.bool_]:
-    """Return which curve is seen at each place: the only one there, or each in turns along a row.
+    """Return which curve is seen at each place; where there are several, each in turns along a row.
 
     Args:
         covered: Shape (curves, rows, columns): where each curve is, the topmost last.
@@ -137,7 +137,11 @@ def _place_points(
     y_limits: Limits,
     parts: tuple[int, int] = (1, 1),
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the places of the points of a curve from the left and the top, in parts of cells."""
+    """Return where the points of a curve are, from the left and from the top.
+
+    Args:
+        parts: The units in a cell, across and down: (1, 1) for cells.
+    """
     times_s, values = curve.times_s, curve.values
     if curve.rising:
         times_s, values = reduce_points(times_s, values, x_limits, columns)
@@ -152,7 +156,7 @@ def _place_points(
 def _clip_places(
     across: FloatArray, down: FloatArray, columns: int, rows: int
 ) -> tuple[IntArray, IntArray]:
-    """Return places as whole numbers; those outside a canvas of so many are left out."""
+    """Return places as whole numbers, without those outside the canvas."""
     indices = np.floor(across).astype(np.int64), np.floor(down).astype(np.int64)
     good = (indices[0] >= 0) & (indices[0] < columns) & (indices[1] >= 0) & (indices[1] < rows)
     return indices[0][good], indices[1][good]
@@ -164,7 +168,7 @@ def _draw_braille(
     """Return the dots of a curve, shape (rows, columns): as bits of a braille character."""
     across, down = _place_points(curve, columns, rows, x_limits, y_limits, (DOTS_X, DOTS_Y))
     is_thick = curve.joined and curve.rising
-    # A line over time is two dots thick: those above and below its place.
+    # A line over time is two dots thick: the dot above and the one below its place.
     # A margin of one character: plotext places limits in the middle of the outermost ones.
     across, down = (
         np.floor(across) + DOTS_X,
@@ -214,7 +218,7 @@ def _plot_braille(
             figure.ruler(axis, side).frequency(0)
         figure.ruler(axis, 0).lim(0, last)
     figure.plot_size(columns, rows)
-    # In characters, whose middles are whole numbers; upwards.
+    # plotext counts in characters, whose middles are whole numbers, and upwards.
     xs, ys = (across + 0.5) / DOTS_X - 0.5, rows - 0.5 - (down + 0.5) / DOTS_Y
     figure.draw(
         figure.signal(xs.tolist(), ys.tolist(), marker=plotext.marker(BRAILLE)).lines(joined)
@@ -229,7 +233,11 @@ def _plot_braille(
 def _split_runs(
     text: npt.NDArray[np.uint32], owners: npt.NDArray[np.int64], colors: Sequence[Rgb | None]
 ) -> list[TextRun]:
-    """Return a row as pieces of one colour: that of the owner of each cell, the last one for nobody's."""
+    """Return a row as pieces of one colour.
+
+    Args:
+        owners: Index of the colour of each cell; -1, for no curve, stands for the last colour.
+    """
     starts = np.flatnonzero(np.diff(owners, prepend=-2)).tolist()
     ends = [*starts[1:], len(text)]
     return [
@@ -243,18 +251,18 @@ _HERE = Style(color=palette.BLACK, bgcolor=palette.WHITE, bold=True)
 
 
 def build_style(rgb: Rgb | None) -> Style:
-    """Return the style of a text in a colour, `PLAIN` without one."""
+    """Return the style of a text in a colour; `PLAIN` for None."""
     return Style(color=Color.from_rgb(*rgb)) if rgb else PLAIN
 
 
 def drop_hidden_points(
     xs: FloatArray, ys: FloatArray, limits: Sequence[axes.Limits], columns: int, rows: int
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the points of a path that a canvas can distinguish: only the first of neighbours at the same dot.
+    """Return the points of a path that a canvas can show apart: of successive points at the same dot only the first.
 
     Args:
         xs, ys: Finite, shape (n,).
-        limits: Of x and of y.
+        limits: Those of x and of y.
         columns, rows: Size of the canvas in characters.
     """
     (left, right), (low, high) = limits
@@ -278,12 +286,12 @@ def draw_xy_chart(
     width: int,
     height: int,
 ) -> list[list[Run]]:
-    """Return the chart as lines of text.
+    """Return a chart of one variable against another as lines of text.
 
     Args:
         xs, ys: Shape (n,); pairs that are not finite are left out.
         here: Index of the point to mark, None for none.
-        names: Of x and of y.
+        names: Names of x and of y.
         marker: `braille`, or one character.
         width, height: Size in characters.
     """

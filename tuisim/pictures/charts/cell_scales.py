@@ -29,7 +29,7 @@ _PARTS = 2000
 
 @dataclass(frozen=True, slots=True)
 class CellScales:
-    """The scales, and what stands beside the canvas."""
+    """The vertical scales of a chart in characters, with labels and last values beside the canvas."""
 
     scales: Scales
     labels: tuple[dict[int, str], ...]
@@ -52,7 +52,12 @@ class CellScales:
         zoomed: bool,
         margins: tuple[int, int] = (0, 0),
     ) -> CellScales:
-        """Return the scales of traces for a chart of a width, whose canvas has so many rows."""
+        """Return the scales of traces for a chart.
+
+        Args:
+            width: Width of the chart in columns.
+            rows: Height of its canvas.
+        """
         scales = Scales.group([(trace.name, trace.values, trace.scale) for trace in drawn], zoomed)
         scales = Scales(
             _on_rows(scales.left, rows), tuple(_on_rows(scale, rows) for scale in scales.right)
@@ -78,7 +83,7 @@ class CellScales:
 
     @property
     def y_limits(self) -> Limits:
-        """The limits of the left scale, which the canvas has."""
+        """The limits of the left scale, to which all curves are drawn."""
         return self.scales.left.limits
 
     @property
@@ -88,7 +93,7 @@ class CellScales:
 
     @property
     def right_width(self) -> int:
-        """Columns on its right."""
+        """Columns on the right of the canvas."""
         return max(self._right_used, self.margins[1])
 
     @property
@@ -96,12 +101,12 @@ class CellScales:
         return self.ends_width + sum(map(_measure_width, self.labels[1:]))
 
     def curve(self, trace: Trace, marks: bool) -> Curve:
-        """Return a trace on the left scale."""
+        """Return a trace as a curve on the left scale."""
         values = self.scales.on_left(trace.values, self.scales.find_scale(trace.name))
         return Curve(trace.times_s, values, trace.rgb, trace.mark if marks else BRAILLE)
 
     def frame_row(self, row: int, inside: list[Run]) -> list[Run]:
-        """Return a row of the canvas with what stands beside it."""
+        """Return a row of the canvas with the labels and values beside it."""
         text = self.labels[0].get(row, "")
         line = [
             (text.rjust(self.left_width - 1), self.styles[0]),
@@ -137,7 +142,7 @@ def _measure_width(labels: dict[int, str]) -> int:
 def _place_end_values(
     drawn: Sequence[Trace], scales: Scales, rows: int, x_limits: Limits
 ) -> tuple[dict[int, Run], int]:
-    """Return the last values in view, each in the row where its line ends or next to it, and the columns for them."""
+    """Return the last values in view, by row: where each line ends, or next to it; and the width of these values."""
     ends: list[tuple[int, Run]] = []
     width = 0
     for trace in drawn:
@@ -158,7 +163,7 @@ def _place_end_values(
                 ),
             )
         )
-        # Of the limits, so that the canvas keeps its size while values come in.
+        # The width of the limits counts, too, so that the canvas keeps its size while values come in.
         width = max(width, *(len(text + scale.unit) for text in texts))
     return _separate_rows(ends, rows), width
 
@@ -170,7 +175,7 @@ def _round_value(value: float, scale: Scale) -> str:
 
 
 def _separate_rows(ends: Sequence[tuple[int, Run]], rows: int) -> dict[int, Run]:
-    """Return texts by row: an equal one once, others next to the row that they want, in a row of their own."""
+    """Return texts by row: each in its own row or one next to it, so that none overlap; equal ones only once."""
     taken: dict[int, Run] = {}
     row_of: dict[int, int] = {}
     for row, run in ends:

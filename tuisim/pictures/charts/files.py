@@ -41,7 +41,7 @@ _SIZE = re.compile(r"(\d{1,6})[x×](\d{1,6})")
 
 
 def parse_size(text: str, smallest: Size, largest: Size) -> Size | None:
-    """Return a size such as `800x600`; None if it is none, or not within the limits."""
+    """Parse a size such as `800x600`; return None if the text is not one, or not within the limits."""
     match = _SIZE.fullmatch(text)
     size = (int(match[1]), int(match[2])) if match else (0, 0)
     is_allowed = all(
@@ -102,7 +102,7 @@ FACET_PX = 200
 
 
 def find_format(path: Path) -> ChartFormat:
-    """Return the format for a file's suffix; check that the file can be written.
+    """Return the format for a file's suffix, after checking that the file can be written.
 
     Raises:
         ExportError: unknown suffix, or it cannot be written.
@@ -170,7 +170,7 @@ _INVALID = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufdd0-\
 
 
 def draw_svg(drawing: Drawing, *, inside: bool = False) -> str:
-    """Return a picture as SVG: a file, or `inside` a page, whose colours it then uses."""
+    """Return a picture as SVG: as a file or, with `inside`, as a part of a page, whose colours it uses."""
     size = f'viewBox="0 0 {drawing.width} {drawing.height}" width="{drawing.width}" height="{drawing.height}"'
     look = f'font-family="{_FONT}" font-size="{FONT_PX}" role="img"'
     ink = "" if inside else f' color="{_format_hex(_INK)}"'
@@ -185,7 +185,7 @@ def draw_svg(drawing: Drawing, *, inside: bool = False) -> str:
 
 
 def replace_invalid(text: str) -> str:
-    """Return a text in which characters that are invalid in XML or HTML are U+FFFD."""
+    """Return a text with U+FFFD in place of characters that are invalid in XML or HTML."""
     return _INVALID.sub("\ufffd", text)
 
 

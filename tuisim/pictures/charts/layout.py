@@ -42,7 +42,7 @@ _SCALE_GAP_PX = 6
 
 @dataclass(frozen=True, slots=True)
 class Line:
-    """One variable."""
+    """One variable of a chart."""
 
     name: str
     xs: FloatArray
@@ -90,7 +90,7 @@ class ChartData:
 
 
 def add_unit(name: str) -> str:
-    """Return a variable's name as it is written beside a chart."""
+    """Return the name of a variable with its unit, as it is written beside a chart."""
     unit = find_unit(name)
     return printable(f"{name} ({unit})" if unit else name)
 
@@ -163,7 +163,7 @@ Shape: TypeAlias = Rule | Words | Shade | Stroke | Raster
 
 @dataclass(frozen=True, slots=True)
 class Drawing:
-    """A picture."""
+    """A picture made of shapes."""
 
     title: str
     width: int
@@ -247,7 +247,7 @@ def lay_out_chart(chart: ChartData, width: int, height: int, *, titled: bool = T
 
 
 def cut_drawing(drawing: Drawing, x: float) -> Drawing:
-    """Return the picture of a chart without its data after an x of its axis, with a line there."""
+    """Return the picture of a chart without its data to the right of an x of its axis, with a line at this x."""
     shapes: list[Shape] = []
     for shape in drawing.shapes:
         plot = next((plot for plot in drawing.plots if _is_inside(shape, plot)), None)
@@ -312,7 +312,7 @@ def _measure_right_width(scales: Scales) -> float:
 def _draw_legend(
     lines: Sequence[Line], scales: Scales, width: int, top: float
 ) -> tuple[list[Shape], int]:
-    """Return the legend and its number of text lines: a stroke and a name per line, and which use a right scale."""
+    """Return the legend, a stroke and a name for each line, with a note for right scales; and its number of rows."""
     shapes: list[Shape] = []
     x, row = float(PAD), 0
     for line in lines:
@@ -337,7 +337,7 @@ _SEEN = 8.0
 
 @dataclass(frozen=True, slots=True)
 class Scale:
-    """One vertical scale."""
+    """A vertical scale of a chart."""
 
     limits: Limits
     unit: str
@@ -348,14 +348,18 @@ class Scale:
 
 @dataclass(frozen=True, slots=True)
 class Scales:
-    """The vertical scales of a chart, so that no variable flattens another one."""
+    """The vertical scales of a chart; variables of other sizes have their own, so that none appears as a flat line."""
 
     left: Scale
     right: tuple[Scale, ...]
 
     @classmethod
     def group(cls, variables: Sequence[Variable], zoomed: bool) -> Scales:
-        """Return the scales of variables: that of light and of unknown units is on the left, if there is one."""
+        """Return the scales of variables; that of light and of unknown units is on the left, else the first.
+
+        Args:
+            zoomed: Whether the scales fit the visible data.
+        """
         groups: dict[str, list[Variable]] = {}
         common = next((values for _, values, scale in variables if not scale and len(values)), None)
         for variable in variables:
@@ -373,7 +377,7 @@ class Scales:
         return next((scale for scale in self.right if name in scale.names), self.left)
 
     def on_left(self, values: FloatArray, scale: Scale) -> FloatArray:
-        """Return where values of a scale are on the left one."""
+        """Return the values on the left scale that are at the same height as values on another scale."""
         if scale is self.left:
             return values
         share = (values - scale.limits[0]) / (scale.limits[1] - scale.limits[0])
@@ -382,7 +386,7 @@ class Scales:
 
 
 def _is_flat(values: FloatArray, others: FloatArray) -> bool:
-    """Return whether values would be a flat line on the scale of others, or the others on theirs."""
+    """Return whether one of two variables would be a flat line on a common scale."""
     smaller, larger = sorted(float(np.abs(series).max(initial=0.0)) for series in (values, others))
     return 0.0 < smaller * _SEEN < larger
 
@@ -419,7 +423,7 @@ def _measure_widest(limits: Limits) -> float:
 
 
 def _match_scales(chart: ChartData, frame: Frame) -> Frame:
-    """Use equal scales on both axes, for a path on the field."""
+    """Return a frame with the same mm per pixel on both axes, if the chart is a path on the field."""
     names = [chart.x_label.partition(" (")[0], *(line.name for line in chart.lines)]
     if not chart.path or {find_unit(name) for name in names} != {"mm"}:
         return frame
@@ -433,7 +437,7 @@ def _match_scales(chart: ChartData, frame: Frame) -> Frame:
 
 
 def draw_grid(frame: Frame, *, with_x: bool = True) -> list[Shape]:
-    """Return the grid behind the data with the labels of the left scale, and of the lower one if `with_x`."""
+    """Return the grid behind the data, with the labels of the left scale and, if `with_x`, of the lower one."""
     shapes: list[Shape] = []
     for value, text in label_ticks(frame.y, _count_labels(frame)):
         y = float(frame.find_ys(value))
@@ -528,12 +532,12 @@ _NARROW = 8
 
 
 def fit_names(spans: Sequence[Span], letters: Sequence[float], overhang: int = 0) -> list[str]:
-    """Return the names of spans: the long forms, if all but those of very narrow spans fit; empty without room.
+    """Return the names of spans: long ones if these fit into all but very narrow spans, else short ones, or empty ones.
 
     Args:
         spans: What is named.
-        letters: How many letters each is wide.
-        overhang: Letters that a short form may be wider.
+        letters: The width of each span in letters.
+        overhang: By how many letters a short name may be wider than its span.
     """
     rooms = list(zip(spans, letters, strict=True))
     is_long = all(len(span.texts[0]) < room for span, room in rooms if room >= _NARROW)

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Plot:
-    """What is drawn on a canvas, and between the labels of its axes."""
+    """What an image shows on a canvas in cells, and between the labels of its axes."""
 
     curves: tuple[Curve, ...]
     """The topmost last."""
@@ -50,17 +50,17 @@ class Plot:
 
     @property
     def size(self) -> tuple[int, int]:
-        """Its rows and columns in cells, with the axes."""
+        """The rows and columns of the image in cells, with the axes."""
         return self.rows + self.has_time_line, 1 + self.columns
 
     def measure_across(self, times_s: FloatArray, width: int) -> _Points:
-        """Return how far from the left edge of the canvas times are, for cells of that width."""
+        """Return how many points right of the left edge times are, for cells of a width in points."""
         # As `axes.find_column`, so that a label is below its tick.
         low, high = self.x_limits
         return (times_s - low) / (high - low) * (self.columns - 0.5) * width + 1
 
     def down(self, values: FloatArray, height: int) -> _Points:
-        """Return how far from the top of the canvas values are, for cells of that height."""
+        """Return how many points below the top of the canvas values are, for cells of a height in points."""
         return axes.measure_row(values, self.y_limits, self.rows) * height
 
 
@@ -116,7 +116,7 @@ def draw_plot(plot: Plot, cell: tuple[int, int], inks: PlotInks) -> Pixels:
 
 
 def _find_cells(span: Span, plot: Plot, width: int) -> tuple[int, int]:
-    """Return the first column of points of a span, and the one behind it."""
+    """Return the first point of a span along the canvas, and the one behind its last."""
     start, stop = np.clip(
         plot.measure_across(np.array([span.start, span.stop]), width), 0, plot.columns * width
     ).astype(int)
@@ -130,7 +130,7 @@ def _draw_names(
     cell: tuple[int, int],
     inks: PlotInks,
 ) -> None:
-    """Write the names of spans, each in the lowest row of cells where there is no curve."""
+    """Write the names of spans into the image, each in the lowest row of cells without a curve."""
     # Imported on demand: few terminals need it.
     from PIL import Image, ImageDraw
 
@@ -157,7 +157,7 @@ def _draw_names(
 
 @cache
 def _load_font(width: int) -> FreeTypeFont:
-    """Return the font whose letters have a width in points."""
+    """Return the font whose letters have a given width in points."""
     from PIL import ImageFont
 
     content = files("tuisim.pictures.charts").joinpath("fonts", "DejaVuSansMono.ttf").read_bytes()
@@ -182,7 +182,7 @@ def _draw_axes(
 
 
 def _clip_places(points: _Points, length: int) -> npt.NDArray[np.intp]:
-    """Return the points of an image at places on it; others are left out."""
+    """Return places as indices of an image's points, without places outside it."""
     places = np.floor(points).astype(np.intp)
     return places[(places >= 0) & (places < length)]
 

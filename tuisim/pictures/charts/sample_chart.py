@@ -19,7 +19,7 @@ def build_sample_chart(
     """Return the samples over simulated time as `tuisim log plot` draws them, one line per name.
 
     Args:
-        columns: Width in pixels; what they could not tell apart is left out.
+        columns: Width in pixels; points that it could not show apart are left out.
         limits: Range of time; None for that of the samples.
     """
     points: dict[str, list[tuple[float, float]]] = {}

@@ -49,7 +49,7 @@ EMPTY_SHORT = ("Nothing logged yet.", "print('Colour: '", "      + str(value))")
 
 @dataclass(frozen=True, slots=True)
 class ChartState:
-    """What the user has set."""
+    """The user's settings of a chart, and what is selected in it."""
 
     selected: str | None = None
     """Name of the trace whose tick box has the focus."""
@@ -80,7 +80,7 @@ class ChartState:
 
 @dataclass(frozen=True, slots=True)
 class Box:
-    """Where a tick box is: row, first column, first column after it."""
+    """The place of a tick box: row, first column, first column after it."""
 
     row: int
     first: int
@@ -104,7 +104,7 @@ class ChartPicture:
     """What is on the canvas, for an image in place of it; None if there is none, or no room for it."""
 
     def find_time_s(self, column: int, row: int) -> float | None:
-        """Return the time at a place, None beside the canvas."""
+        """Return the time at a place of the chart, None beside the canvas."""
         if 0 <= column - self.left < self.columns and 0 <= row - self.top < self.rows:
             return axes.find_column_value(column - self.left, self.x_limits, self.columns)
         return None
@@ -120,7 +120,12 @@ class ChartPainter:
     def paint(
         self, traces: Traces, state: ChartState, width: int, height: int, *, is_blank: bool = False
     ) -> ChartPicture:
-        """Return the chart in a panel of that inner size, each at least 1; `is_blank` for an image on the canvas."""
+        """Return the chart in a panel.
+
+        Args:
+            width, height: Inner size of the panel, at least 1.
+            is_blank: Whether to leave the canvas empty, for an image in its place.
+        """
         drawn = traces.list_drawn()
         by_mark = state.grey and (len(drawn) > 1 or state.is_ascii)
         lines, boxes = _draw_tick_boxes(traces, state.selected, by_mark, width)
@@ -206,7 +211,7 @@ def _time_limits(end_s: float, grows: bool) -> Limits:
 
 
 def _style_runs(runs: list[TextRun], is_on_grid: bool) -> list[Run]:
-    """Return a row of the canvas, with the line of the grid where nothing is drawn."""
+    """Return a row of the canvas; with `is_on_grid`, the line of the grid is where nothing is drawn."""
     if not is_on_grid:
         return [(text, build_style(rgb)) for text, rgb in runs]
     return [
@@ -216,14 +221,14 @@ def _style_runs(runs: list[TextRun], is_on_grid: bool) -> list[Run]:
 
 
 def _style_of_names(drawn: Sequence[Trace], spans: Sequence[Span]) -> Style:
-    """Return the style of the names of bands: the colour of their curve, where there are others."""
+    """Return the style of the names of bands: the colour of their curve, if there are other curves."""
     names = {span.name for span in spans}
     of_bands = [trace for trace in drawn if {trace.name} == names]
     return build_style(of_bands[0].rgb) if of_bands and len(drawn) > 1 else NAME
 
 
 def _draw_cursors(runs: list[Run], columns: Sequence[int]) -> list[Run]:
-    """Return a row of the canvas with lines at rising columns; a column outside it draws none."""
+    """Return a row of the canvas with cursors at rising columns; those outside the canvas are left out."""
     line: list[Run] = []
     column_at = 0
     for text, style in runs:
@@ -242,7 +247,7 @@ def _draw_cursors(runs: list[Run], columns: Sequence[int]) -> list[Run]:
 def _draw_tick_boxes(
     traces: Traces, selected: str | None, by_mark: bool, width: int
 ) -> tuple[list[list[Run]], tuple[Box, ...]]:
-    """Return the row of tick boxes, none without a trace, and where they are; what does not fit is counted."""
+    """Return the row of tick boxes, none without traces, and where they are; boxes without room are only counted."""
     every = [*traces]
     if not every:
         return [], ()
@@ -269,7 +274,7 @@ def _draw_tick_boxes(
 def _choose_boxes(
     texts: Sequence[tuple[str, Trace]], selected: str | None, width: int
 ) -> list[int]:
-    """Return the numbers of the boxes that fit into a row, in order: the selected one, what is drawn, then others."""
+    """Return the indices of the boxes that fit into a row, in order; the selected one and drawn ones come first."""
     gap = len(_BETWEEN_BOXES)
     if sum(len(text) + gap for text, _ in texts) - gap <= width:
         return [*range(len(texts))]
@@ -296,7 +301,12 @@ def _draw_box(text: str, trace: Trace, selected: bool, by_mark: bool) -> list[Ru
 def measure_margins(
     parts: Sequence[Traces], state: ChartState, width: int, rows: int
 ) -> tuple[int, int]:
-    """Return the columns beside the canvases of charts below each other, of so many rows, that are in line."""
+    """Return the columns left and right of the canvases of charts below each other, so that they are in line.
+
+    Args:
+        parts: The traces of each chart.
+        width, rows: Size of each chart in characters.
+    """
     drawn = [part.list_drawn() for part in parts if part.list_drawn()]
     limits = state.x_limits or (0.0, 1.0)
     rows = max(rows - 2 - (rows >= _LINE_ROWS), 1)
@@ -324,7 +334,7 @@ def format_values(drawn: Sequence[Trace], cursor_s: float, unit: str, width: int
 
 
 def _empty(traces: Traces, width: int, height: int, selected: str | None) -> list[list[Run]]:
-    """Return what stands in place of curves: how to log a value, or that the traces there are have no tick.
+    """Return the text of a chart without curves: how to log a value, or that no trace is ticked.
 
     Args:
         selected: The trace that the keys show; None while the keys do something else.
@@ -395,7 +405,7 @@ def _trace(line: Line) -> Trace:
 
 
 def _on_any_ground(run: Run) -> Run:
-    """Use the terminal's default colour for everything but data, for light and dark themes."""
+    """Return a run that is readable in light and dark themes: only data keep their colour."""
     text, style = run
     return run if style.color and style.color.triplet in COLORS else (text, Style())
 

@@ -38,7 +38,7 @@ _THINNED = 4
 
 
 def find_scale_name(name: str) -> str:
-    """Return the scale of a variable: its unit or reading; empty for light, in percent or not, and what is unknown."""
+    """Return the scale of a variable: its unit or reading; empty for light in any unit, and for unknown variables."""
     name = name.partition(" #")[0]
     sign = parse_unit(name).sign
     if sign:
@@ -47,12 +47,12 @@ def find_scale_name(name: str) -> str:
 
 
 class Trace:
-    """One trace: points in order of time, a colour, and whether it is ticked.
+    """A variable as points in order of time, with a colour and a tick.
 
     Args:
-        name: As it was logged, or the name of a column of telemetry.
+        name: The name that was logged, or that of a column of telemetry.
         number: Chooses colour and mark.
-        logged: Whether the program has printed it, rather than the app measured it.
+        logged: Whether the program has printed the values; else the app measured them.
     """
 
     def __init__(self, name: str, number: int, logged: bool = True) -> None:
@@ -97,7 +97,7 @@ class Trace:
             self._drop_points()
 
     def _drop_points(self) -> None:
-        """Keep two of every four points: the least and the greatest, in their order."""
+        """Keep two of every four points: the least and the greatest value, in their order."""
         whole = self._count // _THINNED * _THINNED
         values = self._values[:whole].reshape(-1, _THINNED)
         offsets = np.sort(
@@ -129,10 +129,10 @@ class Trace:
 
 
 class Traces:
-    """All traces, those that the program logged first.
+    """The traces of a chart, those that the program logged first.
 
     Args:
-        traces: Those that are there at first, by name.
+        traces: The traces at first, by name.
     """
 
     def __init__(self, traces: Mapping[str, Trace] | None = None) -> None:
@@ -149,9 +149,9 @@ class Traces:
     def append(
         self, name: str, times_s: Sequence[float], values: Sequence[float], logged: bool = True
     ) -> None:
-        """Add points to a trace, which is made if it is new.
+        """Add points to a trace, which is created if it is new.
 
-        Where a program logs a variable with the name of a column of telemetry, the trace is the program's.
+        If a program logs a variable with the name of a column of telemetry, the trace shows the program's values.
         """
         trace = self._by_name.get(name) or self._cleared.pop(name, None)
         if trace is not None and trace.logged and not logged:
@@ -186,7 +186,7 @@ class Traces:
 def reduce_points(
     times_s: FloatArray, values: FloatArray, x_limits: tuple[float, float], columns: int
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the points of a trace that a chart of this width can distinguish.
+    """Return the points of a trace that a chart of some width can show apart.
 
     Args:
         times_s: Rising times, shape (n,).
@@ -257,7 +257,7 @@ _SUMMED_AT_ONCE = 10_000
 
 
 class Pyramid:
-    """The finite points of a series, sorted by time.
+    """The finite points of a series, sorted by time, with extremes of blocks, to draw long series quickly.
 
     Args:
         times_s: Shape (n,).
@@ -284,7 +284,7 @@ class Pyramid:
     def select_points(
         self, x_limits: tuple[float, float], columns: int
     ) -> tuple[FloatArray, FloatArray]:
-        """Return times and values as they are drawn: at most a few thousand points that give the drawing of all.
+        """Return times and values to draw: at most a few thousand points, which look like all of them.
 
         Args:
             x_limits: First and last time shown; one point beyond each is kept.
@@ -311,7 +311,7 @@ class Pyramid:
         )
 
     def find_nearest(self, time_s: float) -> int:
-        """Return the index of the input point nearest to a time; there must be a finite one."""
+        """Return the index, among all given points, of the finite one nearest to a time; there must be one."""
         index = int(np.searchsorted(self.times_s, time_s))
         if index == len(self.times_s) or (
             index and time_s - self.times_s[index - 1] <= self.times_s[index] - time_s

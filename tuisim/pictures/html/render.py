@@ -17,7 +17,7 @@ _TEMPLATES = Path(__file__).parent / "templates"
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """Rows of text below their heads; not shown if there are none."""
+    """A table of texts with heads; it is not shown without rows."""
 
     heads: Sequence[str]
     rows: Sequence[Sequence[str]]
@@ -26,7 +26,7 @@ class Table:
 
 
 def render_page(template: str, **values: Any) -> str:
-    """Return a page.
+    """Return a page in HTML.
 
     Args:
         template: The name of a file in `templates`.

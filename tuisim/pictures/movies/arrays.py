@@ -35,13 +35,13 @@ _MIN_DISC_PX = 60
 
 
 def draw_face(face: DiscFace, width: int, height: int, *, has_limits: bool) -> Drawing:
-    """Return a disc with its words: below it what the program gets, a scale, thresholds, rings.
+    """Return the disc of a sensor; below it the value that the program reads, a scale, the thresholds and the rings.
 
     Args:
-        face: What is shown of a sensor.
+        face: What is shown of the sensor.
         width: Width in pixels.
         height: Height in pixels.
-        has_limits: Whether there is a line for thresholds, those of any sensor.
+        has_limits: Whether a line is left for thresholds, because one of the sensors has some.
     """
     limits = face.limit_words(int(width / LETTER_PX))
     below = [
@@ -71,7 +71,7 @@ def draw_face(face: DiscFace, width: int, height: int, *, has_limits: bool) -> D
 
 
 def _scale(face: DiscFace, width: int) -> np.ndarray[tuple[int, int, int], np.dtype[np.uint8]]:
-    """Return a scale from black to white, filled up to what the program gets, with the thresholds on it."""
+    """Return a scale from black to white, filled up to the value that the program reads, with the thresholds on it."""
     picture = np.empty((1, width, 3), np.uint8)
     picture[:] = _REST_RGB
     picture[:, : round(min(max(face.share, 0), 1) * width)] = _FILLED_RGB
@@ -82,7 +82,7 @@ def _scale(face: DiscFace, width: int) -> np.ndarray[tuple[int, int, int], np.dt
 
 
 def draw_arrays(faces: Sequence[DiscFace], width: int, height: int) -> Drawing:
-    """Return discs side by side, each with its words."""
+    """Return the discs of sensors side by side, each with its words."""
     each = width // max(len(faces), 1)
     has_limits = any(face.thresholds for face in faces)
     shapes: list[Shape] = []

@@ -23,7 +23,7 @@ _STEP_MS = 10
 
 
 class ClipPanel(StrEnum):
-    """A part of the picture."""
+    """A panel of a movie's frames."""
 
     WORLD = "world"
     CHART = "chart"
@@ -68,7 +68,7 @@ def count_shots(start_s: float, stop_s: float, speed: float, fps: float) -> int:
 
 @dataclass(frozen=True, slots=True)
 class ClipMoment:
-    """What is known of a run at one instant."""
+    """The state of a run at one instant."""
 
     time_s: float
     tick: int
@@ -78,7 +78,7 @@ class ClipMoment:
 
 
 class ClipRun:
-    """A recorded run at any of its instants.
+    """A recorded run that can be read at any instant.
 
     Args:
         run: The run.
@@ -117,10 +117,10 @@ class ClipRun:
         return (len(self.telemetry) - 1) / self._hz
 
     def clip_span_s(self, start_s: float | None, stop_s: float | None) -> tuple[float, float]:
-        """Return the part of the run between two times, each None for the run's own.
+        """Return the part of the run between two times; None stands for the run's own start or end.
 
         Raises:
-            ConfigError: it is empty.
+            ConfigError: the part is empty.
         """
         low = 0.0 if start_s is None else start_s
         high = self.end_s if stop_s is None else min(stop_s, self.end_s)
@@ -137,7 +137,7 @@ class ClipRun:
 
     def read_moment(self, time_s: float) -> ClipMoment:
         """Return the run at a simulated time within it."""
-        # A time such as 0.29 s is slightly less than 29 hundredths.
+        # As a float, a time such as 0.29 s is slightly less than 29 hundredths.
         tick = min(math.floor(time_s * self._hz + 1e-6), len(self.telemetry) - 1)
         values = []
         for name, (ticks, numbers) in self._values.items():

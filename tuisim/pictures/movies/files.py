@@ -51,7 +51,7 @@ class Clip:
 
     @property
     def view(self) -> Viewport:
-        """Which part of the field its frames would show if the world filled them; it has the panel of the world."""
+        """The view of a whole frame in which the world lies as in the frame, which must have a panel of the world."""
         return find_frame_view(self.recorded, self.panels, self.size)
 
 
@@ -127,7 +127,7 @@ def make_small_movie(recorded: ClipRun) -> tuple[Clip, bytes] | None:
     """Return a movie of the world as GIF, small enough for a page; a long run is shown faster.
 
     Returns:
-        None if the robot does not move, and if the movie would be too large.
+        None if the robot does not move, or if the movie would be too large.
 
     Raises:
         LogError: the mat no longer exists.

@@ -23,7 +23,7 @@ def encode_gif(
 
     Args:
         frames: The frames; at least one.
-        samples: Frames whose colours its palette holds.
+        samples: Frames from whose colours the palette is made.
         durations_ms: How long each frame is shown; multiples of 10.
     """
     palette, content = _Palette(samples), io.BytesIO()
@@ -42,7 +42,7 @@ def encode_gif(
 
 
 class _Palette:
-    """At most 255 colours: the most frequent ones of some frames unchanged, and some near the others.
+    """At most 255 colours: the most frequent ones of some frames unchanged, and colours near the others.
 
     Args:
         frames: The frames.
@@ -63,7 +63,7 @@ class _Palette:
         self._image.putpalette(content)
 
     def reduce(self, frame: Image) -> Image:
-        """Return a frame in these colours."""
+        """Return a frame in the colours of the palette."""
         reduced = frame.quantize(palette=self._image, dither=Dither.NONE)
         # Pillow takes colours that differ little for the same, also where one of them is in the palette.
         packed = _pack_pixels(np.asarray(frame))
@@ -77,5 +77,5 @@ class _Palette:
 
 
 def _pack_pixels(pixels: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint32]:
-    """Return each red, green and blue as one number."""
+    """Return red, green and blue of each pixel as one number."""
     return pixels.astype(np.uint32) @ np.array([1 << 16, 1 << 8, 1], np.uint32)

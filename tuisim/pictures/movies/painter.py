@@ -66,7 +66,7 @@ _ARRAYS_SHARE = 0.45
 
 @dataclass(frozen=True, slots=True)
 class PictureBox:
-    """A part of the picture, in pixels."""
+    """The place of a part of the picture, in pixels."""
 
     left: int
     top: int
@@ -86,13 +86,13 @@ def _fit_size(panels: Sequence[ClipPanel], robot: RobotSpec, area: Area) -> Size
 def find_frame_view(
     recorded: ClipRun, panels: Sequence[ClipPanel], size: Size | None = None
 ) -> Viewport:
-    """Return which part of the world a whole frame would show if its world, which it has, filled it.
+    """Return the view of a whole frame in which the world lies as it does in the frame's panel of the world.
 
-    What is drawn over a frame in this view lies on the frame's world.
+    A picture drawn in this view fits over the frame.
 
     Args:
         recorded: The run.
-        panels: What is shown.
+        panels: The panels of the frame, among them the world.
         size: Width and height in pixels; None for the size that fits the panels.
     """
     robot, area = recorded.run.spec.robot, find_area(recorded.run.spec, recorded.telemetry)
@@ -105,7 +105,7 @@ def find_frame_view(
 
 
 class FramePainter:
-    """Draws a recorded run at one instant after the other.
+    """Draws the frames of a movie of a recorded run, one after the other.
 
     Args:
         recorded: The run.
@@ -182,7 +182,7 @@ def _place_boxes(
     """Return the place of each panel: the world above, arrays and chart below.
 
     Raises:
-        ConfigError: one is too small.
+        ConfigError: a panel would be too small.
     """
     width, height = size[0] - 2 * PAD, size[1] - _CAPTION_PX - PAD
     below = [panel for panel in (ClipPanel.ARRAYS, ClipPanel.CHART) if panel in panels]
@@ -263,7 +263,7 @@ class MovingWorld:
         """Records whose pen traces are drawn."""
 
     def draw_moment(self, moment: ClipMoment) -> Image:
-        """Return the picture. The instants of successive calls must not decrease."""
+        """Return the picture of the world at a moment. The instants of successive calls must not decrease."""
         from PIL import Image
 
         self._painter.trace.add(
@@ -276,7 +276,7 @@ class MovingWorld:
 
 
 class SensorArrays:
-    """What the colour sensors see.
+    """What the colour sensors see in a recorded run.
 
     Args:
         recorded: The run.

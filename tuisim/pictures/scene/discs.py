@@ -39,7 +39,7 @@ _FINEST = 80
 
 @dataclass(frozen=True, slots=True)
 class DiscFace:
-    """What is shown of a colour sensor."""
+    """What is shown of a colour sensor: the pixels that it sees, its values and the program's thresholds."""
 
     name: str
     box: bytes
@@ -54,7 +54,7 @@ class DiscFace:
 
     @property
     def value_words(self) -> str:
-        """What the program gets."""
+        """The value that the program reads, in words."""
         value = self.read.compute_value(self.seen, self.reflected_max)
         match self.read:
             case LightRead.REFLECTED:
@@ -68,14 +68,14 @@ class DiscFace:
 
     @property
     def share(self) -> float:
-        """What the program gets, as a share of what it gets on white."""
+        """The value that the program reads, as a share of the one on white."""
         return self.read.compute_value(self.seen, self.reflected_max) / self.read.find_white(
             self.reflected_max
         )
 
     @property
     def limit_shares(self) -> tuple[float, ...]:
-        """The thresholds on the same scale, those on it."""
+        """The thresholds as shares of the value on white; those from 0 to 1."""
         shares = [
             threshold.value / threshold.read.find_white(self.reflected_max)
             for threshold in self.thresholds
@@ -84,10 +84,10 @@ class DiscFace:
         return tuple(share for share in dict.fromkeys(shares) if 0 <= share <= 1)
 
     def limit_words(self, width: int) -> str:
-        """Return the comparisons of the program and what they give now, such as `line 15 asks > 90: no`.
+        """Return the comparisons of the program and their present results, such as `line 15 asks > 90: no`.
 
         Args:
-            width: Letters; to fit, `asks` is left out, then the lines, then all but the first comparison.
+            width: Room in letters: to fit, `asks` is left out, then the lines, then all but the first comparison.
         """
         texts = []
         for threshold in self.thresholds:
@@ -130,7 +130,7 @@ def list_disc_faces(
         spec: The run.
         instant: The instant.
         field: The mat, prepared for the sensors.
-        program: What tells which value is shown, and its thresholds; None for none.
+        program: The program, for the value that it reads and its thresholds; None for none.
     """
     facts = read_facts(program) if program else None
     thresholds = facts.find_thresholds(spec.robot) if facts else {}
@@ -147,12 +147,12 @@ def list_disc_faces(
 def draw_disc(
     box: bytes, width_px: int, height_px: int, ground_rgb: Rgb, rim_rgb: Rgb, tall: float = 1.0
 ) -> Pixels:
-    """Return the picture of a disc, as large as it fits, in the middle.
+    """Return the picture of a disc, in the middle and as large as fits.
 
     Args:
-        box: The pixels of its box: d × d, three bytes a pixel, row-major.
+        box: The pixels of the box around the disc: d × d, three bytes a pixel, row-major.
         width_px: Width of the picture, at least 1.
-        height_px: Its height, at least 1.
+        height_px: Height of the picture, at least 1.
         ground_rgb: Background colour.
         rim_rgb: Colour around the disc.
         tall: Height of a pixel, as a multiple of its width.
@@ -197,7 +197,7 @@ def _means(samples: npt.NDArray[np.generic], fine: int) -> npt.NDArray[np.float6
 
 
 def _place_samples(size_px: int, fine: int) -> npt.NDArray[np.float64]:
-    """Return the places of samples in pixels from the middle; the middle of an odd size is that of a pixel."""
+    """Return the places of samples along a side, in pixels from its middle; `fine` samples are in a pixel."""
     return (np.arange(size_px * fine) + 0.5) / fine - size_px / 2
 
 

@@ -19,7 +19,11 @@ _FAINT = 0.07
 
 
 def find_mat_floor_rgb(mat: Pixels) -> Rgb:
-    """Return the colour of the floor around a mat, shape (height, width, 3)."""
+    """Return the colour of the floor around a mat.
+
+    Args:
+        mat: Shape (height, width, 3).
+    """
     height_px, width_px = mat.shape[:2]
     return find_floor_rgb(width_px, height_px, memoryview(mat.tobytes()))
 
@@ -32,14 +36,14 @@ def find_grid_rgb(floor_rgb: Rgb) -> Rgb:
 
 
 def find_field_pixels(view: Viewport) -> tuple[int, int, int, int]:
-    """Return the left, top, right and low edge of the field in a picture; what is before it counts as 0."""
+    """Return the left, top, right and lower edge of the field in a picture; negative ones become 0."""
     left, top = (max(round(edge), 0) for edge in view.to_px(0.0, FIELD_HEIGHT_MM))
     right, low = (max(int(edge), 0) for edge in view.to_px(FIELD_WIDTH_MM, 0.0))
     return left, top, right, low
 
 
 def draw_grid(picture: Pixels, view: Viewport, rgb: Rgb) -> None:
-    """Paint the lines of a grid around the field; it is modified in place."""
+    """Paint the lines of a grid around the field into a picture, in place."""
     left, top, right, low = find_field_pixels(view)
     mat = picture[top:low, left:right].copy()
     least_mm = _MIN_CELLS * view.cell.cols * view.mm_per_px

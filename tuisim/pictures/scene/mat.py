@@ -37,8 +37,8 @@ def shrink(
 
     Each picture pixel is the mean of the mat pixels under it. Where a pixel is as wide as a cell or half of it, it is
     moved toward the colour that is rarer around it, so that a line of 10 mm can still be seen when a pixel covers
-    30 mm, and looks the same whether it lies in one row of pixels or between two.
-    Straight edges of areas are sharp there.
+    30 mm, and looks the same whether it lies in one row of pixels or between two. Such pictures also have sharp
+    straight edges between areas.
 
     Args:
         mat: The mat, one pixel a mm, row 0 at the top of the field.
@@ -72,7 +72,11 @@ def shrink(
 def _end_at_cells(
     lines: Pixels, inside: slice, step: int, outside_rgb: tuple[int, int, int]
 ) -> None:
-    """Move both ends of the lines inside the mat to the nearest ends of cells of `step` lines; modified in place."""
+    """Move both ends of the mat in `lines` to the nearest ends of cells of `step` lines, in place.
+
+    Args:
+        inside: The lines that show the mat.
+    """
     first, end = (step * math.floor(edge / step + 0.5) for edge in (inside.start, inside.stop))
     lines[first : inside.start] = lines[inside.start]
     lines[inside.start : first] = outside_rgb
@@ -83,7 +87,7 @@ def _end_at_cells(
 def _find_edges(
     start_mm: float, mm_per_px: float, count: int, size_mm: int
 ) -> tuple[slice, npt.NDArray[np.intp]]:
-    """Return which picture pixels have their middle on the mat, and the mat edges between them, in mm."""
+    """Return which picture pixels have their middle on the mat, and the edges of these pixels on the mat, in mm."""
     middles = start_mm + (np.arange(count) + 0.5) * mm_per_px
     inside = np.flatnonzero((middles >= 0) & (middles < size_mm))
     if not len(inside):
@@ -143,10 +147,10 @@ def _reduce_rows(
 def _keep_detail(
     mean: npt.NDArray[np.float32], low: npt.NDArray[np.float32], high: npt.NDArray[np.float32]
 ) -> Pixels:
-    """Move each mean toward whichever of low and high is further from the mean of the pixels around it.
+    """Move each mean toward its lowest or highest colour, whichever is further from the mean of the pixels around it.
 
-    Plain areas and gradients are hardly touched: low and high are nearly the same there. Nor are the edges of areas: a
-    pixel beside has nearly the colour of the area, which is none of a thin line.
+    Plain areas and gradients are hardly changed: lowest and highest are nearly the same there. Nor are the edges of
+    areas: a pixel beside an edge has nearly the colour of the area, unlike one beside a thin line.
     """
     around = np.pad(mean, ((1, 1), (1, 1), (0, 0)), mode="edge")
     rows, cols = mean.shape[:2]

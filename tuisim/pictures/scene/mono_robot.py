@@ -18,7 +18,7 @@ _BODY = "&"
 
 
 def draw_body(view: Viewport, pose: Pose, outline: RobotOutline) -> dict[tuple[int, int], int]:
-    """Return signs for the cells that a robot covers, at least half of each, as cells by row and column."""
+    """Return the signs of the cells at least half of which a robot covers, by row and column."""
     empty = np.zeros((view.height_px, view.width_px, 3), np.uint8)
     draw_robot(empty, view, pose, outline, CLEARED)
     rows, cols = view.height_px // view.cell.rows, view.width_px // view.cell.cols
@@ -38,13 +38,13 @@ _AHEAD_CELLS = 2.0
 def draw_pointer(
     view: Viewport, pose: Pose, reach_mm: float, pivot: str
 ) -> dict[tuple[int, int], int]:
-    """Return signs for the place and the heading of a robot, as cells by row and column.
+    """Return signs that show place and heading of a robot, by row and column of their cells.
 
     Args:
         view: The visible part of the field.
         pose: Where the robot is.
-        reach_mm: How far it reaches ahead, as it is drawn; the pointer is longer.
-        pivot: The sign of its place.
+        reach_mm: How far the drawn robot reaches ahead; the pointer is longer.
+        pivot: The sign for the place of the robot.
     """
     width_mm, height_mm = view.mm_per_px * view.cell.cols, view.mm_per_row * view.cell.rows
     heading = math.radians(pose.heading_deg)
@@ -80,14 +80,14 @@ def draw_mono_robot(
 ) -> None:
     """Paint a robot as `draw_robot` does, for a terminal of two colours.
 
-    Each point is black or white: a share of both would be a pattern, like the greys of the mat. A white rim keeps the
-    robot apart from what is around it.
+    Each point is black or white: mixed colours would become a pattern, as the greys of the mat do. A white rim keeps
+    the robot apart from what is around it.
     """
     on_white, on_black = np.full_like(picture, 255), np.zeros_like(picture)
     for canvas in (on_white, on_black):
         draw_robot(canvas, view, pose, outline, colors, pressed=pressed, detail_cols=detail_cols)
     white, black = on_white[..., 0].astype(np.intp), on_black[..., 0].astype(np.intp)
-    # Where nothing covers the canvas, one is as white and the other as black as before.
+    # Where the robot does not cover the canvases, one is still white and the other black.
     covered = white - black <= 128
     around = np.pad(covered, 1)
     rim = np.logical_or.reduce([np.roll(around, shift, (0, 1)) for shift in _BESIDE])[1:-1, 1:-1]

@@ -17,10 +17,10 @@ _ARROW_CELLS = 4.0
 
 
 def describe_off_field(pose: Pose, width: int = 80) -> str:
-    """Return how far the middle of a robot is off the field, and on which side; empty if it is on it.
+    """Return how far the middle of a robot is off the field, and on which side; empty if it is on the field.
 
     Args:
-        pose: Of the robot.
+        pose: Pose of the robot.
         width: Letters that there is room for.
     """
     sides = (
@@ -43,13 +43,13 @@ def describe_off_field(pose: Pose, width: int = 80) -> str:
 
 
 def draw_arrow(picture: Pixels, view: Viewport, pose: Pose, reach_px: float, rgb: Rgb) -> None:
-    """Paint an arrow at the edge of a picture that points to a robot, if nothing of that is in the picture.
+    """Paint an arrow at the edge of a picture that points to a robot, if no part of the robot is in the picture.
 
     Args:
         picture: Written in place, shape (view.height_px, view.width_px, 3).
         view: What the picture shows.
-        pose: Of the robot.
-        reach_px: How far it reaches from there, in widths of a pixel.
+        pose: Pose of the robot.
+        reach_px: How far the robot reaches around its pose, in widths of a pixel.
         rgb: Colour of the arrow.
     """
     at_col, at_row = view.to_px(pose.x_mm, pose.y_mm)

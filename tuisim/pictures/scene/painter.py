@@ -43,7 +43,7 @@ _GHOST_OPACITY, _EARLIER_OPACITY = 0.75, 0.6
 
 
 class Faint(StrEnum):
-    """What a translucent robot is."""
+    """Which robot is drawn translucently."""
 
     BESIDE = "beside"
     """That of another run, which is shown beside this one."""
@@ -53,7 +53,7 @@ class Faint(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class SceneState:
-    """The objects on the mat at one moment."""
+    """The objects on the mat at one moment, as they are drawn."""
 
     robot: RobotSpec
     pose: Pose
@@ -75,11 +75,11 @@ class SceneState:
 
 
 class ScenePainter:
-    """Draws one field. Caches what stays the same from frame to frame.
+    """Draws the field with all objects on it. Caches what stays the same from frame to frame.
 
     Args:
         mat: The mat, shape (height in mm, width in mm, 3).
-        outside_rgb: Colour of what lies off the mat, unless that is a floor.
+        outside_rgb: Colour of what lies off the mat, unless `has_floor`.
         trace: The pen trace; it may grow, and be replaced.
         grey: Draw for a terminal with greys only.
         mono: Draw for a terminal without any colours.
@@ -187,7 +187,7 @@ class ScenePainter:
         return self._ground
 
     def _find_pen_ground(self, view: Viewport) -> Pixels:
-        """Return what the pen draws on: not what it has drawn, which may be drawn again."""
+        """Return the mat on which the pen draws, without its trace, which may be drawn again."""
         return self._mat.picture(view)
 
 
@@ -216,7 +216,7 @@ def draw_frame(
     """Paint a frame around the field."""
     left, top, right, low = find_field_pixels(view)
     if not (right and low):
-        # The view has followed a robot off the field.
+        # The field is not in view: the view has followed a robot off it.
         return
     rows, cols = (
         slice(max(top - width_px, 0), low + width_px),
@@ -245,7 +245,7 @@ def draw_rays(
         x_mm: World x of the sensor.
         y_mm: World y of the sensor.
         rays: (world angle in degrees, length in mm) each.
-        grey: Only brightness will be seen.
+        grey: Whether the terminal shows only brightness.
         is_solid: Whether they hide what is below: the thin lines of a file would hardly be seen on white.
     """
     col, row = view.to_px(x_mm, y_mm)

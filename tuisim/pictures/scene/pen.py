@@ -24,12 +24,12 @@ _APART, _GREY_APART = 130.0, 90.0
 
 
 def choose_pen_rgb(ground: Pixels, rgb: Rgb, grey: bool = False) -> Pixels:
-    """Return a colour for each pixel below a line: that of the line, or a darker or lighter one where it would vanish.
+    """Return a colour for each pixel of a line: that of the line, or a darker or lighter one where it would vanish.
 
     Args:
-        ground: Shape (n, 3).
+        ground: The pixels below the line, shape (n, 3).
         rgb: Colour of the line.
-        grey: Only brightness will be seen.
+        grey: Whether the terminal shows only brightness.
     """
     line = np.array(rgb, np.float64)
     if grey:
@@ -72,13 +72,13 @@ def trace_pixels(
 
 
 def _spread(width_px: float) -> FloatArray:
-    """Return the pixels across a line, relative to its middle."""
+    """Return the offsets of pixels across a line from its middle."""
     count = max(1, round(width_px))
     return np.arange(count, dtype=np.float64) - (count - 1) / 2
 
 
 def _join_points(xs: FloatArray, ys: FloatArray, step_mm: float) -> tuple[FloatArray, FloatArray]:
-    """Return points no further apart than a step along the trace, NaN dropped."""
+    """Return points along a trace that are no further apart than a step, without NaN."""
     good = np.isfinite(xs) & np.isfinite(ys)
     if len(xs) < 2:
         return xs[good], ys[good]
@@ -122,7 +122,7 @@ class Piece:
         return cls(xs_mm, ys_mm, parse_pen_color(pen.color), pen.width_mm)
 
     def lift(self) -> Piece:
-        """Return the same after the pen was lifted."""
+        """Return the same piece with the pen lifted before it, so that it is not joined to another one."""
         return replace(
             self, xs_mm=np.insert(self.xs_mm, 0, np.nan), ys_mm=np.insert(self.ys_mm, 0, np.nan)
         )
@@ -134,7 +134,7 @@ class Piece:
 
 
 class PenTrace:
-    """Everything that the pen has drawn since the trace was last cleared."""
+    """Everything that the pen has drawn since the trace was cleared."""
 
     def __init__(self) -> None:
         self._pieces: list[Piece] = []
@@ -163,12 +163,12 @@ class PenTrace:
         return pieces
 
     def put_back(self, pieces: list[Piece]) -> None:
-        """Put pieces of a cleared trace before all others; what is drawn is drawn anew."""
+        """Put pieces of a cleared trace before all others; painters then draw the whole trace anew."""
         self._pieces[:0] = pieces
         self.clears += 1
 
     def iterate_pieces(self, first: int) -> Iterator[Piece]:
-        """Return the pieces from index `first` on."""
+        """Yield the pieces from index `first` on."""
         return iter(self._pieces[first:])
 
     def __len__(self) -> int:
@@ -188,14 +188,14 @@ class PenTrace:
 
 
 def place_pen_mm(robot: RobotSpec, telemetry: npt.NDArray[Any]) -> tuple[FloatArray, FloatArray]:
-    """Return x and y of the pen in the world at each record of telemetry, up or down, each of shape (n,)."""
+    """Return x and y of the pen in the world at each record of telemetry, each of shape (n,), also where it is up."""
     return compute_world_points_mm(telemetry, robot.pen.x_mm, robot.pen.y_mm)
 
 
 def place_drawn_mm(
     robot: RobotSpec, telemetry: npt.NDArray[Any]
 ) -> tuple[FloatArray, FloatArray, npt.NDArray[np.bool_]]:
-    """Return x and y of the pen at each record of telemetry, NaN where it was up, and whether it was; shape (n,)."""
+    """Return x and y of the pen at each record of telemetry, NaN where it is up; and where it is up. Shape (n,)."""
     xs_mm, ys_mm = place_pen_mm(robot, telemetry)
     lifted = (telemetry["flags"] & FLAG_PEN_DOWN) == 0
     xs_mm[lifted] = ys_mm[lifted] = np.nan
@@ -216,6 +216,6 @@ def build_pen_trace(spec: RunSpec, telemetry: npt.NDArray[Any]) -> Piece:
     xs_mm[far] = ys_mm[far] = np.nan
     places = np.nan_to_num(np.round(np.stack((xs_mm, ys_mm)) / _FINE_MM), nan=FAR_MM)
     moved = np.any(np.diff(places, axis=1, prepend=np.nan) != 0, axis=0)
-    # The end of a line is where the next one begins, or the pen is lifted.
+    # The last point before a move is needed, too: it ends a line.
     needed = moved | np.append(moved[1:], True)
     return Piece.from_points(xs_mm[needed], ys_mm[needed], spec.robot.pen)

@@ -35,7 +35,7 @@ RIM_RGB: Rgb = (232, 234, 238)
 
 
 def find_area(spec: RunSpec, records: NDArray[Any]) -> Area:
-    """Return where a robot has been, with the whole field; without a floor around it, the field.
+    """Return the area of the field, extended to where a robot has been; without a floor around it, only the field.
 
     Args:
         records: Telemetry, structured as `TICK_FIELDS`.
@@ -56,7 +56,7 @@ def find_area(spec: RunSpec, records: NDArray[Any]) -> Area:
 def build_world_view(
     robot: RobotSpec, mm_per_px: float = MM_PER_PX, area: Area = FIELD
 ) -> Viewport:
-    """Return a view in which a robot is completely visible while its axle is in an area."""
+    """Return a view in which a robot is completely visible wherever its axle is in an area."""
     # The field is no multiple of three mm wide: the rest of the last column is left out.
     width_px, height_px = (max(int(side_mm / mm_per_px), 1) for side_mm in area.size_mm)
     rim_px = math.ceil(measure_reach_mm(build_outline(robot)) / mm_per_px) + FRAME_PX
@@ -65,7 +65,7 @@ def build_world_view(
 
 
 def find_view(spec: RunSpec, area: Area = FIELD) -> Viewport:
-    """Return the view of `draw_world`: a larger area is shown in a picture that is about as large."""
+    """Return the view of `draw_world`; a larger area has a smaller scale, so that pictures have similar sizes."""
     larger = max(
         side_mm / field_mm for side_mm, field_mm in zip(area.size_mm, FIELD.size_mm, strict=True)
     )
@@ -73,7 +73,7 @@ def find_view(spec: RunSpec, area: Area = FIELD) -> Viewport:
 
 
 def fit_view(robot: RobotSpec, width_px: int, height_px: int, area: Area = FIELD) -> Viewport:
-    """Return the view of `build_world_view` in the largest scale that fits a size."""
+    """Return the view of `build_world_view` in the largest scale with which the picture fits a size."""
     reach_mm = measure_reach_mm(build_outline(robot))
     # The rim is rounded up to whole pixels on both sides.
     sides = zip(area.size_mm, (width_px, height_px), strict=True)
@@ -85,11 +85,11 @@ def fit_view(robot: RobotSpec, width_px: int, height_px: int, area: Area = FIELD
 
 
 def build_scene(spec: RunSpec, pose: Pose | None, *, rays: bool = False) -> SceneState:
-    """Return what is on the field of a run.
+    """Return the objects on the field of a run.
 
     Args:
         pose: Where the robot is; None for no robot.
-        rays: Whether the rays of the ultrasonic sensor are seen.
+        rays: Whether to draw the rays of the ultrasonic sensor.
     """
     robot, world, start = spec.robot, spec.world, pose or spec.world.start
     sensor = robot.ultrasonic if rays and pose else None
@@ -109,7 +109,7 @@ def build_scene(spec: RunSpec, pose: Pose | None, *, rays: bool = False) -> Scen
 def build_painter(
     mat: Pixels, traces: Sequence[Piece] = (), *, has_floor: bool = False
 ) -> ScenePainter:
-    """Return what draws a field for files, with pen traces on it."""
+    """Return a painter that draws a field for files, with pen traces on it."""
     trace = PenTrace()
     for piece in traces:
         trace.add(piece.lift())
@@ -125,13 +125,13 @@ def draw_world(
     rays: bool = False,
     area: Area = FIELD,
 ) -> Image:
-    """Return mat, obstacles, pen traces and robot.
+    """Return a picture of mat, obstacles, pen traces and robot.
 
     Args:
         mat: Shape (height, width, 3), rows from the top.
         pose: Where the robot is, by default at its start.
         rays: Whether to draw the rays of the ultrasonic sensor.
-        area: What is shown.
+        area: The part of the world to show.
 
     Returns:
         The picture, in the size of `find_view`.
@@ -144,7 +144,7 @@ def draw_world(
 
 
 def read_pose(record: TickRecord | None) -> Pose | None:
-    """Return the pose of a record; None without one, and for a damaged record, which may have no valid pose."""
+    """Return the pose in a record; None for no record, and for a damaged one, which may have no valid pose."""
     valid = record is not None and math.isfinite(record.x_mm + record.y_mm + record.heading_deg)
     return record.pose if record is not None and valid else None
 
@@ -168,7 +168,7 @@ _MAX_PATH_POINTS = 2000
 
 
 def draw_path(run: StoredRun, port: Viewport, outside_rgb: Rgb) -> Pixels:
-    """Return a small picture of the way of a run on its mat, in the size of a view.
+    """Return a small picture of the path of a run on its mat, in the size of a view.
 
     Raises:
         LogError: the recording is damaged, or the mat no longer exists.

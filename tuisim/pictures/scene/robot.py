@@ -47,7 +47,7 @@ _WEIGHTS = np.array([1.0, 1.5, 1.0, 2.0, 1.5, 2.0, 2.0, 2.0, 1.2])
 
 @dataclass(frozen=True, slots=True)
 class RobotColors:
-    """Colours of the parts; the defaults are in every 256-colour palette."""
+    """Colours of the parts of a robot; the defaults are in every 256-colour palette."""
 
     edge: Rgb = (255, 255, 255)
     body: Rgb = (0, 95, 215)
@@ -111,7 +111,7 @@ EARLIER = RobotColors(
 
 
 def measure_reach_mm(outline: RobotOutline) -> float:
-    """Return the radius about a robot's pose of a circle that holds everything that is drawn of it."""
+    """Return the radius of a circle around a robot's pose that contains all that is drawn of the robot."""
     wheels_mm = math.hypot(outline.half_width_mm, outline.wheel_radius_mm)
     bars_mm = (math.hypot(abs(x) + half, abs(y) + _BUMPER_MM) for x, y, half in outline.bumpers_mm)
     spots_mm = (math.hypot(*spot) + _SPOT_MM for spot in outline.other_sensors_mm)
@@ -139,7 +139,7 @@ def draw_robot(
         picture: Written in place, shape (view.height_px, view.width_px, 3).
         opacity: 0 … 1.
         pressed: Whether each bumper is pressed; empty for none.
-        detail_cols: Details are drawn for so many pixels across a cell, 1 or 2; None: for those of the view.
+        detail_cols: Pixels across a cell for which details are chosen, 1 or 2; None for those of the view.
     """
     detail_cols = detail_cols or min(view.cell.cols, 2)
     scale = choose_scale(outline, view)
@@ -162,7 +162,7 @@ def draw_robot(
     cos, sin = math.cos(heading), math.sin(heading)
     side, ahead = east * sin - north * cos, east * cos + north * sin
     detail_mm = step_mm * view.cell.cols / detail_cols
-    # Fine pixels are too small for a part of one to be seen.
+    # In fine pixels, an edge thinner than a pixel would not be seen.
     edge_mm = min(colors.edge_cells * detail_cols * detail_mm, colors.edge_mm)
     if is_crisp and not colors.has_small_edge:
         edge_mm = 0.0
@@ -198,7 +198,11 @@ def _classify_samples(
     *,
     has_marker: bool,
 ) -> npt.NDArray[np.intp]:
-    """Return which part covers each sample, given by its distance to the right and ahead in mm."""
+    """Return which part of a robot covers each sample.
+
+    Args:
+        side, ahead: Where the samples are: to the right of the robot's axis, and ahead, in mm.
+    """
     across = np.abs(side)
     parts = np.zeros(side.shape, np.intp)
     front_mm, back_mm = outline.front_mm, outline.back_mm
@@ -237,7 +241,7 @@ def _mount(
     px_mm: float,
     pressed: tuple[bool, ...],
 ) -> None:
-    """Add bumpers and other sensors; the heading marker stays on top."""
+    """Add bumpers and other sensors to `parts`; the heading marker stays on top."""
     free = parts != _MARKER
     for number, (x_mm, y_mm, half) in enumerate(outline.bumpers_mm):
         # A bar is at least half a pixel thick and long, to stay visible.
@@ -249,7 +253,11 @@ def _mount(
 
 
 def _pick_part(blocks: npt.NDArray[np.intp]) -> npt.NDArray[np.intp]:
-    """Return the part that weighs most in each pixel, as blocks of one sample."""
+    """Return the part with the most weight in each pixel.
+
+    Args:
+        blocks: The parts of the samples, in a block for each pixel.
+    """
     weights = np.stack(
         [(blocks == part).sum(axis=(1, 3)) * weight for part, weight in enumerate(_WEIGHTS)]
     )

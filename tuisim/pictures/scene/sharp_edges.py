@@ -30,13 +30,13 @@ _Places = tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]
 
 
 def sharpen_edges(picture: Pixels, mean: _Numbers, span: _Numbers, area: tuple[int, int]) -> None:
-    """Give each pixel across a straight edge of two areas, upright or level, one of their colours.
+    """Give each pixel on a straight edge between two areas, upright or level, the colour of one of them.
 
     Args:
         picture: Modified in place, shape (rows, columns, 3).
-        mean: Of the mat below each pixel, of the same shape.
-        span: Of the colours there, likewise.
-        area: Rows and columns of one colour that are an area, and no line.
+        mean: Means of the mat below each pixel, of the same shape.
+        span: Ranges of the colours of the mat below each pixel, of the same shape.
+        area: Rows and columns of one colour from which on they are an area, and not a line.
     """
     is_area = _find_areas(mean, span, area)
     light = _list_neighbors(np.where(is_area, mean @ _LIGHT, np.nan))
@@ -64,7 +64,7 @@ def sharpen_edges(picture: Pixels, mean: _Numbers, span: _Numbers, area: tuple[i
         picture[edge_places[0][is_so], edge_places[1][is_so]] = np.rint(color[is_so]).astype(
             np.uint8
         )
-    # Where three areas meet, of whichever is nearest.
+    # Pixels where three areas meet get the nearest of their colours.
     colors = np.where(np.isnan(near)[..., None], np.nan, around.transpose(1, 2, 0))
     others = [np.abs(colors - color).max(axis=2) > _EVEN for color in (dark, bright)]
     third = np.logical_and(*others).any(axis=0) & ~(is_bright | is_dark)[edge_places]
@@ -74,7 +74,7 @@ def sharpen_edges(picture: Pixels, mean: _Numbers, span: _Numbers, area: tuple[i
 
 
 def _close_gaps(picture: Pixels, mean: _Numbers, is_sharp: _Flags, edge_places: _Places) -> None:
-    """Give pixels where three areas meet a colour of the edge that goes on at both sides of them, the nearer one."""
+    """Give pixels where three areas meet a colour of an edge that goes on at both sides of them, the nearer colour."""
     for axis in (0, 1):
         inside = (edge_places[axis] > 0) & (edge_places[axis] < picture.shape[axis] - 1)
         here = edge_places[0][inside], edge_places[1][inside]
@@ -87,7 +87,7 @@ def _close_gaps(picture: Pixels, mean: _Numbers, is_sharp: _Flags, edge_places: 
 
 
 def _find_areas(mean: _Numbers, span: _Numbers, area: tuple[int, int]) -> _Flags:
-    """Return which pixels belong to a rectangle of one colour that is as large as an area."""
+    """Return which pixels belong to a rectangle of one colour that is at least as large as an area."""
     rows, cols = area
     if any(size > length for size, length in zip(area, mean.shape, strict=False)):
         return np.zeros(mean.shape[:2], bool)
@@ -106,7 +106,7 @@ def _find_areas(mean: _Numbers, span: _Numbers, area: tuple[int, int]) -> _Flags
 
 
 def _split_sides(shares: _Numbers) -> tuple[_Flags, _Flags]:
-    """Return which pixels are of the brighter side of an edge, and which of the darker one.
+    """Return which pixels belong to the brighter side of an edge, and which to the darker side.
 
     Args:
         shares: How much of each pixel the brighter side covers; NaN where there is no edge.
@@ -150,7 +150,7 @@ def _find_runs(shares: _Numbers, axis: int) -> _Flags:
 def _reduce_along(
     operation: np.ufunc, values: npt.NDArray[Any], axis: int, size: int
 ) -> npt.NDArray[Any]:
-    """Return an operation on so many values that follow each other along an axis, for each of their places."""
+    """Return the result of an operation on `size` successive values along an axis, for each position."""
     lines = values.swapaxes(0, axis)
     count = len(lines) - size + 1
     reduced: npt.NDArray[Any] = operation.reduce(
@@ -160,13 +160,13 @@ def _reduce_along(
 
 
 def _spread(flags: _Flags, axis: int, size: int) -> _Flags:
-    """Return all values of the places that `_reduce_along` has found."""
+    """Return which values belong to a position that `_reduce_along` has found, with all of its `size` values."""
     beyond = [(size - 1, size - 1) if each == axis else (0, 0) for each in range(2)]
     return _reduce_along(np.logical_or, np.pad(flags, beyond), axis, size)
 
 
 def _list_neighbors(values: npt.NDArray[Any]) -> list[npt.NDArray[Any]]:
-    """Return the values of each pixel and of those around it."""
+    """Return the values of all pixels, and for each direction those of their neighbours."""
     rows, cols = values.shape
     around = np.pad(values, 1, mode="edge")
     return [around[row : row + rows, col : col + cols] for row in range(3) for col in range(3)]

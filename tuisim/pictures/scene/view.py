@@ -39,7 +39,7 @@ FIELD = Area(0.0, 0.0, float(FIELD_WIDTH_MM), float(FIELD_HEIGHT_MM))
 
 @dataclass(frozen=True, slots=True)
 class Viewport:
-    """A picture of part of the field, in the app of character cells."""
+    """The part of the world that a picture shows; in the app, the picture consists of character cells."""
 
     width_px: int
     height_px: int
@@ -52,7 +52,7 @@ class Viewport:
 
     @property
     def mm_per_row(self) -> float:
-        """The height of a pixel."""
+        """The height of a pixel in mm."""
         return self.mm_per_px * self.cell.tall
 
     def to_px(self, x_mm: float, y_mm: float) -> tuple[float, float]:
@@ -67,7 +67,7 @@ class Viewport:
 def fit_field(
     width_px: int, height_px: int, cell: CellPoints = SQUARE, area: Area = FIELD
 ) -> Viewport:
-    """Return the viewport that shows an area, centred, in a picture of that size (each at least 1)."""
+    """Return the viewport that shows an area, centred, in a picture of a given size (each at least 1)."""
     mm_per_px = _fit_mm_per_px(width_px, height_px, cell, area)
     middle = (area.left + area.right) / 2, (area.lower + area.upper) / 2
     return _center_view(width_px, height_px, mm_per_px, *middle, cell)
@@ -95,7 +95,7 @@ def follow_robot(
         pose: The pose of the robot.
         previous: The viewport of the last frame, if any.
         cell: The pixels in a character cell.
-        on_floor: Whether the robot may leave the field: then the view follows it there, by thirds of its size.
+        on_floor: Whether the robot may leave the field: then the view follows it off the field, by thirds of its size.
     """
     if zoom == 1 and not on_floor:
         return fit_field(width_px, height_px, cell)
@@ -119,7 +119,7 @@ def follow_robot(
 
 
 def _shift_view(view: Viewport, zoom: int, pose: Pose) -> Viewport:
-    """Return a view moved by thirds of its size until the robot is not near its edges."""
+    """Return a view, moved by thirds of its size until the robot is not near its edges."""
     share = _KEEP_ON_FLOOR if zoom == 1 else _KEEP_INSIDE
     col, row = view.to_px(pose.x_mm, pose.y_mm)
     right_px = _count_steps(col, view.width_px, share, view.cell.cols)
@@ -129,7 +129,7 @@ def _shift_view(view: Viewport, zoom: int, pose: Pose) -> Viewport:
 
 
 def _count_steps(at_px: float, size_px: int, share: float, cell_px: int) -> int:
-    """Return by how much a picture has to move along an axis, in pixels."""
+    """Return by how many pixels a picture has to move along an axis."""
     margin_px = size_px * share
     beyond_px = min(at_px - margin_px, 0.0) + max(at_px - (size_px - margin_px), 0.0)
     if not math.isfinite(beyond_px):
