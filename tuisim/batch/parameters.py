@@ -313,7 +313,9 @@ def _sample(name: str, inside: str, key: str) -> SampleValues:
         inside: The text between the parentheses.
     """
     if name not in [*RandomDraw]:
-        raise ConfigError(f"no such sample {name}(…)", nearest(name, [*RandomDraw]), key=key)
+        raise ConfigError(
+            f"there is no random draw {name}(…)", nearest(name, [*RandomDraw]), key=key
+        )
     words = [word.strip() for word in inside.split(",")]
     seed = 0
     if words and (named := re.fullmatch(r"seed\s*=\s*(\d{1,18})", words[-1])):

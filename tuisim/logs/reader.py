@@ -150,7 +150,7 @@ def _build_log(title: str, parts: Sequence[pa.Table], notes: Notes, choices: Rea
     if layout.since_first:
         unit = UNIT_NAMES[layout.unit_s]
         notes.say(
-            f"the times in {layout.time!r} are {unit} since 1970: shown from the first one on"
+            f"the times in {layout.time!r} are {unit} since 1970: here they count from 0 at the first row"
         )
     unread = find_unread_time(table, layout) if choices.time is None else ""
     if unread:

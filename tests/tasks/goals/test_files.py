@@ -297,7 +297,7 @@ BAD = {
     ),
     "a comparison that is none": (
         goal("keep = 'x_mm'"),
-        "line 7: goal[2].keep.comparisons[1]: no comparison: 'x_mm'",
+        "line 7: goal[2].keep.comparisons[1]: 'x_mm' is not a comparison",
     ),
     "an instant that is kept": (
         goal("keep = 'sample Grey'"),
@@ -329,7 +329,7 @@ BAD = {
     ),
     "a structure without a number": (
         goal("structure = 'loops >= x'"),
-        "structure.comparisons[1]: no comparison",
+        "structure.comparisons[1]: 'loops >= x' is not a comparison",
     ),
     "a time within which a text is": (
         goal("use = 'print'", "within_s = 5"),

@@ -110,7 +110,7 @@ def test_who_is_missing_and_who_is_absent(tmp_path: Path) -> None:
         ("name,mail\nben,x\n", "submission, Username, SIS Login ID"),
         ("submission\nben\nben\n", "two rows for 'ben'"),
         ('submission\n"ben\n', "is no CSV"),
-        ("submission\nb\xe9n\n".encode("latin-1"), "is no CSV in UTF-8"),
+        ("submission\nb\xe9n\n".encode("latin-1"), "is not a CSV file in UTF-8"),
     ],
 )
 def test_a_wrong_class_list_says_what_is_wrong(

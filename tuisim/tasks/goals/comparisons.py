@@ -47,7 +47,7 @@ def _parse_comparison(text: str, key: str) -> ValueCondition:
     condition = parse_goal_condition(text)
     if condition is None:
         raise ConfigError(
-            f"no comparison: {text!r}",
+            f"{text!r} is not a comparison",
             f"{describe_comparison()}, such as left_red_pc < 10",
             key=key,
         )
@@ -134,7 +134,7 @@ class StructureCondition(Condition):
                 or not condition.value.isdecimal()
             ):
                 raise ConfigError(
-                    f"no comparison: {text!r}",
+                    f"{text!r} is not a comparison",
                     f"{describe_comparison()}, such as loops >= 1",
                     key=key,
                 )

@@ -181,7 +181,7 @@ class TouchNothingCondition(Condition):
 
     def __post_init__(self) -> None:
         if not (self.obstacles or self.walls):
-            raise ConfigError("is about neither obstacles nor walls", "leave one of them at true")
+            raise ConfigError("obstacles and walls are both false", "set one of them to true")
 
 
 @dataclass(frozen=True, slots=True)

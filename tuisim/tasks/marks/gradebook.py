@@ -84,8 +84,8 @@ def read_roster(path: Path) -> Roster:
         ]
     except (UnicodeDecodeError, csv.Error) as error:
         raise ConfigError(
-            f"is no CSV in UTF-8: {error}",
-            "a heading, and one row for each student",
+            f"is not a CSV file in UTF-8: {error}",
+            "it needs a heading, and one row for each student",
             file=file_name,
         ) from error
     heads = [cell.casefold() for cell in rows[0]] if rows else []
