@@ -246,7 +246,7 @@ async def test_the_best_answers_are_in_sight_below_each_other(size: tuple[int, i
 @cases(
     "question, passage",
     {
-        "paragraph": ("How do I make the robot slower?", "A smaller number makes"),
+        "paragraph": ("How do I make the robot slower?", "With a smaller number"),
         "row": ("leave a trace behind the robot", "Pen up or down"),
         "first": ("colours look wrong in my terminal", "does not announce"),
     },
