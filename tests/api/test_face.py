@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -60,11 +61,11 @@ def test_an_error_of_the_program_is_in_the_run() -> None:
     "choices, expected",
     {
         "unknown argument": ({"backgrond": "Loop"}, "did you mean background"),
-        "unknown mat": ({"background": "Nope"}, "no such mat"),
+        "unknown mat": ({"background": "Nope"}, "^background: no such mat"),
         "no number": ({"x": "far"}, "x: must be a number"),
         "no truth value": ({"pendown": 1}, "pendown: must be true or false"),
         "text for a number": ({"x": "100"}, "x: must be a number"),
-        "no time": ({"timeout_s": 0}, "must be above 0"),
+        "no time": ({"timeout_s": 0}, "timeout_s: must be a number above 0"),
     },
 )
 def test_bad_choices_are_refused(choices: dict[str, Any], expected: str) -> None:
@@ -207,6 +208,24 @@ def test_an_experiment_takes_place_in_a_world_file_instead_of_that_of_its_goals(
         POSE, seeds=[1, 2], world=tmp_path / "lab.toml", goals=tmp_path / "goals.toml", jobs=1
     )
     assert (frame["x_mm"].tolist(), frame["goal.done"].tolist()) == ([400, 400], [True, True])
+
+
+def test_a_call_is_a_program() -> None:
+    assert tuisim.simulate("print(1 + 1)").output == "2\n"
+
+
+@cases(
+    "describe, words",
+    {
+        "mat": (lambda: tuisim.World(background="Nope"), "^background: no such mat"),
+        "hub": (lambda: tuisim.Robot(hub="PrimeHub"), "hub: needs a robot with its ports"),
+    },
+)
+def test_a_description_is_checked_where_it_is_written(
+    describe: Callable[[], object], words: str
+) -> None:
+    with pytest.raises(ConfigError, match=words):
+        describe()
 
 
 def test_a_wrong_world_is_refused(tmp_path: Path) -> None:

@@ -118,12 +118,28 @@ def test_a_lab_is_one_line() -> None:
     {
         "column": ({"columns": ["left_redd"]}, "this robot has no 'left_redd'"),
         "keyword": ({"sed": 3}, "no such argument 'sed'"),
-        "robot": ({"robot": "Nope"}, "no such robot"),
+        "robot": ({"robot": "Nope"}, "robot: no such robot"),
+        "mat": ({"world": "Loop"}, r"a mat is tuisim\.World"),
+        "robot for a world": ({"world": tuisim.Robot()}, "world: must be a .toml file or a World"),
+        "option of a world": ({"background": "Loop"}, r"tuisim\.World\(background=…\) has it"),
     },
 )
 def test_what_is_wrong_is_refused(given: dict[str, Any], words: str) -> None:
     with pytest.raises(ConfigError, match=words):
         tuisim.Lab(**given)
+
+
+@cases(
+    "given, words",
+    {
+        "one speed": ({"left": 100}, "left, right: must be two numbers, got 100, None"),
+        "no number": ({"left": np.nan, "right": 3}, "must be two numbers, got nan, 3"),
+        "period": ({"period_s": -1}, "period_s: must not be negative"),
+    },
+)
+def test_a_wrong_step_is_refused(given: dict[str, Any], words: str) -> None:
+    with pytest.raises(ConfigError, match=words):
+        tuisim.Lab().step(**given)
 
 
 STEPS = 3000

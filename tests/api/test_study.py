@@ -38,9 +38,10 @@ def test_constants_vary_and_functions_measure_each_run() -> None:
 
 def test_columns_are_those_of_each_run_over_time() -> None:
     columns = ["x_mm", "left_red"]
+    with_time = ["time", *columns]
     how: dict[str, Any] = {"background": "Grey_bands", "x": 100}
     frame = tuisim.experiment(
-        PROGRAM, seeds=[4, 2], sensornoise=[0, 20], columns=columns, jobs=2, **how
+        PROGRAM, seeds=[4, 2], sensornoise=[0, 20], columns=with_time, jobs=2, **how
     )
     assert [*frame.columns] == ["run", "sensornoise", "seed", "time", *columns]
     for run, noise, seed in ((1, 0, 4), (2, 0, 2), (3, 20, 4), (4, 20, 2)):
@@ -114,6 +115,12 @@ def test_a_mean_that_is_known_needs_no_further_seeds() -> None:
         "seeds twice": ({"parameters": {"seed": [1]}}, "the seed varies by seeds="),
         "no values": ({"sensornoise": []}, "sensornoise: has no values"),
         "constant": ({"constants": {"GAINS": 1}}, "has no constant GAINS"),
+        "no seeds": ({"seeds": []}, "seeds: has no values"),
+        "no function": ({"metrics": {"n": 3}}, "metrics: must be functions of a run"),
+        "no value": ({"metrics": {"n": lambda run: [1, 2]}, "jobs": 1}, "n of run 1 is"),
+        "expression": ({"expressions": {"x_mm": "1"}}, "^expressions x_mm: cannot be"),
+        "letters": ({"answers": "yes"}, "answers: must be a list of texts, got 'yes'"),
+        "mat": ({"background": ["Loop", "Lop"]}, "^background: no such mat 'Lop'"),
         "keep": ({"keep": "some"}, "keep: no such value 'some'"),
         "no program": ({"program": []}, "no program is named"),
         "seeds": ({"seeds": "0..4"}, "seeds: must be several"),
@@ -128,5 +135,6 @@ def test_what_a_metric_raises_ends_the_experiment() -> None:
     def fail(run: object) -> None:
         raise LookupError("nothing there")
 
-    with pytest.raises(LookupError, match="nothing there"):
+    with pytest.raises(LookupError, match="nothing there") as raised:
         tuisim.experiment(PROGRAM, seeds=[0], metrics={"n": fail}, jobs=1)
+    assert raised.value.__notes__ == ["in the metric 'n' of run 1"]

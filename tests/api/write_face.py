@@ -105,8 +105,8 @@ def simulate(
     An exception in the program is not raised here: see `Run.state` and `Run.error`.
 
     Args:
-        program: A file, the name of an example, source text of several lines, or a function: its source is the
-            program, and what it uses of its file goes along.
+        program: A file, the name of an example, source text of several lines or a single call, or a function: its
+            source is the program, and what it uses of its file goes along.
         arguments: The program's `sys.argv[1:]`.
         answers: The return values of successive `input()` calls.
         timeout_s: Limit in simulated seconds.
@@ -125,7 +125,7 @@ EXPERIMENT = '''
 def experiment(
     program: Program | Sequence[Program],
     *,
-    seeds: Iterable[int] = (),
+    seeds: Iterable[int] | None = None,
     constants: Values | None = None,
     parameters: Values | None = None,
     metrics: Metrics | None = None,
@@ -150,7 +150,7 @@ def experiment(
 
     Args:
         program: As for `simulate`; or several.
-        seeds: The seeds, such as `range(200)`; without any, 0.
+        seeds: The seeds, such as `range(200)`; by default 0.
         constants: Values of the program's constants, what it assigns to a name outside its functions:
             `{{"GAIN": [0.2, 0.4]}}`.
         parameters: Values by key of a world or robot file: `{{"robot.wheel_diameter_mm": [54, 56]}}`; a text is read as

@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from tuisim.api.descriptions import read_options, read_world
+from tuisim.api.descriptions import plain, read_options, read_world
 from tuisim.api.run import Run
 from tuisim.base.errors import ConfigError
 from tuisim.base.source import Program
@@ -22,12 +22,12 @@ from tuisim.settings.build import build_run_spec
 
 
 def read_source(program: str | Path | Callable[[], object]) -> ProgramSource:
-    """Return a program by its file, the name of an example, its text of several lines, or a function.
+    """Return a program by its file, the name of an example, its text, or a function.
 
     Raises:
         ConfigError: there is no such program, or its first line is wrong.
     """
-    if isinstance(program, str) and "\n" in program:
+    if isinstance(program, str) and ("\n" in program or program.endswith(")")):
         return build_program(program, None, "program")
     if not isinstance(program, str | Path):
         return read_function(program)
@@ -44,13 +44,31 @@ def prepare_program(
     """
     settings = build_program_settings(source, *layers)
     started = settings.apply(source.program)
-    return replace(started, arguments=tuple(arguments)) if arguments else started, settings
+    own = read_texts(arguments, "arguments")
+    return replace(started, arguments=own) if own else started, settings
 
 
-def check_timeout(timeout_s: float) -> None:
-    """Refuse a limit that no time is below."""
-    if not timeout_s > 0:
-        raise ConfigError(f"must be above 0, got {timeout_s!r}", key="timeout_s")
+def build_run_options(timeout_s: float, answers: Sequence[str]) -> RunOptions:
+    """Return how a run is executed.
+
+    Raises:
+        ConfigError: no time is below the limit, or there is one text in place of several.
+    """
+    limit_s = plain(timeout_s)
+    if not isinstance(limit_s, int | float) or not limit_s > 0:
+        raise ConfigError(f"must be a number above 0, got {timeout_s!r}", key="timeout_s")
+    return RunOptions(time_limit_s=limit_s, answers=read_texts(answers, "answers"))
+
+
+def read_texts(texts: Sequence[str], key: str) -> tuple[str, ...]:
+    """Return texts; a single one would be taken for its letters.
+
+    Raises:
+        ConfigError: they are no list of texts; `key` is to blame.
+    """
+    if isinstance(texts, str) or not all(isinstance(text, str) for text in texts):
+        raise ConfigError(f"must be a list of texts, got {texts!r}", key=key)
+    return tuple(texts)
 
 
 def run_program(
@@ -63,14 +81,13 @@ def run_program(
     **options: Any,
 ) -> Run:
     """Run a program; arguments as of `tuisim.simulate`."""
-    check_timeout(timeout_s)
+    run_options = build_run_options(timeout_s, answers)
     chosen = read_options(options)
     in_world = read_world(world, chosen.get("mats"))
     started, settings = prepare_program(read_source(program), arguments, in_world, chosen)
     spec = build_run_spec(settings.settings)
     actions = press_actions(settings.settings["press"], spec.profile.tick_hz)
-    run_options = RunOptions(time_limit_s=timeout_s, answers=tuple(answers), actions=actions)
-    handle = start_run(started, spec, run_options, RunStore())
+    handle = start_run(started, spec, replace(run_options, actions=actions), RunStore())
     try:
         handle.wait()
     finally:

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from tuisim.base.errors import ConfigError
+from tuisim.engine.core.sensors import find_named_column
+from tuisim.engine.core.spec import RunSpec
 from tuisim.programs.program_file import find_program
-from tuisim.settings.options import APP, APP_PATHS, OPTIONS, Option, Settings
+from tuisim.settings.build import build_run_spec
+from tuisim.settings.options import APP, APP_PATHS, OPTIONS, Option, Settings, merge_settings
 from tuisim.settings.overrides import resolve_keys
 from tuisim.settings.robots import DEFAULT_ROBOT
-from tuisim.settings.worlds import load_world
+from tuisim.settings.worlds import is_world_name, load_world
 
 OPTIONS_BY_NAME: Mapping[str, Option] = {
     option.name: option
@@ -47,7 +50,8 @@ class Description:
             for name, value in arguments.items()
             if value is not None and value is not self
         }
-        self.settings  # noqa: B018  # what is wrong is said where it is written
+        # What is wrong is said where it is written.
+        build_run_spec(merge_settings(self.settings))
 
     @property
     def settings(self) -> Mapping[str, Any]:
@@ -79,8 +83,12 @@ class RobotDescription(Description):
         """The setting `robot`."""
         values = {**self._values}
         base, parts = values.pop("base", DEFAULT_ROBOT), values.pop("parts", {})
+        if "hub" in values and base == DEFAULT_ROBOT:
+            raise ConfigError(
+                "needs a robot with its ports", "such as base='Prime_Robot'", key="hub"
+            )
         keys = {f"robot.{key}": value for key, value in {**values, **parts}.items()}
-        return resolve_keys({"robot": base, **keys}, Settings(), Path("robot"))
+        return resolve_keys({"robot": base, **keys}, Settings(), Path("Robot"))
 
 
 def plain(value: Any) -> Any:
@@ -88,6 +96,16 @@ def plain(value: Any) -> Any:
     if isinstance(value, os.PathLike):
         return os.fspath(value)
     return value.item() if hasattr(value, "item") else value
+
+
+def read_columns(columns: Sequence[str], spec: RunSpec) -> tuple[str, ...]:
+    """Return names of columns as the telemetry of a run has them; a text is one name.
+
+    Raises:
+        ConfigError: the run has no such column.
+    """
+    names = (columns,) if isinstance(columns, str) else columns
+    return tuple(find_named_column(name, spec) for name in names)
 
 
 def read_options(options: Mapping[str, Any]) -> dict[str, Any]:
@@ -117,8 +135,9 @@ def read_world(world: str | Path | Description | None, mats: str | None) -> Mapp
     """
     if world is None:
         return {}
-    if isinstance(world, Description):
+    if isinstance(world, WorldDescription):
         return world.settings
-    if not isinstance(world, str | Path):
-        raise ConfigError(f"must be a file or a World, got {world!r}", key="world")
+    if not isinstance(world, str | Path) or not is_world_name(str(world)):
+        hint = "a mat is tuisim.World(background=…)"
+        raise ConfigError(f"must be a .toml file or a World, got {world!r}", hint, key="world")
     return load_world(find_program(str(world)), mats).settings

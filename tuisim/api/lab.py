@@ -8,14 +8,15 @@ from math import nan
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tuisim.api.descriptions import Description, read_options, read_world
+from tuisim.api.descriptions import Description, plain, read_columns, read_options, read_world
 from tuisim.api.keywords import check_keywords
+from tuisim.base.errors import ConfigError
 from tuisim.engine.core.commands.calls import Call, SimulationCommand
 from tuisim.engine.core.commands.table import DRIVEN_LAWS, obey
 from tuisim.engine.core.motors import find_top_speed_dps
 from tuisim.engine.core.pen_marks import PenMarks
 from tuisim.engine.core.profile import NS_PER_S, MotorLaw
-from tuisim.engine.core.sensors import build_reader, find_named_column
+from tuisim.engine.core.sensors import build_reader
 from tuisim.engine.core.servo.control import Ending
 from tuisim.engine.core.servo.motor import ServoMotor
 from tuisim.engine.core.simulation import Simulation, build_simulation
@@ -85,7 +86,7 @@ class Lab:
         return lab
 
     def _open(self, spec: RunSpec, columns: Sequence[str]) -> None:
-        self.columns = tuple(find_named_column(name, spec) for name in columns)
+        self.columns = read_columns(columns, spec)
         """What `step` returns."""
         self._readers = {
             name: read for name in self.columns if (read := build_reader(name, spec)) is not None
@@ -121,7 +122,7 @@ class Lab:
     def reset(self, seed: int | None = None) -> dict[str, float]:
         """Begin again, with another seed if one is given; return the columns at the start."""
         if seed is not None:
-            self._spec = replace(self._spec, seed=seed)
+            self._spec = replace(self._spec, seed=plain(seed))
         has_marks, recording = self._spec.world.pen_marks, MemoryRecording()
         is_recorded = has_marks or self._goals
         self._sim = build_simulation(self._spec, recording if is_recorded else NoRecording())
@@ -145,14 +146,23 @@ class Lab:
 
         Args:
             left, right: Speed of each wheel's motor in degrees per second, positive forwards, as far as it is able to;
-                None lets both go on.
+                without them both go on.
             period_s: Simulated seconds, rounded to ticks; at least one tick.
             commands: What a program does meanwhile, such as the part of `Run.commands` that lies in the step: each is
                 obeyed at its own time.
+
+        Raises:
+            ConfigError: there is one speed only, one is no number, or the period is negative.
         """
         sim = self._sim
         end = sim.tick + (round(period_s * self._hz) or 1 if period_s else 1)
-        if left is not None and right is not None and self._asked != (left, right):
+        if end <= sim.tick:
+            raise ConfigError(f"must not be negative, got {period_s!r}", key="period_s")
+        if (left is not None or right is not None) and self._asked != (left, right):
+            if left is None or right is None or left != left or right != right:
+                raise ConfigError(
+                    f"must be two numbers, got {left!r}, {right!r}", key="left, right"
+                )
             self._asked = left, right
             time_ns = sim.compute_due_ns(sim.tick)
             self._run(time_ns, 0, left)

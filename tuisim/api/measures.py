@@ -9,12 +9,11 @@ from contextlib import contextmanager, suppress
 from io import BytesIO
 from typing import TYPE_CHECKING, Any
 
-from tuisim.api.descriptions import plain
+from tuisim.api.descriptions import plain, read_columns
 from tuisim.api.run import Run
 from tuisim.base.errors import ConfigError
 from tuisim.batch.plan import Plan
 from tuisim.batch.table import Row, list_usual_columns
-from tuisim.engine.core.sensors import find_named_column
 from tuisim.engine.runs.frames import build_telemetry_columns
 from tuisim.engine.runs.run_folder import read_run
 from tuisim.engine.runs.temporary import create_temporary_home
@@ -37,7 +36,10 @@ class Measures:
     """
 
     def __init__(self, metrics: Mapping[str, Metric], columns: Sequence[str]) -> None:
-        self._metrics, self._columns = metrics, columns
+        if not isinstance(metrics, Mapping) or not all(map(callable, metrics.values())):
+            raise ConfigError(f"must be functions of a run by name, got {metrics!r}", key="metrics")
+        self._metrics = metrics
+        self._columns = (columns,) if isinstance(columns, str) else tuple(columns)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -61,7 +63,8 @@ class Measures:
                 raise ConfigError(f"{name!r} is a column already", key="metrics")
         for subject in plan.subjects:
             spec = plan.build_spec(subject, {})
-            self._columns = [find_named_column(name, spec) for name in self._columns]
+            # The time is there in any case.
+            self._columns = read_columns([name for name in self._columns if name != "time"], spec)
 
     def measure(self, result: Result) -> Row:
         """Return the metrics of a run by name, and its columns, packed, in a cell of their own."""
@@ -73,12 +76,33 @@ class Measures:
             for name, data in result.files.items():
                 (folder / name).write_bytes(data)
             run = Run(read_run(folder))
-            row = {name: plain(metric(run)) for name, metric in self._metrics.items()}
+            row = {
+                name: compute_cell(name, metric, run, result.index)
+                for name, metric in self._metrics.items()
+            }
             if self._columns:
                 frame = pd.DataFrame(build_telemetry_columns(run.stored, names=self._columns))
                 frame.to_feather(packed := BytesIO(), compression="zstd")
                 row[_TICKS] = b64encode(packed.getvalue()).decode()
             return row
+
+
+def compute_cell(name: str, metric: Metric, run: Run, index: int) -> Any:
+    """Return the value of a metric; what it raises names it and the run.
+
+    Raises:
+        ConfigError: it is no number and no text.
+    """
+    try:
+        value = metric(run)
+    except Exception as error:  # Whatever it is, it is raised again.
+        error.add_note(f"in the metric {name!r} of run {index + 1}")
+        raise
+    cell = value if getattr(value, "size", 1) != 1 else plain(value)
+    if cell is not None and not isinstance(cell, bool | int | float | str):
+        hint = "a metric returns a number or a text"
+        raise ConfigError(f"{name} of run {index + 1} is {value!r}", hint, key="metrics")
+    return cell
 
 
 def take_columns(rows: Mapping[int, Row]) -> dict[int, pd.DataFrame]:

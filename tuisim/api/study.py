@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from warnings import warn
 
-from tuisim.api.calls import check_timeout, prepare_program, read_source
+from tuisim.api.calls import build_run_options, prepare_program, read_source
 from tuisim.api.descriptions import plain, read_options, read_world
 from tuisim.api.measures import Measures, Metric, show_progress, take_columns
 from tuisim.base.errors import ConfigError, counted
@@ -40,7 +40,7 @@ _NOT_VARIED = ("press",)
 def run_experiment(
     program: Any,
     *,
-    seeds: Iterable[int],
+    seeds: Iterable[int] | None,
     constants: Mapping[str, Any] | None,
     metrics: Mapping[str, Metric] | None,
     columns: Sequence[str],
@@ -127,7 +127,6 @@ class Study:
         timeout_s: float,
         **options: Any,
     ) -> None:
-        check_timeout(timeout_s)
         named = program if isinstance(program, list | tuple) else [program]
         if not named:
             raise ConfigError("no program is named", key="program")
@@ -140,13 +139,12 @@ class Study:
             raise ConfigError("the seed varies by seeds=", key="parameters")
         self._task = load_goals(goals) if goals is not None else None
         self._world = world
-        self._options = RunOptions(
-            time_limit_s=timeout_s,
-            answers=tuple(answers) or (self._task.answers if self._task else ()),
+        self._options = build_run_options(
+            timeout_s, answers or (self._task.answers if self._task else ())
         )
         self._variants = list_variants({**options, **constants})
 
-    def build_plan(self, seeds: Iterable[int], keep: str, *, returns_files: bool) -> Plan:
+    def build_plan(self, seeds: Iterable[int] | None, keep: str, *, returns_files: bool) -> Plan:
         """Return all runs.
 
         Raises:
@@ -242,10 +240,13 @@ def _is_varied(name: str, value: object) -> bool:
 
 
 def _read_seeds(seeds: Any) -> dict[str, Choice]:
+    if seeds is None:
+        return {}
     if isinstance(seeds, str) or not isinstance(seeds, Iterable):
         raise ConfigError(f"must be several, got {seeds!r}", "such as range(200)", key="seeds")
-    chosen = check_seeds([plain(seed) for seed in seeds], "seeds")
-    return {SEED: chosen} if chosen else {}
+    if not (chosen := check_seeds([plain(seed) for seed in seeds], "seeds")):
+        raise ConfigError("has no values", key="seeds")
+    return {SEED: chosen}
 
 
 def _read_choice(name: str, values: Any) -> Choice:
