@@ -144,7 +144,7 @@ def test_a_profile_for_another_library_is_found_before_anything_is_run() -> None
             False,
         ),
         "other limit": (
-            plan({"seed": (1, 2)}, options_of=lambda *_: RunOptions(time_limit_s=5)),
+            plan({"seed": (1, 2)}, options=RunOptions(time_limit_s=5)),
             False,
         ),
     },

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
 from importlib.metadata import version
 from itertools import product
 from math import inf
@@ -20,13 +19,9 @@ from tuisim.batch.parameters import SEED, Choice, check_seeds, parse_values
 from tuisim.batch.plan import Plan, Subject
 from tuisim.batch.rounds import Rounds, parse_precision
 from tuisim.batch.sweep import Sweep, Workers, is_interrupted
-from tuisim.engine.core.spec import RunSpec
-from tuisim.engine.runs.handle import RunOptions
-from tuisim.engine.runs.presses import press_actions
 from tuisim.logs.export import check_target
 from tuisim.programs.constants import set_constants
 from tuisim.programs.program_file import ProgramSource
-from tuisim.settings.options import Settings
 from tuisim.tasks.goals.files import load_goals
 from tuisim.tasks.task import MAX_JOBS, Keep
 
@@ -163,14 +158,9 @@ class Study:
             self._task.goals if self._task else (),
             Keep(keep),
             returns_files,
-            self._build_options,
+            self._options,
         )
         return self._plan
-
-    def _build_options(self, spec: RunSpec, settings: Settings) -> RunOptions:
-        return replace(
-            self._options, actions=press_actions(settings["press"], spec.profile.tick_hz)
-        )
 
     def _build_subject(self, source: ProgramSource, variant: Mapping[str, Any]) -> Subject:
         """Return a program with its settings, and a combination of constants and options."""

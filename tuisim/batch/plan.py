@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import math
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import field, replace
 from pathlib import Path
 from typing import Any
@@ -18,6 +18,7 @@ from tuisim.batch.table import check_expressions
 from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.core.tree import dump_run
 from tuisim.engine.runs.handle import RunOptions, set_surroundings
+from tuisim.engine.runs.presses import press_actions
 from tuisim.programs.program_settings import require_library
 from tuisim.settings.build import build_run_spec
 from tuisim.settings.options import Settings
@@ -60,8 +61,8 @@ class Plan:
     keep: Keep = Keep.NONE
     returns_files: bool = False
     """Whether results have what their runs have recorded."""
-    options_of: Callable[[RunSpec, Settings], RunOptions] = lambda *_: RunOptions()
-    """Returns how a run is executed, by its specification and the settings of its program."""
+    options: RunOptions = field(default_factory=RunOptions)
+    """How a run is executed; what is pressed by hand is added from the settings of its program."""
     grid: Grid = field(init=False)
     _specs: dict[tuple[object, ...], RunSpec] = field(init=False, default_factory=dict)
 
@@ -150,6 +151,10 @@ class Plan:
         }
         return subject.settings.changed(remaining)
 
+    def _build_options(self, spec: RunSpec, subject: Subject) -> RunOptions:
+        actions = press_actions(subject.settings["press"], spec.profile.tick_hz)
+        return replace(self.options, actions=actions)
+
     def iterate_tasks(self, done: Collection[int] = ()) -> Iterator[Task]:
         """Yield the tasks whose index is not in `done`."""
         for index in range(len(self)):
@@ -175,7 +180,7 @@ class Plan:
             index,
             program,
             spec,
-            self.options_of(spec, subject.settings),
+            self._build_options(spec, subject),
             goals=self.goals,
             parameters=values,
             keep=self.keep,
@@ -201,7 +206,7 @@ class Plan:
         for subject in self.subjects:
             for values in own:
                 spec = self.build_spec(subject, values)
-                plain = [dump_run(spec), self.options_of(spec, subject.settings).to_plain()]
+                plain = [dump_run(spec), self._build_options(spec, subject).to_plain()]
                 whole.update(json.dumps(plain, sort_keys=True).encode())
         whole.update(repr((programs, self.grid.axes, self.goals, str(self.keep))).encode())
         return {

@@ -20,13 +20,10 @@ from tuisim.commands.listings import WORLD, list_names
 from tuisim.commands.notebooks import NotRun
 from tuisim.commands.resolve import check_arguments, prepare_runs
 from tuisim.commands.run_options import build_input_option, build_timeout_option
-from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.files import read_file
 from tuisim.engine.runs.handle import RunOptions
-from tuisim.engine.runs.presses import press_actions
 from tuisim.logs.export import LISTED, check_target
 from tuisim.settings.command_line import Arguments, WordType, argument, option
-from tuisim.settings.options import Settings
 from tuisim.settings.worlds import WorldFile, is_world_name
 from tuisim.tasks.goals.files import GoalsFile, load_goals
 from tuisim.tasks.task import Keep
@@ -130,7 +127,10 @@ def read_request(arguments: Arguments) -> Request:
         file.path if free_choices.keys() - {SEED} else Path("--set"),
         goals=goals.goals if goals else (),
         keep=Keep(arguments.keep or file.keep or Keep.NONE),
-        options_of=lambda spec, settings: _run_options(spec, settings, arguments, goals),
+        options=RunOptions(
+            time_limit_s=arguments.timeout,
+            answers=arguments.input or (goals.answers if goals else ()),
+        ),
     )
     expressions = {**file.expressions, **dict(map(_parse_expression, arguments.expressions))}
     plan.check_expressions(expressions)
@@ -239,13 +239,3 @@ def _parse_expression(text: str) -> tuple[str, str]:
             f"must be NAME=EXPR, got {text!r}", "such as 'far_mm=hypot(x_mm, y_mm)'", key="--expr"
         )
     return name.strip(), expression.strip()
-
-
-def _run_options(
-    spec: RunSpec, settings: Settings, arguments: Arguments, goals: GoalsFile | None
-) -> RunOptions:
-    return RunOptions(
-        time_limit_s=arguments.timeout,
-        answers=arguments.input or (goals.answers if goals else ()),
-        actions=press_actions(settings["press"], spec.profile.tick_hz),
-    )
