@@ -375,17 +375,20 @@ def build_low(panels: Sequence[str], width: int, height: int) -> Node:
 def _find_roomy_rows(roomy: Sequence[str], beside: Sequence[str], height: int) -> int:
     """Return the rows of the panels that get the whole width, below the world with others beside it."""
     fair = max(_sum_fair_rows(roomy), height // 2)
-    rows = sum(PANELS[panel].min_rows for panel in beside)
-    return max(fair - _MAX_YIELDED_ROWS, min(fair, height - rows))
+    return max(fair - _MAX_YIELDED_ROWS, min(fair, height - sum(_list_read_rows(beside))))
+
+
+def _list_read_rows(panels: Sequence[str]) -> tuple[int, ...]:
+    """Return the rows of each panel beside a small world; the readings get a row more than they need, for the pose."""
+    return tuple(PANELS[panel].min_rows + (panel == "instrumentation") for panel in panels)
 
 
 def _stack_readings(panels: Sequence[str], height: int) -> Node:
-    """Return stacked panels; the readings get a row more than they need, if there is one, for the pose."""
+    """Return stacked panels; if there is room, the pose is in sight."""
     column = join_nodes(Axis.ROWS, panels)
     if isinstance(column, str) or count_min_rows(column) >= height:
         return column
-    min_rows = tuple(PANELS[panel].min_rows + (panel == "instrumentation") for panel in panels)
-    return Split(Axis.ROWS, column.parts, least=min_rows)
+    return Split(Axis.ROWS, column.parts, least=_list_read_rows(panels))
 
 
 def _build_line(panels: Sequence[str], width: int) -> Node:
