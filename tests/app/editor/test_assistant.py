@@ -216,3 +216,43 @@ async def test_unknown_attributes_are_marked_once_names_were_looked_up(home: Pat
         await pilot.press("enter")
         code._assistant.check_names()
         await until(pilot, lambda: [one.name for one in area.unknown] == ["onn"])
+
+
+async def test_a_dot_lists_what_may_follow(home: Path) -> None:
+    completion.preload()
+    async with CodeApp().run_test(size=SIZE) as pilot:
+        _, area = await typed(pilot, "tank_drive.")
+        await until(pilot, lambda: area.candidates.is_open)
+        await pilot.press("down", "enter")
+        await until(pilot, lambda: area.program_text == "tank_drive.off")
+
+
+@pytest.mark.parametrize(
+    "keys, text",
+    [
+        (["o", "left_parenthesis"], "tank_drive.o("),
+        (["o", "n", "enter"], "tank_drive.on\n"),
+        (["o", "n", "underscore", "enter"], "tank_drive.on_for_degrees"),
+    ],
+    ids=["another name", "a whole name", "a part of a name"],
+)
+async def test_a_list_that_nobody_asked_for_changes_no_name(
+    home: Path, keys: list[str], text: str
+) -> None:
+    completion.preload()
+    async with CodeApp().run_test(size=SIZE) as pilot:
+        _, area = await typed(pilot, "tank_drive.")
+        await until(pilot, lambda: area.candidates.is_open)
+        await pilot.press(*keys)
+        await until(pilot, lambda: area.program_text == text)
+
+
+async def test_a_number_with_a_dot_lists_nothing(
+    home: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(assistant, "ASK_DELAY_S", 0.0)
+    monkeypatch.setattr(completion, "is_ready", lambda: True)
+    async with CodeApp().run_test(size=SIZE) as pilot:
+        _, area = await typed(pilot, "x = 3.")
+        await pilot.pause()
+        assert not area.candidates.is_open

@@ -51,7 +51,10 @@ EDITOR_KEYS = (
     ("ctrl+f", "Find; then ↓ ↑ next, previous"),
     ("ctrl+g", "Go to a line"),
     ("ctrl+home ctrl+end", "Start, end of the text"),
-    ("tab", "After part of a name or a dot: complete it, or list what may follow"),
+    (
+        "tab",
+        "Complete part of a name, or list what may follow, as a dot does",
+    ),
     ("tab ⇧tab", "Elsewhere: indent, outdent; backspace removes an indent"),
     ("ctrl+/", "Comment or uncomment lines"),
     ("ctrl+z ctrl+y", "Undo, redo"),
@@ -119,9 +122,9 @@ class CodeArea(TextArea):
         self._breaks: Mapping[int, str] = {}
         self._lit = self._error = 0
         self.is_completing = False
+        """Whether names are looked up: keys wait for them, however long it takes."""
         self.unknown_word: str | None = None
         """What nothing that may follow begins with, until something else is typed."""
-        """Whether names are looked up: keys wait for them, however long it takes."""
         self.path = ""
         """Of the program's file, or its name."""
         self.candidates = CandidateList()
@@ -405,7 +408,7 @@ class CodeArea(TextArea):
         ):
             # Who types on has not waited for the list.
             self.replace_word(self.candidates.take_key("enter"))
-        elif self.candidates.is_open and event.key in self.candidates.KEYS:
+        elif self.candidates.takes_key(event.key):
             self._consume_event(event)
             if name := self.candidates.take_key(event.key):
                 self.replace_word(name)
@@ -475,12 +478,17 @@ class CodeArea(TextArea):
         if len(matches) == 1:
             self.replace_word(matches[0].name)
         elif matches and word is not None:
-            row, column = place
-            self.candidates.open(matches, (row, column - len(word)), word, self._locate_word(word))
+            self.list_names(matches, (place[0], place[1] - len(word)))
         elif word is not None:
             self._set_unknown_word(word)
         else:
             self.insert_text(" " * count_tab_columns(self))
+
+    def list_names(self, names: tuple[Candidate, ...], begin: tuple[int, int]) -> None:
+        """Open the list of names if the word at the cursor begins at a place."""
+        word, (row, column) = self._find_word(), self.cursor_location
+        if word is not None and (row, column - len(word)) == begin:
+            self.candidates.open(names, begin, word, self._locate_word(word))
 
     def _set_unknown_word(self, word: str | None) -> None:
         if word != self.unknown_word:

@@ -1,4 +1,4 @@
-"""Help while typing: the signature of the call at the cursor, and names that are not defined."""
+"""Help while typing: what may follow a dot, the signature of a call, and names that are not defined."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from tuisim.terminal.text_runs import cut
 CHECK_DELAY_S = 0.5
 """Names are checked when nothing has been typed for this long."""
 ASK_DELAY_S = 0.15
-"""Likewise for the signature."""
+"""Likewise for the signature, and after a dot for what may follow it."""
 MAX_LINES = 5000
 """Longer texts are not checked: it would hold up the keys."""
 
@@ -40,6 +40,7 @@ class Assistant:
         self._signature: completion.Signature | None = None
         self._check_timer: Timer | None = None
         self._ask_timer: Timer | None = None
+        self._offer_timer: Timer | None = None
         self._is_asking = self._asks_again = False
 
     def describe_cursor(self, width: int) -> Text:
@@ -73,6 +74,12 @@ class Assistant:
     def schedule_check(self) -> None:
         """Follow an edit."""
         self._check_timer = self._restart_timer(self._check_timer, CHECK_DELAY_S, self.check_names)
+        row, column = self._area.cursor_location
+        is_after_dot = completion.find_word(self._area.document.get_line(row), column) == ""
+        if self._area.typing and is_after_dot and completion.is_ready():
+            self._offer_timer = self._restart_timer(
+                self._offer_timer, ASK_DELAY_S, self._offer_names
+            )
 
     def follow_cursor(self) -> None:
         """Follow the cursor."""
@@ -102,6 +109,20 @@ class Assistant:
         self._signature = None
 
     # Names
+
+    def _offer_names(self) -> None:
+        background.begin(self._area, self._fetch_names, group="names", exclusive=True)
+
+    async def _fetch_names(self) -> None:
+        """List what may follow the dot at the cursor, unless the user asks for it or types on."""
+        text, path, row, column = self._place()
+        word = completion.find_word(self._area.document.get_line(row), column)
+        if word is None or self._area.candidates.is_open:
+            return
+        names = await asyncio.to_thread(completion.find_candidates, text, path, row, column)
+        if names and self._area.typing and not self._area.candidates.is_open:
+            self._area.list_names(names, (row, column - len(word)))
+            self._area.candidates.is_offered = True
 
     def check_names(self) -> None:
         """Look for names that are not defined, and mark them."""

@@ -109,7 +109,7 @@ class CandidateList(Widget):
 
     ALLOW_SELECT = False
     DEFAULT_CSS = "CandidateList { overlay: screen; display: none; width: auto; height: auto; }"
-    KEYS: ClassVar[frozenset[str]] = frozenset(
+    _KEYS: ClassVar[frozenset[str]] = frozenset(
         {"up", "down", "pageup", "pagedown", "enter", "tab", "escape"}
     )
 
@@ -126,6 +126,8 @@ class CandidateList(Widget):
         self._chosen = 0
         self._width = 0
         self._word = ""
+        self.is_offered = False
+        """Whether nobody asked for the open list: then only enter, tab and a click put a name in."""
         self.begin = (0, 0)
         """Row and column of the word that is completed."""
 
@@ -145,7 +147,7 @@ class CandidateList(Widget):
             word: What has been typed of it.
             place: Where it begins on the screen.
         """
-        self._candidates, self.begin = candidates, begin
+        self._candidates, self.begin, self.is_offered = candidates, begin, False
         self._width = measure_width(candidates, self.screen.size.width - 2)
         self.filter(word, place)
 
@@ -177,11 +179,19 @@ class CandidateList(Widget):
     def can_complete(self, word: str) -> bool:
         """Return whether what follows a word means that the chosen name is to be put in, as the word is none itself."""
         return (
-            self.is_open and bool(word) and all(candidate.name != word for candidate in self._shown)
+            self.is_open and bool(word) and not self.is_offered and not self._has_whole_name(word)
         )
 
+    def takes_key(self, key: str) -> bool:
+        """Return whether a key is one of the list's; enter after a whole name begins a line if nobody asked for it."""
+        ends_line = key == "enter" and self.is_offered and self._has_whole_name(self._word)
+        return self.is_open and key in self._KEYS and not ends_line
+
+    def _has_whole_name(self, word: str) -> bool:
+        return any(candidate.name == word for candidate in self._shown)
+
     def take_key(self, key: str) -> str:
-        """Do what one of `KEYS` does; return the name that is to be put in, empty if none is yet."""
+        """Do what a key of the list does; return the name that is to be put in, empty if none is yet."""
         name = ""
         match key:
             case "escape":
