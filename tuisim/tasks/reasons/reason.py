@@ -186,6 +186,7 @@ def _find_lost(run: StoredRun, mat: Field | None, has_waited: bool) -> Iterator[
         return
     from tuisim.tasks.reasons.lost_line import find_lost_lines
     from tuisim.tasks.reasons.one_colour import find_one_color
+    from tuisim.tasks.reasons.unwatched import find_unwatched
 
     mat = open_mat(run) if mat is None else mat
     if missed := find_near_miss(run, mat):
@@ -194,6 +195,9 @@ def _find_lost(run: StoredRun, mat: Field | None, has_waited: bool) -> Iterator[
     read_ticks = _find_read_ticks(run, len(records))
     for lost in find_lost_lines(records, run.spec, mat, read_ticks):
         yield _describe_loss(run, lost)
+    unwatched = find_unwatched(run.program, records, run.spec, mat, read_ticks)
+    if unwatched and not missed:
+        yield _explain_lost(run, unwatched.tick, unwatched.text)
     if not has_waited and (seen := find_one_color(records, run.spec, mat, read_ticks)):
         text = f"from here on the {seen.sensor} sensor saw only {seen.color}"
         yield _explain_lost(run, seen.tick, text)

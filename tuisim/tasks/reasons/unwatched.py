@@ -1,0 +1,114 @@
+"""Light that a program compares again and again, and that came and went while a long line kept it from looking."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tuisim.base.data_class import dataclass
+from tuisim.engine.core.columns import COLOR_NAMES
+from tuisim.engine.core.conditions import COMPARE
+from tuisim.engine.core.sensors.color import WHITE, LightRead, find_color_code
+from tuisim.engine.runs.sensor_arrays import measure_quiet_color
+from tuisim.programs.facts import ProgramThreshold, read_facts
+from tuisim.tasks.reasons.lost_line import MIN_READINGS, is_on_mat
+
+if TYPE_CHECKING:
+    from tuisim.base.source import Program
+    from tuisim.engine.core.field import Field
+    from tuisim.engine.core.spec import ColorSensorSpec, RunSpec
+
+    Array = NDArray[Any]
+
+_MIN_PAUSE_S = 0.3
+"""A program that reads again sooner looks often enough."""
+_MIN_SEEN_S = 0.03
+"""What a sensor sees for less time is the edge of something."""
+_WHOLE = frozenset({LightRead.REFLECTED, LightRead.REFLECTION})
+"""What programs read as whole numbers, cut off."""
+
+
+@dataclass(frozen=True, slots=True)
+class Unwatched:
+    """Light that came and went between two reads."""
+
+    tick: int
+    """When it came."""
+    text: str
+    """What came, and when the program read; a sentence without a full stop."""
+
+
+def find_unwatched(
+    program: Program, records: Array, spec: RunSpec, mat: Field, read_ticks: Mapping[str, Array]
+) -> Unwatched | None:
+    """Return the first light between two reads for which the program would have done something else.
+
+    Args:
+        program: The program.
+        records: Telemetry, structured as `TICK_FIELDS`, shape (n,).
+        spec: The run.
+        mat: Its mat, prepared for its sensors.
+        read_ticks: The ticks at which the program read each light sensor, by name, in ascending order.
+    """
+    thresholds = read_facts(program).find_thresholds(spec.robot)
+    passes = [
+        unwatched
+        for sensor in spec.robot.color_sensors
+        if len(ticks := np.unique(read_ticks[sensor.name])) >= MIN_READINGS
+        for threshold in thresholds.get(sensor.name, ())
+        if not threshold.is_aim
+        for unwatched in _list_passes(records, spec, sensor, mat, threshold, ticks)
+    ]
+    return min(passes, key=lambda unwatched: unwatched.tick, default=None)
+
+
+def _list_passes(
+    records: Array,
+    spec: RunSpec,
+    sensor: ColorSensorSpec,
+    mat: Field,
+    threshold: ProgramThreshold,
+    ticks: Array,
+) -> Iterator[Unwatched]:
+    """Yield the first light between two reads at which a comparison has another answer than at both."""
+    hz = spec.profile.tick_hz
+    long = np.flatnonzero(np.diff(ticks) >= _MIN_PAUSE_S * hz)
+    if not len(long):
+        return
+    values = _measure(records, spec, sensor, mat, threshold.read)
+    holds, is_on = COMPARE[threshold.sign](values, threshold.value), is_on_mat(records, sensor)
+    for start, end in zip(ticks[long], ticks[long + 1], strict=True):
+        between = slice(start + 1, end)
+        differs = (holds[between] != holds[start]) & is_on[between]
+        if holds[start] == holds[end] and differs.sum() >= _MIN_SEEN_S * hz:
+            tick = int(start + 1 + differs.argmax())
+            lines, counts = np.unique(records["line"][between], return_counts=True)
+            value = values[start + 1 : end][differs][int(differs.sum()) // 2]
+            text = (
+                f"the {sensor.name} sensor saw {_name_value(threshold.read, value)} here, but the program read it "
+                f"only at {start / hz:.2f} s and {end / hz:.2f} s: line {lines[counts.argmax()]} takes too long"
+            )
+            yield Unwatched(tick, text)
+            return
+
+
+def _measure(
+    records: Array, spec: RunSpec, sensor: ColorSensorSpec, mat: Field, read: LightRead
+) -> Array:
+    """Return what a program would have read at each tick without noise, shape (n,)."""
+    red, green, blue = measure_quiet_color(records, sensor, spec, mat).values()
+    if read.is_color:
+        colors, places = np.unique(
+            np.stack([red, green, blue]).astype(int), axis=1, return_inverse=True
+        )
+        return np.array([find_color_code(*color) for color in colors.T.tolist()])[places]
+    light = (red + green + blue) / 3 if read is LightRead.MEAN else red
+    value: Array = light * read.find_white(spec.profile.reflected_max) / WHITE
+    return np.floor(value) if read in _WHOLE else value
+
+
+def _name_value(read: LightRead, value: float) -> str:
+    return COLOR_NAMES[int(value)].lower() if read.is_color else f"light of {value:.0f}"
