@@ -29,14 +29,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Crossing:
-    """One crossing."""
+    """A place where a signal crosses a threshold."""
 
     sample: int
     """Index of the first sample beyond the threshold."""
     time_s: float
     """Time at which the line between the samples on either side meets the threshold."""
     value: float
-    """The sample at `at`."""
+    """The value of that sample."""
     rising: bool
 
 
@@ -190,7 +190,7 @@ class CommandRow:
 
     @property
     def time_s(self) -> float:
-        """When it was asked first."""
+        """The time at which the program asked first."""
         return self.index.time_s(self.number)
 
     @cached_property

@@ -41,19 +41,19 @@ class LogTrace(Trace):
 
     @cached_property
     def series(self) -> Series:
-        """All its samples."""
+        """All samples of the variable."""
         return self._log.series(self.name)
 
     @property
     def pyramid(self) -> Pyramid:
-        """Its finite points, sorted by x position."""
+        """The finite samples, sorted by x position."""
         if self._pyramid is None:
             self._pyramid = Pyramid(self.places, self.series.values)
         return self._pyramid
 
     @property
     def places(self) -> FloatArray:
-        """The x positions of its samples, shape (n,): their times, unless runs are aligned otherwise."""
+        """The x positions of the samples, shape (n,): their times, unless runs are aligned otherwise."""
         return self.series.time_s if self._places is None else self._places
 
     def is_derived_otherwise(self, log: Log) -> bool:
@@ -61,7 +61,7 @@ class LogTrace(Trace):
         return self.name in log.derived and log.derived[self.name] is not self.series
 
     def is_legible(self, others: Sequence[LogTrace]) -> bool:
-        """Return whether its values are legible on a common scale with those of others."""
+        """Return whether the trace is legible on a common scale with other traces."""
         own = self._find_extremes()
         left = [other._find_extremes() for other in others if not other.scale]
         low, high = (
@@ -76,7 +76,7 @@ class LogTrace(Trace):
         return (float(values.min()), float(values.max())) if len(values) else (0.0, 0.0)
 
     def align(self, places: FloatArray | None) -> None:
-        """Set the x positions of its samples; None sets their times."""
+        """Set the x positions of the samples; None stands for their times."""
         self._places, self._pyramid = places, None
 
     def prepare(self, x_limits: Limits, columns: int, hold: bool) -> None:

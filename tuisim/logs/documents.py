@@ -20,7 +20,7 @@ _TIME_NAMES = frozenset(NAMES)
 
 
 def is_json_start(lines: Sequence[str]) -> bool:
-    """Return whether the first lines are those of JSON."""
+    """Return whether a text with these first lines is JSON."""
     first = lines[0].strip() if lines else ""
     if first == "[" or first.startswith(("{", "[{")):
         return True

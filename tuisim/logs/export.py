@@ -239,7 +239,7 @@ Metadata = Mapping[str, Any]
 
 
 def describe_files(target: Path) -> str:
-    """Return what an export has written: the file, and the one beside it if there is one."""
+    """Return the names of the files of an export: the file, and its companion if there is one."""
     exporter = EXPORTERS.get(target.suffix.lower())
     beside = (
         f"; what it is and its units: {find_companion(target).name}"
@@ -260,7 +260,7 @@ def find_companion(path: Path) -> Path:
 
 
 class Exporter(NamedTuple):
-    """One file format."""
+    """A file format of exports."""
 
     write: Callable[[pd.DataFrame, Metadata, BinaryIO], None]
     contents: str

@@ -78,7 +78,7 @@ def undo_clamping(percents: FloatArray, noise: int) -> FloatArray:
 
 
 def _undo_end_clamping(below: FloatArray, noise: int) -> FloatArray:
-    """Undo the clamping at one end; `below` are the distances from it."""
+    """Undo the clamping at one end of the scale; `below` are the distances of levels from this end."""
     undone = np.maximum(0.0, 2.0 * np.sqrt(noise * np.maximum(below, 0.0)) - noise)
     return np.where(below >= noise, below, undone)
 
@@ -92,7 +92,7 @@ def find_light_scale(values: FloatArray) -> float:
 
 
 class Light(NamedTuple):
-    """How a colour sensor reads the mat: the noise, and what it reads of black and white."""
+    """How a colour sensor reads the mat: its noise, and its readings of black and white."""
 
     noise: int = 0
     """Light noise of the run, 0 to 128."""

@@ -459,7 +459,7 @@ def find_plateaus_in_subprocess(values: FloatArray, stopped: Callable[[], bool])
 
 
 def _run_search(samples: IO[bytes], answer: IO[bytes], stopped: Callable[[], bool]) -> int:
-    """Run the process and return its exit code."""
+    """Run the search in a process of its own, and return its exit code."""
     with subprocess.Popen(
         [sys.executable, "-s", "-P", "-m", __name__],
         stdin=samples,

@@ -103,7 +103,7 @@ class Rows:
         return place if self.view.order is None else int(self.view.order[place])
 
     def place(self, row: int) -> int:
-        """Return the position of a row of the log, or the nearest one."""
+        """Return the position in the table of a row of the log, or of the nearest row that is shown."""
         if self.view.order is None or not len(self.view.order):
             return row
         if self.view.sorted_by:
@@ -136,7 +136,7 @@ class Rows:
         return self._arrange(conditions, fulfilled, self.view.sorted_by, self.view.descending)
 
     def build_sorted_view(self, column: str, descending: bool) -> TableView:
-        """Return the same rows sorted by a column; empty for the order of the log. Slow for a long log."""
+        """Return the same rows, sorted by a column; without a column in the order of the log. Slow for a long log."""
         return self._arrange(self.view.conditions, self.view.fulfilled, column, descending)
 
     def _arrange(

@@ -10,7 +10,7 @@ TIMEDELTA, TEXT, WHOLE = ("index",), ("variable",), ("run", "line")
 
 
 class Unit(NamedTuple):
-    """One unit."""
+    """A unit of measurement."""
 
     sign: str
     """The symbol after a number."""

@@ -133,7 +133,7 @@ class ProgramFacts:
 
     @cached_property
     def idle_definition(self) -> tuple[int, str] | None:
-        """The last function or class of a program that only defines, and why nothing happens; None of another one."""
+        """The last function or class of a program that only defines, and why nothing happens; otherwise None."""
         return find_idle_definition(self._short_tree)
 
     @cached_property

@@ -49,7 +49,7 @@ def _is_known(numbers: list[float | None]) -> TypeGuard[list[float]]:
 
 
 def _find_number(node: ast.expr) -> float | None:
-    """Return a number, or the one of a speed such as `SpeedPercent(30)`; None for others."""
+    """Return a number, also that in a speed such as `SpeedPercent(30)`; None for other expressions."""
     match node:
         case ast.Constant(value=int() | float() as value):
             return float(value)

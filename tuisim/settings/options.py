@@ -149,12 +149,12 @@ class Option:
 
     @property
     def name(self) -> str:
-        """Its long name as a key: without dashes."""
+        """The long name of the option without dashes, as a key."""
         return next(flag for flag in self.flags if flag.startswith("--"))[2:].replace("-", "_")
 
     @property
     def help(self) -> str:
-        """What it does, as a sentence."""
+        """What the option does, as a sentence."""
         text = self.value.help
         if isinstance(self.value, Flag) and self.constant is False:
             text = self.value.off_help
@@ -162,7 +162,7 @@ class Option:
 
     @property
     def metavar(self) -> str:
-        """The word for its value in the help; empty if it takes none."""
+        """The word for the value in the help; empty if the option takes none."""
         if self.constant is not None or self.panel:
             return ""
         return "on|off" if isinstance(self.value, Flag) else self.value.metavar

@@ -13,7 +13,7 @@ _MAX_BYTES = 1 << 20
 
 
 def find_preferences_file() -> Path:
-    """Return the path of the file; it may not exist."""
+    """Return the path of the file with preferences; the file may not exist."""
     return session_folder() / "preferences.json"
 
 

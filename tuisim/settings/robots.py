@@ -236,7 +236,7 @@ def _parse_motor(data: object, base: MotorSpec, location: Location) -> MotorSpec
 def _parse_single(
     data: object, mount: Mount, base: RobotSpec, location: Location
 ) -> SensorSpec | None:
-    """Return the only sensor of its kind; None for `false`, which removes it."""
+    """Return the sensor of a kind of which a robot has only one; None for `false`, which removes it."""
     return (
         None
         if data is False

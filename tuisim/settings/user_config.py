@@ -54,7 +54,7 @@ ABOUT: Mapping[Section, str] = {
 
 @dataclass(frozen=True, slots=True)
 class Setting:
-    """One line of `SETTINGS`."""
+    """A setting of `config.toml`."""
 
     section: Section
     name: str
@@ -68,17 +68,17 @@ class Setting:
 
     @property
     def path(self) -> str:
-        """Its name with that of its table."""
+        """The name of the setting, with that of its table."""
         return f"{self.section}.{self.name}"
 
     @property
     def help(self) -> str:
-        """What it does, as a sentence."""
+        """What the setting does, as a sentence."""
         return f"{self.value.help[0].upper()}{self.value.help[1:]}."
 
     @property
     def is_live(self) -> bool:
-        """Whether the app applies a change at once; else from its next start on."""
+        """Whether the app applies a change at once; otherwise it does at its next start."""
         return self.section is not Section.SIMULATION and self.at_once
 
 
@@ -167,12 +167,12 @@ class UserConfig:
 
 
 def find_config_file() -> Path:
-    """Return the path of the file; it may not exist."""
+    """Return the path of `config.toml`; the file may not exist."""
     return config_folder() / FILE
 
 
 def load_config() -> UserConfig:
-    """Read the file, with its faults in `problems`. If it is missing or empty, all settings have their defaults."""
+    """Read `config.toml`, with its faults in `problems`. If it is missing or empty, all settings have defaults."""
     path = find_config_file()
     try:
         stamp = path.stat()
@@ -191,7 +191,7 @@ def _load(path: Path, _changed_ns: int, _size: int) -> UserConfig:
 
 
 def read_config_text(path: Path) -> str:
-    """Return the text of the file, empty if there is none.
+    """Return the text of `config.toml`, empty if the file does not exist.
 
     Raises:
         ConfigError: it cannot be read.

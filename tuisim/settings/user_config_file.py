@@ -27,7 +27,7 @@ _KEYS = ('run = ["x", "f5"]', 'theme = "ctrl+y"')
 
 
 def build_template() -> str:
-    """Return the text of a file with every setting at its default, in comments."""
+    """Return the text of a `config.toml` with every setting at its default, in comments."""
     lines = [
         f"# Your defaults for tuisim: {see_page(PAGE)}. Remove a # to make a setting your own."
     ]
@@ -47,7 +47,7 @@ def _format_comment(text: str) -> list[str]:
 
 
 def write_template() -> Path:
-    """Write the file, and return its path.
+    """Write `config.toml` with every setting in comments, and return its path.
 
     Raises:
         ConfigError: it exists, or cannot be written.

@@ -57,7 +57,7 @@ def describe_limits(smallest: Size, largest: Size) -> str:
 
 @dataclass(frozen=True, slots=True)
 class ChartFormat:
-    """One line of `CHART_FORMATS`."""
+    """A file format of charts."""
 
     write: Callable[[ChartData, Size], bytes]
     size: Size

@@ -56,7 +56,7 @@ class Line:
 
     @property
     def label(self) -> str:
-        """Its name, with the unit if the name has one."""
+        """The name of the variable, with its unit if the name tells it."""
         return add_unit(self.name)
 
 

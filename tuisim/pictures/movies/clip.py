@@ -136,7 +136,7 @@ class ClipRun:
         return low, high
 
     def read_moment(self, time_s: float) -> ClipMoment:
-        """Return the run at a simulated time within it."""
+        """Return the state of the run at a simulated time within it."""
         # As a float, a time such as 0.29 s is slightly less than 29 hundredths.
         tick = min(math.floor(time_s * self._hz + 1e-6), len(self.telemetry) - 1)
         values = []

@@ -46,7 +46,7 @@ class Clip:
 
     @property
     def shots(self) -> tuple[Shot, ...]:
-        """Its frames."""
+        """The frames of the movie."""
         return plan_shots(*self.span_s, self.speed, self.fps)
 
     @property

@@ -118,7 +118,7 @@ class Piece:
 
     @classmethod
     def from_points(cls, xs_mm: FloatArray, ys_mm: FloatArray, pen: PenSpec) -> Piece:
-        """Return what a pen has drawn."""
+        """Return points as a piece drawn with a pen."""
         return cls(xs_mm, ys_mm, parse_pen_color(pen.color), pen.width_mm)
 
     def lift(self) -> Piece:

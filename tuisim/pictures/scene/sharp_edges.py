@@ -160,7 +160,7 @@ def _reduce_along(
 
 
 def _spread(flags: _Flags, axis: int, size: int) -> _Flags:
-    """Return which values belong to a position that `_reduce_along` has found, with all of its `size` values."""
+    """Return for each value whether it belongs to a window of `size` values that `_reduce_along` has found."""
     beyond = [(size - 1, size - 1) if each == axis else (0, 0) for each in range(2)]
     return _reduce_along(np.logical_or, np.pad(flags, beyond), axis, size)
 

@@ -115,7 +115,7 @@ def build_robot(mentions: Mentions, name: str, usual: RobotSpec) -> BuiltRobot |
 
 
 def find_shown_ports(mentions: Mentions, robot: RobotSpec) -> tuple[str, ...]:
-    """Return the ports on the program's robot of the parts that its text shows, with or without their port."""
+    """Return the ports of the parts that a program's text shows on its robot, even if it shows them without ports."""
     pairs = [port for pair in mentions.pairs for port in (pair.left, pair.right)]
     ports = {device.port for device in mentions.devices} | {*pairs}
     taken_anywhere = {device.kind for device in mentions.devices if device.is_any}

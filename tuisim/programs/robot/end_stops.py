@@ -39,7 +39,7 @@ class StopPress:
 
 @dataclass(frozen=True, slots=True)
 class Target:
-    """A position to which the program turns a motor, or how far it turns it."""
+    """A position to which the program turns a motor, or an angle by which it turns the motor."""
 
     deg: float
     where: Where

@@ -62,7 +62,7 @@ class Instance:
 
 @dataclass(frozen=True, slots=True)
 class Parent:
-    """What `super()` is in a method of a class."""
+    """The value of `super()` in a method of a class."""
 
     of: Scope
 

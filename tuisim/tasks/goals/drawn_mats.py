@@ -56,7 +56,7 @@ def _build_white_mat() -> Array:
 
 
 def _draw_bands(chance: Random) -> DrawnMat:
-    """Three to five upright bands, the last one black."""
+    """Return a mat with three to five upright bands, the last one black."""
     pixels, count = _build_white_mat(), 3 + int(3 * chance.random())
     greys: list[int] = [0]
     while len(greys) < count:
@@ -78,7 +78,7 @@ def _draw_bands(chance: Random) -> DrawnMat:
 
 
 def _draw_line(chance: Random) -> DrawnMat:
-    """A black line from left to right, in bends."""
+    """Return a mat with a black line from left to right, in bends."""
     import numpy as np
 
     pixels = _build_white_mat()
@@ -88,7 +88,7 @@ def _draw_line(chance: Random) -> DrawnMat:
     ]
 
     def at(x_mm: Any) -> tuple[Any, Any]:
-        """Return the height of the line and its slope."""
+        """Return y and slope of the line at some x."""
         turns = [
             (height, math.tau / length, math.tau * x_mm / length + begin)
             for length, height, begin in waves
@@ -115,7 +115,7 @@ DRAWN_MATS: Mapping[str, Callable[[Random], DrawnMat]] = {"bands": _draw_bands, 
 
 
 def generate_mat(kind: str, seed: int) -> DrawnMat:
-    """Return the mat of one of `DRAWN_MATS` that a seed draws."""
+    """Return a mat of a kind, one of `DRAWN_MATS`, drawn at random from a seed."""
     return DRAWN_MATS[kind](Random(seed))
 
 

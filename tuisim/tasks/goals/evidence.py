@@ -127,10 +127,10 @@ class Evidence:
 
     @cached_property
     def readings(self) -> Readings:
-        """What the program has read.
+        """The readings of sensors and motors that the program took.
 
         Raises:
-            LogError: the record of it is missing or damaged.
+            LogError: the record of them is missing or damaged.
         """
         return read_readings(self._run.folder, is_over=isinstance(self._run, StoredRun))
 
@@ -165,7 +165,7 @@ class Evidence:
         )
 
     def column(self, name: str) -> Array:
-        """Return a column of `list_columns` the run, or one of `BRICK_COLUMNS`, at every tick.
+        """Return a column of the run, one of `list_columns` or `BRICK_COLUMNS`, at every tick.
 
         Raises:
             LogError, ConfigError: the mat no longer exists, or its image has changed.

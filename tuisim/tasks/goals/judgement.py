@@ -59,7 +59,7 @@ class Judgement:
 
     @property
     def event(self) -> Change | None:
-        """When and where what decided the goal happened; None while it is open."""
+        """When and where the goal was decided, or what met it happened; None while the goal is open."""
         return self.happened or (self.changes[-1] if self.changes else None)
 
     def at(self, tick: int) -> GoalState:

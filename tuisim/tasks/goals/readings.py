@@ -170,7 +170,7 @@ def find_off_line(condition: FollowCondition, evidence: Evidence, span: Evidence
 
 
 def _compute_light_percent(records: Array, x_mm: float, y_mm: float, evidence: Evidence) -> Array:
-    """Return the light of the mat's pixel under a point of the robot, at every tick; beside the mat, that of no mat."""
+    """Return the light of the mat's pixel under a point of the robot, at every tick; off the mat, that of the floor."""
     import numpy as np
 
     mat = evidence.mat

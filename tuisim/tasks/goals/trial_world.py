@@ -37,7 +37,7 @@ GoalReader = Callable[[object, Location, Path], tuple[Goal, ...]]
 
 @dataclass(frozen=True, slots=True)
 class TrialWorld:
-    """A world in which a program is tried. A program that only fits the first one fails in another."""
+    """A world in which a program is tried. A program that fits only one of several worlds fails in the others."""
 
     where: str
     """What is other than in the first one, for the student, such as `from 10 cm farther back`; empty for the first."""

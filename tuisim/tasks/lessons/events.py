@@ -23,7 +23,7 @@ from tuisim.tasks.lessons.spec import (
 
 @dataclass(frozen=True, slots=True)
 class JudgedRun:
-    """A run has met goals; sent again as more of them are met."""
+    """A run has met goals; the event comes again when the run has met more."""
 
     run_id: str
     seed: int

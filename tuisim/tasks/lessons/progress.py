@@ -128,7 +128,7 @@ def _step(data: Mapping[str, Any]) -> StepProgress:
 
 
 def save_progress(lesson: str, progress: LessonProgress) -> None:
-    """Store the progress on one lesson; that on others is read again, since another app may have changed it.
+    """Store the progress on a lesson; that on other lessons is read again, since another app may have changed it.
 
     Raises:
         ConfigError: the file is damaged or cannot be written.

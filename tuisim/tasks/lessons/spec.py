@@ -338,7 +338,7 @@ class Lesson:
 
     @property
     def task(self) -> GoalsFile:
-        """Its goals, as those of a file."""
+        """The lesson's goals in its world, as a task."""
         return GoalsFile(self.path, self.title, self.goals, self.settings)
 
     @property

@@ -89,19 +89,19 @@ class Outcome:
 
     @property
     def counts(self) -> bool:
-        """Whether it counts: not if this machine could not start the program, or had no room for its recording."""
+        """Whether the run counts: not if this machine could not start the program, or had no room for its recording."""
         return bool(self.end) and self.end != End.DISK_FULL
 
     @property
     def is_in_doubt(self) -> bool:
-        """Whether it does not count, but the program may have caused that, to get rid of a run that it loses."""
+        """Whether the run does not count, but the program may have caused that, to get rid of a run that it loses."""
         return self.end == End.DISK_FULL or (not self.end and self.failure.startswith(UNJUDGED))
 
     @property
     def gave_up(self) -> bool:
-        """Whether it hung, flooded or died with nothing earned, so that further runs would only cost as much time.
+        """Whether the program hung, flooded or died with nothing earned, so that further runs would only cost time.
 
-        Not of one that has met a goal: it must meet the goal in the other runs, too.
+        Not if it has met a goal: it must meet the goal in the other runs, too.
         """
         return self.end in _GIVEN_UP and not any(
             goal.met and not goal.is_penalty for goal in self.goals

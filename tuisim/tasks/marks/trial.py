@@ -40,7 +40,7 @@ STILL_S = 30.0
 
 
 class TrialRole(StrEnum):
-    """What a program is, with which a task is tried."""
+    """The kind of a program with which a task is tried."""
 
     EMPTY = "empty program"
     STILL = "stands still"
@@ -59,7 +59,7 @@ _DOES = {
 
 @dataclass(frozen=True, slots=True)
 class TaskTrial:
-    """What the programs earned with which a task was tried."""
+    """The result of a trial of a task with several programs."""
 
     rows: tuple[tuple[str, str, str], ...]
     """The name of each program, its points, and which goals it meets."""

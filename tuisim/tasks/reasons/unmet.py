@@ -303,7 +303,7 @@ class _Search:
         return Unmet(first / self._hz, line, text)
 
     def _find_stay(self, loop: LoopEnd) -> tuple[int, int] | None:
-        """Return the first tick in a loop and the one after the last; None if it was not entered once only."""
+        """Return the first tick in a loop and the one after the last; None unless it was entered exactly once."""
         # Imported on demand, as numpy is.
         from tuisim.engine.runs.arrays import find_spans
 

@@ -254,7 +254,7 @@ class _Search:
                     yield awaited
 
     def _find_readings(self, subject: Subject, port: str) -> Array:
-        """Return the indices of the readings of a subject, on those lines that the program is reading it now."""
+        """Return the indices of the readings of a subject, on the lines on which the program waits for it now."""
         import numpy as np
 
         is_meant = self._select(subject, port)

@@ -183,7 +183,7 @@ def name_remedy(awaited: Awaited, spec: RunSpec, is_live: bool = False) -> str:
 
 
 def _name_presses(awaited: Awaited, default: str) -> str:
-    """Return the options that press what the program asks for at a time when it looks, for long enough."""
+    """Return the options that press what the program asks for, when it looks and for long enough."""
     names = awaited.sought or (default,)
     is_touch, is_remote = awaited.subject is Subject.TOUCH, awaited.subject is Subject.REMOTE
     from_s = math.floor(awaited.since_s) + (2 if is_touch else 1)

@@ -43,7 +43,7 @@ def find_mistaken_turn(run: StoredRun) -> MistakenTurn | None:
 
 
 def _measure(run: StoredRun, turn: WheelTurn) -> MistakenTurn | None:
-    """Return how far a call turned the robot when it ran first; None if that seems to be meant."""
+    """Return how far a call turned the robot when it ran first; None if this angle seems to be intended."""
     records = run.telemetry.array()
     lines = records["line"]
     is_on = (lines >= turn.first_line) & (lines <= turn.last_line)
