@@ -23,9 +23,10 @@ ROWS = {
 PARTS = sorted({part for _, _, *cells in ROWS.values() for cell in cells for part in cell})
 PROGRAM = """\
 from pybricks.hubs import {hub} as Hub
-from pybricks.parameters import Port
+from pybricks import parameters, tools
 hub = Hub()
 print("parts:", *[part for part in {parts} if hasattr(hub, part)])
+print("matrix:", hasattr(parameters, "Icon"), hasattr(tools, "hub_menu"))
 for part in {refused}:
     try:
         getattr(hub, part).observe(1)
@@ -64,6 +65,7 @@ def test_a_hub_has_the_parts_in_the_table_and_no_others(
     assert done.returncode == 0, done.stderr
     assert done.stdout.splitlines() == [
         " ".join(["parts:", *sorted([*parts, *refused])]),
+        f"matrix: {'display' in parts} {'display' in parts}",
         *(f"NotSimulated {part}" for part in refused),
     ]
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from tuisim.engine.core.hub_spec import HUBS_WITH_MATRIX
 from tuisim.engine.shim.pybricks import matrix, tools, version_4
 from tuisim.engine.shim.pybricks import parameters as common
 from tuisim.engine.shim.pybricks.hub import controllers, display, hubs, parameters, pupdevices
@@ -48,7 +49,6 @@ def find_names(hub: str) -> Mapping[str, Mapping[str, Any]]:
             "Direction": common.Direction,
             "Stop": version_4.Stop,
             "Color": version_4.Color,
-            "Icon": display.Icon,
             "Axis": matrix.Axis,
             "Side": matrix.Side,
         },
@@ -64,11 +64,13 @@ def find_names(hub: str) -> Mapping[str, Mapping[str, Any]]:
             "Matrix": matrix.Matrix,
             "vector": matrix.vector,
             "cross": matrix.cross,
-            "hub_menu": display.hub_menu,
             "run_task": version_4.run_task,
             "multitask": version_4.multitask,
         },
     }
+    if hub in HUBS_WITH_MATRIX:
+        names["pybricks.parameters"]["Icon"] = display.Icon
+        names["pybricks.tools"]["hub_menu"] = display.hub_menu
     for module, classes in REFUSED.items():
         known = names.setdefault(module, {})
         for name in classes:
