@@ -1,4 +1,4 @@
-"""How the user has had files read: found again as long as a file is the same.
+"""The user's choices for reading files, remembered as long as a file stays the same.
 
 The choices are kept in the user's data folder by path, size and date, never beside the file.
 """

@@ -1,4 +1,4 @@
-"""Whether a Dask cluster can work: a cluster that cannot would be waited for in silence."""
+"""Checks whether a Dask cluster can work: a batch would wait in silence for one that cannot."""
 
 from __future__ import annotations
 

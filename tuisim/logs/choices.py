@@ -1,4 +1,4 @@
-"""What the user knows of a log that is read: the options of the `log` commands."""
+"""How the user wants a log to be read: the options of the `log` commands."""
 
 from __future__ import annotations
 

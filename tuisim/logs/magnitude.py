@@ -1,4 +1,4 @@
-"""Numbers up to the largest that there are: sums, squares and differences of them must not overflow."""
+"""Huge and tiny numbers: scaled, so that their sums, squares and differences do not overflow."""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Lines that programs print: names with numbers, behind times, levels of logging and other prefixes."""
+"""Lines in a log file as programs print them: names with numbers, behind times, levels of logging and other prefixes.
+
+The printed lines of a run become samples in `engine/runs/samples.py`, which reads only the form `NAME: number [time]`.
+"""
 
 from __future__ import annotations
 

@@ -103,7 +103,7 @@ class Rows:
         return place if self.view.order is None else int(self.view.order[place])
 
     def place(self, row: int) -> int:
-        """Return the position in the table of a row of the log, or of the nearest row that is shown."""
+        """Return the position of a row of the log in the table; for a hidden row that of the next, or 0 if sorted."""
         if self.view.order is None or not len(self.view.order):
             return row
         if self.view.sorted_by:

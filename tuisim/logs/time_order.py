@@ -1,4 +1,4 @@
-"""The time of a table: put together from two columns, and going on where it goes back."""
+"""The time of a table: joined from two columns, and split into runs where it begins again."""
 
 from __future__ import annotations
 

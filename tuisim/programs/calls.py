@@ -1,4 +1,4 @@
-"""Which calls the text of a program has, whatever it calls them.
+"""Which calls the text of a program has, by whatever names it imports them.
 
 Names are followed as far as they are clear from the text: imports under other names, a variable that is assigned
 another name or a new object of a class, and the names that a prelude defines. Nothing is executed.

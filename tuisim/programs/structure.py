@@ -1,4 +1,4 @@
-"""How the text of a program is made: how much of what it has."""
+"""The structure of a program's text: how many loops, functions, lines and so on it has."""
 
 from __future__ import annotations
 

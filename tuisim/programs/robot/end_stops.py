@@ -1,4 +1,4 @@
-"""The end stops of motors: where they are, by what a program does with its motors."""
+"""The end stops of motors: where they must be, given how a program moves its motors."""
 
 from __future__ import annotations
 

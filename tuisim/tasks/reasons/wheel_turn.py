@@ -1,4 +1,4 @@
-"""Where a robot turned by another angle than its program says, because that is one of the wheels."""
+"""Where a robot turned by another angle than its program says, because the wheels turned by that angle."""
 
 from __future__ import annotations
 
