@@ -127,7 +127,7 @@ def read_options(options: Mapping[str, Any]) -> dict[str, Any]:
     return settings
 
 
-def read_world(world: str | Path | Description | None, mats: str | None) -> Mapping[str, Any]:
+def read_world(world: str | Path | WorldDescription | None, mats: str | None) -> Mapping[str, Any]:
     """Return the settings of a world, by path; none without one.
 
     Raises:

@@ -8,7 +8,14 @@ from math import nan
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tuisim.api.descriptions import Description, plain, read_columns, read_options, read_world
+from tuisim.api.descriptions import (
+    RobotDescription,
+    WorldDescription,
+    plain,
+    read_columns,
+    read_options,
+    read_world,
+)
 from tuisim.api.keywords import check_keywords
 from tuisim.base.errors import ConfigError
 from tuisim.engine.core.commands.calls import Call, SimulationCommand
@@ -61,8 +68,8 @@ class Lab:
     @check_keywords
     def __init__(
         self,
-        world: str | Path | Description | None = None,
-        robot: str | Path | Description | None = None,
+        world: str | Path | WorldDescription | None = None,
+        robot: str | Path | RobotDescription | None = None,
         seed: int = 0,
         *,
         profile: str | Path | None = None,
