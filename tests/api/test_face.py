@@ -413,6 +413,6 @@ def test_a_class_is_marked(tmp_path: Path) -> None:
         (tmp_path / "class" / name).mkdir(parents=True)
         (tmp_path / "class" / name / "main.py").write_text(text)
     marks = tuisim.mark(
-        tmp_path / "goals.toml", tmp_path / "class", seeds=[1], jobs=1, isolate=False
+        tmp_path / "goals.toml", tmp_path / "class", seeds=np.array([1]), jobs=1, isolate=False
     )
     assert marks[["student", "points"]].to_numpy().tolist() == [["Ada", 2], ["Bob", 0]]

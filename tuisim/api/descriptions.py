@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from tuisim.base.errors import ConfigError
+from tuisim.batch.parameters import check_seeds
 from tuisim.engine.core.sensors import find_named_column
 from tuisim.engine.core.spec import RunSpec
 from tuisim.programs.program_file import find_program
@@ -106,6 +107,19 @@ def read_columns(columns: Sequence[str], spec: RunSpec) -> tuple[str, ...]:
     """
     names = (columns,) if isinstance(columns, str) else columns
     return tuple(find_named_column(name, spec) for name in names)
+
+
+def read_seeds(seeds: Any) -> tuple[int, ...]:
+    """Return seeds after checking them.
+
+    Raises:
+        ConfigError: they are not several, there are none, or one is wrong.
+    """
+    if isinstance(seeds, str) or not isinstance(seeds, Iterable):
+        raise ConfigError(f"must be several, got {seeds!r}", "such as range(200)", key="seeds")
+    if not (checked := check_seeds([plain(seed) for seed in seeds], "seeds")):
+        raise ConfigError("has no values", key="seeds")
+    return checked
 
 
 def read_options(options: Mapping[str, Any]) -> dict[str, Any]:

@@ -7,9 +7,10 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from tuisim.api.descriptions import read_seeds
 from tuisim.api.keywords import check_keywords
+from tuisim.api.measures import show_progress
 from tuisim.base.errors import HostError
-from tuisim.batch.parameters import check_seeds
 from tuisim.engine.runs.child.isolation import check_isolation
 from tuisim.tasks.goals.files import load_goals
 from tuisim.tasks.marks.marking import MarkRequest, open_marking
@@ -61,7 +62,7 @@ def mark(
     request = MarkRequest(
         task=task,
         folders=[*map(str, named)],
-        seeds=check_seeds([*seeds], "seeds"),
+        seeds=read_seeds(seeds),
         version=version("tuisim"),
         time_limit_s=timeout_s,
         jobs=jobs,
@@ -69,7 +70,8 @@ def mark(
     )
     with open_marking(request) as marking:
         marking.read_programs()
-        marking.run(lambda *_: None, isolate=isolate)
+        with show_progress() as tell:
+            marking.run(tell, isolate=isolate)
         if marking.missing:
             name, outcome = marking.missing[0]
             message = (

@@ -117,8 +117,8 @@ def take_columns(rows: Mapping[int, Row]) -> dict[int, pd.DataFrame]:
 
 
 @contextmanager
-def show_progress(total: int) -> Iterator[Callable[[object], None]]:
-    """Show a bar on a terminal or in a notebook where tqdm is installed; the block tells it of each run."""
+def show_progress(total: int | None = None) -> Iterator[Callable[..., None]]:
+    """Show a bar on a terminal or in a notebook where tqdm is installed; the block calls what it gets for each run."""
     bar = None
     with suppress(ImportError):
         from tqdm.auto import tqdm
@@ -126,7 +126,7 @@ def show_progress(total: int) -> Iterator[Callable[[object], None]]:
         # By itself it is silent only where there is no terminal, as in a notebook.
         bar = tqdm(total=total, unit="run", disable=False if "ipykernel" in sys.modules else None)
     try:
-        yield lambda _: bar.update() if bar is not None else None
+        yield lambda *_: bar.update() if bar is not None else None
     finally:
         if bar is not None:
             bar.close()

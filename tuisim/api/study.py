@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING, Any
 from warnings import warn
 
 from tuisim.api.calls import build_run_options, prepare_program, read_source
-from tuisim.api.descriptions import plain, read_options, read_world
+from tuisim.api.descriptions import plain, read_options, read_seeds, read_world
 from tuisim.api.measures import Measures, Metric, show_progress, take_columns
 from tuisim.base.errors import ConfigError, counted
 from tuisim.base.folders import user_path
-from tuisim.batch.parameters import SEED, Choice, check_seeds, parse_values
+from tuisim.batch.parameters import SEED, Choice, parse_values
 from tuisim.batch.plan import Plan, Subject
 from tuisim.batch.rounds import Rounds, parse_precision
 from tuisim.batch.sweep import Sweep, Workers, is_interrupted
@@ -153,7 +153,7 @@ class Study:
                 for program in self._programs
                 for variant in self._variants
             ),
-            {**self._parameters, **_read_seeds(seeds)},
+            {**self._parameters, **({} if seeds is None else {SEED: read_seeds(seeds)})},
             Path("parameters"),
             self._task.goals if self._task else (),
             Keep(keep),
@@ -227,16 +227,6 @@ def _is_varied(name: str, value: object) -> bool:
     return isinstance(value, Iterable) and not (
         isinstance(value, str | Mapping) or name in _NOT_VARIED
     )
-
-
-def _read_seeds(seeds: Any) -> dict[str, Choice]:
-    if seeds is None:
-        return {}
-    if isinstance(seeds, str) or not isinstance(seeds, Iterable):
-        raise ConfigError(f"must be several, got {seeds!r}", "such as range(200)", key="seeds")
-    if not (chosen := check_seeds([plain(seed) for seed in seeds], "seeds")):
-        raise ConfigError("has no values", key="seeds")
-    return {SEED: chosen}
 
 
 def _read_choice(name: str, values: Any) -> Choice:
