@@ -63,6 +63,7 @@ def test_an_error_of_the_program_is_in_the_run() -> None:
         "unknown argument": ({"backgrond": "Loop"}, "did you mean background"),
         "unknown mat": ({"background": "Nope"}, "^background: no such mat"),
         "no number": ({"x": "far"}, "x: must be a number"),
+        "several": ({"x": [0, 20]}, "x: must be one value, .*experiment takes several"),
         "no truth value": ({"pendown": 1}, "pendown: must be true or false"),
         "text for a number": ({"x": "100"}, "x: must be a number"),
         "no time": ({"timeout_s": 0}, "timeout_s: must be a number above 0"),

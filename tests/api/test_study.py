@@ -98,7 +98,7 @@ def test_an_interrupted_experiment_goes_on(
 
 
 def test_a_mean_that_is_known_needs_no_further_seeds() -> None:
-    how: dict[str, Any] = {"metrics": {"end_mm": lambda run: run.pose.x_mm}, "jobs": 1}
+    how: dict[str, Any] = {"metrics": {"end_mm": lambda run: run.pose.x_mm}, "jobs": 2}
     with pytest.warns(UserWarning, match="1 mean known only to"):
         frame = tuisim.experiment(
             PROGRAM, seeds=range(12), motornoise=[0, 500], until="end_mm ± 0.0001", **how

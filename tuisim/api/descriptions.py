@@ -137,6 +137,9 @@ def read_options(options: Mapping[str, Any]) -> dict[str, Any]:
             settings |= value.settings
         elif value is not None:
             option = OPTIONS_BY_NAME[name]
+            if isinstance(value, list | tuple | range) and not option.repeats:
+                hint = "tuisim.experiment takes several"
+                raise ConfigError(f"must be one value, got {value!r}", hint, key=name)
             settings[option.path] = option.from_python(plain(value), name)
     return settings
 
