@@ -182,7 +182,7 @@ class CommandRow:
 
     index: CommandIndex
     number: int
-    """Of the event in the index."""
+    """Number of the event in the index."""
     row: int
     """Row of the table with the first sample since then."""
     run: int

@@ -85,7 +85,7 @@ class Picture:
     """Its content, as the `src` of an `img`."""
     size_px: tuple[int, int] | None = None
     view: Viewport | None = None
-    """What of the world it shows; for rings and dots only."""
+    """The part of the world that the picture shows; for rings and dots only."""
     rings: tuple[Ring, ...] = ()
     dots: tuple[Dot, ...] = ()
 

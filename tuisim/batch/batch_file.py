@@ -46,7 +46,7 @@ class BatchFile:
     """Paths, or names of examples."""
     world: WorldFile | None = None
     choices: Mapping[str, Choice] = field(default_factory=dict)
-    """What each parameter takes; the seeds come last."""
+    """The values of each parameter; the seeds come last."""
     jobs: int | None = None
     out: str | None = None
     goals: str | None = None

@@ -84,7 +84,7 @@ class SampleValues:
 
 
 Choice = tuple[Value, ...] | SampleValues
-"""What a parameter takes: these values, or a sample."""
+"""The values of a parameter: as listed, or drawn at random."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,7 +93,7 @@ class ParameterAxis:
 
     names: tuple[str, ...]
     points: tuple[tuple[Value, ...], ...]
-    """The values of all of them at each point."""
+    """The values of all its parameters at each point."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -36,7 +36,7 @@ class Subject:
     given: frozenset[str] = frozenset()
     """The paths of the settings that were chosen for all runs, and that no parameter may change."""
     name: str = ""
-    """What the table calls it; empty for the program's own name."""
+    """The name in the table; empty for the program's own name."""
 
     @property
     def label(self) -> str:
@@ -54,7 +54,7 @@ class Plan:
 
     subjects: tuple[Subject, ...]
     choices: Mapping[str, Choice]
-    """What each parameter takes; the last one varies fastest."""
+    """The values of each parameter; the last one varies fastest."""
     path: Path = Path("--set")
     """The file to blame for wrong parameters; paths in them are relative to its folder."""
     goals: tuple[Goal, ...] = ()

@@ -204,7 +204,7 @@ _FORMATS: Mapping[bytes, Callable[[Any], Any]] = {
     ),
     b"\x04\x22\x4d\x18": lambda handle: pa.CompressedInputStream(pa.PythonFile(handle, "r"), "lz4"),
 }
-"""Compressed formats by their first bytes: what opens a file in them."""
+"""Functions that open compressed files, by the first bytes of their formats."""
 _REFUSED = {
     b"PK\x03\x04": "a ZIP archive or a spreadsheet",
     b"7z\xbc\xaf\x27\x1c": "a 7-Zip archive",

@@ -34,9 +34,9 @@ class NumberForm:
     pattern: str = rf"^{NUMBER}$|{_SPECIAL}"
     """Regular expression of a number."""
     changes: tuple[tuple[str, str], ...] = ()
-    """What is replaced so that Python's form comes out: regular expressions and texts."""
+    """Replacements that give Python's form of the number: regular expressions and texts."""
     words: str = ""
-    """What the numbers are or have, empty for Python's own form."""
+    """The form in words, such as that the numbers have a unit; empty for Python's own form."""
     is_hexadecimal: bool = False
 
 

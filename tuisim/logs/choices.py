@@ -36,9 +36,9 @@ class ReadChoices:
     table: int = 1
     """Which of several tables in a text, from 1."""
     encoding: str = ""
-    """That of a text as Python knows it, such as `cp1252`."""
+    """Encoding of a text, by its name in Python, such as `cp1252`."""
     separator: str = ""
-    """What is between the cells of a text, one of `SIGNS`."""
+    """The separator of the cells of a text, one of `SIGNS`."""
     decimal: str = ""
     """One of `DECIMAL_SIGNS`."""
 

@@ -10,11 +10,11 @@ if TYPE_CHECKING:
     import pandas as pd
 
 _SIGNS = "=+@\uff1d\uff0b\uff0d\uff20-"
-"""What a formula begins with, also in full width."""
+"""Characters with which a formula begins, also in full width."""
 _RISKY = rf"'*(?:[ \f\v]*[{_SIGNS}]|[\t\r\n])"
 """How a cell begins that a spreadsheet computes. Those with apostrophes count too, so that reading can undo writing."""
 WRITTEN = f"^'({_RISKY})"
-"""How such a cell begins in a file; the group is what it begins with when it is read."""
+"""The beginning of a risky cell in a file; the group is its beginning once it is read."""
 
 _is_risky = re.compile(_RISKY).match
 _is_number = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?").fullmatch

@@ -14,14 +14,14 @@ _YEAR_FIRST = r"\d{4}[-/.]\d{1,2}[-/.]\d{1,2}"
 _YEAR_LAST = r"\d{1,2}[-/.]\d{1,2}[-/.]\d{4}"
 _DATE = rf"(?:{_YEAR_FIRST}|{_YEAR_LAST})"
 _GAP = r"(?:T| *[/,_] *| +(?:- +)?)"
-"""What stands between a date and its time of day."""
+"""The characters between a date and its time of day."""
 _PART = r"(?:[.,]\d+)"
 """Fraction of a second."""
 _ZONE = r"(?:Z| ?UTC| ?[+-]\d{2}:\d{2}|[+-]\d{4})"
 _C_TIME = (
     rf"[A-Z][a-z]{{2}} (?:{'|'.join(_MONTHS)}) {{1,2}}\d{{1,2}} \d{{2}}:\d{{2}}:\d{{2}} \d{{4}}"
 )
-"""As `time.ctime` writes it."""
+"""A date and time as `time.ctime` writes it."""
 MOMENT = (
     rf"(?:{_DATE}(?:{_GAP}\d{{1,2}}:\d{{2}}(?::\d{{2}}{_PART}?)?{_ZONE}?)?"
     rf"|\d{{1,2}}:\d{{2}}:\d{{2}}{_PART}?|{_C_TIME})"

@@ -97,9 +97,9 @@ class Light(NamedTuple):
     noise: int = 0
     """Light noise of the run, 0 to 128."""
     black: float = 0.0
-    """What the sensor reads of black, in percent."""
+    """The sensor's reading of black, in percent."""
     white: float = 100.0
-    """Likewise, of white."""
+    """The sensor's reading of white, in percent."""
 
     def undo_response(self, percents: FloatArray) -> FloatArray:
         """Return the greys of the mat that give readings, both 0 to 100."""

@@ -111,7 +111,7 @@ class Plateau(NamedTuple):
 
 
 Search = Callable[[FloatArray], list[Plateau]]
-"""What finds the plateaus of a log: `find_plateaus`, or `find_plateaus_in_subprocess`."""
+"""A function that finds plateaus: `find_plateaus`, or `find_plateaus_in_subprocess`."""
 
 
 def measure_noise(values: FloatArray) -> float:

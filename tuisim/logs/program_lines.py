@@ -60,7 +60,7 @@ class ProgramLine(NamedTuple):
     """The time, and the samples or numbers, in a line that a program printed."""
 
     time: float | str | None
-    """Its time: seconds behind a sample, or what stands before; None without one."""
+    """Seconds behind a sample, or the time at the beginning of the line; None without a time."""
     samples: Values = ()
     rest: str = ""
     """Numbers without names; empty if there are samples."""

@@ -135,7 +135,7 @@ class Ground(NamedTuple):
     noise: float
     """Standard deviation of the noise about slopes."""
     sigma: float
-    """The same of all noise, by which strays are told."""
+    """Standard deviation of all noise, by which strays are found."""
 
 
 def drop_moving(values: FloatArray, plateaus: PlateauArray, ground: Ground) -> PlateauArray:

@@ -48,7 +48,7 @@ class Ordered(NamedTuple):
     table: pa.Table
     layout: Layout
     seconds: FloatArray | None
-    """Its time column in seconds, shape (n,); None without one."""
+    """The times in seconds, shape (n,); None without a time column."""
 
 
 def join_times(table: pa.Table) -> pa.Table:

@@ -12,7 +12,7 @@ from tuisim.base.data_class import dataclass
 from tuisim.base.source import source_lines
 
 _INDENT = "  "
-"""What the further rows of a line are indented by."""
+"""The indentation of the further rows of a line."""
 _CONTINUATION = " \\"
 """Ends a row that goes on, outside of brackets."""
 _OPEN, _CLOSED = frozenset("([{"), frozenset(")]}")
@@ -27,7 +27,7 @@ class _Breaks:
     """Where a line may be broken."""
 
     inside: dict[int, bool] = field(default_factory=dict)
-    """For each column that a row may begin at: whether it is in brackets."""
+    """The columns at which a row may begin, each with whether it is in brackets."""
     comment: int | None = None
     """Column of a comment."""
 

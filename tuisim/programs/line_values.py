@@ -14,7 +14,7 @@ MODULE = "<module>"
 _Function = ast.FunctionDef | ast.AsyncFunctionDef
 _LOOPS = (ast.For, ast.AsyncFor, ast.While)
 _OWN_NAMES = (ast.Lambda, ast.ClassDef, ast.ListComp, ast.SetComp, ast.DictComp, ast.GeneratorExp)
-"""What has names that are not those of the code around it."""
+"""Nodes with a scope of their own."""
 
 
 def map_line_values(text: str, inspected: Inspected) -> dict[int, tuple[Variable, ...]]:

@@ -46,9 +46,9 @@ class UnknownName:
     end: int
     """Columns, from 0."""
     hint: str = ""
-    """What may have been meant."""
+    """The names that may have been meant."""
     owner: str = ""
-    """What does not have it, if it is an attribute."""
+    """The name of the object that lacks the attribute; empty for an unknown name."""
 
     @property
     def message(self) -> str:

@@ -61,7 +61,7 @@ class SourceFacts:
     robot: BuiltRobot | None = None
     """The robot that it needs; None if the default one does."""
     refused: tuple[RefusedLine, ...] = ()
-    """Its lines that LEGO's MicroPython refuses, if it is for that."""
+    """Lines that LEGO's MicroPython refuses, if the program is for that."""
     unread: str = ""
     """Why the robot is not read from all of it, in words; empty if it is."""
     shown_ports: tuple[str, ...] | None = None
@@ -94,7 +94,7 @@ class Decided:
     layer: Mapping[str, Any] = field(default_factory=dict)
     """By path; below everything that somebody has chosen."""
     said: str = ""
-    """The same in one line; empty for nothing."""
+    """The decisions in one line; empty for none."""
     hint: str = ""
     """How to change it in the shell."""
     robot: RobotChoice | None = None

@@ -12,7 +12,7 @@ from tuisim.programs.questions import COLOR_WORDS, Word, shorten
 from tuisim.programs.robot.source import OPERATORS, SIGNS, TURNED
 
 _OPPOSITE = {">=": "<", ">": "<=", "<=": ">", "<": ">=", "!=": "==", "==": "!="}
-"""What ends a loop that goes on while a comparison holds."""
+"""The operator that ends a loop which goes on while a comparison holds."""
 _Loop = ast.For | ast.While
 
 
@@ -26,11 +26,11 @@ class LoopEnd:
     """That on which the loop begins."""
     last_line: int
     operator: str
-    """The one that ends it, such as `>=`."""
+    """The operator that ends the loop, such as `>=`."""
     limit: Word
-    """What the value is compared with; of a name such as `COLOR_RED` its last part."""
+    """The constant; of a name such as `COLOR_RED` its last part."""
     attribute: str = ""
-    """What is read of a device in the comparison, or in the loop for it; empty for none."""
+    """The attribute of a device that is read for the comparison; empty for none."""
     read_line: int = 0
     """The line that reads it."""
     name: str = ""

@@ -9,7 +9,7 @@ from typing import TypeGuard
 from tuisim.base.data_class import dataclass
 
 _ANGLES = {"on_for_degrees": (45.0, 90.0, 180.0, 360.0), "on_for_rotations": (0.25,)}
-"""What robots are turned by: a whole rotation is mostly one of the wheels."""
+"""Angles by which robots are turned; a whole rotation in `on_for_rotations` is mostly meant for a wheel."""
 _SPOT_STEERING = 100.0
 """The steering that turns the wheels against each other."""
 _DEGREES = {"on_for_degrees": 1.0, "on_for_rotations": 360.0}

@@ -137,7 +137,7 @@ class Option:
     """The setting without it; empty where mat, robot or program decides."""
     flags: tuple[str, ...] = ()
     constant: Any = None
-    """What it sets if it takes no value."""
+    """The value of the setting if the option takes none."""
     panel: str = ""
     """The panel that it shows or hides."""
     magic_flags: tuple[str, ...] = ()

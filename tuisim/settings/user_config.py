@@ -49,7 +49,7 @@ ABOUT: Mapping[Section, str] = {
     Section.APP: "How the app looks and sounds.",
     Section.KEYS: "Other keys for actions of the app: `tuisim guide keys` lists the actions by id.",
 }
-"""What each table is for."""
+"""The purpose of each table."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,9 +60,9 @@ class Setting:
     name: str
     value: Value
     default: Any
-    """Its value without the file; an empty text where mat, robot or program decides."""
+    """The value without the file; an empty text where mat, robot or program decides."""
     sets: str = ""
-    """The path of the setting that it makes; empty if there is none."""
+    """The path in `Settings` that it sets; empty if there is none."""
     at_once: bool = True
     """Whether the app could apply a change at once."""
 
@@ -108,11 +108,11 @@ class UserConfig:
     written: Mapping[str, Scalar] = field(default_factory=dict)
     """The valid values, by path of the setting."""
     values: Mapping[str, Any] = field(default_factory=dict)
-    """The same, as settings."""
+    """The valid values as settings, by path of the setting."""
     keys: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     """The keys of actions by id, as they are written; whether they fit the actions is not checked."""
     problems: tuple[ConfigError, ...] = ()
-    """What is wrong; such entries count as missing."""
+    """The faults; wrong entries count as missing."""
 
     def checked(self) -> UserConfig:
         """Return the configuration itself if nothing in it is wrong.

@@ -38,20 +38,20 @@ class Task:
     """One run of a batch."""
 
     index: int
-    """Its place in the batch, from 0."""
+    """Place of the task in the batch, from 0."""
     program: Program
     spec: RunSpec
     options: RunOptions = field(default_factory=RunOptions)
     goals: tuple[Goal, ...] = ()
     parameters: Mapping[str, Value] = field(default_factory=dict)
-    """Values that distinguish it from the other tasks, by name."""
+    """Values that distinguish the task from others of the batch, by name."""
     keep: Keep = Keep.NONE
     isolate: bool = False
-    """Whether it runs through bubblewrap, without network and without the user's files."""
+    """Whether the program runs through bubblewrap, without network and without the user's files."""
     is_replayed: bool = False
-    """Whether the run is worked out from the program's commands, and that is judged, not what its process recorded."""
+    """Whether the run is replayed from the program's commands, and the replay judged, not its own recording."""
     returns_files: bool = False
-    """Whether the result has what the run has recorded."""
+    """Whether the result contains the files of the recording."""
     real_time_limit_s: float = 0.0
     """Real seconds, without those in which it waits for a processor, after which it is stopped; 0 is no limit."""
 
@@ -91,12 +91,12 @@ class Result:
     """Statistics by name of sample, in the order of the first samples."""
     judgements: tuple[Judgement, ...] = ()
     output: str = ""
-    """The beginning of what it printed on stdout."""
+    """The beginning of the program's output on stdout."""
     waited_for: str = ""
-    """What it waited for in vain, in words; see `tasks.reasons.waited`."""
+    """What the program waited for in vain, in words; see `tasks.reasons.waited`."""
     plugged: str = ""
     """The parts that were plugged in, in words; see `programs.plugged_words`."""
     run_id: str = ""
-    """Its id in the store; empty if it was not kept."""
+    """Id of the run in the store; empty if it was not kept."""
     files: Mapping[str, bytes] = field(default_factory=dict)
-    """What the run has recorded, by the names of the files in its folder, if the task wants it."""
+    """The files of the recording by name, if the task wants them."""

@@ -18,7 +18,7 @@ from tuisim.terminal.text_runs import Run
 MAX_SAMPLES = 4000
 """Bands of more samples take too long to find for a chart that is on the screen: the analyser finds them."""
 SHADES = Style(bgcolor=palette.HERE), Style(bgcolor=palette.FIELD)
-"""In turns, so that bands without an edge between them stay apart."""
+"""Shades that alternate, so that bands without an edge between them stay apart."""
 NAME = Style(color=palette.SOFT)
 _MIN_COLUMNS = 3
 """Narrower bands have no name."""
@@ -27,7 +27,7 @@ _OVERHANG = 2
 _SHIFTS = (0, 1, -1, 2, -2, 3, -3)
 """Columns from its middle to which the name of a band gives way."""
 FREE = " ┈"
-"""What a name may be written over."""
+"""Characters over which a name may be written."""
 
 
 def build_band_span(name: str, start: float, stop: float, level: float, grey: str) -> Span:

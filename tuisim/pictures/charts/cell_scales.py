@@ -33,9 +33,9 @@ class CellScales:
 
     scales: Scales
     labels: tuple[dict[int, str], ...]
-    """Of the left scale, and of those on the right that have room: by row."""
+    """Labels by row: of the left scale, and of the scales on the right that have room."""
     styles: tuple[Style, ...]
-    """Of the labels: the colour of the trace, if the scale is for one of several."""
+    """Styles of the labels: the colour of the trace, if the scale is for one of several."""
     ends: dict[int, Run]
     """The last values by row."""
     ends_width: int

@@ -67,7 +67,7 @@ class Span:
     start: float
     stop: float
     texts: tuple[str, ...]
-    """What it may be called, the longest first: the first one with room is written."""
+    """Its names, the longest first: the first one with room is written."""
     name: str
     """Variable that it is about."""
 
@@ -341,9 +341,9 @@ class Scale:
 
     limits: Limits
     unit: str
-    """Of its variables; empty if they have none, or several."""
+    """Unit of its variables; empty if they have none, or several."""
     names: tuple[str, ...]
-    """Its variables."""
+    """Names of its variables."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -44,7 +44,7 @@ class Plot:
     has_time_line: bool
     """Whether a row of cells below the canvas is for the axis of time."""
     cursors: tuple[float, ...]
-    """Their times."""
+    """Times of the cursors."""
     spans: tuple[Span, ...] = ()
     """What is shaded and named."""
 

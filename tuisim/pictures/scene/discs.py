@@ -46,11 +46,11 @@ class DiscFace:
     """The pixels of the box around its disc: d × d, three bytes a pixel, row-major."""
     seen: ColorReading
     read: LightRead
-    """What the program reads of it."""
+    """Which number of the sensor the program reads."""
     reflected_max: int
     """Value of `reflected_light_intensity` on white."""
     thresholds: tuple[ProgramThreshold, ...] = ()
-    """What the program compares it with."""
+    """The program's comparisons with this sensor."""
 
     @property
     def value_words(self) -> str:

@@ -21,7 +21,7 @@ _STRONGER, _CLEAR = 2.5, 0.6
 _PLAIN = 0.15
 """A pixel of which less than this is of another colour is one of an area, and not of a thin line."""
 _AREA_MM = 60
-"""What is narrower is a line."""
+"""Anything narrower is a line."""
 _FINE_COLS = 2
 """Pixels of so many across a cell, or of fewer, are so large that thin lines need it."""
 

@@ -46,7 +46,7 @@ class Faint(StrEnum):
     """Which robot is drawn translucently."""
 
     BESIDE = "beside"
-    """That of another run, which is shown beside this one."""
+    """The robot of another run, which is shown beside this one."""
     NOW = "now"
     """Where the robot is now, while a past instant is in view."""
 

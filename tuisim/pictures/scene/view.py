@@ -17,7 +17,7 @@ ZOOMS = (1, 2, 4)
 _KEEP_INSIDE = 0.22
 """A following view moves once the robot is nearer to an edge than this share of its size."""
 _KEEP_ON_FLOOR = 0.15
-"""Likewise, of the view of a whole field that lies on a floor: a robot in its middle is inside two thirds of it."""
+"""The same for the view of a whole field on a floor: a robot in its middle is inside two thirds of it."""
 
 
 class Area(NamedTuple):

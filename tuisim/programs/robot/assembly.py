@@ -62,9 +62,9 @@ class RobotPart:
     """A part of the robot that differs from the default one, or that a line of the program asks for."""
 
     what: str
-    """In words, such as `medium motor on outA`."""
+    """The part in words, such as `medium motor on outA`."""
     path: str
-    """Its key in a robot file."""
+    """The key of the part in a robot file."""
     where: Where | None = None
     """The line of the program that asks for it; None if another part takes its place."""
     changes: bool = True

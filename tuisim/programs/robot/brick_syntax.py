@@ -16,7 +16,7 @@ class RefusedLine:
     file: str
     line: int
     what: str
-    """What is on it, such as `f-string`."""
+    """The refused syntax, such as `f-string`."""
 
     def __str__(self) -> str:
         return f"{self.file}:{self.line}: the brick's Python would refuse this line ({self.what})"

@@ -11,7 +11,7 @@ from tuisim.programs.robot.library import COURSE_MODULE
 from tuisim.programs.robot.source import Module
 
 _ATTRIBUTES = frozenset({"reflected_light_intensity_pc", "full_reflected_light_intensity"})
-"""What the course adds to colour sensors."""
+"""Attributes that the course adds to colour sensors."""
 
 
 def has_course_names(modules: Mapping[str, Module], text: str) -> bool:

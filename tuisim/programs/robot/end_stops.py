@@ -22,9 +22,9 @@ class EndStop:
 
     where: Where
     forwards: bool | None
-    """Its direction; None if the program does not say it."""
+    """Whether the motor turns forwards to it; None if the program does not say."""
     scope: Scope
-    """The function or module that drives it there."""
+    """The function or module that drives the motor to it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,14 +52,14 @@ class Mechanics:
     """How the motors of a program's robot are mounted and move, by port; the port is empty if the program lacks it."""
 
     order: CallOrder = field(default_factory=CallOrder)
-    """What the program does first."""
+    """The order in which the program reaches its lines."""
     reversed: dict[str, Where] = field(default_factory=dict)
     stops: dict[str, EndStop] = field(default_factory=dict)
     presses: list[StopPress] = field(default_factory=list)
     reach_deg: dict[str, float] = field(default_factory=dict)
     """The farthest that the program turns a motor, from where it stands or from its end stop."""
     turns: dict[str, list[Target]] = field(default_factory=dict)
-    """How far it turns them from where they stand."""
+    """The angles by which the program turns motors from where they stand."""
     targets_deg: dict[str, tuple[float, float]] = field(default_factory=dict)
     """The farthest positions that a motor can reach that stands at 0 at the start: backwards and forwards."""
     endless: set[str] = field(default_factory=set)

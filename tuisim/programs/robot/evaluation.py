@@ -45,12 +45,12 @@ class Evaluation:
     """What the expressions of one program can be, without running it."""
 
     modules: Mapping[str, Scope]
-    """Its own modules by name."""
+    """The program's own modules by name."""
     calls: Mapping[Function, Sequence[Call]] = field(default_factory=dict)
     """The known calls of each function."""
     _known: dict[tuple[ast.AST, Scope], tuple[Value, ...]] = field(default_factory=dict)
     _open: set[tuple[object, ...]] = field(default_factory=set)
-    """What is being evaluated, to end where a program refers to itself."""
+    """Expressions and names that are being evaluated: ends the recursion of a program that refers to itself."""
     _steps: int = 0
 
     def values(self, node: ast.expr, scope: Scope) -> tuple[Value, ...]:

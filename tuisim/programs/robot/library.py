@@ -23,14 +23,14 @@ class DeviceKind(StrEnum):
     LARGE = "large motor"
     MEDIUM = "medium motor"
     MOTOR = "motor"
-    """Of any kind."""
+    """A motor of any kind."""
     COLOR = "colour sensor"
     ULTRASONIC = "ultrasonic sensor"
     GYRO = "gyro"
     TOUCH = "touch sensor"
     INFRARED = "infrared sensor"
     SENSOR = "sensor"
-    """Of a kind that the program does not say."""
+    """A sensor of a kind that the program does not say."""
 
     @property
     def is_motor(self) -> bool:
@@ -63,7 +63,7 @@ OTHER_HARDWARE = frozenset({"pybricks.nxtdevices"})
 """Modules whose classes are for other hardware, also where they have the same names."""
 
 PORT_NAMES = ("address", "port")
-"""What the libraries call the first argument of a class of devices."""
+"""The names of the first argument of classes of devices."""
 DIRECTION, GEARS = "positive_direction", "gears"
 """Arguments of the motors of Pybricks, after the port."""
 
@@ -83,9 +83,9 @@ class PairClass:
     rank: int = 1
     """Of several pairs in a program, the one with the highest rank is the wheels."""
     kind: DeviceKind = DeviceKind.LARGE
-    """Of its motors, unless the argument `motor_class` says otherwise."""
+    """Kind of its motors, unless the argument `motor_class` says otherwise."""
     needs: tuple[DeviceKind, ...] = ()
-    """What else it makes, without a port."""
+    """Further devices that it makes, without a port."""
     usual: tuple[str, str] = ("", "")
     """The ports where the arguments are missing."""
     reverses: bool = False
@@ -173,11 +173,11 @@ class Moves:
     """The methods of a library that move motors, one or two, and the names of their arguments."""
 
     endless: frozenset[str]
-    """Those after which a motor moves on."""
+    """Methods after which a motor keeps moving."""
     ending: frozenset[str]
-    """Those that end by themselves."""
+    """Methods that end by themselves."""
     unsigned: frozenset[str]
-    """Those of them whose arguments do not say in which direction a motor turns: moves to a place, and turns."""
+    """Those of `ending` whose arguments do not say in which direction a motor turns: moves to a place, and turns."""
     speeds: tuple[str, ...]
     """The names of speeds."""
     lengths: tuple[str, ...]
@@ -185,9 +185,9 @@ class Moves:
     length_at: Mapping[str, int]
     """Where a length or a place stands in a call of a motor; for two motors one place later."""
     of_both: frozenset[str] = frozenset()
-    """Those that give one speed or length for two motors."""
+    """Methods with one speed or length for two motors."""
     stalling: frozenset[str] = frozenset()
-    """Those that end when something stops the motor."""
+    """Methods that end when something stops the motor."""
 
 
 MOVES: Mapping[Library, Moves] = {

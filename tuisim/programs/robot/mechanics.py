@@ -32,17 +32,17 @@ class _MechanicsReader:
     mentions: Mentions
     evaluation: Evaluation
     moves: Moves
-    """Of the library."""
+    """The moves of the program's library."""
     found: Mechanics
     normal: set[str] = field(default_factory=set)
     places: dict[str, set[float]] = field(default_factory=dict)
     """The positions that the program says its motors have, as at an end stop, by port."""
     targets: dict[str, list[Target]] = field(default_factory=dict)
-    """The positions to which it turns them."""
+    """The positions to which the program turns motors."""
     backwards: dict[str, Where] = field(default_factory=dict)
     """The motors that have negative speeds where the program says that it drives forwards."""
     inside: dict[ast.Call, Evaluation] = field(default_factory=dict)
-    """What the program's expressions can be in an object, by the call that makes it."""
+    """Evaluations within objects, by the call that makes the object."""
 
     def read(self) -> Mechanics:
         for pair in self.mentions.pairs:

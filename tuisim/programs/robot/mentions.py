@@ -52,13 +52,13 @@ class Mention:
     """Its short name, such as `outA`; empty if the program does not say it."""
     where: Where
     names: tuple[str, ...] = ()
-    """What the program calls it, the nearest name first."""
+    """The program's names for the device, the nearest one first."""
     owner: Scope | None = None
     """The class in which it is made."""
     is_any: bool = False
     """Whether the program takes any device of the kind; else its port is not known."""
     call: ast.Call | None = None
-    """What makes it."""
+    """The call that makes the device."""
     via: ast.Call | None = field(default=None, compare=False)
     """The call of the function in which it is made, if that has several."""
     is_turned: bool = False
@@ -88,11 +88,11 @@ class Pair:
     spacing_mm: float | None = None
     names: tuple[str, ...] = ()
     call: ast.Call | None = None
-    """What makes it."""
+    """The call that makes the pair."""
     owner: Scope | None = None
     """The class in which it is made."""
     polarity: str = ""
-    """What the program gives for the polarity of its motors, for a class that takes it."""
+    """The polarity that the program gives for the motors, for a class that takes one."""
 
     def makes(self, value: Instance) -> bool:
         """Return whether this call makes an instance, or is in the `__init__` of its class."""
@@ -106,9 +106,9 @@ class Mentions:
     devices: tuple[Mention, ...] = ()
     pairs: tuple[Pair, ...] = ()
     scopes: Sequence[Scope] = ()
-    """What of the program can run."""
+    """The scopes of the program that can run."""
     evaluation: Evaluation | None = None
-    """What its expressions can be."""
+    """Finds out what the program's expressions can be."""
     library: Library = Library.EV3DEV2
     """The library that it uses."""
     hub: str = ""

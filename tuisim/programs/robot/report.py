@@ -66,7 +66,7 @@ class ProgramRobot:
     """The robot that a program needs, as a robot file."""
 
     program: str
-    """What the program is called."""
+    """The name of the program."""
     built: BuiltRobot | None
     """None if the program needs no other than the default one."""
 

@@ -41,7 +41,7 @@ class Imported:
 
     module: str
     name: str = ""
-    """Of something in the module; empty for the module itself."""
+    """The name of something in the module; empty for the module itself."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,7 +51,7 @@ class Parameter:
     function: Function
     argument: ast.arg
     scope: Scope
-    """Of the function."""
+    """The scope of the function."""
 
 
 Binding: TypeAlias = Bound | Defined | Imported | Parameter
@@ -68,7 +68,7 @@ class Scope:
     stars: list[str] = field(default_factory=list)
     """Modules from which it imports all names."""
     attributes: dict[str, list[Binding]] = field(default_factory=dict)
-    """Of a class: what its methods set on `self`."""
+    """For a class: the attributes of `self` that its methods set."""
     body: list[ast.AST] = field(default_factory=list)
     """Every node inside it, without those of inner functions and classes."""
     inner: dict[ast.AST, Scope] = field(default_factory=dict)

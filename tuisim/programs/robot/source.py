@@ -39,7 +39,7 @@ SIGNS: Mapping[type[ast.cmpop], str] = {
 }
 """Comparisons of numbers in a syntax tree, as they are written."""
 TURNED = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}
-"""What a comparison becomes if its sides change places; others stay."""
+"""The operator of a comparison whose sides change places; others stay."""
 OPERATORS: Mapping[type[ast.operator], Callable[[float, float], float]] = {
     ast.Add: operator.add,
     ast.Sub: operator.sub,
@@ -58,7 +58,7 @@ class Module:
     name: str
     """As it is imported, with dots; empty for the program itself."""
     file: str
-    """What messages call it."""
+    """The name of the file in messages."""
     tree: ast.Module
     is_package: bool = False
 
@@ -187,7 +187,7 @@ def is_for_other_hub(modules: dict[str, Module]) -> bool:
 
 
 EV3_MODULES = frozenset({"pybricks.hubs.EV3Brick", "pybricks.ev3devices", "ev3dev2", "ev3dev"})
-"""What only programs for the EV3 import."""
+"""Modules that only programs for the EV3 import."""
 
 
 def find_hub(modules: dict[str, Module]) -> str:

@@ -44,7 +44,7 @@ class OwnFunction:
 
     node: Function
     scope: Scope
-    """Its own."""
+    """The scope of the function itself."""
     is_bound: bool = False
     """Whether it is called without its first parameter."""
 

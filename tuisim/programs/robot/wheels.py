@@ -46,10 +46,10 @@ class WheelMotors:
     right: str
     """Their ports; `NO_PORT` if there are no wheels."""
     where: Where | None = None
-    """What says so; None if nothing does."""
+    """The line that shows it; None if none does."""
     pair: Pair | None = None
     doubt: str = ""
-    """Which other reading there is, in words; empty for none."""
+    """The other way in which the program can be read, in words; empty for none."""
 
 
 def find_wheels(

@@ -50,7 +50,7 @@ class EvidencePoint(NamedTuple):
     row: int = -1
     """Index into `Evidence.rows`."""
     time_s: float = -1.0
-    """The time of a moment that is defined by it; the row is then the first one after it."""
+    """The time of a moment that is defined by a time; `row` is then the first one after it."""
 
 
 START = EvidencePoint(-1, -1)

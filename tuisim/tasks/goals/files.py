@@ -56,9 +56,9 @@ class GoalsFile:
     """The task, in a line; empty if the file does not say."""
     goals: tuple[Goal, ...]
     settings: Mapping[str, Any]
-    """The world, by path; in precedence as those of a world file."""
+    """Settings of the world, by path; in precedence as those of a world file."""
     program: str | None = None
-    """The program that it names, if any: a path, or the name of an example."""
+    """The program that the file names, if any: a path, or the name of an example."""
     others: tuple[TrialWorld, ...] = ()
     """Other worlds in which programs are tried, too."""
     inputs: tuple[str, ...] = ()

@@ -17,7 +17,7 @@ class Finding:
     line: int | None = None
     """The program's line that this is about; 0: there is none; None: the line at the moment, none without a moment."""
     happened: EvidencePoint | None = None
-    """When that happened which reaches it, if only a later moment decides: lines may come once up to the end."""
+    """When the condition was met, if only a later moment decides: with `once`, the end of the run."""
 
 
 def format_distance(distance_mm: float) -> str:

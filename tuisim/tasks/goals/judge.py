@@ -71,12 +71,12 @@ FINDERS: Mapping[type, Finder] = {
 class _Outcome:
     state: GoalState
     moment: EvidencePoint = START
-    """When it was decided; meaningless while it is open."""
+    """When the goal was decided; meaningless while it is open."""
     reason: str = ""
     line: int | None = 0
     """0: there is none; None: the line at the moment."""
     happened: EvidencePoint | None = None
-    """When that happened which meets it; None: at the moment."""
+    """When the goal was met, if it was decided only later; None: at the moment."""
 
 
 def judge(

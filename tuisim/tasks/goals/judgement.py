@@ -43,7 +43,7 @@ class Judgement:
     line: int = 0
     """The program's line that the last change, or the reason, is about; 0 if there is none."""
     happened: Change | None = None
-    """When and where that happened which meets it, if a later moment has decided; None: at its last change."""
+    """When and where the goal was met, if a later moment has decided it; None: at the last change."""
 
     @property
     def state(self) -> GoalState:

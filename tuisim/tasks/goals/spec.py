@@ -45,9 +45,9 @@ class BodyPart(StrEnum):
     """Which part of the robot must be in or out of an area."""
 
     CENTRE = "centre"
-    """The midpoint between its wheels."""
+    """The midpoint between the robot's wheels."""
     BODY = "body"
-    """Its whole outline."""
+    """The whole outline of the robot."""
 
 
 class Reading(StrEnum):
@@ -248,7 +248,7 @@ class PrintCondition(Condition):
     x_mm: tuple[Range, ...] = ()
     """Where the robot must be when it prints them: one range for all lines, or one for each; empty for anywhere."""
     y_mm: tuple[Range, ...] = ()
-    """The same along y."""
+    """As `x_mm`, along y."""
     reading: Reading | None = None
     """A kind of reading that must be taken since the line before."""
     once: bool = False
@@ -274,7 +274,7 @@ class LogCondition(Condition):
     x_mm: tuple[Range, ...] = ()
     """Where the robot must be when the value is read, or printed: one range, or one for each level; empty: anywhere."""
     y_mm: tuple[Range, ...] = ()
-    """The same along y."""
+    """As `x_mm`, along y."""
     reading: Reading | None = None
     """A kind of reading that must be taken before the sample, where the robot must be."""
     as_read: bool = False
@@ -308,7 +308,7 @@ class ReadCondition(Condition):
     x_mm: tuple[Range, ...] = ()
     """Where the robot must be; empty for anywhere."""
     y_mm: tuple[Range, ...] = ()
-    """The same along y."""
+    """As `x_mm`, along y."""
 
     def __post_init__(self) -> None:
         _check_ranges(self, 1)

@@ -40,15 +40,15 @@ class TrialWorld:
     """A world in which a program is tried. A program that fits only one of several worlds fails in the others."""
 
     where: str
-    """What is other than in the first one, for the student, such as `from 10 cm farther back`; empty for the first."""
+    """How it differs from the first one, for the student, such as `from 10 cm farther back`; empty for the first."""
     settings: Mapping[str, Any]
-    """By path; of another world only what is other."""
+    """Settings by path; of another world only those that differ."""
     goals: tuple[str, ...]
-    """Names of the goals to be met there."""
+    """Names of the goals to be met in this world."""
     own_goals: tuple[Goal, ...] = ()
-    """Those of them that only this world has."""
+    """The goals that only this world has."""
     inputs: tuple[str, ...] = ()
-    """The answers to `input()` there, if its goals have no dialogue."""
+    """The answers to `input()` in this world, if its goals have no dialogue."""
     hidden: bool = False
     """Whether no student is told what is there, and what happened there."""
 

@@ -86,7 +86,7 @@ class Noted:
 
     text: str
     level: float | None = None
-    """The mean of the samples that it is about; None if there are none."""
+    """The mean of the samples that the note is on; None if there are none."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -73,7 +73,7 @@ class Change(StrEnum):
 
     NONE = "none"
     SHOW = "show"
-    """What is known of the step is to be shown."""
+    """What is known of the step must be shown anew."""
     TRY = "try"
     """So it is, and `Attempt.trial` is to run in the background, and go to `take_trial`."""
     GO_ON = "go on"
@@ -85,7 +85,7 @@ class Sight:
     """What a student sees at a moment."""
 
     panels: frozenset[str]
-    """Those of `SEEABLE` that are on the screen."""
+    """The panels in `SEEABLE` that are on the screen."""
     recording: Recording | None = None
     """The run in view."""
     is_paused: bool = False
@@ -129,11 +129,11 @@ class Attempt:
     """Id of the run that was in view, which does not count."""
     events: list[Event] = field(default_factory=list)
     seen: set[str] = field(default_factory=set)
-    """What of `SEEABLE` was on the screen."""
+    """The panels in `SEEABLE` that were on the screen."""
     judgements: tuple[Judgement, ...] = ()
-    """Those of the last run."""
+    """The judgements of the last run."""
     elsewhere: RunSpec | None = None
-    """What a run was that did not begin in the lesson's world; None if the last one did."""
+    """Specification of the last run, if it did not begin in the lesson's world; otherwise None."""
     run_counted: str = ""
     """Id of the last run that was counted as a try."""
     trial: WorldTrial | None = None

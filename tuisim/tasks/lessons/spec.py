@@ -42,7 +42,7 @@ class Way(StrEnum):
     """A wrong way to pass a step."""
 
     LITERAL = "literal answer"
-    """What should be found out is written down."""
+    """The program contains the answer instead of finding it out."""
     SENSOR = "no sensor"
     """Nothing is measured."""
     ORDER = "wrong order"
@@ -61,7 +61,7 @@ class RunCheck:
     goals: tuple[str, ...]
     """Names of goals in the lesson, all to be met by one run."""
     times: Count = 1
-    """How many runs must meet them."""
+    """How many runs must meet the goals."""
     seeds: bool = False
     """Whether each of these runs needs another seed."""
     anywhere: bool = False
@@ -91,7 +91,7 @@ class QuestionCheck:
     """Where the robot must stand when the answer is typed, in one of these ranges; empty for anywhere. The question is
     about what it measures there."""
     where: str = ""
-    """The same in words, and how to get there, for a student whose robot is elsewhere."""
+    """The place in words, and how to get there, for a student whose robot is elsewhere."""
     seen: tuple[str, ...] = ()
     """Views, such as `instrumentation`, one of which must have been on the screen since the step began."""
     run: bool = False
@@ -286,9 +286,9 @@ class LessonStep:
     answer: str = ""
     """The model answer, a program, if the check is about runs."""
     model: str = ""
-    """What passes another check: an answer, a breakpoint, an expression; see `parse_event`."""
+    """An answer that passes a check which is not about runs: a text, a breakpoint, an expression; see `parse_event`."""
     wrong: tuple[str, ...] = ()
-    """The same, but does not pass."""
+    """Answers that must not pass such a check."""
     wrong_programs: tuple[WrongProgram, ...] = ()
     excludes: Mapping[Way, str] = field(default_factory=dict)
     """The wrong ways that it does not admit, each with the reason."""

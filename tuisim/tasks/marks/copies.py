@@ -29,7 +29,7 @@ COMMON_SHARE, MIN_COMMON = 0.25, 5
 MIN_SHARE = 0.6
 """Pairs that share fewer of their fingerprints are left out."""
 MIN_LINES = 5
-"""Nor those with fewer lines in common."""
+"""Pairs with fewer lines in common are not shown."""
 MAX_PAIRS = 60
 
 
@@ -39,7 +39,7 @@ class SimilarPair:
 
     names: tuple[str, str]
     share: float
-    """Of the fingerprints of the one that has fewer, those that both have; 0 to 1."""
+    """Share of the fingerprints that both have, of those of the program with fewer; 0 to 1."""
     lines: int
     """Number of the first one's lines in the shared passages."""
 
@@ -50,7 +50,7 @@ class SimilarGroup:
 
     names: tuple[str, ...]
     same: tuple[tuple[str, ...], ...]
-    """Those among them that are the same but for comments and blanks; the largest group first."""
+    """Groups of these programs that differ only in comments and blanks; the largest first."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,7 +60,7 @@ class Similar:
     groups: tuple[SimilarGroup, ...]
     """The largest first."""
     pairs: tuple[SimilarPair, ...]
-    """Of one program of each group and all others, those that share much; the most alike first."""
+    """Pairs that share much, among one program of each group and all others; the most alike first."""
     compared: int
     """Number of programs that were long enough."""
 

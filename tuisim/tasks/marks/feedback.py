@@ -20,7 +20,7 @@ SUFFIX = ".txt"
 WIDTH = 88
 MAX_ERROR_LINES = 20
 _ELSEWHERE = "in every other world in which it ran"
-"""What is told of a hidden world."""
+"""The only text on a hidden world."""
 MAX_NAME_BYTES = 160
 """Longer names of files are cut off: with seed and suffix they must fit into the 255 bytes of common file systems."""
 _FORBIDDEN = frozenset('/\\:*?"<>|')

@@ -20,7 +20,7 @@ from tuisim.engine.runs.removal import remove_tree
 LEFT_OUT = shutil.ignore_patterns(
     *("__pycache__", "__MACOSX", "._*", ".DS_Store", ".git", ".venv", "venv", "node_modules")
 )
-"""What is no part of what a student has handed in."""
+"""Names in a hand-in that the student has not made."""
 _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EROFS)
 """Errors about the copy, not about the file."""
 _PIECE = 1 << 20
@@ -34,7 +34,7 @@ _ODD_ZIP = (
     RuntimeError,
     ValueError,
 )
-"""What damaged, encrypted and unusual zips raise."""
+"""Exceptions of damaged, encrypted and unusual zips."""
 
 
 def copy_tree(folder: Path, place: Path) -> None:

@@ -33,7 +33,7 @@ from tuisim.tasks.marks.students import Student, find_students
 from tuisim.tasks.task import TIME_LIMIT_S, Keep
 
 Tell = Callable[[str, float, float], None]
-"""Is told what is done, how much of it, and how much there is."""
+"""Receives the progress: words, how much is done, and how much there is."""
 GRADEBOOKS: Sequence[str] = [*GradebookKind]
 """Kinds of gradebooks, as options are called."""
 
@@ -47,12 +47,12 @@ class MarkRequest:
     """Folders and files of students' programs."""
     seeds: tuple[int, ...]
     version: str
-    """That of tuisim: an interrupted marking is resumed only with the same."""
+    """Version of tuisim: an interrupted marking is resumed only with the same."""
     settings: Mapping[str, Any] = field(default_factory=dict)
-    """Those that take precedence over the task's, by path."""
+    """Settings that override those of the task, by path."""
     time_limit_s: float = TIME_LIMIT_S
     answers: tuple[str, ...] = ()
-    """Those to `input()`; without them, a program gets those of its world."""
+    """Answers to `input()`; without them, a program gets those of its world."""
     keep: Keep = Keep.FAILED
     jobs: int = 0
     """Number of workers; 0 is one for each processor."""

@@ -31,7 +31,7 @@ class Override:
     """A tutor's changes to the marks of one student."""
 
     points: float | None = None
-    """Of the whole task; None if they follow from the goals."""
+    """Points of the whole task; None if they follow from the goals."""
     comment: str = ""
     goals: Mapping[str, float] = field(default_factory=dict)
     """Points by the name of the goal."""

@@ -47,9 +47,9 @@ class Report:
     path: str
     """Relative to the page."""
     misses: MissesOfRun
-    """Where it missed goals; none if another run with the same record has said so."""
+    """Where the run missed goals; none if another run with the same record has listed them."""
     fault: str = ""
-    """Why there is none; empty if there is one."""
+    """Why the report could not be made; empty if it was."""
 
 
 def write_reports(

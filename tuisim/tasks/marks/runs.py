@@ -36,10 +36,10 @@ class MarkPlan:
     """How the programs of all students are run."""
 
     worlds: tuple[TrialWorld, ...]
-    """Those of the task, the first one first."""
+    """The worlds of the task, the first one first."""
     seeds: tuple[int, ...]
     options: RunOptions
-    """Without answers to `input()`, it gets those of each world."""
+    """Without answers to `input()`, a run gets those of its world."""
     keep: Keep
     jobs: int = 0
     """Number of workers; 0 is one for each processor."""

@@ -47,7 +47,7 @@ class Student:
     source: ProgramSource | None = None
     """The main program; None if there is none that could be run."""
     problem: str = ""
-    """Why there is none, one sentence."""
+    """Why there is no program that could be run, one sentence."""
     ids: Mapping[GradebookKind, str] = field(default_factory=dict)
     """How a gradebook names the student; empty if the names of the files do not say."""
     is_unread: bool = False

@@ -54,7 +54,7 @@ _DOES = {
     TrialRole.STILL: "standing still",
     TrialRole.PRINTS: "printing the answers",
 }
-"""Those that do nothing of what is asked for."""
+"""Programs that do nothing for the task, and what they do, in words."""
 
 
 @dataclass(frozen=True, slots=True)

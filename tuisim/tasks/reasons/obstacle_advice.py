@@ -14,7 +14,7 @@ from tuisim.engine.core.spec import InfraredSpec, RunSpec, UltrasonicSpec, World
 from tuisim.engine.obstacles import OBSTACLES
 
 _SHARE = 0.7
-"""Of the distance that a program asks for: that of an obstacle before the robot."""
+"""Distance of the proposed obstacle, as a share of the one that the program asks for."""
 _NEAREST_MM = 40.0
 """Ultrasonic sensors measure nothing that is nearer than 30 mm."""
 

@@ -33,7 +33,7 @@ class OneColor:
     """The one colour that all light sensors which a program read saw all the time."""
 
     tick: int
-    """When it read the first of them."""
+    """When the program read the first of these sensors."""
     sensor: str
     """The name of that sensor."""
     color: str

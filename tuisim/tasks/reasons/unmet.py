@@ -76,14 +76,14 @@ _VALUES: Mapping[str, tuple[str, float, str]] = {
     "US-DIST-CM": _DISTANCE,
     "IR-PROX": ("proximity", 1.0, " %"),
 }
-"""The same of `value()`, by mode."""
+"""As `_COLUMNS`, for `value()`, by mode."""
 _TURNS: Mapping[str, tuple[str, float, str]] = {
     "position": _DEGREES,
     "degrees": _DEGREES,
     "angle": _DEGREES,
     "rotations": ("deg", 1 / 360, " rotations"),
 }
-"""The same of the motor of a wheel."""
+"""As `_COLUMNS`, for the motor of a wheel."""
 _NOUNS: Mapping[type[SensorSpec], str] = {
     ColorSensorSpec: "colour sensor",
     UltrasonicSpec: "ultrasonic sensor",
@@ -97,9 +97,9 @@ class _Series:
     """The values that a loop read of one sensor or motor, in the unit in which the program reads them."""
 
     device: str
-    """Its kind and port."""
+    """Kind and port of the sensor or motor."""
     column: str
-    """The end of its column's name."""
+    """The end of the name of its column."""
     unit: str
     """With a blank before it, if there is one; empty for none."""
     ticks: Array
@@ -113,7 +113,7 @@ class Unmet:
     time_s: float
     line: int
     text: str
-    """What was waited for and what came, to follow "waited for"; of a miss a sentence. Without a full stop."""
+    """A text to follow "waited for", or a sentence on a miss; without a full stop."""
 
 
 def find_unmet(run: StoredRun, mat: Field | None = None) -> Unmet | None:

@@ -128,13 +128,13 @@ class Awaited:
     times: int
     """How often it was read."""
     since_s: float
-    """When it was read for the first time."""
+    """When it was first read."""
     line: int
     """The line that read it last."""
     value: str = ""
     """What was read each time: a colour, a distance with its unit."""
     sought: tuple[str, ...] = ()
-    """What the program asks for: some of `PRESSABLE`, or colours; empty for any."""
+    """The values that the program asks for: some of `PRESSABLE`, or colours; empty for any."""
     needs_all: bool = False
     """Whether it asks for all of them at once."""
     limit: float | None = None
@@ -142,13 +142,13 @@ class Awaited:
     pace_s: float = 0.0
     """Time between two readings."""
     pressed: tuple[HandPress, ...] = ()
-    """What was pressed by hand."""
+    """The buttons that were pressed by hand."""
     waits_again: bool = False
     """Whether the program has seen what was pressed, and waits for more."""
     pose: Pose | None = None
-    """Where the robot was when it read it for the first time."""
+    """Where the robot was at the first reading."""
     has_moved: bool = False
-    """Whether it went elsewhere until it read it for the last time."""
+    """Whether the robot was elsewhere at the last reading."""
     mode: str = ""
     """What was read, one of `READING_MODES`."""
 

@@ -38,12 +38,12 @@ class Wait:
     """What a run waited for in vain."""
 
     time_s: float
-    """When it began to."""
+    """When the waiting began."""
     line: int
     text: str
     """What it waited for and what came, to follow "waited"."""
     what: str
-    """The same as a sentence without its full stop, with what gives it."""
+    """A sentence on the wait without its full stop, with the remedy."""
     subject: Subject | None = None
 
 

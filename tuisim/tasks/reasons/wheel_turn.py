@@ -26,7 +26,7 @@ class MistakenTurn:
     """A turn of the wheels by an angle that was probably meant for the robot."""
 
     tick: int
-    """When it began."""
+    """When the turn began."""
     line: int
     text: str
     """What it did, a sentence that begins small and has no full stop."""
