@@ -97,3 +97,35 @@ def test_the_model_of_a_motor_is_refused(run_on: RunOn) -> None:
     text = "from pybricks.ev3devices import Motor\nfrom pybricks.parameters import Port\nMotor(Port.B).model.state()"
     errors = run_on(HEAD + text, profile=PROFILE).errors
     assert errors[-1].startswith("NotSimulated: Motor.model.state: the model of a motor")
+
+
+@pytest.mark.parametrize(
+    ("line", "error"),
+    [
+        ("from pybricks.tools import DataLog", "pybricks.tools.DataLog is not in Pybricks 4"),
+        ("from pybricks.parameters import SoundFile", "has beep() and play_notes()"),
+        (
+            "from pybricks.media.ev3dev import Font",
+            "Image, Font and ImageFile are in pybricks.parameters",
+        ),
+        ("from pybricks.experimental import run_parallel", "use multitask() and run_task()"),
+        ("from pybricks.messaging import TextMailbox", "is not in Pybricks 4"),
+        (
+            "import pybricks.ev3brick as brick\nbrick.sound.beep()",
+            "use EV3Brick() of pybricks.hubs",
+        ),
+        ("ev3.speaker.say('hello')", "no attribute 'say': print() shows a text"),
+        ("from pybricks.tools import Nothing", "cannot import name 'Nothing'"),
+        ("from pybricks.robotics import Car\nCar()", "the class Car is not simulated"),
+        ("from pybricks.parameters import Font, Image, ImageFile\n1 / 0", "division by zero"),
+    ],
+)
+def test_a_name_of_the_earlier_version_is_not_refused_with_what_there_is(
+    run_on: RunOn, line: str, error: str
+) -> None:
+    assert error in run_on(HEAD + line, profile=PROFILE).errors[-1]
+
+
+def test_the_earlier_version_lacks_its_names_because_there_is_a_later_one(run_on: RunOn) -> None:
+    text = "from pybricks.tools import DataLog, localtime\nfrom pybricks.robotics import Stop, wait"
+    assert not run_on(text, profile="lego-micropython").errors

@@ -60,8 +60,8 @@ class Brick:
     mixer: Mixer
     hint: Callable[[str], str]
     """Returns what is on the ports of a class of devices."""
-    find_later_class: Callable[[str], Any] = lambda _: None
-    """Returns the class of a name in version 4 of the library; None if it has none, or the program runs by it."""
+    name_replacement: Callable[[str, str], str] = lambda *_: ""
+    """Returns where an attribute is that a class does not have, after a colon; empty if that is not known."""
     said: set[str] = field(default_factory=set)
     """What was said that is said once, by subject."""
     stop_buttons: frozenset[str] = frozenset()
@@ -222,10 +222,7 @@ class Connected:
         return f"{type(self).__name__}({self.port or ''})"
 
     def __getattr__(self, name: str) -> Any:
-        later = self.brick.find_later_class(type(self).__name__)
-        hint = (
-            ": Pybricks 4 has it, which --profile pybricks4 chooses" if hasattr(later, name) else ""
-        )
+        hint = self.brick.name_replacement(type(self).__name__, name)
         raise AttributeError(
             f"{type(self).__name__!r} object has no attribute {name!r}{hint}", name=name, obj=self
         )

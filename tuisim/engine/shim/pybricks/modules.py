@@ -34,7 +34,9 @@ from tuisim.engine.shim.pybricks.brick import Brick, Connected
 from tuisim.engine.shim.pybricks.unsimulated import (
     IO_DEVICES,
     NXT_DEVICES,
+    VERSION_4,
     OtherHub,
+    refuse_all,
     refuse_hub,
     refused_classes,
 )
@@ -94,31 +96,66 @@ MODULES: Mapping[str, Mapping[str, Any]] = {
 def _version_4() -> Mapping[str, Mapping[str, Any]]:
     """Return the names of each module of version 4."""
     from tuisim.engine.shim.pybricks import brick_4, matrix, version_4
+    from tuisim.engine.shim.pybricks.earlier import EARLIER, EARLIER_MODULES
 
     changed: dict[str, Mapping[str, Any]] = {
         "pybricks": {"version": ("ev3", "4.0.0", "tuisim")},
         "pybricks.hubs": {"EV3Brick": brick_4.EV3Brick, "ThisHub": brick_4.EV3Brick},
         "pybricks.ev3devices": _public(
-            version_4, "Motor", "Stop", "ColorSensor", "GyroSensor", "InfraredSensor"
+            version_4, "Motor", "ColorSensor", "GyroSensor", "InfraredSensor"
         ),
         "pybricks.parameters": _public(version_4, "Stop", "Color")
         | _public(matrix, "Axis", "Side")
         | _public(image, "Image")
         | _public(font, "Font"),
-        "pybricks.robotics": _public(version_4, "DriveBase", "Stop"),
+        "pybricks.robotics": _public(version_4, "DriveBase"),
         "pybricks.tools": _public(
             version_4, "StopWatch", "multitask", "read_input_byte", "run_task"
         )
         | _public(matrix, "Axis", "Matrix", "cross", "vector"),
     }
+    refused = refuse_all(VERSION_4, "use the classes of pybricks.ev3devices")
+    names = {
+        module: {
+            name: value for name, value in earlier.items() if name not in EARLIER.get(module, {})
+        }
+        for module, earlier in MODULES.items()
+    }
     return {
-        name: {**MODULES.get(name, {}), **changed.get(name, {})} for name in {**MODULES, **changed}
+        module: {}
+        if module in EARLIER_MODULES
+        else {**refused.get(module, {}), **names[module], **changed.get(module, {})}
+        for module in names
     }
 
 
-def _find_later_class(name: str) -> Any:
-    """Return the class of a name in version 4; None for none."""
-    return next((names[name] for names in _version_4().values() if name in names), None)
+def _name_later(owner: str, name: str) -> str:
+    """Return that version 4 has an attribute of a class, after a colon; empty if it has not."""
+    later = next((names[owner] for names in _version_4().values() if owner in names), None)
+    return ": Pybricks 4 has it, which --profile pybricks4 chooses" if hasattr(later, name) else ""
+
+
+def _choose_names(brick: Brick, law: MotorLaw, hub: str) -> Mapping[str, Mapping[str, Any]]:
+    """Return the names of each module for the robot of a run, and let the brick name those of other versions.
+
+    Args:
+        law: Which version moves the motors.
+        hub: The robot's hub; empty for the EV3.
+    """
+    if not hub:
+        sys.meta_path.insert(0, OtherHub())
+        if law != MotorLaw.PYBRICKS_4:
+            return MODULES
+    from tuisim.engine.shim.pybricks.earlier import name_replacement, refuse_earlier
+
+    brick.name_replacement = name_replacement
+    if hub:
+        from tuisim.engine.shim.pybricks.hub.modules import find_names
+
+        names = find_names(hub)
+    else:
+        names = _version_4()
+    return {name: {"__getattr__": partial(refuse_earlier, name), **names[name]} for name in names}
 
 
 def install(
@@ -131,21 +168,12 @@ def install(
     plugs.missing = OSError
     brick = Brick(session, built, plugs, screen, mixer, partial(ports_hint, session))
     law, hub = session.sim.spec.profile.motor_law, session.sim.spec.robot.hub
-    if law != MotorLaw.PYBRICKS_4:
-        brick.find_later_class = _find_later_class
-    Connected.brick = brick
-    if hub:
-        from tuisim.engine.shim.pybricks.hub.modules import find_names
-
-        names = find_names(hub)
-    else:
-        sys.meta_path.insert(0, OtherHub())
-        names = _version_4() if law == MotorLaw.PYBRICKS_4 else MODULES
+    Connected.brick, brick.name_replacement = brick, _name_later
+    names = _choose_names(brick, law, hub)
     speaker.set_volumes(brick.mixer, speaker.START_VOLUMES)
     made = {name: types.ModuleType(name) for name in names}
     made |= {name: HardwareModule(name, hardware) for name, hardware in REFUSED.items()}
     vars(made["pybricks.bluetooth"]).update(BLUETOOTH)
-    vars(made["pybricks.hubs"])["__getattr__"] = partial(refuse_hub, hub)
     for name, module in made.items():
         vars(module).update(names.get(name, {}))
         parent, _, last = name.rpartition(".")
@@ -153,4 +181,5 @@ def install(
             setattr(made[parent], last, module)
         if any(other.startswith(f"{name}.") for other in made):
             module.__path__ = []
+    vars(made["pybricks.hubs"])["__getattr__"] = partial(refuse_hub, hub)
     sys.modules.update(made)

@@ -64,6 +64,16 @@ MODULES: Mapping[str, Hardware] = {
 }
 """Modules that can be imported but not used, with all that is in them."""
 
+VERSION_4: Mapping[str, tuple[str, ...]] = {
+    "pybricks.iodevices": (
+        *("AnalogSensor", "I2CDevice", "LUMPDevice", "LWP3Device", "PUPDevice", "UARTDevice"),
+    ),
+    "pybricks.messaging": ("BLERadio",),
+    "pybricks.tools": ("AppData",),
+    "pybricks.robotics": ("Car", "SpikeBase"),
+}
+"""Classes of version 4, by module, on the EV3 and on hubs alike."""
+
 
 class OtherHub:
     """Refuses to import the modules for the motors and sensors of other hubs; the first finder."""
@@ -106,6 +116,22 @@ def _refusal(name: str, hub: str = "") -> Exception:
         return refused_as(ImportError, f"{name}: the hub of this run's robot is {hub}", hint)
     hint = "a program that uses no part of the EV3 gets the hub that it imports, unless -r names a robot"
     return refused_as(ImportError, f"{name}: the robot of this run has an EV3", hint)
+
+
+def refuse_all(classes: Mapping[str, Sequence[str]], instead: str) -> dict[str, dict[str, Any]]:
+    """Return names of modules that can be imported but not used, by module.
+
+    Args:
+        classes: The names, by module.
+        instead: What a program can use.
+    """
+    return {
+        module: {
+            name: refused_part(module, name, Hardware(f"the class {name}", instead))
+            for name in names
+        }
+        for module, names in classes.items()
+    }
 
 
 def refused_classes(module: str, classes: Mapping[str, Hardware]) -> dict[str, Any]:

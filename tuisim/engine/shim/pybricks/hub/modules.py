@@ -9,7 +9,7 @@ from tuisim.engine.core.hub_spec import HUBS_WITH_MATRIX
 from tuisim.engine.shim.pybricks import matrix, tools, version_4
 from tuisim.engine.shim.pybricks import parameters as common
 from tuisim.engine.shim.pybricks.hub import controllers, display, hubs, parameters, pupdevices
-from tuisim.engine.shim.unsupported.modules import Hardware, refused_part
+from tuisim.engine.shim.pybricks.unsimulated import VERSION_4, refuse_all
 
 _NO_DEVICE = "use Motor, ColorSensor, UltrasonicSensor and ForceSensor"
 REFUSED: Mapping[str, tuple[str, ...]] = {
@@ -17,12 +17,7 @@ REFUSED: Mapping[str, tuple[str, ...]] = {
         *("ColorDistanceSensor", "ColorLightMatrix", "DuploTrain", "InfraredSensor", "Light"),
         *("MarioHub", "PFMotor", "TechnicMoveHub", "TiltSensor"),
     ),
-    "pybricks.iodevices": (
-        *("AnalogSensor", "I2CDevice", "LUMPDevice", "LWP3Device", "PUPDevice", "UARTDevice"),
-    ),
-    "pybricks.messaging": ("BLERadio",),
-    "pybricks.tools": ("AppData",),
-    "pybricks.robotics": ("Car", "SpikeBase"),
+    **VERSION_4,
 }
 """Classes that can be imported but not used, by module."""
 
@@ -71,8 +66,6 @@ def find_names(hub: str) -> Mapping[str, Mapping[str, Any]]:
     if hub in HUBS_WITH_MATRIX:
         names["pybricks.parameters"]["Icon"] = display.Icon
         names["pybricks.tools"]["hub_menu"] = display.hub_menu
-    for module, classes in REFUSED.items():
-        known = names.setdefault(module, {})
-        for name in classes:
-            known[name] = refused_part(module, name, Hardware(f"the class {name}", _NO_DEVICE))
+    for module, classes in refuse_all(REFUSED, _NO_DEVICE).items():
+        names.setdefault(module, {}).update(classes)
     return names

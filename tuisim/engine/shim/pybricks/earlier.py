@@ -1,0 +1,77 @@
+"""What version 2.0 of the library has and version 4 does not, and what a program can use in its place."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import NoReturn
+
+from tuisim.engine.shim.unsupported.modules import refused_as
+
+_SOUNDS = "its speaker has beep() and play_notes()"
+_BRICK = "use EV3Brick() of pybricks.hubs"
+_PARAMETERS = "pybricks.parameters has it"
+_TASKS = "use multitask() and run_task() of pybricks.tools"
+_FILES = "Image, Font and ImageFile are in pybricks.parameters, and no sound is a file"
+_MAILBOXES = ("Mailbox", "LogicMailbox", "NumericMailbox", "TextMailbox", "MailboxHandlerMixIn")
+EARLIER: Mapping[str, Mapping[str, str]] = {
+    "pybricks.tools": {
+        "DataLog": "print() the values",
+        "localtime": "StopWatch tells how long something takes",
+        "ticks_us": "StopWatch tells how long something takes",
+        "print": "print() needs no import",
+    },
+    "pybricks.parameters": {
+        "SoundFile": _SOUNDS,
+        "Align": "draw_image() of the screen takes x and y",
+    },
+    "pybricks.ev3devices": {"Stop": _PARAMETERS, "CompatMotor": "use Motor"},
+    "pybricks.robotics": {
+        "Stop": _PARAMETERS,
+        "wait": "pybricks.tools has it",
+        "CompatDriveBase": "use DriveBase",
+    },
+    "pybricks.messaging": dict.fromkeys(
+        (*_MAILBOXES, "BluetoothMailboxClient", "BluetoothMailboxServer"),
+        "leave out its messages: bricks do not talk to each other",
+    ),
+    "pybricks.iodevices": {"Ev3devSensor": "use the sensors of pybricks.ev3devices"},
+}
+"""By module and name."""
+EARLIER_MODULES: Mapping[str, str] = {
+    "pybricks.display": _BRICK,
+    "pybricks.ev3brick": _BRICK,
+    "pybricks.experimental": _TASKS,
+    "pybricks.media": _FILES,
+    "pybricks.media.ev3dev": _FILES,
+    "pybricks.speaker": _BRICK,
+}
+"""Those of which it has no name."""
+EARLIER_MEMBERS: Mapping[str, str] = {
+    "drive_time": "drive(), wait() and stop() do it",
+    "orientation": "display.orientation() turns what the matrix shows",
+    "play_file": "beep() and play_notes() make sounds",
+    "say": "print() shows a text",
+    "set_dc_settings": "settings(max_voltage) limits the power",
+    "set_pid_settings": "control.pid() sets them",
+    "set_run_settings": "control.limits() sets them",
+    "set_volume": "volume(percent) sets it",
+}
+"""Attributes of objects, by their names."""
+
+
+def refuse_earlier(module: str, name: str) -> NoReturn:
+    """Raise the error about a name that a module does not have under version 4.
+
+    Raises:
+        NotSimulated: version 2.0 has it; it is an ImportError, too.
+        AttributeError: that has not, either.
+    """
+    hint = EARLIER_MODULES.get(module) or EARLIER.get(module, {}).get(name)
+    if hint and not name.startswith("__"):
+        raise refused_as(ImportError, f"{module}.{name} is not in Pybricks 4", hint)
+    raise AttributeError(f"module {module!r} has no attribute {name!r}")
+
+
+def name_replacement(_owner: str, name: str) -> str:
+    """Return what an object of version 4 has in place of an attribute, after a colon; empty if that is not known."""
+    return f": {EARLIER_MEMBERS[name]}" if name in EARLIER_MEMBERS else ""
