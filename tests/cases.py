@@ -30,8 +30,10 @@ def for_each(**values: Iterable[object]) -> Callable[[Callable[..., None]], Call
                     error.add_note(f"for {row}")
                     raise
 
-        run.__name__, run.__doc__ = test.__name__, test.__doc__
-        run.__module__, run.__qualname__ = test.__module__, test.__qualname__
+        run.__name__ = test.__name__
+        run.__doc__ = test.__doc__
+        run.__module__ = test.__module__
+        run.__qualname__ = test.__qualname__
         return run
 
     return as_one

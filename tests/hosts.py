@@ -98,7 +98,8 @@ def _in(folder: Path) -> Iterator[None]:
 
 
 def _command(words: Sequence[str], programs: Mapping[str, str]) -> Hosted:
-    out, err = io.StringIO(), io.StringIO()
+    out = io.StringIO()
+    err = io.StringIO()
     with redirect_stdout(out), redirect_stderr(err):
         code = run_command(words)
     return Hosted(_stored(programs), code, out.getvalue() + err.getvalue())

@@ -6,7 +6,8 @@ import pytest
 
 from tuisim.cli import run_command
 
-LONG, NOBODY = "x" * 300, "~nobody-at-all/x"
+LONG = "x" * 300
+NOBODY = "~nobody-at-all/x"
 
 
 @pytest.mark.usefixtures("home")

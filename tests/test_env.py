@@ -77,7 +77,8 @@ def test_a_function_rewards_and_ends() -> None:
         world=tuisim.World(background="Grey_bands", x=100, angle=0),
     )
     _, before = env.reset(seed=0)
-    total, is_over = 0.0, False
+    total = 0.0
+    is_over = False
     while not is_over:
         observation, reward, is_over, is_cut, values = env.step(np.array([0.2, 0.2], np.float32))
         total += reward
@@ -94,9 +95,12 @@ def test_goals_reward_and_end(speed: float, points: float, tmp_path: Path) -> No
         "tuisim/Goals-v0", goals=tmp_path / "goals.toml", columns=("ultrasonic_mm",)
     )
     env.reset(seed=0)
-    total, steps, is_over = 0.0, 0, False
+    total = 0.0
+    steps = 0
+    is_over = False
     while not is_over:
         _, reward, is_over, is_cut, _ = env.step(np.full(2, speed, np.float32))
-        total, steps = total + float(reward), steps + 1
+        total = total + float(reward)
+        steps = steps + 1
         assert not is_cut
     assert (total, steps > 50) == (points, not points)

@@ -139,7 +139,8 @@ OWN: Mapping[str, Case] = {
 }
 REVERSED = {"left_reversed": True, "right_reversed": True}
 MIDDLE = (1181, 572)
-LINE, BANDS = "-b Line_Following_Test", "-b Coloured_bands"
+LINE = "-b Line_Following_Test"
+BANDS = "-b Coloured_bands"
 BLIND: Mapping[str, Case] = {
     "baken_volger": Case(
         "4 infrared, A medium motor, B right wheel, C left wheel",
@@ -305,7 +306,8 @@ def file_of(name: str) -> Path:
 
 
 def ports_in(robot: RobotSpec) -> str:
-    now, usual = dict(list_ports(robot)), dict(list_ports(USUAL))
+    now = dict(list_ports(robot))
+    usual = dict(list_ports(USUAL))
     changed = [port for port in sorted({*now, *usual}) if now.get(port) != usual.get(port)]
     return ", ".join(f"{port[-1]} {now.get(port, '-')}" for port in changed)
 
@@ -362,7 +364,8 @@ def test_it_runs_as_it_is_and_with_its_robot_in_a_file_to_the_bit(
 ) -> None:
     program = tmp_path / "programs" / f"{name}.py"
     shutil.copytree(FOLDER, tmp_path / "programs")
-    case, options = CASES[name], shlex.split(CASES[name].options)
+    case = CASES[name]
+    options = shlex.split(CASES[name].options)
     as_it_is = here("run", program, *options)
     printed = as_it_is.stdout.rstrip("\n")
     shown = printed.split("\n")[-1] if name.startswith("blind/") else printed

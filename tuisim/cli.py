@@ -106,7 +106,8 @@ _SYNONYMS = {"compare": "diff", "delete": "rm", "remove": "rm", "chart": "plot",
 
 def _find_commands(word: str, others: Sequence[str]) -> list[str]:
     """Return the lines that may have been meant by a word and those after it, best first; at most two."""
-    action, rest = _SYNONYMS.get(word, word), "".join(f" {other}" for other in others)
+    action = _SYNONYMS.get(word, word)
+    rest = "".join(f" {other}" for other in others)
     if action == "export" and "--out" not in others:
         rest += " --out FILE"
     groups = [name for name in _GROUPS if action in cast("Group", COMMANDS[name].load()).listing]

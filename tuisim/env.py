@@ -60,7 +60,9 @@ class LabEnv(gymnasium.Env[Vector, Vector]):
         every = tuple(dict.fromkeys((*columns, *MOTION)))
         self.lab = Lab(world, robot, profile=profile, columns=every, goals=goals)
         self.columns = columns
-        self._reward, self._is_over, self._period_s = reward, is_over, period_s
+        self._reward = reward
+        self._is_over = is_over
+        self._period_s = period_s
         self._before: Values = self.lab.read()
         self._points, _ = self.lab.judge()
         bounds = [_BOUNDS.get(name.rpartition("_")[2], (-_FARTHEST, _FARTHEST)) for name in columns]
@@ -84,7 +86,8 @@ class LabEnv(gymnasium.Env[Vector, Vector]):
         values = self.lab.step(left, right, period_s=self._period_s)
         points, has_all = self.lab.judge()
         reward = float(self._reward(self._before, values)) + points - self._points
-        self._before, self._points = values, points
+        self._before = values
+        self._points = points
         is_over = has_all or bool(self._is_over(values))
         return self._observe(values), reward, is_over, False, dict(values)
 

@@ -131,14 +131,17 @@ def test_a_chart_shows_what_is_in_view(view: View, xs: list[float], ys: list[flo
 
 
 def test_derived_variables_go_where_the_log_goes() -> None:
-    model, other = model_of(long_log()), model_of(long_log())
+    model = model_of(long_log())
+    other = model_of(long_log())
     derive(model, "Twice = Colour * 2")
     assert (model.selected, [trace.name for trace in model.traces]) == (
         "Twice",
         ["Colour", "Left", "Twice"],
     )
     assert (model.rows.columns[-1], all(trace.on for trace in model.traces)) == ("Twice", True)
-    model.row, model.mark_s, model.limits = 19, 2.0, (1.0, 7.0)
+    model.row = 19
+    model.mark_s = 2.0
+    model.limits = (1.0, 7.0)
     model.traces.find_trace("Left").on = False
     model.rows.view = model.rows.build_sorted_view("Twice", True)
     other.restore(model)

@@ -89,7 +89,8 @@ def page_of(path: Path) -> Page:
 def driven(tmp_path_factory: pytest.TempPathFactory) -> Driven:
     """A run whose program is hostile, with a note, and its page."""
     folder = tmp_path_factory.mktemp("driven")
-    program, target = folder / "greys.py", folder / "page.html"
+    program = folder / "greys.py"
+    target = folder / "page.html"
     program.write_text(PROGRAM, encoding="utf-8")
     with redirect_stdout(io.StringIO()):
         assert run_command(["run", str(program)]) == 0
@@ -104,7 +105,8 @@ def driven(tmp_path_factory: pytest.TempPathFactory) -> Driven:
 
 
 def test_a_run_is_told_whole(driven: Driven) -> None:
-    facts, run = driven.page.section["Facts"], driven.run
+    facts = driven.page.section["Facts"]
+    run = driven.run
     told = dict(zip(facts[::2], facts[1::2], strict=True))
     assert (told["mat"], told["profile"], told["seed"]) == ("Grey_bands", "robolab", "0")
     assert (told["SHA-256"], told["end"], told["noise"]) == (

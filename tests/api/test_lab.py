@@ -34,10 +34,12 @@ SMOOTH = tuisim.World(background="Loop")
 def go_through(run: Run, period_s: float) -> tuple[list[int], list[list[float]]]:
     """Feed a lab the commands of a run, each in the step where it lies; return ticks, and columns after each step."""
     lab = tuisim.Lab.of_run(run, COLUMNS)
-    hz, last = lab.spec.profile.tick_hz, len(run.telemetry) - 1
+    hz = lab.spec.profile.tick_hz
+    last = len(run.telemetry) - 1
     ticks = round(period_s * hz) or 1
     commands = [(command.time_ns * hz // 1_000_000_000, command) for command in run.commands]
-    ends, rows = [0], [[*lab.read().values()]]
+    ends = [0]
+    rows = [[*lab.read().values()]]
     for end in range(ticks, last + 1, ticks):
         now = [command for tick, command in commands if end - ticks <= tick < end]
         rows.append([*lab.step(period_s=period_s, commands=now).values()])
@@ -61,7 +63,8 @@ def test_recorded_commands_give_the_same_poses_to_the_bit(
 
 def test_sensors_see_what_the_pen_draws() -> None:
     pen = {"x_mm": -20, "y_mm": 30, "color": "black", "down": True}
-    robot, world = tuisim.Robot(parts={"pen": pen}), tuisim.World(pen_marks=True)
+    robot = tuisim.Robot(parts={"pen": pen})
+    world = tuisim.World(pen_marks=True)
     run = tuisim.simulate(PROGRAM, world=world, robot=robot, timeout_s=30)
     ends, rows = go_through(run, 0.13)
     expected = run.telemetry[[*COLUMNS]].to_numpy()[ends]
@@ -74,7 +77,8 @@ def test_sensors_see_what_the_pen_draws() -> None:
 )
 def test_wheels_turn_as_asked(profile: str) -> None:
     columns = ("left_speed_dps", "right_speed_dps", "x_mm")
-    world, robot = tuisim.World(x=300, angle=0), tuisim.Robot(left_reversed=True)
+    world = tuisim.World(x=300, angle=0)
+    robot = tuisim.Robot(left_reversed=True)
     lab = tuisim.Lab(world, robot, profile=profile, columns=columns)
     start_mm = lab.read()["x_mm"]
     values = lab.step(300, 300, period_s=2)

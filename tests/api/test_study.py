@@ -64,7 +64,8 @@ def test_the_number_of_processes_does_not_matter() -> None:
 def test_an_interrupted_experiment_goes_on(
     columns: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    out, run = tmp_path / "runs.parquet", Workers.run
+    out = tmp_path / "runs.parquet"
+    run = Workers.run
 
     def stop_soon(workers: Workers, tasks: Any) -> Any:
         for number, result in enumerate(run(workers, tasks)):

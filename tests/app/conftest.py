@@ -51,7 +51,8 @@ def _apps_are_drawn_once_for_a_key() -> Iterator[None]:
 
     That takes two fifths of what most of the tests of the app cost.
     """
-    draw, wait = Compositor.render_update, Pilot._wait_for_screen
+    draw = Compositor.render_update
+    wait = Pilot._wait_for_screen
 
     def render_update(compositor: Compositor, *words: Any, **options: Any) -> Any:
         # What has changed stays marked until it is drawn.

@@ -61,7 +61,8 @@ Go on.
 ## Do it
 Now.
 """
-SMALL, LARGE = (80, 24), (120, 40)
+SMALL = (80, 24)
+LARGE = (120, 40)
 
 
 def opened(tmp_path: Path, check: str = "show = 'chart'") -> AppSettings:

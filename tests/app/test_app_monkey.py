@@ -21,7 +21,8 @@ from tuisim.app.analyser.app import Analyser, AnalyserApp
 from tuisim.app.app import LabApp
 from tuisim.app.terminal_app import TerminalApp
 
-PRESSES, AT_ONE_GO = 1000, 250
+PRESSES = 1000
+AT_ONE_GO = 250
 """How often something is pressed for one seed, and at most before the app is left and opened anew."""
 
 pytestmark = pytest.mark.slow
@@ -98,11 +99,14 @@ async def one_go(pilot: Pilot[Any], rng: Random, count: int, done: list[str]) ->
 async def test_whatever_is_pressed_the_app_bears_it_and_can_be_left(
     make: Callable[[int], TerminalApp], seed: int
 ) -> None:
-    rng, pressed, turn = Random(seed), 0, 0
+    rng = Random(seed)
+    pressed = 0
+    turn = 0
     before = children()
     while pressed < PRESSES:
         done: list[str] = []
         async with make(turn).run_test(size=(120, 40), notifications=True) as pilot:
             await one_go(pilot, rng, min(AT_ONE_GO, PRESSES - pressed), done)
         wait_for_children(before)
-        pressed, turn = pressed + len(done), turn + 1
+        pressed = pressed + len(done)
+        turn = turn + 1

@@ -322,7 +322,8 @@ async def test_a_step_back_has_the_time_of_its_tick() -> None:
         await press(pilot, app, "n", 1, 2, 3, 4)
         await press(pilot, app, "N", 3)
         assert app.debugger.view is not None
-        paused, snapshot = app.debugger.view.paused, app.run_controller.build_snapshot()
+        paused = app.debugger.view.paused
+        snapshot = app.run_controller.build_snapshot()
         assert paused.tick == snapshot.instant.tick
         assert paused.time_ns / 1e9 == snapshot.time_s
 

@@ -83,7 +83,9 @@ def test_a_chart_gets_telemetry_as_often_as_it_is_drawn(
         state=RunPhase.RUNNING,
         find_mat=lambda _: object(),
     )
-    feed._feed, feed._runs, panels.on_screen = telemetry, runs, True
+    feed._feed = telemetry
+    feed._runs = runs
+    panels.on_screen = True
     now_s = 100.0
     monkeypatch.setattr("time.monotonic", lambda: now_s)
     for _ in range(3):
@@ -95,7 +97,8 @@ def test_a_chart_gets_telemetry_as_often_as_it_is_drawn(
     telemetry.is_far_behind = True
     feed.show()
     assert len(panels.got) == 3
-    telemetry.is_far_behind, runs.state = False, RunPhase.PAUSED
+    telemetry.is_far_behind = False
+    runs.state = RunPhase.PAUSED
     feed.show()
     assert len(panels.got) == 4
 

@@ -9,7 +9,8 @@ from tuisim.app.file_watch import FileWatch
 
 
 def test_what_changes_is_told_once(tmp_path: Path) -> None:
-    path, other = tmp_path / "a.py", tmp_path / "b.py"
+    path = tmp_path / "a.py"
+    other = tmp_path / "b.py"
     path.write_text("1")
     watch = FileWatch()
     watch.follow([path, other])
@@ -21,7 +22,8 @@ def test_what_changes_is_told_once(tmp_path: Path) -> None:
 
 
 def test_a_file_of_the_same_size_and_time_put_in_its_place_is_another(tmp_path: Path) -> None:
-    path, other = tmp_path / "a.py", tmp_path / "b.py"
+    path = tmp_path / "a.py"
+    other = tmp_path / "b.py"
     path.write_text("1")
     other.write_text("2")
     os.utime(other, ns=(path.stat().st_atime_ns, path.stat().st_mtime_ns))

@@ -124,7 +124,8 @@ async def test_a_past_instant_shows_the_goals_as_of_then(task: Path) -> None:
     async with open_lab(with_goals(task, DRIVES), size=SIZE) as (pilot, app):
         await pilot.press("R")
         await until(pilot, lambda: state(app, "said") == "✗ missed")
-        panel, judgements = app.panel_area.goals, app.goals._judgements
+        panel = app.panel_area.goals
+        judgements = app.goals._judgements
         assert panel is not None
         tick = judgements[0].changes[0].tick
         for at, there, total in (

@@ -137,7 +137,8 @@ async def test_lesson_is_in_sight_and_scrolls_while_one_types_in_a_small_termina
 ) -> None:
     async with open_lab(with_lines(opened(tmp_path), 40), size=SMALL) as (pilot, app):
         await pilot.press("d")
-        code, lesson = app.panel_area.code, app.panel_area.lesson
+        code = app.panel_area.code
+        lesson = app.panel_area.lesson
         # The step, not the introduction before it.
         await until(
             pilot,

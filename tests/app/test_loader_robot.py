@@ -83,7 +83,8 @@ async def test_it_follows_the_text_of_the_program(claw: Path) -> None:
 
 
 async def test_opening_a_program_gives_it_its_robot(claw: Path) -> None:
-    settings, decided = Settings(), Decided(free=frozenset(PROGRAM_PATHS))
+    settings = Settings()
+    decided = Decided(free=frozenset(PROGRAM_PATHS))
     start = AppSettings(spec=build_run_spec(settings), settings=settings, decided=decided)
     async with open_lab(start) as (pilot, _):
         app = lab(pilot)

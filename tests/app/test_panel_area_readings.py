@@ -10,10 +10,12 @@ from tuisim.app.snapshot import RunPhase
 
 async def test_all_readings_are_of_one_instant() -> None:
     async with open_lab(ENDLESS, autorun=True, speed=1.0, size=(200, 60)) as (pilot, app):
-        area, run = app.panel_area, app.run_controller
+        area = app.panel_area
+        run = app.run_controller
         await until(pilot, lambda: run.state == RunPhase.RUNNING and run.timeline.newest > 50)
         assert area.world is not None
-        readings, arrays = area.panels["instrumentation"], area.panels["arrays"]
+        readings = area.panels["instrumentation"]
+        arrays = area.panels["arrays"]
         assert isinstance(readings, Instrumentation)
         assert isinstance(arrays, Arrays)
         bar, seen = area.world.time_bar, set[int]()

@@ -51,7 +51,8 @@ async def test_the_chart_is_what_was_drawn(protocol: Protocol) -> None:
         # It is drawn a few times a second only.
         await until(pilot, lambda: not chart._dirty)
         await until_quiet(pilot)
-        seen, drawn = part_of(seen_on(pilot), view), drawn_by(view, protocol)
+        seen = part_of(seen_on(pilot), view)
+        drawn = drawn_by(view, protocol)
         assert np.array_equal(on_canvas(view, seen), on_canvas(view, drawn))
         assert np.unique(on_canvas(view, drawn).reshape(-1, 3), axis=0).shape[0] > 4
         assert 0 < wire_of(pilot).kilobytes - before < before / 10

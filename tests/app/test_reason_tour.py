@@ -15,7 +15,8 @@ REASONS = (
 
 
 def test_each_reason_comes_in_turn_and_then_the_end() -> None:
-    tour, recording = ReasonTour(), SimpleNamespace()
+    tour = ReasonTour()
+    recording = SimpleNamespace()
     run: Any = recording
     tour.begin(run)
     tour.take(run, REASONS, None)

@@ -173,7 +173,8 @@ async def test_quit_during_a_run_asks_and_leaves_no_child() -> None:
 async def test_a_mat_that_failed_is_prepared_again_for_a_run(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    open_field, tries = mat_cache.open_field, []
+    open_field = mat_cache.open_field
+    tries = []
 
     def opened(files: mat_cache.FieldFiles, has_floor: bool) -> Field:
         tries.append(files)

@@ -51,7 +51,8 @@ async def test_a_terminal_that_shrinks_and_grows_again_shows_what_it_showed(
 ) -> None:
     async with open_lab(LOGS, size=(80, 24)) as (pilot, app):
         await until(pilot, lambda: all(words in screen_text(app) for words in ("White", "Gyro")))
-        before, focused = screen_text(app), app.focused
+        before = screen_text(app)
+        focused = app.focused
         await pilot.resize_terminal(*size)
         await until(pilot, lambda: app.too_small == size)
         assert not is_too_small(app.size)

@@ -15,7 +15,8 @@ from tuisim.terminal.queries import AnswerParser
 
 def send(pilot: Pilot[Any], data: str) -> None:
     """Let the driver read what a terminal has sent."""
-    driver, parser = pilot.app._driver, AnswerParser()
+    driver = pilot.app._driver
+    parser = AnswerParser()
     assert driver is not None
     for message in (*parser.feed(data), *parser.feed("")):
         driver.process_message(message)

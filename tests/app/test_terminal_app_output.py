@@ -49,7 +49,8 @@ async def test_a_dialog_is_painted_once(key: str, colors: str) -> None:
     async with on_wire(LabApp(settings()), colors) as pilot:
         await ready(pilot)
         await until_quiet(pilot)
-        wire, paints = wire_of(pilot), []
+        wire = wire_of(pilot)
+        paints = []
         for pressed in (key, "escape"):
             wire.sent.clear()
             await pilot.press(pressed)

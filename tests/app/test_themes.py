@@ -80,7 +80,8 @@ def shown(colors: ThemeColors, style: Style) -> tuple[Color, Color]:
     """Foreground and background of a text under a theme."""
     segment = colors.apply([Segment("a", style)], Color(0, 0, 0))[0]
     assert segment.style and segment.style.color and segment.style.bgcolor
-    fore, back = segment.style.color.triplet, segment.style.bgcolor.triplet
+    fore = segment.style.color.triplet
+    back = segment.style.bgcolor.triplet
     assert fore and back
     return Color(*fore), Color(*back)
 

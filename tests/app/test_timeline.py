@@ -49,7 +49,8 @@ async def a_run(
 
 async def test_keys_go_back_and_forward() -> None:
     async with a_run() as (pilot, app):
-        timeline, newest = app.run_controller.timeline, app.run_controller.timeline.newest
+        timeline = app.run_controller.timeline
+        newest = app.run_controller.timeline.newest
         steps = [
             ("comma", newest - 1),
             ("comma", newest - 2),
@@ -77,7 +78,8 @@ OF_NOW: dict[str, Any] = dict.fromkeys(("next_spec", "recorded_spec", "now_pose"
 @pytest.mark.slow
 async def test_a_former_instant_is_shown_as_it_was() -> None:
     async with a_run(size=(200, 60)) as (pilot, app):
-        recording, mat = app.run_controller.timeline.recording, app.run_controller.mat
+        recording = app.run_controller.timeline.recording
+        mat = app.run_controller.mat
         assert recording is not None
         assert mat is not None
         await pilot.press("g")
@@ -86,7 +88,8 @@ async def test_a_former_instant_is_shown_as_it_was() -> None:
         await until(pilot, lambda: app.run_controller.timeline.at == 200)
         await until(pilot, lambda: app.debugger.view is not None and not app.debugger.busy)
         assert app.debugger.view is not None
-        record, line = recording.telemetry.record(200), app.debugger.view.paused.line
+        record = recording.telemetry.record(200)
+        line = app.debugger.view.paused.line
         then = build_instant(record, recording.spec, recording.spec.world.noise)
         expected = Snapshot(
             RunPhase.ENDED,
@@ -225,7 +228,8 @@ async def test_words_that_are_no_place_are_answered() -> None:
 
 async def test_words_find_their_instants() -> None:
     async with a_run(PEN) as (_, app):
-        timeline, recording = app.run_controller.timeline, app.run_controller.timeline.recording
+        timeline = app.run_controller.timeline
+        recording = app.run_controller.timeline.recording
         assert recording is not None
         rows = list(recording.rows.rows(0))
         dark = next(
@@ -281,7 +285,8 @@ async def test_words_find_their_instants() -> None:
 
 async def test_commands_are_marked_and_found_and_told() -> None:
     async with a_run() as (pilot, app):
-        timeline, commands = app.run_controller.timeline, recording_of(app).commands
+        timeline = app.run_controller.timeline
+        commands = recording_of(app).commands
         ticks = [commands.tick(number) for number in commands.find_events()]
         assert len(ticks) >= 2 and (ticks[0], Mark.COMMAND) in timeline.list_marks()
         stops = [commands.tick(number) for number in commands.find_events("stop")]
@@ -299,7 +304,8 @@ async def test_commands_are_marked_and_found_and_told() -> None:
 
 async def test_a_column_finds_the_tick_at_which_it_becomes_so() -> None:
     async with a_run() as (_, app):
-        timeline, telemetry = app.run_controller.timeline, recording_of(app).telemetry
+        timeline = app.run_controller.timeline
+        telemetry = recording_of(app).telemetry
         mat = app.run_controller.mat
         assert mat is not None
         there = next(tick for tick in range(400) if telemetry.record(tick).x_mm > 300)

@@ -79,7 +79,8 @@ class Window:
 def _in_screen(stack: ExitStack, program: str, folder: Path, _: Mapping[str, str]) -> str:
     sockets = folder / "screens"
     sockets.mkdir(mode=0o700)
-    name, program = "tuisim-test", f"COLORTERM=truecolor {program}"
+    name = "tuisim-test"
+    program = f"COLORTERM=truecolor {program}"
     stack.callback(_quiet, ["screen", "-S", name, "-X", "quit"], {"SCREENDIR": str(sockets)})
     return f"SCREENDIR={shlex.quote(str(sockets))} screen -c /dev/null -S {name} sh -c {shlex.quote(program)}"
 
@@ -144,7 +145,8 @@ class Display:
     """A display in memory, with one window in it."""
 
     def __init__(self, name: str, folder: Path) -> None:
-        self._name, self._folder = name, folder
+        self._name = name
+        self._folder = folder
 
     def picture(self) -> Pixels:
         """What is seen."""

@@ -56,7 +56,8 @@ async def on_wire(
 
 async def until_quiet(pilot: Pilot[Any]) -> None:
     """Wait until nothing more is sent."""
-    wire, before = wire_of(pilot), -1
+    wire = wire_of(pilot)
+    before = -1
     give_up = time.monotonic() + PATIENCE_S
     while len(wire.sent) != before:
         assert time.monotonic() < give_up, f"it never stops: {wire.sent[-3:]}"

@@ -136,10 +136,8 @@ def test_classes_look_like_those_of_python(frozen: bool, slots: bool) -> None:
             kind.__hash__ is None,
         )
 
-    ours, theirs = (
-        build(data_class.dataclass, frozen, slots),
-        build(dataclasses.dataclass, frozen, slots),
-    )
+    ours = build(data_class.dataclass, frozen, slots)
+    theirs = build(dataclasses.dataclass, frozen, slots)
     assert [told(kind) for kind in ours.values()] == [told(kind) for kind in theirs.values()]
 
 
@@ -163,7 +161,8 @@ def test_objects_may_be_equal_to_themselves_only() -> None:
 
         number: int
 
-    first, other = Scope(1), Scope(1)
+    first = Scope(1)
+    other = Scope(1)
     assert first == first != other
     assert len({first, other}) == 2
 

@@ -96,7 +96,8 @@ def without_waiting() -> Iterator[None]:
     def stuck(*_: object) -> None:
         raise StuckError
 
-    before, limit = signal.signal(signal.SIGALRM, stuck), resource.getrlimit(resource.RLIMIT_AS)
+    before = signal.signal(signal.SIGALRM, stuck)
+    limit = resource.getrlimit(resource.RLIMIT_AS)
     resource.setrlimit(resource.RLIMIT_AS, (8 << 30, limit[1]))
     signal.alarm(60)
     try:
@@ -145,7 +146,8 @@ def test_a_pipe_in_the_place_of_a_file_is_not_waited_for(home: Path, here: Comma
 def test_a_hole_in_a_recording_is_not_copied(home: Path) -> None:
     run = record()
     row(Stream.STDOUT, b"last")(run)
-    records, rows = TelemetryView(run).count, OutputView(run).length
+    records = TelemetryView(run).count
+    rows = OutputView(run).length
     for name, claimed, magic, size in (
         (TELEMETRY_FILE, (HUGE - HEADER_BYTES) // 64, b"TUISIMTL", 64),
         (OUTPUT_FILE, 200 << 20, b"TUISIMOU", 0),
@@ -154,7 +156,8 @@ def test_a_hole_in_a_recording_is_not_copied(home: Path) -> None:
             stream.write(pack_header(magic, size, claimed))
             stream.truncate(HUGE)
     with without_waiting():
-        telemetry, output = TelemetryView(run), OutputView(run)
+        telemetry = TelemetryView(run)
+        output = OutputView(run)
         # What is whole is read, with at most one part of the hole.
         assert records <= telemetry.count <= 1 << 17
         assert rows <= output.length <= 8 << 20

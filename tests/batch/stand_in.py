@@ -12,7 +12,8 @@ SEED_THAT_FAILS = 13
 
 def result_of(task: Task, **changed: Any) -> Result:
     """Return a result whose pose depends on seed and noise; the seed 13 raises."""
-    noise, seed = task.spec.world.noise.motor, task.spec.seed
+    noise = task.spec.world.noise.motor
+    seed = task.spec.seed
     failed = seed == SEED_THAT_FAILS
     found: dict[str, Any] = {
         "index": task.index,

@@ -41,7 +41,8 @@ class Department:
     """A scheduler and workers, each a process that talks over TCP."""
 
     def __init__(self, folder: Path, stack: ExitStack) -> None:
-        self._stack, self._folder = stack, folder
+        self._stack = stack
+        self._folder = folder
         self._file = folder / "scheduler.json"
         words = (
             "--host",

@@ -31,7 +31,8 @@ def shuffle(random: Random) -> Callable[..., Iterator[Result]]:
             if not pending:
                 return
             task = pending.pop(random.randrange(len(pending)))
-            noise, seed = task.spec.world.noise.motor, task.spec.seed
+            noise = task.spec.world.noise.motor
+            seed = task.spec.seed
             yield result_of(task, x_mm=float(noise * (seed % 2)))
 
     return run

@@ -17,7 +17,8 @@ from tuisim.batch.table import RUN, Row
 
 def test_what_is_not_done_is_executed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sweep, "run_many", run_backwards)
-    out, several = tmp_path / "out.csv", plan({"seed": (5, 6)}, subject("a.py"), subject("b.py"))
+    out = tmp_path / "out.csv"
+    several = plan({"seed": (5, 6)}, subject("a.py"), subject("b.py"))
     identity = {"version": "1", **several.build_identity()}
     PartialTable(find_partial(out), identity).open({1: {RUN: 2, "end": "kept"}}).close()
     with pytest.raises(ConfigError, match="holds the rows of an interrupted batch"):

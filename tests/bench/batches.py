@@ -30,7 +30,8 @@ time.sleep(0.3)
 """Five simulated seconds with 45 samples."""
 MOVES = "tank_drive.on(50, 50)\nimport time\ntime.sleep(1)\n"
 STARTS = 20
-MOST, MOST_NOISY = 1.4, 1.8
+MOST = 1.4
+MOST_NOISY = 1.8
 """Of the CPU time of `python -c pass`: what a run costs with all that is started for it."""
 NOISE = ("--set", "noise.light=10", "--set", "noise.motor=20")
 
@@ -92,7 +93,8 @@ class Batch:
 def _command(count: int, jobs: int, more: Sequence[str] = ()) -> Batch:
     """Run `tuisim batch` from start to end."""
     with tempfile.TemporaryDirectory() as folder:
-        program, table = Path(folder, "program.py"), Path(folder, "rows.csv")
+        program = Path(folder, "program.py")
+        table = Path(folder, "rows.csv")
         program.write_text(f"# %%sim_magic_preloaded -b Grey_bands\n{PROGRAM}")
         words = [
             "batch",

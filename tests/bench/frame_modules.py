@@ -41,7 +41,8 @@ class FrameWalks:
     """
 
     def __init__(self, file: Path, frames: int) -> None:
-        self._file, self._frames = file, frames
+        self._file = file
+        self._frames = frames
         self._walks: list[Mapping[str, int]] = []
         self._counter: MoveCounter | None = None
         self._number = 0
@@ -76,7 +77,8 @@ def frame_modules(effort: Effort) -> Iterator[Figure]:
 def walked(panels: Sequence[str], count: int) -> list[Mapping[str, int]]:
     """Start the app with a robot that drives, and return for some frames how often each module was entered."""
     with tempfile.TemporaryDirectory() as folder:
-        program, told = Path(folder) / "circle.py", Path(folder) / "counted.json"
+        program = Path(folder) / "circle.py"
+        told = Path(folder) / "counted.json"
         program.write_text(CIRCLE, "utf-8")
         command = (sys.executable, "-m", "tests.bench.frame_modules", str(told), str(count))
         with Terminal([str(program), *panels], command) as terminal:

@@ -16,7 +16,8 @@ RECORD = Struct("<IIdddddfffHH")
 ROOM = 4096
 """Records in the buffer, which is written again and again."""
 WIDTH_MM, HEIGHT_MM, REACH_MM = 2362, 1143, 6
-TICK_S, RAMP_DPS = 0.01, 50.0
+TICK_S = 0.01
+RAMP_DPS = 50.0
 
 
 class Motor:
@@ -44,12 +45,15 @@ class Drive:
     __slots__ = ("heading_deg", "x_mm", "y_mm")
 
     def __init__(self) -> None:
-        self.x_mm, self.y_mm, self.heading_deg = 1000.0, 500.0, 0.0
+        self.x_mm = 1000.0
+        self.y_mm = 500.0
+        self.heading_deg = 0.0
 
     def roll(self, left_deg: float, right_deg: float) -> None:
         """Apply the turns of both wheels."""
         left_mm, right_mm = left_deg * 0.4887, right_deg * 0.4887
-        way_mm, turn = (left_mm + right_mm) / 2, (right_mm - left_mm) / 180.0
+        way_mm = (left_mm + right_mm) / 2
+        turn = (right_mm - left_mm) / 180.0
         middle = math.radians(self.heading_deg) + turn / 2
         self.x_mm += way_mm * math.cos(middle)
         self.y_mm += way_mm * math.sin(middle)
@@ -65,7 +69,8 @@ class Mat:
 
     def mean(self, x_mm: float, y_mm: float) -> float:
         """Return the mean of a square."""
-        left, top = int(x_mm) % (WIDTH_MM - REACH_MM), int(y_mm) % (HEIGHT_MM - REACH_MM)
+        left = int(x_mm) % (WIDTH_MM - REACH_MM)
+        top = int(y_mm) % (HEIGHT_MM - REACH_MM)
         total = 0
         for row in range(top, top + REACH_MM):
             start = row * WIDTH_MM + left
@@ -85,7 +90,9 @@ class World:
         """Run one tick and record it."""
         self.drive.roll(self.left.step(), self.right.step())
         self.tick += 1
-        left, right, drive = self.left, self.right, self.drive
+        left = self.left
+        right = self.right
+        drive = self.drive
         at = RECORD.size * (self.tick % ROOM)
         RECORD.pack_into(
             self._buffer,
@@ -107,7 +114,8 @@ class World:
     def steer(self) -> None:
         """Read the light and tell the motors, as a program that follows a line."""
         turn = self.mat.mean(self.drive.x_mm, self.drive.y_mm) / 255 - 0.5
-        self.left.wanted_dps, self.right.wanted_dps = 200 + 100 * turn, 200 - 100 * turn
+        self.left.wanted_dps = 200 + 100 * turn
+        self.right.wanted_dps = 200 - 100 * turn
 
 
 def drive(ticks: int) -> World:

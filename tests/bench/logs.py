@@ -16,7 +16,8 @@ from tests.bench.viewer import Viewer
 
 CHART = "[⠁-⣿]"
 """What a drawn curve consists of."""
-RIGHT, DOWN = b"\x1b[C", b"\x1b[B"
+RIGHT = b"\x1b[C"
+DOWN = b"\x1b[B"
 KEYS: Mapping[str, Sequence[bytes]] = {
     "zoom": [b"z", b"z", b"Z", b"z", b"z", b"z", b"Z", b"Z", b"z", b"Z"],
     "pan": [b"]", b"]", b"[", b"]", b"]", b"]", b"[", b"[", b"]", b"["],
@@ -51,7 +52,8 @@ def _whole(rows: int) -> str:
 
 
 def _opened(name: str, path: Path, rows: int, repeats: int) -> Iterator[Figure]:
-    first, whole = [], []
+    first = []
+    whole = []
     for _ in range(repeats):
         with analyser(path) as viewer:
             first.append(viewer.until(CHART))

@@ -34,7 +34,8 @@ _REST_S, _FURTHER_S = 1.5, 0.0137
 
 def run_key(effort: Effort) -> Iterator[Figure]:
     """Yield the time from the key to the first frame that shows the robot under way."""
-    firsts, later = [], []
+    firsts = []
+    later = []
     for number in range(effort.repeats):
         first, *rest = latencies_s(number * PRESSES)
         firsts.append(first)

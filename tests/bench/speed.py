@@ -63,7 +63,8 @@ def speed(
     goal: float | None,
 ) -> Figure:
     """Return the figure of the speed of a program, measured beside the frozen ticks."""
-    spec, limit_s = spec_of(mat, profile), simulated_s * effort.simulated
+    spec = spec_of(mat, profile)
+    limit_s = simulated_s * effort.simulated
     options = RunOptions(time_limit_s=limit_s, breaks=breaks)
     samples = in_turns(lambda: simulating_cpu_s(text, spec, options), tick_cpu_s, effort)
     speeds_a_tick = limit_s / samples.ratio

@@ -17,7 +17,8 @@ from typing import Self
 
 from tests.bench.processes import app_environment
 
-COLUMNS, ROWS = 120, 40
+COLUMNS = 120
+ROWS = 40
 CURSOR_QUERY, CURSOR_ANSWER = b"\x1b[6n", f"\x1b[{ROWS};{COLUMNS}R".encode()
 PATIENCE_S = 30.0
 

@@ -17,7 +17,8 @@ class Machine:
 
     def __init__(self, takes_s: float, speeds: Iterator[float]) -> None:
         self.used_s = 0.0
-        self._takes_s, self._speeds = takes_s, speeds
+        self._takes_s = takes_s
+        self._speeds = speeds
         self._speed = 1.0
         self.asked: list[str] = []
 

@@ -105,7 +105,8 @@ class Remote:
             nonlocal length, since_s
             now_s = time.monotonic()
             if len(self.terminal.seen) != length:
-                length, since_s = len(self.terminal.seen), now_s
+                length = len(self.terminal.seen)
+                since_s = now_s
             return now_s - since_s >= _QUIET_S
 
         self.terminal.read_until(quiet, _PATIENCE_S)
@@ -117,7 +118,8 @@ class Remote:
         Returns:
             The kB that come, and the seconds until the text is there, or not there.
         """
-        before, began_s = len(self.terminal.seen), time.monotonic()
+        before = len(self.terminal.seen)
+        began_s = time.monotonic()
         self.terminal.type(key)
         self.terminal.read_until(lambda: self.screen.has(shows) is on, _PATIENCE_S)
         took_s = time.monotonic() - began_s
@@ -154,7 +156,8 @@ def wire(effort: Effort) -> Iterator[Figure]:
     with tempfile.TemporaryDirectory() as folder:
         keys = Path(folder) / "keys"
         keys.mkdir()
-        circle, short = Path(folder) / "circle.py", Path(folder) / "short.py"
+        circle = Path(folder) / "circle.py"
+        short = Path(folder) / "short.py"
         circle.write_text(CIRCLE, "utf-8")
         short.write_text(_SHORT, "utf-8")
         with Sshd(keys) as server:
@@ -220,7 +223,8 @@ def _driving(remote: Remote, name: str) -> Iterator[Figure]:
     remote.terminal.read_for(_DRIVES_S)
     before = remote.link.down_bytes, remote.terminal.queries
     remote.terminal.read_for(_CIRCLE_S)
-    down, frames = remote.link.down_bytes - before[0], remote.terminal.queries - before[1]
+    down = remote.link.down_bytes - before[0]
+    frames = remote.terminal.queries - before[1]
     yield Figure(f"{name}, sent", down / _CIRCLE_S / 1e3, "kB/s")
     yield Figure(f"{name}, frames", frames / _CIRCLE_S, "frames/s")
 

@@ -178,7 +178,8 @@ def test_a_complete_batch_is_not_run_again(
         "--out",
     )
     assert batch(*words, "rows.csv") == 1
-    summary, whole = capsys.readouterr().out, Path("rows.csv").read_bytes()
+    summary = capsys.readouterr().out
+    whole = Path("rows.csv").read_bytes()
     monkeypatch.setattr(sweep, "run_many", lambda tasks, jobs: (1 / 0 for _ in tasks))
     assert batch(*words, "rows.csv", "--resume") == 1
     assert (capsys.readouterr().out, Path("rows.csv").read_bytes()) == (summary, whole)

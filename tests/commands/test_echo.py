@@ -146,7 +146,8 @@ def test_long_work_writes_a_line_a_minute_where_there_is_no_bar(
     monkeypatch: pytest.MonkeyPatch,
     change: Callable[[pytest.MonkeyPatch, Terminal], Any],
 ) -> None:
-    clock, file = Clock(), show()
+    clock = Clock()
+    file = show()
     change(monkeypatch, file)
     with Progress("marking", in_lines=True, wait=clock.wait):
         clock.passes()

@@ -54,7 +54,8 @@ def kept(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Kept]:
     folder = tmp_path_factory.mktemp("kept")
     program = folder / "hard.py"
     program.write_text(PROGRAM, encoding="utf-8")
-    store, runs = RunStore(), []
+    store = RunStore()
+    runs = []
     with redirect_stdout(io.StringIO()):
         for seed in ("0", "3"):
             assert run_command(["run", str(program), "--seed", seed]) == 0

@@ -171,7 +171,8 @@ def test_a_resumed_marking_gives_the_bytes_of_another_one_elsewhere(tmp_path: Pa
     assert 2 <= done < len(lines) == len({line[:80] for line in lines})
     whole = _mark(elsewhere, tmp_path / "another home", "--jobs", "2", "--seeds", "0,1")
     assert (whole.returncode, whole.stdout) == (0, again.stdout)
-    resumed, first = _results(folder), _results(elsewhere)
+    resumed = _results(folder)
+    first = _results(elsewhere)
     assert sorted(resumed) == sorted(first)
     assert [name for name in first if first[name] != resumed[name]] == []
 

@@ -54,7 +54,8 @@ def run(home: Path) -> StoredRun:
 
 def frames_of(path: Path) -> tuple[list[Any], list[int]]:
     """The frames of an animated image as pixels, and how long each is shown."""
-    frames, durations = [], []
+    frames = []
+    durations = []
     with Image.open(path) as image:
         for number in range(getattr(image, "n_frames", 1)):
             image.seek(number)

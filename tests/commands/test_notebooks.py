@@ -35,7 +35,8 @@ def test_all_notebooks_of_a_folder_run_in_order_each_in_its_own_world(
     course: Path, here: Command
 ) -> None:
     done = here("run", course, "--all")
-    printed, table = done.stdout.splitlines()[:3], done.stdout.splitlines()[3:]
+    printed = done.stdout.splitlines()[:3]
+    table = done.stdout.splitlines()[3:]
     assert (done.returncode, printed) == (
         0,
         ["(255, 0, 0)", f"30 {course.parent.name}", "(255, 255, 255)"],

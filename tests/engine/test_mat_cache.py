@@ -24,7 +24,8 @@ from tuisim.engine.core.field import build_disc_mask
 
 pytestmark = pytest.mark.usefixtures("real_mats")
 
-WIDTH, HEIGHT = 2362, 1143
+WIDTH = 2362
+HEIGHT = 1143
 
 
 @pytest.fixture
@@ -66,7 +67,8 @@ def naive_sums(pixels: np.ndarray, diameter: int, col: int, row: int) -> list[in
 
 def test_sums_equal_naive_sums_everywhere(home: Path) -> None:
     files = mat_cache.prepare(mats.background("Testcard").image, (10, 20, 30))
-    field, pixels = mat_cache.open_field(files), mat_cache.mat_pixels(files)
+    field = mat_cache.open_field(files)
+    pixels = mat_cache.mat_pixels(files)
     dice = random.Random(5)
     for diameter in (10, 20, 30):
         corners = [
@@ -84,7 +86,8 @@ def test_sums_equal_naive_sums_everywhere(home: Path) -> None:
             (dice.randrange(-40, WIDTH + 40), dice.randrange(-40, HEIGHT + 40)) for _ in range(150)
         ]
         for col, row in corners + edge + anywhere:
-            sums, disc = naive_sums(pixels, diameter, col, row), field.read_disc(diameter, col, row)
+            sums = naive_sums(pixels, diameter, col, row)
+            disc = field.read_disc(diameter, col, row)
             assert list(field.sum_disc(diameter, col, row)) == sums
             assert [sum(disc[channel::3]) for channel in range(3)] == sums
 
@@ -93,7 +96,8 @@ def test_sums_equal_naive_sums_everywhere(home: Path) -> None:
 @pytest.mark.parametrize("diameter", [2, 7, 100, 128])
 def test_sums_of_unusual_diameters(diameter: int, home: Path) -> None:
     files = mat_cache.prepare(mats.background("Radial_red").image, [diameter])
-    field, pixels = mat_cache.open_field(files), mat_cache.mat_pixels(files)
+    field = mat_cache.open_field(files)
+    pixels = mat_cache.mat_pixels(files)
     for col, row in [(1130, 520), (-3, -3), (WIDTH - 2, 600)]:
         assert list(field.sum_disc(diameter, col, row)) == naive_sums(pixels, diameter, col, row)
 

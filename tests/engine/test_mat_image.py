@@ -21,7 +21,8 @@ from tuisim.base.errors import BackgroundError
 from tuisim.engine import mat_cache, mat_image
 from tuisim.engine.core.spec import BACKGROUND_FITS
 
-WIDTH, HEIGHT = 2362, 1143
+WIDTH = 2362
+HEIGHT = 1143
 WHITE = [255, 255, 255]
 
 

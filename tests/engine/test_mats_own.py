@@ -17,7 +17,8 @@ from tuisim.settings.options import Settings, merge_settings
 from tuisim.settings.worlds import load_world, save_world
 
 FIELD = (2362, 1143)
-RED, BLUE = (200, 0, 0), (0, 0, 200)
+RED = (200, 0, 0)
+BLUE = (0, 0, 200)
 READ = "# %%sim_magic_preloaded\nprint(colorLeft.rgb)\n"
 
 

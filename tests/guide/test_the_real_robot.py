@@ -55,7 +55,9 @@ def watch(motor: DriverMotor, begin_s: float, end_s: float) -> list[float]:
 
 def fit_line(points: list[tuple[float, float]]) -> tuple[float, float]:
     """Return slope and zero of the line with the least squares."""
-    count, sum_x, sum_y = len(points), sum(x for x, _ in points), sum(y for _, y in points)
+    count = len(points)
+    sum_x = sum(x for x, _ in points)
+    sum_y = sum(y for _, y in points)
     slope = (count * sum(x * y for x, y in points) - sum_x * sum_y) / (
         count * sum(x * x for x, _ in points) - sum_x**2
     )
@@ -72,7 +74,8 @@ STEPS = rows_of("A free large motor at a fixed duty")
 
 @pytest.mark.parametrize("row", STEPS, ids=[row[0].partition("]")[0] + row[1] for row in STEPS])
 def test_steps(row: Cells) -> None:
-    points, constants_ms = [], []
+    points = []
+    constants_ms = []
     for duty in range(20, 101, 10):
         motor = build_motor(float(row[2]))
         give(motor, 0, Command.RUN_DIRECT, duty=duty)

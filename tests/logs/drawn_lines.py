@@ -92,7 +92,8 @@ def surround(
 
 def draw_prefixes(random: Random, rows: int) -> tuple[list[str], Clock, tuple[str, ...], bool]:
     """Return what stands before each line, its time, its kinds, and whether a name may have blanks."""
-    stamp, prefix = random.choice(tuple(STAMPS)), random.choice(tuple(PREFIXES))
+    stamp = random.choice(tuple(STAMPS))
+    prefix = random.choice(tuple(PREFIXES))
     if stamp != "none" and prefix != "none" and random.random() < 0.5:
         prefix = "none"
     kind, pattern = STAMPS[stamp]
@@ -124,11 +125,13 @@ def draw_single(random: Random) -> Draft:
     )
     names = draw_names(random, count, with_blanks=with_blanks)
     rows = draw_rows(random, count, ticks, may_miss=True)
-    sign, unit = random.choice(SIGNS[:3]), random.choice(("", "", "", "%", " V", "cm"))
+    sign = random.choice(SIGNS[:3])
+    unit = random.choice(("", "", "", "%", " V", "cm"))
     lines = []
     points: dict[str, Points] = {name: [] for name in names}
     for index, (prefix, time_s) in enumerate(zip(texts, clock.times_s, strict=True)):
-        name, value = names[index % count], rows[index // count][index % count]
+        name = names[index % count]
+        value = rows[index // count][index % count]
         ending = "" if value is None or "e" in value.lower() else unit
         lines.append(f"{prefix}{name}{sign}{value or 'nan'}{ending}")
         points[name].append((time_s, None if value is None else float(value)))
@@ -145,7 +148,8 @@ def draw_single(random: Random) -> Draft:
 
 def draw_several(random: Random) -> Draft:
     """Draw lines with all names and values: plainly, after a prefix, of the plotter, of `logging`."""
-    count, ticks = random.randint(2, 6), random.randint(10, 60)
+    count = random.randint(2, 6)
+    ticks = random.randint(10, 60)
     form = random.choice(("plain", "plain", "plotter", "logging"))
     between = random.choice(tuple(BETWEEN))
     # Behind the colons of `INFO:root:`, one more without a blank says nothing.
@@ -154,8 +158,11 @@ def draw_several(random: Random) -> Draft:
         random, ticks
     )
     if form == "plotter":
-        between, sign = random.choice(("tab", "comma alone", "blank")), ":"
-        texts, clock, kinds = [""] * ticks, draw_clock(random, "none", ticks, ".", ""), ()
+        between = random.choice(("tab", "comma alone", "blank"))
+        sign = ":"
+        texts = [""] * ticks
+        clock = draw_clock(random, "none", ticks, ".", "")
+        kinds = ()
     names = draw_names(random, count, with_blanks=with_blanks and between != "blank")
     rows = draw_rows(random, count, ticks, may_miss=form != "plotter")
     lines = [
@@ -178,7 +185,8 @@ def draw_several(random: Random) -> Draft:
 
 def draw_sequences(random: Random) -> Draft:
     """Draw tuples or lists, as `print` writes them."""
-    count, ticks = random.randint(2, 6), random.randint(10, 60)
+    count = random.randint(2, 6)
+    ticks = random.randint(10, 60)
     rows = draw_rows(random, count, ticks, may_miss=True)
     form, brackets = random.choice((("tuples", "()"), ("lists", "[]")))
     lines = [
@@ -203,7 +211,8 @@ def write_dict(items: Sequence[tuple[str, str]], form: str, *, is_ascii: bool) -
 
 def draw_dicts(random: Random) -> Draft:
     """Draw dictionaries as `print` writes them, or lines of JSON; a time and a word may be among their values."""
-    count, ticks = random.randint(1, 6), random.randint(10, 60)
+    count = random.randint(1, 6)
+    ticks = random.randint(10, 60)
     form = random.choice(("dictionaries", "JSON lines"))
     key, kind = random.choice((("", "none"), *DICT_TIMES, *DICT_DATES))
     clock = draw_clock(random, kind, ticks, ".", random.choice(("", ".")))
@@ -211,7 +220,8 @@ def draw_dicts(random: Random) -> Draft:
     rows = draw_rows(random, count, ticks, may_miss=True)
     quote = "'" if form == "dictionaries" else '"'
     nothing = "None" if form == "dictionaries" else "null"
-    has_words, is_ascii = random.random() < 0.2, random.random() < 0.5
+    has_words = random.random() < 0.2
+    is_ascii = random.random() < 0.5
     lines = []
     for cells, row in zip(clock.rows, rows, strict=True):
         items = [(key, f"{quote}{cell}{quote}" if "T" in cell else cell) for cell in cells]
@@ -243,7 +253,8 @@ def draw_long(random: Random) -> Draft:
     )
     clock = draw_clock(random, kind, ticks, decimal, ".")
     names = draw_names(random, count, with_blanks=True)
-    style, with_comma = random.choice(("whole", "decimals")), decimal == ","
+    style = random.choice(("whole", "decimals"))
+    with_comma = decimal == ","
     columns = [draw_numbers(random, style, ticks, with_comma=with_comma) for _ in names]
     rows: Rows = [list(row) for row in zip(*columns, strict=True)]
     lines = [sign.join((clock.headings[0], random.choice(("key", "name", "variable")), "value"))]

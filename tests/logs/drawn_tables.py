@@ -253,7 +253,8 @@ def write_heading(
     if form.heading == "none":
         return [], [f"column {order.index(times + index) + 1}" for index in range(len(names))]
     units = random.choices(UNITS, k=len(names))
-    titles, below = [*clock.headings], [*clock.units]
+    titles = [*clock.headings]
+    below = [*clock.units]
     variables = list(names)
     blank = "" if form.has_blanks and form.quoting == "none" else " "
     if blank == "":

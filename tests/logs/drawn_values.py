@@ -56,7 +56,8 @@ def draw_numbers(random: Random, style: str, count: int, *, with_comma: bool) ->
     low, high = random.choice(((0, 100), (0, 1023), (-500, 500), (-40, 0), (0, 1)))
     # With three digits behind it, a decimal comma looks like one between thousands.
     digits = random.choice((1, 2, 4)) if with_comma else random.randint(1, 6)
-    letter, power = random.choice("eE"), random.randint(-6, 9)
+    letter = random.choice("eE")
+    power = random.randint(-6, 9)
     while True:
         values = [random.uniform(low, high) for _ in range(count)]
         if style == "whole":

@@ -111,7 +111,8 @@ def draw(seed: int) -> LogFile:
     random = Random(seed)
     draw_shape = random.choices(tuple(SHAPES), weights=tuple(SHAPES.values()))[0]
     draft: Draft = draw_shape(random)
-    encoding, line_end = random.choice(tuple(ENCODINGS)), random.choice(tuple(LINE_ENDS))
+    encoding = random.choice(tuple(ENCODINGS))
+    line_end = random.choice(tuple(LINE_ENDS))
     codec, mark = ENCODINGS[encoding]
     text = LINE_ENDS[line_end].join(draft.lines)
     if random.random() < 0.85:
@@ -199,7 +200,9 @@ def describe(verdict: Verdict) -> str:
 
 def tabulate(verdicts: Sequence[Verdict]) -> Iterable[str]:
     """Yield a table: kind, files, refused, different, and the seed of a file that was read wrongly."""
-    files, refused, different = Counter[str](), Counter[str](), Counter[str]()
+    files = Counter[str]()
+    refused = Counter[str]()
+    different = Counter[str]()
     examples: dict[str, int] = {}
     for verdict in verdicts:
         kinds = (*sorted(verdict.file.kinds), "all")

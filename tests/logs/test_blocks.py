@@ -42,9 +42,11 @@ LATE = {"numbers": ("5.5", 5.5), "texts": ("five", "five")}
 @pytest.mark.parametrize("suffix", [".csv", ".jsonl"])
 def test_a_column_that_begins_empty(tmp_path: Path, suffix: str, cell: str, value: object) -> None:
     quoted = cell if isinstance(value, float) else f'"{cell}"'
-    empty, full = ('{"time": 1, "late": null}\n', f'{{"time": 2, "late": {quoted}}}\n')
+    empty = '{"time": 1, "late": null}\n'
+    full = f'{{"time": 2, "late": {quoted}}}\n'
     if suffix == ".csv":
-        empty, full = "1.00000000000000,\n", f"2,{cell}\n"
+        empty = "1.00000000000000,\n"
+        full = f"2,{cell}\n"
     head = "time,late\n" if suffix == ".csv" else ""
     path = tmp_path / f"a{suffix}"
     path.write_text(head + empty * (2 * BLOCK_BYTES // len(empty) // 8) + full)

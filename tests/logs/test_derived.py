@@ -156,7 +156,8 @@ class TestReckoning:
         assert_allclose(got.heading_deg, [0, 0, 90])
 
     def test_the_positions_are_those_of_the_motors(self) -> None:
-        usual, geared = RobotSpec(), RobotSpec(left_reversed=True, gear_ratio=0.5)
+        usual = RobotSpec()
+        geared = RobotSpec(left_reversed=True, gear_ratio=0.5)
         left, right = column(0, 100, 130), column(0, 120, 160)
         expected = compute_dead_reckoning(left, right, Pose(0, 0, 0), usual)
         got = compute_dead_reckoning(left * -0.5, right * 0.5, Pose(0, 0, 0), geared)

@@ -46,7 +46,8 @@ def _are_equal(found: float, expected: float) -> bool:
 
 @pytest.mark.parametrize("low, high", ODD[:4], ids=str)
 def test_mean_and_spread_of_two_are_exact(low: float, high: float) -> None:
-    mean, half = low / 2 + high / 2, abs(high / 2 - low / 2)
+    mean = low / 2 + high / 2
+    half = abs(high / 2 - low / 2)
     one = compute_summary(np.array([low, high]))
     assert _are_equal(one.mean, mean)
     # Of the sample: it may be more than the largest number.

@@ -28,7 +28,8 @@ def read_back(path: Path) -> tuple[dict[str, list[tuple[int, dict[str, Any]]]], 
     """Return the messages of each topic with their times in ns, and the schema of each topic."""
     from mcap.reader import make_reader
 
-    messages, schemas = defaultdict(list), {}
+    messages = defaultdict(list)
+    schemas = {}
     with path.open("rb") as handle:
         times_ns = []
         for schema, channel, message in make_reader(handle).iter_messages(log_time_order=False):
@@ -76,7 +77,8 @@ def test_telemetry_comes_back(
     x_mm, y_mm, heading_deg = (log.series(name).values for name in POSE)
     assert len(messages["/pose"]) == log.rows
     for at, (time_ns, message) in enumerate(messages["/pose"]):
-        stamp, pose = message["timestamp"], message["pose"]
+        stamp = message["timestamp"]
+        pose = message["pose"]
         assert stamp["sec"] * 10**9 + stamp["nsec"] == time_ns
         assert message["frame_id"] == "mat"
         assert pose["position"] == {"x": x_mm[at] / 1000, "y": y_mm[at] / 1000, "z": 0}

@@ -13,7 +13,8 @@ from tuisim.logs.pieces import find_strays
 @for_each(seed=range(40))
 def test_steps_between_pieces_are_those_of_least_squares(seed: int) -> None:
     rng = np.random.default_rng(seed)
-    edge, gap = int(rng.integers(1, 13)), int(rng.integers(0, 3))
+    edge = int(rng.integers(1, 13))
+    gap = int(rng.integers(0, 3))
     stop = edge + gap + int(rng.integers(1, 13))
     values = rng.normal(0.0, 1.0, stop) + 50.0
     values[rng.random(stop) < 0.2] += 1000.0

@@ -153,7 +153,8 @@ class TestCrossings:
         assert find_crossings(column(0, 1, 2), column(9, 5, 9), 5) == []
 
     def test_what_stays_within_the_hysteresis_crosses_nothing(self) -> None:
-        times_s, values = column(*range(7)), column(0, 10, 4, 10, 0, 6, 0)
+        times_s = column(*range(7))
+        values = column(0, 10, 4, 10, 0, 6, 0)
         found = find_crossings(times_s, values, 5, hysteresis=2)
         assert [(one.sample, one.rising) for one in found] == [(1, True), (4, False)]
 

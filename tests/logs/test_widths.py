@@ -26,7 +26,8 @@ def drawn_levels(places_mm: FloatArray, edges_mm: FloatArray, spot_mm: float) ->
     """Return the levels of `GREYS`, without what the spot reads of their neighbours."""
     start = np.searchsorted(places_mm, np.append(-np.inf, edges_mm + spot_mm / 2.0))
     stop = np.searchsorted(places_mm, np.append(edges_mm - spot_mm / 2.0, np.inf))
-    level, none = np.array(GREYS), np.zeros(len(GREYS))
+    level = np.array(GREYS)
+    none = np.zeros(len(GREYS))
     return Levels(start, stop, level, level, none, none.astype(np.int64), (None,) * len(GREYS))
 
 

@@ -86,7 +86,8 @@ class Kernel:
     """A real kernel, as Jupyter starts it."""
 
     def __init__(self, manager: KernelManager, client: BlockingKernelClient) -> None:
-        self.manager, self.client = manager, client
+        self.manager = manager
+        self.client = client
 
     def begin(self, text: str) -> str:
         return str(self.client.execute(text))
@@ -103,7 +104,8 @@ class Kernel:
 
     def text(self, source: str) -> str:
         """Run a cell and return what it printed."""
-        parent, text = str(self.client.execute(source, allow_stdin=False)), ""
+        parent = str(self.client.execute(source, allow_stdin=False))
+        text = ""
         while True:
             message = self.message(parent, lambda _: True)
             text += str(message["content"].get("text", ""))

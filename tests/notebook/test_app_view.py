@@ -35,7 +35,8 @@ class Page:
     """What shows the app: a client in a thread of its own."""
 
     def __init__(self, view: AppView) -> None:
-        self._view, self._drawn = view, ""
+        self._view = view
+        self._drawn = ""
         self._loop = asyncio.new_event_loop()
         self._thread = Thread(target=self._loop.run_forever)
         self._thread.start()

@@ -46,7 +46,8 @@ def test_a_single_peak_among_many_samples_is_seen() -> None:
 
 
 def test_samples_are_drawn_as_log_plot_draws_them() -> None:
-    times, values = np.arange(5000) / 100, np.sin(np.arange(5000)) * 90
+    times = np.arange(5000) / 100
+    values = np.sin(np.arange(5000)) * 90
     here = chart_of([Sample("Gyro", v, t, 0, 0, 1) for t, v in zip(times, values, strict=True)])
     model = log_of({"time": times.tolist(), "Gyro": values.tolist()})
     there = plotted(model, View(), *CHART_SIZE)

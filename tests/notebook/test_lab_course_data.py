@@ -103,7 +103,8 @@ def test_records_are_texts_with_the_old_clock(done: Mapping[str, NotebookNode]) 
     assert stream(done["drive"]).splitlines() == [
         f"{side} image data logged..." for side in ("left", "both", "both", "right")
     ]
-    sides, clocks = ["left", *["left", "right"] * 2, "right"], ["0", "15", "15", "30", "30", "30"]
+    sides = ["left", *["left", "right"] * 2, "right"]
+    clocks = ["0", "15", "15", "30", "30", "30"]
     assert value(done["raw"]) == [
         (side, 1600, clock) for side, clock in zip(sides, clocks, strict=True)
     ]

@@ -102,7 +102,8 @@ def test_under_its_old_name_a_responder_gets_the_pixels_as_text(cell: Cell) -> N
     cell("heard = []\nroboSim.pyresponder = heard.append")
     text = "print('image_data both')\nprint('IMG_DATA')\nprint('IMG_DATA left')"
     cell(f"%%sim_magic_preloaded -b Grey_bands -x 1520 -RWHL\n{text}")
-    heard, records = cell("heard").result, cell("roboSim.raw_image_data").result
+    heard = cell("heard").result
+    records = cell("roboSim.raw_image_data").result
     assert heard[0] == heard[1]
     begin, _, sent = heard[0].partition("::")
     sides = {record.split(" ")[0]: record.split(" ")[1] for record in records}

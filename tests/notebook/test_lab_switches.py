@@ -135,7 +135,8 @@ class Case:
     seen: Any = True
 
 
-PINK, RAY = (255, 105, 180), (0, 175, 175)
+PINK = (255, 105, 180)
+RAY = (0, 175, 175)
 """Of a pen, of the ultrasonic sensor; the mat has neither."""
 
 CASES = [

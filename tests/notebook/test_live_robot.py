@@ -44,7 +44,9 @@ class View:
     def __init__(
         self, words: list[str], origins: tuple[str, ...], find_state: Callable[[], CellState]
     ) -> None:
-        self.words, self.origins, self.find_state = words, origins, find_state
+        self.words = words
+        self.origins = origins
+        self.find_state = find_state
         self.states: list[CellState] = []
         self.begun: SimpleQueue[str] = SimpleQueue()
         self.is_alive, self.is_shown = True, False
@@ -109,7 +111,8 @@ def run(cell: Cell, front: Front) -> Run:
     """`run(text, cell_id)` runs a cell and returns the page of its offer; empty if it makes none."""
 
     def act(text: str = "%sim_magic -b Grey_bands", cell_id: str = "") -> str:
-        front.cell, front.code = cell_id, text
+        front.cell = cell_id
+        front.code = text
         pages = [bundle.get("text/html", "") for bundle in cell(text).bundles]
         return next((str(page) for page in pages if "This is a picture" in page), "")
 

@@ -177,7 +177,8 @@ def test_what_a_program_has_done_is_in_the_state(cell: Cell) -> None:
         "%%sim_magic_preloaded -b Grey_bands -x 700 -pRWH --profile nbev3devsim\n"
         "tank_drive.on_for_seconds(SpeedPercent(50), SpeedPercent(50), 1)"
     )
-    found, ours = state(cell), cell("roboSim.state").result
+    found = state(cell)
+    ours = cell("roboSim.state").result
     assert (found["x"], found["_x"], found["penDown"]) == (ours["x_mm"], 700, True)
     assert found["leftWheel"] == AT_REST | {
         "pos": ours["left_position_deg"],
@@ -228,7 +229,8 @@ def test_sensors_are_means_and_texts(cell: Cell) -> None:
     cell(
         "%%sim_magic_preloaded -b Rainbow_bands -x 500 -RWH\nprint(colorLeft.rgb, ultrasonic.distance_centimeters)"
     )
-    found, ours = state(cell), cell("roboSim.images()").result
+    found = state(cell)
+    ours = cell("roboSim.images()").result
     assert not len(ours)
     for side, sensor in (("left", "sensor1"), ("right", "sensor2")):
         rgb = found[f"{side}_light_raw"]

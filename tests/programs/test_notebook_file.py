@@ -80,7 +80,8 @@ BESIDE = [
 def test_a_cell_finds_modules_beside_its_notebook(
     profile: str, here: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    folder, elsewhere = tmp_path / "lessons", tmp_path / "elsewhere"
+    folder = tmp_path / "lessons"
+    elsewhere = tmp_path / "elsewhere"
     folder.mkdir()
     elsewhere.mkdir()
     write(folder / "l.ipynb", BESIDE)

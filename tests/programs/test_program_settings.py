@@ -26,7 +26,8 @@ PYBRICKS = "from pybricks.ev3devices import Motor\nfrom pybricks.parameters impo
 BASE = f"from pybricks.robotics import DriveBase\n{PYBRICKS}DriveBase(Motor(Port.B), Motor(Port.C), 55.5, 104)\n"
 MIDDLE = (1181.0, 571.5)
 MAT = (100.0, 800.0)
-LINE, LOOP = (280.0, 700.0), (500.0, 500.0)
+LINE = (280.0, 700.0)
+LOOP = (500.0, 500.0)
 
 # The text, the arguments of `build_program_settings`; profile, the robot's name, and the place.
 CASES: Mapping[str, tuple[str, dict[str, Any], tuple[str, str, tuple[float, float]]]] = {
@@ -400,7 +401,9 @@ def test_lines_that_the_brick_refuses_are_told_of_its_programs(
 
 TOUCH = "from ev3dev2.sensor.lego import TouchSensor\nTouchSensor('in1').wait_for_pressed()\n"
 SONAR = "from pybricks.ev3devices import UltrasonicSensor\nprint(UltrasonicSensor(Port.S4).distance())\n"
-OPEN, WALLED, AS_EVER = (True, False), (True, True), (False, True)
+OPEN = (True, False)
+WALLED = (True, True)
+AS_EVER = (False, True)
 
 # The text, what is chosen, and whether there are a floor and walls.
 GROUNDS: Mapping[str, tuple[str, dict[str, Any], tuple[bool, bool]]] = {

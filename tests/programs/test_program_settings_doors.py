@@ -171,7 +171,8 @@ def runs_of(folder: Path, program: str, option: Option) -> dict[str, RunSpec]:
     (folder / "w.toml").write_text(f"{option.world}\n")
     (folder / "t.toml").write_text(f"{option.world}\n{GOAL}")
     (folder / "g.toml").write_text(GOAL)
-    words, given = option.words.split(), read_options(option.choices)
+    words = option.words.split()
+    given = read_options(option.choices)
     commands = {
         "run": ("run", "p.py", *words),
         "app": ("p.py", *words),
@@ -196,7 +197,8 @@ def runs_of(folder: Path, program: str, option: Option) -> dict[str, RunSpec]:
 
 def runs_in_app(source: ProgramSource, option: Option) -> dict[str, RunSpec]:
     """Return the run of a program in the app, if the option comes after it, and before."""
-    plain, before = build_program_settings(source), merge_settings(read_options(option.choices))
+    plain = build_program_settings(source)
+    before = merge_settings(read_options(option.choices))
     opened = plans.build_first_plan(
         build_run_spec(plain.settings), plain.settings, plain.decided, source.program
     )

@@ -32,10 +32,8 @@ def print_results(results: Sequence[Result], of_what: str) -> int:
     print(row("kind", "cases", "wall s", "faults"))
     for found in results:
         print(row(found.kind, found.cases, f"{found.elapsed_s:.1f}", len(found.faults)))
-    cases, faults = (
-        sum(found.cases for found in results),
-        sum(len(found.faults) for found in results),
-    )
+    cases = sum(found.cases for found in results)
+    faults = sum(len(found.faults) for found in results)
     print(f"{faults or 'no'} fault{'s' * (faults > 1)} in {cases} cases ({of_what})")
     return int(bool(faults))
 

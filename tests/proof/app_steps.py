@@ -93,7 +93,8 @@ class AppSteps:
         await self._pilot.pause(random.choice((0.0, 0.05, 0.2)))
 
     def _outside(self, name: str, random: Random) -> None:
-        model, current = self._model, self._app.run_controller.run_id
+        model = self._model
+        current = self._app.run_controller.run_id
         ended = [one for one in model.seen if one not in self._running and one != current]
         if not ended:
             return
@@ -115,7 +116,8 @@ class AppSteps:
             run = self._model.store.load_run(run_id)
             # Asked before it is read: it may end and grow in between.
             is_running = run.state is Unended.RUNNING
-            before, now = self._model.seen.get(run_id, Seen(b"", [])), Seen.of(run)
+            before = self._model.seen.get(run_id, Seen(b"", []))
+            now = Seen.of(run)
             before.check_grown(now, run_id, run_id in self._running)
             self._model.seen[run_id] = now
             (self._running.add if is_running else self._running.discard)(run_id)
@@ -154,7 +156,8 @@ async def _in_app(model: RunModel, steps: Sequence[int], seed: str) -> None:
     settings = AppSettings(
         spec=spec, program=program(text), autorun=True, speed=random.choice(speeds)
     )
-    own, names = set(model.seen), done_in(seed, [*KEYS, *OUTSIDE])
+    own = set(model.seen)
+    names = done_in(seed, [*KEYS, *OUTSIDE])
     async with open_lab(settings) as (pilot, app):
         todo = AppSteps(model, pilot)
         for step in steps:

@@ -88,7 +88,8 @@ def words_of(command: str, random: Random) -> list[str]:
     words = SOUND[command].split()
     for _ in range(random.choice((1, 1, 2))):
         # The system takes no null characters there.
-        odd, options = odd_text(random).replace("\0", ""), options_of(command)
+        odd = odd_text(random).replace("\0", "")
+        options = options_of(command)
         at = random.randrange(len(words) + 1)
         if options and random.random() < 0.6:
             option = random.choice(options)

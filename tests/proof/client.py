@@ -55,7 +55,8 @@ class Client:
     """
 
     def __init__(self, random: Random, patience_s: float) -> None:
-        self._random, self._patience_s = random, patience_s
+        self._random = random
+        self._patience_s = patience_s
 
     def app(self) -> None:
         """Run a program as the app does, pause and step it, look at it while it runs, and read what is stored."""
@@ -160,7 +161,8 @@ class Client:
         """Tag a run, which may end at that time."""
         if (row := self._chosen()) is None:
             return
-        run_id, tag = row["id"], f"t{self._random.getrandbits(32)}"
+        run_id = row["id"]
+        tag = f"t{self._random.getrandbits(32)}"
         was_there = is_complete(run_id)
         try:
             RunStore().tag(run_id, [tag])

@@ -83,13 +83,16 @@ def _rounds(clients: Sequence[_Started]) -> int:
 
 def _check_ends(clients: Sequence[_Started], patience_s: float) -> None:
     """Wait until all have ended; a fault is what one prints, and a time without a round of those that run programs."""
-    left, done, give_up = list(clients), -1, 0.0
+    left = list(clients)
+    done = -1
+    give_up = 0.0
     while left:
         busy = [one for one in left if one.role not in QUICK]
         if not busy:
             (clients[0].place.parent / OVER_FILE).touch()
         if (now_done := _rounds(clients) if busy else done) > done:
-            done, give_up = now_done, time.monotonic() + patience_s
+            done = now_done
+            give_up = time.monotonic() + patience_s
         if time.monotonic() > give_up:
             raise FaultError(
                 f"no client has finished a round for {patience_s:.0f} s: {[one.role for one in left]}"

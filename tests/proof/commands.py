@@ -32,7 +32,8 @@ class _Terminal(io.StringIO):
 
 def said(words: Sequence[str], on_terminal: bool = False) -> Said:
     """Run a command in this process."""
-    out, err = _Terminal() if on_terminal else io.StringIO(), io.StringIO()
+    out = _Terminal() if on_terminal else io.StringIO()
+    err = io.StringIO()
     with redirect_stdout(out), redirect_stderr(err):
         try:
             code = run_command(words)

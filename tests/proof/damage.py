@@ -331,7 +331,8 @@ def _check(name: str, folder: Path) -> None:
     found = FORMATS[form]
     source = samples() / found.sound
     path = folder / source.name
-    data, random = source.read_bytes(), Random(seed)
+    data = source.read_bytes()
+    random = Random(seed)
     match way:
         case ["value"]:
             path.write_bytes(with_odd_value(data, random, found.syntax))

@@ -60,7 +60,8 @@ def _moodle_file(random: Random, place: Path, text: str) -> None:
 
 
 def _canvas(random: Random, place: Path, text: str) -> None:
-    user, late = random.randrange(10**5), random.choice(("", "_LATE"))
+    user = random.randrange(10**5)
+    late = random.choice(("", "_LATE"))
     _write(place.with_name(f"lueve{late}_{user}_340_robot.py"), text)
     _write(place.with_name(f"lueve_{user}_99_robot.py"), "1 / 0\n")
     if random.random() < 0.5:

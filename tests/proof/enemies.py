@@ -72,7 +72,8 @@ _PLACED = (
 _DAY = len("20260102")
 _TICK_NS = 10_000_000
 """Of the profile that `hosted` uses."""
-_LARGE, _FAR = 1 << 24, 1e9
+_LARGE = 1 << 24
+_FAR = 1e9
 _NUMBERS: tuple[Any, ...] = (
     0,
     -1,
@@ -143,10 +144,8 @@ def _recording(random: Random) -> str:
     """Write somewhere into the recordings, or truncate them."""
     lines = [f"data = {random.choice((random.randbytes(64), bytes(64), b'%c' % 255 * 16))!r}"]
     for _ in range(random.randint(1, 4)):
-        name, at = (
-            random.choice(_FILES[:2]),
-            random.choice((0, 8, 16, 24, 64, 72, 128, random.randrange(4000))),
-        )
+        name = random.choice(_FILES[:2])
+        at = random.choice((0, 8, 16, 24, 64, 72, 128, random.randrange(4000)))
         do = random.choice(
             (
                 "f.seek(AT); f.write(data)",

@@ -328,7 +328,8 @@ def _cases(random: Random) -> Iterator[str]:
 
 def _check_own(sort: str, own: Mapping[str, str], unjudged: str) -> None:
     """Check the student's own row; `unjudged` is what fails in a case of `faults` so that there are no marks."""
-    points, reason = float(own["points"] or 0), own["reason"]
+    points = float(own["points"] or 0)
+    reason = own["reason"]
     if sort in REFUSED and (points or int(own["runs"]) or not reason):
         raise FaultError(f"not refused: {own}")
     if sort == "delivered" and points != _ALL:

@@ -237,8 +237,10 @@ def _direct(random: Random, _: TachoMotor) -> list[Step]:
 
 def _library_move(random: Random, model: TachoMotor) -> list[Step]:
     """Return a call that turns by degrees or to a position, blocks, and ends with hold or coast."""
-    percent, brake = random.choice([-1, 1]) * random.randint(10, 90), random.random() < 0.7
-    degrees, relative = random.choice([-1, 1]) * random.randint(100, 800), random.random() < 0.6
+    percent = random.choice([-1, 1]) * random.randint(10, 90)
+    brake = random.random() < 0.7
+    degrees = random.choice([-1, 1]) * random.randint(100, 800)
+    relative = random.random() < 0.6
     speed = round(percent / 100 * model.max_speed)
     call = "on_for_degrees" if relative else "on_to_position"
     chosen = {
@@ -378,7 +380,8 @@ def printed(text: str, solid: bool = False) -> list[str]:
 
 
 def _check(case: str, folder: Path) -> None:
-    kind, random = case.partition(":")[0], Random(case)
+    kind = case.partition(":")[0]
+    random = Random(case)
     if kind == "blocked":
         _check_blocked(random)
         return

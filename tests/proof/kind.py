@@ -100,10 +100,12 @@ class _Watch:
         signal.signal(signal.SIGPROF, self._before)
 
     def _look(self, number: int, frame: FrameType | None) -> None:
-        is_large, now_s = _resident_mb() > self._most_mb, time.process_time()
+        is_large = _resident_mb() > self._most_mb
+        now_s = time.process_time()
         if not is_large and now_s < self._end_s:
             return
-        self._end_s, self._most_mb = now_s + GRACE_S, self._most_mb * 2
+        self._end_s = now_s + GRACE_S
+        self._most_mb = self._most_mb * 2
         error: Exception = TooLongError(f"has not ended after {self._limit_s:g} s of CPU")
         if is_large:
             error = TooLargeError(f"has grown by more than {MOST_GROWTH_MB} MB")

@@ -171,12 +171,10 @@ class Monkey:
     def __init__(
         self, terminal: Terminal, random: Random, own_keys: Sequence[bytes], suspends: bool
     ) -> None:
-        self._terminal, self._random, self._own_keys, self._suspends = (
-            terminal,
-            random,
-            own_keys,
-            suspends,
-        )
+        self._terminal = terminal
+        self._random = random
+        self._own_keys = own_keys
+        self._suspends = suspends
         self.done: list[str] = []
 
     def act(self) -> None:
@@ -216,7 +214,8 @@ class Monkey:
 
     def _use(self) -> str:
         """Press one of its keys, and what does something with what that may have opened."""
-        key, then = self._random.choice(self._own_keys), self._random.choice(THEN)
+        key = self._random.choice(self._own_keys)
+        then = self._random.choice(THEN)
         self._write(key)
         self._terminal.take(self._random.choice((0, 0.02, 0.1)))
         return f"{key!r} then {self._write(then)}"

@@ -249,7 +249,8 @@ class Copies:
         path = copy / "tuisim" / mutant.file
         original = path.read_text()
         path.write_text(mutant.text)
-        own, room = find_tests(mutant.file, copy), mutant.room
+        own = find_tests(mutant.file, copy)
+        room = mutant.room
         others = [*TESTS[room], *(f"--ignore={test}" for test in own)]
         try:
             return (

@@ -141,7 +141,8 @@ EDGE_BYTES = 64
 
 def damaged_at_edge(data: bytes, random: Random, is_text: bool) -> bytes:
     """Return the data with changes in its first bytes, or its last ones, or only what is left of the first ones."""
-    head, tail = data[:EDGE_BYTES], data[-EDGE_BYTES:]
+    head = data[:EDGE_BYTES]
+    tail = data[-EDGE_BYTES:]
     match random.randrange(3):
         case 0:
             return damaged(head, random, is_text) + data[EDGE_BYTES:]

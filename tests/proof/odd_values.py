@@ -203,7 +203,8 @@ def _front(data: bytes, random: Random, change: _Change = _changed) -> bytes:
 def _csv(data: bytes, random: Random) -> bytes:
     """Change a cell, or those of a whole column with or without its name."""
     rows = list(csv.reader(io.StringIO(data.decode())))
-    column, cell = random.randrange(len(rows[0])), random.choice(_CELLS)
+    column = random.randrange(len(rows[0]))
+    cell = random.choice(_CELLS)
     row = random.randrange(len(rows))
     for changed in random.choice((rows, rows[1:], rows[row : row + 1])):
         changed[column : column + 1] = [cell]

@@ -211,7 +211,8 @@ def calls_in(name: str, names: str) -> list[Call]:
 
 def spread(cases_of: Callable[[str], Iterator[str]], random: Random) -> Iterator[str]:
     """Yield the cases of all operations in turns, those that are quick three times as often, and rare calls first."""
-    names, used = random.sample(list(OPERATIONS), len(OPERATIONS)), Counter[str]()
+    names = random.sample(list(OPERATIONS), len(OPERATIONS))
+    used = Counter[str]()
     quick = _in_turns(
         [
             _rare_first(cases_of(name), used, random)
@@ -227,7 +228,8 @@ def spread(cases_of: Callable[[str], Iterator[str]], random: Random) -> Iterator
 
 def _rare_first(of_operation: Iterator[str], used: Counter[str], random: Random) -> Iterator[str]:
     """Yield the cases of an operation: first one of each call, and what was `used` least by all operations."""
-    cases, own = list(of_operation), Counter[str]()
+    cases = list(of_operation)
+    own = Counter[str]()
     left = random.sample(cases, len(cases))
 
     def uses(case: str) -> tuple[int, int]:
@@ -276,11 +278,13 @@ def undisturbed(name: str) -> Undisturbed:
     operation = OPERATIONS[name]
     with tempfile.TemporaryDirectory(prefix="tuisim-proof-sound-") as folder, home(Path(folder)):
         place = prepared(Path(folder), "sound")
-        before, telemetry = contents(operation, place), _telemetry(place)
+        before = contents(operation, place)
+        telemetry = _telemetry(place)
         done = run(operation.words, place)
         if done.code:
             raise FaultError(f"{name} fails by itself: {done.err}")
-        after, effect = contents(operation, place), _effect(place, done.out)
+        after = contents(operation, place)
+        effect = _effect(place, done.out)
     return Undisturbed(before, after, telemetry, effect)
 
 
@@ -330,7 +334,8 @@ def _list_left_over(place: Path) -> list[str]:
 
 def check_after(name: str, place: Path, ended: Ended) -> None:
     """Check what must hold after an operation to which something has happened."""
-    operation, sound = OPERATIONS[name], undisturbed(name)
+    operation = OPERATIONS[name]
+    sound = undisturbed(name)
     if ended.code == EXIT_OUR_MISTAKE or any(sign in ended.err + ended.out for sign in _MISTAKES):
         raise FaultError(f"a mistake of ours: {ended.err}{ended.out}")
     effect = _effect(place, ended.out)
@@ -346,10 +351,8 @@ def check_after(name: str, place: Path, ended: Ended) -> None:
         if ended.code == 0 and content != sound.after[path]:
             raise FaultError(f"{path} was not written, but the exit code is 0: {ended.err}")
     for what, value in effect.items() if ended.code == 0 else ():
-        less, more = (
-            Counter(sound.effect[what]) - Counter(value),
-            Counter(value) - Counter(sound.effect[what]),
-        )
+        less = Counter(sound.effect[what]) - Counter(value)
+        more = Counter(value) - Counter(sound.effect[what])
         # A temporary file that could not be removed may be left.
         if (less or (more and what != "files")) and (what == "files" or not operation.is_list):
             raise FaultError(

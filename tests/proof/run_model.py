@@ -54,7 +54,8 @@ class Seen:
         """Raise a fault if something that was seen is gone or different."""
         size = TICK_RECORD.size
         last = len(self.ticks) - size
-        was, last_now = self.ticks[-size:], now.ticks[last : last + size]
+        was = self.ticks[-size:]
+        last_now = now.ticks[last : last + size]
         # The newest record is written again when the user does something, and counts it.
         is_same = was == last_now or (is_live and _actions(was) != _actions(last_now))
         if now.ticks[: max(last, 0)] != self.ticks[:-size] or (self.ticks and not is_same):

@@ -155,7 +155,8 @@ def _resume(model: RunModel, random: Random) -> None:
 def _step(model: RunModel, random: Random) -> None:
     if (run := model.one_paused(random)) is None:
         return
-    before, ticks = run.telemetry.count, random.choice((1, 2, 7, 100))
+    before = run.telemetry.count
+    ticks = random.choice((1, 2, 7, 100))
     run.paused = False
     run.send(StepTicks(ticks))
     model.pump(run, lambda: run.paused or run.waiting_for_input is not None)
@@ -357,7 +358,8 @@ OPERATIONS: Mapping[str, Callable[[RunModel, Random], None]] = {
 
 def done_in(case: str, every: Iterable[str], always: Sequence[str] = ()) -> list[str]:
     """Return what is done in a case: all there is, or a few things only, which then meet each other more often."""
-    names, random = list(every), Random(f"{case} names")
+    names = list(every)
+    random = Random(f"{case} names")
     return (
         names if random.random() < 0.3 else [*always, *random.sample(names, random.randint(3, 7))]
     )

@@ -489,7 +489,8 @@ def _check(case: str, folder: Path) -> None:
     if not _Watch.is_installed:
         sys.addaudithook(_Watch.hook)
         _Watch.is_installed = True
-    _Watch.folder, _Watch.faults = str(folder.resolve()), []
+    _Watch.folder = str(folder.resolve())
+    _Watch.faults = []
     # What others may do is up to tuisim.
     mask = os.umask(0)
     try:

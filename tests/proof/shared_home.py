@@ -18,7 +18,9 @@ from tuisim.engine.runs.run_folder import RUN_FILE, read_run
 LINES = [f"A: {number}" for number in range(30)]
 PROGRAM = f"import time\nfor n in range({len(LINES)}):\n    print('A:', n)\n    time.sleep(0.05)\n"
 """The program of all clients: it prints `LINES`, which takes some simulated time."""
-MADE, REMOVED, TAGGED = "made", "removed", "tagged"
+MADE = "made"
+REMOVED = "removed"
+TAGGED = "tagged"
 """The files in which clients note what they did to which run, one line each."""
 
 
@@ -112,7 +114,8 @@ def _check_row(row: Mapping[str, Any], tag: str) -> None:
 def check_home(folder: Path) -> None:
     """Check what clients have left in a home, with what they have noted in the folders of a folder."""
     rows = listed()
-    ids, tags = {row["id"] for row in rows}, dict(_noted(folder, TAGGED))
+    ids = {row["id"] for row in rows}
+    tags = dict(_noted(folder, TAGGED))
     removed = {run_id for (run_id,) in _noted(folder, REMOVED)}
     there = {path.name for path in folder_of("").iterdir()}
     if ids != there:

@@ -149,7 +149,9 @@ class TachoMotor:
 
     def write_position(self, value: int) -> None:
         """Set the position of a motor that stands."""
-        self.position, self.near, self.relative_to = value, 0.0, None
+        self.position = value
+        self.near = 0.0
+        self.relative_to = None
 
     def reset(self) -> None:
         """Do the command of that name."""
@@ -157,7 +159,8 @@ class TachoMotor:
         self._command()
         self.settings = _defaults(self.hold_p)
         self._stand("coast")
-        self.position, self.near = 0.0, near
+        self.position = 0.0
+        self.near = near
 
     def stop(self) -> None:
         """Do the command of that name."""
@@ -216,16 +219,19 @@ class TachoMotor:
         """Let a move end that was given the time for it, at the position that is read if the rules leave it open."""
         assert self.latched is not None
         action, target, near = self.latched
-        base, has_arrived = self.relative_to, target == target
+        base = self.relative_to
+        has_arrived = target == target
         self._command()
         self.relative_to = base
         self.may_ramp = self.may_ramp and not has_arrived
         roll = self._roll(action)
         self._stand(action)
         if has_arrived:
-            self.position, self.near = target, near + roll
+            self.position = target
+            self.near = near + roll
         else:
-            self.position, self.near = position, 0.0
+            self.position = position
+            self.near = 0.0
 
     def _roll(self, action: str) -> float:
         """Return how far from where it stops a motor comes to rest at most."""

@@ -21,7 +21,8 @@ from tests.proof.kind import FaultError, Kind, TooLongError
 from tests.proof.kinds import KINDS
 from tests.running import PATIENCE_S
 
-CASES, FEWER = 30, {"clients": 3}
+CASES = 30
+FEWER = {"clients": 3}
 """Of each kind, and of those whose cases take seconds; `python -m tests.proof` runs many more."""
 
 

@@ -30,7 +30,8 @@ class Target:
     """A server under attack."""
 
     def __init__(self, client: ClientSession, port: int) -> None:
-        self.client, self.port = client, port
+        self.client = client
+        self.port = port
         self.origin = f"http://127.0.0.1:{port}"
 
     async def answer(self, request: bytes) -> bytes:
@@ -208,7 +209,8 @@ async def _uploads(target: Target) -> None:
     url = f"{target.origin}/{TOKEN}/ws"
     async with target.client.ws_connect(url, headers={"Origin": target.origin}) as socket:
         session = json.loads((await socket.receive(PATIENCE_S)).data)[1]
-        path, before = f"/{TOKEN}/sessions/{session}/file", _resident_mb()
+        path = f"/{TOKEN}/sessions/{session}/file"
+        before = _resident_mb()
         writers = []
         for number in range(_CUT):
             _, writer = await asyncio.open_connection("127.0.0.1", target.port)
@@ -236,7 +238,8 @@ async def _uploads(target: Target) -> None:
         raise FaultError(f"uploads that were cut off have left {left}")
 
 
-_CUT, _CUT_MB = 20, 8
+_CUT = 20
+_CUT_MB = 8
 """Uploads at the same time, and what of each has come."""
 
 
@@ -247,7 +250,8 @@ def _resident_mb() -> float:
 
 async def _unasked(target: Target) -> None:
     """An app that offers files and sends pieces of them that nobody has asked for."""
-    url, before = f"{target.origin}/{TOKEN}/ws", _resident_mb()
+    url = f"{target.origin}/{TOKEN}/ws"
+    before = _resident_mb()
     async with target.client.ws_connect(url, headers={"Origin": target.origin}) as socket:
         for word in ("offer", "flood"):
             await socket.send_json(["stdin", word])

@@ -54,11 +54,9 @@ presses = st.builds(
 
 def further_motors(port: str) -> st.SearchStrategy[MotorSpec]:
     """Motors on a port with both end stops, one or none."""
-    kinds, low, high = (
-        st.sampled_from(EV3_MOTORS),
-        st.none() | mm(-1e5, -5),
-        st.none() | mm(0, 1e5),
-    )
+    kinds = st.sampled_from(EV3_MOTORS)
+    low = st.none() | mm(-1e5, -5)
+    high = st.none() | mm(0, 1e5)
     return st.builds(MotorSpec, st.just(port), kinds, low, high)
 
 

@@ -20,7 +20,9 @@ SHIPPED = {name: mat for name, mat in catalogue().items() if mat.shipped}
 @pytest.mark.parametrize("name", SHIPPED)
 def test_the_robot_starts_where_solid_walls_let_it_turn(name: str) -> None:
     spec = build_run_spec(Settings({"background": name, "profile": "ev3"}))
-    reach, start, mat = build_outline(spec.robot).reach_mm, spec.world.start, SHIPPED[name].start
+    reach = build_outline(spec.robot).reach_mm
+    start = spec.world.start
+    mat = SHIPPED[name].start
     assert reach <= start.x_mm <= FIELD_WIDTH_MM - reach
     assert reach <= start.y_mm <= FIELD_HEIGHT_MM - reach
     assert start.heading_deg == mat.heading_deg

@@ -75,10 +75,8 @@ def test_a_key_of_the_profile_leaves_the_rest_of_the_chosen_profile() -> None:
 
 def test_sensors_stay_where_the_mat_puts_them() -> None:
     mat = "Radial_grey"
-    usual, changed = (
-        spec_with({}, background=mat).robot,
-        spec_with({"robot.weight": 3}, background=mat).robot,
-    )
+    usual = spec_with({}, background=mat).robot
+    changed = spec_with({"robot.weight": 3}, background=mat).robot
     assert [sensor.x_mm for sensor in changed.color_sensors] == [
         sensor.x_mm for sensor in usual.color_sensors
     ]

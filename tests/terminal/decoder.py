@@ -127,14 +127,17 @@ class PixelTerminal:
                 }
             # Images at placeholders are not placed on the screen, so `d=A` does not concern them.
             return
-        self._keys, self._data = self._keys or values, self._data + data
+        self._keys = self._keys or values
+        self._data = self._data + data
         assert len(data) <= 4096
         if values.get("m") == "1":
             return
-        first, raw = self._keys, zlib.decompress(b64decode(self._data))
+        first = self._keys
+        raw = zlib.decompress(b64decode(self._data))
         pixels = np.frombuffer(raw, np.uint8).reshape(int(first["v"]), int(first["s"]), 3)
         self.images[int(first["i"])] = pixels, int(first["c"]), int(first["r"])
-        self._keys, self._data = {}, ""
+        self._keys = {}
+        self._data = ""
 
     def _sixel(self, data: str) -> None:
         size, _, data = data.partition("#")
@@ -154,9 +157,11 @@ class PixelTerminal:
             elif number:
                 color = colors[int(number)]
             elif move:
-                at, top = 0, top + 6 * (move == "-")
+                at = 0
+                top = top + 6 * (move == "-")
             else:
-                bits, many = ord(repeated or single) - 63, int(count or 1)
+                bits = ord(repeated or single) - 63
+                many = int(count or 1)
                 for row in range(6):
                     if bits & 1 << row:
                         canvas[top + row, at : at + many] = color

@@ -40,7 +40,8 @@ async def test_only_what_differs_is_sent() -> None:
     async with on_wire(app) as pilot:
         app.show("left 1 right")
         await until_quiet(pilot)
-        wire, screen = wire_of(pilot), pyte.Screen(120, 40)
+        wire = wire_of(pilot)
+        screen = pyte.Screen(120, 40)
         stream = pyte.Stream(screen)
         stream.feed("".join(wire.sent))
         assert screen.display[0].startswith("left 1 right")

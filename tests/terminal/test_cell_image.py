@@ -11,7 +11,10 @@ import pytest
 
 from tuisim.terminal.cell_image import CELL_PX, Cell, CellGrid, Look, draw_cells, draw_cells_svg
 
-RED, BLUE, WHITE, BLACK = (255, 0, 0), (0, 0, 255), (255, 255, 255), (0, 0, 0)
+RED = (255, 0, 0)
+BLUE = (0, 0, 255)
+WHITE = (255, 255, 255)
+BLACK = (0, 0, 0)
 LOOK = Look(WHITE, BLACK)
 SVG = "{http://www.w3.org/2000/svg}"
 

@@ -56,7 +56,8 @@ async def test_a_dialog_hides_a_part_of_the_picture_and_gives_it_back(protocol: 
         await pilot.press("b")
         await until_quiet(pilot)
         frame = pilot.app.screen.query_one(".dialog").region
-        seen, drawn = part_of(seen_on(pilot), world), drawn_by(world, protocol)
+        seen = part_of(seen_on(pilot), world)
+        drawn = drawn_by(world, protocol)
         assert frame.overlaps(world.content_region)
         assert not np.array_equal(seen, drawn)
         assert np.array_equal(_around(world, frame, seen), _around(world, frame, drawn))

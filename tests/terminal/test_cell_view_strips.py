@@ -32,7 +32,8 @@ def test_a_cell_strip_works_where_segments_are_asked_for() -> None:
 
 
 def test_the_drawn_rows_of_a_widget_go_with_it() -> None:
-    drawn, black = StylesCache(), Color(0, 0, 0)
+    drawn = StylesCache()
+    black = Color(0, 0, 0)
     assert drawn.get_inner_outer(black, Color(9, 9, 9)) == drawn.get_inner_outer(
         black, Color(9, 9, 9)
     )

@@ -14,7 +14,8 @@ from tuisim.terminal.glyphs import GLYPHS, build_glyph_set, build_half_block
 from tuisim.terminal.picture_options import CellSet
 from tuisim.terminal.pixels import Pixels
 
-INK, PAPER = (255, 0, 0), (255, 255, 255)
+INK = (255, 0, 0)
+PAPER = (255, 255, 255)
 FINE = (CellSet.QUADRANT, CellSet.SEXTANT, CellSet.OCTANT, CellSet.BRAILLE)
 
 
@@ -47,7 +48,8 @@ def test_two_colours_are_shown_exactly_whatever_their_pattern(cells: CellSet) ->
         cell = int(fit_cells(picture, glyphs, list_cells(1, 1))[0])
 
         covered = glyphs.covered[glyphs.numbers.tolist().index(cell >> 48)] > 0.5
-        fore, back = cell >> 24 & 0xFFFFFF, cell & 0xFFFFFF
+        fore = cell >> 24 & 0xFFFFFF
+        back = cell & 0xFFFFFF
         shown = [fore if point else back for point in covered]
         assert shown == [int.from_bytes(bytes(point)) for point in picture.reshape(-1, 3)], pattern
 

@@ -35,7 +35,8 @@ def area(rgb: tuple[int, int, int], mode: ColorMode) -> Pixels:
 
 @for_each(mode=MODES, band=[220, 211, 128, 0])
 def test_bands_of_grey_stand_out_on_white(mode: ColorMode, band: int) -> None:
-    white, grey = area((255, 255, 255), mode), area((band,) * 3, mode)
+    white = area((255, 255, 255), mode)
+    grey = area((band,) * 3, mode)
 
     assert len(np.unique(white)) == 1
     assert grey.mean() < white.mean() - 5

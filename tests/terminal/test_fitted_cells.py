@@ -33,7 +33,8 @@ def test_flat_cells_are_those_without_two_colors(cells: CellSet) -> None:
 def test_a_robots_corner_makes_no_notch_of_the_ground_in_a_band(
     band: tuple[int, int, int], ground_first: bool
 ) -> None:
-    ground, robot = (255, 255, 255), (0, 95, 215)
+    ground = (255, 255, 255)
+    robot = (0, 95, 215)
     above = [ground, band] if ground_first else [band, ground]
     picture = np.array([above, [robot, robot]], np.uint8)
     (cell,) = fit_cells(picture, build_glyph_set(CellSet.QUADRANT), list_cells(1, 1)).tolist()

@@ -196,7 +196,8 @@ def random_row(rng: random.Random) -> list[Strip]:
 @pytest.mark.parametrize("seed", range(5))
 def test_the_terminal_shows_what_textual_itself_would_have_sent(seed: int) -> None:
     rng = random.Random(seed)
-    mine, own = pyte.Screen(30, 4), pyte.Screen(30, 4)
+    mine = pyte.Screen(30, 4)
+    own = pyte.Screen(30, 4)
     my_stream, own_stream = pyte.Stream(mine), pyte.Stream(own)
     own_console = Console(
         file=StringIO(), force_terminal=True, color_system="truecolor", _environ={}

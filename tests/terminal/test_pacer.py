@@ -35,7 +35,8 @@ class Line:
     ) -> None:
         self.clock = Clock()
         self.pacer = Pacer(20, clock=self.clock, most_queued_s=most_queued_s)
-        self.bytes_s, self.round_trip_s = bytes_s, round_trip_s
+        self.bytes_s = bytes_s
+        self.round_trip_s = round_trip_s
         self.answers = True
         self._free_s = 0.0
         self._due_s: deque[float] = deque()
@@ -183,7 +184,8 @@ def test_a_link_is_slow_until_the_first_answer_and_quick_again_after_a_rest() ->
 
 def test_fine_frames_are_tried_less_and_less_often_on_a_link_that_does_not_carry_them() -> None:
     line = Line(32_000, 0.150)
-    was_slow, tries = True, 0
+    was_slow = True
+    tries = 0
     for _ in range(600):
         slow = line.pacer.is_slow
         line.drive(0.1, size=FRAME_BYTES if slow else 5 * FRAME_BYTES)

@@ -14,7 +14,8 @@ from tuisim.terminal import kitty, sixel
 from tuisim.terminal.picture import Graphics, Rectangle, TilePicture, find_rectangles
 from tuisim.terminal.picture_options import Protocol
 
-ROWS, COLS = 11, 21
+ROWS = 11
+COLS = 21
 CELL_PX = 6, 13
 """Neither a multiple of a sixel nor of a tile."""
 

@@ -41,7 +41,8 @@ def _messages(*parts: str) -> list[Message]:
 def _read(*reads: tuple[float, str]) -> list[Message]:
     """Return what a driver gets that reads at these times, in seconds: it lets the parser look at the time after each
     read, and each tenth of a second."""
-    parser, now = AnswerParser(), 0.0
+    parser = AnswerParser()
+    now = 0.0
     found: list[Message] = []
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(queries, "monotonic", lambda: now)

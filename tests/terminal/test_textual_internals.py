@@ -34,7 +34,9 @@ from tuisim.terminal import textual_internals
 @pytest.fixture
 def told(monkeypatch: pytest.MonkeyPatch) -> dict[Widget, Size]:
     """The size that each widget was last told; before each layout, somebody asks for the size of every widget."""
-    lay_out, post, sizes = Screen._refresh_layout, Widget.post_message, {}
+    lay_out = Screen._refresh_layout
+    post = Widget.post_message
+    sizes = {}
 
     def asked_for(screen: Screen[object], *words: object, **more: object) -> None:
         screen._compositor.update_widgets(screen._dirty_widgets)

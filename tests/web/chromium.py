@@ -33,7 +33,8 @@ class Chromium:
     """A page in the browser."""
 
     def __init__(self, socket: ClientWebSocketResponse) -> None:
-        self._socket, self._last = socket, 0
+        self._socket = socket
+        self._last = 0
         self.complaints: list[str] = []
         """Errors of scripts, and what the content policy has refused."""
 

@@ -41,7 +41,8 @@ async def test_only_what_was_asked_for_is_taken(monkeypatch: pytest.MonkeyPatch)
 
 
 async def test_an_app_offers_so_many_files_and_takes_none_of_others() -> None:
-    files, one = Downloads(), SimpleNamespace(app_service_id="a")
+    files = Downloads()
+    one = SimpleNamespace(app_service_id="a")
     other: Any = SimpleNamespace(app_service_id="b")
     await _offer(files, other, "theirs")
     for number in range(MAX_OFFERED + 1):

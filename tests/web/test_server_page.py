@@ -80,7 +80,8 @@ async def test_each_pixel_of_a_picture_is_one_of_the_screen(
     scale: float, serve: Serve, tmp_path: Path
 ) -> None:
     async with opened(serve, tmp_path, (1000, 700), scale) as page:
-        drawn, shown = await until_seen(page, is_whole), await page.shown()
+        drawn = await until_seen(page, is_whole)
+        shown = await page.shown()
         drawn = drawn[: len(shown), : shown.shape[1]]
         is_drawn = drawn[..., 3] == 255
         assert np.array_equal(drawn[is_drawn], shown[: len(drawn), : drawn.shape[1]][is_drawn])

@@ -29,7 +29,8 @@ pytestmark = pytest.mark.slow
 
 DRIVES = "# %%sim_magic_preloaded -b Grey_bands\ntank_drive.on_for_seconds(20, 20, 2)\nprint('Light: 5')\n"
 RUNS_ON = "# %%sim_magic_preloaded -b Loop\nprint('Light: 5')\nwhile True:\n    pass\n"
-QUERY, ANSWER = b"\x1b[6n", "\x1b[20;40R"
+QUERY = b"\x1b[6n"
+ANSWER = "\x1b[20;40R"
 
 
 class Tab:
@@ -103,7 +104,8 @@ class Serving:
     """A server in a process of its own."""
 
     def __init__(self, process: Process, address: str) -> None:
-        self.process, self.address = process, address
+        self.process = process
+        self.address = address
 
     @asynccontextmanager
     async def tab(
@@ -221,7 +223,8 @@ async def test_a_run_goes_on_while_no_tab_is_open(serve: Serve) -> None:
     server = await serve(RUNS_ON, "-R")
     async with server.tab() as tab:
         await tab.until(lambda: "running" in tab.text and "Light: 5" in tab.text)
-        before, processes = clock_s(tab), descendants(server.process.pid)
+        before = clock_s(tab)
+        processes = descendants(server.process.pid)
     for columns, rows in ((90, 28), (120, 40)):
         async with server.tab(columns, rows, tab.session) as again:
             await again.until(partial(goes_on, again, before))

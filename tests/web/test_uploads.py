@@ -53,7 +53,8 @@ async def test_what_has_no_room_is_refused_without_a_path(
 ) -> None:
     monkeypatch.setattr(uploads, "MAX_FILE_BYTES", 4)
     monkeypatch.setattr(uploads, "MAX_BYTES", 4)
-    taker, folder = Uploads(), tmp_path / "a" if size == 1 else tmp_path
+    taker = Uploads()
+    folder = tmp_path / "a" if size == 1 else tmp_path
     await taker.take(tmp_path, "first", _pieces(b"12"))
     with pytest.raises(ConfigError) as error:
         await taker.take(folder, name, _pieces(b"x" * size))

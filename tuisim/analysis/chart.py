@@ -86,7 +86,8 @@ def _build_path_chart(
     limits = [choose_limits(float(values.min()), float(values.max())) for values in (xs, ys)]
     cells = max(columns // DOTS_X, 1), max(rows // DOTS_Y, 1)
     xs, ys = drop_hidden_points(xs, ys, limits, *cells)
-    title, x_label = printable(model.log.title), add_unit(names[0])
+    title = printable(model.log.title)
+    x_label = add_unit(names[0])
     return ChartData(
         title, (Line(names[1], xs, ys, 0),), limits[0], x_label, marks=marks, path=True
     )
@@ -105,9 +106,11 @@ def draw_event_marks(model: AnalysisModel, limits: Limits, columns: int) -> str:
     line = [" "] * columns
     for event in model.events.list_events(model.log):
         if isinstance(event, CommandRow):
-            place, mark = model.find_place(event.row, event.time_s), "╷"
+            place = model.find_place(event.row, event.time_s)
+            mark = "╷"
         else:
-            trace, crossing = model.traces.find_trace(event.variable), event.crossing
+            trace = model.traces.find_trace(event.variable)
+            crossing = event.crossing
             place = crossing.time_s + float(
                 trace.places[crossing.sample] - trace.series.time_s[crossing.sample]
             )

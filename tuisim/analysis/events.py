@@ -67,7 +67,8 @@ def find_crossings(
     )
     decided = np.flatnonzero(side)
     turns = side[decided[1:]] != side[decided[:-1]]
-    before, changes = decided[:-1][turns], decided[1:][turns]
+    before = decided[:-1][turns]
+    changes = decided[1:][turns]
     results = []
     for start, end in zip(before.tolist(), changes.tolist(), strict=True):
         rising = bool(side[end] > 0)
@@ -103,7 +104,8 @@ def _compute_crossing_s(
     time_s: FloatArray, values: FloatArray, first: int, last: int, threshold: float
 ) -> float:
     # Halved, so that the difference of huge values is finite.
-    start, stop = float(values[first]) / 2.0, float(values[last]) / 2.0
+    start = float(values[first]) / 2.0
+    stop = float(values[last]) / 2.0
     part = (threshold / 2.0 - start) / (stop - start) if stop != start else 1.0
     return float(time_s[first]) + min(max(part, 0.0), 1.0) * float(time_s[last] - time_s[first])
 
@@ -304,7 +306,9 @@ class Events:
         self, log: Log, thresholds: tuple[EventChoice, ...], events: list[Event | CommandRow]
     ) -> None:
         """Set the events."""
-        self.thresholds, self._of, self._events = thresholds, (log, thresholds), events
+        self.thresholds = thresholds
+        self._of = (log, thresholds)
+        self._events = events
 
     def list_events(self, log: Log) -> list[Event | CommandRow]:
         """Return the events of a log, in the order of its rows."""

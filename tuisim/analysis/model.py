@@ -87,7 +87,8 @@ class AnalysisModel:
 
     def trace_of_row(self, row: int) -> LogTrace:
         """Return the trace that a row belongs to."""
-        layout, table = self.log.layout, self.log.table
+        layout = self.log.layout
+        table = self.log.table
         if not layout.variable:
             name = self.selected.partition(" #")[0] if layout.run else self.selected
         else:
@@ -182,7 +183,9 @@ class AnalysisModel:
 
     def restore(self, other: AnalysisModel) -> None:
         """Take over the state of another model, made when the same log was shorter."""
-        self.row, self.mark_s, self.limits = other.row, other.mark_s, other.limits
+        self.row = other.row
+        self.mark_s = other.mark_s
+        self.limits = other.limits
         if other.row == other.log.rows - 1:
             # The cursor stays at the end of a growing log.
             self.row = self.log.rows - 1
@@ -221,9 +224,11 @@ class AnalysisModel:
             self._align_again(self.alignment)
 
     def _align_again(self, way: str) -> None:
-        limits, mark_s = self.limits, self.mark_s
+        limits = self.limits
+        mark_s = self.mark_s
         self.align(way)
-        self.limits, self.mark_s = limits, mark_s
+        self.limits = limits
+        self.mark_s = mark_s
 
     def go_to_row(self, row: int) -> None:
         """Move the cursor to the nearest existing row."""
@@ -250,7 +255,9 @@ class AnalysisModel:
         places_of_all = align_series(self.log, [trace.series for trace in self.traces], way)
         for trace, places in zip(self.traces, places_of_all, strict=True):
             trace.align(places)
-        self.alignment, self.limits, self.mark_s = way, None, None
+        self.alignment = way
+        self.limits = None
+        self.mark_s = None
 
     # The part of the time that the chart shows
 

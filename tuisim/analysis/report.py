@@ -41,7 +41,8 @@ SUFFIXES = (".html", ".htm")
 MAX_BANDS = 300
 """Maximum number of rows of the table of bands."""
 _WIDTH_PX = 960
-_WAY, _HALO = (230, 90, 0), (255, 255, 255)
+_WAY = (230, 90, 0)
+_HALO = (255, 255, 255)
 
 
 def build_default_name(opened: OpenedLog) -> str:

@@ -77,7 +77,8 @@ class LogTrace(Trace):
 
     def align(self, places: FloatArray | None) -> None:
         """Set the x positions of the samples; None stands for their times."""
-        self._places, self._pyramid = places, None
+        self._places = places
+        self._pyramid = None
 
     def prepare(self, x_limits: Limits, columns: int, hold: bool) -> None:
         """Select the points to draw at this chart width."""
@@ -179,7 +180,8 @@ class LogTraces(Traces):
         return widen_times(low, high)
 
 
-TIME, DISTANCE = "time", "distance"
+TIME = "time"
+DISTANCE = "distance"
 FORM = f"time, distance, or an event: {THRESHOLD_FORM}"
 
 

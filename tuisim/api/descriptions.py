@@ -83,7 +83,8 @@ class RobotDescription(Description):
     def settings(self) -> Mapping[str, Any]:
         """The setting `robot`."""
         values = {**self._values}
-        base, parts = values.pop("base", DEFAULT_ROBOT), values.pop("parts", {})
+        base = values.pop("base", DEFAULT_ROBOT)
+        parts = values.pop("parts", {})
         if "hub" in values and base == DEFAULT_ROBOT:
             raise ConfigError(
                 "needs a robot with its ports", "such as base='Prime_Robot'", key="hub"

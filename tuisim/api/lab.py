@@ -99,11 +99,13 @@ class Lab:
             name: read for name in self.columns if (read := build_reader(name, spec)) is not None
         }
         self._field = open_field(field_files(spec), has_floor=spec.world.is_open)
-        self._spec, self._hz = spec, spec.profile.tick_hz
+        self._spec = spec
+        self._hz = spec.profile.tick_hz
         self.reset()
 
     def __repr__(self) -> str:
-        robot, mat = self._spec.robot.name, self._spec.world.background
+        robot = self._spec.robot.name
+        mat = self._spec.world.background
         return f"<lab with {robot} on {mat} after {self.time_s:.2f} s>"
 
     @property
@@ -130,7 +132,8 @@ class Lab:
         """Begin again, with another seed if one is given; return the columns at the start."""
         if seed is not None:
             self._spec = replace(self._spec, seed=plain(seed))
-        has_marks, recording = self._spec.world.pen_marks, MemoryRecording()
+        has_marks = self._spec.world.pen_marks
+        recording = MemoryRecording()
         is_recorded = has_marks or self._goals
         self._sim = build_simulation(self._spec, recording if is_recorded else NoRecording())
         self._marks = PenMarks(self._field, self._spec) if has_marks else None
@@ -187,7 +190,8 @@ class Lab:
             return {"x_mm": drive.x_mm, "y_mm": drive.y_mm, "heading_deg": drive.heading_deg}
         if not self.columns:
             return {}
-        instant, field = self._sim.build_instant(), self._field
+        instant = self._sim.build_instant()
+        field = self._field
         if self._marks is not None:
             self._marks.add_records(self._sim.read_records(self._marks.records))
             field = self._marks.field
@@ -200,7 +204,8 @@ class Lab:
 
 def _find_run(sim: Simulation) -> Callable[[int, int, float], None]:
     """Return what lets a wheel's motor run: it takes the time in ns, the motor's number and its speed."""
-    robot, law = sim.spec.robot, sim.spec.profile.motor_law
+    robot = sim.spec.robot
+    law = sim.spec.profile.motor_law
     signs = -1.0 if robot.left_reversed else 1.0, -1.0 if robot.right_reversed else 1.0
     most = [find_top_speed_dps(motor.kind, sim.spec.profile) for motor in robot.motors]
 

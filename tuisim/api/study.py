@@ -50,7 +50,8 @@ def run_experiment(
     """Run an experiment; arguments as of `tuisim.experiment`."""
     workers = build_workers(jobs, scheduler)
     study = Study(program, constants or {}, **how)
-    metrics, expressions = metrics or {}, expressions or {}
+    metrics = metrics or {}
+    expressions = expressions or {}
     measures = Measures(metrics, columns)
     plan = study.build_plan(seeds, keep, returns_files=measures.needs_files)
     plan.check_expressions(expressions)
@@ -126,7 +127,8 @@ class Study:
         if not named:
             raise ConfigError("no program is named", key="program")
         self._programs = [read_source(each) for each in named]
-        self._constants, self._arguments = constants, arguments
+        self._constants = constants
+        self._arguments = arguments
         self._parameters = {
             name: _read_choice(name, values) for name, values in (parameters or {}).items()
         }

@@ -231,7 +231,9 @@ def find_panel_keys(focused: DOMNode | None) -> tuple[KeyWord, ...]:
 
 
 BETWEEN_GROUPS = " │"
-_FEWEST, _FEWEST_AT, _COLUMNS_FOR_ONE = 9, 80, 20
+_FEWEST = 9
+_FEWEST_AT = 80
+_COLUMNS_FOR_ONE = 20
 """A footer has so many entries at so many columns, and one more for every further ones: more are not read."""
 
 

@@ -97,7 +97,8 @@ _REST_GAP_S = 0.25
 """Seconds between two polls of the run while nothing happens."""
 _WARM_UP_AFTER_S = 0.3
 """Seconds until the process is started from which runs are forked: the first paint, or frame, needs the processor."""
-_STARTING_S, _START_GAP_S = 0.25, 0.004
+_STARTING_S = 0.25
+_START_GAP_S = 0.004
 """Until its first tick, but not for longer, a run that starts is polled so often: that tick is drawn at once."""
 _AWAKE_S = 1.0
 """Seconds to keep polling at frame rate after something has happened."""
@@ -186,7 +187,8 @@ class LabApp(PanelMessages):
         self._drawn: tuple[Any, ...] = ((None,),)
         self._footed: tuple[Any, ...] = ()
         """What of the state the footer tells."""
-        runs, panels = self.run_controller, self.panel_area
+        runs = self.run_controller
+        panels = self.panel_area
         self.goals = GoalsController(self, runs, panels, settings.goals)
         self.loader = Loader(self, runs, panels, self.goals, settings.world_file)
         self.document = Document(self, runs, panels, self.loader)
@@ -396,7 +398,8 @@ class LabApp(PanelMessages):
         """Return whether the run is starting: a frame drawn now would delay the one that shows its first tick."""
         if not self._starting_until_s:
             return False
-        runs, recording = self.run_controller, self.run_controller.timeline.recording
+        runs = self.run_controller
+        recording = self.run_controller.timeline.recording
         ticked = recording is not None and recording.telemetry.count > 1
         goes_on = runs.state in (RunPhase.STARTING, RunPhase.RUNNING)
         if goes_on and not ticked and time.monotonic() < self._starting_until_s:
@@ -530,7 +533,8 @@ class LabApp(PanelMessages):
         return self._build_situation(self.run_controller.state)
 
     def _build_situation(self, phase: RunPhase) -> Situation:
-        runs, code = self.run_controller, self.panel_area.code
+        runs = self.run_controller
+        code = self.panel_area.code
         timeline = runs.timeline
         facts = runs.program is not None, timeline.recording is not None, timeline.at is not None
         is_away = self._looks_back or self.debugger.replay.busy

@@ -55,7 +55,9 @@ class DebugController:
         panel_area: PanelArea,
         lines: Callable[[], LineMap],
     ) -> None:
-        self._app, self._run_controller, self._panel_area = app, run_controller, panel_area
+        self._app = app
+        self._run_controller = run_controller
+        self._panel_area = panel_area
         self._lines = lines
         self.breaks: tuple[Breakpoint, ...] = ()
         self.watches: tuple[str, ...] = ()
@@ -67,7 +69,8 @@ class DebugController:
         """Where the live run is paused."""
         self.position: Position | None = None
         """The past instant that is viewed, exact to the line."""
-        self._frame, self._thread = 0, ""
+        self._frame = 0
+        self._thread = ""
         self.replay = ReplayDebugger(self._handle_arrival, self._report_missing, self._handle_now)
         self._wanted: Position | None = None
         """The instant that the replay debugger was last sent to."""
@@ -99,7 +102,8 @@ class DebugController:
         if key != self._program:
             self._program = key
             stored = load_kept(key) if key else StoredBreaks()
-            self.breaks, self.watches = stored.breaks, stored.watches
+            self.breaks = stored.breaks
+            self.watches = stored.watches
         self._text = program.text if program else ""
         self.mark()
 
@@ -119,7 +123,8 @@ class DebugController:
 
     def _send_breakpoints(self) -> None:
         """Send the breakpoints to the live run, each on its line of the text that runs."""
-        lines, texts = self._lines(), []
+        lines = self._lines()
+        texts = []
         for entry in self.breaks:
             shown_line = break_line_of(entry)
             runs = lines.find_run_line(shown_line)
@@ -200,7 +205,9 @@ class DebugController:
         self._app.notices.release()
         self._paused = self.position = self.view = self._run_controller.paused_line = None
         self._run_controller.chosen_line = None
-        self._frame, self._thread, self._wanted = 0, "", None
+        self._frame = 0
+        self._thread = ""
+        self._wanted = None
         self._panels_opened, self._breakpoints_unsent = False, bool(self.breaks)
         self._forget_steps()
         if (
@@ -238,8 +245,10 @@ class DebugController:
 
     def _handle_pause(self, paused: Paused) -> None:
         paused = self._set_tick_time(paused)
-        self._paused, self.position = paused, None
-        self._frame, self._thread = 0, ""
+        self._paused = paused
+        self.position = None
+        self._frame = 0
+        self._thread = ""
         self._is_stepping = False
         # In the past they wait for an instant, and this pause is none of theirs.
         if not self.is_away:
@@ -306,7 +315,8 @@ class DebugController:
                 if self.view.inspected.thread in names
                 else -1
             )
-            self._thread, self._frame = names[(index + 1) % len(names)], 0
+            self._thread = names[(index + 1) % len(names)]
+            self._frame = 0
             self._inspect_again()
 
     def _inspect_again(self) -> None:
@@ -337,7 +347,8 @@ class DebugController:
         The debug panel asks for that. Beside the code it is done for runs of this session, not for stored ones, whose
         programs may be somebody else's.
         """
-        run, recording = self._run_controller.run, self._run_controller.timeline.recording
+        run = self._run_controller.run
+        recording = self._run_controller.timeline.recording
         is_own = run is not None and recording is not None and run.run_id == recording.run_id
         return self._panel_area.is_shown("debug") or (is_own and self._panel_area.is_shown("code"))
 
@@ -360,7 +371,8 @@ class DebugController:
             self.show()
 
     def _return_to_now(self) -> None:
-        self.view, self._wanted = None, None
+        self.view = None
+        self._wanted = None
         self.show()
         self._inspect_again()
 
@@ -382,7 +394,8 @@ class DebugController:
         self.show()
 
     def _handle_arrival(self, paused: Paused, inspected: Inspected) -> None:
-        timeline, here = self._run_controller.timeline, Position(paused.tick, paused.ordinal)
+        timeline = self._run_controller.timeline
+        here = Position(paused.tick, paused.ordinal)
         if self._wanted is None:
             if not self._is_past(here):
                 self._handle_now()
@@ -523,7 +536,8 @@ class DebugController:
                 self.go_on(command)
 
     def _go_back(self, count: int) -> None:
-        here, recording = self._find_position(), self._run_controller.timeline.recording
+        here = self._find_position()
+        recording = self._run_controller.timeline.recording
         if here is None or recording is None:
             self._app.say("No run yet: {run} runs the program")
             return

@@ -78,7 +78,8 @@ class Feed:
         """Chart the run anew if a part was plugged in, which brings columns; return whether that is so."""
         if self._parts == len(self.recording.plugged):
             return False
-        self._parts, self._charted = len(self.recording.plugged), 0
+        self._parts = len(self.recording.plugged)
+        self._charted = 0
         return True
 
     def restart_chart(self) -> None:
@@ -120,7 +121,8 @@ class Feed:
         if self._lifted and not (records["flags"] & FLAG_PEN_DOWN).any():
             return [], []
         kept_at = _thin_positions(0, len(records), TRACE_POINTS_A_FEED)
-        records, jumps = records[kept_at], jumps[kept_at]
+        records = records[kept_at]
+        jumps = jumps[kept_at]
         xs, ys, lifted = place_drawn_mm(self.recording.spec.robot, records)
         # One gap is enough for a stretch with the pen up.
         is_kept = ~(lifted & np.concatenate(([self._lifted], lifted[:-1])))
@@ -182,7 +184,8 @@ class PanelFeed:
     """
 
     def __init__(self, panel_area: PanelArea, runs: RunController) -> None:
-        self._panel_area, self._runs = panel_area, runs
+        self._panel_area = panel_area
+        self._runs = runs
         self._feed: Feed | None = None
         self._uncharted: list[OutputRow] = []
         """What has been written since the chart was last on the screen."""

@@ -229,7 +229,8 @@ class NumberInput(Input):
             self.app.say("This field takes a number: escape leaves it, and letters are keys again")
 
 
-STEP, LONG_STEP = 1, 10
+STEP = 1
+LONG_STEP = 10
 
 
 class Slider(_Control):
@@ -359,7 +360,8 @@ class Slider(_Control):
         self._choose(self.value - STEP)
 
     def render(self) -> Text:
-        knob, width = self._find_knob_column(), self.size.width
+        knob = self._find_knob_column()
+        width = self.size.width
         filled, empty, knob_style = (
             self.get_component_rich_style(f"slider--{part}", partial=True)
             for part in ("filled", "empty", "knob")

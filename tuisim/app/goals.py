@@ -50,7 +50,9 @@ class GoalsController:
         panel_area: PanelArea,
         file: GoalsFile | None,
     ) -> None:
-        self._app, self._run_controller, self._panel_area = app, run_controller, panel_area
+        self._app = app
+        self._run_controller = run_controller
+        self._panel_area = panel_area
         self.file = file
         """The goals that runs are judged by; None if there are none."""
         self._recording: Recording | None = None
@@ -91,7 +93,8 @@ class GoalsController:
 
     def is_of_task(self, recording: Recording) -> bool:
         """Return whether a run was on the mat and from the start of the next one."""
-        was, now = recording.spec.world, self._run_controller.next_run.spec.world
+        was = recording.spec.world
+        now = self._run_controller.next_run.spec.world
         return (was.background, was.start) == (now.background, now.start)
 
     def change(self, file: GoalsFile | None) -> None:
@@ -100,7 +103,9 @@ class GoalsController:
         self._forget()
 
     def _forget(self) -> None:
-        self._judgements, self._judged, self._next_s = (), None, 0.0
+        self._judgements = ()
+        self._judged = None
+        self._next_s = 0.0
         self.show()
 
     def show(self) -> None:
@@ -138,13 +143,12 @@ class GoalsController:
         written = recording, self.file, recording.telemetry.count, len(recording.rows), ended
         if written == self._judged or (not ended and time.monotonic() < self._next_s):
             return
-        self._judged, self._is_judging = written, True
+        self._judged = written
+        self._is_judging = True
         mat = self._run_controller.find_mat(recording.spec)
         work = partial(_judge_run, self.file.goals, recording.folder, not ended, mat)
-        then, failed = (
-            partial(self._take_judgements, written),
-            partial(self._report_failure, written),
-        )
+        then = partial(self._take_judgements, written)
+        failed = partial(self._report_failure, written)
         background.run(self._panel_area, work, then, failed, group="goals")
 
     def _take_judgements(

@@ -58,8 +58,12 @@ class LessonController:
         lesson: Lesson | None,
         folder: str | None,
     ) -> None:
-        self._app, self._run_controller, self._panel_area = app, run_controller, panel_area
-        self._goals, self._loader, self._debugger = goals, loader, debugger
+        self._app = app
+        self._run_controller = run_controller
+        self._panel_area = panel_area
+        self._goals = goals
+        self._loader = loader
+        self._debugger = debugger
         self.session = LessonSession(lesson) if lesson is not None else None
         self.folder = folder
         self._beside: LessonPanel | None = None
@@ -203,7 +207,8 @@ class LessonController:
 
     def show_hint(self) -> None:
         """Show the next hint of the step."""
-        session, step = self.session, self.step
+        session = self.session
+        step = self.step
         if session is None or step is None:
             return
         if session.hints < len(step.hints):
@@ -265,11 +270,13 @@ class LessonController:
 
     def _look(self) -> Sight:
         """Return what the student sees."""
-        runs, view = self._run_controller, self._debugger.view
+        runs = self._run_controller
+        view = self._debugger.view
         panels = {panel for panel in SEEABLE if self._panel_area.is_shown(panel)}
         if self._beside is not None:
             panels.add("analyser")
-        recording, tick = runs.timeline.recording, runs.timeline.at
+        recording = runs.timeline.recording
+        tick = runs.timeline.at
         judged, judgements = self._goals.judged
         at_break = view is not None and not view.past and view.paused.reason is PauseReason.BREAK
         return Sight(

@@ -58,7 +58,9 @@ class Loader:
         goals: GoalsController,
         world_file: Path | None,
     ) -> None:
-        self._app, self._run_controller, self._panel_area = app, run_controller, panel_area
+        self._app = app
+        self._run_controller = run_controller
+        self._panel_area = panel_area
         self.goals = goals
         self._watch = FileWatch()
         self.is_preparing = True
@@ -100,7 +102,8 @@ class Loader:
         """Prepare the mat in the background; the app shows it when that is done."""
         spec = self._run_controller.next_run.spec
         self.is_preparing = True
-        work, failed = partial(prepare_mat, spec), partial(self._restore_mat, spec)
+        work = partial(prepare_mat, spec)
+        failed = partial(self._restore_mat, spec)
         background.run(
             self._panel_area, work, self._handle_prepared, failed, group="mat", exclusive=True
         )
@@ -211,7 +214,8 @@ class Loader:
         """Open a program with what its magic line asks for; return what its source decides."""
         program, magic = _split_source(source)
         source = drop_wrong_mat(source, self._run_controller.next_run.settings["mats"])
-        plan, before = self._run_controller.next_run, self._run_controller.program
+        plan = self._run_controller.next_run
+        before = self._run_controller.program
         if before is not None and before.path != program.path:
             plan = plans.apply_choices(plan, {"arguments": (), "press": ()})
         plan, decided = plans.follow_program(plans.apply_choices(plan, source.options), source)
@@ -228,7 +232,8 @@ class Loader:
             self._app.say(decided.refusal)
 
     def _note_program(self, program: Program | None, magic: Mapping[str, Any]) -> None:
-        self._magic_settings, self._file_prelude = magic, program.prelude if program else ""
+        self._magic_settings = magic
+        self._file_prelude = program.prelude if program else ""
 
     def _open_world(self, path: str) -> None:
         before = self.world_file, self._world_settings, self._world_refers
@@ -330,7 +335,8 @@ class Loader:
     # Files that change on the disk
 
     def _follow(self) -> None:
-        run_controller, words = self._run_controller, self._run_controller.next_run.words
+        run_controller = self._run_controller
+        words = self._run_controller.next_run.words
         paths = (
             [Path(run_controller.program.path)]
             if run_controller.program and run_controller.program.path
@@ -503,7 +509,8 @@ class Loader:
             source: The same, if its text has changed.
             gone: The settings that it no longer has.
         """
-        plan, decided = plans.apply_choices(self._run_controller.next_run, differences), Decided()
+        plan = plans.apply_choices(self._run_controller.next_run, differences)
+        decided = Decided()
         if source is not None:
             plan, decided = plans.follow_program(plans.free_settings(plan, gone), source)
         if differences.keys() & {"background", *START}:

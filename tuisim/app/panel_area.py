@@ -156,7 +156,8 @@ class PanelArea(Container):
     def toggle(self, panel: str) -> None:
         """Show or hide a panel; where there is room for one only, show it instead of the other one."""
         show = self.is_single or not self.is_shown(panel) or bool(self.alone)
-        self.alone, self._roomy = "", None
+        self.alone = ""
+        self._roomy = None
         if self.is_single:
             self.front = panel if panel != self.front else "world"
             self.lay_out()
@@ -238,7 +239,8 @@ class PanelArea(Container):
         """
         unchanged = self.preset == preset and self._asked in ({}, self._given)
         self.preset = Preset.STANDARD if unchanged else preset
-        self._asked, self._chosen = dict(self._given) if self.preset == Preset.STANDARD else {}, {}
+        self._asked = dict(self._given) if self.preset == Preset.STANDARD else {}
+        self._chosen = {}
         self.alone, self._roomy, self.front = (
             "",
             None,
@@ -249,7 +251,8 @@ class PanelArea(Container):
 
     def show_next_preset(self) -> None:
         """Show the next preset; one that would show the same panels in the same place is left out."""
-        before, presets = self.arrangement.boxes, list(Preset)
+        before = self.arrangement.boxes
+        presets = list(Preset)
         index = presets.index(self.preset)
         for preset in presets[index + 1 :] + presets[: index + 1]:
             if preset == self.preset:
@@ -302,7 +305,8 @@ class PanelArea(Container):
     def maximize(self, panel: str) -> None:
         """Maximize one panel; an empty id restores the others."""
         if panel != self.alone or self._roomy:
-            self.alone, self._roomy = panel, None
+            self.alone = panel
+            self._roomy = None
             self.lay_out()
 
     def make_room(self, panel: str, columns: int, rows: int) -> None:
@@ -322,11 +326,13 @@ class PanelArea(Container):
             asked_for = chosen
             chosen = make_room(panel, chosen, (columns, rows), (width, height), self.preset)
             if chosen == [panel] and arrange_beside_world(panel, asked_for, width, height):
-                self.alone, self.is_beside = "", True
+                self.alone = ""
+                self.is_beside = True
                 return [panel, *asked_for], []
             if chosen == [panel] and keeps_lesson:
                 # Its lines need the whole width, but not all rows.
-                self.alone, self.is_stacked = "", True
+                self.alone = ""
+                self.is_stacked = True
                 return [panel, "lesson"], []
             self.alone = panel if chosen == [panel] else ""
             return chosen, []
@@ -453,7 +459,8 @@ class PanelArea(Container):
 
     def show(self, snapshot: Snapshot) -> None:
         """Show a moment in every panel on the screen; the readings follow a few times per second, all together."""
-        before, self._snapshot = self._snapshot, snapshot
+        before = self._snapshot
+        self._snapshot = snapshot
         for panel, widget in self.panels.items():
             if widget.display and widget.is_attached and panel not in _READINGS:
                 cast(Panel, widget).show(snapshot)

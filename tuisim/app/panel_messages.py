@@ -98,7 +98,8 @@ class PanelMessages(LabHost):
 
     def _end_former_text(self) -> None:
         """End a run of the text before the edit: the user wants the new one to run."""
-        controller, code = self.context.runs, self.context.panels.code
+        controller = self.context.runs
+        code = self.context.panels.code
         if (
             code
             and code.differs

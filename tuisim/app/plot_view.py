@@ -90,7 +90,8 @@ class PlotView(LinesView):
         graphics = self.graphics
         lines, pictures = paint(graphics is not None)
         if graphics is not None:
-            self._spare_lines, self._spare = lambda: paint(False)[0], None
+            self._spare_lines = lambda: paint(False)[0]
+            self._spare = None
             self._show(lines, pictures, graphics)
         else:
             self.set_lines(lines)
@@ -112,7 +113,8 @@ class PlotView(LinesView):
             for row in range(plot.size[0])
         }
         if self._tiles is None or self._tiles.graphics != graphics:
-            self._tiles, self._spans = TilePicture(graphics), {}
+            self._tiles = TilePicture(graphics)
+            self._spans = {}
         runs = self._tiles.put(self._draw_image(plots, graphics.cell_points))
         super().set_lines(lines)
         if spans != self._spans:
@@ -155,7 +157,8 @@ class PlotView(LinesView):
     def set_lines(self, lines: Lines) -> None:
         """Show lines of characters."""
         if self._tiles is not None:
-            self._tiles, self._spans = None, {}
+            self._tiles = None
+            self._spans = {}
             super().redraw()
         super().set_lines(lines)
         self._sharpness.record_change()

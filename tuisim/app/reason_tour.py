@@ -29,21 +29,26 @@ class ReasonTour:
 
     def has_gone_wrong(self, runs: RunController) -> bool:
         """Return whether the run in view is known to have gone wrong, or repeats the one beside it."""
-        recording, earlier = runs.timeline.recording, runs.earlier
+        recording = runs.timeline.recording
+        earlier = runs.earlier
         has_gone_wrong = self.is_about(recording) and bool(self.reasons)
         can_differ = recording is not None and earlier is not None and is_repeat(recording, earlier)
         return has_gone_wrong or can_differ
 
     def begin(self, recording: Recording) -> None:
         """Forget another run."""
-        self._of, self._at, self.reasons, self.earlier = recording, None, (), None
+        self._of = recording
+        self._at = None
+        self.reasons = ()
+        self.earlier = None
 
     def take(
         self, recording: Recording, reasons: tuple[Reason, ...], earlier: Recording | None
     ) -> None:
         """Keep the reasons of a run, unless another one is in view by now."""
         if self._of is recording:
-            self.reasons, self.earlier = reasons, earlier
+            self.reasons = reasons
+            self.earlier = earlier
 
     def advance(self) -> Reason | None:
         """Go to the next reason, and return it; None after the last."""

@@ -31,7 +31,8 @@ FoundReasons = tuple[tuple["Reason", ...], "Recording | None"]
 
 def look(context: ActionContext) -> None:
     """Find out in the background whether the run in view, which has ended, went wrong; once."""
-    recording, tour = context.runs.timeline.recording, context.reasons
+    recording = context.runs.timeline.recording
+    tour = context.reasons
     if recording is None or context.runs.state is not RunPhase.ENDED or tour.is_about(recording):
         return
     tour.begin(recording)
@@ -65,7 +66,8 @@ def find(
         then: Called with what was found.
         searches: Whether the store is searched for a run to compare with, if that is none.
     """
-    session, file = context.lesson.session, context.loader.goals.file
+    session = context.lesson.session
+    file = context.loader.goals.file
     judgements: tuple[Judgement, ...] = ()
     goals: Sequence[Goal] = ()
     if session is not None:

@@ -70,7 +70,10 @@ class Pending:
 
     def forget(self) -> None:
         """Drop all pending actions."""
-        self._after, self._pose, self._noise, self._pen_down = (-1, 0), None, None, None
+        self._after = (-1, 0)
+        self._pose = None
+        self._noise = None
+        self._pen_down = None
 
     def apply_pending(
         self, record: TickRecord, instant: Instant, pen_down: bool
@@ -190,12 +193,16 @@ class RunController:
 
     def build_snapshot(self) -> Snapshot:
         """Return the snapshot of the instant in view."""
-        timeline, recording, spec = self.timeline, self.timeline.recording, self.spec
+        timeline = self.timeline
+        recording = self.timeline.recording
+        spec = self.spec
         newest = recording.telemetry.last() if recording else None
-        past, now_tick = timeline.at is not None, newest.tick if newest else 0
+        past = timeline.at is not None
+        now_tick = newest.tick if newest else 0
         record = timeline.record() if past else None if self._moved else newest
         instant, line, pen_down = self._find_moment(record)
-        state, face = self.state, timeline.face(now_tick if timeline.at is None else timeline.at)
+        state = self.state
+        face = timeline.face(now_tick if timeline.at is None else timeline.at)
         # After the robot was placed following the run, all its motors are reset.
         hz = timeline.tick_hz
         turns = face.extrapolate_turns(instant.tick / hz, hz) if record else ()
@@ -289,7 +296,8 @@ class RunController:
 
     def _field(self, record: TickRecord | None) -> Field | None:
         """Return the mat as the sensors saw it then, None until it is prepared for them."""
-        mat, recording = self.find_mat(self.spec), self.timeline.recording
+        mat = self.find_mat(self.spec)
+        recording = self.timeline.recording
         return (
             mat
             if mat is None or record is None or recording is None
@@ -298,7 +306,8 @@ class RunController:
 
     def find_mat(self, spec: RunSpec) -> Field | None:
         """Return the mat of the next run or of that in view, if it is one for a run's sensors; else None."""
-        recording, mats = self.timeline.recording, (self.mat, self._mat_of_run)
+        recording = self.timeline.recording
+        mats = (self.mat, self._mat_of_run)
         if recording and self.mat and self.mat.serves(recording.spec):
             self._mat_of_run = self.mat
         return next((mat.field for mat in mats if mat and mat.serves(spec)), None)
@@ -367,7 +376,8 @@ class RunController:
 
         A program that ends before that instant is paused at its end.
         """
-        branch, self._branch = self._branch, None
+        branch = self._branch
+        self._branch = None
         if branch is not None and paused is not None:
             early = paused.tick < branch.tick
             self.send(protocol.SetSpeed(self.speed))
@@ -401,7 +411,8 @@ class RunController:
         """Show a run that has been started, beside the one before; arguments as of `Recording`."""
         before = self.timeline.recording
         self.close()
-        self.run, self._end = run, None
+        self.run = run
+        self._end = None
         self._show_recording(Recording(run, answers))
         self.show_earlier(self.companion or before)
 
@@ -488,7 +499,9 @@ class RunController:
     def load(self, plan: NextRun, program: Program | None) -> None:
         """Load another world or program; the robot goes to its start. Not during a run."""
         self.timeline.go(None)
-        self.next_run, self.program, self.home = plan, program, plan.spec.world.start
+        self.next_run = plan
+        self.program = program
+        self.home = plan.spec.world.start
         self._set_start(plan.spec.world.start)
 
     def change(self, plan: NextRun) -> None:
@@ -549,7 +562,8 @@ class RunController:
         for event in self.run.pump() if self.run else ():
             match event:
                 case protocol.Ended():
-                    ended, self._end = event, event.end
+                    ended = event
+                    self._end = event.end
                     branched = self._finish_branch()
                 case protocol.Paused() if self._branch:
                     branched = self._finish_branch(event)

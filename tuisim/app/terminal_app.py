@@ -183,7 +183,8 @@ class TerminalApp(BufferedApp):
     async def on_event(self, event: events.Event) -> None:
         """Lay out for the minimum size at least; ignore clicks on cells outside the terminal."""
         if isinstance(event, events.Resize):
-            was, self.too_small = self.too_small, event.size if is_too_small(event.size) else None
+            was = self.too_small
+            self.too_small = event.size if is_too_small(event.size) else None
             if self.too_small:
                 event = events.Resize(clamp_size(event.size), clamp_size(event.size))
             if was != self.too_small:

@@ -135,7 +135,8 @@ class ThemeColors(LineFilter):
         return round(255 * red), round(255 * green), round(255 * blue)
 
     def _apply_theme(self, style: Style) -> Style:
-        fore, back = convert_color(style.color), convert_color(style.bgcolor)
+        fore = convert_color(style.color)
+        back = convert_color(style.bgcolor)
         # No own background is white: a white one shows what a sensor sees.
         new_fore, new_back = (
             fore and self.rgb(fore),
@@ -155,7 +156,8 @@ class ThemeColors(LineFilter):
 
     def _make_legible(self, rgb: Rgb, on: Rgb, is_line: bool) -> Rgb:
         """Return a colour moved toward black or white until it can be read."""
-        ground, color = Color(*on), Color(*rgb)
+        ground = Color(*on)
+        color = Color(*rgb)
         min_contrast = 1.5 if is_line and self._contrast < _HIGH_CONTRAST else self._contrast
         away = Color(255, 255, 255) if _measure_light(ground) < 0.18 else Color(0, 0, 0)
         for step in range(11):

@@ -206,10 +206,8 @@ class _Search:
 
     @property
     def words(self) -> str:
-        time_s, side = (
-            self.at / self.recording.spec.profile.tick_hz,
-            "before" if self.back else "after",
-        )
+        time_s = self.at / self.recording.spec.profile.tick_hz
+        side = "before" if self.back else "after"
         return "in this run" if self.at < 0 else f"{side} {time_s:.2f} s"
 
     def texts(self) -> Iterator[OutputRow]:
@@ -304,7 +302,8 @@ def describe_commands(text: str, timeline: Timeline) -> str:
     words = parse_command_search(re.sub(r"\b(?:back|first)\b", "", text))
     if words is None or timeline.recording is None:
         return ""
-    commands, tick = timeline.recording.commands, timeline.tick
+    commands = timeline.recording.commands
+    tick = timeline.tick
     numbers = [number for number in commands.find_events(words) if commands.tick(number) == tick]
     events = [commands.event(number) for number in numbers[:_MAX_DESCRIBED]]
     texts = [f"{event.part}: {event.words}" for event in events]

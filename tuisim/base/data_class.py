@@ -59,7 +59,8 @@ def _init(cls: type, frozen: bool) -> Any:
     parameters = ["self"]
     body: list[str] = []
     for one in fields(cls):
-        name, value = one.name, one.name
+        name = one.name
+        value = one.name
         if one.default_factory is not MISSING:
             names[f"_make_{name}"] = one.default_factory
             default = "=_FACTORY"
@@ -98,7 +99,8 @@ class _LateInit:
     """
 
     def __init__(self, cls: type, frozen: bool) -> None:
-        self._cls, self._frozen = cls, frozen
+        self._cls = cls
+        self._frozen = frozen
         _LATE.append(self)
 
     def __get__(self, instance: object, owner: type | None = None) -> Any:

@@ -20,12 +20,14 @@ from typing import ClassVar
 
 SIGNALLED = 128
 """Exit codes above this come from a signal; no further program is then run."""
-EXIT_INTERRUPTED, EXIT_BROKEN_PIPE = SIGNALLED + 2, SIGNALLED + 13
+EXIT_INTERRUPTED = SIGNALLED + 2
+EXIT_BROKEN_PIPE = SIGNALLED + 13
 """The exit codes of a program that was ended by SIGINT or SIGPIPE."""
 MOST_LISTED = 20
 MOST_REASON = 500
 """Characters of a reason in a message."""
-MOST_LINE, LINE_START = 1500, 1000
+MOST_LINE = 1500
+LINE_START = 1000
 """Characters of a line of a message, and how many of them are before what is left out of a longer one."""
 MOST_NAME = 80
 """Characters of a listed name; a longer one is no name, but comes from a damaged file."""

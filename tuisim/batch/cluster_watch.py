@@ -64,7 +64,9 @@ class ClusterWatch:
         sleep: Callable[[float], object] = time.sleep,
     ) -> None:
         self.name = name
-        self._client, self._clock, self._sleep = client, clock, sleep
+        self._client = client
+        self._clock = clock
+        self._sleep = sleep
         # An import statement would break the order of rooms, since `tuisim` imports all of them.
         self._version = import_module("tuisim").__version__
         self._known: set[str] = set()

@@ -255,7 +255,8 @@ def check_seeds(values: Sequence[object], key: str) -> tuple[int, ...]:
 
 def _split_pieces(text: str) -> list[str]:
     """Split a text at the commas outside quotes and parentheses."""
-    pieces, start = [], 0
+    pieces = []
+    start = 0
     while True:
         match = _PIECE.match(text, start)
         assert match is not None

@@ -138,7 +138,8 @@ class Plan:
         key = (id(subject), *own.items(), *map(type, own.values()))
         if key not in self._specs:
             self._specs[key] = build_run_spec(self._merge_settings(subject, own))
-        spec, seed = self._specs[key], values.get(SEED)
+        spec = self._specs[key]
+        seed = values.get(SEED)
         return replace(spec, seed=seed) if isinstance(seed, int) else spec
 
     def _merge_settings(self, subject: Subject, values: Mapping[str, Value]) -> Settings:
@@ -168,7 +169,8 @@ class Plan:
 
     def task(self, index: int) -> Task:
         """Return one task; `index` counts from 0."""
-        subject, values = self.find_subject(index), self.grid.find_values(index % len(self.grid))
+        subject = self.find_subject(index)
+        values = self.grid.find_values(index % len(self.grid))
         spec = self.build_spec(subject, values)
         program = subject.program
         if "arguments" in values:

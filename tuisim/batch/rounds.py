@@ -47,7 +47,8 @@ def parse_precision(text: str, key: str, plan: Plan, columns: Iterable[str]) -> 
     if match is None or not 0 < float(match["margin"]) < math.inf:
         raise ConfigError(f"must be COLUMN ± MARGIN, got {text!r}", "such as 'x_mm ± 2'", key=key)
     goals = [*name_goals(goal.name for goal in plan.goals), *([POINTS] if plan.goals else [])]
-    known, column = ["time_s", *POSE, *goals, *columns], match["column"]
+    known = ["time_s", *POSE, *goals, *columns]
+    column = match["column"]
     if column not in known and not is_statistic(column):
         hint = f"{nearest(column, known)}; the last value of a printed variable is NAME_last"
         raise ConfigError(f"there will be no column {column!r} of numbers", hint, key=key)
@@ -69,7 +70,8 @@ class Rounds(Iterator[int]):
     """
 
     def __init__(self, plan: Plan, sweep: Sweep, precision: Precision) -> None:
-        self._sweep, self._precision = sweep, precision
+        self._sweep = sweep
+        self._precision = precision
         self._due: deque[int] = deque()
         seeds = plan.count_seeds()
         self._counts = {range(first, first + seeds): 0 for first in range(0, len(plan), seeds)}

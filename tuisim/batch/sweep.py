@@ -85,7 +85,9 @@ class Sweep:
         resumes: bool = False,
         measured: Sequence[str] = (),
     ) -> None:
-        self._plan, self._expressions, self._out = plan, expressions, out
+        self._plan = plan
+        self._expressions = expressions
+        self._out = out
         self.rows: dict[int, Row] = {}
         self._identity: dict[str, Any] = {}
         """What identifies the batch in its files; empty if none are written."""
@@ -129,7 +131,8 @@ class Sweep:
             ExportError: the rows cannot be written.
             LogError: the folder for the recordings cannot be created.
         """
-        plan, several = self._plan, len(self._plan.subjects) > 1
+        plan = self._plan
+        several = len(self._plan.subjects) > 1
         # A copy: `rows` grows while the tasks are iterated.
         every = plan.iterate_tasks(frozenset(self.rows))
         tasks = every if due is None else map(plan.task, due)

@@ -23,7 +23,10 @@ if TYPE_CHECKING:
 Row = dict[str, Any]
 """The values of one run by column: texts, numbers and truth values."""
 
-RUN, PROGRAM, POINTS, RUN_ID = "run", "program", "points", "id"
+RUN = "run"
+PROGRAM = "program"
+POINTS = "points"
+RUN_ID = "id"
 POSE = ("x_mm", "y_mm", "heading_deg")
 ENDS = ("end", "exit_code", "summary", "error_line", "time_s", *POSE, "waited_for", "plugged")
 """Columns of every run after its parameters, as in `Result`."""

@@ -71,7 +71,8 @@ def read_opened(arguments: Arguments) -> Opened | None:
     if listed := find_listed(arguments.words):
         print_list(arguments.words[0], listed)
         return None
-    goals, config = _load_goals(arguments.goals), load_config()
+    goals = _load_goals(arguments.goals)
+    config = load_config()
     if arguments.run is not None:
         replay, prepared = prepare_replay(arguments.run, arguments.words, arguments, config)
         return Opened(prepared, goals, replay)
@@ -119,7 +120,9 @@ def open_app(**given: Any) -> int:
         raise ConfigError("the app needs a terminal", "without one, use `tuisim run PROGRAM`")
     from tuisim.app.app import AppSettings, run_app
 
-    prepared, settings, goals = opened.prepared, opened.prepared.settings, opened.goals
+    prepared = opened.prepared
+    settings = opened.prepared.settings
+    goals = opened.goals
     app_settings = AppSettings(
         spec=prepared.spec,
         settings=None if opened.replay else settings,

@@ -92,7 +92,8 @@ class _Batch:
     """The run of a batch."""
 
     def __init__(self, request: Request, *, as_json: bool) -> None:
-        self.request, self.as_json = request, as_json
+        self.request = request
+        self.as_json = as_json
         self.sweep = Sweep(
             request.plan, request.expressions, request.out, __version__, resumes=request.resume
         )
@@ -100,7 +101,8 @@ class _Batch:
 
     def run(self) -> int:
         """Run what is not done, write the table, print the results and return the exit code."""
-        plan, code = self.request.plan, 0
+        plan = self.request.plan
+        code = 0
         with Progress(counted(len(plan), "run"), len(plan), in_lines=True):
             try:
                 with raise_signals():

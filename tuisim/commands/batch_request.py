@@ -28,7 +28,9 @@ from tuisim.settings.worlds import WorldFile, is_world_name
 from tuisim.tasks.goals.files import GoalsFile, load_goals
 from tuisim.tasks.task import Keep
 
-_GRID, _RESULTS, _LIMITS = "Parameters", "Results", "Input and limits"
+_GRID = "Parameters"
+_RESULTS = "Results"
+_LIMITS = "Input and limits"
 OPTIONS = (
     argument("programs", "PROGRAM…|SPEC.toml", lambda: list_names("programs"), nargs=-1),
     WORLD,
@@ -194,7 +196,8 @@ def _prepare_subjects(
         world = replace(world, settings=settings, program=world.program or goals.program)
     # A notebook stands for all of its cells.
     arguments.all = True
-    subjects, refusals = [], []
+    subjects = []
+    refusals = []
     for prepared in prepare_runs(arguments.programs, arguments, world, "batch"):
         if isinstance(prepared, NotRun):
             raise ConfigError(

@@ -336,11 +336,14 @@ class Progress:
         in_lines: bool = False,
         wait: Callable[[float], bool] | None = None,
     ) -> None:
-        self._what, self._total, self._done = what, total, 0.0
+        self._what = what
+        self._total = total
+        self._done = 0.0
         self._bar: Bar | None = None
         self._lock = threading.RLock()
         self._over = threading.Event()
-        self._in_lines, self._wait = in_lines, wait or self._over.wait
+        self._in_lines = in_lines
+        self._wait = wait or self._over.wait
         self._begun = time.monotonic()
         self._show_at = self._begun + SHOWN_AFTER_S
         self._thread: threading.Thread | None = None
@@ -361,7 +364,9 @@ class Progress:
 
     def tell(self, what: str, done: float, total: float | None = None) -> None:
         """Update the progress; the thread draws it later."""
-        self._what, self._done, self._total = what, done, total
+        self._what = what
+        self._done = done
+        self._total = total
 
     @contextmanager
     def hide(self) -> Iterator[None]:
@@ -400,11 +405,9 @@ class Progress:
             self._bar.tasks[0].start_time = self._bar.get_time() - (time.monotonic() - self._begun)
             self._bar.start()
         task = self._bar.tasks[0]
-        task.description, task.completed, task.total = (
-            printable(self._what),
-            self._done,
-            self._total,
-        )
+        task.description = printable(self._what)
+        task.completed = self._done
+        task.total = self._total
         self._bar.refresh()
 
     def _hide(self) -> None:
@@ -437,9 +440,11 @@ def _build_bar() -> Bar:
 
 def size(count: int) -> str:
     """Format a number of bytes, such as `1.2 MB`."""
-    value, unit = count / 1000, "kB"
+    value = count / 1000
+    unit = "kB"
     for larger in ("MB", "GB", "TB"):
         if value < 1000:
             break
-        value, unit = value / 1000, larger
+        value = value / 1000
+        unit = larger
     return f"{value:.1f} {unit}"

@@ -21,7 +21,9 @@ from tuisim.programs.plugged_words import describe_plugged
 from tuisim.tasks.reasons.reason import describe_end
 from tuisim.tasks.reasons.waited_words import describe_wait
 
-EXIT_RAISED, EXIT_BAD_OUTPUT, EXIT_LIMIT = 1, 2, 3
+EXIT_RAISED = 1
+EXIT_BAD_OUTPUT = 2
+EXIT_LIMIT = 3
 
 
 def choose_exit_code(end: End, exit_code: int) -> int:
@@ -47,7 +49,8 @@ def describe(run: StoredRun, most_bytes: int | None = None) -> dict[str, Any]:
 
     `lines` and `samples` are None, not counted, if the output is longer than `most_bytes`.
     """
-    last, end = run.telemetry.last(), run.end
+    last = run.telemetry.last()
+    end = run.end
     pose = last.pose if last else run.spec.world.start
     stood = find_standstill(run.telemetry, run.spec)
     counts = (

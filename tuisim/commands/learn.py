@@ -126,7 +126,8 @@ def list_lessons(folder: str | None, as_json: bool) -> int:
 
 
 def _list(folder: str | None, *, as_json: bool) -> int:
-    lessons, progress = load_all(folder), load_progress()
+    lessons = load_all(folder)
+    progress = load_progress()
     if as_json:
         echo_json(
             [
@@ -164,7 +165,8 @@ def status(folder: str | None, as_json: bool) -> int:
     With --json: for each lesson its name, how many steps are done, and for each step its state (open, done or
     skipped), when that was reached, wrong tries, and hints that were shown.
     """
-    lessons, progress = load_all(folder), load_progress()
+    lessons = load_all(folder)
+    progress = load_progress()
     states = [(lesson, progress.get(lesson.name, LessonProgress())) for lesson in lessons]
     if as_json:
         echo_json([_convert_plain(lesson, state) for lesson, state in states])
@@ -238,7 +240,8 @@ def check(paths: Sequence[str], no_runs: bool, strict: bool) -> int:
     with Progress("learn check"):
         for number, lesson in enumerate(lessons):
             tell(f"checking {lesson.name}", number, len(lessons))
-            wrong, warned = [] if no_runs else find_faults(lesson), find_warnings(lesson)
+            wrong = [] if no_runs else find_faults(lesson)
+            warned = find_warnings(lesson)
             for line in (*wrong, *(f"warning: {warning}" for warning in warned)):
                 echo(line)
             if not wrong:

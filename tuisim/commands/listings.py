@@ -219,7 +219,8 @@ def _print_robot_of_run(word: str, out: str | None, *, as_json: bool) -> int:
     from tuisim.settings.robots import format_robot_file, save_robot
 
     run = load_run(word)
-    robot, parts = run.spec.robot, list_parts(run.plugged)
+    robot = run.spec.robot
+    parts = list_parts(run.plugged)
     if as_json:
         echo_json([asdict(robot)])
     elif out is not None:

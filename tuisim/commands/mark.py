@@ -55,7 +55,8 @@ _LEFT_OUT = ("seed", "speed", "press")
 """Shared options that marking does not take: each program has several seeds, and runs as fast as possible; a task says
 what is pressed in each of its worlds."""
 _MEGABYTES = Whole(1, 1 << 20)
-_RUNS, _RESULTS = "Runs", "Results"
+_RUNS = "Runs"
+_RESULTS = "Results"
 _OPTIONS = (
     argument("goals", "GOALS"),
     argument("folders", "FOLDER…", nargs=-1),

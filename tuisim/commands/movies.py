@@ -73,7 +73,8 @@ def movie(
     if speed is not None:
         _check_number(speed, 0.01, 1000, "--speed")
     _check_number(fps, 1, 50, "--fps")
-    chosen, sides = _parse_panels(panels), _parse_size_option(size)
+    chosen = _parse_panels(panels)
+    sides = _parse_size_option(size)
     with Progress(f"drawing {path.name}"):
         recorded = _load_recorded(run)
         span_s = recorded.clip_span_s(start_s, stop_s)
@@ -106,7 +107,8 @@ def picture(word: str, out: str | None, time_s: float | None, panels: str | None
     run = RunStore().load_run(word)
     path = Path(out or _build_default_name(run, "picture.png"))
     check_format(path, "picture", PICTURE_FORMATS)
-    chosen, sides = _parse_panels(panels), _parse_size_option(size)
+    chosen = _parse_panels(panels)
+    sides = _parse_size_option(size)
     with Progress(f"drawing {path.name}"):
         recorded = _load_recorded(run)
         at_s = recorded.end_s if time_s is None else time_s

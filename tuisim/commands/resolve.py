@@ -139,7 +139,8 @@ def _prepare_source(
     resolve_settings = partial(build_program_settings, file, *layers)
     effective = resolve_settings(below=_select_defaults(world, config))
     try:
-        program, spec = effective.apply(file.program), _build_spec(effective.settings)
+        program = effective.apply(file.program)
+        spec = _build_spec(effective.settings)
     except ConfigError as error:
         wrong = find_wrong_mat(file.program.text, file.program.name, effective.settings["mats"])
         is_it = wrong is not None and effective.settings["background"] == file.options["background"]

@@ -39,9 +39,11 @@ from tuisim.settings.shared_options import build_shared_options
 from tuisim.settings.user_config import FILE, Section, load_config
 
 MAX_CHARACTERS = 200
-GO, STOP = "go", "stop"
+GO = "go"
+STOP = "stop"
 
-_REPORTS, _BREAKPOINTS = "Data and limits", "Breakpoints"
+_REPORTS = "Data and limits"
+_BREAKPOINTS = "Breakpoints"
 _OPTIONS = (
     argument("programs", "PROGRAM…", lambda: list_names("programs"), nargs=-1),
     WORLD,
@@ -158,7 +160,8 @@ def run(**given: Any) -> int:
     check_targets(target for target in (*arguments.export, telemetry) if target is not None)
     if telemetry is not None and len(prepared) > 1:
         raise ConfigError("takes one program", f"got {len(prepared)}", key="--telemetry")
-    store, interrupts = RunStore(), RelayInterrupts()
+    store = RunStore()
+    interrupts = RelayInterrupts()
     with handle_signals(interrupts.handle), Progress(""):
         code, results = _run_all(prepared, arguments, store, interrupts)
         if done := [run for _, run in results if run is not None]:
@@ -212,7 +215,9 @@ class BreakpointReporter:
     """
 
     def __init__(self, handle: RunHandle, watches: tuple[str, ...], *, stops: bool) -> None:
-        self._handle, self._watches, self._stops = handle, watches, stops
+        self._handle = handle
+        self._watches = watches
+        self._stops = stops
         self._paused: Paused | None = None
         self._source = source_lines(handle.program.text)
         self.stopped = False

@@ -127,10 +127,8 @@ def list_runs(as_json: bool) -> int:
             "",
         )
         if sys.stdout.isatty() and shutil.get_terminal_size().columns < _ALL_COLUMNS:
-            heads, rows = (
-                tuple(heads[index] for index in _FEWER),
-                [tuple(row[index] for index in _FEWER) for row in rows],
-            )
+            heads = tuple(heads[index] for index in _FEWER)
+            rows = [tuple(row[index] for index in _FEWER) for row in rows]
             # The year and the seconds are left out, too.
             rows = [(number, str(created)[5:16], *rest) for number, created, *rest in rows]
         echo_lines(draw_table(heads, rows))
@@ -254,7 +252,8 @@ def _show(run: StoredRun, *, as_json: bool) -> None:
 )
 def rm(words: Sequence[str], older_than: str | None) -> int:
     """Remove runs."""
-    store, freed = RunStore(), 0
+    store = RunStore()
+    freed = 0
     with Progress("rm"):
         # All are looked up before the first is removed; one may be named twice.
         if older_than is None:
@@ -322,7 +321,8 @@ def _rerun(run: StoredRun, *, as_json: bool) -> int:
     with create_temporary_home() as home:
         scratch = RunStore(home)
         handle = rerun(run, scratch)
-        what, ticks = f"rerunning run {run.number}: {run.program.name}", run.telemetry.count
+        what = f"rerunning run {run.number}: {run.program.name}"
+        ticks = run.telemetry.count
         tell(what, 0, ticks)
         try:
             while handle.wait(ASK_AGAIN_S) is None:
@@ -340,7 +340,8 @@ def _rerun(run: StoredRun, *, as_json: bool) -> int:
 
 def format_diff(comparison: RunDiff) -> str:
     """Return a comparison as readable text."""
-    recording, setup = describe_recording(comparison), describe_setup(comparison)
+    recording = describe_recording(comparison)
+    setup = describe_setup(comparison)
     pairs = (*recording, *setup) if comparison.same else (*setup, *recording)
     lines = [f"{label}: {words}" if label else words for label, words in pairs]
     if comparison.divergence and not comparison.same:

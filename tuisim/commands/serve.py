@@ -16,7 +16,9 @@ from tuisim.settings.options import parse
 if TYPE_CHECKING:
     from tuisim.web.gate import Gate
 
-DEFAULT_PORT, DEFAULT_VISITORS, DEFAULT_KEEP_MIN = 8000, 8, 60.0
+DEFAULT_PORT = 8000
+DEFAULT_VISITORS = 8
+DEFAULT_KEEP_MIN = 60.0
 _GROUP = "Server"
 _INSTEAD = (
     "for a class use accounts over SSH, or JupyterHub with %sim_app: tuisim guide in-a-browser"

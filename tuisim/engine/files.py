@@ -290,7 +290,8 @@ def one_of(data: object, at: Location, allowed: Iterable[str]) -> str:
     Raises:
         ConfigError: it is another one, or no text.
     """
-    word, words = convert(data, str, at), list(allowed)
+    word = convert(data, str, at)
+    words = list(allowed)
     if word not in words:
         raise at.wrong(f"no such value {quote(word)}", f"one of {', '.join(words)}")
     return word

@@ -197,7 +197,8 @@ def _note(path: Path, checksum: int, found: os.stat_result) -> None:
 def _checksum(descriptor: int) -> int:
     checksum = offset = 0
     while part := os.pread(descriptor, _READ_BYTES, offset):
-        checksum, offset = zlib.crc32(part, checksum), offset + len(part)
+        checksum = zlib.crc32(part, checksum)
+        offset = offset + len(part)
     return checksum
 
 

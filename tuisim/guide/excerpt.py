@@ -139,7 +139,8 @@ def _count_words(text: str, pattern: re.Pattern[str]) -> int:
 
 def _add_heads(passage: str, head: str) -> str:
     """Return a row of a table of more than two columns with the heads of its columns, but for the first."""
-    cells, heads = split_cells(passage), split_cells(head)
+    cells = split_cells(passage)
+    heads = split_cells(head)
     if not head or len(cells) <= _CLEAR_COLUMNS or len(heads) != len(cells):
         return passage
     named_cells = [

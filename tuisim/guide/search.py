@@ -55,10 +55,15 @@ _NO_ANSWER = re.compile(r"# .*|")
 """The title of a page."""
 _MIN_PREFIX_LETTERS = 3
 """Letters from which a word may be the beginning of another."""
-_PASSAGE_WEIGHT, _HEADINGS_WEIGHT, _PAGE_WORDS_WEIGHT, _WHOLE_PAGE_WEIGHT = 1.0, 0.6, 1.0, 0.6
+_PASSAGE_WEIGHT = 1.0
+_HEADINGS_WEIGHT = 0.6
+_PAGE_WORDS_WEIGHT = 1.0
+_WHOLE_PAGE_WEIGHT = 0.6
 """How much the words of a passage count, those of its headings, the further words of its page, and the share of the
 question that is anywhere on its page."""
-_ALL_QUESTIONS_WEIGHT, _NEAREST_QUESTION_WEIGHT, _SAME_QUESTION_WEIGHT = 1.0, 0.5, 1.5
+_ALL_QUESTIONS_WEIGHT = 1.0
+_NEAREST_QUESTION_WEIGHT = 0.5
+_SAME_QUESTION_WEIGHT = 1.5
 """How much the questions count that people ask: all together, the one most alike, and its cube: the same question.
 
 The method is the vector space model: stems are weighted by their inverse document frequency, texts are compared by
@@ -72,7 +77,8 @@ _MIN_STEM_WEIGHT = 0.05
 """The least weight of a word, however common it is."""
 _MAX_RESULTS = 12
 """So many passages are found; further ones share common words only."""
-_SURE_RESULTS, _MIN_SHARE = 2, 0.5
+_SURE_RESULTS = 2
+_MIN_SHARE = 0.5
 """So many are found however well they answer; each further one answers at least this much as well as the best one."""
 _PART_BREAK = re.compile(r"[?!.;,]+\s+|\b(?:and|or|but|then)\b")
 """Between two questions in one."""

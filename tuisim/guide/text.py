@@ -39,7 +39,8 @@ def draw_page(page: Page, width: int) -> list[Line]:
 
 
 def _format_link(link: re.Match[str]) -> str:
-    text, name = link[1], link[2]
+    text = link[1]
+    name = link[2]
     plain = text.replace("`", "").lower().replace(" ", "-")
     return f"**{text}**" if plain == name else f"**{text}** (page `{name}`)"
 

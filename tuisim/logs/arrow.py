@@ -68,7 +68,8 @@ def convert_to_floats(column: pa.ChunkedArray) -> FloatArray:
 
 def _convert_chunk(chunk: pa.Array, kind: Any) -> FloatArray:
     known, numbers = chunk.buffers()
-    first, count = chunk.offset, len(chunk)
+    first = chunk.offset
+    count = len(chunk)
     if not count or numbers is None:
         return np.full(count, np.nan, kind)
     floats = np.frombuffer(numbers, kind, count, first * np.dtype(kind).itemsize)
@@ -165,9 +166,11 @@ def make_names_unique(names: Sequence[str], notes: Notes | None = None) -> list[
     """Return unique column names; renamed columns are noted."""
     unique: list[str] = []
     for number, name in enumerate(names, 1):
-        unique_name, again = name or f"column {number}", 2
+        unique_name = name or f"column {number}"
+        again = 2
         while unique_name in unique:
-            unique_name, again = f"{name or f'column {number}'} ({again})", again + 1
+            unique_name = f"{name or f'column {number}'} ({again})"
+            again = again + 1
         if name and unique_name != name and notes:
             notes.say(f"two columns are named {name!r}: the second is renamed to {unique_name!r}")
         unique.append(unique_name)

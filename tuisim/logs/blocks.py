@@ -68,7 +68,8 @@ class LineCutter:
     """
 
     def __init__(self, notes: Notes, longest: int = MAX_LINE_BYTES, encoding: str = "") -> None:
-        self._notes, self._longest = notes, longest
+        self._notes = notes
+        self._longest = longest
         self._encoding = encoding
         self._rest = b""
         self._row = 1
@@ -111,7 +112,9 @@ class LineCutter:
             self._keep(data)
             return None
         # Blocks are large: each is copied only once.
-        text, self._rest, rest = b"".join((self._rest, memoryview(data)[:end])), b"", data[end:]
+        text = b"".join((self._rest, memoryview(data)[:end]))
+        self._rest = b""
+        rest = data[end:]
         if self._dropping:
             text = text.partition(b"\n")[2]
             self._dropping = False
@@ -121,7 +124,8 @@ class LineCutter:
 
     def finish(self) -> Block | None:
         """Return the last line, if it has no newline."""
-        text, self._rest = self._rest.rstrip(b"\r"), b""
+        text = self._rest.rstrip(b"\r")
+        self._rest = b""
         if self._dropping or not text:
             return None
         return self._block(text + b"\n")
@@ -153,7 +157,8 @@ class LineCutter:
         if len(self._rest) > self._longest:
             limit = f"longer than {self._longest >> 20} MiB"
             self._notes.add(f"line {limit} was skipped", f"lines {limit} were skipped", [self._row])
-            self._rest, self._dropping = b"", True
+            self._rest = b""
+            self._dropping = True
 
     def _block(self, text: bytes) -> Block:
         first = self._row

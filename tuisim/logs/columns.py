@@ -166,7 +166,8 @@ def read_times(column: pa.ChunkedArray, unit_s: float, since_first: bool) -> Tim
     """
     kind = column.type
     if pa.types.is_date(kind):
-        column, kind = column.cast(pa.timestamp("s")), pa.timestamp("s")
+        column = column.cast(pa.timestamp("s"))
+        kind = pa.timestamp("s")
     if pa.types.is_temporal(kind):
         # Arrow casts 32-bit times only to integers of the same size.
         wide: Any = (
@@ -494,7 +495,8 @@ def choose_columns(table: pa.Table, choices: ReadChoices) -> Layout:
         LogError: there is no such column, or it is not numeric.
     """
     layout = guess_columns(table)
-    time, values = choices.time, choices.value
+    time = choices.time
+    values = choices.value
     if time is not None:
         if time:
             _require(table, time)

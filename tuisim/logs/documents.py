@@ -58,7 +58,8 @@ class DocumentReader:
 
     def __init__(self, notes: Notes) -> None:
         self._notes, self._lines = notes, JsonReader(notes)
-        self._text, self._first_row = b"", 1
+        self._text = b""
+        self._first_row = 1
         self._is_too_large = False
 
     def read(self, block: Block) -> pa.Table | None:
@@ -94,7 +95,9 @@ class DocumentReader:
 
 def _parse_values(text: str) -> list[Any]:
     """Return the values that follow each other in a text."""
-    decoder, values, position = json.JSONDecoder(), [], 0
+    decoder = json.JSONDecoder()
+    values = []
+    position = 0
     while position < len(text):
         if text[position].isspace():
             position += 1
@@ -200,7 +203,8 @@ def _convert_lists(rows: Sequence[Any], names: Sequence[str]) -> list[Any]:
     lists = [row for row in rows if isinstance(row, list)]
     first = lists[0]
     if not names and len(lists) > 1 and first and all(isinstance(cell, str) for cell in first):
-        names, rows = first, rows[1:]
+        names = first
+        rows = rows[1:]
     width = max(len(row) for row in lists)
     names = make_names_unique([*names, *[""] * (width - len(names))])
     return [dict(zip(names, row, strict=False)) if isinstance(row, list) else row for row in rows]

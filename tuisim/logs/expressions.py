@@ -170,7 +170,10 @@ class _Evaluation:
         text: str,
         functions: Functions,
     ) -> None:
-        self._columns, self._names, self._text, self._functions = columns, names, text, functions
+        self._columns = columns
+        self._names = names
+        self._text = text
+        self._functions = functions
 
     def value(self, node: ast.expr) -> Any:
         """Return the value of a node: an array or a number.

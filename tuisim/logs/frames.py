@@ -62,7 +62,8 @@ def read_log(
     log = open_log(source, choices)
     for note in log.notes:
         warnings.warn(f"{log.title}: {note}", stacklevel=2)
-    layout, rows = log.layout, log.table
+    layout = log.layout
+    rows = log.table
     if choices.value:
         chosen = {layout.time, layout.variable, layout.run, *choices.value}
         rows = rows.select([name for name in rows.column_names if name in chosen])

@@ -99,7 +99,8 @@ class _Run(NamedTuple):
     def rank(self) -> _Rank:
         """How certainly these are the rows of a table."""
         numbers = sum(kind in "nt" for kind in self.kinds)
-        words, width = -self.kinds.count("w"), len(self.kinds)
+        words = -self.kinds.count("w")
+        width = len(self.kinds)
         return _Rank(width > 1 and numbers > 0, self.length, numbers, words, 0, width)
 
 
@@ -151,7 +152,8 @@ def find_heading(
         names, above, start = _find_names(table, above, start, run)
         row = table[len(above)].row
     if names is None:
-        names, row = _number_columns(table[start].cells, notes), 0
+        names = _number_columns(table[start].cells, notes)
+        row = 0
     _tell_unread(above, "above the table", notes)
     follow = table[start].row if start < len(table) else table[-1].next_row
     return Heading(_clean_names(names, notes), separator, inner, follow, run.kinds, row)
@@ -228,7 +230,8 @@ def close_quotes(text: bytes, separator: str) -> bytes:
 
 def _split_lines(lines: Sequence[tuple[int, str]], separator: str) -> Iterator[_Line]:
     """Yield the lines, split into cells; a heading with line breaks in quoted names is a single line."""
-    after, is_first = 0, True
+    after = 0
+    is_first = True
     for index, (row, text) in enumerate(lines):
         if index < after:
             continue
@@ -263,7 +266,8 @@ def sniff_separator(lines: Sequence[str]) -> str:
         return _sniff_line(lines[0])
     ranks = {sign: _rank_separator(lines, sign) for sign in (*SEPARATORS, BLANKS)}
     best = max(SEPARATORS, key=ranks.__getitem__)
-    signs, blanks = ranks[best], ranks[BLANKS]
+    signs = ranks[best]
+    blanks = ranks[BLANKS]
     is_better = (blanks.as_wide, blanks.words, blanks.numbers) > (
         signs.as_wide,
         signs.words,
@@ -324,12 +328,14 @@ def _find_table(table: Sequence[_Line]) -> _Run:
 
 
 def _find_runs(table: Sequence[_Line]) -> Iterator[_Run]:
-    start, kinds = 0, table[0].kinds
+    start = 0
+    kinds = table[0].kinds
     for index, line in enumerate(table[1:], 1):
         both = _merge_kinds(kinds, line.kinds)
         if both is None:
             yield _Run(start, index - start, kinds)
-            start, both = index, line.kinds
+            start = index
+            both = line.kinds
         kinds = both
     yield _Run(start, len(table) - start, kinds)
 
@@ -404,7 +410,8 @@ def _find_names(
 
 def _join_unit(name: str, unit: str) -> str:
     """Return a name with the unit from the row below it in brackets, unless the name has a unit itself."""
-    name, unit = name.strip(), unit.strip(" ()[]")
+    name = name.strip()
+    unit = unit.strip(" ()[]")
     has_unit = unit in ("", "-", "1") or name.endswith((")", "]")) or _OWN_UNIT.search(name)
     return name if has_unit else f"{name} [{unit}]"
 

@@ -21,7 +21,8 @@ class JsonReader:
     """
 
     def __init__(self, notes: Notes, exact: bool = False) -> None:
-        self._notes, self._exact = notes, exact
+        self._notes = notes
+        self._exact = exact
         self._kinds: dict[str, bool] = {}
         """By column, whether it has numbers; missing while all its cells were empty."""
 

@@ -160,7 +160,8 @@ def measure_levels(
     plateaus = np.array(search(values if magnitude == 1.0 else values / magnitude), FIELDS)
     plateaus["level"] *= magnitude
     plateaus["spread"] *= magnitude
-    level, scale = plateaus["level"], find_light_scale(values) if light else 0.0
+    level = plateaus["level"]
+    scale = find_light_scale(values) if light else 0.0
     true_level = level
     greys_near: list[Grey | None] = [None] * len(plateaus)
     if light and scale:

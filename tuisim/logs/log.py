@@ -197,7 +197,8 @@ class Log:
         return self._cache.series[name]
 
     def _read_series(self, member: Member) -> Series:
-        layout, rows = self.layout, member.rows
+        layout = self.layout
+        rows = member.rows
         values = self.numbers(layout.values[0] if layout.variable else member.variable)
         if rows is not None:
             return Series(member.name, self._read_times(rows), values[rows], rows, member.run)

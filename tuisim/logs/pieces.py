@@ -101,7 +101,8 @@ def _join_seams(
     """
     left, right = pieces[seams[:, 0] - 1], pieces[seams[:, 1]]
     firsts = np.arange(len(pieces))
-    goes_on, unsure = np.zeros(len(seams), bool), np.ones(len(seams), bool)
+    goes_on = np.zeros(len(seams), bool)
+    unsure = np.ones(len(seams), bool)
     # A join makes the piece on the left of the next seam longer: judge that seam again, with more samples.
     while unsure.any():
         goes_on[unsure] = _find_continued(
@@ -221,7 +222,8 @@ def _estimate_steps(
 
 
 def _estimate_lone_steps(places: FloatArray, levels: FloatArray) -> tuple[FloatArray, FloatArray]:
-    ones, after = np.ones_like(places), np.broadcast_to([0.0, 1.0], places.shape)
+    ones = np.ones_like(places)
+    after = np.broadcast_to([0.0, 1.0], places.shape)
     rows = np.linalg.pinv(np.stack((ones, places, after), axis=2))[:, 2]
     return (rows * levels).sum(axis=1), np.sqrt((rows * rows).sum(axis=1))
 

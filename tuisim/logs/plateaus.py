@@ -272,11 +272,16 @@ def _partition(scaled: FloatArray, places: IntArray) -> Pieces:
     all_sums = np.concatenate(([0.0], np.cumsum(scaled)))[places]
     all_squares = np.concatenate(([0.0], np.cumsum(scaled**2)))[places]
     all_best = np.full(len(places), -price)
-    ends, sums, squares, best = places.tolist(), all_sums.tolist(), all_squares.tolist(), [-price]
+    ends = places.tolist()
+    sums = all_sums.tolist()
+    squares = all_squares.tolist()
+    best = [-price]
     before = [0]
     alive: Sequence[int] | IntArray = [0]
     for index in range(1, len(ends)):
-        end, total, square = ends[index], sums[index], squares[index]
+        end = ends[index]
+        total = sums[index]
+        square = squares[index]
         # A start with higher costs can never become the best one again.
         if len(alive) <= _FEW_STARTS:
             costs = [
@@ -327,7 +332,8 @@ def _measure_again(
 def _find_edges(plateaus: PlateauArray) -> BoolArray:
     """Return which plateaus are short and only the edge between their neighbours."""
     edges = np.zeros(len(plateaus), bool)
-    lengths, level = count_samples(read_spans(plateaus)), plateaus["level"]
+    lengths = count_samples(read_spans(plateaus))
+    level = plateaus["level"]
     low, high = np.minimum(level[:-2], level[2:]), np.maximum(level[:-2], level[2:])
     is_between = (low < level[1:-1]) & (level[1:-1] < high)
     is_shorter = np.minimum(lengths[:-2], lengths[2:]) > lengths[1:-1]
@@ -403,9 +409,13 @@ def _extend_pieces(values: FloatArray, pieces: Pieces, sigma: float) -> Pieces:
 def _find_extendable(values: FloatArray, pieces: Pieces, near: float) -> IntArray:
     """Return which pieces have a sample of their level ahead of one of their ends, so that they may grow."""
     starts, stops = pieces.T
-    firsts, lasts = np.append(0, stops[:-1]), np.append(starts[1:], len(values))
+    firsts = np.append(0, stops[:-1])
+    lasts = np.append(starts[1:], len(values))
     apart = np.flatnonzero((firsts < starts) | (stops < lasts))
-    starts, stops, firsts, lasts = starts[apart], stops[apart], firsts[apart], lasts[apart]
+    starts = starts[apart]
+    stops = stops[apart]
+    firsts = firsts[apart]
+    lasts = lasts[apart]
     heads = _measure_levels(values, starts, np.minimum(starts + NEAR_SAMPLES, len(values)))
     tails = _measure_levels(values, np.maximum(starts, stops - NEAR_SAMPLES), stops)
     growing = np.zeros(len(apart), bool)

@@ -109,7 +109,8 @@ def _parse_samples(text: str) -> Values:
     while True:
         if (sample := parse_sample(text)) is not None and sample[2] is None:
             return (sample[:2],)
-        samples, position = [], 0
+        samples = []
+        position = 0
         while position < len(text) and (item := _ITEM.match(text, position)) is not None:
             samples.append((item[1], _parse_value(item[2])))
             gap = _GAP.match(text, item.end())
@@ -183,7 +184,8 @@ class SampleReader:
     """
 
     def __init__(self, notes: Notes, has_seconds: bool) -> None:
-        self._notes, self._has_seconds = notes, has_seconds
+        self._notes = notes
+        self._has_seconds = has_seconds
 
     def read(self, block: Block) -> pa.Table | None:
         """Return the samples of a block; None if it has none. The time is empty where none was printed."""

@@ -308,7 +308,9 @@ def read_text_parts(
         size: Their number, 0 if unknown.
         suffix: Suffix of the file name in lower case, such as `.csv`.
     """
-    cutter, reader, held = LineCutter(notes, encoding=choices.encoding), None, None
+    cutter = LineCutter(notes, encoding=choices.encoding)
+    reader = None
+    held = None
     read = 0
     while True:
         data = handle.read(FIRST_BYTES if not read else BLOCK_BYTES) or b""
@@ -320,7 +322,8 @@ def read_text_parts(
         if size and len(data) == BLOCK_BYTES and not data.strip(b"\0"):
             read = _skip_hole(cast("BinaryIO", handle), read)
         block = cutter.feed(data) if data else cutter.finish()
-        block, held = (block if held is None else held.join_next(block)), None
+        block = block if held is None else held.join_next(block)
+        held = None
         if (
             reader is None
             and block is not None

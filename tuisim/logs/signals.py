@@ -71,7 +71,8 @@ def compute_integral(
     """
     sums = np.full(len(values), np.nan)
     known = sort_known(time_s, values)
-    moments, heights = time_s[known], np.asarray(values[known], np.float64)
+    moments = time_s[known]
+    heights = np.asarray(values[known], np.float64)
     if not len(moments):
         return sums
     heights = heights[:-1] if between == Between.HOLD else heights[:-1] / 2.0 + heights[1:] / 2.0
@@ -111,7 +112,8 @@ def _sum_windows(values: FloatArray, width: int) -> FloatArray:
     A window is the end of one block of that width and the beginning of the next. The difference of two
     cumulative sums would lose the digits of small values.
     """
-    count, half = len(values), width // 2
+    count = len(values)
+    half = width // 2
     blocks = np.zeros((-(-(count + width - 1) // width), width))
     blocks.ravel()[half : half + count] = values
     from_start = np.cumsum(blocks, axis=1).ravel()

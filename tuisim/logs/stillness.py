@@ -26,7 +26,9 @@ _STILL_OF_RANGE, _STILL_OF_VALUE = 0.02, 0.02
 _STILL_NOISES = 3.0
 """A piece whose spread is below this multiple of the noise stands still."""
 
-_WANDERS, _SHORT_WANDERS, _SHORT_SAMPLES = 0.5, 0.9, 8
+_WANDERS = 0.5
+_SHORT_WANDERS = 0.9
+_SHORT_SAMPLES = 8
 """A piece, and one of fewer samples, wanders if neighbours differ by less than this fraction of its variance tells.
 
 This is half the ratio of von Neumann (1941), which is about 1 for samples that do not depend on each other. Its
@@ -146,7 +148,8 @@ def drop_moving(values: FloatArray, plateaus: PlateauArray, ground: Ground) -> P
 def _find_moving(values: FloatArray, plateaus: PlateauArray, ground: Ground) -> BoolArray:
     lengths = count_samples(read_spans(plateaus))
     moving: BoolArray = plateaus["strays"] > _MAX_STRAYS * lengths
-    spread, drift = plateaus["spread"], np.abs(plateaus["drift"])
+    spread = plateaus["spread"]
+    drift = np.abs(plateaus["drift"])
     wide = spread > max(_STILL_NOISES * ground.noise, _STILL_OF_RANGE * ground.range)
     steep = drift > _SLOPE_OF_RANGE * ground.range
     root = np.sqrt(lengths - plateaus["strays"])
@@ -234,10 +237,8 @@ def _trim(values: FloatArray, parts: Pieces, far: float) -> Pieces:
 def add_apart(plateaus: PlateauArray, parts: PlateauArray) -> PlateauArray:
     """Return plateaus and the parts that overlap none of them, in order."""
     after = np.searchsorted(plateaus["start"], parts["start"], side="right")
-    stops, starts = (
-        np.append(0, plateaus["stop"]),
-        np.append(plateaus["start"], np.iinfo(np.int64).max),
-    )
+    stops = np.append(0, plateaus["stop"])
+    starts = np.append(plateaus["start"], np.iinfo(np.int64).max)
     free = (stops[after] <= parts["start"]) & (parts["stop"] <= starts[after])
     both = np.concatenate((plateaus, parts[free]))
     return both[np.argsort(both["start"], kind="stable")]

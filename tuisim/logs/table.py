@@ -185,7 +185,8 @@ class Rows:
 
     def set_log(self, log: Log) -> None:
         """Switch to the same log with other columns: new ones are shown; conditions on removed ones are dropped."""
-        before, names = self._log.table.column_names, log.table.column_names
+        before = self._log.table.column_names
+        names = log.table.column_names
         chosen = self.chosen
         self._log = log
         self.frozen = sum(name in names for name in self.columns[: self.frozen])
@@ -204,7 +205,9 @@ class Rows:
 
     def restore(self, other: Rows) -> None:
         """Show the same columns and conditions as another table of the same log."""
-        self.columns, self.frozen, self.column = other.columns, other.frozen, other.column
+        self.columns = other.columns
+        self.frozen = other.frozen
+        self.column = other.column
         self.view = replace(
             self.view, sorted_by=other.view.sorted_by, descending=other.view.descending
         )

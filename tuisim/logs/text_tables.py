@@ -82,7 +82,8 @@ class CsvReader:
     """Reads blocks of one file; names and types of the columns are fixed by the first block."""
 
     def __init__(self, notes: Notes, choices: ReadChoices) -> None:
-        self._notes, self._choices = notes, choices
+        self._notes = notes
+        self._choices = choices
         self._heading = Heading()
         self._tables_left = choices.table - 1
         """Tables that are still to be passed by."""
@@ -112,7 +113,9 @@ class CsvReader:
                 plain, rest = self._cut_table(plain)
                 if rest is not None and self._tables_left:
                     self._tables_left -= 1
-                    block, self._heading, self._columns = rest, Heading(), {}
+                    block = rest
+                    self._heading = Heading()
+                    self._columns = {}
                     continue
                 self._is_over = rest is not None
                 columns = self._parse_block(plain, {})
@@ -157,7 +160,8 @@ class CsvReader:
         if not lines:
             return block
         if one_column := _split_only_line(lines, self._notes):
-            block, lines = Block(lines[0][0], one_column, block.newline), [(lines[0][0], "0")]
+            block = Block(lines[0][0], one_column, block.newline)
+            lines = [(lines[0][0], "0")]
         refuse_zeek(lines[0][1])
         self._heading = find_heading(lines, self._notes, self._choices.sign, self._choices.header)
         self._notes.form = replace(
@@ -175,7 +179,8 @@ class CsvReader:
 
     def _clean_block(self, block: Block) -> Block:
         """Return the block without comments, and with tabs instead of separating blanks."""
-        text, sign = block.text, self._heading.comment.encode()
+        text = block.text
+        sign = self._heading.comment.encode()
         if sign and (text.startswith(sign) or b"\n" + sign in text):
             text = re.sub(rb"(?m)^" + re.escape(sign) + rb".*$", b"", text)
         if self._heading.separator == BLANKS:
@@ -223,7 +228,8 @@ class CsvReader:
         if not line or line.isspace():
             return []
         cells = [cell.strip() for cell in split_cells(line, self._separator)]
-        usual, kinds = self._heading.kinds, parse_kinds(cells)
+        usual = self._heading.kinds
+        kinds = parse_kinds(cells)
         alike = len(kinds) == len(usual) and any(
             kind == was for kind, was in zip(kinds, usual, strict=True) if was in "nt"
         )
@@ -277,8 +283,13 @@ class CsvReader:
 
     def _parse_lines(self, block: Block) -> tuple[list[pa.Array], list[int]]:
         """Parse line by line; short rows are filled, long ones cut, and both are noted."""
-        width, usual = len(self._heading.names), set(self._heading.kinds)
-        rows, numbers, short, long, others = [], [], [], [], []
+        width = len(self._heading.names)
+        usual = set(self._heading.kinds)
+        rows = []
+        numbers = []
+        short = []
+        long = []
+        others = []
         for row, cells in self._split_rows(block):
             if len(cells) < width:
                 if usual & set("nt") and not set(parse_kinds(cells)) & set("nt"):
@@ -290,7 +301,8 @@ class CsvReader:
                 long.append(row)
             rows.append(cells[:width])
             numbers.append(row)
-        few, many = "too few cells: the rest is empty", "too many cells: the rest is skipped"
+        few = "too few cells: the rest is empty"
+        many = "too many cells: the rest is skipped"
         self._notes.add("line is not a row", "lines are not rows", others)
         self._notes.add(f"row has {few}", f"rows have {few}", short)
         self._notes.add(f"row has {many}", f"rows have {many}", long)
@@ -348,7 +360,8 @@ class CsvReader:
             for name, cells in zip(self._heading.names, columns, strict=True)
             if name not in self._columns and not _is_empty(cells)
         }
-        separator, decimal = self._separator, self._choices.decimal
+        separator = self._separator
+        decimal = self._choices.decimal
         for name, cells in texts.items():
             forms[name] = find_form(cells, separator, decimal)
         if comma := DECIMAL_COMMA in forms.values():

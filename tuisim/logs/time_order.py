@@ -150,7 +150,8 @@ def _find_restarts(seconds: FloatArray, back: IntArray) -> IntArray:
     Args:
         back: The rows at which it is less than before.
     """
-    start, restarts = 0, []
+    start = 0
+    restarts = []
     for row in back.tolist():
         passed = seconds[row - 1] - seconds[start]
         if seconds[row] <= seconds[start] + _RESTART_PART * passed:

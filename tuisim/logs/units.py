@@ -5,7 +5,9 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
-TIMEDELTA, TEXT, WHOLE = ("index",), ("variable",), ("run", "line")
+TIMEDELTA = ("index",)
+TEXT = ("variable",)
+WHOLE = ("run", "line")
 """Columns of the frames by type; all others are floating-point numbers."""
 
 

@@ -48,7 +48,8 @@ def _find_edges(
     have_third[level[np.abs(apart) > _measure_reach(levels)[level]]] = True
     apart_next = values[row + 1] - middles[level]
     passing = np.flatnonzero((apart < 0.0) != (apart_next < 0.0))
-    level, row = level[passing], row[passing]
+    level = level[passing]
+    row = row[passing]
     part = apart[passing] / (apart[passing] - apart_next[passing])
     places_mm = driven_mm[row] + part * (driven_mm[row + 1] - driven_mm[row])
     edges_mm = np.stack((np.full(len(middles), np.inf), np.full(len(middles), -np.inf)))

@@ -40,7 +40,8 @@ class CellOutput:
     """
 
     def __init__(self, *, folds: bool, quiet: bool) -> None:
-        self._folds, self._quiet = folds, quiet
+        self._folds = folds
+        self._quiet = quiet
         self._printed = 0
         self._folded: list[str] = []
         self._count = 0
@@ -91,7 +92,8 @@ def fold_lines(lines: Sequence[str], count: int) -> dict[str, str]:
         lines: The lines, at most `MAX_FOLDED_LINES`.
         count: How many there are, with those that are not among them any more.
     """
-    hidden, last = lines[:-LAST_LINES], lines[-LAST_LINES:]
+    hidden = lines[:-LAST_LINES]
+    last = lines[-LAST_LINES:]
     if len(hidden) < FEWEST_FOLDED:
         return {"text/plain": "\n".join(lines), "text/html": _format_pre(lines)}
     title = f"… {counted(count - len(last), 'more line')}"

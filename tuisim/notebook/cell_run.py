@@ -223,12 +223,10 @@ class _Follower:
         interruption: Interruption,
         run: StoredRun,
     ) -> None:
-        self._cell, self._handle, self._screen, self._interruption = (
-            cell,
-            handle,
-            screen,
-            interruption,
-        )
+        self._cell = cell
+        self._handle = handle
+        self._screen = screen
+        self._interruption = interruption
         self._run, self._arrays = run, ArrayReader(run)
         # What the notebook's functions print stands among the lines that they hear.
         folds = screen.redraws and not cell.listener.answers
@@ -239,7 +237,8 @@ class _Follower:
 
     def follow(self) -> None:
         """Block until the run ends; relay its output and events until then."""
-        handle, interruption = self._handle, self._interruption
+        handle = self._handle
+        interruption = self._interruption
         # Before anything is printed, so that the order of a cell's outputs does not depend on the program's speed.
         self._screen.draw_if_due()
         more = False
@@ -261,9 +260,11 @@ class _Follower:
 
     def _relay(self) -> bool:
         """Show new output, pass lines to the responder, and return whether there is more."""
-        rows, start = self._handle.output.read_new_rows(ROWS_AT_ONCE), 0
+        rows = self._handle.output.read_new_rows(ROWS_AT_ONCE)
+        start = 0
         for stop, row in enumerate(rows, 1):
-            side, addressed = parse_side(row), self._is_addressed(row)
+            side = parse_side(row)
+            addressed = self._is_addressed(row)
             if side or addressed:
                 # What the notebook's functions print belongs below the line that they hear.
                 self._printed.show(rows[start:stop])
@@ -289,7 +290,8 @@ class _Follower:
                 )
 
     def _hear(self, row: OutputRow) -> None:
-        listener, call = self._cell.listener, self._interruption.call
+        listener = self._cell.listener
+        call = self._interruption.call
         assert listener.responder is not None
         if not listener.in_texts:
             answer = call(partial(listener.responder, row.text.removeprefix(TEXT_PREFIX)))
@@ -313,7 +315,8 @@ class _Follower:
     def _send_answers(self) -> None:
         handle = self._handle
         if handle.waiting_for_reply:
-            answers, self._answers = self._answers, []
+            answers = self._answers
+            self._answers = []
             handle.send(Reply(tuple(answers)))
         prompt = handle.waiting_for_input
         if prompt is not None:
@@ -340,7 +343,9 @@ class _Follower:
 
 class _Screen:
     def __init__(self, cell: CellRun, stage: Stage, run: StoredRun) -> None:
-        self._cell, self._stage, self._run = cell, stage, run
+        self._cell = cell
+        self._stage = stage
+        self._run = run
         self._due = 0.0
         self._samples: list[Sample] = []
         self._position = 0
@@ -361,7 +366,8 @@ class _Screen:
 
     def draw(self, status: str, most_rows: int | None = ROWS_A_DRAWING) -> None:
         """Draw the current state of the run; search at most `most_rows` new lines for samples, None for all."""
-        cell, run = self._cell, self._run
+        cell = self._cell
+        run = self._run
         if self._stage.is_enabled("chart"):
             for row, after in islice(run.output.read_rows(self._position), most_rows):
                 self._samples += list_samples((row,))

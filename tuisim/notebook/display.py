@@ -119,7 +119,9 @@ def start_record(spec: RunSpec) -> TickRecord:
 
 def list_instruments(scene: Scene) -> list[Row]:
     """Return motors, sensors and pose of a scene."""
-    spec, record, field = scene.spec, scene.last, scene.open_field()
+    spec = scene.spec
+    record = scene.last
+    field = scene.open_field()
     instant = build_instant(record, spec, spec.world.noise)
     rows = [
         ("LeftMotor", f"{record.left_position_deg:.0f} counts, {record.left_speed_dps:.0f} °/s"),
@@ -148,7 +150,8 @@ def _list_positions(scene: Scene) -> list[Row]:
 
 def _list_settings(scene: Scene) -> list[Row]:
     spec = scene.spec
-    world, names = spec.world, (spec.robot.name, spec.profile.name)
+    world = spec.world
+    names = (spec.robot.name, spec.profile.name)
     what = ("robot", "profile", "mat", "obstacles", "seed")
     return list(
         zip(
@@ -193,7 +196,8 @@ class Stage:
     def __init__(
         self, settings: Settings, captions: Mapping[str, dict[str, Any]] = MappingProxyType({})
     ) -> None:
-        self._settings, self._captions = settings, captions
+        self._settings = settings
+        self._captions = captions
         self.redraws = hasattr(get_ipython(), "kernel")
         """Whether displays can be updated in place; a terminal would print them again."""
         self._handles: dict[str, DisplayHandle] = {}
@@ -216,9 +220,12 @@ class Stage:
         # A kernel sends printed text with a delay, but displays immediately.
         sys.stdout.flush()
         sys.stderr.flush()
-        on, off = self._settings["panels_on"], self._settings["panels_off"]
+        on = self._settings["panels_on"]
+        off = self._settings["panels_off"]
         if "world" not in off:
-            mat, pose, rays = mat_pixels(scene.files), scene.last.pose, self._settings["rays"]
+            mat = mat_pixels(scene.files)
+            pose = scene.last.pose
+            rays = self._settings["rays"]
             picture = draw_world(scene.spec, mat, pose, scene.traces, rays=rays)
             self._put("world", bundle_picture(picture, "world"))
         for name, caption in self._captions.items():

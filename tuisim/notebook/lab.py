@@ -90,7 +90,8 @@ class Lab:
 
     @responder.setter
     def responder(self, responder: Callable[[str], object] | None) -> None:
-        self._responder, self._in_texts = responder, False
+        self._responder = responder
+        self._in_texts = False
 
     @property
     def pyresponder(self) -> Callable[[str], object] | None:
@@ -103,7 +104,8 @@ class Lab:
 
     @pyresponder.setter
     def pyresponder(self, responder: Callable[[str], object] | None) -> None:
-        self._responder, self._in_texts = responder, True
+        self._responder = responder
+        self._in_texts = True
 
     # The log
 
@@ -252,7 +254,9 @@ class Lab:
             plan.spec.world.background_fit,
         )
         self._traces = self._traces if same_mat and not plan.settings["clear_trace"] else ()
-        self._persistent, self._program, self._spec = plan.persistent, plan.program, plan.spec
+        self._persistent = plan.persistent
+        self._program = plan.program
+        self._spec = plan.spec
         self._said = _select_given(plan, words)
         if text is not None:
             self._presses = plan.settings["press"]
@@ -336,7 +340,8 @@ class Lab:
         from tuisim.notebook.cell_run import Listener
 
         name = "pyresponder" if self._in_texts else "responder"
-        responder, handler = self._responder if collaborative else None, self.live_image_handler
+        responder = self._responder if collaborative else None
+        handler = self.live_image_handler
         for key, function in ((name, responder), ("live_image_handler", handler)):
             if not (function is None or callable(function)):
                 raise ConfigError(f"must be a function, got {function!r}", key=f"roboSim.{key}")
@@ -425,17 +430,21 @@ class Lab:
         from tuisim.notebook.cell_run import describe_end
         from tuisim.notebook.display import Scene, start_record
 
-        program, start = plan.program, start_record(plan.spec)
+        program = plan.program
+        start = start_record(plan.spec)
         ready = "ready: -R runs the program" if program and program.text else "ready"
         if self._last is None:
             return Scene(plan.spec, plan.files, program, start, self._traces, printed=()), ready
         is_other = program is not None and program.text != self._last.program.text
-        spec, files = plan.spec, plan.files
+        spec = plan.spec
+        files = plan.files
         if self._last.first_spec != spec:
-            spec, files = self._last.spec, find_mat_files(self._last)
+            spec = self._last.spec
+            files = find_mat_files(self._last)
         rows = self._last.output.read_all_rows()
         printed = [format_row(row) for row in rows if row.stream in TEXT_STREAMS]
-        last, samples = self._last.telemetry.last() or start, list_samples(rows)
+        last = self._last.telemetry.last() or start
+        samples = list_samples(rows)
         status = ready if is_other else describe_end(self._last)
         return Scene(spec, files, program, last, self._traces, samples, printed), status
 

@@ -21,7 +21,8 @@ if TYPE_CHECKING:
     from tuisim.notebook.app_view import AppView, CellState
     from tuisim.settings.magic_line import AppWords
 
-REQUEST, REPLY = "tuisim_app_request", "tuisim_app_reply"
+REQUEST = "tuisim_app_request"
+REPLY = "tuisim_app_reply"
 """The messages by which a page asks for the address of the app, and gets it."""
 SENTENCE = (
     "This is a picture. JupyterLab on this machine shows the live robot here, to drag it; elsewhere, "

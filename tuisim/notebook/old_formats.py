@@ -209,7 +209,9 @@ def build_robot_state(
     from tuisim.engine.runs.views import build_instant
     from tuisim.notebook.image_log import add_alpha, read_arrays
 
-    start, pose, instant = spec.world.start, record.pose, build_instant(record, spec, noise)
+    start = spec.world.start
+    pose = record.pose
+    instant = build_instant(record, spec, noise)
     measured = measure_sensors(spec.robot.sensors, instant, spec, field)
     seen = {
         sensor.name: format_values(add_alpha(rgb))

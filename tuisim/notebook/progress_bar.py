@@ -11,7 +11,9 @@ from IPython.core.getipython import get_ipython
 from IPython.display import Audio, display
 from tqdm.notebook import tqdm
 
-RATE_HZ, TONE_HZ, TONE_S = 8000, 440.0, 0.4
+RATE_HZ = 8000
+TONE_HZ = 440.0
+TONE_S = 0.4
 
 
 def build_tone() -> bytes:

@@ -42,7 +42,8 @@ class AttributeCheck:
         tree, _ = parse_readable(program.text)
         if tree is None or _ASKS_FIRST.search(text):
             return ()
-        lines, definitions = program.text.split("\n"), _find_definitions(tree)
+        lines = program.text.split("\n")
+        definitions = _find_definitions(tree)
         around = (
             path,
             program.prelude,
@@ -89,7 +90,8 @@ def _find_uses(tree: ast.Module) -> Iterator[tuple[ast.Attribute, ast.Name]]:
     """Yield each attribute that is read of a name which gets one object only, and that name."""
     attributes = [node for node in ast.walk(tree) if isinstance(node, ast.Attribute)]
     assigned = {node.attr for node in attributes if not isinstance(node.ctx, ast.Load)}
-    bound, definitions = Counter(_list_bound_names(tree)), _find_definitions(tree)
+    bound = Counter(_list_bound_names(tree))
+    definitions = _find_definitions(tree)
     for node in attributes:
         name = node.value
         if (

@@ -77,7 +77,8 @@ def _can_break(before: tokenize.TokenInfo, token: tokenize.TokenInfo) -> bool:
 def _split_line(line: str, breaks: _Breaks, width: int) -> Iterator[str]:
     indent = line[: len(line) - len(line.lstrip())]
     if breaks.comment is not None:
-        words, line = line[breaks.comment :].lstrip("#").strip(), line[: breaks.comment].rstrip()
+        words = line[breaks.comment :].lstrip("#").strip()
+        line = line[: breaks.comment].rstrip()
         sign = f"{indent}# "
         yield from textwrap.wrap(
             words,
@@ -87,13 +88,15 @@ def _split_line(line: str, breaks: _Breaks, width: int) -> Iterator[str]:
             break_long_words=False,
             break_on_hyphens=False,
         )
-    lead, start = "", len(indent)
+    lead = ""
+    start = len(indent)
     while line[start:]:
         room = width - len(indent) - len(lead)
         end = len(line) if len(line) - start <= room else _end(line, start, room, breaks.inside)
         tail = _CONTINUATION if end < len(line) and not breaks.inside[end] else ""
         yield f"{indent}{lead}{line[start:end].rstrip()}{tail}"
-        lead, start = _INDENT, end
+        lead = _INDENT
+        start = end
 
 
 def _end(line: str, start: int, room: int, inside: Mapping[int, bool]) -> int:

@@ -105,7 +105,8 @@ class _Reader:
 
     def write(self, name: str) -> str:
         """Return the program that calls a function."""
-        numbered, last = {**self._lines}, max(self._lines)
+        numbered = {**self._lines}
+        last = max(self._lines)
         # All on one line, so that the functions keep theirs; on the first if it is free, since defaults need them.
         place = last + 1 if 1 in numbered else 1
         numbered[place] = "; ".join(self._statements.values())
@@ -129,7 +130,8 @@ def _write_statement(name: str, value: Any) -> str:
     with suppress(SyntaxError, ValueError, TypeError):
         if ast.literal_eval(repr(value)) == value:
             return f"{name} = {value!r}"
-    module, own = getattr(value, "__module__", None) or "", getattr(value, "__qualname__", "")
+    module = getattr(value, "__module__", None) or ""
+    own = getattr(value, "__qualname__", "")
     if _is_imported(module) and own.isidentifier():
         return f"from {module} import {own} as {name}"
     return ""

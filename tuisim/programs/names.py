@@ -106,7 +106,8 @@ def find_unknown_names(text: str, name: str) -> tuple[UnknownName, ...] | None:
 def parse_readable(text: str) -> tuple[ast.Module | None, set[str]]:
     """Return the syntax tree of a program without the lines that are not Python yet, and the words of these lines."""
     lines = source_lines(text)
-    readable, words = list(lines), set[str]()
+    readable = list(lines)
+    words = set[str]()
     for _ in range(MAX_MENDED + 1):
         try:
             return parse_module("\n".join(readable)), words

@@ -82,7 +82,8 @@ def _build_sort_key(name: str) -> list[tuple[int, str]]:
 
 def _read_cells(path: Path) -> Iterator[tuple[str, str]]:
     """Yield (cell type, text)."""
-    file_name, missing = str(path), "there is no such notebook"
+    file_name = str(path)
+    missing = "there is no such notebook"
     data = read_bytes(path, MAX_NOTEBOOK_BYTES, ConfigError, missing, folder=missing)
     if len(data) > MAX_NOTEBOOK_BYTES:
         raise ConfigError(f"is larger than {MAX_NOTEBOOK_BYTES >> 20} MiB", file=file_name)
@@ -103,7 +104,9 @@ def read_notebook_programs(path: Path) -> list[NotebookProgram]:
         ConfigError: it cannot be read, is no notebook, or a magic line in it is wrong.
     """
     programs: list[NotebookProgram] = []
-    title, persistent, notes = "", dict[str, Any](), list[str]()
+    title = ""
+    persistent = dict[str, Any]()
+    notes = list[str]()
     folder = os.path.dirname(os.path.abspath(path))
     for place, (kind, text) in enumerate(_read_cells(path), 1):
         if kind == "markdown":

@@ -178,7 +178,8 @@ def replace_mat(text: str, name: str, mat: str) -> str:
         )
     line = lines[magic.line - 1].rstrip()
     new_options = {**magic.options, "background": mat}
-    before, quoted = str(magic.options.get("background", "\n")), shlex.quote(mat)
+    before = str(magic.options.get("background", "\n"))
+    quoted = shlex.quote(mat)
     # If the line names several mats, the last one counts.
     named = (line.rpartition(word) for word in (f'"{before}"', shlex.quote(before), before))
     for changed in (
@@ -303,8 +304,10 @@ def read_program(path: Path, *, as_python: bool = False, alone: bool = False) ->
     Raises:
         ConfigError: it is missing, a directory, not Python text, too large, or its magic line is wrong.
     """
-    file_name, hint = str(path), "name a Python file"
-    missing, folder = "there is no such program", "is a directory, not a program"
+    file_name = str(path)
+    hint = "name a Python file"
+    missing = "there is no such program"
+    folder = "is a directory, not a program"
     data = read_bytes(
         path, MAX_PROGRAM_BYTES, ConfigError, missing, folder, hint, _suggest_neighbours
     )

@@ -275,7 +275,8 @@ def decide(
     if by_brick_rules and has_rules:
         layer |= _decide_ground(facts, free)
     needed = facts.robot.choice if facts.robot else None
-    words, unseen_parts = _describe_decision(source.program, facts, layer), _find_shown(facts, free)
+    words = _describe_decision(source.program, facts, layer)
+    unseen_parts = _find_shown(facts, free)
     return Decided(
         layer, *words, needed, unseen_parts, frozenset(free), _find_refused(facts, profile)
     )

@@ -186,7 +186,8 @@ class QuestionReader:
     def _find_flow(self, steps: Iterable[ast.stmt]) -> list[ast.stmt]:
         """Return some steps, and all steps that use a value that comes from them, or run depending on it."""
         flow = dict.fromkeys(steps)
-        queue, followed = [*flow], set[str]()
+        queue = [*flow]
+        followed = set[str]()
         for step in queue:
             names = self._find_names(step) - followed
             followed |= names

@@ -190,7 +190,8 @@ def _find_end(
         values = _find_values(name, tree)
         inner = [value for line, value in values if loop.lineno <= line <= _find_last_line(loop)]
         if inner:
-            read_line, attribute = inner[-1].lineno, _find_attribute(inner[-1])
+            read_line = inner[-1].lineno
+            attribute = _find_attribute(inner[-1])
         if values and values[-1][0] < loop.lineno and _find_attribute(values[-1][1]):
             set_line = values[-1][0]
         is_silent = is_silent and bool(inner)

@@ -40,7 +40,8 @@ def list_wheel_turns(tree: ast.Module) -> Iterator[WheelTurn]:
                 left, right, count = numbers
                 is_turn = abs(left) == _SPOT_STEERING or left == -right
                 if is_turn and abs(count) in _ANGLES[method]:
-                    last_line, angle_deg = node.end_lineno, abs(count) * _DEGREES[method]
+                    last_line = node.end_lineno
+                    angle_deg = abs(count) * _DEGREES[method]
                     yield WheelTurn(node.lineno, last_line or node.lineno, method, angle_deg)
 
 

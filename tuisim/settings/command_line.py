@@ -46,7 +46,8 @@ class WordType(click.ParamType):  # type: ignore[type-arg]
     def __init__(
         self, convert: Callable[[str], Any] = str, names: Callable[[], Iterable[str]] | None = None
     ) -> None:
-        self._convert, self._names = convert, names
+        self._convert = convert
+        self._names = names
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """Convert a text; a default is returned as it is."""
@@ -88,7 +89,9 @@ class GroupedOption(click.Option):
         self, flags: Sequence[str], group: str = GENERAL, sets: str = "", adds: str = "", **how: Any
     ) -> None:
         super().__init__(flags, **how)
-        self.group, self.sets, self.adds = group, sets, adds
+        self.group = group
+        self.sets = sets
+        self.adds = adds
         self.needs_value = not self.is_flag and "flag_value" not in how
 
     def get_help_record(self, ctx: click.Context) -> tuple[str, str] | None:
@@ -194,7 +197,8 @@ class Command(click.Command):
         **how: Any,
     ) -> None:
         super().__init__(name, context_settings={"help_option_names": ["-h", "--help"]}, **how)
-        self._passes_arguments, self.instead = passes_arguments, instead
+        self._passes_arguments = passes_arguments
+        self.instead = instead
         self._shared = {
             option.name: option
             for option in self.params
@@ -204,10 +208,12 @@ class Command(click.Command):
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         """Parse words as Click does; also accept `-x=5`, and refuse the name of an option as another one's value."""
         ctx.meta[_WORDS] = tuple(args)
-        ours, program = args, None
+        ours = args
+        program = None
         if self._passes_arguments and ARGUMENTS_FOLLOW in args:
             index = args.index(ARGUMENTS_FOLLOW)
-            ours, program = args[:index], tuple(args[index + 1 :])
+            ours = args[:index]
+            program = tuple(args[index + 1 :])
         ours = [_ATTACHED.sub(r"\1", word) for word in ours]
         try:
             if not ctx.resilient_parsing:
@@ -225,7 +231,8 @@ class Command(click.Command):
         """Remove the shared options from the parameters; return those that were given, by path."""
         settings: dict[str, Any] = {}
         for name in [name for name in ctx.params if name in self._shared]:
-            value, option = ctx.params.pop(name), self._shared[name]
+            value = ctx.params.pop(name)
+            option = self._shared[name]
             if ctx.get_parameter_source(name) is ParameterSource.COMMANDLINE:
                 value = tuple(chain(*value)) if option.multiple else value
                 settings[option.sets] = (
@@ -289,7 +296,9 @@ class Group(click.Group):
         super().__init__(
             name, context_settings=settings, no_args_is_help=False, options_metavar="", **how
         )
-        self.listing, self.load, self.default = listing, load, default
+        self.listing = listing
+        self.load = load
+        self.default = default
         self._instead = instead
 
     @classmethod

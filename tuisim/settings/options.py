@@ -64,7 +64,8 @@ class Name(Value):
 
     def __init__(self, allowed: str, metavar: str, **about: Any) -> None:
         super().__init__(**about)
-        self._allowed, self._metavar = allowed, metavar
+        self._allowed = allowed
+        self._metavar = metavar
 
     @property
     def allowed(self) -> str:
@@ -179,7 +180,10 @@ class Option:
             raise _blame(error, key) from None
 
 
-WORLD, RUN, APP, PANEL = "World", "Run", "App", "Panels of the app"
+WORLD = "World"
+RUN = "Run"
+APP = "App"
+PANEL = "Panels of the app"
 
 
 def _build_word(

@@ -20,7 +20,8 @@ from tuisim.engine.files import (
 DEFAULT_PROFILE = "robolab"
 
 _COST_MS = Number(0, MAX_COST_MS)
-_NS, _MS = "_ns", "_ms"
+_NS = "_ns"
+_MS = "_ms"
 
 
 def load_profile(word: str, key: str = "") -> ProfileSpec:

@@ -90,7 +90,8 @@ def _build_option_settings() -> Iterator[Setting]:
             yield Setting(section, option.name, option.value, default, option.path, option.is_live)
 
 
-THEME, CELL_SET = f"{Section.APP}.theme", f"{Section.APP}.cells"
+THEME = f"{Section.APP}.theme"
+CELL_SET = f"{Section.APP}.cells"
 """Paths of settings that are read by themselves."""
 _THEME = Name("the name of a theme", "THEME", help="colours of the app; F10 lists the themes")
 _EVERY = (*_build_option_settings(), Setting(Section.APP, "theme", _THEME, "textual-dark"))

@@ -226,7 +226,9 @@ def compute_statistics(rows: Iterable[OutputRow]) -> dict[str, VariableStatistic
 
 
 def _compute_variable(values: Sequence[float]) -> VariableStatistics:
-    count, low, high = len(values), min(values), max(values)
+    count = len(values)
+    low = min(values)
+    high = max(values)
     scale = find_scale(low, high)
     scaled = [value / scale for value in values]
     # Exact sums: the result does not depend on the order of equal values. Rounding may lead out of their range.
@@ -236,7 +238,8 @@ def _compute_variable(values: Sequence[float]) -> VariableStatistics:
 
 
 def _read_beginning(rows: Iterable[OutputRow]) -> str:
-    text, size = [], 0
+    text = []
+    size = 0
     for row in rows:
         if row.stream is Stream.STDOUT and size < OUTPUT_CHARACTERS:
             text.append(row.text)

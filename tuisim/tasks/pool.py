@@ -55,7 +55,8 @@ def run_many(tasks: Iterable[Task], jobs: int = 0) -> Generator[Result]:
     Raises:
         LogError: the folder for the recordings cannot be created.
     """
-    jobs, folder = jobs or count_processors(), create_batch_folder()
+    jobs = jobs or count_processors()
+    folder = create_batch_folder()
     try:
         if jobs == 1:
             start_warm_process()
@@ -79,7 +80,8 @@ class _Pool:
     """
 
     def __init__(self, jobs: int, folder: Path) -> None:
-        self._jobs, self._folder = jobs, folder
+        self._jobs = jobs
+        self._folder = folder
         self._pending: dict[Future[list[Result]], list[Task]] = {}
         self._tries: dict[int, int] = {}
         self._alone: list[Task] = []

@@ -148,7 +148,8 @@ class BufferedApp(HookedApp):
 
     def choose_pixels(self, pixels: str) -> None:
         """Draw every picture with real pixels or with glyphs; one of `PIXELS`."""
-        self.pixels, self._left_pixels = pixels, None
+        self.pixels = pixels
+        self._left_pixels = None
         self._choose_graphics()
 
     @property

@@ -79,10 +79,8 @@ def split_cells(runs: Iterable[tuple[str, Style | None]], width: int) -> list[Ce
 
 
 def _look(style: Style) -> Look:
-    ink, ground = (
-        _resolve_color(style.color, PLAIN.ink),
-        _resolve_color(style.bgcolor, PLAIN.ground),
-    )
+    ink = _resolve_color(style.color, PLAIN.ink)
+    ground = _resolve_color(style.bgcolor, PLAIN.ground)
     if style.reverse:
         ink, ground = ground, ink
     if style.dim:
@@ -115,7 +113,8 @@ def draw_cells(grid: CellGrid) -> Image:
     width, height = CELL_PX
     kinds: dict[tuple[str, bool, bool, bool, bool], int] = {}
     masks: list[Mask] = []
-    numbers, colors = np.zeros((rows, columns), np.intp), np.zeros((2, rows, columns, 3), np.uint8)
+    numbers = np.zeros((rows, columns), np.intp)
+    colors = np.zeros((2, rows, columns, 3), np.uint8)
     for y, row in enumerate(grid):
         wide = ""
         for x, (text, look) in enumerate(row):
@@ -170,7 +169,9 @@ def _draw_shapes(shapes: Sequence[GlyphShape]) -> Mask:
                 )
                 draw.rectangle(corners, round(255 * shape.opacity))
             case GlyphDot():
-                x, y, radius = shape.x * _FINE, shape.y * _FINE, shape.radius * _FINE
+                x = shape.x * _FINE
+                y = shape.y * _FINE
+                radius = shape.radius * _FINE
                 draw.ellipse((x - radius, y - radius, x + radius - 1, y + radius - 1), 255)
             case Bend():
                 points = [(x * _FINE - 0.5, y * _FINE - 0.5) for x, y in shape.points]
@@ -252,7 +253,8 @@ def _draw_svg_shapes(grid: CellGrid) -> Iterator[str]:
     paths: dict[tuple[Rgb, float], list[str]] = {}
     for y, row in enumerate(grid):
         for x, (text, look) in enumerate(row):
-            left, top = x * CELL_PX[0], y * CELL_PX[1]
+            left = x * CELL_PX[0]
+            top = y * CELL_PX[1]
             for shape in draw_character(text, *CELL_PX) or ():
                 match shape:
                     case GlyphArea():

@@ -61,7 +61,8 @@ class RowsView(Widget):
     @property
     def ground_rgb(self) -> tuple[int, int, int]:
         """Background colour of the widget."""
-        own, theme = self.background_colors[1].rgb, self.picture_mode.theme
+        own = self.background_colors[1].rgb
+        theme = self.picture_mode.theme
         return theme.rgb(own) if theme else own
 
     def redraw(self) -> None:
@@ -165,15 +166,18 @@ class PixelView(RowsView):
             self.refresh(*regions)
 
     def _forget_cells(self) -> None:
-        self._cells, self._strips = np.empty((0, 0), np.int64), []
+        self._cells = np.empty((0, 0), np.int64)
+        self._strips = []
         self._coarse = np.empty((0, 0), bool)
 
     def _show(self, picture: Pixels, cell_set: CellSet, stands: bool = False) -> None:
         if self._tiles is not None:
             self._tiles = None
             self._forget_cells()
-        old, was = self._shown, self._cells
-        fine, mode = build_glyph_set(cell_set), self.color_mode
+        old = self._shown
+        was = self._cells
+        fine = build_glyph_set(cell_set)
+        mode = self.color_mode
         self._reduce(picture, mode)
         shape = len(picture) // fine.rows, picture.shape[1] // fine.cols
         as_before = was.shape == shape and old.shape == picture.shape and fine is self._glyphs
@@ -257,7 +261,8 @@ class PixelView(RowsView):
             reduced = self._shown.copy()
             rows, cols = np.nonzero((self._raw != picture).any(axis=2))
         reduced[rows, cols] = reduce_pixels(picture[rows, cols], rows, cols, mode)
-        self._shown, self._raw = reduced, picture
+        self._shown = reduced
+        self._raw = picture
 
     def render_line(self, y: int) -> Strip:
         """Return one row."""
@@ -308,7 +313,8 @@ class LinesView(RowsView):
     def set_lines(self, lines: Sequence[Sequence[Run]]) -> None:
         """Show lines from the top; a line that is too long ends in an ellipsis."""
         width = self.size.width
-        old, self._lines = self._lines, [cut_line(line, width) if width else line for line in lines]
+        old = self._lines
+        self._lines = [cut_line(line, width) if width else line for line in lines]
         if len(old) != len(self._lines):
             self._text_strips = [None] * len(self._lines)
             self.refresh()
@@ -409,7 +415,8 @@ def _find_changes(before: Sequence[Run], now: Sequence[Run]) -> list[tuple[int, 
 
 @lru_cache(maxsize=8192)
 def _build_segment(cell: int) -> Segment:
-    fore, back = Color.from_rgb(*unpack_rgb(cell >> 24)), Color.from_rgb(*unpack_rgb(cell))
+    fore = Color.from_rgb(*unpack_rgb(cell >> 24))
+    back = Color.from_rgb(*unpack_rgb(cell))
     return Segment(GLYPHS[cell >> 48] if fore != back else " ", Style(color=fore, bgcolor=back))
 
 
@@ -436,7 +443,8 @@ class LazyStrip(MadeOnDemand):
 
     def divide(self, cuts: Iterable[int]) -> Sequence[Strip]:
         """Return the strips between the cuts, the first one from column 0."""
-        pieces, start = [], 0
+        pieces = []
+        start = 0
         for cut in cuts:
             if cut <= self.cell_length:
                 pieces.append(self.crop(start, cut))
@@ -494,7 +502,8 @@ class JoinedStrip(LazyStrip):
 
     def _cut(self, start: int, end: int) -> list[Strip]:
         """Return the parts between two columns."""
-        cut, offset = [], 0
+        cut = []
+        offset = 0
         for part in self.parts:
             cut.append(
                 part.crop(max(start - offset, 0), max(min(end - offset, part.cell_length), 0))

@@ -76,7 +76,11 @@ def find_runs(changed: npt.NDArray[np.bool_], gap: int = 1) -> list[CellRun]:
     )
 
 
-TRUECOLOR, PALETTE_256, PALETTE_16, PALETTE_8, MONO = 1 << 24, 256, 16, 8, 2
+TRUECOLOR = 1 << 24
+PALETTE_256 = 256
+PALETTE_16 = 16
+PALETTE_8 = 8
+MONO = 2
 """Colour depths, as numbers of colours; the two of `MONO` are those of the terminal itself."""
 
 _CUBE = (0, 95, 135, 175, 215, 255)
@@ -232,7 +236,8 @@ def _find_nearest_16(
     return nearest
 
 
-_INK_GREYS, _DARKNESS = (0, 128, 211, 220, 255), (1.0, 0.5, 0.25, 0.125, 0.0)
+_INK_GREYS = (0, 128, 211, 220, 255)
+_DARKNESS = (1.0, 0.5, 0.25, 0.125, 0.0)
 """Two, four and eight times the ink for the darker greys of the mats, which are hardly darker than each other."""
 _THRESHOLDS = (np.array([0, 4, 6, 2, 1, 5, 7, 3], np.float32) + 0.5) / 8
 """The order in which the points of a cell get dots: each dot far from the last one."""
@@ -253,7 +258,8 @@ def draw_mono_cells(
     picture: Pixels, glyphs: GlyphSet, places: CellIndex, cell_set: CellSet
 ) -> Cells:
     """Return some cells of a picture as dots or signs, shape (n,)."""
-    rows, cols = len(picture) // glyphs.rows, picture.shape[1] // glyphs.cols
+    rows = len(picture) // glyphs.rows
+    cols = picture.shape[1] // glyphs.cols
     points = picture.reshape(rows, glyphs.rows, cols, glyphs.cols, 3).transpose(0, 2, 1, 3, 4)[
         places
     ]

@@ -67,7 +67,8 @@ def is_flat(picture: Pixels, glyphs: GlyphSet, places: CellIndex) -> npt.NDArray
 
 def _read_points(picture: Pixels, glyphs: GlyphSet, places: CellIndex) -> npt.NDArray[np.uint8]:
     """Return the points of some cells, shape (3, points of a cell, n)."""
-    rows, cols = len(picture) // glyphs.rows, picture.shape[1] // glyphs.cols
+    rows = len(picture) // glyphs.rows
+    cols = picture.shape[1] // glyphs.cols
     points = picture.reshape(rows, glyphs.rows, cols, glyphs.cols, 3).transpose(4, 1, 3, 0, 2)
     return points[..., places[0], places[1]].reshape(3, glyphs.rows * glyphs.cols, -1)
 
@@ -103,7 +104,8 @@ def _draw_half_blocks(points: npt.NDArray[np.uint8], glyphs: GlyphSet) -> Cells:
     of_rows = np.rint(points.reshape(3, glyphs.rows, glyphs.cols, -1).mean(axis=2)).astype(np.uint8)
     covered = np.repeat(glyphs.covered[0, :: glyphs.cols, None], of_rows.shape[2], axis=1)
     fore, back = _find_typical(_convert_lab(of_rows), covered)
-    packed, numbers = pack_rgb(of_rows.astype(np.int64)), np.arange(of_rows.shape[2])
+    packed = pack_rgb(of_rows.astype(np.int64))
+    numbers = np.arange(of_rows.shape[2])
     cells: Cells = glyphs.numbers[0] << 48 | packed[fore, numbers] << 24 | packed[back, numbers]
     return cells
 

@@ -207,10 +207,8 @@ def _build_image_cell(cell: int, depth: int) -> Cell:
     if depth == MONO:
         glyph = GLYPHS[cell >> 48]
         return glyph, CellLook((), "" if glyph == " " else "39")
-    fore, back = (
-        build_color_codes(cell >> 24 & 0xFFFFFF, depth)[0],
-        build_color_codes(cell & 0xFFFFFF, depth)[1],
-    )
+    fore = build_color_codes(cell >> 24 & 0xFFFFFF, depth)[0]
+    back = build_color_codes(cell & 0xFFFFFF, depth)[1]
     return (
         (" ", CellLook((), "", back))
         if _is_same(fore, back)
@@ -257,16 +255,15 @@ def _look(style: Style | None, depth: int) -> CellLook:
     link = f"id={style._link_id};{style.link}" if style.link else ""
     if depth == MONO:
         return CellLook(_strip_colors(attributes, style), link=link)
-    foreground, background = (
-        _build_color_codes(style.color, depth)[0],
-        _build_color_codes(style.bgcolor, depth)[1],
-    )
+    foreground = _build_color_codes(style.color, depth)[0]
+    background = _build_color_codes(style.bgcolor, depth)[1]
     return CellLook(attributes, foreground, background, link)
 
 
 _LIT = 50.0
 """A background brighter than this, of 255, is a highlight, and not that of a panel or dialog."""
-_REVERSE, _ITALIC = "7", "3"
+_REVERSE = "7"
+_ITALIC = "3"
 
 
 def _strip_colors(attributes: tuple[str, ...], style: Style) -> tuple[str, ...]:
@@ -312,7 +309,11 @@ class _LookRun:
     def __init__(
         self, x: int, y: int, look: CellLook, cells: list[tuple[str, CellLook]], row: _Row
     ) -> None:
-        self.x, self.y, self.look, self.cells, self.row = x, y, look, cells, row
+        self.x = x
+        self.y = y
+        self.look = look
+        self.cells = cells
+        self.row = row
 
 
 def _join_looks(first: CellLook, second: CellLook) -> CellLook | None:
@@ -404,11 +405,13 @@ class _Pen:
             # A blank looks the same bold or not.
             if not _SEEN_ON_BLANKS.isdisjoint(common):
                 yield "0"
-                now, common = CellLook(), ()
+                now = CellLook()
+                common = ()
         elif common != look.attributes:
             if not set(common) <= set(look.attributes):
                 yield "0"
-                now, common = CellLook(), ()
+                now = CellLook()
+                common = ()
             yield from (code for code in look.attributes if code not in common)
         if look.foreground and look.foreground != now.foreground:
             yield look.foreground
@@ -420,7 +423,8 @@ class _Pen:
             self._parts.append(f"\x1b]8;{look.link or ';'}\x1b\\")
         if changes := list(self._switch_look(look)):
             self._parts.append(f"\x1b[{';'.join(changes)}m")
-        attributes, foreground = look.attributes, look.foreground
+        attributes = look.attributes
+        foreground = look.foreground
         if not foreground:
             begun = changes[:1] == ["0"]
             attributes, foreground = (

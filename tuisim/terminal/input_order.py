@@ -223,7 +223,9 @@ class InputOrder:
         give: Callable[[events.Event], Awaitable[None]],
         waits: Callable[[events.Event], bool],
     ) -> None:
-        self._app, self._give, self._waits = app, give, waits
+        self._app = app
+        self._give = give
+        self._waits = waits
         self._held: deque[events.Event] = deque()
         self._turn: Turn | None = None
         self._typed_into: Widget | None = None
@@ -253,7 +255,8 @@ class InputOrder:
             into = self._find_field(self._held[0])
             if self._turn is not None and (into is None or into is not self._typed_into):
                 return
-            event, self._typed_into = self._held.popleft(), into
+            event = self._held.popleft()
+            self._typed_into = into
             await (self._give if isinstance(event, _POINTER) else self._give_turn)(event)
         if self._held and self._turn is None and not self._asks_again:
             self._asks_again = True
@@ -272,7 +275,8 @@ class InputOrder:
 
     async def _give_turn(self, event: events.Event) -> None:
         """Give out an event as a new turn, or as more of the one that goes on: letters are typed in a row."""
-        turn, is_new = self._turn, self._turn is None
+        turn = self._turn
+        is_new = self._turn is None
         if turn is None:
             turn = self._turn = Turn(self._end_turn)
         turn.add(self._app)

@@ -179,7 +179,8 @@ class Pacer:
     def record_answer(self) -> None:
         """Note an answer of the terminal."""
         self._heard_s = self._clock()
-        first, self.answers = not self.answers, True
+        first = not self.answers
+        self.answers = True
         if not self._asked:
             return
         asked_s, _ = self._asked.popleft()

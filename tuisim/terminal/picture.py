@@ -17,7 +17,8 @@ from tuisim.terminal.cells import TRUECOLOR, CellRun, build_color_codes, find_ru
 from tuisim.terminal.picture_options import Protocol
 from tuisim.terminal.pixels import Pixels, pack_rgb
 
-MAX_POINTS, MAX_PAGE_POINTS = 12, 32
+MAX_POINTS = 12
+MAX_PAGE_POINTS = 32
 """Most points of a picture across a cell: in a terminal, and in a page, which shows each pixel of a fine screen."""
 
 
@@ -122,7 +123,8 @@ class TilePicture:
             Runs of changed cells: row, first column, number of cells. All rows if the size has changed.
         """
         width, height = self.graphics.cell_points
-        rows, cols = len(points) // height, points.shape[1] // width
+        rows = len(points) // height
+        cols = points.shape[1] // width
         self._changes += 1
         if points.shape != self._points.shape:
             self._versions = np.full((rows, cols), self._changes)
@@ -174,7 +176,8 @@ class TilePicture:
 
     def row(self, row: int) -> list[PictureCell]:
         """Return the cells of a row."""
-        versions, coarse = self._versions[row].tolist(), self._coarse[row]
+        versions = self._versions[row].tolist()
+        coarse = self._coarse[row]
         blocks = self.draw_half_blocks(row) if coarse.any() else []
         return [
             PictureCell(self, row, col, version, blocks[col] if is_coarse else None)
@@ -248,21 +251,25 @@ class TilePicture:
             (cell.row // _TILE_ROWS * _TILE_ROWS, cell.col // _TILE_COLS * _TILE_COLS)
             for cell in cells
         }
-        parts, stale = [], []
+        parts = []
+        stale = []
         for tile in sorted(tiles):
             codes, old = self._send(tile)
             parts.append(codes)
             stale += old
-        cursor, pen = (-1, -1), 0
+        cursor = (-1, -1)
+        pen = 0
         for cell in sorted(cells, key=lambda one: (one.row, one.col)):
-            top, left = cell.row // _TILE_ROWS * _TILE_ROWS, cell.col // _TILE_COLS * _TILE_COLS
+            top = cell.row // _TILE_ROWS * _TILE_ROWS
+            left = cell.col // _TILE_COLS * _TILE_COLS
             _, image = self._tiles[top, left]
             if (cell.row, cell.col) != cursor:
                 parts.append(f"\x1b[{cell.row + down + 1};{cell.col + right + 1}H")
             if image != pen:
                 parts.append(f"\x1b[{build_color_codes(image, TRUECOLOR)[0]}m")
             parts.append(kitty.build_placeholder(cell.col - left, cell.row - top))
-            cursor, pen = (cell.row, cell.col + 1), image
+            cursor = (cell.row, cell.col + 1)
+            pen = image
         parts.append("\x1b[0m")
         parts += [self._wrap_codes(kitty.delete(image)) for image in stale]
         return "".join(parts) + self._drop_tiles()
@@ -281,7 +288,8 @@ class TilePicture:
         number = self._first_image + 2 * (top // _TILE_ROWS * _MAX_TILES + left // _TILE_COLS)
         image = number + 1 if had is not None and had[1] == number else number
         self._tiles[tile] = version, image
-        cols, rows = some.right - some.left, some.bottom - some.top
+        cols = some.right - some.left
+        rows = some.bottom - some.top
         # What comes back through tmux would be taken for keys.
         codes = kitty.encode(
             self._cut_part(some), image, cols, rows, answers_errors=not self.graphics.in_tmux

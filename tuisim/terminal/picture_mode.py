@@ -205,7 +205,8 @@ def describe_terminal(fd: int, environment: Mapping[str, str]) -> TerminalReport
         fd: The terminal, open for reading and writing.
         environment: That of the app.
     """
-    term, first = environment.get("TERM", ""), read_first_environment()
+    term = environment.get("TERM", "")
+    first = read_first_environment()
     is_asked = term not in SILENT
     try:
         answers = ask_everything(fd) if is_asked else Answers()
@@ -280,7 +281,8 @@ class Sharpness:
 
     def record_change(self, *, is_coarse: bool = False) -> None:
         """Note that the picture was drawn; `is_coarse` if it is to be drawn more finely as soon as that is possible."""
-        self._changed_s, self._is_coarse = time.monotonic(), is_coarse
+        self._changed_s = time.monotonic()
+        self._is_coarse = is_coarse
         if is_coarse and self._timer is None:
             self._timer = self._widget.set_interval(REFINE_S, self._step)
 

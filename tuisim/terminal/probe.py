@@ -305,7 +305,8 @@ def _ask_terminal() -> CellSet:
     keys, so a terminal that answers nothing is asked for as little as possible.
     """
     fd = sys.stdin.fileno()
-    before, position = termios.tcgetattr(fd), b""
+    before = termios.tcgetattr(fd)
+    position = b""
     try:
         tty.setcbreak(fd, termios.TCSANOW)
         position = _ask_width(fd)
@@ -342,7 +343,8 @@ def _ask(
     fd: int, query: str, is_answered: Callable[[bytes], object], output: int | None = None
 ) -> bytes:
     _write(query, output)
-    answer, give_up = b"", time.monotonic() + ANSWER_S
+    answer = b""
+    give_up = time.monotonic() + ANSWER_S
     while not is_answered(answer) and (left := give_up - time.monotonic()) > 0:
         if select.select([fd], [], [], left)[0]:
             data = os.read(fd, 1024)

@@ -161,8 +161,10 @@ class AnswerParser(XTermParser):
 
     def feed(self, data: str) -> Iterable[Message]:
         """Yield a message for each answer, and then those for the rest of the data."""
-        was, self._begun = self._begun, ""
-        text, is_end = was + data, not data
+        was = self._begun
+        self._begun = ""
+        text = was + data
+        is_end = not data
         if "\x1b" in text:
             for match in ANSWER.finditer(text):
                 was = ""
@@ -193,7 +195,8 @@ class AnswerParser(XTermParser):
         """Yield what has been held back for long enough; drop an answer whose rest does not come."""
         is_answer = _BEGUN.match(self._begun)
         if self._begun and monotonic() - self._begun_s >= (_REST_S if is_answer else _KEY_S):
-            text, self._begun = "" if is_answer else self._begun, ""
+            text = "" if is_answer else self._begun
+            self._begun = ""
             if text:
                 yield from super().feed(text)
         yield from super().tick()

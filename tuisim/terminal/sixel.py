@@ -16,7 +16,8 @@ MAX_COLORS = 256
 """Number of colours that every terminal with sixel supports."""
 PERCENT = 100
 """Largest value of a colour channel."""
-_BEGIN, _END = "\x1bP0;1q", "\x1b\\"
+_BEGIN = "\x1bP0;1q"
+_END = "\x1b\\"
 """Pixels that are not drawn keep their colour."""
 _FIRST_CHARACTER = 63
 _SHORT_RUN = 3

@@ -327,7 +327,8 @@ class ThoroughCompositor(Compositor):
         """Lay out the widgets, and return which of them are hidden, shown and resized since they were last told."""
         before = self._full_map
         hidden, visible, resized = super().reflow(parent, size)
-        previous_map, self._told = self._told, self._full_map
+        previous_map = self._told
+        self._told = self._full_map
         if before is not previous_map:
             visible = visible | (self._told.keys() - previous_map.keys())
             resized = resized | {

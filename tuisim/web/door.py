@@ -32,7 +32,8 @@ class Door:
     def __init__(
         self, report: Callable[[str], None], clock: Callable[[], float] = time.monotonic
     ) -> None:
-        self._report, self._clock = report, clock
+        self._report = report
+        self._clock = clock
         self._strangers: dict[web.RequestHandler, asyncio.TimerHandle] = {}
         self._told_s = -_TOLD_EVERY_S
 

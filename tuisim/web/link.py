@@ -62,8 +62,10 @@ class Link:
             reason: What the browser that has shown the app until now is told.
         """
         await _send(socket, socket.send_str, first)
-        before, self.socket = self.socket, socket
-        waiting, self._waiting = self._waiting, []
+        before = self.socket
+        self.socket = socket
+        waiting = self._waiting
+        self._waiting = []
         for text in waiting:
             await self.send_str(text)
         if before is not None:

@@ -83,7 +83,9 @@ class Server:
         limits: ServerLimits,
         report: Callable[[str], None] = lambda _: None,
     ) -> None:
-        self._command, self._limits, self._report = command, limits, report
+        self._command = command
+        self._limits = limits
+        self._report = report
         self.gate = gate
         self._downloads, self._uploads = Downloads(), Uploads()
         self.door = Door(report)
@@ -158,7 +160,8 @@ class Server:
     async def _handle_socket(self, request: web.Request) -> web.StreamResponse:
         socket = web.WebSocketResponse(heartbeat=_HEARTBEAT_S, timeout=_CLOSE_WITHIN_S)
         await socket.prepare(request)
-        session_id, size = request.query.get("session"), _read_size(request)
+        session_id = request.query.get("session")
+        size = _read_size(request)
         visit = (
             await self.begin(*size, socket) if session_id is None else self._visits.get(session_id)
         )

@@ -109,7 +109,8 @@ class WebSession(AppService):
             # Otherwise ctrl+c in the server's terminal would reach the app before the server can end it.
             start_new_session=True,
         )
-        self._process, self._stdin = process, process.stdin
+        self._process = process
+        self._stdin = process.stdin
         return process
 
     async def on_meta(self, data: bytes) -> None:
@@ -139,10 +140,8 @@ class WebSession(AppService):
         await output.readuntil(_HEAD)
         handlers = {b"D": self.on_data, b"M": self.on_meta, b"P": self.on_packed}
         while True:
-            kind, size = (
-                await output.readexactly(1),
-                int.from_bytes(await output.readexactly(4), "big"),
-            )
+            kind = await output.readexactly(1)
+            size = int.from_bytes(await output.readexactly(4), "big")
             # What follows cannot be understood either. A program can reach the app that runs it: it is not trusted.
             if kind not in handlers or size > _MAX_PACKET_BYTES:
                 self._kill()

@@ -33,12 +33,14 @@ class Uploads:
             ConfigError: the name is no plain one, there is no room, or the file cannot be written.
         """
         _check_name(name)
-        size, path = 0, None
+        size = 0
+        path = None
         try:
             # It has no name: whatever ends this process, nothing of it is left.
             with TemporaryFile(dir=folder) as file:
                 async for piece in content:
-                    size, self._used_bytes = size + len(piece), self._used_bytes + len(piece)
+                    size = size + len(piece)
+                    self._used_bytes = self._used_bytes + len(piece)
                     self._check_room(size)
                     await asyncio.to_thread(file.write, piece)
                 path = await asyncio.to_thread(keep_file, folder, name, file)
@@ -81,7 +83,8 @@ def keep_file(folder: Path, name: str, content: IO[bytes]) -> Path:
     Raises:
         OSError: it cannot be written.
     """
-    stem, suffix = Path(name).stem, Path(name).suffix
+    stem = Path(name).stem
+    suffix = Path(name).suffix
     for number in count(1):
         path = folder / (name if number == 1 else f"{stem}-{number}{suffix}")
         content.seek(0)

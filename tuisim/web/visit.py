@@ -92,11 +92,13 @@ class Visit:
         limits: VisitLimits,
         report: Callable[[str], None],
     ) -> None:
-        self._limits, self._report = limits, report
+        self._limits = limits
+        self._report = report
         self._link, self._activity = Link(), Activity()
         self._session = WebSession(command, self._link, downloads)
         self._session.told = self._handle_news
-        self._program, self._runs = "", False
+        self._program = ""
+        self._runs = False
         """The program that the app has open, and whether it runs, as far as it has told."""
         self._is_used = False
         """Whether somebody has used the app, or it has run a program."""

@@ -23,7 +23,8 @@ async def test_a_cleared_log_and_a_cleared_trace_come_back() -> None:
     drive = "tank_drive.on_for_seconds(20, 20, 0.5)\nprint('Colour: 7')\n"
     async with open_lab(drive, autorun=True, speed=0.0) as (pilot, app):
         await until(pilot, lambda: app.run_controller.build_snapshot().end == End.FINISHED)
-        output, world = app.panel_area.output, app.panel_area.world
+        output = app.panel_area.output
+        world = app.panel_area.world
         assert output is not None and world is not None
         await until(pilot, lambda: "Colour: 7" in output.copy_text().text)
         await pilot.press("x")

@@ -62,7 +62,8 @@ async def held(pilot: Pilot[Any]) -> LabApp:
 async def test_the_robot_stays_where_it_is_put_while_a_line_holds_the_run() -> None:
     async with LabApp(settings(STEPS, autorun=True, speed=8.0)).run_test(size=(120, 40)) as pilot:
         app = await held(pilot)
-        tick, start = app.run_controller.timeline.newest, app.run_controller.pose
+        tick = app.run_controller.timeline.newest
+        start = app.run_controller.pose
         app.run_controller.set_noise(NoiseSpec(20, 0))
         # The code is what one reads: the arrow keys move in it.
         await pilot.press("up", "right")

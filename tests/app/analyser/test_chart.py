@@ -41,7 +41,8 @@ async def test_the_charts_of_the_analyser_are_what_was_drawn(
         view = chart.query_one(PlotView)
         await until(pilot, lambda: view._tiles is not None)
         await until_quiet(pilot)
-        seen, drawn = part_of(seen_on(pilot), view), drawn_by(view, protocol)
+        seen = part_of(seen_on(pilot), view)
+        drawn = drawn_by(view, protocol)
         assert np.array_equal(on_canvas(view, seen), on_canvas(view, drawn))
         assert len(chart._pictures) == 1 + facets
         for rgb in TRACE_COLORS[:2]:

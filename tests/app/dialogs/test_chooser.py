@@ -78,7 +78,8 @@ async def test_tab_completes_a_path_and_enter_looks_into_a_folder(tmp_path: Path
         )
         await pilot.pause()
         await pilot.press("/")
-        field, listed = app.screen.query_one(Input), app.screen.query_one(OptionList)
+        field = app.screen.query_one(Input)
+        listed = app.screen.query_one(OptionList)
         field.value = f"{tmp_path}/ro"
         await pilot.press("tab")
         assert field.value == f"{tmp_path}/robots/"
@@ -100,7 +101,8 @@ async def test_tab_says_when_several_names_go_on_in_other_ways(tmp_path: Path) -
         app.push_screen(Chooser("Open", GROUPS, path_hint="path", read=no_file, suffixes=[".py"]))
         await pilot.pause()
         await pilot.press("/")
-        field, message = app.screen.query_one(Input), app.screen.query_one("#message", Static)
+        field = app.screen.query_one(Input)
+        message = app.screen.query_one("#message", Static)
         field.value = f"{tmp_path}/m"
         await pilot.press("tab")
         assert (field.value, str(message.content)) == (f"{tmp_path}/min", "")

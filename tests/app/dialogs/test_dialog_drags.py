@@ -19,8 +19,10 @@ async def test_no_drag_outlives_a_dialog() -> None:
         pilot,
         app,
     ):
-        view, slider = app.query_one(WorldView), app.query_one("#light", Slider)
-        chart, brick = app.query_one(Chart), app.query_one(Brick)
+        view = app.query_one(WorldView)
+        slider = app.query_one("#light", Slider)
+        chart = app.query_one(Chart)
+        brick = app.query_one(Brick)
         assert view._port is not None
         col, row = view._port.to_px(app.run_controller.pose.x_mm, app.run_controller.pose.y_mm)
         grips: list[tuple[Widget, tuple[int, int]]] = [
@@ -35,7 +37,8 @@ async def test_no_drag_outlives_a_dialog() -> None:
             dialog.dismiss()
             await until(pilot, lambda: len(app.screen_stack) == 1)
         # As while the mouse presses a button, or drags the cursor.
-        brick._clicked, chart._dragging = "enter", True
+        brick._clicked = "enter"
+        chart._dragging = True
         app.capture_mouse(brick)
         app.capture_mouse(chart)
         app.capture_mouse(None)

@@ -83,7 +83,8 @@ async def test_a_stored_run_is_shown_as_it_was_and_run_anew_alike() -> None:
                 app.run_controller.run_id != run_id and app.run_controller.state == RunPhase.ENDED
             ),
         )
-        again, first = RunStore().load_run(app.run_controller.run_id), RunStore().load_run(run_id)
+        again = RunStore().load_run(app.run_controller.run_id)
+        first = RunStore().load_run(run_id)
         assert again.program.text == first.program.text
         assert again.telemetry.array()[:100].tobytes() == first.telemetry.array()[:100].tobytes()
 

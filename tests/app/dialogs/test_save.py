@@ -22,7 +22,8 @@ async def test_what_cannot_be_the_name_of_a_file_is_refused(key: str) -> None:
         app = await ready(pilot)
         for kind, name in NO_NAMES.items():
             await pilot.press(key)
-            dialog, field = app.screen, app.screen.query_one(Input)
+            dialog = app.screen
+            field = app.screen.query_one(Input)
             field.focus()
             field.value = name
             await pilot.press("enter")

@@ -100,7 +100,8 @@ async def test_a_wrong_value_is_told_and_can_be_corrected() -> None:
 @pytest.mark.parametrize("size", [(80, 24), (40, 12)], ids=str)
 async def test_every_setting_can_be_reached_and_says_what_it_is(size: tuple[int, int]) -> None:
     async with open_settings(size) as (pilot, app):
-        listed, seen = app.screen.query_one(OptionList), []
+        listed = app.screen.query_one(OptionList)
+        seen = []
 
         def is_shown(name: str) -> bool:
             return name in screen_text(app)

@@ -206,7 +206,8 @@ async def test_leaving_with_unsaved_changes_asks(answer: str, in_file: str, tmp_
 
 @pytest.mark.slow
 async def test_opening_another_program_with_unsaved_changes_asks(tmp_path: Path) -> None:
-    path, other = tmp_path / "prog.py", tmp_path / "other.py"
+    path = tmp_path / "prog.py"
+    other = tmp_path / "other.py"
     other.write_text("print('other')\n")
     async with open_code(own(path)) as (pilot, app, code):
         await typed(pilot, code, "x", "escape")

@@ -15,7 +15,8 @@ def test_a_cut_row_ends_with_a_mark() -> None:
 
 
 def test_a_lit_row_keeps_the_background_of_a_selection() -> None:
-    base, lit = Style(bgcolor="black"), Style(bgcolor="yellow")
+    base = Style(bgcolor="black")
+    lit = Style(bgcolor="yellow")
     selected = Style(bgcolor="blue")
     row = highlight_strip(Strip([Segment("a", base), Segment("b", selected)]), base, lit)
     assert [piece.style.bgcolor.name for piece in row if piece.style and piece.style.bgcolor] == [

@@ -61,7 +61,8 @@ def test_what_the_encoding_lacks_leaves_the_file_alone(tmp_path: Path) -> None:
 
 
 def test_a_link_stays_a_link(tmp_path: Path) -> None:
-    path, link = tmp_path / "p.py", tmp_path / "link.py"
+    path = tmp_path / "p.py"
+    link = tmp_path / "link.py"
     path.write_text("1\n")
     link.symlink_to(path)
     write_text(link, "2\n", TextFormat())

@@ -24,7 +24,8 @@ from tuisim.guide.excerpt import draw_excerpt, flatten_passage
 from tuisim.guide.search import SearchResult, search
 from tuisim.guide.text import list_headings
 
-SMALL, MEDIUM = (80, 24), (120, 40)
+SMALL = (80, 24)
+MEDIUM = (120, 40)
 DOWN_TO_PAGE = ["down"] * 2
 """From the keys past the first part to its first page."""
 

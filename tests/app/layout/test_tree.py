@@ -28,7 +28,8 @@ def test_a_single_part_stays_as_it_is() -> None:
 def test_parts_side_by_side_get_shares_by_their_weights() -> None:
     node = join_nodes(Axis.COLUMNS, ["world", "chart"])
     assert isinstance(node, Split)
-    world, chart = PANELS["world"].weight, PANELS["chart"].weight
+    world = PANELS["world"].weight
+    chart = PANELS["chart"].weight
     assert node.shares == pytest.approx((world / (world + chart), chart / (world + chart)))
 
 

@@ -106,10 +106,8 @@ async def test_with_few_colours_what_is_around_a_disc_is_plain_and_darker(
         picture = app.panel.query(PixelView).first()._shown @ np.array([0.299, 0.587, 0.114])
     high, wide = picture.shape
     # In the middle is the edge between red and white, the left half lies on the former.
-    disc, corner = (
-        picture[high // 2 - 2 : high // 2 + 2, wide // 2 + 1 : wide // 2 + 3],
-        picture[:1, :1],
-    )
+    disc = picture[high // 2 - 2 : high // 2 + 2, wide // 2 + 1 : wide // 2 + 3]
+    corner = picture[:1, :1]
     assert np.ptp(corner) == 0
     assert corner.max() < disc.mean()
 

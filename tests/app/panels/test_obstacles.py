@@ -101,7 +101,8 @@ async def test_a_wrong_number_is_refused() -> None:
         ):
             entry = app.query_one(f"#{field}", Input)
             entry.focus()
-            right, entry.value = entry.value, typed
+            right = entry.value
+            entry.value = typed
             await pilot.press("enter")
             await refused(pilot, said)
             assert boxes(app) == before

@@ -253,7 +253,8 @@ async def test_a_file_would_show_what_the_panel_shows() -> None:
     async with open_lab(LOGS, "Obstacles_Test", size=(80, 24)) as (pilot, app):
         await pilot.press("R")
         await until_state(pilot, RunPhase.ENDED)
-        view, recording = app.query_one(WorldView), app.run_controller.timeline.recording
+        view = app.query_one(WorldView)
+        recording = app.run_controller.timeline.recording
         assert recording is not None
         last = recording.telemetry.last()
         await until(

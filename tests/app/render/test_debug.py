@@ -16,7 +16,8 @@ def text(view: DebugView, width: int) -> list[str]:
 @pytest.mark.parametrize("width", [26, 38])
 @pytest.mark.parametrize("state", list(RunPhase))
 def test_all_keys_are_told_in_a_narrow_panel_too(state: RunPhase, width: int) -> None:
-    narrow, wide = text(DebugView(state), width), text(DebugView(state), 80)
+    narrow = text(DebugView(state), width)
+    wide = text(DebugView(state), 80)
     assert max(map(len, narrow)) <= width
     assert " ".join(narrow).split() == " ".join(wide).split()
 

@@ -108,7 +108,9 @@ class Watched(BrowserMotor):
 
 def rows_of(sim: Simulation) -> list[Row]:
     """Return what a run did."""
-    left, right, sink = sim.left, sim.right, sim._sink
+    left = sim.left
+    right = sim.right
+    sink = sim._sink
     assert isinstance(left, Watched) and isinstance(right, Watched) and isinstance(sink, MemorySink)
     left.begin()
     right.begin()
@@ -143,10 +145,8 @@ def carry_out(
     spec: RunSpec, text: str, prelude: str, files: FieldFiles, folder: Path
 ) -> dict[str, Any]:
     """Run a program to its end, in this process; what it reads is recorded in a folder."""
-    program, options = (
-        Program("program.py", text, prelude),
-        RunOptions(speed=0.0, time_limit_s=60.0, stall_limit_s=0.0),
-    )
+    program = Program("program.py", text, prelude)
+    options = RunOptions(speed=0.0, time_limit_s=60.0, stall_limit_s=0.0)
     config = RunConfig(Path(), program, spec, files, options)
     sim, lines = Simulation(spec, MemorySink()), Lines()
     output = OutputRecorder()

@@ -73,7 +73,8 @@ def commanded(motor: Motor) -> CommandedMotor:
 def run(sim: Simulation, motor: Motor, dps: float) -> None:
     """Run a motor as the library of its profile does."""
     if isinstance(motor, ServoMotor):
-        now_us, settings = sim.tick * 1_000_000 // sim.spec.profile.tick_hz, motor.control.settings
+        now_us = sim.tick * 1_000_000 // sim.spec.profile.tick_hz
+        settings = motor.control.settings
         motor.control.run(
             now_us, motor.measure_start, settings.counts(int(dps)), settings.acceleration
         )

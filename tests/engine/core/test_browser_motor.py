@@ -50,7 +50,8 @@ def lab(tmp_path_factory: pytest.TempPathFactory) -> Mapping[str, Course]:
 @pytest.mark.slow_cases("on_spin", "pairs_made_anew")
 @pytest.mark.parametrize("name", RECORDS)
 def test_a_recorded_program(name: str, lab: Mapping[str, Course]) -> None:
-    record, done = RECORDS[name], lab[name]
+    record = RECORDS[name]
+    done = lab[name]
     assert done.rows == [row[2:] for row in record["rows"]]
     assert done.lines == [tuple(line) for line in record["lines"]]
     assert (done.end, done.end_tick, done.end_ms) == (

@@ -62,7 +62,8 @@ def overlap_mm(sim: Simulation) -> float:
 
 def test_a_turn_beside_a_wall_pushes_the_robot_off_it() -> None:
     robot = RobotSpec()
-    solids, corners = Solids(WorldSpec(solid=True), robot), build_outline(robot).corners_mm
+    solids = Solids(WorldSpec(solid=True), robot)
+    corners = build_outline(robot).corners_mm
     apart_mm = 1.0 - min(y for _, y in corners)
     deep_mm = -min(world_point(Pose(0, apart_mm, 20), *corner)[1] for corner in corners)
     assert deep_mm > 0

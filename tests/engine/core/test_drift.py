@@ -168,10 +168,8 @@ def test_slip_loses_a_share_of_each_turn_and_spreads_as_its_root() -> None:
 def test_slip_grows_with_acceleration_and_steady_wheels_do_not_slip() -> None:
     lost_mm: dict[float, float] = {}
     for weight in (3.0, 9.0):
-        robot, world = (
-            RobotSpec(weight=weight),
-            WorldSpec(start=Pose(0.0, 500.0, 0.0), drift=DriftSpec(slip_pc=5.0)),
-        )
+        robot = RobotSpec(weight=weight)
+        world = WorldSpec(start=Pose(0.0, 500.0, 0.0), drift=DriftSpec(slip_pc=5.0))
         found = []
         for seed in range(40):
             sim = Simulation(RunSpec(robot, world, PROFILES["robolab"], seed), MemorySink())
@@ -182,7 +180,8 @@ def test_slip_grows_with_acceleration_and_steady_wheels_do_not_slip() -> None:
                 (sim.left.position_deg + sim.right.position_deg) / 2 * MM_PER_DEG - sim.pose.x_mm
             )
             sim.advance(180)
-            heading_deg, tail = sim.pose.heading_deg, sim.pose
+            heading_deg = sim.pose.heading_deg
+            tail = sim.pose
             sim.advance(100)
             assert sim.pose.heading_deg == heading_deg
             assert hypot(sim.pose.x_mm - tail.x_mm, sim.pose.y_mm - tail.y_mm) == pytest.approx(

@@ -51,7 +51,8 @@ def records(sim: Simulation) -> np.ndarray:
     return np.frombuffer(sink.records(), np.dtype(list(TICK_FIELDS))).copy()
 
 
-TICKS, TICK_HZ = 60, 100
+TICKS = 60
+TICK_HZ = 100
 
 
 def roll_one_by_one(drive: Drive, turns_deg: tuple[float, float]) -> list[tuple[float, ...]]:
@@ -66,7 +67,8 @@ def roll_one_by_one(drive: Drive, turns_deg: tuple[float, float]) -> list[tuple[
 
 
 def new_records() -> Records:
-    buffer, offsets = bytearray(64 * TICKS), range(0, 64 * TICKS, 64)
+    buffer = bytearray(64 * TICKS)
+    offsets = range(0, 64 * TICKS, 64)
     return Records(buffer, offsets, range(1, TICKS + 1), 0, 0, 0, TICK_HZ)
 
 
@@ -80,7 +82,8 @@ def test_ticks_together_are_as_one_by_one(
     rows = roll_one_by_one(rolled, turns_deg)
     counts = [[tick * deg for tick in range(1, TICKS + 1)] for deg in turns_deg]
     sides = [*zip(turns_deg, counts, strict=True)]
-    together, evenly = new_records(), new_records()
+    together = new_records()
+    evenly = new_records()
     gliding.glide(together, *(Glide([deg] * TICKS, places) for deg, places in sides))
     even.glide_evenly(evenly, *(EvenGlide(deg, iter(places)) for deg, places in sides))
     names = ["tick", "x_mm", "y_mm", "heading_deg", "gyro_zero_deg", *MOTOR_FIELDS]
@@ -129,7 +132,8 @@ def test_reversed_motors_turn_the_wheels_backwards_in_the_browser_simulator_too(
 @pytest.mark.parametrize("profile", ["robolab", "nbev3devsim"])
 @pytest.mark.parametrize("gear_ratio", [0.5, 3.0])
 def test_a_gear_divides_the_turns_of_the_motor(profile: str, gear_ratio: float) -> None:
-    robot, speeds = RobotSpec(weight=0.0), (250.0, 310.0)
+    robot = RobotSpec(weight=0.0)
+    speeds = (250.0, 310.0)
     world = WorldSpec(start=Pose(500.0, 571.0, 20.0), noise=NoiseSpec())
     ends = []
     for spec, factor in ((robot, 1.0), (replace(robot, gear_ratio=gear_ratio), gear_ratio)):

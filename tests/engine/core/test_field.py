@@ -7,7 +7,8 @@ import pytest
 from tuisim.engine.core.css_colors import Rgb
 from tuisim.engine.core.field import Field, build_disc_mask, find_floor_rgb
 
-WIDTH, HEIGHT = 9, 8
+WIDTH = 9
+HEIGHT = 8
 
 
 BLACK = (0, 0, 0)

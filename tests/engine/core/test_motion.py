@@ -25,7 +25,8 @@ def test_arc(left_dps: float, right_dps: float, ticks: int) -> None:
     commanded(sim.left).run(left_dps)
     commanded(sim.right).run(right_dps)
     sim.advance(ticks)
-    seconds, spacing_mm = ticks / 100, 180.0
+    seconds = ticks / 100
+    spacing_mm = 180.0
     turn = (right_dps - left_dps) * MM_PER_DEG * seconds / spacing_mm
     radius_mm = spacing_mm / 2 * (left_dps + right_dps) / (right_dps - left_dps)
     first = math.radians(START.heading_deg)

@@ -39,7 +39,8 @@ class Memory:
 
 
 def record(seed: int, most: int, looks: Random | None = None) -> tuple[Lab, bytes]:
-    lab, memory = Lab(seed=seed), Memory()
+    lab = Lab(seed=seed)
+    memory = Memory()
     lab.sim.restart(lab.sim.spec, lab.sink, memory)
     lab.run(seed, most, looks)
     return lab, bytes(memory.data)

@@ -105,10 +105,8 @@ def test_readings_are_distributed_as_means_of_pixels(kind: str) -> None:
 
 @pytest.mark.parametrize("level", [1, 10, 128])
 def test_clamping_moves_a_value_as_its_errors_do(level: int) -> None:
-    law, errors = (
-        compute_clamping(level),
-        [round(level * (2 * byte / 255 - 1)) for byte in range(256)],
-    )
+    law = compute_clamping(level)
+    errors = [round(level * (2 * byte / 255 - 1)) for byte in range(256)]
     for value in range(256):
         mean, variance = moments([float(min(max(value + error, 0), 255)) for error in errors])
         assert (value + law.shift[value], law.variance[value]) == pytest.approx(

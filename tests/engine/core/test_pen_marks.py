@@ -56,7 +56,8 @@ def test_a_pen_draws_on_the_floor_around_a_mat(white: Field) -> None:
     world = WorldSpec(start=Pose(-300.0, 500.0, 180.0), pen_marks=True)
     spec = RunSpec(RobotSpec(pen=pen), world, ROBOLAB)
     record = (0, 0, -300.0, 500.0, 180.0, *[0] * 5, FLAG_PEN_DOWN, 0)
-    on_floor, off = PenMarks(replace(white, floor_rgb=(250, 251, 252)), spec), PenMarks(white, spec)
+    on_floor = PenMarks(replace(white, floor_rgb=(250, 251, 252)), spec)
+    off = PenMarks(white, spec)
     for marks in (on_floor, off):
         marks.add_records([record])
     corner = -300 - 10, FIELD_HEIGHT_MM - 500 - 10

@@ -16,7 +16,8 @@ from tests.running import Run
 
 TURN_MM = math.pi * 56
 MM_PER_DEG = TURN_MM / 360
-OLD, TRUE = "nbev3devsim", "robolab"
+OLD = "nbev3devsim"
+TRUE = "robolab"
 
 
 def timed_mm(speed_dps: float, seconds: float) -> float:

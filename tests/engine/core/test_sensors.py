@@ -161,7 +161,8 @@ def test_the_panels_show_it(kind: SensorKind) -> None:
     run = read_out(kind)
     last = run.telemetry.last()
     assert last is not None
-    instant, field = build_instant(last, run.spec, run.spec.world.noise), open_mat(run)
+    instant = build_instant(last, run.spec, run.spec.world.noise)
+    field = open_mat(run)
     (sensor,) = run.spec.robot.sensors
     now = Snapshot(
         RunPhase.ENDED, None, run.spec, field, instant, line=0, speed=1.0, pen_down=False

@@ -40,7 +40,8 @@ def _time(chance: random.Random) -> str:
 
 
 def _drive(chance: random.Random) -> str:
-    call, speeds = chance.choice(("tank.on", "steer.on")), (_speed(chance), _speed(chance))
+    call = chance.choice(("tank.on", "steer.on"))
+    speeds = (_speed(chance), _speed(chance))
     return f"{call}({speeds[0]}, {speeds[1]}); sleep({_time(chance)})"
 
 
@@ -55,7 +56,8 @@ def _command(chance: random.Random) -> str:
     command = chance.choice(
         ("run_forever", "run_timed", "run_to_abs_pos", "run_to_rel_pos", "run_direct", "stop")
     )
-    speed, position = 10 * _speed(chance), chance.randint(-300, 300)
+    speed = 10 * _speed(chance)
+    position = chance.randint(-300, 300)
     stop = chance.choice(("coast", "brake", "hold"))
     given = f"speed_sp={speed}, position_sp={position}, duty_cycle_sp={_speed(chance)}"
     given += f", time_sp={chance.randint(0, 500)}, stop_action='{stop}'"
@@ -91,7 +93,9 @@ def _read(chance: random.Random) -> str:
 
 
 def _loop(chance: random.Random) -> str:
-    speed, turns, wait = _speed(chance), chance.randint(2, 25), _time(chance)
+    speed = _speed(chance)
+    turns = chance.randint(2, 25)
+    wait = _time(chance)
     return (
         f"for turn in range({turns}):\n"
         f"        error = (ColorSensor().reflected_light_intensity + left.position) % 40 - turn\n"
@@ -114,12 +118,15 @@ EV3DEV2_STEPS: Sequence[Step] = (_drive, _move, _command, _set, _read, _loop, _w
 
 
 def _then(chance: random.Random) -> str:
-    stop, wait = chance.choice(("COAST", "BRAKE", "HOLD")), chance.random() < 0.6
+    stop = chance.choice(("COAST", "BRAKE", "HOLD"))
+    wait = chance.random() < 0.6
     return f"then=Stop.{stop}, wait={wait}"
 
 
 def _motor_call(chance: random.Random) -> str:
-    speed, angle, duty = 8 * _speed(chance), chance.randint(-400, 400), _speed(chance)
+    speed = 8 * _speed(chance)
+    angle = chance.randint(-400, 400)
+    duty = _speed(chance)
     call = chance.choice(
         (
             f"run({speed})",

@@ -97,7 +97,8 @@ def test_a_run_file_that_could_not_be_read_when_the_catalogue_was_made_is_read_a
     recorder.print("a: 1")
     if ends:
         recorder.end(summary="over")
-    before, path = store.runs(), recorder.run.folder / RUN_FILE
+    before = store.runs()
+    path = recorder.run.folder / RUN_FILE
     content = path.read_bytes()
     path.write_bytes(b"{")
     (store.home / CATALOGUE_FILE).unlink()
@@ -149,7 +150,8 @@ def _info(run_id: str) -> RunInfo:
 def test_a_catalogue_that_another_process_has_made_meanwhile_is_kept(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    home, other = tmp_path / "home", tmp_path / "other"
+    home = tmp_path / "home"
+    other = tmp_path / "other"
     home.mkdir()
     Catalogue(other, lambda: ()).add(_info("a"))
 

@@ -17,9 +17,11 @@ from tuisim.engine.runs.diff import (
 
 def test_the_difference_of_two_runs_is_told() -> None:
     text = "for speed in (30, 60):\n    tank_drive.on_for_seconds({}, speed, 0.5)\n    print('Speed: ' + str(speed))\n"
-    one, two = stored(text.format(30), {"seed": 1}), stored(text.format("speed"), {"seed": 2})
+    one = stored(text.format(30), {"seed": 1})
+    two = stored(text.format("speed"), {"seed": 2})
     found = diff_runs(one, two)
-    recording, setup = dict(describe_recording(found)), dict(describe_setup(found))
+    recording = dict(describe_recording(found))
+    setup = dict(describe_setup(found))
     assert "x_mm" in recording["first differing tick"]
     assert "mm apart" in recording["poses"]
     assert setup["settings, seed"] == "1 | 2"
@@ -58,7 +60,8 @@ def test_a_full_turn_is_no_parting() -> None:
 )
 def test_output_is_compared_up_to_a_tick(until: int | None, prefix: bool, row: int | None) -> None:
     text = "for number in (1, 2):\n    tank_drive.on_for_seconds(20, 20, 0.5)\n    print({})\n"
-    one, two = stored(text.format("'a', number")), stored(text.format("'a', number * number"))
+    one = stored(text.format("'a', number"))
+    two = stored(text.format("'a', number * number"))
     found = diff_runs(one, two, until=until, prefix=prefix)
     assert (found.output and found.output.row) == row
     assert (found.tick, found.same) == (None, row is None)
@@ -72,6 +75,7 @@ def test_runs_part_only_while_both_last() -> None:
 
 
 def test_output_that_ends_earlier_is_told() -> None:
-    one, two = stored("print('a')\n"), stored("print('a')\nprint('b')\n")
+    one = stored("print('a')\n")
+    two = stored("print('a')\nprint('b')\n")
     recording = dict(describe_recording(diff_runs(one, two)))
     assert recording["first differing output row"].startswith("2: no more | 'b' at ")

@@ -164,7 +164,8 @@ def test_a_frame_of_more_ticks_takes_no_more_calls(
             replace(spec, world=replace(spec.world, obstacles=(Obstacle(300, 900, 50, 300),)))
         )
         recorder.drive(400, 310, ticks)
-        run, counted = recorder.end(), 0
+        run = recorder.end()
+        counted = 0
 
         def count(frame: FrameType, event: str, _: object) -> None:
             nonlocal counted

@@ -50,7 +50,8 @@ def test_a_hold_that_swings_back_is_recorded(hold: Callable[..., Done]) -> None:
 def test_the_file_has_a_record_for_each_tick_and_is_the_same_again(
     hold: Callable[..., Done],
 ) -> None:
-    first, second = hold(), hold()
+    first = hold()
+    second = hold()
     path = first.run.folder / MOTORS_FILE
     assert path.stat().st_size == HEADER_BYTES + 16 * first.run.telemetry.count
     assert path.read_bytes() == (second.run.folder / MOTORS_FILE).read_bytes()

@@ -21,7 +21,8 @@ from tuisim.engine.runs.readings import (
 from tuisim.engine.runs.records import HEADER_BYTES
 from tuisim.engine.runs.side_files import READINGS_FILE
 
-TOUCH, PLACE = READING_CODES["in1", "TOUCH"], READING_CODES["outD", "position"]
+TOUCH = READING_CODES["in1", "TOUCH"]
+PLACE = READING_CODES["outD", "position"]
 
 
 def test_every_reading_can_be_read_at_once(tmp_path: Path) -> None:

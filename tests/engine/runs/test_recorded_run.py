@@ -102,7 +102,8 @@ def stored(text: str, choices: Mapping[str, Any] | None = None) -> StoredRun:
 
 def test_sensors_see_what_the_pen_had_drawn_by_then() -> None:
     run = stored("tank_drive.on_for_seconds(50, 50, 0.6)\n", {"pen.down": True, "pen_marks": True})
-    mat, recording = open_mat(run), Recording(run)
+    mat = open_mat(run)
+    recording = Recording(run)
     records = run.telemetry.array().tolist()
     for tick in (30, 30, 31, 0, 59):
         drawn = PenMarks(mat, run.spec)
@@ -114,7 +115,8 @@ def test_sensors_see_what_the_pen_had_drawn_by_then() -> None:
 
 def test_the_pen_of_a_long_run_takes_little_memory() -> None:
     run = stored("import time\ntime.sleep(100)\n", {"pen.down": True, "pen_marks": True})
-    mat, recording = open_mat(run), Recording(run)
+    mat = open_mat(run)
+    recording = Recording(run)
     assert recording.newest >= 10_000
     tracemalloc.start()
     try:

@@ -37,7 +37,8 @@ def _say_full(_: OSError) -> Exception:
 def test_writers_ask_for_less_and_lose_nothing(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    real, free = os.posix_fallocate, 1_500_000
+    real = os.posix_fallocate
+    free = 1_500_000
 
     def reserve(fd: int, start: int, size: int) -> None:
         if start + size > free:

@@ -35,7 +35,8 @@ ACTIONS = (
 def assert_is_replayed(done: Done, actions: Sequence[UserAction] = ()) -> None:
     import numpy as np
 
-    folder, recorded = done.run.folder, done.run.telemetry.array()
+    folder = done.run.folder
+    recorded = done.run.telemetry.array()
     commands = read_commands(folder)
     assert not commands.left_out
     ticks = replay(done.run.first_spec, commands.unpack(), actions, len(recorded) - 1)
@@ -162,7 +163,9 @@ FASTEST_MM_S = 1000.0
 
 def _draw_commands(random: Random, profile: str) -> list[SimulationCommand]:
     """Return commands in their order, with values that the record of commands may have."""
-    law, commands, time_ns = PROFILES[profile].motor_law, [], 0
+    law = PROFILES[profile].motor_law
+    commands = []
+    time_ns = 0
     calls = [call for call, spec in CALLS.items() if law in spec.laws]
     for _ in range(random.randint(1, 12)):
         time_ns += random.choice((0, 1, 10**6, 10**7, 10**8))
@@ -185,7 +188,8 @@ def test_no_commands_break_the_simulation_or_the_laws_of_its_motors(profile: str
     import numpy as np
 
     spec = RunSpec(RobotSpec(), WorldSpec(), PROFILES[profile])
-    hz, random = spec.profile.tick_hz, Random(29)
+    hz = spec.profile.tick_hz
+    random = Random(29)
     for _ in range(60):
         commands = _draw_commands(random, profile)
         try:

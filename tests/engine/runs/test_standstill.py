@@ -23,7 +23,9 @@ WALL = WorldSpec(start=Pose(2117.0, 571.5, 0.0), solid=True)
 BOX = replace(WALL, start=Pose(500.0, 571.5, 0.0), obstacles=(Obstacle(745.0, 500.0, 50.0, 143.0),))
 SPEC = RunSpec(ROBOT, WALL, PROFILES["ev3"])
 
-ON, BACK, STOP = (400.0, 400.0), (-400.0, -400.0), None
+ON = (400.0, 400.0)
+BACK = (-400.0, -400.0)
+STOP = None
 """At 400 °/s the robot needs 102.3 ticks to the wall."""
 
 PUSHED = "stood at the wall from 1.05 s on, its wheels pushed for 0.9 s"

@@ -369,7 +369,8 @@ def test_a_run_cannot_be_removed_while_it_is_copied_into_the_store(
 ) -> None:
     # The lock file of the process that has run it.
     os.close(hold(logged.folder))
-    there, seen = RunStore(tmp_path / "other"), []
+    there = RunStore(tmp_path / "other")
+    seen = []
 
     def remove_and_write(folder: Path, data: dict[str, Any]) -> None:
         seen.append([row.id for row in there.runs()])

@@ -75,7 +75,8 @@ def put(writer: TelemetryWriter, count: int) -> None:
 
 
 def test_run_without_files_is_empty(tmp_path: Path) -> None:
-    telemetry, output = TelemetryView(tmp_path), OutputView(tmp_path)
+    telemetry = TelemetryView(tmp_path)
+    output = OutputView(tmp_path)
     assert (telemetry.count, telemetry.last(), len(telemetry.array())) == (0, None, 0)
     assert (output.read_new_rows(), output.read_all_rows(), output.length) == ([], [], 0)
     assert telemetry.array().dtype.names == tuple(name for name, _ in TICK_FIELDS)
@@ -149,7 +150,8 @@ def test_no_such_record(tmp_path: Path, index: int) -> None:
 
 
 def test_new_rows_come_once_and_in_portions(tmp_path: Path) -> None:
-    writer, view = OutputWriter(tmp_path), OutputView(tmp_path)
+    writer = OutputWriter(tmp_path)
+    view = OutputView(tmp_path)
     for number in range(5):
         writer.write(f"line {number} é".encode(), number, number * 10, number, Stream.STDOUT)
     assert [row.text for row in view.read_new_rows(2)] == ["line 0 é", "line 1 é"]
@@ -305,7 +307,8 @@ LONG = 100_000
 
 def followed(folder: Path) -> TelemetryView:
     """Follow a long run while it is written."""
-    writer, view = drive_for(folder, 10), TelemetryView(folder, is_checked=True)
+    writer = drive_for(folder, 10)
+    view = TelemetryView(folder, is_checked=True)
     for _ in range(10):
         extend(writer, LONG // 10)
         assert view.count == writer.count
@@ -356,7 +359,8 @@ LINES = 40_000
 
 def printed(folder: Path) -> OutputView:
     """Follow a run that prints much, and one line of 100 kB."""
-    writer, view = OutputWriter(folder), OutputView(folder, is_checked=True)
+    writer = OutputWriter(folder)
+    view = OutputView(folder, is_checked=True)
     for number in range(LINES):
         writer.write(
             b"x" * 100_000 if number == 100 else (b"line %d" % number).ljust(100),

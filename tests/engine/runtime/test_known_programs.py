@@ -26,17 +26,16 @@ from tuisim.engine.runtime.loader import LOOP_HOOK, compile_program
     ids=["wrong", "with a warning", "with an ignored warning", "too deep", "too long"],
 )
 def test_a_program_with_anything_to_tell_is_compiled_by_its_own_process(text: str) -> None:
-    known, filters = KnownPrograms(), list(warnings.filters)
+    known = KnownPrograms()
+    filters = list(warnings.filters)
     limit = sys.getrecursionlimit()
     assert [known.code(Program("p.py", text), False) for _ in range(3)] == [None, None, None]
     assert (warnings.filters, sys.getrecursionlimit()) == (filters, limit)
 
 
 def test_a_program_is_compiled_when_it_is_run_again(monkeypatch: pytest.MonkeyPatch) -> None:
-    known, program = (
-        KnownPrograms(),
-        Program("p.py", "for i in (1, 2): print(i)", path="/folder/p.py"),
-    )
+    known = KnownPrograms()
+    program = Program("p.py", "for i in (1, 2): print(i)", path="/folder/p.py")
     compiled = []
 
     def compile_noted(text: str, file: str, drops_annotations: bool) -> types.CodeType:
@@ -60,7 +59,8 @@ def test_the_same_text_in_another_file_is_another_program() -> None:
 
 
 def test_a_program_whose_annotations_are_dropped_is_another_program() -> None:
-    known, program = KnownPrograms(), Program("p.py", "def f(a: b): pass")
+    known = KnownPrograms()
+    program = Program("p.py", "def f(a: b): pass")
     codes = [known.code(program, drops) for drops in (True, False, True, False)]
     names = [code and "b" in code.co_names for code in codes]
     assert names == [None, None, False, True]

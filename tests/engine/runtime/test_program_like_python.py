@@ -72,7 +72,8 @@ def same_for_all(text: str, folder: Path) -> str:
 )
 @cases("text", PROGRAMS)
 def test_a_program_prints_and_ends_as_with_python_itself(text: str, tmp_path: Path) -> None:
-    theirs, ours = tmp_path / "theirs", tmp_path / "ours"
+    theirs = tmp_path / "theirs"
+    ours = tmp_path / "ours"
     for folder in (theirs, ours):
         folder.mkdir()
     python = as_python(text, theirs)

@@ -62,7 +62,8 @@ def test_a_run_with_messages_can_be_repeated(start: Start, tmp_path: Path) -> No
     first = talked(start(text, replies=True, noise=(3, 50)))
     assert first.lines[0] == "Heard: 0 ['one'] 0.0"
     assert talked(start(text, replies=True, noise=(3, 50))).recording == first.recording
-    stored, scratch = RunStore().load_run(first.run.run_id), RunStore(tmp_path)
+    stored = RunStore().load_run(first.run.run_id)
+    scratch = RunStore(tmp_path)
     again = over(rerun(stored, scratch))
     assert same(stored, scratch.load_run(again.run.run_id)).same
     assert again.lines == first.lines
@@ -107,6 +108,7 @@ def test_an_answer_to_input_takes_no_time_and_comes_again(start: Start, tmp_path
     assert done.lines == ["Ada 0.1"]
     (row,) = map(json.loads, (handle.folder / "actions.jsonl").read_text().splitlines())
     assert UserAction.from_plain(row) == UserAction(10, Answer("Ada", at_once=True))
-    stored, scratch = RunStore().load_run(handle.run_id), RunStore(tmp_path)
+    stored = RunStore().load_run(handle.run_id)
+    scratch = RunStore(tmp_path)
     again = over(rerun(stored, scratch))
     assert same(stored, scratch.load_run(again.run.run_id)).same

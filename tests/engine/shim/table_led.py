@@ -27,7 +27,10 @@ def seen(times, wait):
     return found
 """
 
-OFF, GREEN, RED, AMBER = [0, 0], [0, 255], [255, 0], [255, 255]
+OFF = [0, 0]
+GREEN = [0, 255]
+RED = [255, 0]
+AMBER = [255, 255]
 
 LED = Table(
     "ev3dev2.led",

@@ -87,8 +87,10 @@ def run_program(
     path.write_text(text, "utf-8")
     source = read_program(find_program(str(path)))
     found = build_program_settings(source, {} if robot is None else {"robot": robot})
-    program, spec = found.apply(source.program), build_run_spec(found.settings)
-    program, how = set_surroundings(program), RunOptions(time_limit_s=60.0, **options)
+    program = found.apply(source.program)
+    spec = build_run_spec(found.settings)
+    program = set_surroundings(program)
+    how = RunOptions(time_limit_s=60.0, **options)
     return over(RunHandle(program, spec, field_files(spec), how, RunStore(), of_many=of_many))
 
 
@@ -179,7 +181,8 @@ def test_a_late_program_is_the_same_in_every_way_of_running(
 def test_exports_have_the_columns_of_the_whole_robot(home: Path, tmp_path: Path) -> None:
     late = LATE_PROGRAMS["late, after driving"]
     done = run_program(tmp_path, late.text)
-    run, target = done.run.stored(), tmp_path / "ticks.csv"
+    run = done.run.stored()
+    target = tmp_path / "ticks.csv"
     export_telemetry(run, str(target))
     head, *rows = target.read_text("utf-8").splitlines()
     duty = head.split(",").index("motor_a_duty_pc")

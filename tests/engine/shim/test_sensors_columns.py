@@ -21,10 +21,12 @@ print(touch.is_pressed, eye.proximity)
 @pytest.mark.parametrize("profile", ["ev3", "robolab"])
 def test_columns_of_touch_and_infrared(run_on: RunOn, profile: str) -> None:
     done = run_on(PROGRAM, "eyes", "furnished", profile)
-    names, mat = ["touch_pressed", "infrared_proximity"], open_field(done.run.field)
+    names = ["touch_pressed", "infrared_proximity"]
+    mat = open_field(done.run.field)
     columns = compute_column_values(names, done.run.telemetry.array(), done.run, [], mat)
     assert list(columns) == names
-    pressed, proximity = columns["touch_pressed"], columns["infrared_proximity"]
+    pressed = columns["touch_pressed"]
+    proximity = columns["infrared_proximity"]
     assert (pressed[0], pressed[-1]) == (0, 1)
     assert proximity[0] == 54
     assert done.lines == [f"1 {proximity[-1]:.0f}"]

@@ -13,12 +13,10 @@ from tuisim.pictures.charts.text_chart import ChartPainter, ChartState
 from tuisim.pictures.charts.traces import Traces
 
 LEVELS = [100.0] * 20 + [60.0] * 20 + [0.0] * 20
-GROUND, AXIS, WHITE, SHADED = (
-    (10, 20, 30),
-    (200, 200, 200),
-    (255, 255, 255),
-    ((40, 50, 60), (30, 40, 50)),
-)
+GROUND = (10, 20, 30)
+AXIS = (200, 200, 200)
+WHITE = (255, 255, 255)
+SHADED = ((40, 50, 60), (30, 40, 50))
 
 
 def chart(values: list[float]) -> tuple[Traces, ChartState]:

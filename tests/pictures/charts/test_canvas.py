@@ -7,7 +7,8 @@ import pytest
 
 from tuisim.pictures.charts.canvas import Curve, draw_canvas, draw_xy_chart, drop_hidden_points
 
-RED, BLUE = (255, 0, 0), (0, 0, 255)
+RED = (255, 0, 0)
+BLUE = (0, 0, 255)
 
 
 def curve(values: list[float], rgb: tuple[int, int, int] = RED, marker: str = "o") -> Curve:
@@ -39,7 +40,8 @@ def test_braille_joins_its_dots() -> None:
 
 
 def test_of_neighbours_at_one_dot_the_first_is_kept() -> None:
-    xs, ys = np.array([0.0, 0.001, 10.0, 10.0]), np.array([0.0, 0.001, 10.0, 10.0])
+    xs = np.array([0.0, 0.001, 10.0, 10.0])
+    ys = np.array([0.0, 0.001, 10.0, 10.0])
     found = drop_hidden_points(xs, ys, ((0.0, 10.0), (0.0, 10.0)), 10, 5)
     assert [one.tolist() for one in found] == [[0.0, 10.0], [0.0, 10.0]]
 

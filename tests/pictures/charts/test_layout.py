@@ -269,7 +269,8 @@ def test_a_picture_is_drawn_at_another_place() -> None:
 
 def test_a_span_is_shaded_as_far_as_it_goes() -> None:
     chart = build_chart(log_of({"time": [0.0, 10.0], "a": [1.0, 2.0]}), View(), 800, 400)
-    whole, part = Span(0.0, 10.0, ("all",), "a"), Span(2.0, 4.0, ("part",), "a")
+    whole = Span(0.0, 10.0, ("all",), "a")
+    part = Span(2.0, 4.0, ("part",), "a")
     drawing = lay_out_chart(replace(chart, spans=(whole, part)), 800, 400)
     wide, narrow = (shape.width for shape in drawing.shapes if isinstance(shape, Shade))
     assert narrow == pytest.approx(wide / 5, rel=0.05)

@@ -13,8 +13,12 @@ from tuisim.pictures.charts.canvas import Curve
 from tuisim.pictures.charts.plot_image import Plot, PlotInks, draw_plot
 
 CELL = WIDTH, HEIGHT = 8, 16
-COLUMNS, ROWS = 30, 10
-GROUND, AXIS, CURSOR, CURVE = (10, 20, 30), (200, 200, 200), (255, 255, 255), (240, 0, 0)
+COLUMNS = 30
+ROWS = 10
+GROUND = (10, 20, 30)
+AXIS = (200, 200, 200)
+CURSOR = (255, 255, 255)
+CURVE = (240, 0, 0)
 EMPTY = Plot((), COLUMNS, ROWS, (0.0, 10.0), (0.0, 100.0), (), (), True, ())
 
 

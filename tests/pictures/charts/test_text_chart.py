@@ -70,7 +70,8 @@ def test_an_empty_chart_says_how_to_log(width: int, height: int) -> None:
 
 
 def test_a_chart_without_a_tick_says_so() -> None:
-    logged, measured = traces("Colour"), traces("gyro_deg")
+    logged = traces("Colour")
+    measured = traces("gyro_deg")
     for made in (logged, measured):
         for trace in made:
             trace.on = False
@@ -242,7 +243,9 @@ def test_the_canvas_is_kept_while_only_the_cursor_moves(monkeypatch: pytest.Monk
         return draw_canvas(*words)
 
     monkeypatch.setattr("tuisim.pictures.charts.text_chart.draw_canvas", counted)
-    painter, made, state = ChartPainter(), traces("Colour"), ChartState(cursor_s=1.0)
+    painter = ChartPainter()
+    made = traces("Colour")
+    state = ChartState(cursor_s=1.0)
 
     painter.paint(made, state, 80, 16)
     painter.paint(made, replace(state, cursor_s=2.0), 80, 16)

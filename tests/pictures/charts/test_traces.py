@@ -51,10 +51,8 @@ def test_what_is_not_finite_or_not_in_order_is_put_right() -> None:
 def test_figures_of_a_span_are_those_of_its_points(span: tuple[float, float]) -> None:
     values = 1e6 + np.sin(TIMES) * np.random.default_rng(1).random(len(TIMES))
     inside = values[(span[0] <= TIMES) & (span[1] >= TIMES)]
-    found, expected = (
-        Pyramid(TIMES, values).compute_summary(*span),
-        compute_summary(inside, quantiles=()),
-    )
+    found = Pyramid(TIMES, values).compute_summary(*span)
+    expected = compute_summary(inside, quantiles=())
     assert astuple(found)[:6] == pytest.approx(astuple(expected)[:6], rel=1e-9, nan_ok=True)
 
 
@@ -76,7 +74,8 @@ def test_no_points_at_all() -> None:
 
 
 def test_the_place_that_is_looked_at_is_marked() -> None:
-    xs, ys = np.array([0.0, 5.0, 10.0]), np.array([0.0, 5.0, 10.0])
+    xs = np.array([0.0, 5.0, 10.0])
+    ys = np.array([0.0, 5.0, 10.0])
     lines = draw_xy_chart(xs, ys, 2, ("x", "y"), (255, 0, 0), "braille", 40, 12)
     text = ["".join(part for part, _ in line) for line in lines]
     assert len(text) == 12
@@ -85,7 +84,8 @@ def test_the_place_that_is_looked_at_is_marked() -> None:
 
 
 def test_a_trace_without_end_keeps_its_extremes_in_bounded_memory() -> None:
-    trace, values = Trace("Colour", 0), np.sin(TIMES)
+    trace = Trace("Colour", 0)
+    values = np.sin(TIMES)
     values[[1_234, 150_001]] = 9.0, -9.0
     for at in range(0, len(TIMES), 100):
         trace.add(TIMES[at : at + 100].tolist(), values[at : at + 100].tolist())
@@ -131,6 +131,7 @@ def test_each_trace_keeps_its_colour() -> None:
 
 
 def test_a_path_is_seen_between_its_limits() -> None:
-    xs, ys = np.array([10.0, 10.1, 12.0, 14.0]), np.array([100.0, 100.1, 108.0, 100.0])
+    xs = np.array([10.0, 10.1, 12.0, 14.0])
+    ys = np.array([100.0, 100.1, 108.0, 100.0])
     seen = drop_hidden_points(xs, ys, [(10.0, 14.0), (100.0, 108.0)], 2, 2)
     assert np.array(seen).tolist() == [[10.0, 12.0, 14.0], [100.0, 108.0, 100.0]]

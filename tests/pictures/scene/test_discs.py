@@ -35,10 +35,12 @@ def test_a_disc_is_whole_and_round_at_every_size(
     picture = draw_disc(bytes([grey]) * 1200, width, height, GROUND, RIM_RGB, tall)
 
     is_disc = (picture == grey).all(axis=2)
-    rows, cols = np.flatnonzero(is_disc.any(axis=1)), np.flatnonzero(is_disc.any(axis=0))
+    rows = np.flatnonzero(is_disc.any(axis=1))
+    cols = np.flatnonzero(is_disc.any(axis=0))
     assert picture.shape == (height, width, 3)
     assert abs(rows[0] + rows[-1] + 1 - height) <= 1 and abs(cols[0] + cols[-1] + 1 - width) <= 1
-    across, down = len(cols), len(rows) * tall
+    across = len(cols)
+    down = len(rows) * tall
     assert abs(across - down) <= 2 * max(1.0, tall)
     assert across >= 0.6 * min(width, height * tall)
 
@@ -62,7 +64,8 @@ def test_the_outline_of_a_disc_is_seen_whatever_its_colour(
     picture = draw_disc(bytes([grey]) * 1200, 120, 120, paper, RIM_RGB).astype(int)
 
     column = picture[:60, 60]
-    disc, ground = column[-1], column[0]
+    disc = column[-1]
+    ground = column[0]
     apart = [min(abs(pixel - disc).max(), abs(pixel - ground).max()) for pixel in column]
     assert abs(disc - ground).max() > 40 or max(apart) > 25
 

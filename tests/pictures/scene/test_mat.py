@@ -59,7 +59,8 @@ def test_a_thin_line_has_no_gaps(
     cells: CellSet, size: tuple[int, int], across_per_down: float
 ) -> None:
     """Each point of the line is seen in the picture at its place or beside it."""
-    pixels, down = mat(), np.arange(100, 1000)
+    pixels = mat()
+    down = np.arange(100, 1000)
     middle = (600 + across_per_down * (down - 100)).astype(int)
     rows = down[middle < 2300]
     thick = 10 * np.hypot(1, across_per_down)

@@ -15,7 +15,8 @@ from tuisim.pictures.scene.view import fit_field
 from tuisim.terminal.glyphs import GLYPHS, SIGNS
 from tuisim.terminal.pixels import CellPoints
 
-ROWS, COLS = 20, 50
+ROWS = 20
+COLS = 50
 
 
 @for_each(heading=range(0, 360, 45))

@@ -56,7 +56,8 @@ def test_obstacles_are_drawn(width_mm: float) -> None:
 
 
 def test_a_painter_shows_each_scene_as_a_new_one_does() -> None:
-    shared, beacon = painter(), BeaconSpec(1700, 800)
+    shared = painter()
+    beacon = BeaconSpec(1700, 800)
     boxes = Obstacle(300, 200, 200, 300), Obstacle(900, 700, 100, 300)
     scenes = [
         SceneState(ROBOT, HERE),

@@ -29,7 +29,8 @@ def test_the_trace_is_drawn_and_goes_on() -> None:
 
 def test_a_lifted_pen_leaves_a_gap() -> None:
     made = painter()
-    xs, ys = np.array([200.0, np.nan, 400.0, 500.0]), np.array([300.0, np.nan, 300.0, 300.0])
+    xs = np.array([200.0, np.nan, 400.0, 500.0])
+    ys = np.array([300.0, np.nan, 300.0, 300.0])
     made.trace.add(Piece.from_points(xs, ys, ROBOT.pen))
 
     picture = made.paint(VIEW, SceneState(ROBOT, Pose(2000, 1000, 0)))
@@ -39,7 +40,8 @@ def test_a_lifted_pen_leaves_a_gap() -> None:
 
 
 def test_each_stretch_keeps_its_pen_and_a_wiped_trace_is_gone() -> None:
-    made, scene = painter(), SceneState(ROBOT, Pose(2000, 1000, 0))
+    made = painter()
+    scene = SceneState(ROBOT, Pose(2000, 1000, 0))
     made.trace.add(Piece.from_points(np.array([200.0, 300.0]), np.array([300.0, 300.0]), ROBOT.pen))
     made.trace.add(
         Piece.from_points(
@@ -86,10 +88,8 @@ def test_a_trace_is_as_long_as_the_pen_is_down(run: Run) -> None:
 
 
 def test_the_pen_is_where_the_simulation_has_it() -> None:
-    robot, poses = (
-        RobotSpec(pen=PenSpec(x_mm=15.0, y_mm=-70.0)),
-        [(100.0, 200.0, 0.0), (900.5, 300.25, -400.0)],
-    )
+    robot = RobotSpec(pen=PenSpec(x_mm=15.0, y_mm=-70.0))
+    poses = [(100.0, 200.0, 0.0), (900.5, 300.25, -400.0)]
     records = np.array(poses, dtype=[("x_mm", float), ("y_mm", float), ("heading_deg", float)])
     expected = [world_point(Pose(*pose), 15.0, -70.0) for pose in poses]
     assert np.transpose(place_pen_mm(robot, records)) == pytest.approx(np.array(expected))

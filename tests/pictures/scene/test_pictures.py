@@ -147,7 +147,8 @@ def test_a_picture_shows_how_far_a_robot_has_left_the_field() -> None:
     records = records_at((900.0, 480.0), (5362.0, 480.0), (900.0, -700.0), (nan, 0.0))
     area = find_area(on_floor, records)
     assert area == Area(0.0, -700.0, 5362.0, FIELD_HEIGHT_MM)
-    away, view = Pose(5362.0, -700.0, 0.0), find_view(on_floor, area)
+    away = Pose(5362.0, -700.0, 0.0)
+    view = find_view(on_floor, area)
     picture = draw_world(on_floor, WHITE, away, area=area)
     assert picture.size == (view.width_px, view.height_px)
     field = draw_world(on_floor, WHITE, HERE).size

@@ -34,7 +34,8 @@ def test_a_robot_off_the_picture_is_left_out() -> None:
 @pytest.mark.parametrize("robot", ROBOTS)
 def test_a_robot_is_filled_and_has_all_its_parts(robot: str) -> None:
     spec = spec_of(robot)
-    outline, picture = build_outline(spec.robot), draw_world(spec, WHITE, MIDDLE)
+    outline = build_outline(spec.robot)
+    picture = draw_world(spec, WHITE, MIDDLE)
     wheel_mm = outline.half_width_mm - outline.wheel_width_mm / 2
     parts = {
         COLORED.body: [
@@ -71,7 +72,8 @@ def test_a_robot_without_wheels_is_drawn_without_them() -> None:
 def test_the_robot_is_drawn_as_large_as_what_collides(heading: int) -> None:
     # Bumpers are pressed before anything collides.
     outline = build_outline(replace(spec_of("Small_Robot").robot, touch_sensors=()))
-    view, picture = fit_field(FIELD_WIDTH_MM, FIELD_HEIGHT_MM), np.zeros_like(WHITE)
+    view = fit_field(FIELD_WIDTH_MM, FIELD_HEIGHT_MM)
+    picture = np.zeros_like(WHITE)
     pose = replace(MIDDLE, heading_deg=float(heading))
 
     draw_robot(picture, view, pose, outline, COLORED)

@@ -33,6 +33,7 @@ def built(text: str, head: str = HEAD) -> BuiltRobot | None:
 def changed(text: str, head: str = HEAD) -> str:
     """The ports that differ from those of the usual robot."""
     found = built(text, head)
-    now, usual = dict(list_ports(found.choice.spec if found else USUAL)), dict(list_ports(USUAL))
+    now = dict(list_ports(found.choice.spec if found else USUAL))
+    usual = dict(list_ports(USUAL))
     ports = [port for port in sorted({*now, *usual}) if now.get(port) != usual.get(port)]
     return ", ".join(f"{port[-1]} {now.get(port, '-')}" for port in ports)

@@ -116,7 +116,8 @@ def nothing_starts() -> Iterator[None]:
 
 @contextlib.contextmanager
 def _said() -> Iterator[tuple[io.StringIO, io.StringIO]]:
-    out, err = io.StringIO(), io.StringIO()
+    out = io.StringIO()
+    err = io.StringIO()
     with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
         yield out, err
 

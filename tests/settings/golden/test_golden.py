@@ -30,7 +30,8 @@ STAMPS = re.compile(r"\d{8}T\d{6}-[0-9a-f]{6}|\d{4}-\d\d-\d\d[T ]\d\d:\d\d[\d:.+
 """Ids of runs, and when they were."""
 OF_THE_MACHINE = ("id", "created", "path")
 """Keys of what `run --json` prints that are other each time."""
-SAMPLES, TELEMETRY = ("s.csv", "s.jsonl", "s.parquet"), ("t.csv", "t.jsonl", "t.parquet")
+SAMPLES = ("s.csv", "s.jsonl", "s.parquet")
+TELEMETRY = ("t.csv", "t.jsonl", "t.parquet")
 
 
 def flat(data: Any, path: str = "") -> dict[str, Any]:
@@ -53,7 +54,8 @@ def is_same(value: object, other: object) -> bool:
 
 def differences(before: Any, now: Any) -> dict[str, tuple[object, object]]:
     """Return by path what was before and what is now."""
-    first, second = flat(before), flat(now)
+    first = flat(before)
+    second = flat(now)
     return {
         path: (first.get(path), second.get(path))
         for path in dict.fromkeys((*first, *second))

@@ -282,6 +282,7 @@ def test_a_run_is_judged_as_it_was_when_it_ran(run: RunProgram, tmp_path: Path) 
         dialogue = [{ answer = "x", reply = "n x" }, { answer = "5", prompt = "1$", reply = "5" }]
         """,
     )
-    live, stored = judge(goals, done.run), judge(goals, done.run.stored())
+    live = judge(goals, done.run)
+    stored = judge(goals, done.run.stored())
     assert stored[0].state == "met", stored
     assert live == stored

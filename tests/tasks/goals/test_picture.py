@@ -135,7 +135,8 @@ def test_draw(
 def test_a_drawing_is_compared_up_to_the_edges_of_the_field() -> None:
     within_mm = 16.0
     side_mm = compute_cell_mm(within_mm)
-    cols, rows = int(FIELD_WIDTH_MM // side_mm), int(FIELD_HEIGHT_MM // side_mm)
+    cols = int(FIELD_WIDTH_MM // side_mm)
+    rows = int(FIELD_HEIGHT_MM // side_mm)
     corners = np.array([[0, 0], [cols - 1, 0], [0, rows - 1], [cols - 1, rows - 1]])
     numbers = corners[:, 1] * cols + corners[:, 0]
     points = (corners + 0.5) * side_mm

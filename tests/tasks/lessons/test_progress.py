@@ -39,7 +39,8 @@ def after(lesson: Lesson, *states: StepState) -> LessonProgress:
 
 def test_progress_in_words(lesson: Lesson) -> None:
     count = len(lesson.steps)
-    done, skipped = StepState.DONE, StepState.SKIPPED
+    done = StepState.DONE
+    skipped = StepState.SKIPPED
     assert NEW.words(lesson) == "new"
     assert after(lesson, done).words(lesson) == f"1 of {count} steps"
     assert after(lesson, *[done] * count).words(lesson) == "done"

@@ -128,7 +128,8 @@ PLACED = QuestionCheck("What?", 5, at_x_mm=((600.0, 700.0),), where="the right: 
 
 
 def test_only_an_answer_that_is_about_the_question_counts_as_a_try(home: Path) -> None:
-    session, sight = _session(PLACED, hints=("Look.",)), Sight(frozenset())
+    session = _session(PLACED, hints=("Look.",))
+    sight = Sight(frozenset())
     for text, x_mm, words in (
         ("", 620.0, "Type an answer"),
         ("five", 620.0, "five: type a number"),

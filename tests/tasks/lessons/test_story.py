@@ -57,10 +57,8 @@ def test_story(condition: Condition, words: str) -> None:
 
 
 def test_what_the_end_decides_is_told_of_the_moment_when_it_happened() -> None:
-    said, end = (
-        Change(542, 5.42, GoalState.MET, 1120.0, 500.0),
-        Change(900, 9.0, GoalState.MET, 1420.0, 500.0),
-    )
+    said = Change(542, 5.42, GoalState.MET, 1120.0, 500.0)
+    end = Change(900, 9.0, GoalState.MET, 1420.0, 500.0)
     met = Judgement(
         Goal("a", LogCondition("Grey", (50.2,), once=True)), (end,), line=3, happened=said
     )

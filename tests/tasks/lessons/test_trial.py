@@ -43,7 +43,8 @@ def test_lesson_is_complete(name: str) -> None:
 
 @pytest.mark.parametrize("name", LESSONS)
 def test_names_that_a_goal_needs_are_in_the_task(name: str) -> None:
-    lesson, needed = LESSONS[name], {goal.name: goal.condition for goal in LESSONS[name].goals}
+    lesson = LESSONS[name]
+    needed = {goal.name: goal.condition for goal in LESSONS[name].goals}
     for step in lesson.steps:
         conditions = (
             [needed[goal] for goal in step.check.goals] if isinstance(step.check, RunCheck) else []

@@ -44,7 +44,8 @@ def test_moodle_finds_students_by_user_name_number_and_address(tmp_path: Path) -
 def test_moodles_worksheet_finds_students_by_the_number_in_their_names(tmp_path: Path) -> None:
     ada, ben, *_ = SHEET.rows
     rows = (replace(ada, ids={GradebookKind.MOODLE: "4713"}), ben)
-    sheet, sources = replace(SHEET, rows=rows), ("", "")
+    sheet = replace(SHEET, rows=rows)
+    sources = ("", "")
     write_gradebook(
         tmp_path / "m.csv", GradebookKind.MOODLE, sheet, sources, Roster({}), goals=False
     )

@@ -13,7 +13,8 @@ from tests.cases import cases
 from tuisim.tasks.marks.hand_ins import GradebookKind
 from tuisim.tasks.marks.students import StudentsFound, find_students
 
-MOODLE, CANVAS = GradebookKind.MOODLE, GradebookKind.CANVAS
+MOODLE = GradebookKind.MOODLE
+CANVAS = GradebookKind.CANVAS
 
 
 def _find(tmp_path: Path, files: Mapping[str, str | bytes]) -> StudentsFound:

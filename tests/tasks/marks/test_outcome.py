@@ -91,7 +91,8 @@ def test_a_path_of_the_students_own_stays() -> None:
 
 
 def test_a_goal_made_of_others_is_missed_for_the_reason_of_the_first_that_is() -> None:
-    near, finish = Goal("near", ReachCondition(x_mm=5)), Goal("finish", FinishCondition())
+    near = Goal("near", ReachCondition(x_mm=5))
+    finish = Goal("finish", FinishCondition())
     both = Goal("both", AllOf(("near", "finish")))
     every = Goal("every", AllOf(("both",)))
     judgements = (

@@ -156,7 +156,8 @@ def test_what_could_not_be_judged_has_no_points() -> None:
 
 
 def test_a_gradebook_has_no_number_for_what_could_not_be_judged(tmp_path: Path) -> None:
-    path, sheet = tmp_path / "g.csv", _unjudged_sheet()
+    path = tmp_path / "g.csv"
+    sheet = _unjudged_sheet()
     write_gradebook(path, GradebookKind.CANVAS, sheet, [TEXT] * 3, Roster({}), goals=True)
     ends = [row.split(",")[-3:] for row in path.read_text().splitlines()[2:]]
     assert ends == [["", "", "3"], ["3", "0", "3"], ["", "", "3"]]

@@ -168,7 +168,8 @@ hidden = {hidden}
 def test_they_come_in_order_and_a_hidden_goal_is_not_told(tmp_path: Path) -> None:
     text = MISTAKE.replace("20)", "int(input()))", 1)
     run, earlier = (run_text(text, answers=(speed,)) for speed in ("20", "30"))
-    mine, other = Recording(run), Recording(earlier)
+    mine = Recording(run)
+    other = Recording(earlier)
     assert find_reasons(run)[0].line == 2
     for hidden, missed in (("false", 2), ("true", 1)):
         judgements = judge(goals_of(tmp_path, GOALS.replace("{hidden}", hidden)), run)

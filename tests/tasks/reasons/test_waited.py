@@ -80,7 +80,10 @@ def sleep_after_reading(recorder: Recorder) -> None:
     recorder.simulation.advance(600)
 
 
-B, T, R, C = Subject.BUTTONS, Subject.TOUCH, Subject.REMOTE, Subject.COLOR
+B = Subject.BUTTONS
+T = Subject.TOUCH
+R = Subject.REMOTE
+C = Subject.COLOR
 
 WAITS: dict[str, tuple[WorldSpec, Moves, list[tuple[Subject, str, int, str]]]] = {
     "buttons": (SPEC.world, lambda r: poll(r, "buttons", "pressed"), [(B, "buttons", 70, "")]),

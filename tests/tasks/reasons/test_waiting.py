@@ -13,7 +13,8 @@ SENTENCE = (
 
 
 def test_what_a_standing_robot_waits_for_is_said_once(record: Record) -> None:
-    watch, recorder = WaitWatch(), record(SPEC)
+    watch = WaitWatch()
+    recorder = record(SPEC)
     poll(recorder, "in1", "TOUCH")
     recording = Recording(recorder.end(End.TIME_LIMIT))
     assert describe_so_far(recording) == (

@@ -127,7 +127,8 @@ def show_help(context: ActionContext) -> None:
     # The keys of the code have a group already.
     if panel != "code" and (own := own_keys(widgets)):
         here = f"In the panel {PANELS[panel].title}"
-        every, topic = {here: own, **every}, replace(topic, groups=(here, *topic.groups))
+        every = {here: own, **every}
+        topic = replace(topic, groups=(here, *topic.groups))
     keys = KeyPage("All keys", context.app.fill_keys(_START), every)
     context.app.push_screen(GuideScreen(keys, topic))
 

@@ -19,8 +19,14 @@ from tuisim.app.panels import PANELS
 from tuisim.app.snapshot import IN_RUN, RunPhase, Situation
 from tuisim.engine.protocol import LineStep
 
-PROGRAM, DEBUG, TIME, ROBOT, PANEL = "Program", "Debugging", "Time", "Robot", "Panels"
-FILES, LESSON, APP = "Files", "Lesson", "App"
+PROGRAM = "Program"
+DEBUG = "Debugging"
+TIME = "Time"
+ROBOT = "Robot"
+PANEL = "Panels"
+FILES = "Files"
+LESSON = "Lesson"
+APP = "App"
 
 
 LabAction: TypeAlias = Action[ActionContext, Situation]
@@ -182,7 +188,9 @@ _BREAK = "Breakpoint on this line, or the cursor's"
 
 def _build_debug_actions() -> list[LabAction]:
     can = _can_debug
-    over, into, out = LineStep.OVER, LineStep.INTO, LineStep.OUT
+    over = LineStep.OVER
+    into = LineStep.INTO
+    out = LineStep.OUT
     line_back = "N", "Step back one line", DEBUG
     return [
         Action(
@@ -244,7 +252,8 @@ def _build_debug_actions() -> list[LabAction]:
 
 
 def _build_travel_actions() -> list[LabAction]:
-    back, on = _can_look_back, _can_go_forward
+    back = _can_look_back
+    on = _can_go_forward
     keys = "< >"
     go = time_travel
     second_back, second_on = (partial(go.skip_seconds, by=by) for by in (-1, 1))

@@ -14,7 +14,11 @@ if TYPE_CHECKING:
     from tuisim.app.panel_area import PanelArea
     from tuisim.engine.runs.recorded_run import Recording
 
-_BEFORE, _SKIP, _MODEL, _OVER, _OPEN = "before", "skip", "model", "over", "open "
+_BEFORE = "before"
+_SKIP = "skip"
+_MODEL = "model"
+_OVER = "over"
+_OPEN = "open "
 
 
 def answer(context: ActionContext) -> None:
@@ -140,7 +144,8 @@ def _switch_model(context: ActionContext) -> None:
     """Let the robot of the model answer drive along beside every run, or no longer."""
     from tuisim.tasks.lessons.trial import run_model
 
-    lesson, runs = context.lesson.lesson, context.runs
+    lesson = context.lesson.lesson
+    runs = context.runs
     if lesson is None or runs.companion is not None:
         runs.set_companion(None)
         context.app.draw(force=True)

@@ -226,7 +226,8 @@ def propose_branch(
 
     run_controller = context.runs
     timeline = run_controller.timeline
-    recording, tick = timeline.recording, timeline.at
+    recording = timeline.recording
+    tick = timeline.at
     if isinstance(context.panels.app.screen, BranchQuestion):
         return
     if recording is None or tick is None or not context.document.apply():

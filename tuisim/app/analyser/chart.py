@@ -220,7 +220,8 @@ class LogChart(LinesPanel):
 
     def _read(self, time_s: float | None) -> None:
         """Show the values below the pointer, or without it those at the cursor."""
-        self._pointed_s, model = time_s, self._model
+        self._pointed_s = time_s
+        model = self._model
         drawn = (
             model.traces.list_drawn()
             if model is not None and model.log.rows and not self.options.against
@@ -247,7 +248,8 @@ def _build_measure_line(model: AnalysisModel, unit: str, width: int) -> list[lis
     """Return the line with the differences between the two cursors."""
     if model.mark_s is None or not model.log.rows:
         return []
-    plain, strong = Style(color=palette.SOFT), Style(color=palette.WHITE, bold=True)
+    plain = Style(color=palette.SOFT)
+    strong = Style(color=palette.WHITE, bold=True)
     start_s, stop_s = sorted((model.mark_s, model.cursor_s))
     trace = model.trace
     before, after = trace.find_value(model.mark_s), trace.find_value(model.cursor_s)

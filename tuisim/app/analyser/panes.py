@@ -84,7 +84,8 @@ class _LazyRows(Sequence[Cells], Generic[Item]):
     """Rows that are created on access: a long log has a hundred thousand bands or events."""
 
     def __init__(self, items: Sequence[Item], row: Callable[[Item], Cells]) -> None:
-        self._items, self._row = items, row
+        self._items = items
+        self._row = row
 
     def __len__(self) -> int:
         return len(self._items)
@@ -299,14 +300,16 @@ def pane_lines(name: str, model: AnalysisModel, chosen: int, width: int, height:
     start = stop = 0
     for number, row in enumerate(rows[first : first + room], first):
         style = HERE if number == chosen else PLAIN
-        texts, wide = [row[index] for index in used], [widths[index] for index in used]
+        texts = [row[index] for index in used]
+        wide = [widths[index] for index in used]
         row_lines = (
             _build_rows(texts, wide, gap, style, width)
             if pane.wraps
             else [_build_row(texts, wide, gap, style)]
         )
         if number == chosen:
-            start, stop = len(lines), len(lines) + len(row_lines)
+            start = len(lines)
+            stop = len(lines) + len(row_lines)
             row_lines = [[*line, (" " * width, HERE)] for line in row_lines]
         lines += row_lines
     # With rows of several lines, the selected one stays visible.
@@ -339,7 +342,8 @@ def _count_rows(name: str, model: AnalysisModel, width: int) -> int:
     """Return the number of lines that show all of a pane."""
     if name == "table":
         return 1 + len(model.rows)
-    rows, below = PANES[name].rows(model), PANES[name].below(model)
+    rows = PANES[name].rows(model)
+    below = PANES[name].below(model)
     return (
         1 + len(rows) + len(_wrap_texts(below, width, _MAX_BELOW))
         if not PANES[name].wraps
@@ -467,7 +471,8 @@ class PaneView(LinesPanel):
 
     def turn_to(self, name: str) -> None:
         """Switch to another pane."""
-        self.name_shown, self.chosen = name, 0
+        self.name_shown = name
+        self.chosen = 0
 
     def show(self, model: AnalysisModel) -> None:
         """Draw the current view of the model."""

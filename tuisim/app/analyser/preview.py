@@ -23,7 +23,8 @@ from tuisim.logs.columns import ROW, UNIT_NAMES, is_numeric, time_columns
 from tuisim.logs.log import Log
 from tuisim.logs.reader import read_beginning, read_first_lines
 
-_ROWS, _COLUMNS = 30, 60
+_ROWS = 30
+_COLUMNS = 60
 """Cells that are shown."""
 _MAX_CELL, _MAX_LINE = 24, 60
 """Characters of a cell, and of a line of the file."""
@@ -65,7 +66,9 @@ class PreviewDialog(Dialog[ReadChoices]):
     def __init__(self, file: str, choices: ReadChoices, log: Log) -> None:
         super().__init__()
         self.TITLE_TEXT = f"How to read {Path(file).name}"
-        self._file, self._choices, self._log = file, choices, log
+        self._file = file
+        self._choices = choices
+        self._log = log
         self._lines = read_first_lines(file, choices.encoding)
 
     def compose_content(self) -> ComposeResult:
@@ -125,7 +128,8 @@ class PreviewDialog(Dialog[ReadChoices]):
         self.query_one("#table", Static).update(_build_rows(self._log))
         self.say(self._notes())
         for name in _FIELDS:
-            field, offers = self.query_one(f"#{name}", Select), self._list_offers(name)
+            field = self.query_one(f"#{name}", Select)
+            offers = self._list_offers(name)
             field.set_options(offers)
             field.value, field.disabled = getattr(self._choices, name), self._is_idle(name)
             # The widget shows another word only for another value.
@@ -173,7 +177,8 @@ class PreviewDialog(Dialog[ReadChoices]):
 
     def _find_word(self, name: str) -> str:
         """Return what was found for a choice that nobody made; empty if nothing was."""
-        layout, form = self._log.layout, self._log.form
+        layout = self._log.layout
+        form = self._log.form
         match name:
             case "header":
                 return f"line {form.header}" if form.header else ""

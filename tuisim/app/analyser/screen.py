@@ -172,7 +172,8 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         self.request = request
         self._reading, self._began_s = True, monotonic()
         self._show_title("opening …")
-        work, failed = partial(self._open, request, asks), partial(self._report_failure, request)
+        work = partial(self._open, request, asks)
+        failed = partial(self._report_failure, request)
         background.run(self, work, lambda _: None, failed, group="log", exclusive=True)
 
     def _open(self, request: LogRequest, asks: bool) -> None:
@@ -182,7 +183,8 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         for opened in open_pieces(request):
             if request is not self.request or not self.is_running:
                 return
-            model, before = AnalysisModel(opened), self._model
+            model = AnalysisModel(opened)
+            before = self._model
             if before is not None and before.opened.request is request:
                 model.copy_definitions(before)
             # Data for the first chart of a long log is computed here, in the background.
@@ -202,7 +204,8 @@ class LogScreen(ActionHost, ClosesOnce[None]):
 
     def set_model(self, model: AnalysisModel) -> None:
         """Show the log that was read, unless another one was requested since."""
-        opened, before = model.opened, self._model
+        opened = model.opened
+        before = self._model
         if opened.request is not self.request:
             return
         is_first = before is None and not opened.request.telemetry
@@ -214,7 +217,8 @@ class LogScreen(ActionHost, ClosesOnce[None]):
             return
         if opened.done:
             now_s = monotonic()
-            self._reading, self._next_poll_s = False, now_s + _PATIENCE * (now_s - self._began_s)
+            self._reading = False
+            self._next_poll_s = now_s + _PATIENCE * (now_s - self._began_s)
             self._stamp = opened.stamp()
         self._model = model
         if before is not None and before.opened.request is opened.request:
@@ -276,7 +280,8 @@ class LogScreen(ActionHost, ClosesOnce[None]):
 
     def lay_out(self, chart: bool, pane: bool) -> None:
         """Show chart, pane, or both."""
-        self.chart.display, self.pane.display = chart, pane
+        self.chart.display = chart
+        self.pane.display = pane
         self.call_after_refresh(self.update)
 
     def show_world(self, is_on: bool) -> None:
@@ -299,7 +304,8 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         return f"reading {opened.part:.0%} …" if opened.part == opened.part else "reading …"
 
     def _show_title(self, progress: str) -> None:
-        model, position = self._model, ""
+        model = self._model
+        position = ""
         title = model.log.title if model else " ".join((self.request.file, *self.request.runs))
         if model is not None and model.log.rows:
             position = f"row {model.row + 1:,} of {model.log.rows:,} · {model.find_time_s(model.row):.2f} s"
@@ -313,7 +319,8 @@ class LogScreen(ActionHost, ClosesOnce[None]):
 
     def choose(self, number: int) -> None:
         """Select a row of a pane other than the table; the cursor goes to its time."""
-        model, name = self.model, self.pane.name_shown
+        model = self.model
+        name = self.pane.name_shown
         count = len(PANES[name].rows(model))
         self.pane.chosen = number = min(max(number, 0), max(count - 1, 0))
         if name == "bands" and count:

@@ -111,7 +111,8 @@ def build_heading(model: AnalysisModel, column: str) -> str:
 
 def count_rows(model: AnalysisModel) -> str:
     """Return how many rows are shown, and the filter."""
-    rows, total = model.rows, model.log.rows
+    rows = model.rows
+    total = model.log.rows
     words = f"{len(rows):,} of {total:,} rows" if len(rows) != total else counted(total, "row")
     conditions = " and ".join(map(str, rows.view.conditions))
     return escape_markup(f"{words}: {conditions}") if conditions else words

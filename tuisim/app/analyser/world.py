@@ -58,7 +58,8 @@ class RunWorld:
     """
 
     def __init__(self, spec: RunSpec, mat: Mat, run: StoredRun | None, log: Log) -> None:
-        self.spec, self.mat = spec, mat
+        self.spec = spec
+        self.mat = mat
         self._recording = Recording(run) if run is not None else None
         self._log = log
         self.text = run.program.text if run is not None else ""
@@ -185,7 +186,8 @@ class WorldPane(Vertical):
 
     def set_model(self, model: AnalysisModel) -> None:
         """Switch to another log."""
-        self._model, self._shown = model, None
+        self._model = model
+        self._shown = None
         self._worlds.clear()
         self._requested.clear()
         self.display = (

@@ -108,7 +108,8 @@ class CellsCard(ListDialog):
 
     def __init__(self, current: str, best: CellSet) -> None:
         super().__init__()
-        self._current, self._best = current, best
+        self._current = current
+        self._best = best
 
     def compose_content(self) -> ComposeResult:
         listed = OptionList(

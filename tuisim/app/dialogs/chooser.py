@@ -43,7 +43,8 @@ if TYPE_CHECKING:
     from tuisim.app.setup.next_run import NextRun
     from tuisim.engine.mats import Background
 
-OPENABLE, TABLES = (".py", ".toml"), (".toml", ".json")
+OPENABLE = (".py", ".toml")
+TABLES = (".toml", ".json")
 LOGS = (*LOG_SUFFIXES, ".txt", ".log")
 IMAGES = (".png", ".jpg", ".jpeg", ".gif", ".webp", ".bmp", ".tif", ".tiff")
 """Endings of the files that choosers list in a folder."""
@@ -228,7 +229,8 @@ class Chooser(ListDialog):
 
     @on(Input.Changed)
     def _search(self, event: Input.Changed) -> None:
-        listed, typed = self.query_one(OptionList), event.value.strip()
+        listed = self.query_one(OptionList)
+        typed = event.value.strip()
         # The dialog keeps its place while the list becomes shorter.
         listed.styles.height = listed.outer_size.height if typed else None
         groups = self._search_groups(typed)
@@ -331,7 +333,8 @@ def build_program_chooser() -> Chooser:
     from tuisim.tasks.goals.files import list_examples as goals_examples
     from tuisim.tasks.goals.files import read_title
 
-    examples, goals = list_programs(), goals_examples()
+    examples = list_programs()
+    goals = goals_examples()
     known = {str(path.resolve()) for path in (*(path for _, path, _ in examples), *goals)}
     here = list_files([".py"])
     own = ChoiceGroup(here.title, [entry for entry in here.entries if entry[0] not in known])
@@ -347,7 +350,8 @@ def build_program_chooser() -> Chooser:
             "Examples of goals", [(str(path), path.name, read_title(path)) for path in goals]
         ),
     ]
-    title, suffixes = "Programs, worlds, goals and logs", (*OPENABLE, *LOGS)
+    title = "Programs, worlds, goals and logs"
+    suffixes = (*OPENABLE, *LOGS)
     hint = "path of a program, world, goals file or log"
     return Chooser(title, groups, path_hint=hint, read=_read_openable, suffixes=suffixes)
 
@@ -442,7 +446,8 @@ class MatPicker(Chooser):
         groups = [ChoiceGroup("", [(name, name, "") for name in known])]
         find = partial(find_mat, folder=folder)
         super().__init__("Mats", groups, laid, "path of your own image", find, IMAGES)
-        self._mats, self._folder = known, folder
+        self._mats = known
+        self._folder = folder
         self._shown = ""
         self._pictures: dict[tuple[str, Viewport], Pixels] = {}
 
@@ -494,7 +499,8 @@ class MatPicker(Chooser):
         else:
             self.set_timer(_STALE_S, partial(self._clear_stale, (name, port)))
             work = partial(self._decode, name, port, view.ground_rgb)
-            then, failed = partial(self._show_decoded, (name, port)), partial(self._report, name)
+            then = partial(self._show_decoded, (name, port))
+            failed = partial(self._report, name)
             background.run(self, work, then, failed, group="picture", exclusive=True)
 
     def _say_title(self, name: str, is_drawn: bool) -> None:

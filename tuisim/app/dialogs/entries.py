@@ -141,7 +141,8 @@ class _TextList(_List[None], Generic[Entry]):
             self._entries.append(entry)
         else:
             self._entries[self._editing] = entry
-        index, self._editing = self._editing, None
+        index = self._editing
+        self._editing = None
         event.input.clear()
         self._report(len(self._entries) - 1 if index is None else index)
 

@@ -192,7 +192,8 @@ class NewProgramDialog(Dialog[str]):
         titles = [*self._offers[_LISTS.index(listed.id or "")].values()]
         for typed in (self._typed + event.character.lower(), event.character.lower()):
             if (index := _find_title(titles, typed)) is not None:
-                self._typed, listed.highlighted = typed, index
+                self._typed = typed
+                listed.highlighted = index
                 return
 
     @on(OptionList.OptionHighlighted)

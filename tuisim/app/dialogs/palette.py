@@ -17,7 +17,8 @@ from tuisim.app.dialogs.dialog import MOVE_KEYS, Dialog
 from tuisim.base import palette
 from tuisim.terminal.text_runs import cut
 
-_WIDTH, _BESIDE = 74, 10
+_WIDTH = 74
+_BESIDE = 10
 """Cells of the frame, and those of it that no line has: borders, padding, scroll bar."""
 _SHOW = "show or hide "
 _MIN_ROWS, _OTHER_ROWS = 16, 5
@@ -79,7 +80,8 @@ class SearchList(Dialog[str]):
 
     def __init__(self, entries: Sequence[Entry], current: str = "") -> None:
         super().__init__()
-        self._entries, self._current = entries, current
+        self._entries = entries
+        self._current = current
 
     def compose_content(self) -> ComposeResult:
         yield Input(placeholder="Search", compact=True, select_on_focus=False)
@@ -101,7 +103,8 @@ class SearchList(Dialog[str]):
         self._list(event.value)
 
     def _list(self, typed: str) -> None:
-        matches, listed = find_entries(self._entries, typed), self.query_one(OptionList)
+        matches = find_entries(self._entries, typed)
+        listed = self.query_one(OptionList)
         cells = min(_WIDTH, self.size.width) - _BESIDE
         listed.clear_options()
         listed.add_options(Option(_build_line(entry, cells), id=entry.id) for entry in matches)

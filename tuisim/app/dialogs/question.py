@@ -70,7 +70,8 @@ class Question(Dialog[str]):
         self.dismiss(key)
 
 
-BRANCH, RESTART = "branch", "restart"
+BRANCH = "branch"
+RESTART = "restart"
 
 
 class BranchQuestion(Dialog[str]):

@@ -134,7 +134,8 @@ class RobotPicture(PixelView):
         if self._find_robot is None:
             self.clear_picture()
         elif self.size:
-            graphics, mode = self.graphics, self.color_mode
+            graphics = self.graphics
+            mode = self.color_mode
             cell = self.choose_cell(graphics)
             width_px, height_px = cell.cols * self.size.width, cell.rows * self.size.height
             view = fit_view(self._find_robot, width_px, height_px, cell)

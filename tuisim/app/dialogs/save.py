@@ -34,7 +34,8 @@ def parse_path(text: str) -> Path:
     Raises:
         ConfigError: the name is impossible, for example too long.
     """
-    path, why = user_path(text), ""
+    path = user_path(text)
+    why = ""
     try:
         path.lstat()
     except (FileNotFoundError, NotADirectoryError, PermissionError):
@@ -149,13 +150,11 @@ class SaveDialog(FileDialog):
         notice: bool = True,
     ) -> None:
         super().__init__(proposed)
-        self._what, self._save, self._check, self._forms, self._notice = (
-            what,
-            save,
-            check,
-            forms,
-            notice,
-        )
+        self._what = what
+        self._save = save
+        self._check = check
+        self._forms = forms
+        self._notice = notice
         self.SUFFIXES = suffixes or self.SUFFIXES
         self.TITLE_TEXT = f"Save the {what}"
 

@@ -127,7 +127,8 @@ class SettingsScreen(Dialog[None]):
 
     @on(OptionList.OptionSelected)
     def _edit(self) -> None:
-        setting, value = self._selected_setting, load_config().value(self._selected_setting.path)
+        setting = self._selected_setting
+        value = load_config().value(self._selected_setting.path)
         if isinstance(value, bool):
             self._choose(setting, not value)
             return

@@ -64,7 +64,8 @@ class Welcome(Dialog[Begin | Recent]):
 
     def __init__(self, is_first: bool, find: Callable[[], list[Recent]]) -> None:
         super().__init__()
-        self._is_first, self._find = is_first, find
+        self._is_first = is_first
+        self._find = find
         self._entries: list[Begin | Recent] = [*Begin]
 
     def compose_content(self) -> ComposeResult:

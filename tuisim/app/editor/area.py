@@ -39,7 +39,8 @@ _GUARD = {ord(char): 0xF700 + offset for offset, char in enumerate(_BREAKS)}
 _UNGUARD = {stand_in: char for char, stand_in in _GUARD.items()}
 _UNSHOWN = re.compile(r"[\x00-\x08\x0a-\x1f\x7f-\x9f\uf700-\uf707]")
 
-VALUE_GAP, MIN_VALUE_CELLS = 2, 10
+VALUE_GAP = 2
+MIN_VALUE_CELLS = 10
 """Cells between a line and the values behind it, and those that the line leaves to values that need more than half."""
 _CURSOR_COLS = 3
 """Cells of the cursor and of what follows it that are scrolled into view."""
@@ -236,14 +237,16 @@ class CodeArea(TextArea):
 
     def set_error(self, line: int) -> None:
         """Mark the line of an error, 0 for none."""
-        before, self._error = self._error, line
+        before = self._error
+        self._error = line
         self._refresh_line(before)
         self._refresh_line(line)
 
     def light(self, line: int) -> None:
         """Highlight a line, 0 for none."""
         if line != self._lit:
-            before, self._lit = self._lit, line
+            before = self._lit
+            self._lit = line
             self._refresh_line(before)
             self._refresh_line(line)
 
@@ -281,7 +284,8 @@ class CodeArea(TextArea):
 
     def scroll_to_line(self, line: int) -> None:
         """Scroll a line into view."""
-        rows, height = self._find_rows(line), self.scrollable_content_region.height
+        rows = self._find_rows(line)
+        height = self.scrollable_content_region.height
         if rows and not (
             self.scroll_offset.y <= rows.start and rows.stop <= self.scroll_offset.y + height
         ):

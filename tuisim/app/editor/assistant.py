@@ -33,7 +33,8 @@ class Assistant:
     """
 
     def __init__(self, area: CodeArea, changed: Callable[[], None]) -> None:
-        self._area, self._changed = area, changed
+        self._area = area
+        self._changed = changed
         self._attribute_check = AttributeCheck(completion.find_members)
         self._names: tuple[UnknownName, ...] = ()
         self._attributes: tuple[UnknownName, ...] = ()
@@ -55,7 +56,8 @@ class Assistant:
             None,
         )
         if unknown is not None:
-            whole, hint = unknown.message, unknown.hint or unknown.message
+            whole = unknown.message
+            hint = unknown.hint or unknown.message
             return Text(cut(whole if len(whole) <= width else hint, width))
         return format_signature(self._signature, width) if self._signature else Text()
 
@@ -65,7 +67,8 @@ class Assistant:
         Args:
             path: Of its file, or its name.
         """
-        self._area.path, self._signature = path, None
+        self._area.path = path
+        self._signature = None
         self._area.candidates.close()
         self._names = self._attributes = ()
         self._mark()
@@ -136,7 +139,8 @@ class Assistant:
             background.begin(self._area, self._check_attributes, group="attributes", exclusive=True)
 
     async def _check_attributes(self) -> None:
-        text, path = self._area.program_text, self._area.path
+        text = self._area.program_text
+        path = self._area.path
         attributes = await asyncio.to_thread(
             self._attribute_check.find_unknown_attributes, text, path
         )

@@ -147,7 +147,9 @@ class CandidateList(Widget):
             word: What has been typed of it.
             place: Where it begins on the screen.
         """
-        self._candidates, self.begin, self.is_offered = candidates, begin, False
+        self._candidates = candidates
+        self.begin = begin
+        self.is_offered = False
         self._width = measure_width(candidates, self.screen.size.width - 2)
         self.filter(word, place)
 
@@ -164,7 +166,8 @@ class CandidateList(Widget):
         if not begin or [candidate.name for candidate in begin] == [word]:
             self.close()
             return
-        self._shown, self._chosen = tuple(begin), 0
+        self._shown = tuple(begin)
+        self._chosen = 0
         size = Size(self._width, min(len(begin), MAX_ROWS) + 1)
         self.absolute_offset = list_place(place, size, self.screen.size)
         self.styles.width, self.styles.height = size

@@ -50,12 +50,10 @@ class Document:
     def __init__(
         self, app: LabHost, run_controller: RunController, panel_area: PanelArea, loader: Loader
     ) -> None:
-        self._app, self._run_controller, self._panel_area, self._loader = (
-            app,
-            run_controller,
-            panel_area,
-            loader,
-        )
+        self._app = app
+        self._run_controller = run_controller
+        self._panel_area = panel_area
+        self._loader = loader
         self._program: Program | None = None
         """The next program to run unless the text was edited."""
         self._name = self._path = self._text = self._saved = self._applied = ""
@@ -113,13 +111,16 @@ class Document:
             same = program is not None and self._program is not None and program.path == self._path
             if not (same and program is not None and program.text == self._parse_text()):
                 self._load_program(program, offers=not same)
-            self._program, self._applied = program, self._text
+            self._program = program
+            self._applied = self._text
         self.show()
 
     def _load_program(self, program: Program | None, offers: bool) -> None:
         self._name, self._path = (program.name, program.path) if program else ("", "")
         self._text = self._saved = program.text if program else ""
-        self._form, self._is_file, self._error_line = TextFormat(), False, 0
+        self._form = TextFormat()
+        self._is_file = False
+        self._error_line = 0
         if program is None:
             return
         if program.path:
@@ -127,9 +128,12 @@ class Document:
                 text, form = read_text(Path(program.path))
             except ConfigError:
                 # The file is missing or invalid by now: show what was read of it.
-                text, form = "", TextFormat()
+                text = ""
+                form = TextFormat()
             if text and self._parse_text(text) == program.text:
-                self._text, self._form, self._is_file = text, form, True
+                self._text = text
+                self._form = form
+                self._is_file = True
                 self._saved = text
         if offers and program.path and (draft := find_draft(program.path)):
             if draft.text == self._text:
@@ -168,7 +172,8 @@ class Document:
 
     def run_changed(self) -> None:
         """Pass the text of the run in view to the code panel."""
-        code, recording = self._panel_area.code, self._run_controller.timeline.recording
+        code = self._panel_area.code
+        recording = self._run_controller.timeline.recording
         if recording is None:
             self._ran = None
         elif self._ran is None or self._ran[0] is not recording:
@@ -207,7 +212,8 @@ class Document:
 
     def handle_edit(self, text: str) -> None:
         """Handle an edit in the code panel."""
-        self._text, self._error_line = text, 0
+        self._text = text
+        self._error_line = 0
         if code := self._panel_area.code:
             code.set_title(self._name, self.dirty)
         if not self._draft_pending:
@@ -444,8 +450,10 @@ class Document:
 
     def _mark_saved(self, path: Path) -> None:
         drop_draft(self._path)
-        self._saved, self._is_file = self._text, True
-        self._path, self._name = str(path), path.name
+        self._saved = self._text
+        self._is_file = True
+        self._path = str(path)
+        self._name = path.name
         self._loader.note_saved(path)
         self.show()
 

@@ -12,7 +12,8 @@ from textual.widgets import Input, Static
 
 from tuisim.base.data_class import dataclass
 
-FIND, LINE = "find", "line"
+FIND = "find"
+LINE = "line"
 
 
 class FindBar(Horizontal):

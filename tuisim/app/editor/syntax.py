@@ -54,11 +54,13 @@ def find_spans(line: str, before: str = "") -> tuple[list[Span], str]:
                 spans.append((start, end, "string"))
             if not closed:
                 return spans, state
-            position, state = end, ""
+            position = end
+            state = ""
         match = _TOKEN.search(line, position)
         if match is None:
             return spans, ""
-        position, kind = match.end(), str(match.lastgroup)
+        position = match.end()
+        kind = str(match.lastgroup)
         if kind == "triple":
             state = match.group()[-3:]
             kind = "string"

@@ -16,7 +16,8 @@ from tuisim.guide.catalogue import load_pages
 from tuisim.guide.excerpt import draw_excerpt
 from tuisim.guide.search import SearchResult, compile_pattern
 
-_FIRST_LINES, _LINES = 11, ((9, 1), (6, 1), (3, 1), (3, 0))
+_FIRST_LINES = 11
+_LINES = ((9, 1), (6, 1), (3, 1), (3, 0))
 """Lines of the best answer; of each other, with those between two: as many as leave all in sight, else the fewest."""
 _EDGES = 3
 """Columns beside the text: a space at each side, and the scroll bar."""
@@ -54,7 +55,8 @@ class AnswerList(OptionList):
 
     def fit(self, size: Size) -> None:
         """Draw the answers for a number of columns and rows."""
-        columns, index = max(size.width - _EDGES, _MIN_COLUMNS), self.highlighted
+        columns = max(size.width - _EDGES, _MIN_COLUMNS)
+        index = self.highlighted
         for lines, gap in _LINES:
             drawn = list(self._draw_answers(columns, lines, gap))
             if sum(len(text.plain.split("\n")) for text in drawn) <= size.height + gap:

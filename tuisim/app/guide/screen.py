@@ -77,7 +77,8 @@ TOPICS: Mapping[str, Topic] = {
 """The topics by id of the panel."""
 
 
-_SIDE_BY_SIDE, _PREVIEW = 100, 66
+_SIDE_BY_SIDE = 100
+_PREVIEW = 66
 """Columns from which the contents stay beside a page that is being read, and from which a page is shown beside them."""
 _SEARCH_AGAIN_S = 0.15
 _SEARCHING = "searching …"
@@ -109,7 +110,9 @@ class _Contents(Tree[Place | None]):
 
     def __init__(self) -> None:
         super().__init__("", id="contents")
-        self.show_root, self.guide_depth, self.auto_expand = False, 2, False
+        self.show_root = False
+        self.guide_depth = 2
+        self.auto_expand = False
 
     def show_all(self, keys: str) -> None:
         """Show the contents.
@@ -145,7 +148,8 @@ class _Contents(Tree[Place | None]):
 
     def walk(self) -> list[TreeNode[Place | None]]:
         """Return every node below the root, those on top first."""
-        nodes, level = [], list(self.root.children)
+        nodes = []
+        level = list(self.root.children)
         while level:
             nodes += level
             level = [child for node in level for child in node.children]
@@ -162,7 +166,8 @@ class _Page(VerticalScroll):
 
     def __init__(self, keys: KeyPage, topic: Topic) -> None:
         super().__init__(id="page")
-        self._keys, self._topic = keys, topic
+        self._keys = keys
+        self._topic = topic
         self.place: Place = (topic.page, "")
         """What is in view, and the section that was gone to."""
         self._with_keys = bool(topic.page)
@@ -182,11 +187,9 @@ class _Page(VerticalScroll):
 
     def show(self, place: Place, matches: SearchResult | None = None) -> None:
         """Show another page or section, or what a search has found there."""
-        self.place, self._with_keys, self._passage = (
-            place,
-            False,
-            matches.passage if matches else "",
-        )
+        self.place = place
+        self._with_keys = False
+        self._passage = matches.passage if matches else ""
         self._draw()
 
     def _draw(self) -> None:
@@ -242,7 +245,8 @@ class GuideScreen(Dialog[None]):
 
     def __init__(self, keys: KeyPage, topic: Topic) -> None:
         super().__init__()
-        self._keys, self._topic = keys, topic
+        self._keys = keys
+        self._topic = topic
         self._question = self._answered = self._at_first = ""
         self._found: list[SearchResult] = []
 
@@ -318,7 +322,8 @@ class GuideScreen(Dialog[None]):
 
     def _arrange(self, reading: bool) -> None:
         """Leave out what has no room beside what is being read; answers have the whole width."""
-        columns, searched = self.app.size.width, bool(self._found)
+        columns = self.app.size.width
+        searched = bool(self._found)
         self._answers.display = searched and not reading
         self._contents.display = not searched and (columns >= _SIDE_BY_SIDE or not reading)
         self._page.display = reading or (not searched and columns >= _PREVIEW)
@@ -326,7 +331,8 @@ class GuideScreen(Dialog[None]):
 
     def _frame(self, reading: bool) -> None:
         """Say in the frame where an answer is, and which keys lead on."""
-        frame, one = self.query_one(".dialog"), self._answers.chosen
+        frame = self.query_one(".dialog")
+        one = self._answers.chosen
         frame.border_title, frame.border_subtitle = self.TITLE_TEXT, self.HINT
         if self._question.strip() and self._answered != self._question:
             frame.border_subtitle = _SEARCHING
@@ -373,7 +379,8 @@ class GuideScreen(Dialog[None]):
         if question != self._question:
             return
         if not question.strip():
-            self._found, self._answered = [], question
+            self._found = []
+            self._answered = question
             self._contents.show_all(self._keys.title)
             self._arrange(self._page.has_focus)
             self._tell_answered()
@@ -388,7 +395,8 @@ class GuideScreen(Dialog[None]):
     def _answer(self, question: str, found: list[SearchResult]) -> None:
         if question != self._question or self.is_closed:
             return
-        self._found, self._answered = found, question
+        self._found = found
+        self._answered = question
         self._arrange(self._page.has_focus)
         self._answers.show(question, found, self._room)
         if not found:

@@ -152,7 +152,8 @@ def choose_panels(
         width: Columns of the area.
         height: Rows of the area.
     """
-    plan, size = _PLANS[preset], classify_size(width, height + 1)
+    plan = _PLANS[preset]
+    size = classify_size(width, height + 1)
     columns = max(0, width // COLUMN_COLS - len(plan.core) + 1)
     usual = plan.core + plan.beside[:columns] or tuple(
         panel

@@ -36,9 +36,11 @@ _READINGS_COLS, _TEXT_COLS = 48, 32
 _MAX_SIDE_COLS = 46
 _CODE_COLS = 64
 """Columns in which most lines of code are whole, with the values beside them."""
-_CHART_COLS, _LEAST_CODE_COLS = 80, 46
+_CHART_COLS = 80
+_LEAST_CODE_COLS = 46
 """Columns of the strip of a wide screen in which a chart is read, if so many are left to the code."""
-_LINE_COLS, _LEAST_CHART_COLS = 80, 64
+_LINE_COLS = 80
+_LEAST_CHART_COLS = 64
 """Columns of code in which lines of an example are whole, and those that the chart then has above the output."""
 _STACKED_ROWS = 14, 7
 """Rows of such a chart and of the output below it."""
@@ -186,7 +188,8 @@ def build_wide(panels: Sequence[str], width: int, height: int) -> Node:
         world_cols = width - measure_side(width, side_panels)
         below = _strip([*strip, *lowered], world_cols, height)
         if 3 * compute_ideal_rows(world_cols) // 4 + sum(map(count_min_rows, below)) <= height:
-            side, strip = side_panels, [*strip, *lowered]
+            side = side_panels
+            strip = [*strip, *lowered]
     return _place_wide(side, strip, main, width, height)
 
 
@@ -206,7 +209,9 @@ def _place_wide(
     return join_nodes(Axis.COLUMNS, [left, join_nodes(Axis.ROWS, side)], shares=shares)
 
 
-_STRIP_ROWS, _LOW_CODE_STRIP_ROWS, _CODE_STRIP_ROWS = 12, 13, 16
+_STRIP_ROWS = 12
+_LOW_CODE_STRIP_ROWS = 13
+_CODE_STRIP_ROWS = 16
 """Rows of the strip below the board: for chart and output beside each other, and beside code on a low and a high
 screen."""
 _CHART_ROWS = 10
@@ -218,7 +223,8 @@ _MAX_EMPTY_ROWS = 3
 
 def build_board(panels: Sequence[str], width: int, height: int) -> Node:
     """The world with readings beside it, and below both a strip with the chart; the wide form without these three."""
-    side, main = select_panels(panels, PanelPlace.SIDE), select_panels(panels, PanelPlace.MAIN)
+    side = select_panels(panels, PanelPlace.SIDE)
+    main = select_panels(panels, PanelPlace.MAIN)
     roomy = [panel for panel in ("code", "brick") if panel in panels]
     fits = classify_size(width, height + 1) == TerminalSize.MEDIUM and width >= MIN_STRIP_COLS * (
         len(roomy) + 1

@@ -34,7 +34,8 @@ class _DiscPicture(PixelView):
         if self._face is None:
             self.clear_picture()
         elif self.size:
-            graphics, mode = self.graphics, self.color_mode
+            graphics = self.graphics
+            mode = self.color_mode
             cell = self.choose_cell(graphics)
             rim_rgb = RIM_16_RGB if mode.dithers and not mode.grey else RIM_RGB
             width_px, height_px = cell.cols * self.size.width, cell.rows * self.size.height
@@ -105,7 +106,8 @@ class Arrays(Widget):
 
     def show(self, snapshot: Snapshot) -> None:
         """Show a moment."""
-        shown, self._snapshot = self._snapshot, snapshot
+        shown = self._snapshot
+        self._snapshot = snapshot
         if shown is None or shown.spec.robot is not snapshot.spec.robot:
             self.refresh()
         self._draw()

@@ -85,7 +85,8 @@ class Brick(LinesPanel, can_focus=True):
 
     def show(self, snapshot: Snapshot) -> None:
         """Show a moment; at most a few updates per second."""
-        former, self._snapshot = self._hub, snapshot
+        former = self._hub
+        self._snapshot = snapshot
         if self._hub != former:
             self.border_title = build_title(self.app, "brick", self._hub)
         if not self.has_focus and self.border_subtitle != self._idle_words:
@@ -224,5 +225,6 @@ class Brick(LinesPanel, can_focus=True):
             self._release_clicked()
 
     def _release_clicked(self) -> None:
-        before, self._clicked = self.held, ""
+        before = self.held
+        self._clicked = ""
         self._post_pressed(before)

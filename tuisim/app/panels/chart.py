@@ -73,7 +73,8 @@ class Chart(LinesPanel, can_focus=True):
         self._dragging = False
         self._pointed_s: float | None = None
         """The time below the pointer."""
-        self._light, self._is_at_rest = PLAIN_LIGHT, False
+        self._light = PLAIN_LIGHT
+        self._is_at_rest = False
         self._spanned: object = None
         """What the bands were found in."""
         self._throttle = Throttle(self, CHART_PERIOD_S, self._draw)
@@ -107,7 +108,8 @@ class Chart(LinesPanel, can_focus=True):
         if not self._dragging:
             state = replace(state, cursor_s=snapshot.time_s if snapshot.past else None)
         if state != self._state:
-            self._state, self._dirty = state, True
+            self._state = state
+            self._dirty = True
         self._light = find_light(snapshot.recorded_spec or snapshot.spec)
         was_at_rest = self._is_at_rest
         self._is_at_rest = snapshot.state in AT_REST

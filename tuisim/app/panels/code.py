@@ -149,7 +149,10 @@ class Code(Vertical):
         """
         key = key or name
         if key != self._key:
-            self._key, self._run_lines, self._mapped, self._line = key, None, None, 0
+            self._key = key
+            self._run_lines = None
+            self._mapped = None
+            self._line = 0
             self._area.light(0)
             self._area.set_error(0)
             self._area.placeholder = "" if name else self._nothing_open
@@ -202,7 +205,8 @@ class Code(Vertical):
             text: None without a run.
             tells: Whether it is a run of this program, so that a difference between the texts is shown.
         """
-        self._run_lines, self._mapped = source_lines(text) if text is not None else None, None
+        self._run_lines = source_lines(text) if text is not None else None
+        self._mapped = None
         self._tells_run = tells
         self._say()
         self._show_values()
@@ -273,7 +277,8 @@ class Code(Vertical):
             and now - self._lit_at_s < LIT_GAP_S
         ):
             return
-        self._lit_at_s, self._stands = now, stands
+        self._lit_at_s = now
+        self._stands = stands
         self.show_line(line)
         if (lit := self._find_shown_line(line)) and not self.typing and stands:
             # From here the arrow keys go on.
@@ -302,7 +307,8 @@ class Code(Vertical):
         self._show_values()
 
     def _show_values(self) -> None:
-        pause, values = self._pause, {}
+        pause = self._pause
+        values = {}
         # Those of another instant are not shown.
         if pause is not None and self._run_lines is not None and pause.paused.tick == self._tick:
             of_run = map_line_values("\n".join(self._run_lines), pause.inspected)

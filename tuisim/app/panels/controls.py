@@ -40,7 +40,8 @@ class Controls(ActionWords, can_focus=False):
             (snapshot.spec, snapshot.instant.noise, snapshot.past and snapshot.time_s),
         )
         if parts != self._shown:
-            self._shown, self._snapshot = parts, snapshot
+            self._shown = parts
+            self._snapshot = snapshot
             self.refresh()
 
     def _build_button(self, text: str, action: str, works: bool) -> Text:
@@ -91,7 +92,8 @@ class Controls(ActionWords, can_focus=False):
                 (self._find_key("faster"), "faster"),
             )
         )
-        noise, drift = now.instant.noise, "" if spec.world.drift.is_none else ", drift"
+        noise = now.instant.noise
+        drift = "" if spec.world.drift.is_none else ", drift"
         lines = [
             buttons,
             Text(),

@@ -65,7 +65,8 @@ class Debug(LinesPanel, can_focus=True):
         now = snapshot.instant.tick, snapshot.time_s
         # While it runs, it has no current line, and nothing can belong to another instant.
         if snapshot.state != self._state or (now != self._now and self._content.paused):
-            self._state, self._now = snapshot.state, now
+            self._state = snapshot.state
+            self._now = now
             self._redraw()
         self._now = now
 

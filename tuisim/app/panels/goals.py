@@ -56,7 +56,8 @@ class Goals(LinesPanel, can_focus=True):
     def show_goals(self, view: GoalsView) -> None:
         """Show goals with their judgements."""
         if view.goals != self._content.goals:
-            self._chosen, self._first = None, 0
+            self._chosen = None
+            self._first = 0
         self._content = view
         self._draw_changes()
 
@@ -103,7 +104,8 @@ class Goals(LinesPanel, can_focus=True):
             self.border_subtitle = words
 
     def _choose(self, goal: int) -> None:
-        self._chosen, self._first = goal, 0
+        self._chosen = goal
+        self._first = 0
         self._redraw()
 
     def action_select(self, by: int) -> None:

@@ -105,7 +105,8 @@ def _build_tall_lines(now: Snapshot, width: int, height: int) -> list[Line]:
     drivers = [build_driver_line(values, width) for values in now.instant.motors]
     if not drivers:
         return []
-    wheels, extra = build_wheel_lines(now, width), build_extra_motor_lines(now, width)
+    wheels = build_wheel_lines(now, width)
+    extra = build_extra_motor_lines(now, width)
     groups = [
         [line for pair in zip(wheels, drivers, strict=False) for line in pair],
         [
@@ -137,10 +138,12 @@ def _build_further_line(column: str, value: float, width: int) -> Line:
     """Return the line of a sensor that not every robot has, by its telemetry column."""
     name, _, what = column.rpartition("_")
     if what == "pressed":
-        value_text, unit = "pressed" if value else "released", ""
+        value_text = "pressed" if value else "released"
+        unit = ""
     else:
         sign = parse_unit(column).sign
-        value_text, unit = f"{value:.0f}", sign if sign == "°" else f" {sign}".rstrip()
+        value_text = f"{value:.0f}"
+        unit = sign if sign == "°" else f" {sign}".rstrip()
     label = name.capitalize()
     return fit_line(
         width,
@@ -277,7 +280,9 @@ def _build_gyro_line(now: Snapshot, width: int) -> Line:
 def _build_pose_line(now: Snapshot, width: int) -> Line:
     pose = now.instant.pose
     shown_deg = shown_heading_deg(pose.heading_deg)
-    x, y, heading = f"{pose.x_mm:.1f}", f"{pose.y_mm:.1f}", f"{shown_deg:.1f}"
+    x = f"{pose.x_mm:.1f}"
+    y = f"{pose.y_mm:.1f}"
+    heading = f"{shown_deg:.1f}"
     return fit_line(
         width,
         (
@@ -337,11 +342,9 @@ def _describe_state(now: Snapshot) -> Run:
 
 
 def _build_state_line(now: Snapshot, width: int) -> Line:
-    state, profile, pen = (
-        _describe_state(now),
-        now.spec.profile.name,
-        "pen down" if now.pen_down else "pen up",
-    )
+    state = _describe_state(now)
+    profile = now.spec.profile.name
+    pen = "pen down" if now.pen_down else "pen up"
     return fit_line(
         width,
         (
@@ -401,16 +404,12 @@ def _build_ranging_line(now: Snapshot, width: int) -> Line:
 
 def _place_and_time(now: Snapshot, width: int) -> Line:
     pose = now.instant.pose
-    x, y, heading = (
-        f"{pose.x_mm:.0f}",
-        f"{pose.y_mm:.0f}",
-        f"{shown_heading_deg(pose.heading_deg):.0f}",
-    )
+    x = f"{pose.x_mm:.0f}"
+    y = f"{pose.y_mm:.0f}"
+    heading = f"{shown_heading_deg(pose.heading_deg):.0f}"
     position = format_unit("x "), format_value(x), format_unit(" y "), format_value(y)
-    where, named = (
-        (*position, format_unit(" "), format_value(heading), format_unit("°")),
-        (*position, format_unit(" h "), format_value(heading), format_unit("°")),
-    )
+    where = (*position, format_unit(" "), format_value(heading), format_unit("°"))
+    named = (*position, format_unit(" h "), format_value(heading), format_unit("°"))
     return fit_line(
         width,
         (*named, format_value(f"  {now.time_s:.2f}"), format_unit(" s  "), _describe_state(now)),

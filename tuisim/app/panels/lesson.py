@@ -63,9 +63,11 @@ class LessonPanel(LinesPanel, can_focus=True):
         """Show a lesson; a new result or step begins at its first row."""
         if view == self._content and self._picture.lines:
             return
-        before, self._content = self._content, view
+        before = self._content
+        self._content = view
         if (view.lesson, view.at, view.judgements) != (before.lesson, before.at, before.judgements):
-            self._page, self._first = None, self._top
+            self._page = None
+            self._first = self._top
         self._redraw()
         if view.hints > before.hints and view.at == before.at:
             # A new hint is at the end.
@@ -113,9 +115,11 @@ class LessonPanel(LinesPanel, can_focus=True):
             is_typing: Whether typing begins.
             is_low: Whether there is little room below the editor: what is to be done comes first then.
         """
-        self._is_typing, self._top = is_typing, -1 if is_typing and is_low else 0
+        self._is_typing = is_typing
+        self._top = -1 if is_typing and is_low else 0
         if self._top:
-            self._page, self._first = None, self._top
+            self._page = None
+            self._first = self._top
         self._redraw()
 
     def action_scroll_text(self, by: int) -> None:
@@ -124,7 +128,8 @@ class LessonPanel(LinesPanel, can_focus=True):
 
     def action_turn(self, by: int) -> None:
         page = self._content.page if self._page is None else self._page
-        self._page, self._first = max(0, min(page + by, self._content.last_page)), 0
+        self._page = max(0, min(page + by, self._content.last_page))
+        self._first = 0
         self._redraw()
 
     def on_click(self) -> None:

@@ -66,9 +66,12 @@ def build_sensor_lines(name: str, seen: LightSeen | None, width: int) -> tuple[L
     if seen is None:
         return [format_label(name), format_unit("–")], []
     color = seen.color
-    red, red_unit, mean = f"{color.red_percent:5.1f}", " %", f"{color.mean_percent:5.1f}"
+    red = f"{color.red_percent:5.1f}"
+    red_unit = " %"
+    mean = f"{color.mean_percent:5.1f}"
     if seen.read is LightRead.REFLECTED:
-        red, red_unit = seen.value, seen.unit
+        red = seen.value
+        red_unit = seen.unit
     # 100 without a decimal leaves a space after the word before it.
     short_red, short_mean = (
         f"{value[:3]:>5}" if value == "100.0" else f"{value:>5}" for value in (red, mean)
@@ -104,7 +107,8 @@ def build_sensor_lines(name: str, seen: LightSeen | None, width: int) -> tuple[L
         ),
     )
     channels = [f"{channel}" for channel in color.rgb]
-    wide, narrow = f"({', '.join(channels)})", f"({','.join(channels)})"
+    wide = f"({', '.join(channels)})"
+    narrow = f"({','.join(channels)})"
     second = fit_line(
         width,
         (

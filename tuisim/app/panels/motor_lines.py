@@ -46,7 +46,9 @@ def build_extra_motor_lines(now: Snapshot, width: int) -> list[Line]:
 def build_driver_line(values: MotorValues, width: int) -> Line:
     """Return the line of what the driver of a motor knows."""
     asked_dps, _, duty_pc, state = values
-    asked_text, duty, word = f"{asked_dps:5d}", f"{duty_pc:4d}", _describe_motor_state(state)
+    asked_text = f"{asked_dps:5d}"
+    duty = f"{duty_pc:4d}"
+    word = _describe_motor_state(state)
     return fit_line(
         width,
         (
@@ -126,7 +128,8 @@ def _build_motor_line(name: str, short: str, counts: int, speed: Run, width: int
 
 def build_motor_cells(now: Snapshot, *, with_speed: bool) -> list[Line]:
     """Return a cell for each motor: counts, and with speed also speed or state."""
-    instant, robot = now.instant, now.spec.robot
+    instant = now.instant
+    robot = now.spec.robot
     wheels = (
         ("L", instant.left_position_deg, instant.left_speed_dps),
         ("R", instant.right_position_deg, instant.right_speed_dps),

@@ -69,7 +69,8 @@ class Noise(EntryPanel):
         settings = noise, snapshot.planned.seed
         if settings == self._shown:
             return
-        before, self._shown = self._shown, settings
+        before = self._shown
+        self._shown = settings
         for kind in _KINDS:
             value = getattr(noise, kind)
             if before is None or getattr(before[0], kind) != value:

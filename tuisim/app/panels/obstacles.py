@@ -100,7 +100,8 @@ class Obstacles(EntryPanel):
             boxes == self._boxes and self.query_one(OptionList).option_count
         ):
             return
-        before, self._boxes = self._boxes, boxes
+        before = self._boxes
+        self._boxes = boxes
         if len(boxes) > len(before) and boxes[: len(before)] == before:
             self.at = len(boxes) - 1
         elif self.at is None or self.at >= len(boxes):
@@ -197,7 +198,8 @@ def find_box(boxes: Sequence[Obstacle], x_mm: float, y_mm: float, slack_mm: floa
     """
     for index in reversed(range(len(boxes))):
         box = boxes[index]
-        right, upper = box.x_mm + box.width_mm, box.y_mm + box.height_mm
+        right = box.x_mm + box.width_mm
+        upper = box.y_mm + box.height_mm
         if (
             box.x_mm - slack_mm <= x_mm <= right + slack_mm
             and box.y_mm - slack_mm <= y_mm <= upper + slack_mm

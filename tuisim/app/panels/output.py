@@ -87,7 +87,8 @@ class Output(Vertical):
 
         None shows the whole output again.
         """
-        self._log.display, self._past_log.display = rows is None, rows is not None
+        self._log.display = rows is None
+        self._past_log.display = rows is not None
         if rows is not None:
             self._past_log.clear()
             self._past_log.add(rows, before)
@@ -316,7 +317,8 @@ class Log(Widget, can_focus=True):
                 OutputRow(self._empty_words, 0, 0, 0, Stream.NOTE), max(1, self.size.width - 1)
             )
             rows[: len(words)] = [((text, Stream.NOTE), False) for text in words[:height]]
-        before, self._shown = self._shown, rows
+        before = self._shown
+        self._shown = rows
         if len(before) != height:
             self.refresh()
             return

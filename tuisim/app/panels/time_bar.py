@@ -103,7 +103,8 @@ def mark_cells(times: BarTimes, marks: Iterable[tuple[int, Mark]], columns: int)
 
 def build_bar(times: BarTimes, marks: Mapping[int, Run], columns: int) -> list[Run]:
     """Return the cells of the bar."""
-    here, now = times.column(times.tick, columns), times.column(times.newest, columns)
+    here = times.column(times.tick, columns)
+    now = times.column(times.newest, columns)
     cells: list[Run] = [
         ("━", _PAST) if column <= here else ("─", _LATER) if column <= now else ("·", _BEYOND)
         for column in range(columns)

@@ -64,7 +64,9 @@ def name_sensors(now: Snapshot, width: int) -> str:
 
 def name_setup(now: Snapshot, width: int) -> str:
     """Return robot, seed and noise in words, as far as they fit a title; a seed or noise of 0 is left out."""
-    spec, noise, room = now.spec, now.instant.noise, _count_columns("instrumentation", width)
+    spec = now.spec
+    noise = now.instant.noise
+    room = _count_columns("instrumentation", width)
     seed = [f"seed {spec.seed}"] if spec.seed else []
     kinds = [f"light ±{noise.light}"] * bool(noise.light) + [f"motor ±{noise.motor}"] * bool(
         noise.motor

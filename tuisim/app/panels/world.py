@@ -250,7 +250,8 @@ class WorldView(PixelView):
     def edit_boxes(self, on: bool, marked: int | None) -> None:
         """Enable or disable drawing and moving obstacles with the mouse."""
         if (on, marked) != (self._edits_boxes, self._marked):
-            self._edits_boxes, self._marked = on, marked
+            self._edits_boxes = on
+            self._marked = marked
             self.repaint_scene()
 
     def show(self, snapshot: Snapshot) -> None:
@@ -266,7 +267,9 @@ class WorldView(PixelView):
         self, width_px: int, height_px: int, pose: Pose, now: Snapshot, cell: CellPoints
     ) -> Viewport:
         """Return the view; on a floor the whole field, until the robot has driven to its edge."""
-        on_floor, previous, zoom = now.spec.world.is_open, self._port, self.zoom
+        on_floor = now.spec.world.is_open
+        previous = self._port
+        zoom = self.zoom
         if on_floor and self._grip is not None:
             # It stays where it is below the mouse.
             pose = self._grip.pose
@@ -289,7 +292,9 @@ class WorldView(PixelView):
         port = self._follow(width_px, height_px, scene.pose, self._snapshot, cell)
         has_floor = self._snapshot.spec.world.is_open
         if has_floor != self._has_floor:
-            self._has_floor, self._painter, self._scene = has_floor, None, None
+            self._has_floor = has_floor
+            self._painter = None
+            self._scene = None
         if self._painter is None:
             self._painter = self._make_painter(self._mat, in_cells=graphics is None)
         trace = self.trace if self.past_trace is None else self.past_trace
@@ -298,7 +303,9 @@ class WorldView(PixelView):
         is_drawn = scene == self._scene and port == self._port and self._trace_drawn == trace.count
         if is_drawn and not (stands and self.is_coarse):
             return
-        self._scene, self._port, self._trace_drawn = scene, port, trace.count
+        self._scene = scene
+        self._port = port
+        self._trace_drawn = trace.count
         self._painter.trace = trace
         self.set_fine_picture(self._painter.paint(port, scene), graphics, stands=stands)
         if self._has_signs:
@@ -324,7 +331,8 @@ class WorldView(PixelView):
 
     def draw_text(self) -> list[str]:
         """Return the picture as rows of characters without colours; none before it is drawn."""
-        now, mat = self._snapshot, self._mat
+        now = self._snapshot
+        mat = self._mat
         if now is None or mat is None or not self.size:
             return []
         trace = self.trace if self.past_trace is None else self.past_trace
@@ -375,7 +383,8 @@ class WorldView(PixelView):
         return replace(scene, rays=snapshot.rays, rays_from=snapshot.instant.pose)
 
     def _has_old_rays(self, last: SceneState, snapshot: Snapshot) -> bool:
-        cast, now = last.rays_from, snapshot.instant.pose
+        cast = last.rays_from
+        now = snapshot.instant.pose
         if cast is None or self._port is None or len(last.rays) != len(snapshot.rays):
             return True
         if last.obstacles != snapshot.spec.world.obstacles or last.robot != snapshot.spec.robot:
@@ -398,9 +407,11 @@ class WorldView(PixelView):
     def _locate_mouse(self, event: events.MouseEvent) -> tuple[float, float]:
         """Return the world position under the mouse: the cell centre, or finer if the terminal supports it."""
         assert self._port is not None
-        col, row = event.pointer_x, event.pointer_y
+        col = event.pointer_x
+        row = event.pointer_y
         if col == event.x and row == event.y:
-            col, row = col + 0.5, row + 0.5
+            col = col + 0.5
+            row = row + 0.5
         cell = self._port.cell
         return self._port.to_mm(cell.cols * col, cell.rows * row)
 
@@ -473,13 +484,16 @@ class WorldView(PixelView):
     def on_mouse_release(self) -> None:
         """Cancel the drag: a dialog has captured the mouse."""
         if self._grip is not None:
-            self._grip, self._held_shows = None, _SHOWS_UNTIL_TAKEN
+            self._grip = None
+            self._held_shows = _SHOWS_UNTIL_TAKEN
         if self._box_grip is not None:
             self._draft = self._box_grip = None
             self._draw()
 
     def _drop_box(self, grip: BoxGrip) -> None:
-        draft, self._draft, self._box_grip = self._draft, None, None
+        draft = self._draft
+        self._draft = None
+        self._box_grip = None
         if draft is not None:
             dragged = len(grip.boxes) if grip.index is None else grip.index
             self.post_message(World.BoxesDragged(draft, dragged))

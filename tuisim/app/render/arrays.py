@@ -23,7 +23,8 @@ _FAIR_ROWS = 6
 UP_WORDS = "up is up on the mat"
 """What the frame says where it has no names to say."""
 
-_RINGS_ARE, _RING_DIGITS = "in→out", 3
+_RINGS_ARE = "in→out"
+_RING_DIGITS = 3
 """What the means of the rings are, in their order, and the digits of the longest."""
 
 _LABEL, _VALUE, _UNIT = (
@@ -109,7 +110,8 @@ def build_face_lines(face: DiscFace, width: int, rows: int, *, has_limits: bool)
 
 
 def _build_value_line(face: DiscFace, width: int) -> Line:
-    value, name = face.value_words, face.seen.name
+    value = face.value_words
+    name = face.seen.name
     swatch = build_swatch(face.seen)
     if len(value) + len(name) + 4 <= width:
         return [(value, _VALUE), (" ", _UNIT), swatch, (f" {name}", _VALUE)]

@@ -39,7 +39,8 @@ HALF_BLOCK_SCALE = 0.7
 _SHADES = 5
 """Shades between paper and ink for half blocks: more would only cost bytes."""
 
-_DOT_SHARE, _LINE_PX = 0.25, 0.5
+_DOT_SHARE = 0.25
+_LINE_PX = 0.5
 """A dot is dark if at least this share of its area is dark, or as much as a line of this width darkens, which is what
 the greater part of a thin line leaves in one of two dots."""
 
@@ -130,7 +131,8 @@ def _draw_screen(face: BrickState, width: int, rows: int) -> list[list[Run]]:
 def _draw_text_screen(screen: TextScreen, width: int, rows: int) -> list[list[Run]]:
     """Return the text screen in the terminal's own font; the rest is cut."""
     columns = min(width, screen.columns)
-    left, top = (width - columns) // 2, max(0, (rows - screen.rows) // 2)
+    left = (width - columns) // 2
+    top = max(0, (rows - screen.rows) // 2)
     lines: list[list[Run]] = [[] for _ in range(top)]
     for row, text in enumerate(screen.lines[: rows - top]):
         spans = [(start, end) for line, start, end in screen.inverse if line == row]

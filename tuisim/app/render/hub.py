@@ -41,7 +41,8 @@ _WAYS: Final = {
     "": "",
 }
 """Parts of the names of their keys on the panel."""
-_DARK, _LIT = 60, 255
+_DARK = 60
+_LIT = 255
 
 
 def draw_hub(
@@ -123,14 +124,17 @@ def _draw_controllers(
         if lights[0] not in face.leds:
             continue
         light = " ", _mix_light(face, lights)
-        line, boxes = [light], list[ButtonBox]()
+        line = [light]
+        boxes = list[ButtonBox]()
         for key in CONTROLLERS[port]:
             side, _, way = key.removeprefix(f"{port}.").removeprefix("joystick_").partition("_")
             label = f" {_SIDES.get(side, side.upper())}{_WAYS[way]} "
             first = boxes[-1].end + 1 if boxes else 2
             if boxes and first + len(label) > width:
                 yield line, boxes
-                line, boxes, first = [light], [], 2
+                line = [light]
+                boxes = []
+                first = 2
             line += [(" ", _PLAIN), (label, _PRESSED if key in pressed else _BUTTON)]
             boxes.append(ButtonBox(0, first, first + len(label), key))
         yield line, boxes

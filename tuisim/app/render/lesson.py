@@ -158,7 +158,8 @@ def _build_head(view: LessonView, page: int, width: int) -> Line:
 def _build_page(view: LessonView, page: int, width: int, away: Away) -> Iterator[Line]:
     """Yield a step: first what the last run has shown, then the text, the question, and the hints."""
     assert view.lesson is not None
-    lesson, step = view.lesson, view.lesson.steps[page]
+    lesson = view.lesson
+    step = view.lesson.steps[page]
     is_current = page == view.at
     if is_current and view.done and not view.judgements:
         yield from _describe_done(view.done, view.story, width, away)

@@ -15,7 +15,8 @@ from tuisim.terminal.picture_options import CellSet
 from tuisim.terminal.pixels import Pixels
 
 _PAPER = (255, 255, 255)
-_PIVOT, _GHOST_PIVOT = "O", "x"
+_PIVOT = "O"
+_GHOST_PIVOT = "x"
 _LEGEND_COLS = 22
 """Room for one of the other robots in whole words."""
 

@@ -373,5 +373,6 @@ def find(plan: NextRun, edit_id: str) -> FormField | None:
 
 def step(edit: FormField, plan: NextRun, by: int) -> str:
     """Return the choice `by` steps after the current one."""
-    now, choices = edit.read(plan), edit.choices
+    now = edit.read(plan)
+    choices = edit.choices
     return choices[(choices.index(now) + by) % len(choices)] if now in choices else choices[0]

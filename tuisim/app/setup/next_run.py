@@ -165,7 +165,8 @@ def read_first_line(program: Program | None) -> Mapping[str, Any]:
 
 def _resolve_choices(choices: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, str]]:
     """Return robot, obstacles and profile as objects, and the words that named them."""
-    resolved, words = dict(choices), {}
+    resolved = dict(choices)
+    words = {}
     for key, load in (
         ("robot", choose_robot),
         ("obstacles", load_obstacles),
@@ -229,7 +230,9 @@ def follow_program(plan: NextRun, source: ProgramSource) -> tuple[NextRun, Decid
     Raises:
         ConfigError: the mat is missing.
     """
-    free, usual, settings = plan.free, Settings(), plan.settings
+    free = plan.free
+    usual = Settings()
+    settings = plan.settings
     decided = decide(
         source, settings.changed({key: usual[key] for key in free}), free, insists=False
     )

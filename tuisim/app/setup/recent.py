@@ -18,7 +18,8 @@ from tuisim.engine.runs.store import RunStore
 
 _RUNS_READ = 20
 """So many of the newest runs are read for their programs."""
-_MOST, _MOST_OF_KIND = 5, 3
+_MOST = 5
+_MOST_OF_KIND = 3
 """Entries: each has a number beside the four ways to begin, and all are in sight at 80x24."""
 
 
@@ -87,7 +88,8 @@ def list_recent(new_name: str) -> list[Recent]:
 
 def _list_programs(runs: list[RunInfo]) -> Iterator[tuple[str, str]]:
     """Yield the path of each program of the user that still is there, and when it ran last."""
-    store, seen = RunStore(), set()
+    store = RunStore()
+    seen = set()
     for run in runs:
         try:
             program = read_run_file(store.folder(run.id)).get("program")

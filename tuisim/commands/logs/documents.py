@@ -26,7 +26,8 @@ from tuisim.pictures.charts.files import (
 )
 from tuisim.settings.command_line import Arguments
 
-_MIN_COLUMNS, _ROWS = 20, (12, 32)
+_MIN_COLUMNS = 20
+_ROWS = (12, 32)
 """Size of the chart in the shell: minimum width, and limits of its height."""
 
 
@@ -88,7 +89,8 @@ def _build_model(log: Log, arguments: Arguments) -> AnalysisModel:
         names = choose_names(log, arguments)
         for trace in model.traces:
             trace.on = trace.name in names
-    start, stop = getattr(arguments, "from"), arguments.to
+    start = getattr(arguments, "from")
+    stop = arguments.to
     if start is None and stop is None:
         return model
     low, high = model.traces.find_span_s()

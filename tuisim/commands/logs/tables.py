@@ -177,7 +177,8 @@ def _show_commands(arguments: Arguments, words: str) -> int:
     # Imported on demand: no other figures need stored runs.
     from tuisim.engine.runs.store import RunStore
 
-    store, rows = RunStore(), []
+    store = RunStore()
+    rows = []
     for run in map(store.load_run, arguments.words):
         index = CommandIndex(run)
         index.read_all()
@@ -295,7 +296,8 @@ def reckon(arguments: Arguments) -> int:
         return 0
     if frame.empty:
         raise LogError("has no ticks", file=log.title)
-    end, worst = frame.iloc[-1], frame.loc[frame["error_mm"].idxmax()]
+    end = frame.iloc[-1]
+    worst = frame.loc[frame["error_mm"].idxmax()]
     real, reckoned = ([end[f"{of}{name}"] for name in POSE] for of in ("", "reckoned_"))
     error = [number - other for number, other in zip(reckoned, real, strict=True)]
     # By the shorter way round.

@@ -11,7 +11,8 @@ from enum import StrEnum
 from tuisim.base.data_class import dataclass
 from tuisim.terminal.picture_options import CellSet
 
-SMALLEST, COMFORTABLE = (60, 18), (80, 24)
+SMALLEST = (60, 18)
+COMFORTABLE = (80, 24)
 """Columns and rows that the app needs, and those that it is designed for."""
 SLOW_S = 0.15
 """An answer of the terminal that takes longer is felt."""

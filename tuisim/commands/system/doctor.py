@@ -121,7 +121,8 @@ def _ask_terminal(fd: int, environment: Mapping[str, str], is_remote: bool) -> l
     report = describe_terminal(fd, environment)
     if report is None:
         return [diagnosis.judge_no_terminal(), _check_locale(environment)]
-    term, size = environment.get("TERM", ""), os.get_terminal_size(fd)
+    term = environment.get("TERM", "")
+    size = os.get_terminal_size(fd)
     return [
         diagnosis.judge_terminal(report.name, term, is_remote=is_remote),
         diagnosis.judge_size(size.columns, size.lines),

@@ -66,7 +66,9 @@ class BrickMotor:
     )
 
     def __init__(self, tick_hz: int, weight_step: float, limit_dps: float) -> None:
-        self._tick_s, self._weight_step, self._limit_dps = 1.0 / tick_hz, weight_step, limit_dps
+        self._tick_s = 1.0 / tick_hz
+        self._weight_step = weight_step
+        self._limit_dps = limit_dps
         self.mode = STOPPED
         self.position_deg = 0.0
         self.speed_dps = 0.0
@@ -104,7 +106,9 @@ class BrickMotor:
         if sign != self.sign:
             # The wheel keeps its direction: only the sign convention changes.
             self.speed_dps = -self.speed_dps
-        self.mode, self.target_dps, self.sign = mode, speed_dps, sign
+        self.mode = mode
+        self.target_dps = speed_dps
+        self.sign = sign
         self.slowest_ramp_dps2 = self.approach_dps2 = 0.0
         self.blocked_ticks = 0
 
@@ -127,7 +131,9 @@ class BrickMotor:
             return
         if mode == POSITION and self.mode == STOPPED:
             # The motor did not reach its goal after all.
-            self.mode, self.sign, self.target_dps = mode, sign, target_dps
+            self.mode = mode
+            self.sign = sign
+            self.target_dps = target_dps
         self.position_deg = position_deg + (self.position_deg - position_deg) * part
         self.speed_dps *= part
         self.blocked_ticks = (
@@ -183,7 +189,8 @@ class BrickMotor:
         """Run quiet ticks; see `Motor.glide`."""
         if self.mode == STOPPED:
             return Glide([0.0] * ticks, [self.position_deg] * ticks)
-        sign, tick_s = self.sign, self._tick_s
+        sign = self.sign
+        tick_s = self._tick_s
         turns = [speed * sign * tick_s for speed in self._advance_speeds(ticks)]
         counts = list(accumulate(turns, initial=self.position_deg))
         self.position_deg = counts[-1]
@@ -193,7 +200,10 @@ class BrickMotor:
         """Run quiet ticks with noise added to the speed in each; for moves that do not end at a position."""
         if self.mode == STOPPED:
             return Glide([0.0] * ticks, [self.position_deg] * ticks)
-        sign, tick_s, limit, steady = self.sign, self._tick_s, self._limit_dps, self.speed_dps
+        sign = self.sign
+        tick_s = self._tick_s
+        limit = self._limit_dps
+        steady = self.speed_dps
         # The products of `step` and `_disturbed`, without a call per tick.
         if steady == self.target_dps:
             noisy: Sequence[float] = (
@@ -211,7 +221,9 @@ class BrickMotor:
 
     def _advance_speeds(self, ticks: int) -> list[float]:
         """Advance the speed by `ticks` ticks and return the speed after each."""
-        speed, target, step = self.speed_dps, self.target_dps, self.ramp_step
+        speed = self.speed_dps
+        target = self.target_dps
+        step = self.ramp_step
         if speed == target or step == 0.0:
             speeds = [speed if speed == target else target] * ticks
         else:

@@ -50,7 +50,8 @@ class BrowserMotor:
     )
 
     def __init__(self, tick_hz: int, ramp_step: float, limit_dps: float) -> None:
-        self._tick_s, self._limit_dps = 1.0 / tick_hz, limit_dps
+        self._tick_s = 1.0 / tick_hz
+        self._limit_dps = limit_dps
         self._ramp_step = ramp_step or math.inf
         self._command = STOPPED
         self.mode = STOPPED
@@ -82,7 +83,8 @@ class BrowserMotor:
     def run_to(self, goal_deg: float, speed_dps: float, backwards: bool) -> None:
         """Run to an encoder position."""
         self._begin(POSITION, speed_dps)
-        self.goal_deg, self.backwards = goal_deg, backwards
+        self.goal_deg = goal_deg
+        self.backwards = backwards
         if goal_deg == self.position_deg:
             self.mode = STOPPED
 
@@ -122,7 +124,8 @@ class BrowserMotor:
 
     def _step_register(self, speed: float, noise_dps: float = 0.0) -> float:
         """Return the register after one more tick."""
-        target, step = self.speed_sp, self._ramp_step
+        target = self.speed_sp
+        step = self._ramp_step
         if speed < target:
             speed += step
             if speed > target:
@@ -218,7 +221,8 @@ class BrowserMotor:
 
     def _advance_registers(self, ticks: int) -> list[float]:
         """Advance the register by `ticks` ticks and return it after each."""
-        speed, aim = self.speed_dps, self._aim
+        speed = self.speed_dps
+        aim = self._aim
         speeds: list[float] = []
         while speed != aim and len(speeds) < ticks:
             speed = self._step_register(speed)

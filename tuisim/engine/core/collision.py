@@ -89,8 +89,11 @@ class Solids:
             (o.x_mm, o.y_mm, o.x_mm + o.width_mm, o.y_mm + o.height_mm) for o in world.obstacles
         ]
         outline = build_outline(robot)
-        self._half_width, front, back = outline.half_width_mm, outline.front_mm, outline.back_mm
-        self._middle, self._half_length = (front + back) / 2, (front - back) / 2
+        self._half_width = outline.half_width_mm
+        front = outline.front_mm
+        back = outline.back_mm
+        self._middle = (front + back) / 2
+        self._half_length = (front - back) / 2
         self._turns_mm = robot.wheel_spacing_mm / 2 * (1.0 + 1e-9)
         """Distance per radian of turn up to which a motion is a turn: its wheels do not push the same way."""
         self.reach_mm = outline.reach_mm
@@ -153,7 +156,8 @@ class Solids:
         early_deg = turn_deg * self._early
 
         def move_body(part: float) -> Body:
-            heading, way = math.radians(heading_deg + early_deg * part), forward_mm * part
+            heading = math.radians(heading_deg + early_deg * part)
+            way = forward_mm * part
             x, y = x_mm + way * math.cos(heading), y_mm + way * math.sin(heading)
             return self._place_body(x, y, heading_deg + turn_deg * part)
 
@@ -261,8 +265,10 @@ class Solids:
 
     def _place_body(self, x_mm: float, y_mm: float, heading_deg: float) -> Body:
         turn = math.radians(heading_deg)
-        fx, fy = math.cos(turn), math.sin(turn)
-        length, width = self._half_length, self._half_width
+        fx = math.cos(turn)
+        fy = math.sin(turn)
+        length = self._half_length
+        width = self._half_width
         return (
             x_mm + fx * self._middle,
             y_mm + fy * self._middle,

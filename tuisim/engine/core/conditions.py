@@ -116,7 +116,8 @@ class ValueCondition:
             return lambda value, before: (before == before) & (value != before)
         if self.is_momentary:
             return lambda value, _: value == value
-        compare, number = COMPARE[self.operator], self.number
+        compare = COMPARE[self.operator]
+        number = self.number
         return lambda value, _: compare(value, number)
 
     def format_condition(self, name: str) -> ValueCondition:
@@ -142,13 +143,16 @@ class Edge:
     __slots__ = ("_before", "_held", "_is_momentary", "_test")
 
     def __init__(self, condition: ValueCondition) -> None:
-        self._test, self._is_momentary = condition.test(), condition.is_momentary
-        self._before, self._held = math.nan, False
+        self._test = condition.test()
+        self._is_momentary = condition.is_momentary
+        self._before = math.nan
+        self._held = False
 
     def update(self, value: float) -> bool:
         """Process the next value; return whether the condition becomes true."""
         held = bool(self._test(value, self._before))
-        was_held, self._held = self._held, held
+        was_held = self._held
+        self._held = held
         self._before = value
         return held and (self._is_momentary or not was_held)
 

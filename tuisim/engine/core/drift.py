@@ -134,7 +134,8 @@ def compute_light_share(x_mm: Any, y_mm: Any, drift: DriftSpec, seed: int) -> An
 def draw_bright_side(drift: DriftSpec, seed: int) -> tuple[float, float]:
     """Return how much a mm along x and along y adds to the brightness: from side to side it is 1."""
     way = draw_errors(drift, seed).bright_rad
-    across, up = cos(way), sin(way)
+    across = cos(way)
+    up = sin(way)
     size_mm = FIELD_WIDTH_MM * abs(across) + FIELD_HEIGHT_MM * abs(up)
     return across / size_mm, up / size_mm
 
@@ -151,7 +152,9 @@ class _Wheel:
     __slots__ = ("_accelerations", "_half_mm", "_play_mm", "_slip", "_times", "before_mm")
 
     def __init__(self, times: float, backlash_mm: float, slip: float, tick_hz: int) -> None:
-        self._times, self._half_mm, self._slip = times, backlash_mm / 2, slip
+        self._times = times
+        self._half_mm = backlash_mm / 2
+        self._slip = slip
         self._accelerations = tick_hz * tick_hz / 1000
         self._play_mm = 0.0
         """Where the motor is in its play: from -half to half."""
@@ -192,18 +195,17 @@ class SlippingWheels:
     )
 
     def __init__(self, spec: RunSpec) -> None:
-        drift, hz, drawn = (
-            find_drift(spec),
-            spec.profile.tick_hz,
-            draw_errors(find_drift(spec), spec.seed),
-        )
+        drift = find_drift(spec)
+        hz = spec.profile.tick_hz
+        drawn = draw_errors(find_drift(spec), spec.seed)
         self._seed = spec.seed
         self._left_mm, self._right_mm = compute_mm_per_degree(spec.robot)
         self._left, self._right = (
             _Wheel(times, drift.backlash_deg * abs(mm), drift.slip_pc / 100, hz)
             for times, mm in ((drawn.left, self._left_mm), (drawn.right, self._right_mm))
         )
-        self._spacing, self._turn_slip = drawn.spacing, drift.turn_slip_pc / 100
+        self._spacing = drawn.spacing
+        self._turn_slip = drift.turn_slip_pc / 100
 
     def turn_deg(self, tick: int, left_deg: float, right_deg: float) -> tuple[float, float]:
         """Return the turns of the motors that would move a robot without errors as this one moves in a tick."""
@@ -220,7 +222,8 @@ class SlippingWheels:
             lost_left += sqrt((abs(lost_left) + abs(scrubbed)) * JERK_MM) * by_left - scrubbed
             lost_right += sqrt((abs(lost_right) + abs(scrubbed)) * JERK_MM) * by_right + scrubbed
         left, right = left - lost_left, right - lost_right
-        forward, turning = (left + right) / 2, (right - left) / 2 / self._spacing
+        forward = (left + right) / 2
+        turning = (right - left) / 2 / self._spacing
         limit_mm = MAX_TIMES * max(abs(left_mm), abs(right_mm))
         left, right = (
             max(-limit_mm, min(limit_mm, way_mm))
@@ -240,8 +243,10 @@ class WrongGyro:
     __slots__ = ("_carry_deg", "_drift_deg", "_drifts", "_drive", "_max_deg", "_scale")
 
     def __init__(self, spec: RunSpec, drive: Drive) -> None:
-        drift, profile = find_drift(spec), spec.profile
-        self._drive, self._scale = drive, 1 - drift.gyro_scale_pc / 100
+        drift = find_drift(spec)
+        profile = spec.profile
+        self._drive = drive
+        self._scale = 1 - drift.gyro_scale_pc / 100
         self._drift_deg = draw_errors(drift, spec.seed).gyro_dps / profile.tick_hz
         self._max_deg = (profile.gyro_max_dps or inf) / profile.tick_hz
         self._carry_deg = 0.0

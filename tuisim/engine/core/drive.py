@@ -123,8 +123,12 @@ def _glide_straight(
     """Move the robot by equal steps in the direction `way`, in radians; see `BrickDrive.glide_evenly`."""
     buffer, offsets, ticks, line, *_ = records
     _fill(records, offsets.start, left, right, drive.gyro_zero_deg)
-    x, y, heading, pack_into = drive.x_mm, drive.y_mm, drive.heading_deg, POSITION_FIELDS.pack_into
-    across, up = forward_mm * cos(way), forward_mm * sin(way)
+    x = drive.x_mm
+    y = drive.y_mm
+    heading = drive.heading_deg
+    pack_into = POSITION_FIELDS.pack_into
+    across = forward_mm * cos(way)
+    up = forward_mm * sin(way)
     left_at = right_at = 0.0
     for offset, tick, left_at, right_at in zip(
         offsets, ticks, left.counts_deg, right.counts_deg, strict=True
@@ -155,13 +159,18 @@ class BrickDrive:
 
     def __init__(self, robot: RobotSpec, start: Pose, early: float) -> None:
         self._left_mm_per_deg, self._right_mm_per_deg = compute_mm_per_degree(robot)
-        self._spacing_mm, self._early = robot.wheel_spacing_mm, early
-        self.x_mm, self.y_mm, self.heading_deg = start.x_mm, start.y_mm, start.heading_deg
+        self._spacing_mm = robot.wheel_spacing_mm
+        self._early = early
+        self.x_mm = start.x_mm
+        self.y_mm = start.y_mm
+        self.heading_deg = start.heading_deg
         self.gyro_zero_deg = round_to_float32(start.heading_deg)
 
     def put(self, pose: Pose) -> None:
         """Set the robot's pose."""
-        self.x_mm, self.y_mm, self.heading_deg = pose.x_mm, pose.y_mm, pose.heading_deg
+        self.x_mm = pose.x_mm
+        self.y_mm = pose.y_mm
+        self.heading_deg = pose.heading_deg
 
     def roll(self, left_deg: float, right_deg: float) -> None:
         """Move the robot by one tick's rotation of the wheels' motors."""
@@ -177,13 +186,19 @@ class BrickDrive:
         """Move the robot by several ticks and write a record for each."""
         buffer, offsets, ticks, line, flags, actions, hz = records
         left_per_deg, right_per_deg = self._left_mm_per_deg, self._right_mm_per_deg
-        spacing, early, zero = self._spacing_mm, self._early, self.gyro_zero_deg
-        x, y, heading, pack_into = self.x_mm, self.y_mm, self.heading_deg, TICK_RECORD.pack_into
+        spacing = self._spacing_mm
+        early = self._early
+        zero = self.gyro_zero_deg
+        x = self.x_mm
+        y = self.y_mm
+        heading = self.heading_deg
+        pack_into = TICK_RECORD.pack_into
         for offset, tick, left_deg, left_at, right_deg, right_at in zip(
             offsets, ticks, *left, *right, strict=True
         ):
             left_mm, right_mm = left_deg * left_per_deg, right_deg * right_per_deg
-            turned, forward = degrees((right_mm - left_mm) / spacing), (left_mm + right_mm) / 2
+            turned = degrees((right_mm - left_mm) / spacing)
+            forward = (left_mm + right_mm) / 2
             way = radians(heading + turned * early)
             x += forward * cos(way)
             y += forward * sin(way)
@@ -204,7 +219,9 @@ class BrickDrive:
                 flags,
                 actions,
             )
-        self.x_mm, self.y_mm, self.heading_deg = x, y, heading
+        self.x_mm = x
+        self.y_mm = y
+        self.heading_deg = heading
 
     def glide_evenly(
         self, records: Records, left: EvenGlide, right: EvenGlide
@@ -214,12 +231,16 @@ class BrickDrive:
             left.roll_deg * self._left_mm_per_deg,
             right.roll_deg * self._right_mm_per_deg,
         )
-        turned, forward = degrees((right_mm - left_mm) / self._spacing_mm), (left_mm + right_mm) / 2
+        turned = degrees((right_mm - left_mm) / self._spacing_mm)
+        forward = (left_mm + right_mm) / 2
         if not turned:
             return _glide_straight(self, forward, radians(self.heading_deg), records, left, right)
         buffer, offsets, ticks, line, *_ = records
         _fill(records, offsets.start, left, right, self.gyro_zero_deg)
-        x, y, heading, pack_into = self.x_mm, self.y_mm, self.heading_deg, POSITION_FIELDS.pack_into
+        x = self.x_mm
+        y = self.y_mm
+        heading = self.heading_deg
+        pack_into = POSITION_FIELDS.pack_into
         early = turned * self._early
         left_at = right_at = 0.0
         for offset, tick, left_at, right_at in zip(
@@ -230,7 +251,9 @@ class BrickDrive:
             y += forward * sin(way)
             heading += turned
             pack_into(buffer, offset, tick, line, x, y, heading, left_at, right_at)
-        self.x_mm, self.y_mm, self.heading_deg = x, y, heading
+        self.x_mm = x
+        self.y_mm = y
+        self.heading_deg = heading
         return left_at, right_at
 
 
@@ -261,7 +284,8 @@ class BrowserDrive:
             math.pi * robot.wheel_diameter_mm / robot.gear_ratio, robot
         )
         """How far each wheel rolls per turn of its motor."""
-        self._spacing_mm, self._early = robot.wheel_spacing_mm, early
+        self._spacing_mm = robot.wheel_spacing_mm
+        self._early = early
         self._left_deg = self._right_deg = self._forward_mm = self._turn = 0.0
         """Rotation of the wheels' motors in the last tick, and the step and turn that result from it."""
         self.put(start)
@@ -278,7 +302,8 @@ class BrowserDrive:
         if left_deg != self._left_deg or right_deg != self._right_deg:
             self._left_deg, self._right_deg = left_deg, right_deg
             self._forward_mm, self._turn = self._step(left_deg, right_deg)
-        turned, forward = self._turn, self._forward_mm
+        turned = self._turn
+        forward = self._forward_mm
         way = self._heading + turned * self._early
         self.x_mm += forward * cos(way)
         self.y_mm += forward * sin(way)
@@ -287,7 +312,8 @@ class BrowserDrive:
             if heading > _WHOLE_TURN:
                 heading -= _WHOLE_TURN
                 self.gyro_zero_deg = round_to_float32(self.gyro_zero_deg - 360)
-            self._heading, self.heading_deg = heading, heading * 180.0 / math.pi
+            self._heading = heading
+            self.heading_deg = heading * 180.0 / math.pi
 
     def _step(self, left_deg: float, right_deg: float) -> tuple[float, float]:
         """Return the step in mm and the turn in radians for a rotation of the wheels' motors."""
@@ -301,27 +327,30 @@ class BrowserDrive:
         """Move the robot by several ticks and write a record for each."""
         buffer, offsets, ticks, line, flags, actions, hz = records
         left_rim, right_rim = self._left_rim_mm, self._right_rim_mm
-        spacing, early, zero = self._spacing_mm, self._early, self.gyro_zero_deg
-        x, y, heading, shown_deg, pack_into = (
-            self.x_mm,
-            self.y_mm,
-            self._heading,
-            self.heading_deg,
-            TICK_RECORD.pack_into,
-        )
-        whole, pi = _WHOLE_TURN, math.pi
+        spacing = self._spacing_mm
+        early = self._early
+        zero = self.gyro_zero_deg
+        x = self.x_mm
+        y = self.y_mm
+        heading = self._heading
+        shown_deg = self.heading_deg
+        pack_into = TICK_RECORD.pack_into
+        whole = _WHOLE_TURN
+        pi = math.pi
         for offset, tick, left_deg, left_at, right_deg, right_at in zip(
             offsets, ticks, *left, *right, strict=True
         ):
             left_mm, right_mm = left_deg / 360.0 * left_rim, right_deg / 360.0 * right_rim
-            turned, forward = (right_mm - left_mm) / spacing, (left_mm + right_mm) / 2
+            turned = (right_mm - left_mm) / spacing
+            forward = (left_mm + right_mm) / 2
             way = heading + turned * early
             x += forward * cos(way)
             y += forward * sin(way)
             if turned:
                 heading += turned
                 if heading > whole:
-                    heading, zero = heading - whole, round_to_float32(zero - 360)
+                    heading = heading - whole
+                    zero = round_to_float32(zero - 360)
                 shown_deg = heading * 180.0 / pi
             pack_into(
                 buffer,
@@ -339,13 +368,11 @@ class BrowserDrive:
                 flags,
                 actions,
             )
-        self.x_mm, self.y_mm, self._heading, self.heading_deg, self.gyro_zero_deg = (
-            x,
-            y,
-            heading,
-            shown_deg,
-            zero,
-        )
+        self.x_mm = x
+        self.y_mm = y
+        self._heading = heading
+        self.heading_deg = shown_deg
+        self.gyro_zero_deg = zero
 
     def glide_evenly(
         self, records: Records, left: EvenGlide, right: EvenGlide
@@ -356,8 +383,13 @@ class BrowserDrive:
             return _glide_straight(self, forward, self._heading, records, left, right)
         buffer, offsets, ticks, line, *_ = records
         _fill(records, offsets.start, left, right, self.gyro_zero_deg)
-        x, y, heading, pack_into = self.x_mm, self.y_mm, self._heading, POSITION_FIELDS.pack_into
-        whole, pi, early = _WHOLE_TURN, math.pi, turned * self._early
+        x = self.x_mm
+        y = self.y_mm
+        heading = self._heading
+        pack_into = POSITION_FIELDS.pack_into
+        whole = _WHOLE_TURN
+        pi = math.pi
+        early = turned * self._early
         left_at = right_at = 0.0
         for offset, tick, left_at, right_at in zip(
             offsets, ticks, left.counts_deg, right.counts_deg, strict=True
@@ -371,5 +403,8 @@ class BrowserDrive:
                 self.gyro_zero_deg = round_to_float32(self.gyro_zero_deg - 360)
                 _fill(records, offset, left, right, self.gyro_zero_deg)
             pack_into(buffer, offset, tick, line, x, y, heading * 180.0 / pi, left_at, right_at)
-        self.x_mm, self.y_mm, self._heading, self.heading_deg = x, y, heading, heading * 180.0 / pi
+        self.x_mm = x
+        self.y_mm = y
+        self._heading = heading
+        self.heading_deg = heading * 180.0 / pi
         return left_at, right_at

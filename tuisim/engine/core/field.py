@@ -71,7 +71,8 @@ class Field:
         `diameter` is a key of `sums`.
         """
         width = self.width_px + diameter
-        left, top = col + diameter, row + diameter
+        left = col + diameter
+        top = row + diameter
         if 0 <= left < width and 0 <= top < self.height_px + diameter:
             sums = self.sums[diameter]
             offset = (top * width + left) * 3
@@ -123,7 +124,9 @@ class Field:
         """Return the pixels of a disc, row by row, three bytes per pixel."""
         if not self.has_box(diameter, col, row):
             return in_disc(Field.read_box(self, diameter, col, row), diameter)
-        pixels, line, corner = self.pixels, 3 * self.width_px, 3 * (row * self.width_px + col)
+        pixels = self.pixels
+        line = 3 * self.width_px
+        corner = 3 * (row * self.width_px + col)
         return b"".join(
             [
                 pixels[corner + down * line + 3 * first : corner + down * line + 3 * end]

@@ -88,11 +88,9 @@ def create_motor(spec: RunSpec, kind: str, *, free: bool = False) -> Motor:
     Args:
         free: Whether it drives no wheel.
     """
-    profile, step, fastest_dps = (
-        spec.profile,
-        compute_weight_step(spec),
-        find_top_speed_dps(kind, spec.profile),
-    )
+    profile = spec.profile
+    step = compute_weight_step(spec)
+    fastest_dps = find_top_speed_dps(kind, spec.profile)
     match profile.motor_law:
         case MotorLaw.BRICK:
             return BrickMotor(profile.tick_hz, step, fastest_dps)
@@ -109,7 +107,9 @@ def create_motor(spec: RunSpec, kind: str, *, free: bool = False) -> Motor:
 
 def build_drive(spec: RunSpec) -> Drive:
     """Return the drive of a run's robot, at its initial pose."""
-    robot, start, early = spec.robot, spec.world.start, 0.5 if spec.profile.halfway_heading else 0.0
+    robot = spec.robot
+    start = spec.world.start
+    early = 0.5 if spec.profile.halfway_heading else 0.0
     match spec.profile.motor_law:
         case MotorLaw.BRICK | MotorLaw.EV3DEV | MotorLaw.PYBRICKS | MotorLaw.PYBRICKS_4:
             return BrickDrive(robot, start, early)
@@ -207,7 +207,8 @@ class Motion:
 
     def _begin(self, spec: RunSpec, sink: TickSink, motor_sink: MotorSink | None = None) -> None:
         """Take up its initial state, as far as it differs between runs of one robot in one world."""
-        self.spec, self._sink = spec, sink
+        self.spec = spec
+        self._sink = sink
         self.noise = spec.world.noise
         self.drive = build_drive(spec)
         """The robot's pose and how its wheels change it."""
@@ -262,7 +263,8 @@ class Motion:
             if motor.next_look_ns <= end_ns:
                 motor.run_until(motor.next_look_ns)
             if motor.noticed_ns > self.changed_ns:
-                self.changed_ns, self.changed = motor.noticed_ns, True
+                self.changed_ns = motor.noticed_ns
+                self.changed = True
         return self.changed
 
     def advance(self, ticks: int, until_change: bool = False) -> int:
@@ -312,8 +314,12 @@ class Motion:
         # Before anything moves: without space for its record there is no tick.
         buffer = self._buffer if count < self._room_end else self._make_room(1)
         self.tick = tick = self.tick + 1
-        left, right, drive = self.left, self.right, self.drive
-        before, aside_mm, slipping = None, None, self._slipping
+        left = self.left
+        right = self.right
+        drive = self.drive
+        before = None
+        aside_mm = None
+        slipping = self._slipping
         if self._solids is not None and self._solids.remaining_mm(self._pose()) < self._longest_mm:
             before = left.state(), right.state()
         noise = self.noise.motor
@@ -369,7 +375,8 @@ class Motion:
             return 0
         left_ends, right_ends = self._list_wheel_speeds(left, right)
         per_dps = self._tick_s * abs(self._left_mm_per_deg)
-        straight, turn = 0, 0.0
+        straight = 0
+        turn = 0.0
         if left_ends == right_ends and left_ends[0] * left_ends[1] >= 0:
             straight = 1 if sum(left_ends) > 0 else -1
         else:
@@ -473,7 +480,8 @@ class Motion:
         """Return a buffer with space for `ticks` more records, and usually for some beyond."""
         end = self._sink.count + ticks
         if end > self._room_end:
-            self._buffer, self._room_end = self._sink.reserve(ticks + ROOM_TICKS), end + ROOM_TICKS
+            self._buffer = self._sink.reserve(ticks + ROOM_TICKS)
+            self._room_end = end + ROOM_TICKS
             self._motor_recorder.make_room(self._room_end)
         return self._buffer
 
@@ -494,16 +502,13 @@ class Motion:
                 continue
             # Before anything moves: without space for the records there are no ticks.
             buffer = self._make_room(part)
-            sink, hz = self._sink, self._hz
-            offset, flags, actions = (
-                64 + 64 * sink.count,
-                self._build_flags(),
-                self.actions & 0xFFFF,
-            )
-            offsets, ticks_ahead = (
-                range(offset, offset + 64 * part, 64),
-                range(self.tick + 1, self.tick + 1 + part),
-            )
+            sink = self._sink
+            hz = self._hz
+            offset = 64 + 64 * sink.count
+            flags = self._build_flags()
+            actions = self.actions & 0xFFFF
+            offsets = range(offset, offset + 64 * part, 64)
+            ticks_ahead = range(self.tick + 1, self.tick + 1 + part)
             records = Records(buffer, offsets, ticks_ahead, self.line, flags, actions, hz)
             if ramping:
                 left, right = (

@@ -72,7 +72,8 @@ class MotorRecorder:
     __slots__ = ("_buffer", "_motors", "_sink", "_size")
 
     def __init__(self, motors: tuple[DrivenMotor, ...], sink: MotorSink | None) -> None:
-        self._motors, self._sink = motors, sink
+        self._motors = motors
+        self._sink = sink
         self._size = MOTOR_RECORD.size * len(motors)
         """Bytes of a tick."""
         self._buffer: Buffer | None = None
@@ -104,9 +105,11 @@ class MotorRecorder:
 
     def read_values(self, tick: int) -> tuple[MotorValues, ...]:
         """Return what was recorded at a tick; without a sink, what the drivers know now."""
-        buffer, begin = self._buffer, self._size * tick + 64
+        buffer = self._buffer
+        begin = self._size * tick + 64
         if buffer is None:
-            buffer, begin = bytearray(self._size), 0
+            buffer = bytearray(self._size)
+            begin = 0
             for number, motor in enumerate(self._motors):
                 motor.record(buffer, MOTOR_RECORD.size * number)
         return tuple(MOTOR_RECORD.iter_unpack(buffer[begin : begin + self._size]))

@@ -68,9 +68,13 @@ class Clamping(NamedTuple):
 def compute_clamping(level: int) -> Clamping:
     """Return what errors of up to ±level do to each value of a pixel."""
     errors = sorted(_list_errors(level))
-    first, second = [0, *accumulate(errors)], [0, *accumulate(error * error for error in errors)]
-    shift, variance = [], []
-    count, below, above = len(errors), 0, len(errors)
+    first = [0, *accumulate(errors)]
+    second = [0, *accumulate(error * error for error in errors)]
+    shift = []
+    variance = []
+    count = len(errors)
+    below = 0
+    above = len(errors)
     for value in range(_PIXEL_MAX + 1):
         # Errors from `below` to `above` stay in the range.
         while below and errors[below - 1] >= -value:
@@ -79,7 +83,8 @@ def compute_clamping(level: int) -> Clamping:
             below += 1
         while above and errors[above - 1] > _PIXEL_MAX - value:
             above -= 1
-        under, over = below, count - above
+        under = below
+        over = count - above
         total = first[above] - first[below] - under * value + over * (_PIXEL_MAX - value)
         squares = (
             second[above] - second[below] + under * value**2 + over * (_PIXEL_MAX - value) ** 2
@@ -126,7 +131,8 @@ def add_noise_to_sums(
 
 def _compute_shift(values: bytes, level: int) -> tuple[float, float]:
     """Return how far the sum of a channel's values moves on average, and the standard deviation of its error."""
-    law, count = compute_clamping(level), len(values)
+    law = compute_clamping(level)
+    count = len(values)
     if values.count(values[0]) == count:
         return count * law.shift[values[0]], sqrt(count * law.variance[values[0]])
     clamped = values.translate(None, law.even)
@@ -134,7 +140,8 @@ def _compute_shift(values: bytes, level: int) -> tuple[float, float]:
     if not clamped:
         return 0.0, sqrt(variance)
     # Most of those that errors can clamp are black or white.
-    dark, bright = clamped.count(0), clamped.count(_PIXEL_MAX)
+    dark = clamped.count(0)
+    bright = clamped.count(_PIXEL_MAX)
     shift = dark * law.shift[0] + bright * law.shift[_PIXEL_MAX]
     variance += dark * law.variance[0] + bright * law.variance[_PIXEL_MAX]
     if dark + bright < len(clamped):
@@ -163,7 +170,8 @@ def draw_reading_noise(seed: int, tick: int, channel: str) -> tuple[float, float
     )
     radius, turn, other, further = numbers
     # By Box and Muller: two numbers from one place on a disc, the third from another.
-    far, angle = sqrt(-2 * log((radius + 1) / _NUMBERS)), turn * _TURN
+    far = sqrt(-2 * log((radius + 1) / _NUMBERS))
+    angle = turn * _TURN
     return (
         far * cos(angle),
         far * sin(angle),
@@ -219,7 +227,8 @@ def draw_noises(seed: int, tick: int, count: int, most_dps: int) -> tuple[list[f
     left, right = _generate_wheel_block(seed, block, most_dps)
     left, right = left[offset : offset + count], right[offset : offset + count]
     while len(left) < count:
-        block, missing = block + 1, count - len(left)
+        block = block + 1
+        missing = count - len(left)
         more = _generate_wheel_block(seed, block, most_dps)
         left, right = left + more[0][:missing], right + more[1][:missing]
     return left, right

@@ -124,18 +124,23 @@ class PenMarks:
 
     def _draw_stroke(self, start: _Point, end: _Point) -> None:
         radius = self._pen.width_mm / 2
-        x0, y0, x1, y1 = start[0], FIELD_HEIGHT_MM - start[1], end[0], FIELD_HEIGHT_MM - end[1]
+        x0 = start[0]
+        y0 = FIELD_HEIGHT_MM - start[1]
+        x1 = end[0]
+        y1 = FIELD_HEIGHT_MM - end[1]
         dx, dy = x1 - x0, y1 - y0
         squared = dx * dx + dy * dy
         field = self.field
-        cols, rows = self._list_pixels(x0, x1), self._list_pixels(y0, y1)
+        cols = self._list_pixels(x0, x1)
+        rows = self._list_pixels(y0, y1)
         if field.floor_rgb is None:
             cols = range(max(0, cols.start), min(field.width_px, cols.stop))
             rows = range(max(0, rows.start), min(field.height_px, rows.stop))
         for row in rows:
             for col in cols:
                 # A pixel is drawn if its centre is no farther from the line than half the pen's width.
-                px, py = col + 0.5 - x0, row + 0.5 - y0
+                px = col + 0.5 - x0
+                py = row + 0.5 - y0
                 along = max(0.0, min(1.0, (px * dx + py * dy) / squared)) if squared else 0.0
                 if (px - along * dx) ** 2 + (py - along * dy) ** 2 <= radius * radius:
                     field.marks[col, row] = self._rgb

@@ -47,7 +47,9 @@ SENSOR_PARTS: Mapping[str, type[SensorSpec]] = {
 """Classes of sensors, by the classes of parts."""
 PLUGGED_DIAMETER_MM = ColorSensorSpec("color", "in1", 0.0, 0.0).diameter_mm
 """What a colour sensor sees that is plugged in."""
-LEFT, RIGHT, LATE = "left", "right", "late"
+LEFT = "left"
+RIGHT = "right"
+LATE = "late"
 ROLES = ("", LEFT, RIGHT, LATE)
 """What a motor that is plugged in is for: nothing special, a wheel, or a wheel if it had not been too late for that."""
 
@@ -95,7 +97,8 @@ class PluggedPart:
         Raises:
             KeyError, TypeError, ValueError: the data is not a part.
         """
-        tick, line = int(plain["tick"]), int(plain["line"])
+        tick = int(plain["tick"])
+        line = int(plain["line"])
         return cls(plain["port"], plain["class"], tick, line, plain.get("role", ""))
 
 

@@ -95,11 +95,9 @@ class Simulation(Motion):
         Args:
             with_motors: Whether with what the drivers know of the motors.
         """
-        left, right, spec = (
-            round_to_float32(self._left_dps),
-            round_to_float32(self._right_dps),
-            self.spec,
-        )
+        left = round_to_float32(self._left_dps)
+        right = round_to_float32(self._right_dps)
+        spec = self.spec
         return Instant(
             tick=self.tick,
             pose=self.pose,
@@ -145,7 +143,8 @@ class Simulation(Motion):
 
     def place(self, pose: Pose) -> None:
         """Set the robot's pose; the gyro keeps its angle."""
-        drive, before_deg = self.drive, self.drive.heading_deg
+        drive = self.drive
+        before_deg = self.drive.heading_deg
         drive.put(pose)
         drive.gyro_zero_deg = round_to_float32(drive.gyro_zero_deg + drive.heading_deg - before_deg)
         if self._driven:
@@ -191,7 +190,9 @@ class Simulation(Motion):
 
     def _take_others(self, sources: Sequence[int | None]) -> None:
         """Take over the stops and the reports of the other motors, by the numbers that they had among all motors."""
-        stops, reported, robot = self._stops, self._reported, self.spec.robot
+        stops = self._stops
+        reported = self._reported
+        robot = self.spec.robot
         pairs = [*zip(robot.extra_motors, self.others, sources, strict=True)]
         self._stops = tuple(
             stops[number] if source == number + 2 else build_stops(robot, motor, simulated)

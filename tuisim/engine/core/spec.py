@@ -563,7 +563,8 @@ class RobotSpec(Spec):
             raise RobotError("two sensors have the same name", "give each its own", key="sensors")
 
     def _check_presser(self, touch: TouchSpec) -> None:
-        port, end = touch.pressed_by, f"{touch.pressed_at}_deg"
+        port = touch.pressed_by
+        end = f"{touch.pressed_at}_deg"
         motors = {motor.port: motor for motor in self.extra_motors}
         if port and port not in motors:
             what = "drives a wheel" if port in (self.left_port, self.right_port) else "has no motor"

@@ -24,7 +24,8 @@ METADATA = "value"
 _SHORT = reprlib.Repr()
 _SHORT.maxstring = _SHORT.maxother = _SHORT.maxlong = 60
 
-ON, OFF = "on", "off"
+ON = "on"
+OFF = "off"
 MAX_SEED = 2**63 - 1
 
 
@@ -38,7 +39,8 @@ class WrongValue(ValueError):  # noqa: N818  # the name says what it is
 
     def __init__(self, message: str, hint: str = "", part: str = "") -> None:
         super().__init__(message)
-        self.message, self.hint = message, hint
+        self.message = message
+        self.hint = hint
         self.part = part
         """Which part of the value is wrong, such as `[2]`; empty for the whole of it."""
 
@@ -84,9 +86,13 @@ class Value(ABC):
     ) -> None:
         self.optional = False
         """Whether it may be None: a file leaves it out then."""
-        self.help, self.unit, self.label = help, unit, label
-        self.flags, self.source = tuple(flags), source
-        self.later, self.in_config = later, in_config
+        self.help = help
+        self.unit = unit
+        self.label = label
+        self.flags = tuple(flags)
+        self.source = source
+        self.later = later
+        self.in_config = in_config
 
     @property
     @abstractmethod
@@ -353,7 +359,9 @@ class Text(Value):
         **about: Any,
     ) -> None:
         super().__init__(**about)
-        self.what, self.most, self.pattern = what, most, pattern
+        self.what = what
+        self.most = most
+        self.pattern = pattern
 
     @property
     def allowed(self) -> str:
@@ -393,7 +401,8 @@ class Choice(Value):
         self, choices: Iterable[Any], what: str = "value", metavar: str = "", **about: Any
     ) -> None:
         super().__init__(**about)
-        self._choices, self.what = tuple(choices), what
+        self._choices = tuple(choices)
+        self.what = what
         self._metavar = metavar
 
     @property
@@ -505,7 +514,8 @@ class Part(Value):
     ) -> None:
         super().__init__(**about)
         self.of: Any = of
-        self.key, self.standard = key, standard
+        self.key = key
+        self.standard = standard
         self.values = list_values(of) if values is None else values
 
     @property

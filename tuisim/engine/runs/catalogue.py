@@ -29,7 +29,8 @@ _BUSY_S = 10.0
 
 _Result = TypeVar("_Result")
 
-_FULL, _LEAST_FREE_BYTES = "no space left on device", 1 << 16
+_FULL = "no space left on device"
+_LEAST_FREE_BYTES = 1 << 16
 HOME_HINT = "TUISIM_HOME may name another folder"
 
 _CREATE = """

@@ -95,7 +95,8 @@ class CommandIndex:
     """
 
     def __init__(self, run: CommandedRun) -> None:
-        self._run, self._hz = run, run.first_spec.profile.tick_hz
+        self._run = run
+        self._hz = run.first_spec.profile.tick_hz
         self._robots: list[RobotSpec] = [run.first_spec.robot]
         """The robot at the start, and after each time that parts were plugged in."""
         self._end = self._newest_ns = 0
@@ -142,7 +143,9 @@ class CommandIndex:
         order = order[np.isin(rows["call"][order], [*CALL_WORDS])]
         if not len(order):
             return
-        codes, times, mains = codes[order], times[order], mains[order]
+        codes = codes[order]
+        times = times[order]
+        mains = mains[order]
         begins = np.flatnonzero(
             np.concatenate(([True], (np.diff(codes) != 0) | (np.diff(times) > _REPEAT_NS)))
         )
@@ -239,7 +242,8 @@ class CommandIndex:
 
     def _name_part(self, code: int) -> str:
         """Return the part that an event is for."""
-        call, number = _find_call(code), code & 0xFF
+        call = _find_call(code)
+        number = code & 0xFF
         if CALL_WORDS[call].part:
             return CALL_WORDS[call].part
         if call >= Call.BUILD_BASE:
@@ -262,7 +266,8 @@ class CommandIndex:
         records = self._run.telemetry.array(start)[: self._find_end(number) - start + 1]
         if len(records) < 2:
             return ""
-        flags, after = records["flags"][1:], records[1:]
+        flags = records["flags"][1:]
+        after = records[1:]
         if aim in _BASE_AIMS:
             speeds = np.abs(after["left_speed_dps"]) + np.abs(after["right_speed_dps"])
             is_running = flags & (FLAG_LEFT_RUNNING | FLAG_RIGHT_RUNNING) != 0
@@ -295,11 +300,13 @@ class CommandIndex:
 
     def _list_ends(self) -> list[int]:
         """Return for each event the tick at which the next motion of its part was asked for."""
-        newest, ends = self._run.telemetry.count - 1, [0] * len(self)
+        newest = self._run.telemetry.count - 1
+        ends = [0] * len(self)
         following: dict[tuple[bool, int], int] = {}
         for number in range(len(self) - 1, -1, -1):
             code = self._codes[number]
-            call, part = _find_call(code), (code >> 8 & 0xFF >= Call.BUILD_BASE, code & 0xFF)
+            call = _find_call(code)
+            part = (code >> 8 & 0xFF >= Call.BUILD_BASE, code & 0xFF)
             ends[number] = min(following.get(part, newest), newest)
             if CALL_WORDS[call].aim is not Aim.NONE:
                 following[part] = self.tick(number)

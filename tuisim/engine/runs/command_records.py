@@ -134,7 +134,8 @@ def read_command_rows(folder: Path, first: int, count: int) -> Array:
     """Return at most `count` rows of `COMMAND_FIELDS` from one on; none where the file has none, or is none."""
     import numpy as np
 
-    kind, path = _find_kind(), folder / COMMANDS_FILE
+    kind = _find_kind()
+    path = folder / COMMANDS_FILE
     with suppress(OSError, LogError), open_regular(path) as handle:
         fd = handle.fileno()
         size, published = read_header(os.pread(fd, HEADER_BYTES, 0), COMMANDS_MAGIC, str(path))

@@ -320,7 +320,8 @@ def _measure_columns(
     for index, (record, noise) in enumerate(
         zip(TICK_RECORD.iter_unpack(records.data), every, strict=True)
     ):
-        instant, seen = build_instant(TickRecord(*record), spec, noise), field_at(record)
+        instant = build_instant(TickRecord(*record), spec, noise)
+        seen = field_at(record)
         rows[index] = [
             value
             for mount in slow

@@ -137,14 +137,19 @@ class RunHandle:
         of_many: bool = False,
         isolated: bool = False,
     ) -> None:
-        self.program, self.first_spec, self.field = program, spec, field
+        self.program = program
+        self.first_spec = spec
+        self.field = field
         self.spec, self.plugged = spec, list[PluggedPart]()
         """The run with the parts that have been plugged in, and these."""
-        self._options, self._store = options, store
+        self._options = options
+        self._store = store
         self._run = run = store.create_run(
             program, spec, field.to_plain(), options.to_plain(), options.live
         )
-        self.run_id, self.number, self.folder = run.id, run.number, run.folder
+        self.run_id = run.id
+        self.number = run.number
+        self.folder = run.folder
         self._copy_modules()
         self.ended: Ended | None = None
         self.started = False
@@ -162,7 +167,8 @@ class RunHandle:
         self._look_at_s = time.monotonic() + LOOK_EVERY_S
         self._is_followed = not of_many
         """Whether its recording is looked at once more when the process is gone. Short runs of batches are not."""
-        self._progress, self._stack_asked = (0, 0.0), False
+        self._progress = (0, 0.0)
+        self._stack_asked = False
         self._announced: Ended | None = None
         self.unstored = ""
         """Why the run or its end is not stored; empty if it is."""
@@ -180,7 +186,8 @@ class RunHandle:
 
     def _start(self, *, of_many: bool, isolated: bool) -> None:
         """Start the child; arguments as of the class."""
-        program, run = self.program, self._run
+        program = self.program
+        run = self._run
         try:
             self._process, self._command_fd, self._event_fd, self._lifeline_fd = start_child(
                 run.folder,
@@ -235,7 +242,8 @@ class RunHandle:
             match event:
                 case Started():
                     self.started = True
-                    unsent, self._unsent = self._unsent, []
+                    unsent = self._unsent
+                    self._unsent = []
                     for command in unsent:
                         self.send(command)
                 case Paused():
@@ -258,7 +266,8 @@ class RunHandle:
         if is_due or self._events.falsified or (exited and self._is_followed):
             self._look_for_falsified()
         if is_due:
-            self._is_followed, self._look_at_s = True, now_s + LOOK_EVERY_S
+            self._is_followed = True
+            self._look_at_s = now_s + LOOK_EVERY_S
             self._check_quota()
             self._look_for_stall()
         self._repeat_stop()
@@ -303,7 +312,8 @@ class RunHandle:
         with suppress(OSError):
             if (self.folder / LOG_FILE).stat().st_size > MAX_BYTES:
                 return f"it has written more than {MAX_BYTES >> 20} MiB to {LOG_FILE}"
-        limit_s, hz = self._options.time_limit_s, self.spec.profile.tick_hz
+        limit_s = self._options.time_limit_s
+        hz = self.spec.profile.tick_hz
         # The host reads what is recorded: it must not grow beyond what the run can record.
         if limit_s and telemetry.count > (limit_s + _BEYOND_LIMIT_S) * hz:
             return f"it has recorded more than {limit_s:g} s"
@@ -385,7 +395,9 @@ class RunHandle:
 
     def _finish(self, final: Ended) -> None:
         self.ended = final
-        self.paused, self.waiting_for_input, self.waiting_for_reply = False, None, False
+        self.paused = False
+        self.waiting_for_input = None
+        self.waiting_for_reply = False
         for fd in (self._event_fd, self._command_fd, self._lifeline_fd):
             os.close(fd)
         end_descendants(self._process.pid, self._mark)
@@ -539,7 +551,8 @@ class RunHandle:
             or self.paused
         ):
             return
-        tick, now = self.telemetry.count, self._clock.read_s()
+        tick = self.telemetry.count
+        now = self._clock.read_s()
         if (
             tick != self._progress[0]
             or self.waiting_for_reply

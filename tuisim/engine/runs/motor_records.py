@@ -62,7 +62,9 @@ class MotorsWriter(MappedWriter):
         recorded = self._map[HEADER_BYTES : HEADER_BYTES + ticks * self._size]
         arranged = arrange_records(recorded, before, sources, ticks)
         # A reader has the old file or the new one.
-        path, full, self._size = Path(self._path), self.full, MOTOR_RECORD.size * after
+        path = Path(self._path)
+        full = self.full
+        self._size = MOTOR_RECORD.size * after
         self._close(HEADER_BYTES)
         new = path.with_name(f"{path.name}.new")
         size = ticks * self._size
@@ -84,7 +86,8 @@ def arrange_records(
     recorded: bytes, before: int, sources: Sequence[int | None], ticks: int
 ) -> bytes:
     """Return the records of so many ticks for other motors; `before` is how many there were, others see `MotorSink`."""
-    numbers, after = array("Q", recorded), len(sources)
+    numbers = array("Q", recorded)
+    after = len(sources)
     arranged = array("Q", bytes(MOTOR_RECORD.size * after * ticks))
     for number, source in enumerate(sources):
         if source is not None:

@@ -96,7 +96,8 @@ _MIN_STEP = 4096
 
 MAX_OUTPUT_BYTES = 256 << 20
 """A run that prints more than this is stopped."""
-MAX_OUTPUT_ROWS, MAX_ROWS_PER_S = 1_000_000, 1_000
+MAX_OUTPUT_ROWS = 1_000_000
+MAX_ROWS_PER_S = 1_000
 """So is one with more rows than these together: for each, whoever judges a run needs time and memory."""
 _NS_PER_ROW = 1_000_000_000 // MAX_ROWS_PER_S
 
@@ -133,7 +134,8 @@ def _reserve(fd: int, start: int, size: int) -> None:
             errno.ENOSYS,
         ):
             raise
-        nothing, end = bytes(min(size, _ZEROS)), start + size
+        nothing = bytes(min(size, _ZEROS))
+        end = start + size
         while start < end:
             start += os.pwrite(fd, nothing[: end - start], start)
 
@@ -312,7 +314,9 @@ def is_hole(part: bytes | memoryview) -> bool:
 
 def iterate_raw_rows(data: bytes | memoryview, end: int) -> Iterator[tuple[int, bytes]]:
     """Yield stream and text of each complete row, a cheaper variant of `iterate_rows`."""
-    start, head, after_head = HEADER_BYTES, OUTPUT_ROW.unpack_from, OUTPUT_ROW.size
+    start = HEADER_BYTES
+    head = OUTPUT_ROW.unpack_from
+    after_head = OUTPUT_ROW.size
     end += HEADER_BYTES
     while start + after_head <= end:
         size, _, _, _, stream = head(data, start)

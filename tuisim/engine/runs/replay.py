@@ -85,10 +85,12 @@ def replay(
     Raises:
         LogError: no program can have given these commands, or they take longer than they may.
     """
-    ticks, motors = MemoryRecording(), _Motors(spec.robot)
+    ticks = MemoryRecording()
+    motors = _Motors(spec.robot)
     sim = build_simulation(spec, NoRecording())
     sim.restart(spec, ticks, motors if sim.notices else None)
-    advance, check = _build_advance(sim, actions), CommandCheck(sim)
+    advance = _build_advance(sim, actions)
+    check = CommandCheck(sim)
     give_up_s = thread_time() + limit_s
     for number, command in enumerate(commands):
         if not number % _LOOK_EVERY and thread_time() > give_up_s:

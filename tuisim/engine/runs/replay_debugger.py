@@ -58,7 +58,9 @@ class ReplayDebugger:
     """
 
     def __init__(self, arrived: Arrived, failed: Failed, passed: Passed) -> None:
-        self._arrived, self._failed, self._passed = arrived, failed, passed
+        self._arrived = arrived
+        self._failed = failed
+        self._passed = passed
         self.run: RunHandle | None = None
         """The re-run; None while there is none."""
         self._folder: Path | None = None
@@ -84,14 +86,20 @@ class ReplayDebugger:
     def go(self, recording: Recording, at: Position, look: protocol.Inspect) -> None:
         """Pause at an instant of a recording and inspect."""
         self._line = 0
-        self._request, self._back, self._next_command, self._resumes = look, 0, None, False
+        self._request = look
+        self._back = 0
+        self._next_command = None
+        self._resumes = False
         self._go(recording, at, -1)
 
     def go_to_line(
         self, recording: Recording, tick: int, line: int, look: protocol.Inspect
     ) -> None:
         """Pause where a line began for the last time in a tick; at the end of the tick if it did not."""
-        self._request, self._back, self._next_command, self._resumes = look, 0, None, False
+        self._request = look
+        self._back = 0
+        self._next_command = None
+        self._resumes = False
         self._line = line
         self._go(recording, Position(tick), tick)
 
@@ -107,10 +115,13 @@ class ReplayDebugger:
     ) -> None:
         """Pause at an instant, resume with a command, and inspect where that ends."""
         self._line = 0
-        self._request, self._back, self._resumes = look, 0, True
+        self._request = look
+        self._back = 0
+        self._resumes = True
         here = self._paused and Position(self._paused.tick, self._paused.ordinal)
         if self.run is not None and self._of is recording and here == at:
-            self.busy, self._paused = True, None
+            self.busy = True
+            self._paused = None
             self.run.send(command)
         else:
             self._next_command = command
@@ -121,7 +132,10 @@ class ReplayDebugger:
     ) -> None:
         """Pause `count` lines before an instant."""
         self._line = 0
-        self._request, self._back, self._next_command, self._resumes = look, count, None, False
+        self._request = look
+        self._back = count
+        self._next_command = None
+        self._resumes = False
         self._go(recording, at, max(0, at.tick - FIRST_WINDOW_TICKS))
 
     # Replay
@@ -129,7 +143,8 @@ class ReplayDebugger:
     def _go(self, recording: Recording, at: Position, traced_from: int) -> None:
         from tuisim.engine.runs.handle import RunOptions, start_run
 
-        self.busy, self._aim = True, at
+        self.busy = True
+        self._aim = at
         actions = recording.actions()
         known = self._of is recording and self._actions == len(actions) and self.run is not None
         if known and self._paused is not None and traced_from < 0:
@@ -194,7 +209,8 @@ class ReplayDebugger:
     def _on_paused(self, paused: Paused) -> None:
         assert self.run is not None
         if self._next_command is not None:
-            command, self._next_command = self._next_command, None
+            command = self._next_command
+            self._next_command = None
             self.run.send(command)
             return
         self._paused = paused

@@ -115,7 +115,8 @@ def _build_options(run: StoredRun) -> RunOptions:
     # A run that was stopped might never end by itself; any other ends before the tick after its last. The stop comes
     # right before that tick, which has to be reached, whichever way times are rounded.
     enough_s = (last.tick + 1.5) / run.spec.profile.tick_hz
-    stored, stop_tick = run.options, read_stop_tick(run.folder)
+    stored = run.options
+    stop_tick = read_stop_tick(run.folder)
     stop = () if stop_tick is None else (UserAction(stop_tick, Stop()),)
     try:
         limit_s = float(stored.get("time_limit_s", 0.0))

@@ -276,7 +276,8 @@ def read_run(folder: Path, document: str | None = None, known: RunSpec | None = 
     try:
         actions, cut = read_actions(folder)
     except LogError as error:
-        actions, cut = (), f"{error.message}: the user's actions are ignored"
+        actions = ()
+        cut = f"{error.message}: the user's actions are ignored"
     try:
         first_spec = _restore_spec(data["spec"]) if known is None else known
         plugged = tuple(map(PluggedPart.from_plain, _check_type(data["plugged"], list, "plugged")))

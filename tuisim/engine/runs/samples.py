@@ -50,7 +50,9 @@ def parse_sample(text: str) -> tuple[str, float, float | None] | None:
     match = _SAMPLE.fullmatch(text)
     if match is None:
         return None
-    name, value, time = match[1], float(match[2]), None if match[3] is None else float(match[3])
+    name = match[1]
+    value = float(match[2])
+    time = None if match[3] is None else float(match[3])
     # Extremely long numbers are parsed as infinity; such lines are not samples.
     if (
         not name.isidentifier()
@@ -119,7 +121,9 @@ def select_rows(condition: ValueCondition, rows: Iterable[OutputRow]) -> Iterato
     Raises:
         ValueError: what a sample is to be compared with is no number.
     """
-    read, test, before = build_value_reader(condition), condition.test(), math.nan
+    read = build_value_reader(condition)
+    test = condition.test()
+    before = math.nan
     for row in rows:
         value = read(row.text)
         if value is not None:

@@ -80,7 +80,8 @@ def measure_quiet_color(
         row = (FIELD_HEIGHT_MM - y_mm - diameter / 2).astype(np.int64) + diameter
     sums, inside = _sum_discs(col, row, diameter, field)
     means = sums / disc_pixels_of(diameter)
-    response, drift = find_response(sensor, run.profile), find_drift(run)
+    response = find_response(sensor, run.profile)
+    drift = find_drift(run)
     if response != EVEN:
         means = response.dark * inside[:, None] + means * response.span / WHITE
     if drift.light_pc or drift.light_gain_pc:
@@ -145,7 +146,8 @@ def _measure_ultrasonic(
         nearest_mm = _cut_off(
             nearest_mm, surfaces.level, start[::-1], (sin, cos), _is_echoing(0.0, facing_deg)
         )
-    distance_mm, farthest = _round_numbers(nearest_mm), float(round(sensor.max_range_mm))
+    distance_mm = _round_numbers(nearest_mm)
+    farthest = float(round(sensor.max_range_mm))
     is_near = distance_mm < run.profile.min_echo_mm
     drift = find_drift(run)
     if drift.echo_bias_mm:

@@ -306,7 +306,11 @@ class FilesRead:
     """How many more there were."""
 
 
-_stat, _lstat, _open, _read, _close = os.stat, os.lstat, os.open, os.read, os.close
+_stat = os.stat
+_lstat = os.lstat
+_open = os.open
+_read = os.read
+_close = os.close
 """Saved before those of the program are replaced, which note what it opens."""
 _PART_BYTES = 1 << 20
 MAX_SUMMED_BYTES = 1 << 22

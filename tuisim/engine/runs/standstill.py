@@ -151,7 +151,8 @@ def _find_stretches(records: NDArray[Any], spec: RunSpec) -> Iterator[_Stretch]:
     pushes = runs.copy()
     for name in ("left_speed_dps", "right_speed_dps"):
         pushes &= np.abs(records[name]) < STANDSTILL_DEG * spec.profile.tick_hz
-    solids, shortest = Solids(spec.world, spec.robot), compute_stall_ticks(spec.profile.tick_hz)
+    solids = Solids(spec.world, spec.robot)
+    shortest = compute_stall_ticks(spec.profile.tick_hz)
     now: _Stretch | None = None
     for start, end in find_spans(pushes).tolist():
         if at := _describe_touched(solids, records, start, spec):

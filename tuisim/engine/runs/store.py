@@ -236,7 +236,8 @@ class RunStore:
         Raises:
             LogError: the home folder cannot be used.
         """
-        rows, left = [], _COUNT_A_LISTING_BYTES
+        rows = []
+        left = _COUNT_A_LISTING_BYTES
         changes: list[tuple[str, dict[str, Any]]] = []
         for row in self._update_rows():
             known, change, counted = self._complete(row, left)
@@ -396,7 +397,8 @@ class RunStore:
         try:
             output = OutputView(folder)
             if output.length <= most_bytes:
-                known, counted = replace(known, samples=counts_of(output).samples), output.length
+                known = replace(known, samples=counts_of(output).samples)
+                counted = output.length
             if known.end in (Unended.RUNNING, Unended.INTERRUPTED):
                 known = _add_last_record(known, folder)
         except LogError as error:
@@ -474,7 +476,8 @@ def _match(text: str, rows: Sequence[RunInfo]) -> RunInfo:
 
 def _build_info(run_id: str, data: Mapping[str, Any]) -> RunInfo:
     """Return the catalogue row of a run file; raises KeyError, TypeError or ValueError for invalid contents."""
-    spec, end = data["spec"], data["end"]
+    spec = data["spec"]
+    end = data["end"]
     info = RunInfo(
         int(data["number"]),
         run_id,
@@ -487,7 +490,8 @@ def _build_info(run_id: str, data: Mapping[str, Any]) -> RunInfo:
     )
     if end is None:
         return info
-    ticks, time_s = int(end["tick"]), int(end["time_ns"]) / NS_PER_S
+    ticks = int(end["tick"])
+    time_s = int(end["time_ns"]) / NS_PER_S
     if ticks > MAX_INTEGER:
         raise ValueError(f"tick is {ticks}")
     return replace(

@@ -165,7 +165,8 @@ class TemporaryRun:
         created = datetime.now(UTC).isoformat(timespec="milliseconds")
         run_id = self.folder.name
         self._data = data = build_run_data(run_id, 0, created, program, spec, field, options, live)
-        self._document, self._spec = json.dumps(data), spec
+        self._document = json.dumps(data)
+        self._spec = spec
         file = self.folder / RUN_FILE
         try:
             file.write_text(self._document, "utf-8")

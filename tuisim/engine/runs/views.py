@@ -288,14 +288,16 @@ class _View(ABC):
         larger = _allocate(end if not self._there else 2 * end)
         larger[:HEADER_BYTES] = head
         larger[HEADER_BYTES:begin] = memoryview(self._copy)[first : first + begin - HEADER_BYTES]
-        self._copy, self._dropped = larger, self._dropped + drops
+        self._copy = larger
+        self._dropped = self._dropped + drops
         return begin, end
 
 
 def _are_few_sound(part: memoryview, begin: int, end: int) -> bool:
     """Return whether tick records have these ticks, and all their numbers are finite, and not beyond what a run can
     reach."""
-    doubles, floats = part.cast("d"), part.cast("f")
+    doubles = part.cast("d")
+    floats = part.cast("f")
     columns = [doubles[index :: TICK_RECORD.size // 8] for index in range(1, 6)]
     columns += [floats[index :: TICK_RECORD.size // 4] for index in range(12, 15)]
     ticks = part.cast("I")[:: TICK_RECORD.size // 4].tolist()
@@ -340,7 +342,9 @@ def _read_buffer(fd: int, place: memoryview, at: int) -> int:
 class TelemetryView(_View):
     """The tick records of a run."""
 
-    name, _magic, _record_bytes = TELEMETRY_FILE, TELEMETRY_MAGIC, TICK_RECORD.size
+    name = TELEMETRY_FILE
+    _magic = TELEMETRY_MAGIC
+    _record_bytes = TICK_RECORD.size
     _kept = 1 << 14
 
     @property
@@ -378,7 +382,8 @@ class TelemetryView(_View):
         that is in memory: whoever follows the run learns of its damage, and must not fail before.
         """
         assert self._source is not None
-        size, step = TICK_RECORD.size, _CHUNK_BYTES // TICK_RECORD.size
+        size = TICK_RECORD.size
+        step = _CHUNK_BYTES // TICK_RECORD.size
         records = memoryview(_allocate((end - begin) * size))
         for first in range(begin, end, step):
             part = records[(first - begin) * size : (first - begin + step) * size]
@@ -433,7 +438,9 @@ class TelemetryView(_View):
 class OutputView(_View):
     """The rows of a run: printed, spoken, answers to input(), brick state."""
 
-    name, _magic, _record_bytes = OUTPUT_FILE, OUTPUT_MAGIC, 1
+    name = OUTPUT_FILE
+    _magic = OUTPUT_MAGIC
+    _record_bytes = 1
     # The file is larger by its last step of growth.
     _most_bytes = 2 * MAX_OUTPUT_BYTES
     _kept = 1 << 20
@@ -450,7 +457,8 @@ class OutputView(_View):
         return f"its last {counted(count, 'byte is', 'bytes are')} lost"
 
     def _find_sound_end(self, data: memoryview, begin: int, end: int) -> int:
-        position, shift = self._checked, HEADER_BYTES - self._dropped
+        position = self._checked
+        shift = HEADER_BYTES - self._dropped
         while position + OUTPUT_ROW.size <= end:
             size, _, _, _, stream = OUTPUT_ROW.unpack_from(data, shift + position)
             after = position + OUTPUT_ROW.size + size

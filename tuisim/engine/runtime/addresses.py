@@ -17,14 +17,16 @@ _ADDRESS = re.compile(
     # A thread's identifier is an address, too: <Thread(Thread-1, started 139862347318016)>.
     r"|(?P<thread>\([^()]*(?:\([^()]*\))?, (?:started|stopped)(?: daemon)? )(?P<number>[0-9]{5,20})(?=\)>)"
 )
-_FIRST, _STEP = 0x7F0000000010, 0x10
+_FIRST = 0x7F0000000010
+_STEP = 0x10
 _LOWEST = 1 << 32 if sys.maxsize > 1 << 32 else 1 << 20
 """Addresses are at least this, except those of the heap."""
 _TEXT_BEFORE = 200
 """The name of an object's type is at most this far before its address."""
 _MAX_SEARCHED = 20_000_000
 """Objects that are looked at in vain before no more are: a few real seconds."""
-_STEPS, _MOST_REACHED = 3, 1_000
+_STEPS = 3
+_MOST_REACHED = 1_000
 """From the program's names: so many steps, each from at most so many objects."""
 _HEAP_TYPE = 1 << 9
 """A class that was made by a program: Py_TPFLAGS_HEAPTYPE."""

@@ -83,9 +83,11 @@ def main(arguments: list[str], prepared: Child | None = None) -> NoReturn:
     except OSError as error:
         for name in (TELEMETRY_FILE, OUTPUT_FILE, READINGS_FILE, MOTORS_FILE, COMMANDS_FILE):
             Path(arguments[0], name).unlink(missing_ok=True)
-        end, summary = protocol.End.DISK_FULL, _build_memory_error(error)
+        end = protocol.End.DISK_FULL
+        summary = _build_memory_error(error)
         if not is_full(error):
-            end, summary = protocol.End.CRASHED, f"the run cannot start: {error.strerror or error}"
+            end = protocol.End.CRASHED
+            summary = f"the run cannot start: {error.strerror or error}"
         channel.send(protocol.Ended(end, 0, 0, 1, summary))
         wallclock.exit_process(0)
     child.run()
@@ -133,7 +135,8 @@ class Child:
         from tuisim.engine.shim.files.open_files import OpenFiles
         from tuisim.engine.shim.install import install
 
-        session, interrupts = self._session, self._interrupts
+        session = self._session
+        interrupts = self._interrupts
         scheduler = Scheduler(session, lambda parked: setattr(interrupts, "main_is_parked", parked))
         patch_time(session)
         patch_datetime(session, lambda: self._config.own_folder)
@@ -188,7 +191,8 @@ class Child:
         Raises:
             OSError: there is no space for the recording.
         """
-        self._channel, config = channel, self._config
+        self._channel = channel
+        config = self._config
         options = config.options
         self._pid = wallclock.getpid()
         session = self._session
@@ -210,7 +214,8 @@ class Child:
         )
         limits = RunLimits(int(options.time_limit_s * NS_PER_S), options.stall_limit_s)
         session.connect(channel, steering, limits, config.program.file)
-        session.replies, session.shown_ports = options.replies, config.program.shown_ports
+        session.replies = options.replies
+        session.shown_ports = config.program.shown_ports
         self._stop_when_full(
             *(self._telemetry, self._motors, self._output.writer, session.readings, self._commands)
         )

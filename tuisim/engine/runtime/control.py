@@ -149,7 +149,8 @@ class RunControl:
         script: Iterable[UserAction],
     ) -> None:
         self.live = live
-        self._channel, self._folder = channel, folder
+        self._channel = channel
+        self._folder = folder
         self._speed = speed if live else 0.0
         self._script = deque(script)
         self._paused = paused
@@ -181,17 +182,22 @@ class RunControl:
                 case protocol.Stop():
                     session.ask_stop(End.STOPPED, "stopped")
                 case protocol.Pause():
-                    self._paused, self._steps, self._reason = True, 0, PauseReason.ASKED
+                    self._paused = True
+                    self._steps = 0
+                    self._reason = PauseReason.ASKED
                     session.flags |= LIVE if self.live else 0
                     if session.debugger is not None:
                         session.debugger.pause()
                 case protocol.Resume():
-                    self._paused, self._steps = False, 0
+                    self._paused = False
+                    self._steps = 0
                 case protocol.StepTicks(ticks=ticks):
-                    self._steps, self._reason = self._steps + max(0, ticks), PauseReason.TICKS
+                    self._steps = self._steps + max(0, ticks)
+                    self._reason = PauseReason.TICKS
                     self._forget_goals(session)
                 case protocol.SetSpeed(speed=speed):
-                    self._speed, self._anchor = max(0.0, speed), None
+                    self._speed = max(0.0, speed)
+                    self._anchor = None
                 case _ if isinstance(command, protocol.ACTIONS):
                     self._waiting.append(command)
                 case _:
@@ -199,7 +205,9 @@ class RunControl:
 
     def resume(self, at_full_speed: bool = False) -> None:
         """Resume the run until the debugger pauses it again."""
-        self._paused, self._steps, self._rushing = False, 0, at_full_speed
+        self._paused = False
+        self._steps = 0
+        self._rushing = at_full_speed
 
     @property
     def only_rushes(self) -> bool:
@@ -280,9 +288,13 @@ class RunControl:
             StopProgram: the run has to stop.
         """
         # The run is live from here on, however it started.
-        self.live, session.flags = True, session.flags | LIVE
-        self._paused, self._steps, self._rushing = True, 0, False
-        self.holding, self.between_ticks = True, moment.ordinal in (AFTER_TICK, BEFORE_NEXT_TICK)
+        self.live = True
+        session.flags = session.flags | LIVE
+        self._paused = True
+        self._steps = 0
+        self._rushing = False
+        self.holding = True
+        self.between_ticks = moment.ordinal in (AFTER_TICK, BEFORE_NEXT_TICK)
         self._forget_goals(session)
         self._channel.send(moment)
         while self._paused and not self._steps and session.stop_reason is None:
@@ -351,7 +363,8 @@ class RunControl:
         sim = session.sim
         # A command that is received meanwhile can change it, also to full speed.
         while speed := self._speed:
-            wall, simulated = wallclock.monotonic(), sim.compute_due_ns(sim.tick + 1)
+            wall = wallclock.monotonic()
+            simulated = sim.compute_due_ns(sim.tick + 1)
             # A signal may remove it at any moment.
             anchor = self._anchor = self._anchor or (wall, sim.compute_due_ns(sim.tick))
             wait_s = anchor[0] + (simulated - anchor[1]) / 1e9 / speed - wall

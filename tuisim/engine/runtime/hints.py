@@ -32,7 +32,8 @@ def add_hint(trace: Any, error: BaseException) -> None:
 
 def _find_meant(error: AttributeError) -> str:
     """Return which names of an object of a library may have been meant; empty if none is like the wrong one."""
-    kind, wrong = type(error.obj), error.name
+    kind = type(error.obj)
+    wrong = error.name
     library = str(getattr(kind, "__module__", "")).partition(".")[0]
     if not isinstance(wrong, str) or library not in _LIBRARIES:
         return ""

@@ -46,7 +46,10 @@ class ErrorHooks:
         stderr: LineStream,
         source: Callable[[], str],
     ) -> None:
-        self._session, self._output, self._stderr, self._source = session, output, stderr, source
+        self._session = session
+        self._output = output
+        self._stderr = stderr
+        self._source = source
 
     def install(self) -> None:
         """Replace Python's own hooks."""

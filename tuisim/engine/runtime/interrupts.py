@@ -27,7 +27,8 @@ LEFT_TO_OTHERS_S = 0.1
 STALL_LOOK_S = 1.0
 
 # Saved: the program gets others.
-_enable, _register = faulthandler.enable, faulthandler.register
+_enable = faulthandler.enable
+_register = faulthandler.register
 
 
 def die_with_host(lifeline_fd: int) -> None:

@@ -68,7 +68,8 @@ class LineStream(io.TextIOBase):
     write_through = False
 
     def __init__(self, output: OutputRecorder, stream: Stream = Stream.STDOUT) -> None:
-        self._output, self._stream = output, stream
+        self._output = output
+        self._stream = stream
         self._part = io.StringIO()
         """Text without a newline yet; a line may be the result of any number of prints."""
         self._buffer = ByteStream(self)
@@ -144,7 +145,8 @@ class LineStream(io.TextIOBase):
 
     def take_part(self) -> str:
         """Return the partial line and clear it."""
-        part, self._part = self._part.getvalue(), io.StringIO()
+        part = self._part.getvalue()
+        self._part = io.StringIO()
         return part
 
 

@@ -99,7 +99,9 @@ class ProgramRunner:
         loop_hook: Callable[[], None],
         leave: Callable[[ProgramOutcome], NoReturn],
     ) -> None:
-        self._session, self._output, self._scheduler = session, output, scheduler
+        self._session = session
+        self._output = output
+        self._scheduler = scheduler
         self._leave = leave
         self.stdout, self.stderr = LineStream(output), LineStream(output, Stream.STDERR)
         self.raw = RawOutput(self.stdout.put_bytes, self.stderr.put_bytes)
@@ -141,7 +143,8 @@ class ProgramRunner:
 
     def connect(self, config: RunConfig) -> None:
         """Connect it with the program of a run."""
-        self._config, session = config, self._session
+        self._config = config
+        session = self._session
         self._starts_in_own_folder = config.starts_in_own_folder
         # A relative path would mean another file from there.
         in_own_folder = os.path.join(config.own_folder, os.path.basename(session.program_file))
@@ -252,7 +255,8 @@ class ProgramRunner:
         return self._session.sim.spec.profile.starts_in_own_folder
 
     def _patch(self) -> None:
-        sys.stdout, sys.stderr = self.stdout, self.stderr
+        sys.stdout = self.stdout
+        sys.stderr = self.stderr
         # Also for code that replaces a stream and restores it.
         vars(sys).update(__stdout__=self.stdout, __stderr__=self.stderr)
         self.hooks.install()
@@ -266,7 +270,8 @@ class ProgramRunner:
     def _execute(self) -> None:
         drops_annotations = self._config.spec.profile.motor_law.library.drops_annotations
         if self.code is None:
-            text, file = self._config.program.text, self._session.program_file
+            text = self._config.program.text
+            file = self._session.program_file
             self.code = compile_program(text, file, drops_annotations)
         self.names["__file__"] = self._file
         if self._prelude_error is not None:
@@ -362,7 +367,8 @@ class ProgramRunner:
         return answer
 
     def _await_answer(self, prompt_text: str) -> str | None:
-        session, steering = self._session, self._session.steering
+        session = self._session
+        steering = self._session.steering
         if not steering.replay_next(session, Answer):
             if self._config.options.time_waits:
                 steering.wait_for_reply(session, Answer, InputWanted(prompt_text))

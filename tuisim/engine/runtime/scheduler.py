@@ -117,7 +117,10 @@ class Scheduler:
         self._check_stop(me)
         while True:
             self._order += 1
-            me.order, me.wake_ns, me.woken, me.on_change = self._order, until, False, on_change
+            me.order = self._order
+            me.wake_ns = until
+            me.woken = False
+            me.on_change = on_change
             if until != FOREVER:
                 heapq.heappush(self._timed, (until, me.order, me))
             if on_change:
@@ -141,15 +144,18 @@ class Scheduler:
         main = self.main
         main.interrupt = call
         if main.order:
-            main.order, main.struck = 0, True
+            main.order = 0
+            main.struck = True
             self._ready.appendleft(main)
 
     def _check_stop(self, me: ScheduledThread) -> None:
         if me.interrupt is None:
             return
-        call, me.interrupt = me.interrupt, None
+        call = me.interrupt
+        me.interrupt = None
         # The call belongs to the program, wherever the thread waits.
-        free, self._session.free = self._session.free, 0
+        free = self._session.free
+        self._session.free = 0
         try:
             call()
         finally:
@@ -166,14 +172,16 @@ class Scheduler:
 
     def _sleep(self, me: ScheduledThread) -> None:
         session = self._session
-        me.free, session.free = session.free, 0
+        me.free = session.free
+        session.free = 0
         me.struck = False
         self._switch_thread(me)
         session.free = me.free
         if self.entered is not None:
             self.entered()
         if me.pending is not None:
-            pending, me.pending = me.pending, None
+            pending = me.pending
+            me.pending = None
             raise pending
         if session.flags & STOPPING:
             self._leave_if_stopping(me)
@@ -189,7 +197,8 @@ class Scheduler:
     def wake(self, task: ScheduledThread) -> None:
         """End another thread's wait; it runs when its turn comes."""
         if task.order:
-            task.order, task.woken = 0, True
+            task.order = 0
+            task.woken = True
             self._ready.append(task)
 
     def _switch_thread(self, me: ScheduledThread) -> None:

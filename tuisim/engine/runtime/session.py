@@ -106,7 +106,8 @@ class Session:
     """Receives what the program reads."""
 
     def __init__(self, sim: Simulation, field: Field, output: OutputRecorder) -> None:
-        self.sim, self.output = sim, output
+        self.sim = sim
+        self.output = output
         self._field = field
         self._pen: PenMarks | None = None
         self.program_file = ""
@@ -126,7 +127,8 @@ class Session:
         """Length of a tick; 0 if it is not a whole number."""
         self._limit_ns = self._quick_ns = 1 << 62
         """Up to this time a wait needs only ticks, while `flags` has no bits."""
-        self._commands, self._commands_at = 0, -1
+        self._commands = 0
+        self._commands_at = -1
         self.replies = False
         """Whether the host answers with `messages`."""
         self.wheel_registers: tuple[Callable[[], MotorRegisters], ...] = ()
@@ -146,12 +148,10 @@ class Session:
         self, channel: Channel, steering: RunControl, limits: RunLimits, program_file: str
     ) -> None:
         """Connect it with the run that is about to begin; arguments as the attributes."""
-        self.channel, self.steering, self.limits, self.program_file = (
-            channel,
-            steering,
-            limits,
-            program_file,
-        )
+        self.channel = channel
+        self.steering = steering
+        self.limits = limits
+        self.program_file = program_file
         self._limit_ns = self._quick_ns = limits.time_ns or 1 << 62
         self.flags |= LIVE if steering.wanted else 0
         if self.sim.spec.world.pen_marks:
@@ -172,7 +172,8 @@ class Session:
 
     def spend(self, duration_ns: int, code: int = -1) -> None:
         """Let simulated time pass, even where calls are free; arguments as in `DeviceSession`."""
-        until, line = self.now + duration_ns, 0
+        until = self.now + duration_ns
+        line = 0
         if self.flags or until > self._quick_ns:
             self._pass(until, False)
         elif until < self._due:
@@ -194,7 +195,8 @@ class Session:
             )
             if until < following:
                 sim.tick_once()
-                self.now, self._due = until, following
+                self.now = until
+                self._due = following
                 if code >= 0:
                     self.readings.add(code, until, line)
                 return
@@ -209,7 +211,8 @@ class Session:
 
     def note_reading(self, code: int, line: int = 0) -> None:
         """Record that the program has read something, in this line if it is known; see `DeviceSession`."""
-        readings, now = self.readings, self.now
+        readings = self.readings
+        now = self.now
         # While no time passes, a loop may read the same any number of times: that is written once.
         if now == readings.newest_ns and readings.has(code):
             return
@@ -223,7 +226,8 @@ class Session:
     def command(self) -> None:
         """Count a call without a cost; a burst of them costs a little."""
         if self._commands_at != self.now:
-            self._commands_at, self._commands = self.now, 0
+            self._commands_at = self.now
+            self._commands = 0
         self._commands += 1
         if self._commands >= COMMANDS_AN_INSTANT:
             self._commands = 0
@@ -353,7 +357,8 @@ class Session:
         return False
 
     def _run_live(self, until: int, on_change: bool) -> bool:
-        sim, steering = self.sim, self.steering
+        sim = self.sim
+        steering = self.steering
         sim.changed = False
         target = sim.count_ticks(until)
         if not steering.wanted:

@@ -120,7 +120,8 @@ def patch_faulthandler() -> None:
 
     def switch(wanted: bool) -> bool:
         nonlocal on
-        was, on = on, wanted
+        was = on
+        on = wanted
         return was
 
     def enable(file: Any = None, all_threads: bool = True, **_further: Any) -> None:

@@ -66,7 +66,8 @@ def report_error(error: BaseException, file: str, source: str, alone: bool = Fal
                 _add_suggestions(trace, error)
             add_hint(trace, error)
         chain = _keep_program_frames(trace, own_files(file))
-        text, summary = _format_chain(chain), _summarize(trace)
+        text = _format_chain(chain)
+        summary = _summarize(trace)
     except Exception as problem:
         # An error may be anything, and nested too deeply: it is reported nevertheless.
         stack = traceback.StackSummary.from_list(
@@ -79,8 +80,10 @@ def report_error(error: BaseException, file: str, source: str, alone: bool = Fal
         summary = f"{_name_kind(error)}: <cannot be shown: {type(problem).__name__}>"
         text = _HEADING + "".join(stack.format()) + summary + "\n"
     for name in _OUR_NAMES:
-        text, summary = text.replace(name, ""), summary.replace(name, "")
-    text, summary = _cut(text), _cut(summary)
+        text = text.replace(name, "")
+        summary = summary.replace(name, "")
+    text = _cut(text)
+    summary = _cut(summary)
     line = find_line(error.__traceback__, file) or _find_line(error)
     return ErrorReport(text, line, f"{summary} (line {line})" if line else summary)
 
@@ -95,7 +98,8 @@ def _cut(text: str) -> str:
 def _add_text(error: BaseException, file: str, source: str) -> None:
     """Add the program's line to a syntax error for which Python has looked for the file, which need not exist."""
     if type(error) in _SYNTAX_ERRORS and isinstance(error, SyntaxError) and error.text is None:
-        lines, line = source_lines(source), _find_line(error)
+        lines = source_lines(source)
+        line = _find_line(error)
         if error.filename == file and 0 < line <= len(lines):
             # Bytes that are no text cannot be shown.
             error.text = (
@@ -160,7 +164,8 @@ def _print_as_python(trace: Trace, error: SyntaxError) -> None:
 
 def _print_error(error: BaseException) -> str:
     """Return what Python prints of an error, without its frames."""
-    names, printed = vars(sys), io.StringIO()
+    names = vars(sys)
+    printed = io.StringIO()
     meanwhile = {"stderr": printed, "tracebacklimit": 0}
     before = {name: names[name] for name in meanwhile if name in names}
     names.update(meanwhile)
@@ -254,6 +259,7 @@ def _format_chain(chain: list[Trace]) -> str:
         return "".join(chain[0].format())
     last_told: Any = chain[MAX_LINKED - 1]
     last_told.__cause__ = last_told.__context__ = None
-    oldest, newest = "".join(chain[-MAX_LINKED].format()), "".join(chain[0].format())
+    oldest = "".join(chain[-MAX_LINKED].format())
+    newest = "".join(chain[0].format())
     between = counted(left_out, "more error, which", "more errors, each of which")
     return f"{oldest}\n[{between} led to the next one]\n\n{newest}"

@@ -21,11 +21,14 @@ start_new_thread = _thread.start_new_thread
 stack_size = _thread.stack_size
 select_files = select.select
 exit_process = os._exit
-fork, getpid = os.fork, os.getpid
+fork = os.fork
+getpid = os.getpid
 signals: Any = import_module("_signal")
 """The C module behind `signal`; type checkers do not know it."""
 set_signal, set_timer = signals.signal, signals.setitimer
-settrace, gettrace, setprofile = sys.settrace, sys.gettrace, sys.setprofile
+settrace = sys.settrace
+gettrace = sys.gettrace
+setprofile = sys.setprofile
 
 
 def _start_folder() -> str:

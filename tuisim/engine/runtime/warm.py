@@ -42,7 +42,10 @@ _ONLY_HERE = ("_socket", "hashlib", "_hashlib", "_blake2", "_sha3", "tuisim.engi
 """Modules that other children have not imported."""
 
 # Saved: the program, whose functions a template has, gets others.
-_read, _write, _close, _change_folder = os.read, os.write, os.close, os.chdir
+_read = os.read
+_write = os.write
+_close = os.close
+_change_folder = os.chdir
 
 
 def serve(socket_fd: int) -> Child | None:

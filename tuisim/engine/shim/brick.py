@@ -37,7 +37,8 @@ from tuisim.engine.shim.unsupported.devices import PORT_MODES, of_driver, refusa
 
 PORT_CLASS, MOTOR_CLASS, SENSOR_CLASS = "lego-port", "tacho-motor", "lego-sensor"
 """Classes of devices, by their kernel names."""
-BOARD_CLASS, BOARD = "board-info", "board0"
+BOARD_CLASS = "board-info"
+BOARD = "board0"
 BOARD_INFO = {"model": "LEGO MINDSTORMS EV3", "type": "main", "hw_rev": "7", "rom_rev": "6"}
 """What the brick's board tells of itself."""
 CLASSES = (
@@ -107,7 +108,8 @@ class LegoPort:
     """One port, by its short name such as `in1`, and what is connected to it."""
 
     def __init__(self, session: DeviceSession, port: str) -> None:
-        self._session, self._port = session, port
+        self._session = session
+        self._port = port
         self._kind = INPUT if port in INPUT_PORTS else OUTPUT
         self._mode = AUTO
 

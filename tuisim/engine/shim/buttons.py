@@ -86,7 +86,8 @@ class ButtonsFile(DeviceFile):
         self._session.command()
         self._wait(opened)
         end = size - size % EVENT.size
-        part, opened.data = opened.data[:end], opened.data[end:]
+        part = opened.data[:end]
+        opened.data = opened.data[end:]
         return part
 
     @waits_for(Wait.BUTTON_EVENT)
@@ -101,7 +102,8 @@ class ButtonsFile(DeviceFile):
 
     def ready(self, opened: OpenFile) -> int:
         """Return whether there are events."""
-        now, before = self._session.pressed, opened.seen
+        now = self._session.pressed
+        before = opened.seen
         if now is not before:
             assert isinstance(before, frozenset)
             for event in changes(before, now, self._session.now):

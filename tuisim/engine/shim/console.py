@@ -143,7 +143,8 @@ class Terminal:
     """Prints the library's text on the screen and runs the screen commands."""
 
     def __init__(self, session: DeviceSession, screen: Screen) -> None:
-        self._session, self._screen = session, screen
+        self._session = session
+        self._screen = screen
         self._grid = TextGrid(DISPLAY_WIDTH // FONT_WIDTH, DISPLAY_HEIGHT // FONT_HEIGHT)
 
     def print(self, text: str, end: str = "\n") -> None:

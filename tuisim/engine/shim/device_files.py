@@ -72,7 +72,8 @@ class SimDevice:
         codes: Mapping[str, int] | None = None,
     ) -> None:
         self.session = session
-        self.notifying, self._temporary = dict(notifying or {}), temporary
+        self.notifying = dict(notifying or {})
+        self._temporary = temporary
         self.is_opened = False
         """Whether the program has taken hold of it."""
         self.commands = 0
@@ -87,7 +88,8 @@ class SimDevice:
         if session.sim.spec.profile.attribute_write_ns:
             for charged in (self.writers, self.number_writers):
                 charged.update({name: self._charge(write) for name, write in charged.items()})
-        costs, codes = costs or {}, codes or {}
+        costs = costs or {}
+        codes = codes or {}
         common_ns = session.sim.spec.profile.attribute_read_ns
         self._reads = {
             name: (reader, costs.get(name, common_ns), codes.get(name, -1))
@@ -97,7 +99,8 @@ class SimDevice:
 
     def _charge(self, write: Callable[[Any], None]) -> Callable[[Any], None]:
         """Return a function that lets the time of a write pass first."""
-        session, cost_ns = self.session, self.session.sim.spec.profile.attribute_write_ns
+        session = self.session
+        cost_ns = self.session.sim.spec.profile.attribute_write_ns
 
         def write_slowly(value: Any) -> None:
             session.charge(cost_ns)

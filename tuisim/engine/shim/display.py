@@ -22,7 +22,8 @@ if TYPE_CHECKING:
 BITS_A_PIXEL = 32
 """As the driver reports it; the display itself is black and white."""
 LINE_BYTES = DISPLAY_WIDTH * BITS_A_PIXEL // 8
-WHITE, DARK_BELOW = 255, 128
+WHITE = 255
+DARK_BELOW = 128
 """Greys below `DARK_BELOW` are dark."""
 TRUE_COLOR = 2
 """The kernel's visual type for red, green and blue pixels."""
@@ -67,8 +68,10 @@ class DisplayBuffer(mmap.mmap):
         return super().__new__(cls, NO_FILE, LINE_BYTES * DISPLAY_HEIGHT)
 
     def __init__(self, session: DeviceSession, screen: Screen) -> None:
-        self.session, self.screen = session, screen
-        self.pixels, self.row = b"", ""
+        self.session = session
+        self.screen = screen
+        self.pixels = b""
+        self.row = ""
         super().__setitem__(slice(None), bytes([WHITE]) * len(self))
 
     def __setitem__(self, key: Any, value: Any) -> None:
@@ -105,7 +108,8 @@ class DisplayFile(DeviceFile):
 
     def __init__(self, session: DeviceSession, screen: Screen) -> None:
         super().__init__(DISPLAY_PATH, stat.S_IFCHR | 0o660)
-        self._session, self._screen = session, screen
+        self._session = session
+        self._screen = screen
 
     @cached_property
     def _memory(self) -> DisplayBuffer:

@@ -99,7 +99,8 @@ class DriverTacho(Tacho):
         return number * self._sign if name in SIGNED else number
 
     def _set_point_writer(self, name: str, low: int, high: int) -> NumberWriter:
-        index, signed = SET_POINTS.index(name), name in SIGNED
+        index = SET_POINTS.index(name)
+        signed = name in SIGNED
         set_points = self._set_points
 
         def write(value: int) -> None:
@@ -138,4 +139,6 @@ class DriverTacho(Tacho):
         self._tell(call, *self._set_points)
         if call is RESET_DRIVER:
             self._set_points[:] = FIRST_SET_POINTS
-            self._stop_action, self._polarity, self._sign = "coast", "normal", 1
+            self._stop_action = "coast"
+            self._polarity = "normal"
+            self._sign = 1

@@ -109,7 +109,8 @@ def quiet_pillow(_module: types.ModuleType) -> None:
 def patch_fonts_module(module: types.ModuleType) -> None:
     """Patch `ev3dev2.fonts` after its import so that every font of the brick can be loaded."""
     fonts: Any = module
-    available, load = fonts.available, fonts.load
+    available = fonts.available
+    load = fonts.load
     warned: list[str] = []
 
     @wraps(available)
@@ -129,7 +130,8 @@ def patch_fonts_module(module: types.ModuleType) -> None:
             )
         return drawn(FACES[name])
 
-    fonts.available, fonts.load = all_available, load_or_draw
+    fonts.available = all_available
+    fonts.load = load_or_draw
 
 
 def sized(size_px: int, bold: bool, monospace: bool) -> ImageFont:

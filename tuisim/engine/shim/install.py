@@ -48,7 +48,9 @@ class FinishingFinder:
         is_own: Callable[[str], bool],
         around: Mapping[str, Around],
     ) -> None:
-        self._finishers, self._is_own, self._around = finishers, is_own, around
+        self._finishers = finishers
+        self._is_own = is_own
+        self._around = around
 
     def find_spec(
         self, fullname: str, path: Sequence[str] | None, target: types.ModuleType | None = None
@@ -106,7 +108,8 @@ def install(
     built = build_brick(session)
     plugs = Plugs(built)
     screen = Screen(session)
-    terminal, mixer = Terminal(session, screen), Mixer()
+    terminal = Terminal(session, screen)
+    mixer = Mixer()
     system = System(session, Shell(session, terminal, mixer))
     system.patch_os(replace)
     tree = DeviceTree(

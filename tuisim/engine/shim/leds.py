@@ -119,7 +119,8 @@ class Light:
         if text not in TRIGGERS:
             raise refuse(text)
         self._lights.session.command()
-        before, self._trigger = self._trigger, text
+        before = self._trigger
+        self._trigger = text
         if text == "timer":
             self._blink_brightness = self.shining or MAX_BRIGHTNESS
             self._delays_ms = dict.fromkeys(self._delays_ms, BLINK_MS)

@@ -36,13 +36,11 @@ RAMPS = ("ramp_up_sp", "ramp_down_sp")
 COUNT_PER_ROT = 360
 MAX_RAMP_MS = 60_000
 MAX_SET_POINT = 2**31 - 1
-RUN, RUN_UNTIL, RUN_TO, STOP, SET_COUNT = (
-    Call.RUN,
-    Call.RUN_UNTIL,
-    Call.RUN_TO,
-    Call.STOP,
-    Call.SET_COUNT,
-)
+RUN = Call.RUN
+RUN_UNTIL = Call.RUN_UNTIL
+RUN_TO = Call.RUN_TO
+STOP = Call.STOP
+SET_COUNT = Call.SET_COUNT
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,9 +64,12 @@ class Tacho(ABC):
     """One motor on an output port, such as `outB`; its kind is one of `KINDS`."""
 
     def __init__(self, session: DeviceSession, motor: Motor, port: str, kind: str) -> None:
-        self._session, self._port, self._kind = session, port, KINDS[kind]
+        self._session = session
+        self._port = port
+        self._kind = KINDS[kind]
         self._motor = motor
-        self._stop_action, self._polarity = "coast", "normal"
+        self._stop_action = "coast"
+        self._polarity = "normal"
         self._last_command = ""
         self._look: Reader | None = None
         """What differs after a change of the state that the driver tells of, if not the state itself."""
@@ -168,7 +169,8 @@ class TachoMotor(Tacho):
             "hold_pid/Kd": 0,
         }
         self._stop_action = "coast"
-        self._polarity, self._sign = "normal", 1
+        self._polarity = "normal"
+        self._sign = 1
         self._last_goal: float | None = None
         self._holding = False
         self._ramps = False
@@ -374,7 +376,8 @@ class BrowserTacho(Tacho):
     ) -> None:
         super().__init__(session, motor, port, kind)
         self._numbers = dict.fromkeys(WITHOUT_EFFECT, 0)
-        self._position_sp, self._time_sp_s = 0, 0.0
+        self._position_sp = 0
+        self._time_sp_s = 0.0
 
     def device(self) -> SimDevice:
         """Return the device that the library reads and writes."""

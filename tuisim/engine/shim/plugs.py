@@ -59,7 +59,8 @@ class Plugs:
     """
 
     def __init__(self, built: BuiltBrick) -> None:
-        self._built, self._session = built, built.session
+        self._built = built
+        self._session = built.session
         self.missing: type[Exception] = Exception
         """The library's error about a device that is not there."""
         self._late: frozenset[str] = frozenset()
@@ -142,7 +143,8 @@ class Plugs:
             left, right: Their ports.
             part: Their class.
         """
-        session, ports = self._session, (left, right)
+        session = self._session
+        ports = (left, right)
         if session.shown_ports is None or left == right:
             return
         robot = session.sim.spec.robot
@@ -193,7 +195,8 @@ class Plugs:
 
     def _plug(self, parts: Sequence[PluggedPart]) -> None:
         """Change the robot, and what is connected to the brick."""
-        built, sim = self._built, self._session.sim
+        built = self._built
+        sim = self._session.sim
         before = sim.spec.robot
         obey(sim, self._session.now, 0, Call.PLUG, *encode_parts(parts))
         robot = sim.spec.robot

@@ -14,7 +14,8 @@ from tuisim.engine.core.tick_record import FLAG_LEFT_RUNNING, FLAG_RIGHT_RUNNING
 from tuisim.engine.shim.device_files import SimDevice
 from tuisim.engine.shim.session import DeviceSession
 
-POWER_CLASS, BATTERY = "power_supply", "lego-ev3-battery"
+POWER_CLASS = "power_supply"
+BATTERY = "lego-ev3-battery"
 """Class and name of the battery, by their kernel names."""
 
 FULL_V, EMPTY_V = 8.1, 6.0
@@ -81,7 +82,9 @@ class Battery:
         tick_s = 1 / sim.spec.profile.tick_hz
         for record in sim.read_records(self._records):
             self._records += 1
-            left_dps, right_dps, flags = record[7], record[8], int(record[10])
+            left_dps = record[7]
+            right_dps = record[8]
+            flags = int(record[10])
             drawn_a = BRICK_A
             if flags & FLAG_LEFT_RUNNING:
                 drawn_a += self._turning_a(left_dps)

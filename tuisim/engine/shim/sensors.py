@@ -71,7 +71,8 @@ class LegoSensor:
         switch_ns: int | None = None,
     ) -> None:
         self._session = session
-        self._port, self.driver_name = port, driver_name
+        self._port = port
+        self.driver_name = driver_name
         self.modes = dict(modes)
         self._codes = {mode: READING_CODES[port, mode] for mode in modes}
         self.mode = default_mode
@@ -214,7 +215,8 @@ class ColorDevice(LegoSensor):
         sim = self._session.sim
         if sim.tick != self._seen_tick or sim.actions != self._seen_actions:
             self._seen_tick, self._seen_actions = sim.tick, sim.actions
-            light, drive = sim.noise.light, sim.drive
+            light = sim.noise.light
+            drive = sim.drive
             if self._in_full or (light and self._spec.strategy != "mean"):
                 self._seen = color.measure_color(
                     self._spec, sim.build_instant(), self._session.field
@@ -260,7 +262,8 @@ def ultrasonic_sensor(
     It hears those of the robot's sensors that ping; they include this one, and more may be added later.
     """
     sim = session.sim
-    read, period = sim.spec.profile.ultrasonic_read_ns, sim.spec.profile.ultrasonic_period_ticks
+    read = sim.spec.profile.ultrasonic_read_ns
+    period = sim.spec.profile.ultrasonic_period_ticks
     last = (-1, -1, 0)
 
     def distance_mm() -> int:
@@ -348,7 +351,8 @@ def touch_sensor(session: DeviceSession, spec: TouchSpec) -> LegoSensor:
 def infrared_sensor(session: DeviceSession, spec: InfraredSpec) -> LegoSensor:
     """Return an infrared sensor."""
     sim = session.sim
-    world, read = sim.spec.world, sim.spec.profile.ultrasonic_read_ns
+    world = sim.spec.world
+    read = sim.spec.profile.ultrasonic_read_ns
 
     def time_s() -> float:
         return sim.tick / sim.spec.profile.tick_hz
@@ -366,7 +370,8 @@ def infrared_sensor(session: DeviceSession, spec: InfraredSpec) -> LegoSensor:
         ),
         "IR-CAL": Mode(lambda: (0, 0), read, form="s16"),
     }
-    driver_name, switch_ns = SENSORS["infrared"].driver_name, sim.spec.profile.infrared_switch_ns
+    driver_name = SENSORS["infrared"].driver_name
+    switch_ns = sim.spec.profile.infrared_switch_ns
     return LegoSensor(session, spec.port, driver_name, modes, "IR-PROX", switch_ns)
 
 

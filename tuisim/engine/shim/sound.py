@@ -20,7 +20,8 @@ SHORTEST_TURN_NS = 100 * MS
 """Shortest period of a sound that repeats forever: the player has to start."""
 NO_PID = 1 << 22
 """No process of this computer has this or a higher number (Linux: PID_MAX_LIMIT)."""
-_KILLED, _TERMINATED = -9, -15
+_KILLED = -9
+_TERMINATED = -15
 
 
 class PlayedSound:
@@ -32,7 +33,8 @@ class PlayedSound:
     def __init__(self, session: DeviceSession, command: str, length_ns: int) -> None:
         self.args = command
         self.returncode: int | None = None
-        self._session, self._until = session, session.now + length_ns
+        self._session = session
+        self._until = session.now + length_ns
 
     def poll(self) -> int | None:
         """Return the exit status; None while it plays."""
@@ -192,7 +194,8 @@ def _patch_songs(sound_class: Any, speaker: Loudspeaker) -> None:
         try:
             return read_song(self, notes, *args, **kwargs)
         finally:
-            tones, speaker.song = speaker.song, None
+            tones = speaker.song
+            speaker.song = None
             if tones:
                 # Also if a later note is invalid: those before it were played.
                 heard = song_of(tones)
@@ -213,4 +216,5 @@ def _mend(sound_class: Any, mixer: Mixer) -> None:
     def speak(self: Any, text: object, *args: Any, **kwargs: Any) -> Any:
         return say(self, str(text).replace("'", "'\\''"), *args, **kwargs)
 
-    sound_class.get_volume, sound_class.speak = get_volume, speak
+    sound_class.get_volume = get_volume
+    sound_class.speak = speak

@@ -13,7 +13,9 @@ from tuisim.base.errors import counted
 from tuisim.engine.core.profile import MS
 from tuisim.engine.shim.device_files import plain
 
-BEEP_HZ, BEEP_MS, REPEAT_PAUSE_MS = 440.0, 200.0, 100.0
+BEEP_HZ = 440.0
+BEEP_MS = 200.0
+REPEAT_PAUSE_MS = 100.0
 """Defaults of `beep`."""
 HIGHEST_HZ = 20_000.0
 """`beep` rejects higher frequencies."""
@@ -133,8 +135,10 @@ def _number(text: str) -> float:
 
 
 def _repeated(note: dict[str, float]) -> list[Tone]:
-    frequency_hz, length_ms = note.get("-f", BEEP_HZ), note.get("-l", BEEP_MS)
-    pause_ms, times = note.get("-D", note.get("-d", REPEAT_PAUSE_MS)), int(note.get("-r", 1))
+    frequency_hz = note.get("-f", BEEP_HZ)
+    length_ms = note.get("-l", BEEP_MS)
+    pause_ms = note.get("-D", note.get("-d", REPEAT_PAUSE_MS))
+    times = int(note.get("-r", 1))
     if (
         not (0 <= frequency_hz <= HIGHEST_HZ and 0 <= times <= MOST_REPETITIONS)
         or min(length_ms, pause_ms) < 0

@@ -113,7 +113,8 @@ def time_limits(end_s: float) -> Limits:
     return 0.0, math.ceil(end_s / step) * step
 
 
-_MIN_TIME_SHARE, _MIN_SPAN_S = 1e-14, 1e-100
+_MIN_TIME_SHARE = 1e-14
+_MIN_SPAN_S = 1e-100
 """Relative and absolute tolerance below which two times are equal."""
 
 
@@ -191,7 +192,8 @@ def find_row_ticks(limits: Limits, rows: int) -> list[float]:
         return list(limits)
     low, high = limits
     for cells in range(_MIN_CELLS, (rows - 1) // 2 + 1):
-        distance, parts = (high - low) / (rows - 1) * cells, (rows - 1) // cells
+        distance = (high - low) / (rows - 1) * cells
+        parts = (rows - 1) // cells
         step = choose_step(distance, 1)
         if (
             parts <= _MAX_PARTS
@@ -231,7 +233,8 @@ def draw_time_axis(limits: Limits, columns: int, unit: str = "s") -> tuple[str, 
     """Return a horizontal axis: the line with its ticks, and the labels below, each `columns` long."""
     positions = time_ticks(limits, columns)
     step = positions[1] - positions[0] if len(positions) > 1 else limits[1] - limits[0]
-    line, below = ["─"] * columns, [" "] * columns
+    line = ["─"] * columns
+    below = [" "] * columns
     free_from = 0
     for position in positions:
         column = find_column(position, limits, columns)

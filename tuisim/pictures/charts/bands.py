@@ -142,7 +142,8 @@ def shade_rows(
 
 def _cut(row: list[Run], start: int, stop: int) -> list[Run]:
     """Return the pieces of a row between two columns."""
-    piece, column = [], 0
+    piece = []
+    column = 0
     for text, style in row:
         part = text[max(start - column, 0) : max(stop - column, 0)]
         if part:

@@ -31,7 +31,8 @@ TextRun = tuple[str, Rgb | None]
 BRAILLE = "braille"
 DOTS_X, DOTS_Y = 2, 4
 """Dots of a braille character."""
-_BLANK, _NO_DOTS = ord(" "), 0x2800
+_BLANK = ord(" ")
+_NO_DOTS = 0x2800
 _BITS = np.array([[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]], np.uint32)
 """The bit of each dot in the number of a braille character."""
 _TURN = 4
@@ -82,10 +83,8 @@ def draw_canvas(
         x_limits: Times at the left and right edge.
         y_limits: Values in the middle of the lowest and the highest row.
     """
-    signs, dots = (
-        np.full((len(curves), rows, columns), _BLANK, np.uint32),
-        np.zeros((rows, columns), np.uint32),
-    )
+    signs = np.full((len(curves), rows, columns), _BLANK, np.uint32)
+    dots = np.zeros((rows, columns), np.uint32)
     inked = np.zeros(signs.shape, np.bool_)
     for number, curve in enumerate(curves):
         if not len(curve.times_s):
@@ -142,7 +141,8 @@ def _place_points(
     Args:
         parts: The units in a cell, across and down: (1, 1) for cells.
     """
-    times_s, values = curve.times_s, curve.values
+    times_s = curve.times_s
+    values = curve.values
     if curve.rising:
         times_s, values = reduce_points(times_s, values, x_limits, columns)
         if curve.joined and curve.marker == BRAILLE:
@@ -170,14 +170,13 @@ def _draw_braille(
     is_thick = curve.joined and curve.rising
     # A line over time is two dots thick: the dot above and the one below its place.
     # A margin of one character: plotext places limits in the middle of the outermost ones.
-    across, down = (
-        np.floor(across) + DOTS_X,
-        (np.rint(down) - 1 if is_thick else np.floor(down)) + DOTS_Y,
-    )
+    across = np.floor(across) + DOTS_X
+    down = (np.rint(down) - 1 if is_thick else np.floor(down)) + DOTS_Y
     width, height = (columns + 2) * DOTS_X, (rows + 2) * DOTS_Y
     if curve.joined:
         # What lies outside is at the edge of the margin: lines lead there.
-        across, down = across.clip(0, width - 1), down.clip(0, height - 1)
+        across = across.clip(0, width - 1)
+        down = down.clip(0, height - 1)
     else:
         across, down = (
             indices.astype(np.float64) for indices in _clip_places(across, down, width, height)
@@ -219,7 +218,8 @@ def _plot_braille(
         figure.ruler(axis, 0).lim(0, last)
     figure.plot_size(columns, rows)
     # plotext counts in characters, whose middles are whole numbers, and upwards.
-    xs, ys = (across + 0.5) / DOTS_X - 0.5, rows - 0.5 - (down + 0.5) / DOTS_Y
+    xs = (across + 0.5) / DOTS_X - 0.5
+    ys = rows - 0.5 - (down + 0.5) / DOTS_Y
     figure.draw(
         figure.signal(xs.tolist(), ys.tolist(), marker=plotext.marker(BRAILLE)).lines(joined)
     )

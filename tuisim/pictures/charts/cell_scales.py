@@ -72,7 +72,8 @@ class CellScales:
             labels.append(more)
         ends, ends_width = _place_end_values(drawn, scales, rows, x_limits)
         if width < _MIN_WIDTH or left - ends_width < _MIN_COLUMNS:
-            ends, ends_width = {}, 0
+            ends = {}
+            ends_width = 0
         colors = {trace.name: build_style(trace.rgb) for trace in drawn}
         is_one_of_several = [
             bool(scales.right) and len(scale.names) == 1 for scale in (scales.left, *scales.right)
@@ -146,7 +147,8 @@ def _place_end_values(
     ends: list[tuple[int, Run]] = []
     width = 0
     for trace in drawn:
-        scale, value = scales.find_scale(trace.name), trace.find_value(x_limits[1])
+        scale = scales.find_scale(trace.name)
+        value = trace.find_value(x_limits[1])
         if value is None:
             continue
         texts = [_round_value(end, scale) for end in (value, *scale.limits)]

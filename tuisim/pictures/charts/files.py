@@ -238,7 +238,9 @@ def _load_image(shape: Raster) -> Image:
     return Image.fromarray(shape.pixels)
 
 
-_INK, _FAINT, _SHADE = (34, 34, 34), (222, 222, 222), (238, 238, 238)
+_INK = (34, 34, 34)
+_FAINT = (222, 222, 222)
+_SHADE = (238, 238, 238)
 _FINE = 2
 """The image is drawn this many times larger and then reduced, for smooth lines."""
 _ANCHORS = {"start": "lm", "middle": "mm", "end": "rm"}

@@ -34,7 +34,8 @@ FONT_PX = 13
 """Height of the letters."""
 LETTER_PX = 7.2
 """Upper estimate of a character's width."""
-PAD, LINE_PX = 10, 20
+PAD = 10
+LINE_PX = 20
 """Margin of a picture, and height of a line of text."""
 _FACET_GAP_PX = 12
 _SCALE_GAP_PX = 6
@@ -314,13 +315,15 @@ def _draw_legend(
 ) -> tuple[list[Shape], int]:
     """Return the legend, a stroke and a name for each line, with a note for right scales; and its number of rows."""
     shapes: list[Shape] = []
-    x, row = float(PAD), 0
+    x = float(PAD)
+    row = 0
     for line in lines:
         is_right = scales.find_scale(line.name) is not scales.left
         text = shorten(line.label + (", right scale" if is_right else ""), width - 2 * PAD - 30)
         width_px = 30 + len(text) * LETTER_PX
         if x > PAD and x + width_px > width - PAD:
-            x, row = float(PAD), row + 1
+            x = float(PAD)
+            row = row + 1
         y = top + (row + 0.5) * LINE_PX
         shapes.append(Stroke(np.array([[x, y], [x + 22, y]]), find_color(line)))
         shapes.append(Words(x + 28, y, text))

@@ -138,7 +138,8 @@ class ChartPainter:
         x_limits = state.x_limits or _time_limits(traces.end_s(), state.grows)
         scales = CellScales.build(drawn, width, rows, x_limits, state.zoomed, state.margins)
         columns = max(width - scales.left_width - scales.right_width, 2)
-        left, top = scales.left_width, len(lines)
+        left = scales.left_width
+        top = len(lines)
         cursors = [time_s for time_s in (state.cursor_s, state.other_s) if time_s is not None]
         curves = tuple(scales.curve(trace, by_mark or state.marks) for trace in drawn)
         has_room = (
@@ -258,7 +259,8 @@ def _draw_tick_boxes(
     ]
     numbers = _choose_boxes(texts, selected, width)
     runs: list[Run] = []
-    boxes, column = [], 0
+    boxes = []
+    column = 0
     for text, trace in (texts[number] for number in numbers):
         if column:
             runs.append((_BETWEEN_BOXES, PLAIN))
@@ -399,7 +401,8 @@ def draw_text(chart: ChartData, width: int, height: int, *, colors: bool = False
 
 def _trace(line: Line) -> Trace:
     trace = Trace(printable(line.name), line.number)
-    trace.rgb, trace.scale = find_color(line), line.scale
+    trace.rgb = find_color(line)
+    trace.scale = line.scale
     trace.add(line.xs.tolist(), line.ys.tolist())
     return trace
 

@@ -199,7 +199,8 @@ def reduce_points(
     """
     low, high = x_limits
     first, last = _find_visible(times_s, x_limits)
-    times_s, values = times_s[first:last], values[first:last]
+    times_s = times_s[first:last]
+    values = values[first:last]
     if len(times_s) <= 2 * columns:
         return times_s, values
     edges = np.searchsorted(times_s, low + (high - low) * np.arange(1, columns) / columns)
@@ -270,12 +271,15 @@ class Pyramid:
         if not (_is_below(values, np.inf) and _is_below(times_s, MAX_DRAWN)):
             good = (np.abs(values) < np.inf) & (np.abs(times_s) < MAX_DRAWN)
             self._index = np.flatnonzero(good)
-            times_s, values = times_s[good], values[good]
+            times_s = times_s[good]
+            values = values[good]
         if len(times_s) > 1 and (times_s[1:] < times_s[:-1]).any():
             order = np.argsort(times_s, kind="stable")
-            times_s, values = times_s[order], values[order]
+            times_s = times_s[order]
+            values = values[order]
             self._index = order if self._index is None else self._index[order]
-        self.times_s, self.values = times_s, values
+        self.times_s = times_s
+        self.values = values
         self._sums: tuple[FloatArray, FloatArray] | None = None
         self._levels: list[tuple[FloatArray, FloatArray]] = []
         while len(self._levels[-1][0] if self._levels else values) > _BLOCK:
@@ -291,14 +295,17 @@ class Pyramid:
             columns: Width of the chart, at least 1.
         """
         first, last = _find_visible(self.times_s, x_limits)
-        level, size = -1, 1
+        level = -1
+        size = 1
         while (last - first) // (size * _BLOCK) >= _ENOUGH * columns:
-            level, size = level + 1, size * _BLOCK
+            level = level + 1
+            size = size * _BLOCK
         if level < 0:
             return self.times_s[first:last], limit_drawn(self.values[first:last])
         lowest, highest = self._levels[level]
         blocks = np.arange(first // size, (last - 1) // size + 1)
-        starts, ends = blocks * size, np.minimum((blocks + 1) * size, len(self.times_s)) - 1
+        starts = blocks * size
+        ends = np.minimum((blocks + 1) * size, len(self.times_s)) - 1
         rising = self.values[starts] <= self.values[ends]
         values = _order_extremes(rising, lowest[blocks], highest[blocks])
         return _join_pairs(self.times_s[starts], self.times_s[ends]), limit_drawn(values)
@@ -360,7 +367,8 @@ class Pyramid:
         """Mean and sum of squared deviations of each whole block; cached."""
         if self._sums is None:
             whole = self.values[: len(self.values) // _BLOCK * _BLOCK].reshape(-1, _BLOCK)
-            means, squares = np.empty(len(whole)), np.empty(len(whole))
+            means = np.empty(len(whole))
+            squares = np.empty(len(whole))
             # In parts, so that a long log is not copied as a whole.
             for start in range(0, len(whole), _SUMMED_AT_ONCE):
                 part = slice(start, start + _SUMMED_AT_ONCE)

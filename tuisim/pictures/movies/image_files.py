@@ -11,7 +11,8 @@ from PIL.Image import Dither, Image, Quantize, fromarray, new
 
 PALETTE_FRAMES = 6
 """Frames that the palette of a GIF is derived from."""
-_COLORS, _EXACT = 255, 64
+_COLORS = 255
+_EXACT = 64
 """Colours of a GIF, of which one more stands for what stays the same from frame to frame, and how many of them are the
 most frequent ones, unchanged."""
 
@@ -26,7 +27,8 @@ def encode_gif(
         samples: Frames from whose colours the palette is made.
         durations_ms: How long each frame is shown; multiples of 10.
     """
-    palette, content = _Palette(samples), io.BytesIO()
+    palette = _Palette(samples)
+    content = io.BytesIO()
     reduced = map(palette.reduce, frames)
     next(reduced).save(
         content,

@@ -49,7 +49,8 @@ Size = tuple[int, int]
 
 WIDTH_PX = 600
 """Default width."""
-LEAST, MOST = (160, 120), (3840, 2160)
+LEAST = (160, 120)
+MOST = (3840, 2160)
 """Limits of a size."""
 
 _STRIP_PX = 190
@@ -95,7 +96,8 @@ def find_frame_view(
         panels: The panels of the frame, among them the world.
         size: Width and height in pixels; None for the size that fits the panels.
     """
-    robot, area = recorded.run.spec.robot, find_area(recorded.run.spec, recorded.telemetry)
+    robot = recorded.run.spec.robot
+    area = find_area(recorded.run.spec, recorded.telemetry)
     size = size or _fit_size(panels, robot, area)
     room = _place_boxes(panels, size, len(robot.color_sensors))[ClipPanel.WORLD]
     fitted = fit_view(robot, room.width, room.height, area)
@@ -126,7 +128,8 @@ class FramePainter:
         size: Size | None = None,
     ) -> None:
         run = recorded.run
-        self._recorded, self._panels = recorded, panels
+        self._recorded = recorded
+        self._panels = panels
         area = find_area(run.spec, recorded.telemetry)
         self.size = size or _fit_size(panels, run.spec.robot, area)
         boxes = self._boxes = _place_boxes(panels, self.size, len(run.spec.robot.color_sensors))
@@ -197,14 +200,16 @@ def _place_boxes(
     boxes: dict[ClipPanel, PictureBox] = {}
     if ClipPanel.WORLD in panels:
         boxes[ClipPanel.WORLD] = PictureBox(PAD, _CAPTION_PX, width, height - strip)
-    left, top = PAD, size[1] - PAD - strip
+    left = PAD
+    top = size[1] - PAD - strip
     if ClipPanel.ARRAYS in below:
         arrays_width = sensors * max(strip - _LABELS_PX + PAD, _FACE_PX)
         taken = (
             min(arrays_width, round(width * _ARRAYS_SHARE)) if ClipPanel.CHART in below else width
         )
         boxes[ClipPanel.ARRAYS] = PictureBox(left, top, taken, strip)
-        left, width = left + taken, width - taken
+        left = left + taken
+        width = width - taken
     if ClipPanel.CHART in below:
         boxes[ClipPanel.CHART] = PictureBox(left, top, width, strip)
     for panel, box in boxes.items():
@@ -256,7 +261,9 @@ class MovingWorld:
     """
 
     def __init__(self, recorded: ClipRun, view: Viewport) -> None:
-        self._recorded, self._spec, self._view = recorded, recorded.run.spec, view
+        self._recorded = recorded
+        self._spec = recorded.run.spec
+        self._view = view
         mat = mat_pixels(find_mat_files(recorded.run))
         self._painter = build_painter(mat, has_floor=self._spec.world.is_open)
         self._traced = 0

@@ -139,7 +139,8 @@ def list_disc_faces(
     for sensor in spec.robot.color_sensors:
         limits = thresholds.get(sensor.name, ())
         read = next((threshold.read for threshold in limits if not threshold.read.is_color), first)
-        box, seen = read_pixel_array(sensor, instant, field), measure_color(sensor, instant, field)
+        box = read_pixel_array(sensor, instant, field)
+        seen = measure_color(sensor, instant, field)
         faces.append(DiscFace(sensor.name, box, seen, read, spec.profile.reflected_max, limits))
     return faces
 
@@ -172,7 +173,8 @@ def draw_disc(
     cols, rows = (np.floor(px + diameter / 2 + 0.5).astype(np.intp) for px in (east, north))
     inside = np.zeros((diameter + 2, diameter + 2), bool)
     inside[1:-1, 1:-1] = build_disc_mask(diameter)
-    cols, rows = cols.clip(-1, diameter), rows.clip(-1, diameter)
+    cols = cols.clip(-1, diameter)
+    rows = rows.clip(-1, diameter)
     within = inside[rows[:, None] + 1, cols[None, :] + 1]
     is_rim = np.hypot(north[:, None], east[None, :]) <= diameter / 2 + rim_mm
     inside_share, rim_share = (_means(part[..., None], fine)[..., 0] for part in (within, is_rim))

@@ -16,7 +16,8 @@ from tuisim.pictures.scene.view import Viewport
 from tuisim.terminal.pixels import Pixels
 
 _REMEMBERED = 4
-_STRONGER, _CLEAR = 2.5, 0.6
+_STRONGER = 2.5
+_CLEAR = 0.6
 """What covers less of a pixel than `_CLEAR` is drawn as if it covered `_STRONGER` times as much, up to that."""
 _PLAIN = 0.15
 """A pixel of which less than this is of another colour is one of an area, and not of a thin line."""
@@ -105,7 +106,8 @@ def _reduce_mat(
     mat: Pixels, row_edges: npt.NDArray[np.intp], col_edges: npt.NDArray[np.intp], keep_detail: bool
 ) -> Pixels:
     part = mat[row_edges[0] : row_edges[-1], col_edges[0] : col_edges[-1]]
-    rows, cols = row_edges[:-1] - row_edges[0], col_edges[:-1] - col_edges[0]
+    rows = row_edges[:-1] - row_edges[0]
+    cols = col_edges[:-1] - col_edges[0]
     # The sum over the rows of a pixel stays below 2^16 as long as it covers at most 257 mm.
     narrow = np.uint16 if int(np.diff(row_edges).max()) <= 257 else np.uint32
     sums = np.add.reduceat(_reduce_rows(np.add, part, rows, narrow), cols, axis=1, dtype=np.uint32)
@@ -157,7 +159,8 @@ def _keep_detail(
     nine = [around[row : row + rows, col : col + cols] for row in range(3) for col in range(3)]
     near = sum(nine) / len(nine)
     is_dark = high - near < near - low
-    line, ground = np.where(is_dark, low, high), np.where(is_dark, high, low)
+    line = np.where(is_dark, low, high)
+    ground = np.where(is_dark, high, low)
     span = line - ground
     share = (mean - ground) / np.where(span == 0, 1, span)
     nearest = np.where(is_dark, np.minimum.reduce(nine), np.maximum.reduce(nine))

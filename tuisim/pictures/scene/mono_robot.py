@@ -21,7 +21,8 @@ def draw_body(view: Viewport, pose: Pose, outline: RobotOutline) -> dict[tuple[i
     """Return the signs of the cells at least half of which a robot covers, by row and column."""
     empty = np.zeros((view.height_px, view.width_px, 3), np.uint8)
     draw_robot(empty, view, pose, outline, CLEARED)
-    rows, cols = view.height_px // view.cell.rows, view.width_px // view.cell.cols
+    rows = view.height_px // view.cell.rows
+    cols = view.width_px // view.cell.cols
     covered = (
         empty[..., 0].reshape(rows, view.cell.rows, cols, view.cell.cols).mean(axis=(1, 3)) >= 128
     )
@@ -29,7 +30,8 @@ def draw_body(view: Viewport, pose: Pose, outline: RobotOutline) -> dict[tuple[i
     return {(row, col): sign_cell(_BODY) for row, col in cells}
 
 
-_LINES, _TIPS = "-/|\\", {0: ">", 2: "^", 4: "<", 6: "v"}
+_LINES = "-/|\\"
+_TIPS = {0: ">", 2: "^", 4: "<", 6: "v"}
 """Signs for the eight directions, counter-clockwise from the right; a line looks the same backwards."""
 _STEPS_PER_CELL = 4
 _AHEAD_CELLS = 2.0
@@ -86,7 +88,8 @@ def draw_mono_robot(
     on_white, on_black = np.full_like(picture, 255), np.zeros_like(picture)
     for canvas in (on_white, on_black):
         draw_robot(canvas, view, pose, outline, colors, pressed=pressed, detail_cols=detail_cols)
-    white, black = on_white[..., 0].astype(np.intp), on_black[..., 0].astype(np.intp)
+    white = on_white[..., 0].astype(np.intp)
+    black = on_black[..., 0].astype(np.intp)
     # Where the robot does not cover the canvases, one is still white and the other black.
     covered = white - black <= 128
     around = np.pad(covered, 1)

@@ -55,7 +55,8 @@ def draw_arrow(picture: Pixels, view: Viewport, pose: Pose, reach_px: float, rgb
     at_col, at_row = view.to_px(pose.x_mm, pose.y_mm)
     tip_col, tip_row = min(max(at_col, 0), view.width_px), min(max(at_row, 0), view.height_px)
     # Pixels may be taller than wide.
-    right, down = at_col - tip_col, (at_row - tip_row) * view.cell.tall
+    right = at_col - tip_col
+    down = (at_row - tip_row) * view.cell.tall
     away = math.hypot(right, down)
     if away <= reach_px:
         return

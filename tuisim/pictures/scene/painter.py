@@ -218,10 +218,8 @@ def draw_frame(
     if not (right and low):
         # The field is not in view: the view has followed a robot off it.
         return
-    rows, cols = (
-        slice(max(top - width_px, 0), low + width_px),
-        slice(max(left - width_px, 0), right + width_px),
-    )
+    rows = slice(max(top - width_px, 0), low + width_px)
+    cols = slice(max(left - width_px, 0), right + width_px)
     inside = picture[top:low, left:right].copy()
     picture[rows, cols] = rgb
     picture[top:low, left:right] = inside
@@ -253,11 +251,10 @@ def draw_rays(
     high_col, high_row = (round(edge) for edge in view.to_px(FIELD_WIDTH_MM, 0.0))
     low_col, low_row = max(low_col, 0), max(low_row, 0)
     high_col, high_row = min(high_col, view.width_px), min(high_row, view.height_px)
-    angles, lengths_mm = (
-        np.radians([angle for angle, _ in rays]),
-        np.array([length for _, length in rays]),
-    )
-    across, down = np.cos(angles) / view.mm_per_px, np.sin(angles) / view.mm_per_row
+    angles = np.radians([angle for angle, _ in rays])
+    lengths_mm = np.array([length for _, length in rays])
+    across = np.cos(angles) / view.mm_per_px
+    down = np.sin(angles) / view.mm_per_row
     # One sample for each step along the longer axis: an even line without doubled pixels.
     step_mm = 1 / np.maximum(np.abs(across), np.abs(down))
     along_mm = np.arange(math.ceil((lengths_mm / step_mm).max())) * step_mm[:, None]
@@ -312,7 +309,8 @@ def draw_beacon(picture: Pixels, view: Viewport, x_mm: float, y_mm: float) -> No
     away = np.hypot(aside[:, None] * tall, aside[None, :])
     rows, cols = np.nonzero(away <= radius + 0.5)
     light = away[rows, cols] <= radius / 3
-    rows, cols = rows + row - radius, cols + col - radius
+    rows = rows + row - radius
+    cols = cols + col - radius
     inside = (rows >= 0) & (rows < view.height_px) & (cols >= 0) & (cols < view.width_px)
     shades = np.where(
         light[:, None], np.array(BEACON_CORE_RGB, np.uint8), np.array(BEACON_RGB, np.uint8)

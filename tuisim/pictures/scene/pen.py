@@ -19,7 +19,8 @@ from tuisim.pictures.scene.view import Viewport
 from tuisim.terminal.pixels import Pixels
 
 _LUMA = np.array([0.299, 0.587, 0.114])
-_APART, _GREY_APART = 130.0, 90.0
+_APART = 130.0
+_GREY_APART = 90.0
 """Least difference of a line from the ground: as a distance of colours, and of their brightness."""
 
 
@@ -64,7 +65,8 @@ def trace_pixels(
     xs, ys = _join_points(xs_mm, ys_mm, view.mm_per_px / 2)
     cols = (xs - view.left_mm) / view.mm_per_px
     rows = (view.top_mm - ys) / view.mm_per_row
-    across, down = _spread(width_mm / view.mm_per_px), _spread(width_mm / view.mm_per_row)
+    across = _spread(width_mm / view.mm_per_px)
+    down = _spread(width_mm / view.mm_per_row)
     cols = np.floor(cols[:, None, None] + across[None, :, None] + 0 * down[None, None, :]).ravel()
     rows = np.floor(rows[:, None, None] + 0 * across[None, :, None] + down[None, None, :]).ravel()
     inside = (cols >= 0) & (cols < view.width_px) & (rows >= 0) & (rows < view.height_px)
@@ -158,7 +160,8 @@ class PenTrace:
 
     def clear(self) -> list[Piece]:
         """Clear the trace; return its pieces."""
-        pieces, self._pieces = self._pieces, []
+        pieces = self._pieces
+        self._pieces = []
         self.clears += 1
         return pieces
 

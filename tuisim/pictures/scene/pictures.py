@@ -91,7 +91,9 @@ def build_scene(spec: RunSpec, pose: Pose | None, *, rays: bool = False) -> Scen
         pose: Where the robot is; None for no robot.
         rays: Whether to draw the rays of the ultrasonic sensor.
     """
-    robot, world, start = spec.robot, spec.world, pose or spec.world.start
+    robot = spec.robot
+    world = spec.world
+    start = pose or spec.world.start
     sensor = robot.ultrasonic if rays and pose else None
     return SceneState(
         robot,
@@ -158,8 +160,10 @@ def draw_end(run: StoredRun) -> Image:
     from tuisim.engine.mat_cache import mat_pixels
     from tuisim.engine.runs.run_folder import find_mat_files
 
-    last, records = run.telemetry.last(), run.telemetry.array()
-    mat, trace = mat_pixels(find_mat_files(run)), build_pen_trace(run.spec, records)
+    last = run.telemetry.last()
+    records = run.telemetry.array()
+    mat = mat_pixels(find_mat_files(run))
+    trace = build_pen_trace(run.spec, records)
     return draw_world(run.spec, mat, read_pose(last), (trace,), area=find_area(run.spec, records))
 
 
@@ -180,7 +184,8 @@ def draw_path(run: StoredRun, port: Viewport, outside_rgb: Rgb) -> Pixels:
     some = records[:: max(1, len(records) // _MAX_PATH_POINTS)]
     trace = PenTrace()
     trace.add(Piece.from_points(some["x_mm"].astype(float), some["y_mm"].astype(float), _PATH))
-    mat, has_floor = mat_pixels(find_mat_files(run)), run.spec.world.is_open
+    mat = mat_pixels(find_mat_files(run))
+    has_floor = run.spec.world.is_open
     painter = ScenePainter(mat, outside_rgb, trace, has_floor=has_floor)
     area = find_area(run.spec, records)
     if area != FIELD:

@@ -146,7 +146,8 @@ def draw_robot(
     col, row = view.to_px(pose.x_mm, pose.y_mm)
     is_crisp = 2 * outline.half_width_mm * scale < _CRISP_PX * view.mm_per_px
     if is_crisp:
-        col, row = math.floor(col) + 0.5, math.floor(row) + 0.5
+        col = math.floor(col) + 0.5
+        row = math.floor(row) + 0.5
     step_mm, row_mm = view.mm_per_px / scale, view.mm_per_row / scale
     reach_mm = measure_reach_mm(outline)
     left, right = _find_range(col, reach_mm / step_mm + 2, view.width_px)
@@ -160,7 +161,8 @@ def draw_robot(
     north = (row - _sample_places(top, bottom, down))[:, None] * row_mm
     heading = math.radians(pose.heading_deg)
     cos, sin = math.cos(heading), math.sin(heading)
-    side, ahead = east * sin - north * cos, east * cos + north * sin
+    side = east * sin - north * cos
+    ahead = east * cos + north * sin
     detail_mm = step_mm * view.cell.cols / detail_cols
     # In fine pixels, an edge thinner than a pixel would not be seen.
     edge_mm = min(colors.edge_cells * detail_cols * detail_mm, colors.edge_mm)

@@ -14,7 +14,8 @@ from tuisim.terminal.pixels import Pixels
 
 _EVEN = 4
 """Colours whose channels differ by no more than this are one."""
-_STRAIGHT, _RUN = 0.04, 3
+_STRAIGHT = 0.04
+_RUN = 3
 """Along a straight edge the shares of so many pixels differ by no more than this."""
 _LIGHT = np.array([0.30, 0.59, 0.11], np.float32)
 """How bright each channel looks."""
@@ -120,7 +121,8 @@ def _split_sides(shares: _Numbers) -> tuple[_Flags, _Flags]:
     )
     for first in (up, down):
         for second in (left, right):
-            both, none = (first >= 0.5) & (second >= 0.5), (first < 0.5) & (second < 0.5)
+            both = (first >= 0.5) & (second >= 0.5)
+            none = (first < 0.5) & (second < 0.5)
             of_bright = np.abs(shares - first * second) < _CORNER
             of_dark = np.abs((1 - shares) - (1 - first) * (1 - second)) < _CORNER
             is_bright |= (of_bright & both) | (of_dark & ~none)

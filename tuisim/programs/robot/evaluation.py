@@ -358,7 +358,8 @@ class Evaluation:
     def arguments(self, parameter: Parameter) -> list[tuple[Value, Call | None]]:
         """Return what a parameter can be, each value with the call that gives it; None for its default."""
         name = parameter.argument.arg
-        function, owner = parameter.function, parameter.scope.outer
+        function = parameter.function
+        owner = parameter.scope.outer
         arguments = [*function.args.posonlyargs, *function.args.args]
         names = [argument.arg for argument in arguments]
         if name in names[:1] and owner is not None and isinstance(owner.node, ast.ClassDef):
@@ -375,7 +376,8 @@ class Evaluation:
     def _find_arguments(
         self, parameter: Parameter, names: list[str]
     ) -> list[tuple[Value, Call | None]]:
-        name, owner = parameter.argument.arg, parameter.scope.outer
+        name = parameter.argument.arg
+        owner = parameter.scope.outer
         default = find_default(parameter.function, name)
         usual: list[tuple[Value, Call | None]] = []
         if default is not None and owner is not None:

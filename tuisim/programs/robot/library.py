@@ -64,7 +64,8 @@ OTHER_HARDWARE = frozenset({"pybricks.nxtdevices"})
 
 PORT_NAMES = ("address", "port")
 """The names of the first argument of classes of devices."""
-DIRECTION, GEARS = "positive_direction", "gears"
+DIRECTION = "positive_direction"
+GEARS = "gears"
 """Arguments of the motors of Pybricks, after the port."""
 
 WITHOUT_PORT = frozenset({"RemoteControl", "BeaconSeeker"})
@@ -115,9 +116,11 @@ PAIRS: Mapping[str, PairClass] = {
 }
 """The classes that drive two motors together."""
 
-WHEEL_CLASS, DISTANCE = "wheel_class", "wheel_distance_mm"
+WHEEL_CLASS = "wheel_class"
+DISTANCE = "wheel_distance_mm"
 """Arguments of `MoveDifferential`, after the ports."""
-WHEEL_DIAMETER, AXLE_TRACK = "wheel_diameter", "axle_track"
+WHEEL_DIAMETER = "wheel_diameter"
+AXLE_TRACK = "axle_track"
 """Arguments of `DriveBase`, after the motors."""
 POLARITY = "polarity"
 """Argument of a class that turns the polarity of its motors, after the ports."""
@@ -149,7 +152,8 @@ CONSTANTS: Mapping[str, str] = {
 }
 """Names of the library with the value that matters here."""
 
-INVERSED, NORMAL = CONSTANTS["POLARITY_INVERSED"], CONSTANTS["POLARITY_NORMAL"]
+INVERSED = CONSTANTS["POLARITY_INVERSED"]
+NORMAL = CONSTANTS["POLARITY_NORMAL"]
 
 MEMBERS: Mapping[str, Mapping[str, str]] = {
     "Port": {

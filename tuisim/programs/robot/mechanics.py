@@ -22,7 +22,8 @@ def read_mechanics(mentions: Mentions) -> Mechanics:
     """Return what a program says about how its motors are mounted and how far they move."""
     if mentions.evaluation is None:
         return Mechanics()
-    evaluation, moves = mentions.evaluation, library.MOVES[mentions.library]
+    evaluation = mentions.evaluation
+    moves = library.MOVES[mentions.library]
     mechanics = Mechanics(CallOrder(evaluation.calls))
     return _MechanicsReader(mentions, evaluation, moves, mechanics).read()
 
@@ -216,7 +217,8 @@ class _MechanicsReader:
     def _find_calls(
         self, nodes: Iterable[ast.AST], ports: Iterable[str], names: Iterable[str], scope: Scope
     ) -> list[ast.Call]:
-        moved, known = {*ports}, {*names}
+        moved = {*ports}
+        known = {*names}
         return [
             node
             for node in nodes

@@ -124,7 +124,8 @@ class Mentions:
 
 def read_mentions(modules: dict[str, Module]) -> Mentions:
     """Return what a program, with its own modules, says about its robot."""
-    scopes, hub = {name: build_scope(module) for name, module in modules.items()}, find_hub(modules)
+    scopes = {name: build_scope(module) for name, module in modules.items()}
+    hub = find_hub(modules)
     mentions = _Reader(scopes, hub).read()
     if hub:
         devices = tuple(replace(part, port=part.port[-1:]) for part in mentions.devices)
@@ -172,7 +173,8 @@ class _Reader:
         # Classes that take motors come last, when the motors are known.
         for name, call in (*of_ports, *(pair for pair in self.made if _needs_motors(pair[0]))):
             for inside, via in self._list_ways(name, call, whole):
-                self.evaluation, self.via = inside, via
+                self.evaluation = inside
+                self.via = via
                 if name in library.PAIRS:
                     pairs += self._find_pairs(name, call, devices)
                     devices += self._list_needs(name, call)
@@ -314,7 +316,8 @@ class _Reader:
     # Devices
 
     def _find_devices(self, name: str, call: Call) -> Iterator[Mention]:
-        kind, where = library.DEVICES[name], _find_where(call)
+        kind = library.DEVICES[name]
+        where = _find_where(call)
         driver = self.evaluation.find_argument(call, "driver_name", None)
         if driver:
             kinds = [library.find_driver_kind(text) for text in self._flatten(driver)]
@@ -446,7 +449,8 @@ class _Reader:
         return None
 
     def _read_set(self, call: Call) -> Iterator[Mention]:
-        owner, where = call.scope.owner, _find_where(call)
+        owner = call.scope.owner
+        where = _find_where(call)
         for table in self.evaluation.find_argument(call, "motor_specs", 0) or ():
             if isinstance(table, SourceCollection) and isinstance(table.node, ast.Dict):
                 for key, item in zip(table.keys, table.items, strict=True):
@@ -476,7 +480,8 @@ class _Reader:
         Args:
             devices: The devices that the program makes, among them the motors for a class that takes motors.
         """
-        known, names = library.PAIRS[name], self._find_names(call)
+        known = library.PAIRS[name]
+        names = self._find_names(call)
         polarities = [
             str(value) for value in self.evaluation.find_argument(call, library.POLARITY, 2) or ()
         ]

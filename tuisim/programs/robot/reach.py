@@ -53,7 +53,8 @@ def _list_names(scope: Scope) -> Iterator[str]:
 
 
 def _is_used(scope: Scope, names: set[str]) -> bool:
-    node, owner = scope.node, scope.outer
+    node = scope.node
+    owner = scope.outer
     assert not isinstance(node, ast.Module)
     if isinstance(node, ast.ClassDef):
         return True

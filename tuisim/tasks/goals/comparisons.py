@@ -127,7 +127,8 @@ class StructureCondition(Condition):
     def __post_init__(self) -> None:
         check_count(self.comparisons, "comparisons")
         for number, text in enumerate(self.comparisons, start=1):
-            key, condition = f"comparisons[{number}]", parse_condition(text)
+            key = f"comparisons[{number}]"
+            condition = parse_condition(text)
             if (
                 condition is None
                 or condition.operator not in COMPARE

@@ -57,7 +57,8 @@ def _build_white_mat() -> Array:
 
 def _draw_bands(chance: Random) -> DrawnMat:
     """Return a mat with three to five upright bands, the last one black."""
-    pixels, count = _build_white_mat(), 3 + int(3 * chance.random())
+    pixels = _build_white_mat()
+    count = 3 + int(3 * chance.random())
     greys: list[int] = [0]
     while len(greys) < count:
         grey = int((255 - _GREY_STEP) * chance.random())

@@ -86,8 +86,10 @@ class Evidence:
     """
 
     def __init__(self, run: JudgedRun, field: Field | None = None) -> None:
-        self._run, self._field = run, field
-        self.spec, self.program = run.spec, run.program
+        self._run = run
+        self._field = field
+        self.spec = run.spec
+        self.program = run.program
         # The end is looked up before the recording is read, so that the recording of an ended run is complete.
         if isinstance(run, StoredRun):
             self.end: Ended | None = run.end

@@ -66,7 +66,9 @@ class LiveRun:
     """Nothing else is recorded."""
 
     def __init__(self, sim: Simulation, recording: MemoryRecording) -> None:
-        self._sim, self._recording, self.spec = sim, recording, sim.spec
+        self._sim = sim
+        self._recording = recording
+        self.spec = sim.spec
         self.telemetry = self.output = self
 
     @property
@@ -102,7 +104,8 @@ class LiveGoals:
     ) -> None:
         # It has what is asked of one.
         run = cast("RunHandle", LiveRun(sim, recording))
-        self._judge, self._sim = partial(judge, goals, run, field), sim
+        self._judge = partial(judge, goals, run, field)
+        self._sim = sim
         self._open = {each.goal.name for each in self._judge() if not each.is_good}
 
     def judge(self) -> tuple[float, bool]:

@@ -70,7 +70,9 @@ def _list_printed(evidence: Evidence, span: EvidenceSpan) -> list[tuple[int, Out
 def find_printed(condition: PrintCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
     """Find when the last of the lines was printed."""
     rows = _list_printed(evidence, span)
-    next_place, last, line = 0, -1, None
+    next_place = 0
+    last = -1
+    line = None
     # Tick of the line before, since which a reading must have been taken.
     since = -1
     for count, pattern in enumerate(condition.lines):
@@ -94,7 +96,9 @@ def find_printed(condition: PrintCondition, evidence: Evidence, span: EvidenceSp
                 _explain_missing_line(condition, pattern, rows, line is not None, evidence),
                 about,
             )
-        next_place, line, since = place + 1, row.line, row.tick
+        next_place = place + 1
+        line = row.line
+        since = row.tick
         last = max(last, place)
     if condition.once and (open_or_missed := _check_once(condition, rows, span, evidence)):
         return open_or_missed
@@ -215,7 +219,8 @@ def find_levels(condition: LogCondition, evidence: Evidence, span: EvidenceSpan)
         for number, sample in evidence.samples
         if sample.name == condition.name and span.first_row <= number < span.end_row
     ]
-    next_place, last = 0, -1
+    next_place = 0
+    last = -1
     for count, level in enumerate(condition.levels):
         start = next_place if condition.in_order else 0
         fault = Finding()
@@ -286,7 +291,8 @@ def _explain_unmeasured(
         return (
             f"{value}, but the program had printed {counted(printed, 'sample')} {condition.counts}."
         )
-    reading, place = condition.reading, select_place(condition, count)
+    reading = condition.reading
+    place = select_place(condition, count)
     # The count of a motor is judged by where it is printed, not where it was read.
     if reading in (None, Reading.MOTOR):
         fault = _describe_wrong_place(condition, count, sample.tick, evidence)
@@ -343,15 +349,14 @@ def _explain_missing_level(
     condition: LogCondition, count: int, nearest: Sample | None, evidence: Evidence
 ) -> str:
     """Return why a level is missing, the one after the first `count`; `nearest` is the sample that came nearest."""
-    name, levels = condition.name, condition.levels
+    name = condition.name
+    levels = condition.levels
     if not any(sample.name == name for _, sample in evidence.samples):
         others = sorted({sample.name for _, sample in evidence.samples})
         logged = f" It logged {', '.join(others[:5])}." if others else ""
         return f"The program logged no sample {name}.{logged}{_explain_form_fault(name, evidence)}"
-    level, after = (
-        f"{levels[count]:g}",
-        f" after {levels[count - 1]:g}" if count and condition.in_order else "",
-    )
+    level = f"{levels[count]:g}"
+    after = f" after {levels[count - 1]:g}" if count and condition.in_order else ""
     if nearest is not None:
         near = f"the nearest{after} was {nearest.value:.6g} at {nearest.time_ns / 1e9:.2f} s"
     else:
@@ -380,7 +385,9 @@ def find_dialogue(condition: DialogueCondition, evidence: Evidence, span: Eviden
     questions = [index for index, row in enumerate(rows) if row.stream == Stream.INPUT]
     known = dict(zip(questions, evidence.answers, strict=False))
     input_rows = [index for index in questions if index >= span.first_row]
-    index, moment, line = 0, EvidencePoint(0, -1), 0
+    index = 0
+    moment = EvidencePoint(0, -1)
+    line = 0
     for number, turn in enumerate(condition.turns, start=1):
         reply: int | None = None
         reason = ""
@@ -400,7 +407,8 @@ def find_dialogue(condition: DialogueCondition, evidence: Evidence, span: Eviden
             return Finding(
                 None, reason or _explain_missing_question(number, turn, len(input_rows)), line
             )
-        moment, line = EvidencePoint(rows[reply].tick, reply), rows[reply].line
+        moment = EvidencePoint(rows[reply].tick, reply)
+        line = rows[reply].line
     return Finding(moment, line=line)
 
 

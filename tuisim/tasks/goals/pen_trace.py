@@ -27,7 +27,8 @@ def find_drawn(condition: DrawCondition, evidence: Evidence, span: EvidenceSpan)
         return Finding(None, "The pen drew nothing.")
     cells = picture.list_cells(condition)
     covered, near = picture.compare(cells, points, condition.within_mm)
-    drawn, on_picture = float(covered.mean()), float(near.mean())
+    drawn = float(covered.mean())
+    on_picture = float(near.mean())
     reasons = []
     line = 0
     if drawn < condition.share:
@@ -69,6 +70,7 @@ def _sample_strokes(records: Array, pen: PenSpec, condition: DrawCondition) -> t
     part = ((number + 1) / np.repeat(np.maximum(count, 1), count))[:, None]
     between = pen_mm[ends - 1] * (1 - part) + pen_mm[ends] * part
     touched = np.flatnonzero(down & np.concatenate(([True], ~joined)))
-    points, ticks = np.concatenate((pen_mm[touched], between)), np.concatenate((touched, ends))
+    points = np.concatenate((pen_mm[touched], between))
+    ticks = np.concatenate((touched, ends))
     order = np.argsort(ticks, kind="stable")
     return points[order], ticks[order]

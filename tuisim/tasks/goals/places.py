@@ -34,13 +34,15 @@ def find_reach(condition: ReachCondition, evidence: Evidence, span: EvidenceSpan
     """Find when the robot was at a place and heading."""
     import numpy as np
 
-    records, first = evidence.records[span.ticks], span.first_tick
+    records = evidence.records[span.ticks]
+    first = span.first_tick
     if condition.at_end and span.over and not len(records):
         # The goal before it was met in the last tick: the robot is now where it is at the end.
         records = evidence.records[-1:]
     if not len(records):
         return Finding(None, "The robot was not simulated at that time.")
-    away_mm, turned_deg = _find_away_mm(condition, records), _find_turned_deg(condition, records)
+    away_mm = _find_away_mm(condition, records)
+    turned_deg = _find_turned_deg(condition, records)
     there = (away_mm <= condition.within_mm) & (turned_deg <= condition.within_deg)
     if condition.at_end:
         if span.over and there[-1]:
@@ -145,7 +147,8 @@ def _place_words(condition: ReachCondition) -> str:
 
 def find_pass(condition: PassCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
     """Find when the robot had passed the last of the places."""
-    records, first = evidence.records[span.ticks], span.first_tick
+    records = evidence.records[span.ticks]
+    first = span.first_tick
     if not len(records):
         return Finding(None, "The robot was not simulated at that time.")
     passed = last = 0
@@ -277,7 +280,8 @@ def _measure_circle_gap_mm(area: AreaCondition, records: Array, robot: RobotSpec
     outline = build_outline(robot)
     turn = np.radians(records["heading_deg"])
     dx, dy = area.x_mm - records["x_mm"], area.y_mm - records["y_mm"]
-    ahead, aside = dx * np.cos(turn) + dy * np.sin(turn), dx * np.sin(turn) - dy * np.cos(turn)
+    ahead = dx * np.cos(turn) + dy * np.sin(turn)
+    aside = dx * np.sin(turn) - dy * np.cos(turn)
     along = ahead - np.clip(ahead, outline.back_mm, outline.front_mm)
     across = aside - np.clip(aside, -outline.half_width_mm, outline.half_width_mm)
     gap: Array = np.hypot(along, across)
@@ -286,7 +290,8 @@ def _measure_circle_gap_mm(area: AreaCondition, records: Array, robot: RobotSpec
 
 def find_touch(condition: TouchNothingCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
     """Find when the robot touched an obstacle or a wall, or came too near to one."""
-    world, robot = evidence.spec.world, evidence.spec.robot
+    world = evidence.spec.world
+    robot = evidence.spec.robot
     walls = world.walls and condition.walls
     obstacles = world.obstacles if condition.obstacles else ()
     solids = Solids(WorldSpec(walls=walls, obstacles=obstacles), robot)
@@ -330,7 +335,8 @@ def _find_first_contact(
         np.hypot(np.diff(records["x_mm"]), np.diff(records["y_mm"])) + turned * solids.reach_mm
     )
     way_mm = np.concatenate(([0.0], np.cumsum(steps_mm)))
-    index, near_from_start = 0, None
+    index = 0
+    near_from_start = None
     while index < len(records):
         x_mm, y_mm, heading_deg = (
             float(records[name][index]) for name in ("x_mm", "y_mm", "heading_deg")

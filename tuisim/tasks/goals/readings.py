@@ -32,7 +32,8 @@ _MODES: Mapping[Reading, tuple[str, ...]] = {
     # Commands that wait for a motor read its state.
     Reading.MOTOR: ("position", "speed"),
 }
-_ABOVE, _BELOW = 0.5, 1.0
+_ABOVE = 0.5
+_BELOW = 1.0
 """How far a printed level may be off the reading: programs round it, or cut off what is behind the point."""
 _NOISE_SHARE = 0.1
 """The same for each percent of the light's noise."""
@@ -177,7 +178,8 @@ def _compute_light_percent(records: Array, x_mm: float, y_mm: float, evidence: E
     from tuisim.engine.runs.arrays import compute_world_points_mm
 
     world_x_mm, world_y_mm = compute_world_points_mm(records, x_mm, y_mm)
-    col, row = np.floor(world_x_mm), np.floor(FIELD_HEIGHT_MM - world_y_mm)
+    col = np.floor(world_x_mm)
+    row = np.floor(FIELD_HEIGHT_MM - world_y_mm)
     inside = (col >= 0) & (col < mat.width_px) & (row >= 0) & (row < mat.height_px)
     pixels = np.frombuffer(mat.pixels, np.uint8).reshape(mat.height_px, mat.width_px, 3)
     percent = np.full(len(records), mat.pixel(-1, -1)[0] / 255 * 100)
@@ -212,5 +214,6 @@ def _find_longest_gap(on_line: Array) -> int:
     import numpy as np
 
     edges = np.flatnonzero(np.diff(np.concatenate(([True], on_line, [True])).astype("i1")))
-    begins, ends = edges[::2], edges[1::2]
+    begins = edges[::2]
+    ends = edges[1::2]
     return int(begins[np.argmax(ends - begins)]) if len(begins) else 0

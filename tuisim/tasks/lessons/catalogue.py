@@ -92,7 +92,8 @@ def find_telling(lesson: Path, library: Library, folder: Path | str | None = Non
     Raises:
         ConfigError: there is none.
     """
-    paths, name = find_lesson_paths(folder), get_lesson_name(lesson)
+    paths = find_lesson_paths(folder)
+    name = get_lesson_name(lesson)
     if library is Library.EV3DEV2 or name.endswith(build_telling_name("", library)):
         return lesson
     if build_telling_name(name, library) not in paths:

@@ -208,7 +208,8 @@ def explain_unready(question: QuestionCheck, event: Typed) -> str:
         return "This run has not printed that: do what the step says, and run again."
     if event.seen is not None and question.seen and not event.seen & set(question.seen):
         return f"Look first: {' or '.join(view.capitalize() for view in question.seen)} shows it."
-    places, x_mm = question.at_x_mm, event.x_mm
+    places = question.at_x_mm
+    x_mm = event.x_mm
     if x_mm is not None and places and not any(left <= x_mm <= right for left, right in places):
         return f"The robot is at x = {x_mm:.0f} mm. The question is about {question.where}."
     return ""

@@ -179,7 +179,8 @@ def _split_sections(lines: Sequence[str], start: int, path: Path) -> list[_Secti
         line = lines[number]
         number += 1
         if opened := _CODE_FENCE.match(line):
-            first, number = number, _end_of_block(lines, number, opened[1], path)
+            first = number
+            number = _end_of_block(lines, number, opened[1], path)
             location = Location(f"{path}, line {first}")
             info, _, way = opened[2].partition(":")
             role = _parse_role(info, location)
@@ -360,7 +361,8 @@ def _check_goals(check: Check, goals: set[str], location: Location) -> None:
     if isinstance(check, RunCheck):
         check_names(check.goals, goals, location.at("run"))
         for number, other in enumerate(check.also, start=1):
-            place, own = location.at(f"run.also[{number}]"), {goal.name for goal in other.own_goals}
+            place = location.at(f"run.also[{number}]")
+            own = {goal.name for goal in other.own_goals}
             if twice := sorted(own & goals):
                 raise place.wrong(
                     f"{twice[0]!r} is a goal of the lesson, too", "give it another name"
@@ -399,7 +401,8 @@ def _check_models(step: LessonStep, location: Location) -> None:
 
 def _add_answers(steps: Sequence[LessonStep], location: Location) -> tuple[LessonStep, ...]:
     """Give each step that runs a program a model answer: its own, or the next one in the text."""
-    answer, completed = "", []
+    answer = ""
+    completed = []
     for step in reversed(steps):
         answer = step.answer or answer
         if isinstance(step.check, RunCheck) and not answer:

@@ -76,7 +76,8 @@ class LessonProgress:
 
     def words(self, lesson: Lesson) -> str:
         """Return the progress on a lesson in words."""
-        done, count = self.done(lesson), len(lesson.steps)
+        done = self.done(lesson)
+        count = len(lesson.steps)
         if done == count:
             return "done"
         if self.current(lesson) is None:

@@ -175,7 +175,8 @@ class LessonSession:
 
     def start_over(self) -> None:
         """Forget the progress."""
-        self.progress, self.done = LessonProgress(opened_at=format_now()), None
+        self.progress = LessonProgress(opened_at=format_now())
+        self.done = None
 
     def save(self) -> None:
         """Store the progress, if it has changed.
@@ -234,7 +235,8 @@ class LessonSession:
             return ""
         world = self._build_spec().world
         if _list_place(elsewhere.world) == _list_place(world):
-            noise, drift = world.noise, list_values(WorldSpec)["drift"].format_text(world.drift)
+            noise = world.noise
+            drift = list_values(WorldSpec)["drift"].format_text(world.drift)
             levels = f"light {noise.light}, motors {noise.motor} (panel Noise, z), drift {drift} (panel Settings, Z)"
             return f"This run had different noise or drift: the lesson has {levels}."
         if in_run:
@@ -331,7 +333,9 @@ class LessonSession:
         return Change.GO_ON if any(map(self._take, events)) else Change.NONE
 
     def _look_at_run(self, step: LessonStep, check: RunCheck, sight: Sight) -> Change:
-        attempt, run, judgements = self.attempt, sight.judged, sight.judgements
+        attempt = self.attempt
+        run = sight.judged
+        judgements = sight.judgements
         if run is None or run.run_id == attempt.run_before or judgements is attempt.judgements:
             return Change.NONE
         attempt.judgements = judgements
@@ -389,7 +393,8 @@ class LessonSession:
 
     def _take(self, event: Event) -> bool:
         """Add an event; return whether the step is done now."""
-        step, events = self.step, self.attempt.events
+        step = self.step
+        events = self.attempt.events
         if step is None or event in events:
             return False
         if isinstance(event, JudgedRun):

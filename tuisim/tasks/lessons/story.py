@@ -44,7 +44,8 @@ def _list_parts(judgement: Judgement) -> Iterator[str]:
 
 def _describe_condition(condition: Condition, event: Change, line: int) -> str:
     """Return how a run met a condition, in words; empty for conditions that only the program's text meets."""
-    when, where = f"at {event.time_s:.2f} s", f"at x = {event.x_mm:.0f} mm, y = {event.y_mm:.0f} mm"
+    when = f"at {event.time_s:.2f} s"
+    where = f"at x = {event.x_mm:.0f} mm, y = {event.y_mm:.0f} mm"
     match condition:
         case ReachCondition(at_end=True):
             return f"it ended {where}"

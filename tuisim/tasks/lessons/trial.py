@@ -70,10 +70,8 @@ def build_task(
     source = parse_program(text, f"{lesson.name}.py")
     world_settings = {**lesson.settings, **(other.settings if other else {})}
     resolved = build_program_settings(source, world_settings, {"seed": seed})
-    spec, goals = (
-        build_run_spec(resolved.settings),
-        (*lesson.goals, *(other.own_goals if other else ())),
-    )
+    spec = build_run_spec(resolved.settings)
+    goals = (*lesson.goals, *(other.own_goals if other else ()))
     actions = press_actions(resolved.settings["press"], spec.profile.tick_hz)
     options = RunOptions(time_limit_s=TIME_LIMIT_S, actions=actions)
     return Task(index, source.program, spec, options, goals)
@@ -87,7 +85,8 @@ def try_elsewhere(
     Raises:
         ConfigError: the program's magic line is wrong there.
     """
-    text, seed = run.program.text, run.spec.seed
+    text = run.program.text
+    seed = run.spec.seed
     tasks = [build_task(lesson, text, seed, index, other) for index, other in enumerate(check.also)]
     return [(check.also[result.index], result.judgements) for result in run_many(tasks, jobs=1)]
 

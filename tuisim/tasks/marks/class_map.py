@@ -59,7 +59,8 @@ def build_class_maps(runs: Sequence[MissesOfRun]) -> list[Picture]:
 
 
 def _build_map(runs: Sequence[MissesOfRun]) -> Picture | None:
-    first, misses = runs[0].run, [miss for run_misses in runs for miss in run_misses.misses]
+    first = runs[0].run
+    misses = [miss for run_misses in runs for miss in run_misses.misses]
     try:
         picture = draw_world(first.spec, mat_pixels(find_mat_files(first)))
     except LogError:

@@ -42,7 +42,9 @@ def write_class_page(
         ExportError: the page cannot be written, or is without some of the reports.
     """
     run_count = sum(bool(outcome.run_id) for row in sheet.rows for outcome in row.outcomes)
-    links, misses, faults = {}, [], []
+    links = {}
+    misses = []
+    faults = []
     for report in write_reports(sheet, worlds, target, movies=movies):
         if report.fault:
             faults.append(f"{report.student}: {report.fault}")

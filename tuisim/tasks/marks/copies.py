@@ -24,7 +24,8 @@ MIN_TOKENS = 40
 """Shorter programs are not compared: there are few ways to write them."""
 MAX_TOKENS = 50_000
 """So many of a student's are compared: more are data, or would take the memory of this machine."""
-COMMON_SHARE, MIN_COMMON = 0.25, 5
+COMMON_SHARE = 0.25
+MIN_COMMON = 5
 """A passage in more than this share of the programs, and in more than so many, is common to the class."""
 MIN_SHARE = 0.6
 """Pairs that share fewer of their fingerprints are left out."""

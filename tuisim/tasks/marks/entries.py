@@ -40,7 +40,9 @@ def build_entries(
     for world in task.worlds:
         build_run_spec(merge_settings(world.settings, options))
     names_profile = "profile" in {**task.settings, **options}
-    entries, students, misfits = [], [], []
+    entries = []
+    students = []
+    misfits = []
     for student in submissions:
         if student.source:
             try:

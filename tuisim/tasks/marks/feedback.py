@@ -37,7 +37,8 @@ def build_file_stems(names: Iterable[str]) -> list[str]:
             for character in name
         )
         stem = plain.encode()[:MAX_NAME_BYTES].decode(errors="ignore").strip(" .") or "student"
-        number, candidate = 1, stem
+        number = 1
+        candidate = stem
         while candidate.casefold() in taken:
             number += 1
             candidate = f"{stem}-{number}"

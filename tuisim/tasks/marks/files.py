@@ -24,7 +24,8 @@ LEFT_OUT = shutil.ignore_patterns(
 _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EROFS)
 """Errors about the copy, not about the file."""
 _PIECE = 1 << 20
-_LOOSE_BYTES, _MAX_RATIO = 64 << 20, 100
+_LOOSE_BYTES = 64 << 20
+_MAX_RATIO = 100
 """A zip may unpack to so many bytes, or so many times its size: each of a class could fill the disk of all others."""
 _ODD_ZIP = (
     zipfile.BadZipFile,
@@ -72,7 +73,8 @@ def copy_file(source: Path, target: Path) -> None:
     """
     try:
         with open_regular(source) as file, open(target, "wb") as copy:
-            size, place = os.fstat(file.fileno()).st_size, 0
+            size = os.fstat(file.fileno()).st_size
+            place = 0
             while place < size:
                 start, stop = _find_data(file, place, size)
                 file.seek(start)

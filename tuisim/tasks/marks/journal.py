@@ -37,7 +37,8 @@ class Journal:
     """
 
     def __init__(self, path: Path, *, resumes: bool) -> None:
-        self._path, self._resumes = path, resumes
+        self._path = path
+        self._resumes = resumes
         self._file: IO[bytes] | None = None
         self.known: dict[str, Outcome] = {}
 

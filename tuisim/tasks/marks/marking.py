@@ -106,7 +106,8 @@ class Marking:
     """
 
     def __init__(self, request: MarkRequest, unpacked: Path) -> None:
-        self._request, task = request, request.task
+        self._request = request
+        task = request.task
         submissions = find_students(
             request.folders,
             Path(task.program).name if task.program else "",
@@ -116,7 +117,8 @@ class Marking:
         )
         names = [student.name for student in submissions.students]
         self.students: Sequence[Student] = submissions.students
-        self.ignored, self.left_out = submissions.ignored, submissions.left_out
+        self.ignored = submissions.ignored
+        self.left_out = submissions.left_out
         self.outcomes: dict[str, list[Outcome]] = {name: [] for name in names}
         self._columns = list_columns(task.every_goal)
         self._overrides = (
@@ -240,5 +242,6 @@ class Marking:
         # Its charts are slow to import, and a table needs none.
         from tuisim.tasks.marks.class_page import write_class_page
 
-        worlds, movies = self._plan.worlds, self._request.movies
+        worlds = self._plan.worlds
+        movies = self._request.movies
         write_class_page(sheet, worlds, self.students, self.ignored, target, tell, movies=movies)

@@ -67,7 +67,8 @@ def write_reports(
     Raises:
         ExportError: a report cannot be written.
     """
-    folder, store = build_reports_folder(page), RunStore()
+    folder = build_reports_folder(page)
+    store = RunStore()
     shutil.rmtree(folder, ignore_errors=True)
     for stem, row in zip(
         build_file_stems(student_row.name for student_row in sheet.rows), sheet.rows, strict=True
@@ -83,7 +84,8 @@ def write_reports(
                 if student_row.where == outcome.world
             )
             name = f"{stem}{f'-world-{number + 1}' if number else ''}-seed-{outcome.seed}.html"
-            misses, fault = tuple[Miss, ...](), ""
+            misses = tuple[Miss, ...]()
+            fault = ""
             try:
                 recorded = outcome.world, _compute_digest(run)
                 if recorded not in written:
@@ -97,7 +99,8 @@ def write_reports(
             except ExportError:
                 raise
             except Exception as error:  # Whatever it is, the others go on.
-                path, fault = "", describe_fault(error)
+                path = ""
+                fault = describe_fault(error)
             yield Report(
                 row.name, outcome.world, outcome.seed, path, MissesOfRun(run, misses), fault
             )
@@ -188,7 +191,8 @@ def _list_verdicts(
         outcome: What the run has achieved.
     """
     goals = {goal_outcome.name: goal_outcome for goal_outcome in outcome.goals}
-    rows, pins = [], []
+    rows = []
+    pins = []
     for number, column in enumerate(columns, start=1):
         goal = goals.get(column.name, GoalOutcome(column.name, False, outcome.failure))
         result = "could not be judged" if goal.is_unknown else "met" if goal.met else "missed"

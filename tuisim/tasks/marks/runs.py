@@ -163,7 +163,8 @@ def _run(turns: Sequence[_Turn], plan: MarkPlan, journal: Journal) -> Iterator[t
         workspace = home.resolve()
         uncopied: list[tuple[str, Outcome]] = []
         for result in run_many(_build_tasks(unknown, plan, workspace, uncopied), plan.jobs):
-            turn, place = unknown[result.index], workspace / str(result.index)
+            turn = unknown[result.index]
+            place = workspace / str(result.index)
             try:
                 outcome = build_outcome(result, turn.seed, place, turn.world)
             except Exception as error:  # Whatever it is, the others go on.

@@ -213,7 +213,8 @@ def _make_names_unique(students: Iterable[_Submission]) -> Iterator[Student]:
     ]
     taken: set[str] = set()
     for name, (_, student, _) in zip(full, every, strict=True):
-        unique, number = name, 1
+        unique = name
+        number = 1
         # The name with a number may be taken, too.
         while unique in taken or (number > 1 and unique in full):
             number += 1
@@ -270,7 +271,8 @@ def _enter_folder(path: Path, search: _Search) -> Path:
     is_packed = True
     for _ in range(_MAX_LEVELS):
         unpacked = search.unpack(path) if is_packed else path
-        is_packed, path = is_packed and unpacked == path, unpacked
+        is_packed = is_packed and unpacked == path
+        path = unpacked
         names = search.list_names(path) if os.path.isdir(path) else []
         if len(names) != 1 or (path / names[0]).is_symlink():
             break
@@ -307,7 +309,8 @@ def _explain_refusal(folder: Path, name: str, search: _Search) -> str:
                     return f"its folders are nested more than {_MAX_LEVELS} deep"
                 inside.append(path)
             elif path.is_file():
-                files, size = files + 1, size + path.lstat().st_size
+                files = files + 1
+                size = size + path.lstat().st_size
                 if files > MOST_FILES or size > search.max_bytes:
                     return (
                         f"it has more than {MOST_FILES:,} files or {search.max_bytes >> 20:,} MiB"

@@ -42,9 +42,11 @@ _MIN_DARK_SHARE = 0.25
 """This share of the way over the line is a good part of it."""
 _MIN_RETURNS = 3
 """So many returns to the line are several."""
-_MIN_GAP_S, _LONGER = 1.5, 3.0
+_MIN_GAP_S = 1.5
+_LONGER = 3.0
 """A loss lasts so long, and is so many times longer than any time beside the line before."""
-_SOON_S, _MIN_TURN_DPS = 0.4, 5.0
+_SOON_S = 0.4
+_MIN_TURN_DPS = 5.0
 """A robot steers if its rate of turn changes by so much within this time."""
 
 
@@ -80,7 +82,8 @@ def find_lost_lines(
     seen = _see_line(records, spec, mat, _find_points(eyes))
     if seen is None:
         return
-    read, hz = np.sort(np.concatenate([*watched.values()])), spec.profile.tick_hz
+    read = np.sort(np.concatenate([*watched.values()]))
+    hz = spec.profile.tick_hz
     way = _Way(records, np.logical_or.reduce(seen.is_dark))
     looks = [dark for eye, dark in zip(eyes, seen.is_middle, strict=False) if eye.name in watched]
     if not any(way.is_steered(look, hz) for look in looks):
@@ -221,7 +224,8 @@ class _Way:
             is_dark: Whether the sensor was over the line, at each tick.
             hz: Ticks per second.
         """
-        soon, turned_deg = round(_SOON_S * hz), self._turned_deg
+        soon = round(_SOON_S * hz)
+        turned_deg = self._turned_deg
         changes = np.flatnonzero(np.diff(is_dark[self._ticks])) + 1
         steered = 0
         for change in changes:

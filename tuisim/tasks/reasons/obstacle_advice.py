@@ -60,10 +60,8 @@ def _measure(
     """Return how far a sensor sees an obstacle of a world; infinite if it sees none or the robot would touch one."""
     bare = replace(world, obstacles=())
     if isinstance(sensor, UltrasonicSpec):
-        distance, free = (
-            measure_distance_mm(pose, sensor, world),
-            measure_distance_mm(pose, sensor, bare),
-        )
+        distance = measure_distance_mm(pose, sensor, world)
+        free = measure_distance_mm(pose, sensor, bare)
         is_seen = spec.profile.min_echo_mm <= distance < free
     else:
         distance = proximity(pose, sensor, world)

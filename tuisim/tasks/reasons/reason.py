@@ -108,7 +108,8 @@ def is_repeat(run: StoredRun | Recording, earlier: StoredRun | Recording) -> boo
 
     Only then a difference between them is a fault: with another text the robot should drive another way.
     """
-    program, before = run.program, earlier.program
+    program = run.program
+    before = earlier.program
     return (program.text, program.arguments, run.spec) == (
         before.text,
         before.arguments,
@@ -138,13 +139,15 @@ def _find_raised(run: StoredRun) -> Iterator[Reason]:
 
 def _find_tracebacks(run: StoredRun) -> Iterator[Reason]:
     """Yield each traceback in the program's error output."""
-    place, line = re.compile(rf'  File ".*{re.escape(run.program.name)}", line ([0-9]+)'), 0
+    place = re.compile(rf'  File ".*{re.escape(run.program.name)}", line ([0-9]+)')
+    line = 0
     is_inside = False
     for row in run.output.rows():
         if row.stream is not Stream.STDERR:
             continue
         if row.text.startswith(_TRACEBACK):
-            is_inside, line = True, 0
+            is_inside = True
+            line = 0
         elif is_inside and (match := place.match(row.text)):
             line = int(match[1])
         elif is_inside and not row.text.startswith(" "):
@@ -245,7 +248,8 @@ def describe_end(run: StoredRun) -> str:
     """
     if run.end is None:
         return ""
-    eyes, records = run.spec.robot.color_sensors, run.telemetry.array()
+    eyes = run.spec.robot.color_sensors
+    records = run.telemetry.array()
     if run.end.end in (End.TIME_LIMIT, End.STOPPED) and eyes and len(records) > 1:
         from tuisim.tasks.reasons.lost_line import find_lost_lines
 
@@ -273,7 +277,8 @@ def _find_read_ticks(run: StoredRun, count: int) -> dict[str, NDArray[Any]]:
     readings = read_readings(run.folder, is_over=run.end is not None)
     rows = readings.find(MODES_BY_KIND["color"])
     ticks = find_ticks(rows, run.spec.profile.tick_hz)
-    rows, ticks = rows[ticks < count], ticks[ticks < count]
+    rows = rows[ticks < count]
+    ticks = ticks[ticks < count]
     return {
         eye.name: ticks[rows["port"] == READING_PORTS.index(eye.port)]
         for eye in run.spec.robot.color_sensors

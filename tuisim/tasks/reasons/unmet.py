@@ -36,9 +36,12 @@ if TYPE_CHECKING:
 _MIN_STAY_S = 3.0
 """A program that has been in a loop for less time does not wait in it in vain."""
 _CUT_OFF = (End.TIME_LIMIT, End.STOPPED, End.OUTPUT_LIMIT)
-_MIN_RUN_S, _MIN_WAY_MM, _MIN_TURN_DEG = 0.5, 10.0, 5.0
+_MIN_RUN_S = 0.5
+_MIN_WAY_MM = 10.0
+_MIN_TURN_DEG = 5.0
 """A program that is over earlier, with its robot nearer to the start, gave its motors no time."""
-_NEAR, _AWAY = 1.0, 5.0
+_NEAR = 1.0
+_AWAY = 5.0
 """Light that came so near to what was waited for, in percent, and went so far away again, was just missed."""
 _MIN_PAUSE_S = 0.1
 """A loop that reads again sooner does not read too seldom."""
@@ -163,11 +166,9 @@ def find_early_end(run: StoredRun, mat: Field | None = None) -> Unmet | None:
         return None
     if idle := read_facts(run.program).idle_definition:
         return Unmet(run.time_s, *idle)
-    line, last, start = (
-        read_facts(run.program).first_drive,
-        run.telemetry.last(),
-        run.spec.world.start,
-    )
+    line = read_facts(run.program).first_drive
+    last = run.telemetry.last()
+    start = run.spec.world.start
     if not line or last is None:
         return None
     way_mm = math.dist((last.pose.x_mm, last.pose.y_mm), (start.x_mm, start.y_mm))
@@ -201,7 +202,8 @@ class _Search:
     """
 
     def __init__(self, run: StoredRun, mat: Field | None) -> None:
-        self._run, self._mat = run, mat
+        self._run = run
+        self._mat = mat
         self._hz = run.spec.profile.tick_hz
         self._records = run.telemetry.array()
         self._loops = read_facts(run.program).loop_ends
@@ -353,7 +355,8 @@ class _Search:
 
         if isinstance(loop.limit, str):
             return None
-        ticks, values = series.ticks, series.values
+        ticks = series.ticks
+        values = series.values
         misses = abs(values - loop.limit)
         away = np.flatnonzero(misses[:-1] >= _AWAY)
         if not len(away) or COMPARE[loop.operator](values[:-1], loop.limit).any():
@@ -440,7 +443,9 @@ class _Search:
         spec, (column, factor, unit) = self._run.spec, read
         if spec.world.noise.light or spec.world.pen_marks:
             return None
-        name, run, mat = f"{sensor.name}_{column}", self._run, self._field
+        name = f"{sensor.name}_{column}"
+        run = self._run
+        mat = self._field
         columns = compute_column_values(
             (name,), self._records[ticks], run, run.actions, mat, lambda _: mat
         )

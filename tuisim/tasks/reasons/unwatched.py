@@ -79,7 +79,8 @@ def _list_passes(
     if not len(long):
         return
     values = _measure(records, spec, sensor, mat, threshold.read)
-    holds, is_on = COMPARE[threshold.sign](values, threshold.value), is_on_mat(records, sensor)
+    holds = COMPARE[threshold.sign](values, threshold.value)
+    is_on = is_on_mat(records, sensor)
     for start, end in zip(ticks[long], ticks[long + 1], strict=True):
         between = slice(start + 1, end)
         differs = (holds[between] != holds[start]) & is_on[between]

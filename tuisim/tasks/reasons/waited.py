@@ -224,7 +224,8 @@ class _Search:
     def __init__(self, run: Recorded) -> None:
         import numpy as np
 
-        self._run, self._hz = run, run.spec.profile.tick_hz
+        self._run = run
+        self._hz = run.spec.profile.tick_hz
         self._records = run.telemetry.array()
         self._rows = read_readings(run.folder).rows
         self._ticks = np.minimum(find_ticks(self._rows, self._hz), len(self._records) - 1)

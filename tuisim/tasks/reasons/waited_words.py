@@ -89,7 +89,8 @@ def describe_wait_with_keys(awaited: Iterable[Awaited], spec: RunSpec) -> str:
 
 def describe_awaited(awaited: Awaited) -> str:
     """Return in words what a program read in vain, such as `gyro on in4 was never turned`."""
-    port, value = awaited.port, awaited.value
+    port = awaited.port
+    value = awaited.value
     match awaited.subject:
         case Subject.BUTTONS:
             return _describe_presses(awaited) or (

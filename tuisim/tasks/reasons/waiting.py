@@ -47,7 +47,9 @@ class WaitWatch:
             LogError: the recording is damaged.
         """
         if recording.run_id != self._run_id:
-            self._run_id, self._next_tick, self._has_told = recording.run_id, 0, False
+            self._run_id = recording.run_id
+            self._next_tick = 0
+            self._has_told = False
         if self._has_told:
             return []
         awaited: tuple[Awaited, ...] = ()
@@ -82,7 +84,8 @@ def describe_so_far(recording: Recording) -> str:
     """Return that nothing is wrong so far, and where a program that goes on is, with ids of actions in braces."""
     import numpy as np
 
-    hz, last = recording.spec.profile.tick_hz, recording.newest
+    hz = recording.spec.profile.tick_hz
+    last = recording.newest
     records = recording.telemetry.array(max(0, last - round(WINDOW_S * hz)))
     lines = np.unique(records["line"][records["line"] > 0]).tolist()
     where = f"lines {lines[0]} to {lines[-1]}" if len(lines) > 1 else f"line {max([0, *lines])}"

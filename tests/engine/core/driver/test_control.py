@@ -44,6 +44,7 @@ def test_a_change_of_the_error_has_the_other_sign() -> None:
 
 def test_reset_restores_the_constants() -> None:
     control = Controller(SPEED_CONSTANTS)
-    control.ki, control.setpoint = 0, 200
+    control.ki = 0
+    control.setpoint = 200
     control.reset()
     assert control.ki == 60

@@ -43,7 +43,8 @@ def test_turning_back_counts_the_same_counts() -> None:
 
 @pytest.mark.parametrize("speed_dps", [500.0, -500.0])
 def test_what_an_obstacle_prevented_was_never_counted(speed_dps: float) -> None:
-    counter, stopped = Counter(), Counter()
+    counter = Counter()
+    stopped = Counter()
     for each in counter, stopped:
         turn(each, 0, 200, speed_dps)
     turn(counter, 200, 210, speed_dps)

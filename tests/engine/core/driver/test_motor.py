@@ -133,10 +133,12 @@ def test_steps_of_the_speed_control_are_the_same_one_by_one(seed: int) -> None:
 
 
 def test_a_move_is_looked_at_often_only_near_its_target() -> None:
-    motor, positions = build_motor(), []
+    motor = build_motor()
+    positions = []
     give(motor, 0, Command.RUN_TO_REL_POS, speed_dps=500, position=1500)
     motor.run_until(100 * MS)
-    control, regulate = DriverMotor.control, DriverMotor._run_speed_control
+    control = DriverMotor.control
+    regulate = DriverMotor._run_speed_control
 
     def note_control(self: DriverMotor, time_ns: int) -> None:
         positions.append(self.position)

@@ -36,7 +36,8 @@ def test_a_motor_at_rest_needs_a_torque_to_start(duty: int, turns: bool) -> None
 
 
 def test_the_way_is_the_same_in_any_steps() -> None:
-    whole, parts = Axle(LARGE, 8.0), Axle(LARGE, 8.0)
+    whole = Axle(LARGE, 8.0)
+    parts = Axle(LARGE, 8.0)
     for duty in (70, -40, 0, None):
         whole.power(duty)
         parts.power(duty)

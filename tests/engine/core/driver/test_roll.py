@@ -20,7 +20,8 @@ ROLLS = ("coast", "brake", "direct")
 
 def build_rolling(seed: int, kind: str) -> tuple[DriverMotor, random.Random]:
     """Return a motor that rolls from 400 ms on: by a stop action, or by a duty."""
-    chance, model = random.Random(seed), MODELS["large" if seed % 3 else "medium"]
+    chance = random.Random(seed)
+    model = MODELS["large" if seed % 3 else "medium"]
     motor = DriverMotor(model, model.plant.add_load(0.00038, 0.006), 8.0, Jiffies(seed, 1370))
     speed_dps = chance.choice((-1, 1)) * chance.randrange(60, 900)
     give(motor, 0, Command.RUN_FOREVER, speed_dps=speed_dps)

@@ -141,7 +141,8 @@ def test_color_code(rgb: tuple[int, int, int], code: int) -> None:
 
 @pytest.mark.parametrize("light", [0, 20], ids=["clear", "noisy"])
 def test_pixel_array_is_what_the_reading_is_made_of(light: int, mat: OpenMat) -> None:
-    instant, field = at(1010, 500, 33, light=light), mat("Rainbow_bands")
+    instant = at(1010, 500, 33, light=light)
+    field = mat("Rainbow_bands")
     array = color.read_pixel_array(LEFT, instant, field)
     pixels = [tuple(array[at : at + 3]) for at in range(0, len(array), 3)]
     inside = [is_inside for row in build_disc_mask(LEFT.diameter_mm) for is_inside in row]

@@ -16,7 +16,8 @@ from tuisim.engine.core.sensors.color import build_rgb_reader, measure_color
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, RobotSpec
 from tuisim.engine.core.state import Instant
 
-WIDTH_PX, DIAMETER = 40, 20
+WIDTH_PX = 40
+DIAMETER = 20
 LEFT, RIGHT = RobotSpec().color_sensors
 
 

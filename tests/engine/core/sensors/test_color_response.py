@@ -27,7 +27,8 @@ from tuisim.engine.core.spec import FIELD_HEIGHT_MM, ColorSensorSpec, NoiseSpec,
 from tuisim.engine.core.state import Instant
 
 LEFT, RIGHT = RobotSpec().color_sensors
-WIDTH_PX, DIAMETER = 100, 20
+WIDTH_PX = 100
+DIAMETER = 20
 POSE = Pose(20.0, 500.0, 0.0)
 
 
@@ -82,7 +83,8 @@ def test_beyond_the_edge_nothing_reflects() -> None:
 
 @pytest.mark.parametrize("grey", [0, 100, 255])
 def test_the_quick_way_with_noise_agrees(grey: int) -> None:
-    field, place = paint(grey), (POSE.x_mm, POSE.y_mm, POSE.heading_deg)
+    field = paint(grey)
+    place = (POSE.x_mm, POSE.y_mm, POSE.heading_deg)
     noisy = build_noisy_rgb_reader(LEFT, EV3, field)
     for tick in range(30):
         instant = Instant(tick, POSE, profile=EV3, noise=NoiseSpec(light=20), seed=1)

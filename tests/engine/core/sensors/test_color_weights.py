@@ -47,7 +47,8 @@ def test_readings_across_an_edge(grey_bands: Field, x_mm: int, reds: tuple[float
 
 @pytest.mark.parametrize("strategy", STRATEGIES)
 def test_noise_comes_before_the_weights(grey_bands: Field, strategy: str) -> None:
-    clear, noisy = seen(grey_bands, 1125, strategy), seen(grey_bands, 1125, strategy, light=20)
+    clear = seen(grey_bands, 1125, strategy)
+    noisy = seen(grey_bands, 1125, strategy, light=20)
     assert clear == pytest.approx(128.0)
     assert noisy != clear
     assert noisy == pytest.approx(128.0, abs=4.0)

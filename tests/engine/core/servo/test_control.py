@@ -44,13 +44,16 @@ def test_the_same_command_again_changes_nothing(rate: int, end_us: int | None) -
 
 @for_each(seed=range(10))
 def test_another_command_begins_where_the_motion_is(seed: int) -> None:
-    control, chance, now_us = build_controller(), random.Random(seed), 0
+    control = build_controller()
+    chance = random.Random(seed)
+    now_us = 0
     control.run(0, rest, 500, ACCELERATION)
     for _ in range(40):
         now_us += chance.randrange(1, 400) * MS_US
         if chance.random() < 0.3:
             control.note_lag(now_us, HELD_US, FAR_MILLI, 0)
-        milli, rate = control.milli(now_us), control.rate(now_us)
+        milli = control.milli(now_us)
+        rate = control.rate(now_us)
         time_us = chance.choice((None, chance.randrange(1000, 2000) * MS_US))
         control.run(now_us, rest, chance.randrange(-900, 900), ACCELERATION, time_us)
         assert control.milli(now_us) == pytest.approx(milli, abs=10)
@@ -66,7 +69,8 @@ def test_a_robot_that_was_held_begins_where_its_wheels_have_come_to() -> None:
 
 
 def test_a_move_that_was_held_goes_on_later() -> None:
-    held, free = build_controller(), build_controller()
+    held = build_controller()
+    free = build_controller()
     for control in (held, free):
         control.move_to_position(0, rest, 900, 700, ACCELERATION)
     held.note_lag(100 * MS_US, HELD_US, FAR_MILLI, 0)

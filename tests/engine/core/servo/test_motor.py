@@ -40,7 +40,8 @@ class Robot:
 
     def command(self, chance: random.Random) -> None:
         """Give any command, some milliseconds after a tick."""
-        now_us, motor = self.now_us + chance.randrange(10) * 1000, chance.choice(self.motors)
+        now_us = self.now_us + chance.randrange(10) * 1000
+        motor = chance.choice(self.motors)
         match chance.randrange(9):
             case 0:
                 self.base.move(now_us, chance.randrange(-300, 301), chance.choice((0, 0, 90, -37)))
@@ -70,8 +71,10 @@ class Robot:
             case 3:
                 motor.run_freely(now_us, chance.choice((None, 0, -9000, 6000)))
             case 4:
-                target, rate = chance.randrange(-900, 900), chance.randrange(50, 2000)
-                relative, settings = chance.random() < 0.5, motor.control.settings
+                target = chance.randrange(-900, 900)
+                rate = chance.randrange(50, 2000)
+                relative = chance.random() < 0.5
+                settings = motor.control.settings
                 motor.control.move_to_position(
                     now_us,
                     motor.measure_start,
@@ -89,7 +92,8 @@ class Robot:
 def test_ticks_are_the_same_however_they_are_divided(world: WorldSpec, seed: int) -> None:
     records = []
     for at_once in (True, False):
-        robot, chance = Robot(world), random.Random(seed)
+        robot = Robot(world)
+        chance = random.Random(seed)
         for _ in range(25):
             robot.command(chance)
             ticks = chance.choice((1, 2, 7, 60, 150))
@@ -158,12 +162,15 @@ def test_a_motion_for_a_time_ends_at_a_wall(ending: Ending) -> None:
     ],
 )
 def test_commands_give_what_they_gave(profile: str, seed: int, given: str) -> None:
-    robot, chance, rows = Robot(WALLED, PROFILES[profile]), random.Random(seed), []
+    robot = Robot(WALLED, PROFILES[profile])
+    chance = random.Random(seed)
+    rows = []
     for _ in range(150):
         robot.command(chance)
         robot.sim.advance(chance.choice((1, 2, 7, 60, 150)))
         left, right = robot.motors
-        pose, soon_us = robot.sim.pose, robot.now_us + 3000
+        pose = robot.sim.pose
+        soon_us = robot.now_us + 3000
         rows.append(
             (
                 *(pose.x_mm, pose.y_mm, pose.heading_deg, left.position_deg, right.position_deg),

@@ -73,7 +73,8 @@ def gone(pids: list[int]) -> bool:
 def program(text: str, file: Path, then: str) -> str:
     """Return a program that leaves something, waits until it is there, and does something then."""
     shell = f"echo $$ >> {file}; exec sleep 1000"
-    command, bare = f"sh -c '{shell}' &", f"env -i setsid sh -c '{shell}' &"
+    command = f"sh -c '{shell}' &"
+    bare = f"env -i setsid sh -c '{shell}' &"
     start = text.format(file=str(file), command=command, bare=bare)
     # Below Python, since simulated time would fly by.
     wait = f"while not os.path.exists({str(file)!r}): ctypes.CDLL(None).usleep(10000)"

@@ -23,7 +23,8 @@ from tuisim.settings.options import Settings
 
 
 def printed(text: str, of_many: bool = False, prelude: str = "none") -> list[str]:
-    spec, store = build_run_spec(Settings({"seed": 3, "noise.light": 10})), RunStore()
+    spec = build_run_spec(Settings({"seed": 3, "noise.light": 10}))
+    store = RunStore()
     program = Program("p.py", text, prelude=prelude)
     handle = RunHandle(program, spec, field_files(spec), RunOptions(), store, of_many=of_many)
     over(handle)

@@ -37,7 +37,8 @@ class MotorsOnly:
     def __init__(self, motors: list[ServoMotor], hub: str, robot: dict[str, float]) -> None:
         usual = ROBOTS["Prime_Robot"] if hub else RobotSpec()
         self.spec = SimpleNamespace(profile=PROFILES["lego-micropython"], robot=usual)
-        self._robot, self.zero_deg = robot, 0.0
+        self._robot = robot
+        self.zero_deg = 0.0
         self.motors, self.bases = motors, DriveBases()
         self.find_number = motors.index
         self.on_command: CommandHook = lambda *_: None
@@ -83,7 +84,8 @@ class Lab:
         self.now = self.tick = 0
         self.free = 1
         """The recordings have no costs of calls."""
-        self.stop_deg, self.held_up = stop_deg, ""
+        self.stop_deg = stop_deg
+        self.held_up = ""
         self.pressed: frozenset[str] = frozenset()
         self.until_ns = 1 << 62
         self.shown: list[tuple[str, Stream]] = []

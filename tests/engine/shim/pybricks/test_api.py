@@ -219,7 +219,8 @@ def target(member: str) -> str:
 
 def called(member: str, words: str) -> str:
     """Return an expression that calls a member."""
-    path, last = member.partition(":")[2], member.rpartition(".")[2]
+    path = member.partition(":")[2]
+    last = member.rpartition(".")[2]
     if last == "__init__":
         return f"{member.partition(':')[0]}.{path.removesuffix('.__init__')}({words})"
     if last == "__repr__":

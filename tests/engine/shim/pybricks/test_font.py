@@ -23,7 +23,8 @@ def test_the_default_font_is_lucida_12() -> None:
 
 
 def test_sizes_differ_in_height_and_width() -> None:
-    small, large = Font(size=8), Font(None, 24, bold=True)
+    small = Font(size=8)
+    large = Font(None, 24, bold=True)
     assert small.height < Font.DEFAULT.height < large.height
     assert small.text_width("Hello") < Font.DEFAULT.text_width("Hello") < large.text_width("Hello")
     assert large.style == "Bold"

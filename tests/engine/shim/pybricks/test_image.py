@@ -15,7 +15,8 @@ from tuisim.engine.shim.pybricks.image import Image
 from tuisim.engine.shim.pybricks.media import ImageFile
 from tuisim.engine.shim.pybricks.parameters import Color
 
-BLACK, WHITE = (0, 0, 0), (255, 255, 255)
+BLACK = (0, 0, 0)
+WHITE = (255, 255, 255)
 
 
 @pytest.fixture
@@ -57,7 +58,8 @@ def test_shapes(lab: Lab) -> None:
 
 def test_a_part_shares_its_pixels_and_a_copy_does_not(lab: Lab) -> None:
     whole = Image.empty(20, 10)
-    part, copy = Image(whole, sub=True, x1=5, y1=2, x2=9, y2=6), Image(whole)
+    part = Image(whole, sub=True, x1=5, y1=2, x2=9, y2=6)
+    copy = Image(whole)
     part.draw_pixel(0, 0)
     assert (part.width, part.height) == (5, 5)
     assert (Image(part).width, Image(part).height) == (5, 5)
@@ -69,7 +71,8 @@ def test_a_part_shares_its_pixels_and_a_copy_does_not(lab: Lab) -> None:
 
 
 def test_images_are_copied_without_the_transparent_colour(lab: Lab) -> None:
-    source, target = Image.empty(4, 4), Image.empty(8, 8)
+    source = Image.empty(4, 4)
+    target = Image.empty(8, 8)
     source.draw_pixel(1, 1)
     target.draw_box(0, 0, 7, 7, fill=True, color=Color.BLUE)
     target.draw_image(2, 2, source, transparent=Color.WHITE)
@@ -90,7 +93,8 @@ def test_files_have_an_ending(lab: Lab, tmp_path: Path) -> None:
 
 
 def test_images_of_the_brick_are_named(lab: Lab, capsys: pytest.CaptureFixture[str]) -> None:
-    one, other = Image(vars(ImageFile)["ANGRY"]), Image(vars(ImageFile)["UP"])
+    one = Image(vars(ImageFile)["ANGRY"])
+    other = Image(vars(ImageFile)["UP"])
     assert (one.width, one.height) == (178, 128) and dark(one) != dark(other)
     assert lab.brick.said == {"images"}
 

@@ -210,7 +210,8 @@ def test_a_motor_that_holds_is_where_it_was_sent(key: str) -> None:
 @pytest.mark.parametrize("key", [key for key in RECORDED if RECORDED[key]["usual"]])
 def test_settings_are_those_of_the_firmware(key: str) -> None:
     experiment = Experiment(key)
-    base, usual = experiment.base, RECORDED[key]["usual"]
+    base = experiment.base
+    usual = RECORDED[key]["usual"]
     assert base is not None
     made = base.settings()
     if not RECORDED[key]["settings"] and key != "v4_DB_settings_300_400":

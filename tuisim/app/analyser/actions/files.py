@@ -32,19 +32,22 @@ _REPORT = ((".html", "program, world, chart, bands, statistics and notes on one 
 
 def copy_value(screen: LogScreen) -> None:
     """Copy the selected cell."""
-    rows, row = screen.model.rows, screen.model.row
+    rows = screen.model.rows
+    row = screen.model.row
     screen.copy(rows.text(row, rows.chosen), f"{rows.chosen} of row {row + 1}")
 
 
 def copy_row(screen: LogScreen) -> None:
     """Copy the row of the cursor, with tabs between the cells."""
-    rows, row = screen.model.rows, screen.model.row
+    rows = screen.model.rows
+    row = screen.model.row
     screen.copy("\t".join(rows.text(row, column) for column in rows.columns), f"Row {row + 1}")
 
 
 def copy_pane(screen: LogScreen) -> None:
     """Copy the pane: of the table all rows shown, with the header."""
-    model, name = screen.model, screen.pane.name_shown
+    model = screen.model
+    name = screen.pane.name_shown
     if name != "table":
         pane = PANES[name]
         lines = ["\t".join(row) for row in (pane.heads, *pane.rows(model))]

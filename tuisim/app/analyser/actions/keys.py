@@ -13,8 +13,13 @@ from tuisim.app.action import Action, group_keys
 from tuisim.app.analyser.actions import chart, files, log, panes
 from tuisim.app.analyser.screen import LogScreen
 
-CURSOR, PANE, CHART, TABLE, LOG = "Cursor", "Panes", "Chart", "Table", "Log"
-FILES, APP = "Files", "App"
+CURSOR = "Cursor"
+PANE = "Panes"
+CHART = "Chart"
+TABLE = "Table"
+LOG = "Log"
+FILES = "Files"
+APP = "App"
 
 
 LogAction = Action[LogScreen, int | None]

@@ -94,14 +94,17 @@ def note(screen: LogScreen) -> None:
     """Ask for a note on the sample, on the range between the two cursors, or on the band, which is described."""
     model = screen.model
     trace = model.trace_of_row(model.row)
-    name, value = trace.name, ""
+    name = trace.name
+    value = ""
     start_s = stop_s = model.find_time_s(model.row)
     run = model.find_run(model.row)
     title = f"Note on {name} at {start_s:.2f} s"
     bands = model.bands()
     if screen.pane.name_shown == "bands" and bands:
         band = bands[min(screen.pane.chosen, len(bands) - 1)]
-        name, start_s, stop_s = band.variable, band.start_s, band.stop_s
+        name = band.variable
+        start_s = band.start_s
+        stop_s = band.stop_s
         value = f"band {band.number}: {band.true_level:.2f}" + (
             f" {band.grey}" if band.grey else ""
         )

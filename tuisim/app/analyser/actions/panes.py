@@ -87,7 +87,8 @@ def choose(screen: LogScreen, step: int) -> None:
 
 def sort(screen: LogScreen) -> None:
     """Sort by the selected column: ascending, descending, not at all."""
-    model, rows = screen.model, screen.model.rows
+    model = screen.model
+    rows = screen.model.rows
     if rows.view.sorted_by != rows.chosen:
         order = rows.chosen, False
     else:
@@ -157,7 +158,8 @@ def find(screen: LogScreen, step: int) -> None:
     Raises:
         LogError: there is no match, if that is known at once.
     """
-    model, text = screen.model, screen.searched
+    model = screen.model
+    text = screen.searched
     if not text:
         search(screen)
         return
@@ -189,7 +191,8 @@ _PLACES = (
 
 def rows(screen: LogScreen, step: int) -> None:
     """Move by rows of the pane."""
-    model, pane = screen.model, screen.pane
+    model = screen.model
+    pane = screen.pane
     if pane.name_shown == "table":
         if len(model.rows):
             place = model.rows.place(model.row) + step

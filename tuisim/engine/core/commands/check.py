@@ -27,7 +27,8 @@ class CommandCheck:
     __slots__ = ("_count", "_newest_ns", "_ranges", "_robot", "_sim")
 
     def __init__(self, sim: Simulation) -> None:
-        self._sim, self._robot = sim, sim.spec.robot
+        self._sim = sim
+        self._robot = sim.spec.robot
         self._newest_ns = self._count = 0
         self._ranges: dict[tuple[Call, int], tuple[Range, ...]] = {}
         """The ranges of the values of calls to parts, as far as they are known of this robot."""
@@ -76,7 +77,8 @@ def _count_parts(call: Call, sim: Simulation) -> int:
 
 def _narrow_ranges(call: Call, part: int, sim: Simulation) -> tuple[Range, ...]:
     """Return the ranges of the values of a call, that of a speed as the kind of its motor has it."""
-    ranges, place = [*CALLS[call].ranges], CALLS[call].speed_place
+    ranges = [*CALLS[call].ranges]
+    place = CALLS[call].speed_place
     if place is not None and sim.spec.profile.motor_law is not MotorLaw.NBEV3DEVSIM:
         max_dps = float(MODELS[sim.spec.robot.motors[part].kind].max_speed_dps)
         ranges[place] = -max_dps, max_dps

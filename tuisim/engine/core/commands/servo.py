@@ -57,7 +57,8 @@ def set_milli(sim: Simulation, time_ns: int, part: int, values: tuple[float, ...
 
 def hold(sim: Simulation, time_ns: int, part: int, _values: tuple[float, ...]) -> None:
     """Let the controller stay where the motor is."""
-    motor, now_us = _find_motor(sim, part), time_ns // 1000
+    motor = _find_motor(sim, part)
+    now_us = time_ns // 1000
     motor.control.hold(now_us, motor.measure_start(now_us).milli)
 
 

@@ -52,7 +52,8 @@ class Controller:
     def compute_duty(self, value: int) -> int:
         """Return the duty of the next step, in percent."""
         error = self.setpoint - value
-        change, self.error = self.error - error, error
+        change = self.error - error
+        self.error = error
         self.total += error
         scaled = error * self.kp + self.total * self.ki + change * self.kd
         self.overloaded = False

@@ -55,8 +55,11 @@ class Counter:
             end_deg: The axle's angle at the end.
             middle: The part of the way that it turns in the first half of the time; each half is taken as even.
         """
-        count, last, times = floor(2.0 * end_deg), self.count, self._times
-        end, way = begin + duration, 2.0 * (end_deg - begin_deg)
+        count = floor(2.0 * end_deg)
+        last = self.count
+        times = self._times
+        end = begin + duration
+        way = 2.0 * (end_deg - begin_deg)
         if end - times[-1] > MIN_IDLE:
             edge = last + (count > last)
             part = 1.0 if count == last else (edge - 2 * begin_deg) / way
@@ -64,10 +67,15 @@ class Counter:
         if count == last:
             return
         if count > last:
-            part, per_count, direction = (last + 1 - 2.0 * begin_deg) / way, 1.0 / way, 1
+            part = (last + 1 - 2.0 * begin_deg) / way
+            per_count = 1.0 / way
+            direction = 1
         else:
-            part, per_count, direction = (last - 2.0 * begin_deg) / way, -1.0 / way, -1
-        straight, counts = self._straight, self._counts
+            part = (last - 2.0 * begin_deg) / way
+            per_count = -1.0 / way
+            direction = -1
+        straight = self._straight
+        counts = self._counts
         self._straight = count - last + (straight if straight * direction > 0 else 0)
         half_time = 0.5 * duration
         first_half, second_half = half_time / middle, half_time / (1.0 - middle)
@@ -82,7 +90,8 @@ class Counter:
                 )
             )
             part += per_count
-        self.count, self._speed_dps = count, None
+        self.count = count
+        self._speed_dps = None
         if len(times) > MAX_CHANGES:
             del times[:-CAPACITY], counts[:-CAPACITY]
 
@@ -103,7 +112,8 @@ class Counter:
 
     def take_back(self, angle_deg: float) -> None:
         """Forget the last changes in one direction: an obstacle has stopped the axle at an angle before them."""
-        count, counts = floor(2 * angle_deg), self._counts
+        count = floor(2 * angle_deg)
+        counts = self._counts
         direction = 1 if self.count > count else -1
         while self.count != count and counts[-1] - counts[-2] == direction:
             del counts[-1], self._times[-1]
@@ -132,7 +142,8 @@ class Counter:
         self._straight += count - self.count
         self._counts += range(count - direction * (len(times) - 1), count + direction, direction)
         self._times += times
-        self.count, self._speed_dps = count, None
+        self.count = count
+        self._speed_dps = None
         del self._times[:-MAX_CHANGES], self._counts[:-MAX_CHANGES]
 
     def fill_evenly(self, time: float, angle_deg: float, speed_dps: float) -> None:
@@ -159,7 +170,9 @@ class Counter:
         speed_dps = self._speed_dps
         if speed_dps is not None:
             return speed_dps
-        times, depth, straight = self._times, self._depth, self._straight
+        times = self._times
+        depth = self._depth
+        straight = self._straight
         time = times[-1]
         # Most often the depth is that of the last time, or the next one.
         while depth > STRIDE and time - times[STRIDE - 1 - depth] >= MIN_SPAN:

@@ -40,7 +40,8 @@ class Figure(NamedTuple):
 
 def list_figures() -> list[Figure]:
     """Return all figures: of the motor, of its load, and of its driver."""
-    large, medium = MODELS["large"], MODELS["medium"]
+    large = MODELS["large"]
+    medium = MODELS["medium"]
     common = {
         "wheel_kg": (WHEEL_KG, "a wheel and tyre of 56 mm, taken for a disc: an estimate"),
         "rolling_share": (

@@ -40,9 +40,12 @@ class Jiffies:
 
     def find_expiry_ns(self, now_ns: int, jiffies: int) -> int:
         """Return when a timer fires that is set now for a number of jiffies."""
-        expiry, grain, reach = self.count(now_ns) + jiffies, 1, LEVEL_JIFFIES
+        expiry = self.count(now_ns) + jiffies
+        grain = 1
+        reach = LEVEL_JIFFIES
         while jiffies > reach:
-            grain, reach = grain * COARSER, reach * COARSER
+            grain = grain * COARSER
+            reach = reach * COARSER
         return self.begin_ns((expiry // grain + 1) * grain)
 
 

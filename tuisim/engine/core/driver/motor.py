@@ -306,7 +306,8 @@ class DriverMotor(MotorDriver):
             self._due_ns = min(self._timers_ns, self._look_ns)
             bits = self.state_bits
             if bits != self._looked_bits:
-                self._looked_bits, self.noticed_ns = bits, time_ns
+                self._looked_bits = bits
+                self.noticed_ns = time_ns
 
     def _set_timers(self, ramp_ns: int = NEVER_NS, timed_ns: int = NEVER_NS) -> None:
         self._ramp_ns, self._timed_ns = ramp_ns, timed_ns
@@ -356,7 +357,8 @@ class DriverMotor(MotorDriver):
         self.wake(time_ns)
         if self._timers_ns < NEVER_NS:
             self._set_timers()
-        last, self._last_command = self._last_command, command
+        last = self._last_command
+        self._last_command = command
         self.active = active
         self.ramp_down_ms = active.ramp_down_ms
         if command is RUN_FOREVER or command is RUN_TIMED:
@@ -399,7 +401,8 @@ class DriverMotor(MotorDriver):
             self._run(speed_dps)
 
     def _run_to_target(self, time_ns: int) -> None:
-        self._ends_at_target, self._stops_after_ramp = True, False
+        self._ends_at_target = True
+        self._stops_after_ramp = False
         if self.active.ramp_up_ms:
             speed_dps = abs(self.active.speed_dps)
             self._begin_ramp(time_ns, -speed_dps if self.position > self.target else speed_dps)
@@ -426,7 +429,8 @@ class DriverMotor(MotorDriver):
             self.halt(time_ns, self.active.stop_action)
 
     def _ramp_down(self, time_ns: int) -> None:
-        self._ends_at_target, self._stops_after_ramp = False, True
+        self._ends_at_target = False
+        self._stops_after_ramp = True
         self._begin_ramp(time_ns, 0)
 
     def _reset(self, time_ns: int) -> None:
@@ -455,7 +459,8 @@ class DriverMotor(MotorDriver):
         jiffies = round_up(ramp_ms) * change_dps // self.model.max_speed_dps
         start_jiffy = self._jiffies.count(time_ns) - RAMP_LEAD_JIFFIES
         self._ramp = Ramp(start_jiffy, jiffies, start_dps, end_dps)
-        self._ramp_jiffy, self.is_ramping = start_jiffy, True
+        self._ramp_jiffy = start_jiffy
+        self.is_ramping = True
         if jiffies:
             self._change_ramp(time_ns)
         else:

@@ -78,7 +78,8 @@ class Circuit:
 
 def build_circuit(plant: PlantSpec, battery_v: float | None) -> Circuit:
     """Return the circuit of a motor on a battery; without a battery it coasts."""
-    damping, torque_per_percent = plant.damping_nm_s, 0.0
+    damping = plant.damping_nm_s
+    torque_per_percent = 0.0
     if battery_v is not None:
         per_v = plant.torque_nm_per_a / plant.resistance_ohm
         damping += per_v * plant.back_emf_v_s
@@ -156,7 +157,8 @@ class Axle:
 
     def turn_step(self) -> bool:
         """Turn for one step of the control; return False, and do nothing, unless it turns on freely all the time."""
-        circuit, speed_dps = self.circuit, self.speed_dps
+        circuit = self.circuit
+        speed_dps = self.speed_dps
         if speed_dps > 0.0:
             end_dps = self.goal_dps - circuit.friction_dps
             after_dps = end_dps + (speed_dps - end_dps) * circuit.step_decay
@@ -171,23 +173,28 @@ class Axle:
         angle_deg = self.angle_deg + turned_deg
         if not self.low_deg <= angle_deg <= self.high_deg:
             return False
-        self.angle_deg, self.speed_dps = angle_deg, after_dps
+        self.angle_deg = angle_deg
+        self.speed_dps = after_dps
         return True
 
     def advance(self, duration_ns: float) -> float:
         """Turn until the time is over or the axle comes to rest on its way, and return the time that is left, in ns."""
-        circuit, speed_dps = self.circuit, self.speed_dps
+        circuit = self.circuit
+        speed_dps = self.speed_dps
         forwards = speed_dps > 0.0 if speed_dps else self.goal_dps > 0.0
         if not speed_dps and not self._can_start(forwards):
             return 0.0
-        constant_s, decay = circuit.time_constant_s, circuit.step_decay
+        constant_s = circuit.time_constant_s
+        decay = circuit.step_decay
         if duration_ns != STEP_NS:
             decay = exp(-duration_ns / NS_PER_S / constant_s)
         end_dps = self.goal_dps - (circuit.friction_dps if forwards else -circuit.friction_dps)
-        after_dps, left_ns = end_dps + (speed_dps - end_dps) * decay, 0.0
+        after_dps = end_dps + (speed_dps - end_dps) * decay
+        left_ns = 0.0
         if after_dps < 0.0 if forwards else after_dps > 0.0:
             until_rest_ns = constant_s * log(1.0 - speed_dps / end_dps) * NS_PER_S
-            after_dps, left_ns = 0.0, max(duration_ns - until_rest_ns, 0.0)
+            after_dps = 0.0
+            left_ns = max(duration_ns - until_rest_ns, 0.0)
             duration_ns = until_rest_ns
         self.angle_deg += end_dps * duration_ns / NS_PER_S + (speed_dps - after_dps) * constant_s
         self.speed_dps = after_dps

@@ -128,12 +128,15 @@ class MotorDriver:
         """Run to a position, at a speed without sign."""
         self.speed_control.setpoint = -abs(speed_dps) if self.position > target else abs(speed_dps)
         self._start(self.speed_control)
-        self.target, self._arrival_action = target, action
+        self.target = target
+        self._arrival_action = action
         if self.ramp_down_ms:
             self._is_regulated = False
 
     def _start(self, control: Controller | None) -> None:
-        self._control, self._arrival_action, self.is_running = control, None, True
+        self._control = control
+        self._arrival_action = None
+        self.is_running = True
         self._is_regulated = control is not None and control.setpoint != 0
 
     def halt(self, time_ns: int, action: StopAction, held: int | None = None) -> None:
@@ -159,7 +162,8 @@ class MotorDriver:
 
     def move_axle(self, time_ns: int) -> None:
         """Let the axle turn until a time."""
-        axle, left_ns = self.axle, float(time_ns - self._moved_ns)
+        axle = self.axle
+        left_ns = float(time_ns - self._moved_ns)
         self._moved_ns = time_ns
         while left_ns:
             begin_ns, begin_deg, begin_dps = left_ns, axle.angle_deg, axle.speed_dps
@@ -183,7 +187,8 @@ class MotorDriver:
 
     def control(self, time_ns: int) -> None:
         """Run one step of the control."""
-        axle, counter = self.axle, self.counter
+        axle = self.axle
+        counter = self.counter
         begin_deg, begin_dps = axle.angle_deg, axle.speed_dps
         if time_ns - self._moved_ns == STEP_NS and axle.turn_step():
             # The usual case of `move_axle`, in few calls.
@@ -266,11 +271,18 @@ class MotorDriver:
         Returns:
             When the next step is due: before the end if it is not one of these.
         """
-        axle, counter, control = self.axle, self.counter, self.speed_control
-        angle_deg, speed_dps, read_dps = axle.angle_deg, axle.speed_dps, self.speed_dps
-        circuit, duty, goal_dps = axle.circuit, self.duty, axle.goal_dps
+        axle = self.axle
+        counter = self.counter
+        control = self.speed_control
+        angle_deg = axle.angle_deg
+        speed_dps = axle.speed_dps
+        read_dps = self.speed_dps
+        circuit = axle.circuit
+        duty = self.duty
+        goal_dps = axle.goal_dps
         friction_dps = copysign(circuit.friction_dps, speed_dps)
-        decay, constant_s = circuit.step_decay, circuit.time_constant_s
+        decay = circuit.step_decay
+        constant_s = circuit.time_constant_s
         end_dps = goal_dps - friction_dps
         while step_ns < end_ns and read_dps:
             after_dps = end_dps + (speed_dps - end_dps) * decay
@@ -286,11 +298,16 @@ class MotorDriver:
             speed_dps = after_dps
             next_duty = control.compute_duty(read_dps)
             if next_duty != duty:
-                duty, goal_dps = next_duty, next_duty * circuit.dps_per_percent
+                duty = next_duty
+                goal_dps = next_duty * circuit.dps_per_percent
                 end_dps = goal_dps - friction_dps
             step_ns += STEP_NS
-        axle.angle_deg, axle.speed_dps, axle.goal_dps = angle_deg, speed_dps, goal_dps
-        self.duty, self.speed_dps, self._moved_ns = duty, read_dps, step_ns - STEP_NS
+        axle.angle_deg = angle_deg
+        axle.speed_dps = speed_dps
+        axle.goal_dps = goal_dps
+        self.duty = duty
+        self.speed_dps = read_dps
+        self._moved_ns = step_ns - STEP_NS
         self.read_counts(counter.count)
         if not read_dps:
             self._still_ns = self._moved_ns
@@ -314,7 +331,8 @@ class MotorDriver:
 
     def _watch_stall(self, time_ns: int) -> None:
         if self.speed_dps:
-            self._still_ns, self.is_stalled = None, False
+            self._still_ns = None
+            self.is_stalled = False
         elif self._still_ns is None:
             self._still_ns = time_ns
         elif time_ns - self._still_ns > STALL_NS:
@@ -322,7 +340,9 @@ class MotorDriver:
 
     def _slow_down(self, time_ns: int, action: StopAction) -> None:
         """Slow down before the target, and stop at it."""
-        target, position, speed_dps = self.target, self.position, self.speed_dps
+        target = self.target
+        position = self.position
+        speed_dps = self.speed_dps
         setpoint = self.speed_control.setpoint
         ramp = divide(abs(speed_dps) * self.ramp_down_ms, 1 + self.model.max_speed_dps)
         end = position + divide(speed_dps * ramp, 2000)

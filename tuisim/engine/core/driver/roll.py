@@ -54,7 +54,9 @@ class Roll:
     )
 
     def __init__(self, axle: Axle, counter: Counter, begin_ns: int) -> None:
-        self._axle, self._counter, self._begin_ns = axle, counter, begin_ns
+        self._axle = axle
+        self._counter = counter
+        self._begin_ns = begin_ns
         self._begin_deg, self._begin_dps = axle.angle_deg, axle.speed_dps
         self._sign = copysign(1.0, axle.speed_dps)
         self._constant_s = axle.circuit.time_constant_s
@@ -80,18 +82,23 @@ class Roll:
     def turn_to(self, time_ns: int) -> None:
         """Turn the axle to where it is at a time after the begin."""
         since_s = (time_ns - self._begin_ns) / NS_PER_S
-        goal_dps, constant_s, axle = self._goal_dps, self._constant_s, self._axle
+        goal_dps = self._goal_dps
+        constant_s = self._constant_s
+        axle = self._axle
         speed_dps = goal_dps + (self._begin_dps - goal_dps) * exp(-since_s / constant_s)
         turned_deg = goal_dps * since_s + (self._begin_dps - speed_dps) * constant_s
-        axle.angle_deg, axle.speed_dps = self._begin_deg + turned_deg, speed_dps
-        self.time_ns, self._now = time_ns, time_ns * TICKS_PER_NS
+        axle.angle_deg = self._begin_deg + turned_deg
+        axle.speed_dps = speed_dps
+        self.time_ns = time_ns
+        self._now = time_ns * TICKS_PER_NS
         self.count = floor(2 * axle.angle_deg)
 
     def measure_speed_dps(self) -> int:
         """Return the speed that the driver reads now."""
         if self.count == self._counter.count:
             return self._counter.measure_speed_dps()
-        time, depth = self._find_time(0), self._depth
+        time = self._find_time(0)
+        depth = self._depth
         while depth > STRIDE and time - self._find_time(depth - STRIDE) >= MIN_SPAN:
             depth -= STRIDE
         while (span := time - self._find_time(depth)) < MIN_SPAN and depth < MAX_DEPTH:
@@ -102,7 +109,9 @@ class Roll:
 
     def _find_time(self, back: int) -> int:
         """Return when the axle came to a count, so many before the newest one, in ticks of the clock."""
-        counter, count, sign = self._counter, self.count, self._sign
+        counter = self._counter
+        count = self.count
+        sign = self._sign
         before = back - abs(count - counter.count)
         if before >= 0:
             return counter.find_time(before)
@@ -112,7 +121,8 @@ class Roll:
 
     def _find_age_s(self, way_deg: float) -> float:
         """Return how long the axle has taken for its last so many degrees."""
-        sign, constant_s = self._sign, self._constant_s
+        sign = self._sign
+        constant_s = self._constant_s
         speed_dps, goal_dps = sign * self._axle.speed_dps, sign * self._goal_dps
         gain_dps2 = (goal_dps - speed_dps) / constant_s
         age_s = 2 * way_deg / (speed_dps + sqrt(max(speed_dps**2 - 2 * gain_dps2 * way_deg, 0.0)))

@@ -49,7 +49,8 @@ PUSH_DEG = 0.05
 
 def load_wheel(plant: PlantSpec, robot: RobotSpec) -> PlantSpec:
     """Return a motor with one wheel of a robot and its share of the robot's mass."""
-    radius_m, gears = robot.wheel_diameter_mm / 2000, robot.gear_ratio
+    radius_m = robot.wheel_diameter_mm / 2000
+    gears = robot.gear_ratio
     inertia_kg_m2 = (robot.mass_kg + WHEEL_KG) / 2 * radius_m**2
     friction_nm = ROLLING_SHARE * robot.mass_kg / 2 * GRAVITY_M_S2 * radius_m
     return plant.add_load(inertia_kg_m2 / gears**2, friction_nm / gears)
@@ -109,7 +110,8 @@ class SimulatedMotor(DriverMotor):
 
     def __init__(self, tick_hz: int, kind: str, plant: PlantSpec, battery_v: float) -> None:
         super().__init__(MODELS[kind], plant, battery_v, Jiffies())
-        self._hz, self._tick_ns = tick_hz, NS_PER_S / tick_hz
+        self._hz = tick_hz
+        self._tick_ns = NS_PER_S / tick_hz
         self._angle_deg = self.axle.angle_deg
         """At the end of the last tick, from the zero of the counter."""
         self.position_deg = 0.0
@@ -235,7 +237,8 @@ class SimulatedMotor(DriverMotor):
         cruise_dps = setpoint + copysign(CUT_OFF_DPS, setpoint)
         end_ns = min(self._timers_ns, now_ns + self._estimate_free_ns(cruise_dps))
         if end_ns > now_ns + self._tick_ns and self.state_bits == self._looked_bits:
-            self._cruise_dps, self._cruise_end_ns = cruise_dps, end_ns
+            self._cruise_dps = cruise_dps
+            self._cruise_end_ns = end_ns
             self.axle.speed_dps = cruise_dps
 
     def _estimate_free_ns(self, cruise_dps: float) -> int:
@@ -249,9 +252,13 @@ class SimulatedMotor(DriverMotor):
 
     def _leave_cruise(self) -> None:
         """Go on in single steps from the end of the last tick."""
-        now_ns, cruise_dps, axle = self._end_ns(self._tick), self._cruise_dps, self.axle
-        self._cruise_dps, self._even_ticks = 0.0, 0
-        axle.angle_deg, self._moved_ns = self._angle_deg, now_ns
+        now_ns = self._end_ns(self._tick)
+        cruise_dps = self._cruise_dps
+        axle = self.axle
+        self._cruise_dps = 0.0
+        self._even_ticks = 0
+        axle.angle_deg = self._angle_deg
+        self._moved_ns = now_ns
         self.counter.fill_evenly(now_ns * TICKS_PER_NS, axle.angle_deg, cruise_dps)
         self._step_ns = (now_ns // STEP_NS + 1) * STEP_NS
         self.read_counts(self.counter.count)
@@ -275,7 +282,8 @@ class SimulatedMotor(DriverMotor):
     def _turn_axle(self, time_ns: int, angle_deg: float) -> None:
         """Turn the axle from outside, at once."""
         self.leave_roll()
-        axle, before_deg = self.axle, self.axle.angle_deg
+        axle = self.axle
+        before_deg = self.axle.angle_deg
         axle.angle_deg = min(max(angle_deg, axle.low_deg), axle.high_deg)
         self.counter.record(time_ns * TICKS_PER_NS, 0.0, before_deg, axle.angle_deg, 0.5)
 

@@ -251,7 +251,9 @@ def build_rgb_reader(
         return partial(_read_in_full, spec, profile, field)
     dark, span = response = find_response(spec, profile)
     is_even = response == EVEN
-    diameter, right_mm, forward_mm = spec.diameter_mm, spec.x_mm, spec.y_mm
+    diameter = spec.diameter_mm
+    right_mm = spec.x_mm
+    forward_mm = spec.y_mm
     radius, count, sums = diameter / 2, disc_pixels_of(diameter), field.sums[diameter]
     width, height = field.width_px + diameter, field.height_px + diameter
 
@@ -284,7 +286,10 @@ def build_noisy_rgb_reader(
     It takes the robot's x and y in mm, its heading in degrees, and the level, seed and tick of the noise, and agrees
     with `measure_color(...).rgb`; as `build_rgb_reader`, it is called in every turn of a control loop.
     """
-    diameter, right_mm, forward_mm, name = spec.diameter_mm, spec.x_mm, spec.y_mm, spec.name
+    diameter = spec.diameter_mm
+    right_mm = spec.x_mm
+    forward_mm = spec.y_mm
+    name = spec.name
     radius, count = diameter / 2, disc_pixels_of(diameter)
     disc_sums, disc, response = field.sum_disc, field.read_disc, find_response(spec, profile)
 
@@ -348,7 +353,8 @@ def _read_noisy_box(spec: ColorSensorSpec, instant: Instant, field: Field) -> by
 
 def measure_color(spec: ColorSensorSpec, instant: Instant, field: Field) -> ColorReading:
     """Return the reading of a colour sensor at an instant, including noise, its response and the light of the place."""
-    mean, tell = _mean_of_mat(spec, instant, field), _build_channel_reader(spec, instant, field)
+    mean = _mean_of_mat(spec, instant, field)
+    tell = _build_channel_reader(spec, instant, field)
     return ColorReading(
         tell(mean.red), tell(mean.green), tell(mean.blue), instant.profile.brick_colors
     )

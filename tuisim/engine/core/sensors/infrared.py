@@ -37,7 +37,8 @@ def _measure_way_mm(
     place: tuple[float, float], angle_deg: float, world: WorldSpec, most_mm: float
 ) -> float:
     """Return how far light travels before it meets a surface, at most `most_mm`."""
-    edges, angle = find_surfaces(world), math.radians(angle_deg)
+    edges = find_surfaces(world)
+    angle = math.radians(angle_deg)
     (x_mm, y_mm), cos, sin = place, math.cos(angle), math.sin(angle)
     way = find_first_hit_mm(edges.upright, edges.upright_at, (x_mm, y_mm), (cos, sin), most_mm)
     return find_first_hit_mm(edges.level, edges.level_at, (y_mm, x_mm), (sin, cos), way)
@@ -45,7 +46,8 @@ def _measure_way_mm(
 
 def proximity(pose: Pose, spec: InfraredSpec, world: WorldSpec) -> int:
     """Return the distance to the nearest surface ahead, 0 … 100 % of `PROXIMITY_RANGE_MM`."""
-    place, facing = world_point(pose, spec.x_mm, spec.y_mm), pose.heading_deg + spec.angle_deg
+    place = world_point(pose, spec.x_mm, spec.y_mm)
+    facing = pose.heading_deg + spec.angle_deg
     nearest = min(
         _measure_way_mm(place, facing + ray_deg, world, PROXIMITY_RANGE_MM)
         for ray_deg in RAY_ANGLES_DEG

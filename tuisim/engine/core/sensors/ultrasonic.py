@@ -111,7 +111,8 @@ def measure_rays_mm(
     pose: Pose, spec: UltrasonicSpec, world: WorldSpec
 ) -> list[tuple[float, float]]:
     """Return each ray as (world angle in degrees, length in mm); the length is at most the range."""
-    start, facing = world_point(pose, spec.x_mm, spec.y_mm), pose.heading_deg + spec.angle_deg
+    start = world_point(pose, spec.x_mm, spec.y_mm)
+    facing = pose.heading_deg + spec.angle_deg
     angles = [facing + ray_deg for ray_deg in spec.ray_angles_deg]
     return [
         (angle, _measure_ray_mm(start, angle, facing, find_surfaces(world), spec.max_range_mm))
@@ -152,8 +153,10 @@ def measure_distance_mm(
         world: Its surroundings.
         heard: The surfaces that send this pulse back; None for all.
     """
-    start, facing = world_point(pose, spec.x_mm, spec.y_mm), pose.heading_deg + spec.angle_deg
-    surfaces, nearest = heard or find_surfaces(world), spec.max_range_mm
+    start = world_point(pose, spec.x_mm, spec.y_mm)
+    facing = pose.heading_deg + spec.angle_deg
+    surfaces = heard or find_surfaces(world)
+    nearest = spec.max_range_mm
     for ray_deg in spec.ray_angles_deg:
         # A ray need not be followed beyond the nearest echo found.
         nearest = _measure_ray_mm(start, facing + ray_deg, facing, surfaces, nearest)

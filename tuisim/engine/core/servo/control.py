@@ -56,7 +56,8 @@ class Controller:
     )
 
     def __init__(self, settings: ControlSettings, *, slips: bool = False) -> None:
-        self.settings, self._slips = settings, slips
+        self.settings = settings
+        self._slips = slips
         self.trajectory: Trajectory | None = None
         """None while it is passive."""
         self.timed = False
@@ -90,7 +91,8 @@ class Controller:
     def list_millis(self, times_us: range) -> list[int]:
         """Return where the motion is wanted to be at several times of one segment."""
         assert self.trajectory is not None
-        paused_us, behind = self._paused_us, self._behind_milli
+        paused_us = self._paused_us
+        behind = self._behind_milli
         then_us = range(times_us.start - paused_us, times_us.stop - paused_us, times_us.step)
         millis = self.trajectory.find_segment(then_us[0]).list_millis(then_us)
         return [milli - behind for milli in millis] if behind else millis
@@ -131,7 +133,9 @@ class Controller:
         window_us = self.settings.speed_window_ms * MS_US
         if window_us and now_us is not None and self.trajectory is not None and not self._paused_us:
             self._released = now_us, self._mean_rate(now_us, self.milli(now_us), window_us)
-        self.trajectory, self.duty_limit, self._stalled_us = None, None, 0
+        self.trajectory = None
+        self.duty_limit = None
+        self._stalled_us = 0
 
     def hold(self, now_us: int, milli: int) -> None:
         """Stay at a position."""
@@ -161,7 +165,8 @@ class Controller:
             ValueError: the rate is 0, or the move takes too long.
         """
         settings = self.settings
-        rate, acceleration = min(abs(rate), settings.speed), self._limit(acceleration)
+        rate = min(abs(rate), settings.speed)
+        acceleration = self._limit(acceleration)
         start, spliced = self._find_start(now_us, measured)
         if relative:
             target += divide(start.milli, MILLI)
@@ -263,7 +268,9 @@ class Controller:
         return start, running._replace(start_us=running.start_us + self._paused_us)
 
     def _begin(self, trajectory: Trajectory, *, timed: bool) -> None:
-        self.trajectory, self.timed, self.duty_limit = trajectory, timed, None
+        self.trajectory = trajectory
+        self.timed = timed
+        self.duty_limit = None
         self._paused_us = self._behind_milli = self._stalled_us = 0
 
     # Following
@@ -275,7 +282,8 @@ class Controller:
             passed_us: Time since the last call, or since the motion was last where it was wanted.
             milli, rate: Where the motion is, and how fast.
         """
-        settings, trajectory = self.settings, self.trajectory
+        settings = self.settings
+        trajectory = self.trajectory
         assert trajectory is not None
         error = self.milli(now_us) - milli
         power = settings.kp * abs(error) // MILLI

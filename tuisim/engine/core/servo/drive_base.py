@@ -113,7 +113,9 @@ class DriveBase:
     def __init__(
         self, left: ServoMotor, right: ServoMotor, wheel_diameter_mm: float, axle_track_mm: float
     ) -> None:
-        self.left, self.right, self.motors = left, right, (left, right)
+        self.left = left
+        self.right = right
+        self.motors = (left, right)
         ours = left.control.settings, right.control.settings
         distance, heading = compute_base_settings(*ours, wheel_diameter_mm, axle_track_mm)
         self.distance = Controller(distance, slips=True)
@@ -130,7 +132,9 @@ class DriveBase:
         """Returns the heading that a gyro shows, in degrees, clockwise; None while the wheels tell the heading."""
         self._offset = 0
         """How far the difference of the motors is ahead of the gyro, in thousandths of a count."""
-        self._at_us, self._behind_us, self._millis = -1, -1, (0, 0)
+        self._at_us = -1
+        self._behind_us = -1
+        self._millis = (0, 0)
 
     # What the program sees
 
@@ -188,7 +192,8 @@ class DriveBase:
             find_heading: Returns the heading in degrees, clockwise; None for the wheels.
         """
         self.stop(now_us, None)
-        self._find_heading, self._offset = find_heading, 0
+        self._find_heading = find_heading
+        self._offset = 0
         window_ms = 0 if find_heading else self.distance.settings.speed_window_ms
         self.heading.settings = replace(self.heading.settings, speed_window_ms=window_ms)
 
@@ -201,7 +206,8 @@ class DriveBase:
     # Commands
 
     def _count(self, usual: Pace) -> Pace:
-        distance, heading = self.distance.settings.counts, self.heading.settings.counts
+        distance = self.distance.settings.counts
+        heading = self.heading.settings.counts
         return distance(usual[0]), distance(usual[1]), heading(usual[2]), heading(usual[3])
 
     def set_usual(self, usual: Pace) -> None:
@@ -213,7 +219,8 @@ class DriveBase:
             )
         )
         self._slowing = None, None
-        self.usual, self._pace = usual, (speed, acceleration, rate, turn_acceleration)
+        self.usual = usual
+        self._pace = (speed, acceleration, rate, turn_acceleration)
 
     def set_slowing(self, straight: int, turn: int) -> None:
         """Set how it stops straight moves and turns, in mm and degrees per second squared."""
@@ -250,8 +257,10 @@ class DriveBase:
             motor.mode == FOREVER and not motor.blocked_ticks for motor in self.motors
         )
         self._begin(now_us)
-        distance, heading = self.distance, self.heading
-        ours, other = distance.settings, heading.settings
+        distance = self.distance
+        heading = self.heading
+        ours = distance.settings
+        other = heading.settings
         accelerations = (
             (self._pace[1], self._pace[3])
             if ours.speed_window_ms
@@ -299,7 +308,8 @@ class DriveBase:
     @property
     def end_us(self) -> int | None:
         """When the motion ends; None if it does not."""
-        one, other = self.distance.end_us, self.heading.end_us
+        one = self.distance.end_us
+        other = self.heading.end_us
         return None if one is None or other is None else max(one, other)
 
     def find_target(self, now_us: int, motor: ServoMotor) -> int:
@@ -324,7 +334,8 @@ class DriveBase:
 
     def rate(self, now_us: int, motor: ServoMotor) -> float:
         """Return the wanted rate of a motor, in counts per second."""
-        total, difference = self.distance.rate(now_us), self.heading.rate(now_us)
+        total = self.distance.rate(now_us)
+        difference = self.heading.rate(now_us)
         return (total + difference) / 2 if motor is self.left else (total - difference) / 2
 
     def find_segment_end_us(self, now_us: int) -> int | None:
@@ -344,10 +355,8 @@ class DriveBase:
         if now_us == self._behind_us:
             return
         self._behind_us, self._at_us = now_us, -1
-        millis, rates = (
-            (motor.milli for motor in self.motors),
-            (motor.counts_per_s for motor in self.motors),
-        )
+        millis = (motor.milli for motor in self.motors)
+        rates = (motor.counts_per_s for motor in self.motors)
         (left, right), (left_rate, right_rate) = millis, rates
         self.distance.note_lag(now_us, passed_us, left + right, left_rate + right_rate)
         turned = left - right - self._offset

@@ -101,7 +101,9 @@ class ServoMotor:
     )
 
     def __init__(self, tick_hz: int, law: MotorLaw, kind: str, axle: Axle) -> None:
-        self._hz, self._tick_s, self._tick_us = tick_hz, 1.0 / tick_hz, 1_000_000 // tick_hz
+        self._hz = tick_hz
+        self._tick_s = 1.0 / tick_hz
+        self._tick_us = 1_000_000 // tick_hz
         self.law, self.kind, self.model, self.axle = law, kind, find_model(kind), axle
         self.mode = STOPPED
         self.position_deg = 0.0
@@ -117,7 +119,9 @@ class ServoMotor:
         """Its position in the program's direction while it is exactly where it is wanted to be."""
         self.duty: int | None = None
         """Its power while it runs freely, in hundredths of a percent; None if it coasts."""
-        self._free_us, self._free_dps, self._jump_deg = 0, 0.0, 0.0
+        self._free_us = 0
+        self._free_dps = 0.0
+        self._jump_deg = 0.0
         self._tick = self._quiet = 0
         self._limit_speed()
 
@@ -184,17 +188,21 @@ class ServoMotor:
         """
         if guide is not None and guide is self._guide:
             self._ending = ending
-            self.mode, self.blocked_ticks = FOREVER if guide.end_us is None else POSITION, 0
+            self.mode = FOREVER if guide.end_us is None else POSITION
+            self.blocked_ticks = 0
             return
         if self._guide is None:
             self._course = round(self.position_deg * self.sign * HALVES_PER_DEG)
         if guide is not None:
             self.control.release()
-        self._guide, self._ending = guide or self.control, ending
+        self._guide = guide or self.control
+        self._ending = ending
         self.control.settles = ending == Ending.HOLD
         timed = guide is None and self.control.timed
         self.mode = FOREVER if self._guide.end_us is None else TIMED if timed else POSITION
-        self.blocked_ticks, self.duty, self._jump_deg = 0, None, 0.0
+        self.blocked_ticks = 0
+        self.duty = None
+        self._jump_deg = 0.0
         if self.control.actuation != self._actuation:
             self._limit_speed()
 
@@ -214,7 +222,8 @@ class ServoMotor:
         Args:
             duty: In hundredths of a percent; 0 brakes, None coasts.
         """
-        guide, self._free_us = self._guide, now_us
+        guide = self._guide
+        self._free_us = now_us
         if guide is not None:
             there = self.find_milli(now_us) * self.sign / (MILLI * COUNTS_PER_DEG)
             self._free_dps = self.find_counts_per_s(now_us) * self.sign / COUNTS_PER_DEG
@@ -314,7 +323,8 @@ class ServoMotor:
     def _count_following_ticks(self, tick: int) -> int:
         if self.mode == STOPPED:
             return ENDLESS
-        guide, now_us = self._guide, tick * self._tick_us
+        guide = self._guide
+        now_us = tick * self._tick_us
         if guide is None or self._course is None or not self._can_follow(guide, now_us):
             return 0
         end_us = guide.find_segment_end_us(now_us)
@@ -346,8 +356,10 @@ class ServoMotor:
             self._convert_to_deg(after - before)
             for before, after in pairwise([self._course, *halves])
         ]
-        self._course, self._tick = halves[-1], self._tick + ticks
-        self.position_deg, self.speed_dps = self._convert_to_deg(halves[-1]), turns[-1] * self._hz
+        self._course = halves[-1]
+        self._tick = self._tick + ticks
+        self.position_deg = self._convert_to_deg(halves[-1])
+        self.speed_dps = turns[-1] * self._hz
         return Glide(turns, [self._convert_to_deg(half) for half in halves])
 
     def step(self, tick: int, noise_dps: float) -> float:
@@ -355,7 +367,8 @@ class ServoMotor:
         self._tick = tick
         if self.mode == STOPPED:
             return 0.0
-        now_us, guide = tick * self._tick_us, self._guide
+        now_us = tick * self._tick_us
+        guide = self._guide
         if guide is None:
             return self._run_freely(now_us)
         if self._course is None:
@@ -389,27 +402,31 @@ class ServoMotor:
 
     def _end(self, now_us: int) -> None:
         """End the motion: from now on the motor stands."""
-        guide, holds = self._guide, self._ending == Ending.HOLD
+        guide = self._guide
+        holds = self._ending == Ending.HOLD
         if not holds and guide is not None and not guide.lets_go(now_us, self._ending):
             return
-        self.mode, self.speed_dps, self.blocked_ticks = STOPPED, 0.0, 0
+        self.mode = STOPPED
+        self.speed_dps = 0.0
+        self.blocked_ticks = 0
         if not holds and guide is not None:
             self.control.release(now_us)
-            self._guide, self._free_dps, self.duty = (
-                None,
-                0.0,
-                0 if self._ending == Ending.BRAKE else None,
-            )
+            self._guide = None
+            self._free_dps = 0.0
+            self.duty = 0 if self._ending == Ending.BRAKE else None
 
     def _run_freely(self, now_us: int) -> float:
         """Run one tick without a guide."""
-        axle, left_ns = self.axle, min(self._tick_us, now_us - self._free_us) * 1000.0
-        begin_deg, axle.speed_dps = axle.angle_deg, self._free_dps
+        axle = self.axle
+        left_ns = min(self._tick_us, now_us - self._free_us) * 1000.0
+        begin_deg = axle.angle_deg
+        axle.speed_dps = self._free_dps
         axle.power(None if self.duty is None else self.duty / PER_PERCENT)
         while left_ns:
             left_ns = axle.advance(left_ns)
         turned = self._jump_deg + axle.angle_deg - begin_deg
-        self._jump_deg, self._free_dps = 0.0, axle.speed_dps
+        self._jump_deg = 0.0
+        self._free_dps = axle.speed_dps
         self.position_deg += turned
         self.speed_dps = axle.speed_dps
         if not (turned or axle.speed_dps or self.duty):

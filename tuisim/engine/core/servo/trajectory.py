@@ -47,7 +47,9 @@ class Segment(NamedTuple):
 
     def find_milli(self, time_us: int) -> int:
         """Return the position at a time in this segment."""
-        passed_us, rate, acceleration = time_us - self.start_us, self.rate, self.acceleration
+        passed_us = time_us - self.start_us
+        rate = self.rate
+        acceleration = self.acceleration
         # Each quotient rounds towards zero; each motor asks in every tick.
         milli = self.milli + (
             rate * passed_us // 1000 if rate >= 0 else -(-rate * passed_us // 1000)
@@ -68,15 +70,14 @@ class Segment(NamedTuple):
 
     def list_millis(self, times_us: range) -> list[int]:
         """Return the positions at several times in this segment, which `time_us` gives one by one."""
-        sign, way, steps = (
-            (1 if self.rate >= 0 else -1),
-            abs(self.rate),
-            [time_us - self.start_us for time_us in times_us],
-        )
+        sign = 1 if self.rate >= 0 else -1
+        way = abs(self.rate)
+        steps = [time_us - self.start_us for time_us in times_us]
         even = [self.milli + sign * (way * time_us // 1000) for time_us in steps]
         if not self.acceleration:
             return even
-        sign, change = (1 if self.acceleration >= 0 else -1), abs(self.acceleration)
+        sign = 1 if self.acceleration >= 0 else -1
+        change = abs(self.acceleration)
         return [
             milli + sign * (change * time_us // 1000 * time_us // 2_000_000)
             for milli, time_us in zip(even, steps, strict=True)
@@ -148,20 +149,25 @@ def build_angle_move(
     """
     if not rate:
         raise ValueError("the speed of a move to a position is 0")
-    begin, origin = divide(start.milli, MILLI), start.milli
+    begin = divide(start.milli, MILLI)
+    origin = start.milli
     if target == begin:
         return build_rest(start.start_us, target * MILLI)
-    sign, slowing = 1 if target > begin else -1, deceleration or acceleration
-    top_rate, length = min(abs(rate), fastest), abs(target - begin)
+    sign = 1 if target > begin else -1
+    slowing = deceleration or acceleration
+    top_rate = min(abs(rate), fastest)
+    length = abs(target - begin)
     w0 = max(-fastest, min(fastest, start.rate * sign))
     if w0 > 0 and w0 * w0 // (2 * slowing) > length:
         w0 = isqrt(2 * slowing * length)
     # Forwards from position 0; a move backwards is its mirror image.
     if w0 < top_rate:
-        a0, from_rest = acceleration, -divide(w0 * w0, 2 * acceleration)
+        a0 = acceleration
+        from_rest = -divide(w0 * w0, 2 * acceleration)
         th1, th2, w1 = _speed_up(length, from_rest, top_rate, acceleration, slowing)
     else:
-        a0, w1 = -acceleration, top_rate
+        a0 = -acceleration
+        w1 = top_rate
         th1, th2 = (
             divide(w0 * w0 - top_rate * top_rate, 2 * acceleration),
             length - top_rate * top_rate // (2 * slowing),
@@ -209,7 +215,8 @@ def build_endless_move(start: Segment, rate: int, acceleration: int, fastest: in
     """
     start_us = start.start_us
     limit = min(fastest, acceleration * ENDLESS_S)
-    target_rate, w0 = max(-limit, min(limit, rate)), max(-limit, min(limit, start.rate))
+    target_rate = max(-limit, min(limit, rate))
+    w0 = max(-limit, min(limit, start.rate))
     change = target_rate - w0
     speeds_up = change > 0 or (not change and rate < 0)
     first = Segment(start_us, start.milli, w0, acceleration if speeds_up else -acceleration)
@@ -243,12 +250,17 @@ def build_timed_move(
     target_rate = min(abs(rate), limit)
     w0 = max(-limit, min(limit, sign * start.rate))
     if w0 < target_rate:
-        a0, t1, w1 = acceleration, compute_duration_us(target_rate - w0, acceleration), target_rate
+        a0 = acceleration
+        t1 = compute_duration_us(target_rate - w0, acceleration)
+        w1 = target_rate
         room_us = time_us - compute_duration_us(w0, acceleration)
         if t1 >= room_us // 2:
-            t1, w1 = room_us // 2, divide(rate_change(acceleration, time_us), 2) + divide(w0, 2)
+            t1 = room_us // 2
+            w1 = divide(rate_change(acceleration, time_us), 2) + divide(w0, 2)
     else:
-        a0, t1, w1 = -acceleration, compute_duration_us(w0 - target_rate, acceleration), target_rate
+        a0 = -acceleration
+        t1 = compute_duration_us(w0 - target_rate, acceleration)
+        w1 = target_rate
     t3 = compute_duration_us(w1, acceleration)
     start_us = start.start_us
     first = Segment(start_us, start.milli, sign * w0, sign * a0)
@@ -260,8 +272,10 @@ def build_timed_move(
 
 def scale_move(trajectory: Trajectory, leader: Trajectory) -> Trajectory:
     """Return a move with the ends of a trajectory and the times of a leader, in proportion to its positions."""
-    begin, whole = trajectory.first.milli, trajectory.end.milli - trajectory.first.milli
-    from_milli, way = leader.first.milli, leader.end.milli - leader.first.milli
+    begin = trajectory.first.milli
+    whole = trajectory.end.milli - trajectory.first.milli
+    from_milli = leader.first.milli
+    way = leader.end.milli - leader.first.milli
 
     def scale(number: int) -> int:
         return divide(number * whole, way) if way else 0

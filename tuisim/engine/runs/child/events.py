@@ -123,7 +123,8 @@ class EventStream:
         return events
 
     def _split_lines(self) -> list[bytes]:
-        data, left = self._rest, MAX_BURST_BYTES
+        data = self._rest
+        left = MAX_BURST_BYTES
         while left > 0 and not self.at_end and not self.falsified:
             try:
                 chunk = os.read(self._descriptor, _CHUNK_BYTES)

@@ -110,7 +110,8 @@ class IsolatedChild:
     """
 
     def __init__(self, process: subprocess.Popen[bytes], pid: int) -> None:
-        self._process, self.pid = process, pid
+        self._process = process
+        self.pid = pid
         self.returncode: int | None = None
 
     def poll(self) -> int | None:
@@ -188,9 +189,11 @@ class Quota:
 
     def _count_growth(self, most_files: int, most_bytes: int) -> tuple[int, int]:
         """Return how many files and bytes there are more than at the beginning; it stops counting at these numbers."""
-        files, size = -self._files, -self._bytes
+        files = -self._files
+        size = -self._bytes
         for block in self._measure_blocks():
-            files, size = files + 1, size + block
+            files = files + 1
+            size = size + block
             if files > most_files or size > most_bytes:
                 break
         return files, size

@@ -43,7 +43,9 @@ MAX_ID_GAP = 32
 FILE_LOCKS = 10
 """Number of a limit that every process inherits on Linux, and that is unused since 2.4.25."""
 
-STACK_WRITTEN_WITHIN_S, STACK_AWAITED_S, LOOK_AGAIN_S = 0.05, 0.1, 0.003
+STACK_WRITTEN_WITHIN_S = 0.05
+STACK_AWAITED_S = 0.1
+LOOK_AGAIN_S = 0.003
 """Time for a stuck child to write its stack, that with its wait for a processor, and the interval of checks."""
 
 _DIGITS = 10
@@ -322,13 +324,16 @@ def write_command(fd: int, data: bytes) -> bool:
 
 def await_stack(folder: Path, pid: int) -> None:
     """Block for a short time until a stuck child has written its stack."""
-    start_s, waited_before_s = time.monotonic(), measure_waited_s(pid)
-    size, path = 0, folder / STACK_FILE
+    start_s = time.monotonic()
+    waited_before_s = measure_waited_s(pid)
+    size = 0
+    path = folder / STACK_FILE
     while (passed_s := time.monotonic() - start_s) < STACK_AWAITED_S and passed_s - (
         measure_waited_s(pid) - waited_before_s
     ) < STACK_WRITTEN_WITHIN_S:
         time.sleep(LOOK_AGAIN_S)
-        before, size = size, path.stat().st_size if path.exists() else 0
+        before = size
+        size = path.stat().st_size if path.exists() else 0
         if size and size == before:
             return
 

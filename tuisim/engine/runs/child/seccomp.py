@@ -15,9 +15,14 @@ import struct
 
 from tuisim.base.data_class import dataclass
 
-_LOAD, _EQUAL, _AT_LEAST, _BITS, _RETURN = 0x20, 0x15, 0x35, 0x45, 0x06
+_LOAD = 0x20
+_EQUAL = 0x15
+_AT_LEAST = 0x35
+_BITS = 0x45
+_RETURN = 0x06
 """Instructions of a classic BPF program: load a word; jump if equal, at least, or if bits are set; return."""
-_ALLOW, _FAIL = 0x7FFF0000, 0x00050000
+_ALLOW = 0x7FFF0000
+_FAIL = 0x00050000
 _NUMBER_AT, _ARCHITECTURE_AT, _FIRST_AT, _SECOND_AT, _THIRD_AT = 0, 4, 16, 24, 32
 """Offsets in `struct seccomp_data`; of each argument the lower half, little-endian."""
 _CLONE_THREAD = 0x00010000
@@ -56,7 +61,9 @@ def build_filter() -> bytes | None:
     machine = _MACHINES.get(platform.machine())
     if machine is None:
         return None
-    fails, unknown, nothing = _FAIL | errno.EPERM, _FAIL | errno.ENOSYS, _FAIL
+    fails = _FAIL | errno.EPERM
+    unknown = _FAIL | errno.ENOSYS
+    nothing = _FAIL
     program = [
         _pack_instruction(_LOAD, _ARCHITECTURE_AT),
         # Calls of another architecture have other numbers.

@@ -120,7 +120,8 @@ class ForkClient:
     def __init__(self, connection: socket.socket, process: ChildProcess) -> None:
         self._lock = threading.Lock()
         self._pid = os.getpid()
-        self._socket, self._process = connection, process
+        self._socket = connection
+        self._process = process
         # A program may have stopped the server when more is sent than the system keeps.
         self._socket.settimeout(ANSWER_S)
 
@@ -225,13 +226,15 @@ class Template(ForkClient):
         """What it knows of the last run."""
 
     def _select_changes(self, run: Mapping[str, Any]) -> dict[str, Any]:
-        last, self._last = self._last, _select_varying(run)
+        last = self._last
+        self._last = _select_varying(run)
         return {name: value for name, value in self._last.items() if last[name] != value}
 
 
 def _select_varying(run: Mapping[str, Any]) -> dict[str, Any]:
     """Return all in which two runs of a template may differ, from the contents of a `run.json`."""
-    spec, world = run["spec"], run["spec"]["world"]
+    spec = run["spec"]
+    world = run["spec"]["world"]
     return {
         "program": run["program"],
         "options": run["options"],

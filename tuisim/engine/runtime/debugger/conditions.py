@@ -132,8 +132,10 @@ class Watcher:
 
     def set(self, breaks: Iterable[Breakpoint]) -> None:
         """Replace the breakpoints; those that stay keep their state."""
-        ticks, rows = self._after_tick, self._on_row
-        self._after_tick, self._on_row = {}, {}
+        ticks = self._after_tick
+        rows = self._on_row
+        self._after_tick = {}
+        self._on_row = {}
         for break_point in breaks:
             match break_point.rule:
                 case LineBreak():
@@ -174,7 +176,8 @@ class Watcher:
                     ValueCondition("stall", Operator.GREATER, "0"),
                 )
             case ValueCondition():
-                value, condition = self._build_reader(rule.name), rule
+                value = self._build_reader(rule.name)
+                condition = rule
         if value is None:
             return None
         edge = Edge(condition)
@@ -197,7 +200,8 @@ class Watcher:
 
     def _build_reader(self, column: str) -> Value | None:
         """Return a function that reads a column; None if this robot does not have it."""
-        session, sim = self._session, self._session.sim
+        session = self._session
+        sim = self._session.sim
         spec = sim.spec
         read = build_reader(find_column_name(column, list_columns(spec)) or "", spec)
         if read is None:

@@ -118,7 +118,8 @@ class Debugger:
         prepared: Mapping[str, int],
         code: types.CodeType | None,
     ) -> None:
-        self._session, self._scheduler = session, scheduler
+        self._session = session
+        self._scheduler = scheduler
         self._code = code
         self._tracer = Tracer(session, scheduler, self._handle_line)
         self._looker = Inspector(session, scheduler, self._tracer, module, prepared)
@@ -184,7 +185,8 @@ class Debugger:
 
     def answer(self) -> None:
         """Answer the requests received while paused."""
-        looks, self._looks = self._looks, []
+        looks = self._looks
+        self._looks = []
         for request in looks:
             if isinstance(request, protocol.Inspect):
                 self._session.channel.send(self._looker.look(request, self._take_more))
@@ -208,11 +210,15 @@ class Debugger:
         """Pause at the next line, if it is reached before the next tick."""
         self.forget_goals()
         if self._tracer.on and not self._session.steering.holding:
-            self._step, self._step_reason = NEXT_LINE, PauseReason.ASKED
+            self._step = NEXT_LINE
+            self._step_reason = PauseReason.ASKED
             self._trace(at_tick=False)
 
     def _forget_goals(self) -> None:
-        self._step, self._step_reason, self._line, self._instant = None, PauseReason.STEP, 0, None
+        self._step = None
+        self._step_reason = PauseReason.STEP
+        self._line = 0
+        self._instant = None
 
     def _set_instant(self, tick: int, ordinal: int) -> None:
         self._instant = (tick, ordinal)
@@ -237,7 +243,8 @@ class Debugger:
         self._session.output.watch = self._handle_row if self._watcher.rows else None
 
     def _trace(self, at_tick: bool) -> None:
-        tracer, tick = self._tracer, self._session.sim.tick
+        tracer = self._tracer
+        tick = self._session.sim.tick
         counting = self._trace_from is not None and tick >= self._trace_from
         line_goal = bool(self._line or self._step)
         tracer.lines = frozenset({*self._by_line, *((self._line,) if self._line else ())})
@@ -246,7 +253,8 @@ class Debugger:
 
     def _update_session(self) -> None:
         """Let the session call the debugger at ticks only when needed."""
-        session, goals = self._session, self._list_goal_ticks()
+        session = self._session
+        goals = self._list_goal_ticks()
         session.steering.debugged = self._watcher.ticks or bool(goals)
         session.flags |= DEBUG
         if (
@@ -323,7 +331,8 @@ class Debugger:
             for break_point, condition in self._by_line.get(line, ()):
                 value = condition.holds(frame, self._run_apart) if condition is not None else ""
                 if condition is None or value:
-                    reason, text = PauseReason.BREAK, break_point.text
+                    reason = PauseReason.BREAK
+                    text = break_point.text
                     break
         if reason is not None:
             file = "" if own else frame.f_code.co_filename

@@ -127,7 +127,9 @@ def _freeze(session: Session, scheduler: Scheduler) -> None:
     setattr(builtins, LOOP_HOOK, lambda: None)
     frozen.note_reading = lambda *_: None
     silent: Any = session.output
-    silent.row, silent.after_write, silent.drain = lambda *_: None, lambda: None, lambda: None
+    silent.row = lambda *_: None
+    silent.after_write = lambda: None
+    silent.drain = lambda: None
     silence_descriptors()
     for number in (COMMAND_SIGNAL, STACK_SIGNAL, signal.SIGVTALRM):
         signal.signal(number, signal.SIG_IGN)

@@ -70,12 +70,10 @@ class Inspector:
         prepared: Mapping[str, int],
     ) -> None:
         self._prepared = prepared
-        self._session, self._scheduler, self._tracer, self._module = (
-            session,
-            scheduler,
-            tracer,
-            module,
-        )
+        self._session = session
+        self._scheduler = scheduler
+        self._tracer = tracer
+        self._module = module
         self._seen: dict[tuple[str, str], dict[str, str]] = {}
         """Texts of the names at the last inspection, by scope."""
 
@@ -204,7 +202,8 @@ class Inspector:
 
     def _read_columns(self, watches: tuple[str, ...]) -> dict[str, float]:
         """Return the values of the recording's columns that watches name."""
-        sim, field = self._session.sim, self._session.field
+        sim = self._session.sim
+        field = self._session.field
         readers = {
             name: build_reader(name, sim.spec) for text in watches for name in _find_names(text)
         }

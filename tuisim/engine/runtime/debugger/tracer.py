@@ -35,7 +35,9 @@ class Tracer:
     """
 
     def __init__(self, session: Session, scheduler: Scheduler, check: LineCheck) -> None:
-        self._session, self._scheduler, self._check = session, scheduler, check
+        self._session = session
+        self._scheduler = scheduler
+        self._check = check
         self._sim = session.sim
         self._own = own_files(session.program_file)
         self._own_by_file: dict[str, bool] = {}
@@ -44,10 +46,12 @@ class Tracer:
         """Whether every line is checked."""
         self.lines: frozenset[int] = frozenset()
         """Lines that are always checked."""
-        self._tick, self._ordinal = -1, 0
+        self._tick = -1
+        self._ordinal = 0
         self._uncounted_tick = -1
         """The tick in which counting started too late."""
-        self._frame_id, self._depth = 0, 0
+        self._frame_id = 0
+        self._depth = 0
         self._met: deque[tuple[int, int, int, ScheduledThread, int]] = deque(maxlen=HISTORY_LINES)
         scheduler.entered = self.enter
 
@@ -65,7 +69,8 @@ class Tracer:
         self.on = on
         self._frame_id = 0
         if on:
-            self._tick, self._ordinal = self._session.sim.tick, 0
+            self._tick = self._session.sim.tick
+            self._ordinal = 0
             self._uncounted_tick = -1 if at_tick else self._tick
         self.enter()
 
@@ -114,7 +119,8 @@ class Tracer:
         if event == "line" and line:
             tick = self._sim.tick
             if tick != self._tick:
-                self._tick, self._ordinal = tick, 0
+                self._tick = tick
+                self._ordinal = 0
             self._ordinal += 1
             if id(frame) != self._frame_id:
                 # Every call and return clears it, so that no frame is mistaken for another.

@@ -67,15 +67,19 @@ def patch_time(session: Session) -> None:
         # The brick has Python 3.5.
         vars(time)["clock"] = clock
     # The real functions check whether the clock exists.
-    gettime, gettime_ns = time.clock_gettime, time.clock_gettime_ns
+    gettime = time.clock_gettime
+    gettime_ns = time.clock_gettime_ns
     replace(time, "clock_gettime", lambda clock: (gettime(clock), wall())[1], (1, 1))
     replace(time, "clock_gettime_ns", lambda clock: (gettime_ns(clock), wall_ns())[1], (1, 1))
     _patch_calendar(wall)
 
 
 def _patch_calendar(wall: Callable[[], float]) -> None:
-    localtime, gmtime, ctime = time.localtime, time.gmtime, time.ctime
-    strftime, asctime = time.strftime, time.asctime
+    localtime = time.localtime
+    gmtime = time.gmtime
+    ctime = time.ctime
+    strftime = time.strftime
+    asctime = time.asctime
 
     replace(
         time,
@@ -195,11 +199,9 @@ def _build_simulated_datetime(session: Session, module: types.ModuleType) -> typ
 
 def _copy_looks(replacement: Any, real: Any) -> None:
     """Give a replaced class and its instances the repr and pickle form of the real one."""
-    replacement.__module__, replacement.__qualname__, replacement.__doc__ = (
-        "datetime",
-        real.__name__,
-        real.__doc__,
-    )
+    replacement.__module__ = "datetime"
+    replacement.__qualname__ = real.__name__
+    replacement.__doc__ = real.__doc__
     for name, part in vars(replacement).items():
         if isinstance(part, classmethod):
             part.__func__.__qualname__ = f"{real.__name__}.{name}"
@@ -213,7 +215,8 @@ def _copy_looks(replacement: Any, real: Any) -> None:
         made, *rest = real.__reduce_ex__(self, protocol)
         return (real if made is replacement else made, *rest)
 
-    replacement.__repr__, replacement.__reduce_ex__ = show, reduce
+    replacement.__repr__ = show
+    replacement.__reduce_ex__ = reduce
 
 
 def patch_process_times(session: Session) -> None:
@@ -242,7 +245,8 @@ def finish_resource(session: Session, module: types.ModuleType) -> None:
 def finish_pandas(session: Session, module: types.ModuleType) -> None:
     """Make "now" of pandas simulated time; its compiled code does not call `time`."""
     cost = session.sim.spec.profile.clock_read_ns
-    stamp, period = module.Timestamp, module.Period
+    stamp = module.Timestamp
+    period = module.Period
 
     def seconds() -> float:
         session.charge(cost)
@@ -288,7 +292,10 @@ def loop_hook(session: Session, turns: int, cost_ns: int) -> Callable[[], None]:
         turns: After this number of iterations without time passing …
         cost_ns: … this much time passes.
     """
-    left, mark, began, told = turns, -1, -1, False
+    left = turns
+    mark = -1
+    began = -1
+    told = False
 
     @waits_for(Wait.LOOP)
     def turn() -> None:

@@ -54,7 +54,8 @@ class FileReads:
 
     def patch(self) -> None:
         """Replace the functions that open and rename files."""
-        real_open, real_os_open = builtins.open, os.open
+        real_open = builtins.open
+        real_os_open = os.open
 
         def open_noted(*given: Any, **named: Any) -> Any:
             if self._folder is not None:

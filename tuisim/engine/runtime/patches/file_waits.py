@@ -52,7 +52,8 @@ class FileWaits:
     """
 
     def __init__(self, session: Session, devices: OpenFiles) -> None:
-        self._session, self.devices = session, devices
+        self._session = session
+        self.devices = devices
         self._select = select.select
         self._classes = {name: getattr(select, name, None) for name in _SELECTORS.values()}
 
@@ -281,7 +282,8 @@ class _Polling:
     """
 
     def __init__(self, waits: FileWaits, real: Any) -> None:
-        self._waits, self._real = waits, real
+        self._waits = waits
+        self._real = real
         self._polled: dict[int, tuple[OpenFile, int]] = {}
         """The device files, and the events that are asked for, by descriptor."""
 

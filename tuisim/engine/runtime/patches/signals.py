@@ -29,7 +29,8 @@ class Interrupt:
     """
 
     def __init__(self, session: Session, scheduler: Scheduler) -> None:
-        self._session, self._scheduler = session, scheduler
+        self._session = session
+        self._scheduler = scheduler
         self.handler: Any = signal.default_int_handler
         """The program's handler, or the number of a standard action."""
 
@@ -113,7 +114,8 @@ def _patch_handlers(interrupt: Interrupt) -> None:
             return before
         # The handler was valid for the signal, which the runtime itself uses.
         real_signal(number, before)
-        before, interrupt.handler = interrupt.handler, handler
+        before = interrupt.handler
+        interrupt.handler = handler
         return before
 
     def get_handler(number: Any) -> Any:

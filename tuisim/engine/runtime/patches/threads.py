@@ -40,7 +40,9 @@ def patch_threads(scheduler: Scheduler, ended_by: EndedBy) -> None:
         def __repr__(self) -> str:
             return f"<{'locked' if self.locked() else 'unlocked'} _thread.lock object at {id(self):#x}>"
 
-    LockType.__module__, LockType.__name__, LockType.__qualname__ = "_thread", "lock", "lock"
+    LockType.__module__ = "_thread"
+    LockType.__name__ = "lock"
+    LockType.__qualname__ = "lock"
 
     for name in ("allocate_lock", "allocate"):
         replace(low, name, LockType, (0, 0))
@@ -133,7 +135,9 @@ def _patch_thread_class(scheduler: Scheduler, thread: Any) -> None:
             self._is_stopped = True
         return task is None or not task.done
 
-    thread.start, thread.join, thread.is_alive = start, join, is_alive
+    thread.start = start
+    thread.join = join
+    thread.is_alive = is_alive
     # Python's own end-of-thread lock is a real one: nothing waits for it here.
     thread._set_tstate_lock = lambda self: None
     thread._wait_for_tstate_lock = lambda self, block=True, timeout=-1: None

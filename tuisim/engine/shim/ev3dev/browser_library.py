@@ -165,7 +165,8 @@ def _patch_sets(motor: Any) -> None:
         for one in self.motors.values():
             _block(motor, one)
 
-    motor.MotorSet.__init__, motor.MotorSet._block = __init__, block
+    motor.MotorSet.__init__ = __init__
+    motor.MotorSet._block = block
 
 
 def _patch_pairs(motor: Any) -> None:

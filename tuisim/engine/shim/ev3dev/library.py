@@ -50,7 +50,8 @@ class MotorPoll:
     """Replaces `select.poll` in the library: waits for a motor in simulated time."""
 
     def __init__(self, session: DeviceSession, patience: Patience) -> None:
-        self._session, self._patience = session, patience
+        self._session = session
+        self._patience = patience
 
     def register(self, _file: object, _events: int = 0) -> None:
         """Do nothing: any motor that changes ends the wait, and the library checks its own motor again."""

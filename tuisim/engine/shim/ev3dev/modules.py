@@ -43,7 +43,8 @@ def finishers(
     session: DeviceSession, built: BuiltBrick, plugs: Plugs, terminal: Terminal, mixer: Mixer
 ) -> dict[str, Callable[[types.ModuleType], None]]:
     """Return what to do with a module after its import, by name."""
-    brick, colors = built.files, built.colors
+    brick = built.files
+    colors = built.colors
     return {
         "ev3dev.core": lambda module: finish_core(
             session, module, plugs, partial(ports_hint, session)

@@ -132,7 +132,8 @@ def _run_by_duty_cycle(motor: Any) -> None:
         motor: The class of motors.
     """
     with_speed: set[str] = set()
-    speed_sp, run_forever = motor.speed_sp, motor.run_forever
+    speed_sp = motor.speed_sp
+    run_forever = motor.run_forever
 
     def set_speed(self: Any, value: Any) -> None:
         with_speed.add(self._path)

@@ -36,7 +36,8 @@ def virtual_module(session: DeviceSession) -> types.ModuleType:
     module = types.ModuleType(
         NAME, "Parts of the simulator Gears: a pen, and the true place of the robot."
     )
-    sim, cost_ns = session.sim, session.sim.spec.profile.attribute_read_ns
+    sim = session.sim
+    cost_ns = session.sim.spec.profile.attribute_read_ns
 
     class GPSSensor:
         """The true place of the robot, in cm from the lower left corner of the mat."""

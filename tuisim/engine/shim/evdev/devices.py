@@ -103,7 +103,10 @@ class InputDevice:
         self._session = session
         self._seen, self._events = session.pressed, list[InputEvent]()
         self.path = self.fn = DEVICE_PATH
-        self.name, self.phys, self.uniq, self.version = DEVICE_NAME, "gpio-keys/input0", "", 65537
+        self.name = DEVICE_NAME
+        self.phys = "gpio-keys/input0"
+        self.uniq = ""
+        self.version = 65537
 
     def capabilities(self, verbose: bool = False, absinfo: bool = True) -> dict[Any, list[Any]]:
         """Return which codes of which types there are."""
@@ -118,7 +121,8 @@ class InputDevice:
 
     def _changes(self) -> list[InputEvent]:
         """Return what has happened since the last call."""
-        now, before = self._session.pressed, self._seen
+        now = self._session.pressed
+        before = self._seen
         self._seen = now
         return changes(before, now, self._session.now)
 
@@ -140,7 +144,8 @@ class InputDevice:
         first = self.read_one()
         if first is None:
             raise BlockingIOError(11, "Resource temporarily unavailable")
-        found, self._events = [first, *self._events], []
+        found = [first, *self._events]
+        self._events = []
         return iter(found)
 
     @waits_for(Wait.BUTTON_EVENT)

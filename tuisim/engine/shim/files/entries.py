@@ -59,7 +59,9 @@ class DeviceFile:
     """
 
     def __init__(self, path: str, mode: int, size: int = 0) -> None:
-        self.path, self.mode, self.size = path, mode, size
+        self.path = path
+        self.mode = mode
+        self.size = size
 
     def begin(self, opened: OpenFile) -> None:
         """Prepare a file that was just opened."""
@@ -115,10 +117,12 @@ class AttributeFile(DeviceFile):
     """
 
     def __init__(self, path: str, device: SimDevice, name: str) -> None:
-        readable, writable = name in device.readers, name in device.writers
+        readable = name in device.readers
+        writable = name in device.writers
         mode = stat.S_IFREG | (READ_MODE if readable else 0) | (WRITE_MODE if writable else 0)
         super().__init__(path, mode, ATTRIBUTE_BYTES)
-        self._device, self._name = device, name
+        self._device = device
+        self._name = name
 
     def begin(self, opened: OpenFile) -> None:
         """Take hold of the device."""

@@ -47,7 +47,8 @@ class OpenFiles:
         if flags & os.O_CREAT and flags & os.O_EXCL:
             raise _error(errno.EEXIST, path)
         access = flags & os.O_ACCMODE
-        readable, writable = access != os.O_WRONLY, access != os.O_RDONLY
+        readable = access != os.O_WRONLY
+        writable = access != os.O_RDONLY
         if (readable and not entry.mode & stat.S_IRGRP) or (
             writable and not entry.mode & stat.S_IWGRP
         ):
@@ -101,7 +102,8 @@ class DeviceIO(_real_file):
         self, files: OpenFiles, opened: OpenFile, mode: str, name: object, closefd: bool = True
     ) -> None:
         super().__init__(opened.fd, mode, closefd)
-        self._files, self._opened = files, opened
+        self._files = files
+        self._opened = opened
         vars(self)["name"] = name
 
     def seekable(self) -> bool:

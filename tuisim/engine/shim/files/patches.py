@@ -126,7 +126,9 @@ class FilePatches:
     """
 
     def __init__(self, tree: DeviceTree, files: OpenFiles, replace: Replace) -> None:
-        self._tree, self._files, self._replace = tree, files, replace
+        self._tree = tree
+        self._files = files
+        self._replace = replace
 
     def apply(self) -> None:
         """Replace everything."""
@@ -142,8 +144,11 @@ class FilePatches:
     # Opening
 
     def _patch_open(self) -> None:
-        real_open, real_os_open = builtins.open, os.open
-        files, tree, by_fd = self._files, self._tree, self._files.by_fd
+        real_open = builtins.open
+        real_os_open = os.open
+        files = self._files
+        tree = self._tree
+        by_fd = self._files.by_fd
 
         def open(  # noqa: A001 - the name that the program sees
             file: Any = _MISSING,
@@ -220,7 +225,9 @@ class FilePatches:
     # Descriptors
 
     def _patch_descriptors(self) -> None:
-        files, by_fd, replace = self._files, self._files.by_fd, self._replace
+        files = self._files
+        by_fd = self._files.by_fd
+        replace = self._replace
         real_close, real_read, real_write, real_fstat = os.close, os.read, os.write, os.fstat
 
         def close(fd: int) -> None:
@@ -243,7 +250,8 @@ class FilePatches:
         replace(os, "fstat", fstat)
 
     def _patch_positions(self) -> None:
-        by_fd, replace = self._files.by_fd, self._replace
+        by_fd = self._files.by_fd
+        replace = self._replace
         real_lseek, real_pread, real_pwrite, real_ftruncate = (
             os.lseek,
             os.pread,
@@ -305,7 +313,8 @@ class FilePatches:
     # Paths
 
     def _patch_paths(self) -> None:
-        tree, by_fd = self._tree, self._files.by_fd
+        tree = self._tree
+        by_fd = self._files.by_fd
         real_access, real_chdir = os.access, os.chdir
 
         def looker(real: Any) -> Callable[..., os.stat_result]:
@@ -400,7 +409,8 @@ class FilePatches:
 @contextmanager
 def _moved_to(opened: OpenFile, offset: int) -> Iterator[OpenFile]:
     """Work at another position of a file, and leave its own as it was."""
-    before, opened.at = opened.at, offset
+    before = opened.at
+    opened.at = offset
     try:
         yield opened
     finally:

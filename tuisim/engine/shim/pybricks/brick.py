@@ -97,7 +97,8 @@ class Brick:
             port: The port, such as `in1`.
             kind: One of `engine.core.sensors.SENSORS`; empty for any of them.
         """
-        driver, sensors = SENSORS[kind].driver_name if kind else "", self.built.sensors
+        driver = SENSORS[kind].driver_name if kind else ""
+        sensors = self.built.sensors
         sensor = sensors.get(port)
         if kind and (sensor is None or sensor.driver_name != driver):
             sensor = sensors[port] if self.plugs.add(PART_OF_DRIVER[driver], port) else None

@@ -94,7 +94,8 @@ class Speaker(Connected):
     """The speaker."""
 
     def __init__(self) -> None:
-        self._tones, self._volume = tones.Speaker(), 100
+        self._tones = tones.Speaker()
+        self._volume = 100
 
     def volume(self, volume: int | None = None) -> int | None:
         """Return the volume in percent, or set it."""

@@ -62,7 +62,8 @@ class Sensor(Connected):
         found = self.brick.find_sensor(port.device_port, self.KIND)
         if found is None:
             raise no_device(self.brick.hint(SENSOR_CLASS))
-        self.port, self._sensor = port, found
+        self.port = port
+        self._sensor = found
 
     def _read(self, mode: str) -> tuple[int, ...]:
         """Return a measurement in a mode; the first one in another mode than before costs the time of the change."""

@@ -11,7 +11,8 @@ from tuisim.engine.shim.pybricks.brick import Connected, invalid_argument, text_
 if TYPE_CHECKING:
     from PIL.ImageFont import ImageFont
 
-FAMILY, SIZE_PX = "Lucida", 12
+FAMILY = "Lucida"
+SIZE_PX = 12
 """The default font of the screen."""
 LARGEST_PX = 128
 """Letters are drawn no larger: they would be higher than the screen."""

@@ -38,7 +38,8 @@ PAINTS: Mapping[str, Paint] = {
     "YELLOW": (255, 255, 0),
 }
 """By the name of the colour, as in CSS; on the screen those are dark whose grey is. Others paint nothing."""
-BLACK, WHITE = PAINTS["BLACK"], PAINTS["WHITE"]
+BLACK = PAINTS["BLACK"]
+WHITE = PAINTS["WHITE"]
 MODE = "RGB"
 THE_SCREEN = "_screen_"
 """The source of an image that is the screen itself."""
@@ -69,7 +70,9 @@ class Canvas(Connected):
     """
 
     def __init__(self, width: int, height: int, shown: bool = False) -> None:
-        self.width, self.height, self._shown = width, height, shown
+        self.width = width
+        self.height = height
+        self._shown = shown
         self._row: tuple[bytes, str] = b"", ""
 
     @cached_property
@@ -128,7 +131,8 @@ def placeholder(name: str) -> Canvas:
         "images",
         f"the brick's own images are not part of tuisim: the screen shows a frame with a name, as {name}",
     )
-    canvas, font = Canvas(DISPLAY_WIDTH, DISPLAY_HEIGHT), Font(bold=True)
+    canvas = Canvas(DISPLAY_WIDTH, DISPLAY_HEIGHT)
+    font = Font(bold=True)
     pen = pen_on(canvas.picture)
     pen.rectangle((0, 0, canvas.width - 1, canvas.height - 1), outline=BLACK)
     place = (canvas.width - font.text_width(name)) // 2, (canvas.height - font.height) // 2
@@ -188,7 +192,8 @@ class Image(Connected):
         return image
 
     def _set_up(self, canvas: Canvas, box: tuple[int, int, int, int]) -> None:
-        self._canvas, self._box = canvas, box
+        self._canvas = canvas
+        self._box = box
         self._font = Font.DEFAULT
         self._print_x = self._print_y = 0
 
@@ -289,7 +294,9 @@ class Image(Connected):
         self, x: float, y: float, r: float, fill: bool = False, color: Color | None = Color.BLACK
     ) -> None:
         """Draw a circle around a point."""
-        x, y, r = whole(x), whole(y), whole(r)
+        x = whole(x)
+        y = whole(y)
+        r = whole(r)
         with self._drawing() as (_, pen):
             if (paint := paint_of(color)) and r >= 0:
                 pen.ellipse((x - r, y - r, x + r, y + r), paint if fill else None, paint)
@@ -298,7 +305,8 @@ class Image(Connected):
         self, x: float, y: float, source: Image | str, transparent: Color | None = None
     ) -> None:
         """Draw an image with its top left corner at a point; pixels of the colour `transparent` are left out."""
-        copied, paint = pixels_of(source), paint_of(transparent)
+        copied = pixels_of(source)
+        paint = paint_of(transparent)
         with self._drawing() as (picture, _):
             picture.paste(
                 copied, (whole(x), whole(y)), None if paint is None else mask_without(copied, paint)
@@ -350,7 +358,8 @@ class Image(Connected):
     ) -> int:
         """Write a line, and return its width in pixels."""
         x, y = place
-        width, line = self._font.text_width(text), drawable(text)
+        width = self._font.text_width(text)
+        line = drawable(text)
         if background and width:
             pen.rectangle((x, y, x + width - 1, y + self._font.height - 1), background)
         if paint:

@@ -108,7 +108,9 @@ def cross(a: Matrix, b: Matrix) -> Matrix:
 class Axis:
     """The axes of a robot: forward, to the left, and up."""
 
-    X, Y, Z = vector(1, 0, 0), vector(0, 1, 0), vector(0, 0, 1)
+    X = vector(1, 0, 0)
+    Y = vector(0, 1, 0)
+    Z = vector(0, 0, 1)
 
 
 @shown_by_name

@@ -23,7 +23,8 @@ __all__ = [
 _ALONE = "there is one brick; a server and a client in the threads of one program can talk"
 
 
-CLIENT_WITHIN_MS, POLL_MS = 5000, 10
+CLIENT_WITHIN_MS = 5000
+POLL_MS = 10
 """A server gives up if no thread of the program makes a client within this time; it looks this often."""
 CONNECT_MS, SEND_MS = 500, 10
 """What a connection and a message take, estimates: the library says nothing of it."""
@@ -45,7 +46,8 @@ class Mailbox(Connected):
         encode: Callable[[Any], Any] | None = None,
         decode: Callable[[Any], Any] | None = None,
     ) -> None:
-        self.name, self._connection = name, connection
+        self.name = name
+        self._connection = connection
         own = {"encode": encode, "decode": decode}
         vars(self).update({name: convert for name, convert in own.items() if convert is not None})
 

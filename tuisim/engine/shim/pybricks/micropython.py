@@ -22,7 +22,8 @@ from tuisim.engine.shim.waits import Wait, waits_for
 TICKS_PERIOD = 1 << 30
 """Counters of ticks begin again at 0 after this number."""
 US = MS // 1000
-FOLDER, FILE = 0x4000, 0x8000
+FOLDER = 0x4000
+FILE = 0x8000
 """What `ilistdir` says of an entry."""
 
 OF_PYTHON: Mapping[str, str] = {
@@ -86,7 +87,8 @@ class MicroPythonFinder:
     """
 
     def __init__(self, of_python: Mapping[str, str], refused: Mapping[str, Hardware]) -> None:
-        self._of_python, self._refused = of_python, refused
+        self._of_python = of_python
+        self._refused = refused
 
     def find_spec(
         self,

@@ -167,8 +167,10 @@ def install(
     micropython.install(session)
     plugs.missing = OSError
     brick = Brick(session, built, plugs, screen, mixer, partial(ports_hint, session))
-    law, hub = session.sim.spec.profile.motor_law, session.sim.spec.robot.hub
-    Connected.brick, brick.name_replacement = brick, _name_later
+    law = session.sim.spec.profile.motor_law
+    hub = session.sim.spec.robot.hub
+    Connected.brick = brick
+    brick.name_replacement = _name_later
     names = _choose_names(brick, law, hub)
     speaker.set_volumes(brick.mixer, speaker.START_VOLUMES)
     made = {name: types.ModuleType(name) for name in names}

@@ -85,7 +85,8 @@ class DCMotor(Connected):
         name = _port(port)
         if name not in self.brick.session.sim.spec.robot.output_ports:
             raise ValueError("Invalid port")
-        self.port_names, self.port = (name,), port
+        self.port_names = (name,)
+        self.port = port
         return name
 
     @property
@@ -195,7 +196,8 @@ class Motor(DCMotor):
     ) -> None:
         """Run at a speed for a time in milliseconds."""
         self._command()
-        settings, time_us = self._motor.control.settings, whole(time) * MS_US
+        settings = self._motor.control.settings
+        time_us = whole(time) * MS_US
         if not 0 <= time_us <= MAX_DURATION_US:
             raise invalid_argument()
         rate = settings.counts(whole(speed))
@@ -206,7 +208,8 @@ class Motor(DCMotor):
         self, speed: float, rotation_angle: float, then: Stop = Stop.HOLD, wait: bool = True
     ) -> None:
         """Turn by an angle in degrees."""
-        speed, angle = whole(speed), whole(rotation_angle)
+        speed = whole(speed)
+        angle = whole(rotation_angle)
         return self._move(
             speed, angle if speed >= 0 else -angle, then, wait, "run_angle()", relative=True
         )
@@ -300,7 +303,8 @@ class Control(Connected):
     """
 
     def __init__(self, owner: Any, control: Controller) -> None:
-        self._owner, self._control = owner, control
+        self._owner = owner
+        self._control = control
 
     def _change(self, setting: int, value: int) -> None:
         """Change one setting, by its number."""

@@ -147,7 +147,8 @@ class DriveBase(Connected):
 
     def state(self) -> tuple[int, int, int, int]:
         """Return distance, speed, angle and rate of turn."""
-        now_us, base = self._read(), self._base
+        now_us = self._read()
+        base = self._base
         (distance, angle), (speed, turn_rate) = self._position(now_us), base.find_rates(now_us)
         return (
             distance,

@@ -21,7 +21,9 @@ START_VOLUMES: Mapping[str, int] = {"PCM": 70, "Beep": 30}
 ALL_VOLUMES = "_all_"
 START_WORDS_A_MINUTE = 130
 
-A4_HZ, OCTAVE, NOTES_AN_OCTAVE = 440.0, 4, 12
+A4_HZ = 440.0
+OCTAVE = 4
+NOTES_AN_OCTAVE = 12
 FROM_A = {"C": -9, "D": -7, "E": -5, "F": -4, "G": -2, "A": 0, "B": 2}
 """Semitones from A of the same octave."""
 NOTE = re.compile(r"(?:R|([A-G])([#b]?)([2-8]))/(\d{1,2})(\.?)(_?)")
@@ -84,7 +86,8 @@ class Speaker(Connected):
 
         A negative duration returns at once; the tone then lasts until the next beep.
         """
-        frequency_hz, length_ms = max(0, whole(frequency)), whole(duration)
+        frequency_hz = max(0, whole(frequency))
+        length_ms = whole(duration)
         if length_ms >= 0:
             self._play(tones_heard((Tone(frequency_hz, length_ms),)))
             return

@@ -16,7 +16,8 @@ from tuisim.engine.shim.waits import Wait, waits_for
 @waits_for(Wait.SLEEP)
 def wait(time: float) -> None:
     """Wait for a time in milliseconds."""
-    brick, time_ms = Connected.brick, whole(time)
+    brick = Connected.brick
+    time_ms = whole(time)
     brick.check_buttons()
     if brick.in_task:
         return brick.finish(_until(brick.now_us + time_ms * 1000))
@@ -47,7 +48,9 @@ class StopWatch(Connected):
     """A stopwatch, which runs at once."""
 
     def __init__(self) -> None:
-        self._began_ns, self._counted_ns, self._runs = self.brick.session.now, 0, True
+        self._began_ns = self.brick.session.now
+        self._counted_ns = 0
+        self._runs = True
 
     def _passed_ns(self) -> int:
         return self._counted_ns + (self.brick.session.now - self._began_ns if self._runs else 0)
@@ -59,7 +62,8 @@ class StopWatch(Connected):
 
     def pause(self) -> None:
         """Stop counting."""
-        self._counted_ns, self._runs = self._passed_ns(), False
+        self._counted_ns = self._passed_ns()
+        self._runs = False
 
     def resume(self) -> None:
         """Go on counting."""

@@ -81,7 +81,8 @@ class Display(_OfBrick):
         clear: bool = True,
     ) -> None:
         """Show an image at a place, after clearing the screen unless told otherwise."""
-        screen, source = _brick.screen, Image(file_name)
+        screen = _brick.screen
+        source = Image(file_name)
         place = location_or_alignment
         if isinstance(place, Align):
             # The numbers of the alignments are those of a number pad.

@@ -79,11 +79,13 @@ class Motor(motor.Motor):
             DriveBase.current.stop()
 
     def _begin(self, then: Any, wait: bool, call: str) -> None:
-        control, motor = self._motor.control, self._motor
+        control = self._motor.control
+        motor = self._motor
         trajectory = control.trajectory
         if ending_of(ENDINGS, then) is not Ending.NONE or trajectory is None:
             return super()._begin(then, wait, call)
-        target, rate = trajectory.end.milli, trajectory.even.rate
+        target = trajectory.end.milli
+        rate = trajectory.even.rate
         acceleration = abs(trajectory.first.acceleration) or control.settings.acceleration
         self._run_endlessly(rate, acceleration)
         if not wait:
@@ -195,11 +197,13 @@ class DriveBase(robotics.DriveBase):
         if ending is not Ending.NONE:
             return super()._move(distance_mm, angle_deg, call, ending, wait=wait)
         base, by_way = self._base, bool(distance_mm)
-        speed, turn_rate = (base.usual[0] if distance_mm > 0 else -base.usual[0], base.usual[2])
+        speed = base.usual[0] if distance_mm > 0 else -base.usual[0]
+        turn_rate = base.usual[2]
         if by_way:
             turn_rate = round(abs(speed) * angle_deg / abs(distance_mm))
         else:
-            speed, turn_rate = 0, turn_rate if angle_deg > 0 else -turn_rate
+            speed = 0
+            turn_rate = turn_rate if angle_deg > 0 else -turn_rate
         begin = base.find_millis(self.brick.command())[0 if by_way else 1]
         control, way = (base.distance, distance_mm) if by_way else (base.heading, angle_deg)
         target = abs(way) * control.settings.counts_per_unit * MILLI
@@ -235,7 +239,8 @@ class DriveBase(robotics.DriveBase):
 
     def _wait_for(self, move: Callable[[], Any]) -> Waiting[None]:
         """Begin a move, and wait for its end as a task does."""
-        brick, in_task = self.brick, self.brick.in_task
+        brick = self.brick
+        in_task = self.brick.in_task
         brick.in_task = True
         try:
             awaited = move()
@@ -279,7 +284,8 @@ class DriveBase(robotics.DriveBase):
 
     def angle(self) -> float:  # type: ignore[override]
         """Return the turned angle in degrees, clockwise."""
-        now_us, base = self._read(), self._base
+        now_us = self._read()
+        base = self._base
         return (
             base.find_millis(now_us)[1] / MILLI - self._zeros[1]
         ) / base.heading.settings.counts_per_unit
@@ -441,10 +447,12 @@ class multitask:  # noqa: N801 - as the library names it
     """Runs several tasks at once: what a task awaits."""
 
     def __init__(self, *tasks: Any, race: bool = False) -> None:
-        self._tasks, self._race = [_steps(task) for task in tasks], race
+        self._tasks = [_steps(task) for task in tasks]
+        self._race = race
 
     def __await__(self) -> Waiting[Any]:
-        brick, results = Connected.brick, [None] * len(self._tasks)
+        brick = Connected.brick
+        results = [None] * len(self._tasks)
         until_us = dict.fromkeys(range(len(self._tasks)), 0)
         while until_us:
             for number in [number for number, until in until_us.items() if until <= brick.now_us]:

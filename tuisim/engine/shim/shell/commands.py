@@ -32,7 +32,8 @@ Outcome = bytes | Heard | int
 PLAIN_FONT = "default8x16"
 """Default font of `setfont`."""
 DEVICE_FOLDERS = ("/sys/", "/dev/")
-OPERATORS, JOINTS = "();<>|&", (";", "&&", "|")
+OPERATORS = "();<>|&"
+JOINTS = (";", "&&", "|")
 SPEECH_PIPE = ("espeak", "aplay")
 SHELL_HINT = "join programs by ; or &&, use open for files and subprocess.Popen beside the program"
 
@@ -92,7 +93,8 @@ def parse_line(text: str) -> list[Call]:
     if odd := re.search(r"[$`\n]|\d>", text.strip()):
         raise refuse(f"{odd[0]!r} in a shell line", SHELL_HINT)
     lexer = shlex.shlex(text, posix=True, punctuation_chars=OPERATORS)
-    lexer.whitespace_split, lexer.commenters = True, ""
+    lexer.whitespace_split = True
+    lexer.commenters = ""
     try:
         tokens = iter(list(lexer))
     except ValueError:
@@ -116,7 +118,9 @@ class Shell:
     """Runs the programs of the brick."""
 
     def __init__(self, session: DeviceSession, terminal: Terminal, mixer: Mixer) -> None:
-        self.session, self.terminal, self.mixer = session, terminal, mixer
+        self.session = session
+        self.terminal = terminal
+        self.mixer = mixer
 
     def start(self, calls: Sequence[Call], streams: Streams) -> Steps:
         """Start the calls of a line.
@@ -176,7 +180,8 @@ class Running:
     """
 
     def __init__(self, session: DeviceSession, steps: Steps, several: bool = False) -> None:
-        self._session, self._steps = session, steps
+        self._session = session
+        self._steps = steps
         self.status: int | None = None
         """Exit status; None while they run."""
         self._due = session.now
@@ -286,7 +291,8 @@ def _espeak(_shell: Shell, words: list[str], streams: Streams) -> Outcome:
 
 def _aplay(_shell: Shell, words: list[str], streams: Streams) -> Outcome:
     files = _parse_options("aplay", words, "D:q", "quiet")[1]
-    heard, streams.speech = streams.speech, None
+    heard = streams.speech
+    streams.speech = None
     if len(files) == 1 and files != ["-"]:
         return file_heard(files[0], streams.folder)
     if heard is None or len(files) > 1:

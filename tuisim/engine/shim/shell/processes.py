@@ -60,7 +60,8 @@ class OutPipe(io.RawIOBase):
 
     def take_speech(self) -> Heard | None:
         """Return the speech that is on its way to a player, once."""
-        speech, self.process.streams.speech = self.process.streams.speech, None
+        speech = self.process.streams.speech
+        self.process.streams.speech = None
         return speech
 
 
@@ -109,7 +110,8 @@ class Process:
         self.text_mode = self.universal_newlines = bool(
             encoding or errors or text or universal_newlines
         )
-        self.encoding, self.errors = encoding, errors
+        self.encoding = encoding
+        self.errors = errors
         if stdin == system.module.PIPE:
             raise refuse("the standard input of a process", "give it arguments")
         self.stdin = None
@@ -117,7 +119,8 @@ class Process:
         self.streams = Streams(folder=folder, speech=_take_speech(stdin))
         self.streams.output, self.stdout = self._open_output(stdout, own_output)
         if stderr == system.module.STDOUT:
-            self.streams.errors, self.stderr = self.streams.output, None
+            self.streams.errors = self.streams.output
+            self.stderr = None
         else:
             self.streams.errors, self.stderr = self._open_output(stderr, own_errors)
         steps = system.shell.start(_calls(args, shell), self.streams)
@@ -206,7 +209,8 @@ class System:
     """State shared by all processes of a run."""
 
     def __init__(self, session: DeviceSession, shell: Shell) -> None:
-        self.session, self.shell = session, shell
+        self.session = session
+        self.shell = shell
         self.module: Any = None
         """The module `subprocess`, once it is imported."""
         self.processes: dict[int, Process] = {}

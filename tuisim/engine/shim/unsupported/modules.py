@@ -232,7 +232,8 @@ class OtherLibrary:
     """
 
     def __init__(self, names: Sequence[str], library: Library) -> None:
-        self._names, self._library = names, library
+        self._names = names
+        self._library = library
 
     def find_spec(
         self,

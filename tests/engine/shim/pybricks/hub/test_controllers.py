@@ -44,7 +44,8 @@ def build_base() -> DriveBase:
 
 def test_a_remote_control_does_not_drive_the_robot(lab: Lab) -> None:
     press(lab, {500: "remote.left_plus", 1500: "remote.right_minus", 2000: "remote.center"})
-    remote, base = Remote(), build_base()
+    remote = Remote()
+    base = build_base()
     while Button.CENTER not in (pressed := remote.buttons.pressed()):
         base.drive(100 * (Button.LEFT_PLUS in pressed), -90 * (Button.RIGHT_MINUS in pressed))
         lab.spend(10_000_000)
@@ -56,7 +57,8 @@ def test_a_game_controller_does_not_drive_the_robot(lab: Lab) -> None:
     press(
         lab, {500: "xbox.joystick_left_up xbox.lt", 1500: "xbox.joystick_left_left", 2000: "xbox.b"}
     )
-    controller, base = XboxController(), build_base()
+    controller = XboxController()
+    base = build_base()
     while Button.B not in controller.buttons.pressed():
         right, up = controller.joystick_left()
         base.drive(up - controller.triggers()[0] // 2, right)

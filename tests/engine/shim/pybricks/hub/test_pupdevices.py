@@ -122,7 +122,8 @@ class Experiment:
 def find_misses(key: str) -> list[str]:
     """Return what of a recording is not met."""
     experiment = Experiment(key)
-    recorded, misses = experiment.recorded, []
+    recorded = experiment.recorded
+    misses = []
     if experiment.base:
         usual = recorded["usual"]
         if list(experiment.base.settings()) != [usual[at] for at in (0, 1, 3, 4)]:
@@ -133,7 +134,8 @@ def find_misses(key: str) -> list[str]:
 
 def find_wrong_ends(experiment: Experiment) -> list[str]:
     """Return which calls return at another time, and what ends elsewhere."""
-    recorded, misses = experiment.recorded, []
+    recorded = experiment.recorded
+    misses = []
     places = [3, 2] if experiment.base else [2]
     returned = [one for one in recorded["returned"] if one[1] is not None]
     if len(returned) != len(experiment.find_returned):
@@ -154,7 +156,8 @@ def find_wrong_ends(experiment: Experiment) -> list[str]:
 
 def find_wrong_references(experiment: Experiment) -> list[str]:
     """Return how far the references differ at most, if they do."""
-    recorded, worst = experiment.recorded, [0.0] * 4
+    recorded = experiment.recorded
+    worst = [0.0] * 4
     for now_ms, *values in recorded["reference"]:
         if None not in values and now_ms in experiment.references:
             for at, (a, b) in enumerate(zip(values, experiment.references[now_ms], strict=True)):

@@ -6,7 +6,8 @@ from collections.abc import Sequence
 from math import cos, radians, sin
 from typing import Any
 
-MAX_GREY_SATURATION, MAX_DARK_VALUE = 40, 1
+MAX_GREY_SATURATION = 40
+MAX_DARK_VALUE = 1
 """Up to here a measurement is a grey, if the program tells only ideal colours apart."""
 
 
@@ -18,7 +19,8 @@ def measure_hsv(red: int, green: int, blue: int) -> tuple[int, int, int]:
     hue = 0.0
     if chroma:
         first = channels.index(brightest)
-        second, third = channels[(first + 1) % 3], channels[(first + 2) % 3]
+        second = channels[(first + 1) % 3]
+        third = channels[(first + 2) % 3]
         hue = 60 * (2 * first + (second - third) / chroma) % 360
     hue = int(hue)
     saturation = int(100 * chroma / brightest) if brightest else 0

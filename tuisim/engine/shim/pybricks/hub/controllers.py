@@ -88,7 +88,8 @@ class RemoteLight(Connected):
     """The light of a remote control."""
 
     def __init__(self, remote: Controller, face: Face) -> None:
-        self._remote, self._face = remote, face
+        self._remote = remote
+        self._face = face
 
     def on(self, color: Any) -> None:
         """Turn it on in a colour."""
@@ -103,7 +104,8 @@ class RemoteLight(Connected):
 class Remote(Controller):
     """The remote control of Powered Up."""
 
-    PORT, LEDS = "remote", REMOTE_LIGHT_NAMES
+    PORT = "remote"
+    LEDS = REMOTE_LIGHT_NAMES
 
     def __init__(
         self, name: str | None = None, timeout: int | None = 10_000, connect: bool = True
@@ -127,7 +129,8 @@ class Remote(Controller):
 class XboxController(Controller):
     """The controller of an Xbox."""
 
-    PORT, LEDS = "xbox", XBOX_LIGHT_NAMES
+    PORT = "xbox"
+    LEDS = XBOX_LIGHT_NAMES
     state = refused_part("XboxController", "state", RAW)
 
     def __init__(

@@ -66,7 +66,8 @@ class Display(Connected):
 
     def __init__(self, face: Face) -> None:
         self._face, self._animation = face, Animation()
-        self._pixels, self._up = DARK, Side.TOP
+        self._pixels = DARK
+        self._up = Side.TOP
 
     def _show(self, pixels: Pixels) -> None:
         self._animation.stop()
@@ -162,8 +163,10 @@ class Menu(Connected):
 
     def choose(self, symbols: Sequence[Any]) -> Any:
         """Let the user choose a symbol by the buttons, and return it."""
-        before, self.brick.stop_buttons = self.brick.stop_buttons, frozenset()
-        place, held = 0, self._pressed()
+        before = self.brick.stop_buttons
+        self.brick.stop_buttons = frozenset()
+        place = 0
+        held = self._pressed()
         self._show(symbols[place])
         while True:
             pressed = self._pressed()

@@ -37,7 +37,8 @@ class Buttons(Connected):
     """
 
     def __init__(self, buttons: Mapping[str, Button], port: str = HUB_BUTTONS_PORT) -> None:
-        self._buttons, self._place = buttons, port
+        self._buttons = buttons
+        self._place = port
 
     def pressed(self) -> set[Button]:
         """Return the pressed buttons."""

@@ -17,7 +17,8 @@ RAW_WHITE = 1024
 """Of a channel of the colour sensor."""
 FARTHEST_MM = 2000
 """What the distance sensor tells if it hears no echo, or a later one."""
-MAX_FORCE_N, MAX_PRESS_MM = 10.0, 6.67
+MAX_FORCE_N = 10.0
+MAX_PRESS_MM = 6.67
 
 Result = TypeVar("Result")
 
@@ -37,7 +38,8 @@ class Sensor(Connected):
         sensor = self.brick.find_sensor(port.device_port, self.KIND)
         if sensor is None:
             raise no_device(self.brick.hint(SENSOR_CLASS))
-        self.port, self._sensor = port, sensor
+        self.port = port
+        self._sensor = sensor
 
     def _read(self, mode: str, convert: Callable[[], Result]) -> Result:
         """Measure in a mode, and return what the measurement says; in a task, what the task awaits."""
@@ -72,7 +74,8 @@ class Lights(Connected):
 class ColorSensor(Sensor):
     """A colour sensor."""
 
-    KIND, SWITCH_US = "color", 30_000
+    KIND = "color"
+    SWITCH_US = 30_000
     DETECTABLE = (Color.RED, Color.YELLOW, Color.GREEN, Color.BLUE, Color.WHITE, Color.NONE)
 
     def __init__(self, port: Port) -> None:
@@ -115,7 +118,8 @@ class ColorSensor(Sensor):
 class UltrasonicSensor(Sensor):
     """A distance sensor."""
 
-    KIND, SWITCH_US = "ultrasonic", 50_000
+    KIND = "ultrasonic"
+    SWITCH_US = 50_000
 
     def __init__(self, port: Port) -> None:
         super().__init__(port)
