@@ -107,7 +107,11 @@ def label_of_key(key: str) -> str:
     label = _LABELS.get(name) or (name if name in _WORDS else format_key(name))
     if len(label) in (2, 3) and label[0] == "f" and label[1:].isdigit():
         label = label.upper()
-    return f"⇧{label}" if modifier == "shift" else f"{modifier}+{label}" if modifier else label
+    if modifier == "shift":
+        return f"⇧{label}"
+    if modifier:
+        return f"{modifier}+{label}"
+    return label
 
 
 def build_bindings(actions: Iterable[Action[Any, Any]]) -> list[BindingType]:

@@ -197,13 +197,11 @@ class PanelArea(Container):
             self.lay_out()
             return self.front
         panels = [panel for panel in self.arrangement.boxes if self._can_focus(panel)]
-        index = (
-            panels.index(focused)
-            if (focused := self.find_focused_panel()) in panels
-            else -1
-            if by > 0
-            else 0
-        )
+        focused = self.find_focused_panel()
+        if focused in panels:
+            index = panels.index(focused)
+        else:
+            index = -1 if by > 0 else 0
         return panels[(index + by) % len(panels)] if panels else ""
 
     def _can_focus(self, panel: str) -> bool:

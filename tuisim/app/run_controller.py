@@ -199,7 +199,9 @@ class RunController:
         newest = recording.telemetry.last() if recording else None
         past = timeline.at is not None
         now_tick = newest.tick if newest else 0
-        record = timeline.record() if past else None if self._moved else newest
+        record = None if self._moved else newest
+        if past:
+            record = timeline.record()
         instant, line, pen_down = self._find_moment(record)
         state = self.state
         face = timeline.face(now_tick if timeline.at is None else timeline.at)

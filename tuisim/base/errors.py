@@ -93,9 +93,8 @@ def printable(text: str) -> str:
     """
     if text.isprintable():
         return text
-    return "".join(
-        letter if letter.isprintable() else " " if letter.isspace() else "\ufffd" for letter in text
-    )
+    one_line = "".join(" " if letter.isspace() else letter for letter in text)
+    return "".join(letter if letter.isprintable() else "\ufffd" for letter in one_line)
 
 
 def _without_middle(line: str) -> str:
@@ -160,7 +159,11 @@ class ProfileError(ConfigError):
 
 
 def _place(file: str, what: str, number: int) -> str:
-    return f"{file}, {what} {number}: " if number else f"{file}: " if file else ""
+    if number:
+        return f"{file}, {what} {number}: "
+    if file:
+        return f"{file}: "
+    return ""
 
 
 class ProgramError(TuisimError):

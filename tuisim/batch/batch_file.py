@@ -95,13 +95,9 @@ def load_batch(path: Path, mats: str | None = None) -> BatchFile:
             world = load_world(folder / table.world, mats)
     elif data:
         world = parse_world(data, path, mats)
-    programs = (
-        []
-        if table.program is UNSET
-        else [table.program]
-        if isinstance(table.program, str)
-        else table.program
-    )
+    programs = [] if table.program is UNSET else table.program
+    if isinstance(programs, str):
+        programs = [programs]
     if len(programs) > MAX_PROGRAMS:
         raise location.at("program").wrong(
             f"has {len(programs)} programs", f"at most {MAX_PROGRAMS}"

@@ -188,7 +188,9 @@ def prepare_app(words: Sequence[str], arguments: Arguments, config: UserConfig) 
         raise ConfigError(
             f"two programs: {programs[0]} and {programs[1]}", "the app opens only one"
         )
-    word = programs[0] if programs else world.program if world else None
+    word = world.program if world else None
+    if programs:
+        word = programs[0]
     if word is not None and is_notebook(word):
         return _prepare_cell(find_programs(word)[0].source, world, arguments, config)
     if word is None:

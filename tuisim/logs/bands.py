@@ -159,7 +159,11 @@ def describe_width(band: Band) -> str:
     """Return the width of a band in mm, `CUT_OFF`, or `–` if it is unknown; empty for a log without positions."""
     if not isfinite(band.start_mm):
         return ""
-    return f"{band.width_mm:.0f}" if isfinite(band.width_mm) else CUT_OFF if band.cut_off else "–"
+    if isfinite(band.width_mm):
+        return f"{band.width_mm:.0f}"
+    if band.cut_off:
+        return CUT_OFF
+    return "–"
 
 
 def read_light(metadata: Mapping[str, Any], run: int) -> Light:
@@ -204,9 +208,12 @@ def describe_levels(report: BandReport) -> str:
     for bands in levels.values():
         samples = sum(count for *_, count in bands)
         level = sum(true_level * count for _, true_level, count in bands) / samples
-        times = (
-            f" ({len(bands)}x)" if len(bands) > 1 else f" ({ONE_SAMPLE})" if samples == 1 else ""
-        )
+        if len(bands) > 1:
+            times = f" ({len(bands)}x)"
+        elif samples == 1:
+            times = f" ({ONE_SAMPLE})"
+        else:
+            times = ""
         grey = bands[0][0]
         parts.append(f"{level:.2f}{' ' * bool(grey)}{grey}{times}")
     known = f"{counted(len(levels), 'level')}: {', '.join(parts)}"

@@ -113,7 +113,11 @@ def _classify_cell(cell: str) -> str:
     text = cell.strip()
     if text in EMPTY_CELLS:
         return "-"
-    return "n" if _NUMBER.fullmatch(text) else "t" if is_moment(text) else "w"
+    if _NUMBER.fullmatch(text):
+        return "n"
+    if is_moment(text):
+        return "t"
+    return "w"
 
 
 def find_heading(
@@ -315,7 +319,11 @@ def _sniff_line(line: str) -> str:
         return ";"
     best = max(counts, key=counts.__getitem__)
     kinds = set(parse_kinds(line.split()[1:]))
-    return best if counts[best] else BLANKS if kinds and kinds <= set("nt-") else ","
+    if counts[best]:
+        return best
+    if kinds and kinds <= set("nt-"):
+        return BLANKS
+    return ","
 
 
 def _find_table(table: Sequence[_Line]) -> _Run:
@@ -455,6 +463,11 @@ def _number_columns(cells: Sequence[str], notes: Notes) -> list[str]:
     notes.say("no header: the columns are numbered")
     names: list[str] = []
     for number, cell in enumerate(cells, 1):
-        name = "" if not is_moment(cell) else "date" if is_date(cell) else "time"
+        if not is_moment(cell):
+            name = ""
+        elif is_date(cell):
+            name = "date"
+        else:
+            name = "time"
         names.append(name if name and name not in names else f"column {number}")
     return names

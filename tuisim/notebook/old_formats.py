@@ -90,10 +90,10 @@ def build_image_frame(records: Iterable[str], mode: str = "rgb") -> pd.DataFrame
     """
     import pandas as pd
 
-    rows = [
-        (side, process_raw_image_data(values, mode), clock)
-        for side, values, clock in (record.split(" ") for record in records)
-    ]
+    rows = []
+    for record in records:
+        side, values, clock = record.split(" ")
+        rows.append((side, process_raw_image_data(values, mode), clock))
     return pd.DataFrame(rows, columns=["side", "vals", "clock"])
 
 

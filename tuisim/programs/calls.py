@@ -126,10 +126,11 @@ def list_calls(tree: ast.Module, prelude: str, wanted: str) -> list[int]:
         if own.partition(".")[0] == PYBRICKS:
             whole |= {f"{own}.{rest}", f"{own}().{rest}"}
     # A name that `import *` may bring can be of any of these modules.
+    starred = [f"{module}." for scope in scopes for module in scope.stars]
     whole |= {
-        meaning.removeprefix(f"{module}.")
-        for module in (star for scope in scopes for star in scope.stars)
+        meaning.removeprefix(module)
+        for module in starred
         for meaning in whole
-        if meaning.startswith(f"{module}.")
+        if meaning.startswith(module)
     }
     return sorted({line for meanings, line in calls if meanings & whole})

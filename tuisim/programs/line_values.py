@@ -89,8 +89,9 @@ def _find_values(
 
     def rank_age(line: int) -> tuple[int, int]:
         """Return a sort key: first lines of this round of the loop, then of the round before, then those before it."""
-        in_loop = first <= line <= last
-        return (0 if in_loop and line < here else 1 if in_loop else 2), -line
+        if not first <= line <= last:
+            return 2, -line
+        return (0 if line < here else 1), -line
 
     values: dict[int, dict[str, Variable]] = {}
     for name, lines in lines_of.items():

@@ -258,13 +258,9 @@ class QuestionReader:
                 if node in statements:
                     rest += statements[statements.index(node) + 1 :]
             node = parent
-        return all(
-            _name_function(node.func) in _ENDINGS
-            for statement in rest
-            if not isinstance(statement, (*_FUNCTIONS, ast.ClassDef))
-            for node in ast.walk(statement)
-            if isinstance(node, ast.Call)
-        )
+        done = [part for part in rest if not isinstance(part, (*_FUNCTIONS, ast.ClassDef))]
+        calls = [node for part in done for node in ast.walk(part) if isinstance(node, ast.Call)]
+        return all(_name_function(call.func) in _ENDINGS for call in calls)
 
     def _find_names(self, step: ast.stmt) -> set[str]:
         """Return the names that hold the value of a step after it; attributes have a dot before them."""

@@ -158,9 +158,8 @@ def _close_names(typed: str, names: Iterable[str]) -> list[str]:
     ends = {name[-len(typed) :] for name in known}
     close = [name for end in closest(typed, ends, 2, 0.75) for name in known if name.endswith(end)]
     like = [*close, *closest(typed, known, 2)]
-    same = [
-        name for words in _SYNONYMS if typed.lower() in words for name in known if name in words
-    ]
+    synonyms = {word for words in _SYNONYMS if typed.lower() in words for word in words}
+    same = [name for name in known if name in synonyms]
     return list(dict.fromkeys(same or like))[:2]
 
 
@@ -399,13 +398,11 @@ class Group(click.Group):
             for item in param.shell_complete(ctx, incomplete)
         ]
         plain = [item for item in more if item.type == "plain"]
-        return (
-            completions + plain
-            if plain
-            else _add_files(completions, incomplete)
-            if more
-            else completions
-        )
+        if plain:
+            return completions + plain
+        if more:
+            return _add_files(completions, incomplete)
+        return completions
 
 
 def drop_options(options: Sequence[click.Option]) -> list[str]:

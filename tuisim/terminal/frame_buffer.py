@@ -322,7 +322,11 @@ def _join_looks(first: CellLook, second: CellLook) -> CellLook | None:
         return first
     if (first.background, first.link) != (second.background, second.link):
         return None
-    return first if not second.foreground else second if not first.foreground else None
+    if not second.foreground:
+        return first
+    if not first.foreground:
+        return second
+    return None
 
 
 class _Pen:
@@ -530,10 +534,16 @@ def _convert_character(char: str) -> str:
 def _convert_frame_line(name: str) -> str:
     """Return the sign for a line of a frame."""
     if "DIAGONAL" in name:
-        return "X" if "CROSS" in name else "/" if "UPPER RIGHT TO LOWER LEFT" in name else "\\"
+        if "CROSS" in name:
+            return "X"
+        if "UPPER RIGHT TO LOWER LEFT" in name:
+            return "/"
+        return "\\"
     across = any(word in name for word in ("HORIZONTAL", "LEFT", "RIGHT"))
     upright = any(word in name for word in ("VERTICAL", "UP", "DOWN"))
     if across and upright:
         return "+"
     heavy = "HEAVY" in name or "DOUBLE" in name
-    return ("=" if heavy else "-") if across else ("#" if heavy else "|")
+    if across:
+        return "=" if heavy else "-"
+    return "#" if heavy else "|"

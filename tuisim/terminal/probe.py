@@ -106,7 +106,11 @@ def read_colors(environment: Mapping[str, str]) -> str:
     terminal = environment.get("TERM", "")
     if is_multiplexer(terminal):
         around = find_colors(terminal.partition(".")[2] or terminal)
-        return around if around != AUTO else "truecolor" if has_all_colors(environment) else "256"
+        if around != AUTO:
+            return around
+        if has_all_colors(environment):
+            return "truecolor"
+        return "256"
     return find_colors(terminal)
 
 

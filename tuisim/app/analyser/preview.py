@@ -217,5 +217,10 @@ def _describe_role(log: Log, name: str) -> str:
 
 
 def _format_cell(value: object) -> str:
-    text = f"{value:.6g}" if isinstance(value, float) else "" if value is None else str(value)
+    if isinstance(value, float):
+        text = f"{value:.6g}"
+    elif value is None:
+        text = ""
+    else:
+        text = str(value)
     return shortened(text, _MAX_CELL)

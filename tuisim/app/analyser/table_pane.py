@@ -57,7 +57,9 @@ def _build_head_line(
     rows = model.rows
     head: Line = [(" " * (number_width + 2), HEAD)]
     for column, wide in zip(columns, widths, strict=True):
-        arrow = ("↓" if rows.view.descending else "↑") if column == rows.view.sorted_by else ""
+        arrow = ""
+        if column == rows.view.sorted_by:
+            arrow = "↓" if rows.view.descending else "↑"
         text = cut(build_heading(model, column) + arrow, wide).ljust(wide)
         head += [
             (text, CHOSEN + Style(underline=True) if column == rows.chosen else HEAD),

@@ -236,13 +236,8 @@ class Chooser(ListDialog):
         groups = self._search_groups(typed)
         listed.clear_options()
         listed.add_options(self._build_options(groups))
-        self.say(
-            ""
-            if groups
-            else "no such file here"
-            if is_path(typed)
-            else "no name contains these words"
-        )
+        empty = "no such file here" if is_path(typed) else "no name contains these words"
+        self.say("" if groups else empty)
         if not groups:
             self.clear_preview()
         else:

@@ -109,9 +109,12 @@ class SearchList(Dialog[str]):
         listed.clear_options()
         listed.add_options(Option(_build_line(entry, cells), id=entry.id) for entry in matches)
         names = [entry.id for entry in matches]
-        listed.highlighted = (
-            None if not matches else names.index(self._current) if self._current in names else 0
-        )
+        if not matches:
+            listed.highlighted = None
+        elif self._current in names:
+            listed.highlighted = names.index(self._current)
+        else:
+            listed.highlighted = 0
         listed.display = bool(matches)
         self.query_one("#message").display = not matches
 

@@ -140,7 +140,12 @@ class RobotPicture(PixelView):
             width_px, height_px = cell.cols * self.size.width, cell.rows * self.size.height
             view = fit_view(self._find_robot, width_px, height_px, cell)
             mono = mode.depth == cells.MONO
-            colors = MONO if mono else GREY if mode.grey else COLORED
+            if mono:
+                colors = MONO
+            elif mode.grey:
+                colors = GREY
+            else:
+                colors = COLORED
             self.set_fine_picture(
                 draw_robot_picture(self._find_robot, view, colors, mono=mono), graphics
             )

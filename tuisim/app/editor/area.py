@@ -315,7 +315,12 @@ class CodeArea(TextArea):
         gutter = self.gutter_width
         text = strip.crop(gutter)
         number_style = base + self._find_style("number-column")
-        if lit := "error" if line == self._error else "lit" if line == self._lit else "":
+        lit = ""
+        if line == self._error:
+            lit = "error"
+        elif line == self._lit:
+            lit = "lit"
+        if lit:
             number_style = base + self._find_style(lit)
             text = highlight_strip(text, base, number_style)
         room = self.scrollable_content_region.width - gutter

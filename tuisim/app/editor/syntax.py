@@ -66,13 +66,12 @@ def find_spans(line: str, before: str = "") -> tuple[list[Span], str]:
             kind = "string"
         elif kind == "word":
             word = match.group()
-            kind = (
-                "keyword"
-                if keyword.iskeyword(word)
-                else "name"
-                if named or word in _BUILTINS
-                else ""
-            )
+            if keyword.iskeyword(word):
+                kind = "keyword"
+            elif named or word in _BUILTINS:
+                kind = "name"
+            else:
+                kind = ""
             named = word in ("def", "class")
         if kind:
             spans.append((match.start(), position, kind))

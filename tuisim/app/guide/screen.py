@@ -218,7 +218,12 @@ class _Page(VerticalScroll):
         )
         # The heading stays in sight where the passage does, too; the end of another passage does not.
         near = row - top < self.scrollable_content_region.height - _ROWS_OF_PASSAGE
-        first = top if near else row if lines[row - 1] else row - 1
+        if near:
+            first = top
+        elif lines[row - 1]:
+            first = row
+        else:
+            first = row - 1
         self.call_after_refresh(self.scroll_to, y=first, animate=False)
 
 

@@ -82,7 +82,12 @@ class LessonPanel(LinesPanel, can_focus=True):
                 self.call_after_refresh(self._redraw)
             return
         page = self._content.page if self._page is None else self._page
-        away = Away.LOG if self._is_brief else Away.EDITOR if self._is_typing else Away.NO
+        if self._is_brief:
+            away = Away.LOG
+        elif self._is_typing:
+            away = Away.EDITOR
+        else:
+            away = Away.NO
         self._picture = draw_lesson(self._content, page, self._first, size.width, size.height, away)
         if self._first >= 0:
             self._first = self._picture.first

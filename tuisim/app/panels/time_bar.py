@@ -105,10 +105,14 @@ def build_bar(times: BarTimes, marks: Mapping[int, Run], columns: int) -> list[R
     """Return the cells of the bar."""
     here = times.column(times.tick, columns)
     now = times.column(times.newest, columns)
-    cells: list[Run] = [
-        ("━", _PAST) if column <= here else ("─", _LATER) if column <= now else ("·", _BEYOND)
-        for column in range(columns)
-    ]
+    cells: list[Run] = []
+    for column in range(columns):
+        if column <= here:
+            cells.append(("━", _PAST))
+        elif column <= now:
+            cells.append(("─", _LATER))
+        else:
+            cells.append(("·", _BEYOND))
     for column, (sign, style) in marks.items():
         cells[column] = _ON_LINE.get((sign, cells[column][0]), sign), style
     if times.past:

@@ -227,7 +227,13 @@ def name_led(red: int, green: int) -> str:
     if not green:
         return "red"
     share = red / green
-    return "green" if not red else "yellow" if share < 0.5 else "amber" if share < 1.5 else "orange"
+    if not red:
+        return "green"
+    if share < 0.5:
+        return "yellow"
+    if share < 1.5:
+        return "amber"
+    return "orange"
 
 
 def _list_lamps(face: BrickState) -> list[tuple[int, int]]:

@@ -174,7 +174,12 @@ def _describe_place(view: DebugView, paused: Paused, width: int) -> Line:
     if paused.file:
         words += f" of {Path(paused.file).name}"
     text = f"{words} · {paused.time_ns / 1e9:.2f} s"
-    tail = " …" if view.busy else " past" if view.past else ""
+    if view.busy:
+        tail = " …"
+    elif view.past:
+        tail = " past"
+    else:
+        tail = ""
     # The time says as much as the tick, which is left out rather than cut in two.
     if len(whole := f"{text} · tick {paused.tick}") <= width - len(tail):
         text = whole

@@ -456,11 +456,12 @@ def _format_cells(column: Column, format_spec: str) -> list[str]:
     """Return the cells of a column; a number that is missing is empty."""
     if not format_spec:
         return list(map(str, unpack_column(column)))
-    return [
-        str(item)
-        if not isinstance(item, float)
-        else ""
-        if isnan(item)
-        else format(item, format_spec)
-        for item in unpack_column(column)
-    ]
+    cells = []
+    for item in unpack_column(column):
+        if not isinstance(item, float):
+            cells.append(str(item))
+        elif isnan(item):
+            cells.append("")
+        else:
+            cells.append(format(item, format_spec))
+    return cells

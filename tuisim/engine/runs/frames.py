@@ -194,14 +194,16 @@ def compute_column_values(
     ]
     if motors:
         measured |= read_motor_columns(run.folder, spec.robot, records["tick"])
-    return {
-        column.name: measured[column.name]
-        if column.of is None
-        else compute_owner_column(column.of, columns, measured, spec)
-        for columns in (MOTION, *(mount.columns for mount in sensors), *motors)
-        for column in columns
-        if column.name in names
-    }
+    arrays = {}
+    for columns in (MOTION, *(mount.columns for mount in sensors), *motors):
+        for column in columns:
+            if column.name not in names:
+                continue
+            if column.of is None:
+                arrays[column.name] = measured[column.name]
+            else:
+                arrays[column.name] = compute_owner_column(column.of, columns, measured, spec)
+    return arrays
 
 
 def compute_owner_column(

@@ -160,11 +160,11 @@ def drawn(face: Face) -> ImageFont:
         file.glyph[ord(letter)] = ((width_px, 0), place, (0, 0, *ink.size), ink)
     file.compile()
     assert file.bitmap is not None
-    numbers = (
-        number
-        for move, to, of in (entry or ((0, 0), (0,) * 4, (0,) * 4) for entry in file.metrics)
-        for number in (*move, *to, *of)
-    )
+    empty = ((0, 0), (0,) * 4, (0,) * 4)
+    numbers: list[int] = []
+    for entry in file.metrics:
+        for part in entry or empty:
+            numbers.extend(part)
     head = b"PILfont\n;;;;;;%d;\nDATA\n" % file.ysize
     font = ImageFont.ImageFont()
     font._load_pilfont_data(

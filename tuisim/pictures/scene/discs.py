@@ -92,7 +92,8 @@ class DiscFace:
         texts = []
         for threshold in self.thresholds:
             holds = threshold.holds(threshold.read.compute_value(self.seen, self.reflected_max))
-            texts.append(threshold.words + ("" if holds is None else ": yes" if holds else ": no"))
+            answers = {None: "", True: ": yes", False: ": no"}
+            texts.append(threshold.words + answers[holds])
         asking = (
             f"line {threshold.line}{':' if threshold.is_aim else ' asks'} {words}"
             for words, threshold in zip(texts, self.thresholds, strict=True)

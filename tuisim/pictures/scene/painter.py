@@ -110,7 +110,12 @@ class ScenePainter:
         self._is_for_file = for_file
         self._has_frame = for_file or (not mono and min(outside_rgb) >= _LIGHT)
         without_colors = CLEARED if coarse else MONO
-        self._robot_colors = without_colors if mono else GREY if grey else COLORED
+        if mono:
+            self._robot_colors = without_colors
+        elif grey:
+            self._robot_colors = GREY
+        else:
+            self._robot_colors = COLORED
         self._grey = grey or mono
         self._mono = mono
         self._detail_cols = 1 if coarse else None

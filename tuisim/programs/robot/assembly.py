@@ -481,13 +481,11 @@ class _Builder:
         first = {mention.kind: mention.where for mention in reversed([*mentions])}
         for port, sensor in sorted(placed.items()):
             kind = KINDS[type(sensor)]
-            where = (
-                by_port[port].where
-                if port in by_port
-                else first.get(kind)
-                if usual.get(port) != sensor
-                else None
-            )
+            where = None
+            if port in by_port:
+                where = by_port[port].where
+            elif usual.get(port) != sensor:
+                where = first.get(kind)
             if where or usual.get(port) != sensor:
                 self.parts.append(
                     RobotPart(

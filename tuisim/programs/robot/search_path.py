@@ -34,13 +34,11 @@ def find_added_folders(tree: ast.Module, file: str) -> list[str]:
         tree: The module.
         file: Path of its file.
     """
-    assigned = {
-        target.id: node.value
-        for node in ast.walk(tree)
-        if isinstance(node, ast.Assign)
-        for target in node.targets
-        if isinstance(target, ast.Name)
-    }
+    assigned: dict[str, ast.expr] = {}
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Assign):
+            names = [target.id for target in node.targets if isinstance(target, ast.Name)]
+            assigned |= dict.fromkeys(names, node.value)
     folders = _Folders(assigned, file)
     return list(dict.fromkeys(filter(None, map(folders.path, _find_added(tree)))))
 

@@ -196,7 +196,11 @@ def find_hub(modules: dict[str, Module]) -> str:
     if not names.keys().isdisjoint(EV3_MODULES):
         return ""
     named = [hub for name in names if (hub := name.removeprefix("pybricks.hubs.")) in HUBS]
-    return named[0] if named else "PrimeHub" if HUB_DEVICES in names else ""
+    if named:
+        return named[0]
+    if HUB_DEVICES in names:
+        return "PrimeHub"
+    return ""
 
 
 def find_library(modules: dict[str, Module]) -> Library | None:

@@ -197,13 +197,12 @@ def _build_goals_file(data: Any, path: Path, world: WorldFile) -> GoalsFile | No
     )
     names = {goal.name for goal in own}
     goals = (*(goal for goal in inherited if goal.name not in names), *own)
-    title = (
-        files.convert(data["title"], str, location.at("title"))
-        if "title" in data
-        else base.title
-        if base
-        else ""
-    )
+    if "title" in data:
+        title = files.convert(data["title"], str, location.at("title"))
+    elif base:
+        title = base.title
+    else:
+        title = ""
     others = _parse_others(data["also"], goals, location.at("also"), path) if "also" in data else ()
     known = base.others if base else ()
     task = GoalsFile(

@@ -363,7 +363,12 @@ def _explain_missing_level(
         near = "no sample followed" if count else "no sample was logged in that time"
     if len(levels) == 1:
         return f"{name} did not come near {level}: {near}."
-    place = "missing" if not condition.in_order else "next" if count else "the first"
+    if not condition.in_order:
+        place = "missing"
+    elif count:
+        place = "next"
+    else:
+        place = "the first"
     return f"{name} came near {count or 'none'} of {len(levels)} levels: {level} is {place}, and {near}."
 
 

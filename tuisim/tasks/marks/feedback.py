@@ -116,15 +116,14 @@ def _describe_goal(column: Goal, cell: Cell, runs: int, lines: Sequence[str]) ->
     if column.points < 0 and not cell.met:
         return [_wrap(f"[did not happen] {column.say}")]
     is_met = bool(runs) and cell.met == runs
-    mark = (
-        "happened"
-        if column.points < 0
-        else "met"
-        if is_met
-        else "missed"
-        if not cell.met
-        else "met in part"
-    )
+    if column.points < 0:
+        mark = "happened"
+    elif is_met:
+        mark = "met"
+    elif not cell.met:
+        mark = "missed"
+    else:
+        mark = "met in part"
     of = f" of {format_points(column.points)}" if column.points > 0 else ""
     points = f" ({format_points(cell.points)}{of})" if column.points else ""
     paragraphs = [_wrap(f"[{mark}] {column.say}{points}")]

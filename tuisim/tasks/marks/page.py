@@ -106,12 +106,21 @@ def _build_student(row: SheetRow, sheet: Sheet, links: Links) -> _Student:
 
 
 def _classify_points(points: float, max_points: float) -> str:
-    return "met" if points >= max_points else "part" if points else "missed"
+    if points >= max_points:
+        return "met"
+    if points:
+        return "part"
+    return "missed"
 
 
 def _mark(cell: Cell, column: Goal, runs: int) -> _Mark:
     # A goal without points is met or missed, too.
-    level = "met" if runs and cell.met == runs else "part" if cell.met else "missed"
+    if runs and cell.met == runs:
+        level = "met"
+    elif cell.met:
+        level = "part"
+    else:
+        level = "missed"
     if column.points < 0:
         level = "missed" if cell.met else "met"
     seeds = f"met in {cell.met} of {runs} runs" if runs > 1 else ""

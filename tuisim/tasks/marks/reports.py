@@ -195,9 +195,19 @@ def _list_verdicts(
     pins = []
     for number, column in enumerate(columns, start=1):
         goal = goals.get(column.name, GoalOutcome(column.name, False, outcome.failure))
-        result = "could not be judged" if goal.is_unknown else "met" if goal.met else "missed"
+        if goal.is_unknown:
+            result = "could not be judged"
+        elif goal.met:
+            result = "met"
+        else:
+            result = "missed"
         why = f"{goal.reason} (line {goal.line})" if goal.line else goal.reason
-        earned = math.nan if goal.is_unknown else column.points if goal.met else 0
+        if goal.is_unknown:
+            earned = math.nan
+        elif goal.met:
+            earned = column.points
+        else:
+            earned = 0
         points = f"{format_points(earned)} of {format_points(max(0, column.points))}"
         if (event := judged.get(column.name)) is not None:
             result += f" at {event.time_s:.2f} s, x {event.x_mm:.0f}, y {event.y_mm:.0f} mm"

@@ -203,14 +203,14 @@ def _make_names_unique(students: Iterable[_Submission]) -> Iterator[Student]:
         for folder, pupil, own in every
     ]
     counts = Counter(names)
-    full = [
-        name
-        if counts[name] < 2
-        else " ".join([name, *pupil.ids.values()])
-        if pupil.ids
-        else f"{folder.name}/{name}"
-        for (folder, pupil, _), name in zip(every, names, strict=True)
-    ]
+    full = []
+    for (folder, pupil, _), name in zip(every, names, strict=True):
+        if counts[name] < 2:
+            full.append(name)
+        elif pupil.ids:
+            full.append(" ".join([name, *pupil.ids.values()]))
+        else:
+            full.append(f"{folder.name}/{name}")
     taken: set[str] = set()
     for name, (_, student, _) in zip(full, every, strict=True):
         unique = name

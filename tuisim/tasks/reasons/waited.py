@@ -366,8 +366,9 @@ class _Search:
         if limit is None or mode not in _MODES[Subject.DISTANCE]:
             return limit
         is_pybricks = self._run.spec.profile.motor_law.library is Library.PYBRICKS
-        is_in_mm = is_pybricks or "value" in question.words
-        return limit * (1.0 if is_in_mm else 25.4 if mode.endswith("IN") else 10.0)
+        if is_pybricks or "value" in question.words:
+            return limit
+        return limit * (25.4 if mode.endswith("IN") else 10.0)
 
     def _describe_constant(
         self,

@@ -344,7 +344,11 @@ class SimulatedMotor(DriverMotor):
         axle = self.axle
         if axle.speed_dps:
             return axle.speed_dps / self._hz
-        return 0.0 if axle.stands else PUSH_DEG if axle.goal_dps > 0 else -PUSH_DEG
+        if axle.stands:
+            return 0.0
+        if axle.goal_dps > 0:
+            return PUSH_DEG
+        return -PUSH_DEG
 
     def bar(self, direction: float) -> None:
         """Let nothing turn the axle further in a direction; 0 sets it free."""

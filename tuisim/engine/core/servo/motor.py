@@ -199,7 +199,12 @@ class ServoMotor:
         self._ending = ending
         self.control.settles = ending == Ending.HOLD
         timed = guide is None and self.control.timed
-        self.mode = FOREVER if self._guide.end_us is None else TIMED if timed else POSITION
+        if self._guide.end_us is None:
+            self.mode = FOREVER
+        elif timed:
+            self.mode = TIMED
+        else:
+            self.mode = POSITION
         self.blocked_ticks = 0
         self.duty = None
         self._jump_deg = 0.0

@@ -183,7 +183,12 @@ class Inspector:
     ) -> dict[str, Any]:
         """Return names and watches as plain data. Runs in the copy."""
         inside = self._module if frame is None else frame.f_globals
-        names = inside if frame is None else frame.f_locals if local is None else local
+        if frame is None:
+            names = inside
+        elif local is None:
+            names = frame.f_locals
+        else:
+            names = local
         own_module = names is inside
         renderer = Renderer(seconds)
         plain = _copy_names(names)

@@ -223,13 +223,13 @@ def file_object(
     if buffering == 0:
         raise ValueError("can't have unbuffered text I/O")
     size = buffering if buffering > 1 else io.DEFAULT_BUFFER_SIZE
-    kind = (
-        io.BufferedRandom
-        if "+" in mode
-        else io.BufferedReader
-        if "r" in mode
-        else io.BufferedWriter
-    )
+    kind: type[io.BufferedIOBase]
+    if "+" in mode:
+        kind = io.BufferedRandom
+    elif "r" in mode:
+        kind = io.BufferedReader
+    else:
+        kind = io.BufferedWriter
     buffer: Any = _in_turn(kind)(raw, size)
     if "b" in mode:
         return buffer

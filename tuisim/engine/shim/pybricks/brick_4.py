@@ -146,7 +146,12 @@ class System(Connected):
 
     def set_stop_button(self, button: Any) -> None:
         """Let a button, or several at once, stop the program; None: none does."""
-        buttons = [] if button is None else [button] if isinstance(button, Enum) else [*button]
+        if button is None:
+            buttons = []
+        elif isinstance(button, Enum):
+            buttons = [button]
+        else:
+            buttons = [*button]
         self.brick.stop_buttons = frozenset(self._session_names[pressed] for pressed in buttons)
 
     def name(self) -> str:
