@@ -39,7 +39,7 @@ async def test_it_goes_to_each_reason_and_back_to_the_end() -> None:
     text = "tank_drive.on_for_seconds(20, int(input()), 1)\nprint(colour)\n"
     async with open_lab(STRAIGHT, speed=0.0, size=SIZE) as (pilot, app):
         await run_from_start(pilot, app, STRAIGHT)
-        await ask(pilot, app, "No reason found")
+        await ask(pilot, app, "lost line found")
 
         def has_reasons(count: int) -> bool:
             return len(app.context.reasons.reasons) == count

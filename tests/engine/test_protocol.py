@@ -18,6 +18,7 @@ from tuisim.engine.protocol import (
     Spoke,
     Stop,
     UserAction,
+    describe_state,
     parse_command,
 )
 
@@ -60,3 +61,20 @@ def test_an_action_comes_back_from_its_stored_form() -> None:
 def test_what_a_debugger_does_is_no_action_of_a_run() -> None:
     with pytest.raises(TypeError, match="not a user action"):
         UserAction(1, Pause())
+
+
+@pytest.mark.parametrize(
+    "state, summary, words",
+    [
+        ("stopped", "stopped", "stopped"),
+        (
+            "stopped",
+            "stopped in line 3, where it was stuck",
+            "stopped in line 3, where it was stuck",
+        ),
+        ("time_limit", "stopped at the limit of 20 s", "time limit: stopped at the limit of 20 s"),
+        ("finished", "", "finished"),
+    ],
+)
+def test_the_words_of_an_end_do_not_repeat_its_state(state: str, summary: str, words: str) -> None:
+    assert describe_state(state, summary) == words

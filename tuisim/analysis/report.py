@@ -20,7 +20,7 @@ from tuisim.engine.core.geometry import pose_in_words
 from tuisim.engine.core.profile import NS_PER_S
 from tuisim.engine.core.tick_record import FLAG_PEN_DOWN
 from tuisim.engine.files import name_of
-from tuisim.engine.protocol import SetNoise
+from tuisim.engine.protocol import SetNoise, describe_state
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.logs.bands import count_samples, describe_width
 from tuisim.logs.export import check_place
@@ -353,9 +353,7 @@ def _read_path(entry: Mapping[str, Any], path: Sequence[str]) -> str:
 
 
 def _describe_end(run: StoredRun) -> str:
-    state = run.state.replace("_", " ")
-    summary = run.end.summary if run.end else ""
-    return f"{state}: {summary}" if summary not in ("", state) else state
+    return describe_state(run.state, run.end.summary if run.end else "")
 
 
 def _time_s(run: StoredRun) -> str:

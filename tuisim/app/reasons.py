@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from tuisim.tasks.goals.spec import Goal
     from tuisim.tasks.reasons.reason import Reason
 
-NO_REASON = "No reason found: no error, nothing blocked, no goal missed, no line lost. {compare} compares two runs"
+NO_REASON = "No error, block, missed goal or lost line found. {compare} compares two runs"
 
 
 FoundReasons = tuple[tuple["Reason", ...], "Recording | None"]

@@ -12,7 +12,7 @@ from typing import Any, assert_never
 from tuisim.base.errors import SIGNALLED, counted
 from tuisim.commands.echo import echo_error, echo_error_lines, echo_json
 from tuisim.engine.core.geometry import Pose, pose_in_words
-from tuisim.engine.protocol import NO_ANSWER, End
+from tuisim.engine.protocol import NO_ANSWER, End, describe_state
 from tuisim.engine.runs.records import Stream
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.engine.runs.samples import counts_of
@@ -89,8 +89,7 @@ def describe(run: StoredRun, most_bytes: int | None = None) -> dict[str, Any]:
 
 def describe_last_state(facts: dict[str, Any]) -> str:
     """Return the status line of a run, from the result of `describe`."""
-    state = facts["state"].replace("_", " ")
-    what = state if facts["summary"] in ("", state) else f"{state}: {facts['summary']}"
+    what = describe_state(facts["state"], facts["summary"])
     pose = Pose(facts["x_mm"], facts["y_mm"], facts["heading_deg"])
     stood = f"{Standstill(**facts['standstill']).words} · " if facts["standstill"] else ""
     left = "left the field · " if facts["left_field"] else ""

@@ -110,6 +110,17 @@ class Unended(StrEnum):
     """Its end cannot be read."""
 
 
+def describe_state(state: str, summary: str) -> str:
+    """Return in words how a run ended, such as `time limit: stopped at the limit of 20 s`, or `stopped in line 3`.
+
+    Args:
+        state: A `RunState`.
+        summary: What is known beyond it; empty for nothing.
+    """
+    words = state.replace("_", " ")
+    return summary if summary.startswith(words) else f"{words}: {summary}" if summary else words
+
+
 RunState = End | Unended
 RUN_STATES: Mapping[str, RunState] = {state.value: state for state in (*End, *Unended)}
 

@@ -20,7 +20,7 @@ from tuisim.base.errors import ConfigError, counted
 from tuisim.base.source import Program
 from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.mat_cache import FieldFiles
-from tuisim.engine.protocol import Answer, Reply, Wheels
+from tuisim.engine.protocol import Answer, Reply, Wheels, describe_state
 from tuisim.engine.runs.handle import RunHandle, RunOptions, start_run
 from tuisim.engine.runs.presses import press_actions
 from tuisim.engine.runs.records import OutputRow, Stream
@@ -166,9 +166,9 @@ def describe_end(run: StoredRun, *, hurry: bool = False) -> str:
 
     In a hurry, the number of samples is omitted if counting them would be slow.
     """
-    what = f": {run.end.summary}" if run.end and run.end.summary not in ("", run.state) else ""
+    state = describe_state(run.state, run.end.summary if run.end else "")
     plugged = f" · plugged in {parts}" if (parts := list_parts(run.plugged)) else ""
-    status = f"{run.state}{what} · {run.time_s:.3f} s{plugged}"
+    status = f"{state} · {run.time_s:.3f} s{plugged}"
     if hurry and run.output.length > BYTES_IN_A_HURRY:
         return status
     samples = len(list_samples(run.output.rows()))

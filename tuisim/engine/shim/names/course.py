@@ -15,7 +15,7 @@ class ColorSensor(lego.ColorSensor):  # type: ignore[misc]
 
     @property
     def reflected_light_intensity(self) -> int:
-        """Reflected red light, 0 to 255 as in the course; 0 to 100 under the profile `ev3`."""
+        """Reflected red light from 0 to 255, or to 100 under the profile `ev3`."""
         return 0
 
     @property
