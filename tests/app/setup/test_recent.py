@@ -35,6 +35,14 @@ def test_the_likeliest_comes_first(tmp_path: Path) -> None:
     assert kinds() == [(Kind.DRAFT, "new.py"), (Kind.RUN, "Run 1")]
 
 
+def test_an_unsaved_text_says_in_which_folder_it_belongs(tmp_path: Path) -> None:
+    (tmp_path / "mine.py").write_text("print(1)\n")
+    keep_draft("", "x")
+    keep_draft(str(tmp_path / "mine.py"), "y")
+    titles = [one.title for one in list_recent("new.py")]
+    assert [title.endswith(f", in {tmp_path}") for title in titles] == [True, False]
+
+
 def test_there_are_as_many_as_have_a_number_and_the_last_run_is_among_them(tmp_path: Path) -> None:
     for number in range(4):
         path = tmp_path / f"{number}.py"

@@ -56,7 +56,7 @@ def list_recent(new_name: str) -> list[Recent]:
             Kind.DRAFT,
             draft.path,
             Path(draft.path or new_name).name,
-            f"Not saved, edited {_format_time(draft.written_s)}",
+            f"Not saved, edited {_format_time(draft.written_s)}{_name_folder(draft.path)}",
         )
         for draft in own_drafts
     ]
@@ -66,7 +66,7 @@ def list_recent(new_name: str) -> list[Recent]:
         return unsaved
     known = {draft.path for draft in own_drafts}
     programs = [
-        Recent(Kind.PROGRAM, path, Path(path).name, f"Ran {when}, in {_shorten_folder(Path(path))}")
+        Recent(Kind.PROGRAM, path, Path(path).name, f"Ran {when}{_name_folder(path)}")
         for path, when in _list_programs(runs)
         if path not in known
     ]
@@ -115,10 +115,11 @@ def _is_own(path: str) -> bool:
         return False
 
 
-def _shorten_folder(path: Path) -> str:
-    folder = str(path.parent)
-    home = str(Path.home())
-    return f"~{folder.removeprefix(home)}" if folder.startswith(home) else folder
+def _name_folder(path: str) -> str:
+    """Return in words in which folder a program is, empty for one without a file."""
+    folder, home = str(Path(path).parent), str(Path.home())
+    short = f"~{folder.removeprefix(home)}" if folder.startswith(home) else folder
+    return f", in {short}" if path else ""
 
 
 def _describe_run(run: RunInfo) -> str:
