@@ -8,12 +8,13 @@ from pathlib import Path
 
 import pytest
 
-from tests.app.app_help import notices, open_lab, settings, until
+from tests.app.app_help import notices, open_lab, program, settings, until
 from tuisim.app.app import LabApp
 from tuisim.app.panels.brick import Brick
 from tuisim.app.snapshot import RunPhase
 from tuisim.engine.core.profile import PROFILES
 from tuisim.engine.core.spec import RobotSpec, RunSpec, TouchSpec, WorldSpec
+from tuisim.settings.robots import ROBOTS
 
 WATCHES = """\
 from ev3dev2.button import Button
@@ -196,6 +197,35 @@ async def test_a_bumper_is_pressed_by_key_and_by_mouse(by_mouse: bool) -> None:
             await pilot.press("1")
         await until(pilot, lambda: printed(app) == ["pressed", "released"])
         assert actions(app) == [["in1"], []]
+
+
+WAITS_FOR_REMOTE = """\
+from pybricks.parameters import Button
+from pybricks.pupdevices import Remote
+from pybricks.tools import wait
+remote = Remote()
+while Button.RIGHT_PLUS not in remote.buttons.pressed():
+    wait(20)
+print('pressed')
+while True:
+    wait(100)
+"""
+WITH_HUB = RunSpec(ROBOTS["Prime_Robot"], WorldSpec(), PROFILES["pybricks4"])
+
+
+async def test_the_mouse_does_not_press_the_keys_of_a_remote_control() -> None:
+    remote = replace(program(WAITS_FOR_REMOTE), prelude="none")
+    setup = replace(settings(), spec=WITH_HUB, program=remote)
+    async with open_lab(setup) as (pilot, app):
+        await pilot.press("K", "R")
+        await until(pilot, lambda: "R+" in drawn(app))
+        brick = app.panel_area.brick
+        assert brick is not None and "Brick: PrimeHub" in str(brick.border_title)
+        box = next(box for box in brick._picture.buttons if box.name == "remote.right_plus")
+        await pilot.mouse_down(brick, offset=(box.first + 2, box.row + 1))
+        await until(pilot, lambda: printed(app) == ["pressed"])
+        await pilot.mouse_up(brick, offset=(box.first + 2, box.row + 1))
+        await until(pilot, lambda: actions(app) == [["remote.right_plus"], []])
 
 
 PRESSED = """\
