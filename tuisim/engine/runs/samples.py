@@ -40,7 +40,7 @@ class Sample:
     """Simulated time of the print."""
     tick: int
     line: int
-    """ValueSource line that printed it; 0 for none."""
+    """Source line that printed it; 0 for none."""
 
 
 def parse_sample(text: str) -> tuple[str, float, float | None] | None:
