@@ -83,9 +83,10 @@ def test_a_move_without_an_end_reaches_its_rate(seed: int) -> None:
 def test_a_move_in_proportion_has_the_times_of_its_leader(seed: int) -> None:
     start, rate, acceleration, target = draw_move(seed)
     leader = build_angle_move(start, 2000 + abs(target), rate, acceleration, FASTEST)
-    follower = scale_move(build_angle_move(start, target, rate, acceleration, FASTEST), leader)
+    ways = target * MILLI - start.milli, leader.end.milli - start.milli
+    follower = scale_move(leader, start.milli, *ways)
     assert (follower.first.milli, follower.end.milli) == (start.milli, target * MILLI)
-    share = (target * MILLI - start.milli) / (leader.end.milli - start.milli)
+    share = ways[0] / ways[1]
     for part, led in zip(follower[:4], leader[:4], strict=True):
         assert part.start_us == led.start_us
         scaled = (

@@ -48,6 +48,18 @@ def test_a_move_without_an_end_drives_on(base: DriveBase) -> None:
     assert base.distance() == pytest.approx(257, abs=3)
 
 
+def test_an_arc_between_moves_without_an_end_turns_by_its_whole_angle(base: DriveBase) -> None:
+    base.straight(300, Stop.NONE)
+    base.curve(150, 90, Stop.NONE)
+    base.straight(300)
+    distance, _, angle, _ = base.state()
+    assert distance == pytest.approx(837, abs=3)
+    assert angle == pytest.approx(90, abs=1)
+    base.straight(0, Stop.NONE)
+    wait(500)
+    assert base.state() == (distance, 0, angle, 0)
+
+
 def test_a_call_need_not_wait(base: DriveBase) -> None:
     base.turn(90, wait=False)
     assert not base.done()

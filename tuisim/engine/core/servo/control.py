@@ -179,7 +179,25 @@ class Controller:
     def match_pace(self, other: Controller) -> None:
         """Make the new trajectory take as long as that of another controller, in proportion to it at every time."""
         if self.trajectory is not None and other.trajectory is not None:
-            self.trajectory = scale_move(self.trajectory, other.trajectory)
+            ours, theirs = self.trajectory, other.trajectory
+            ways = (move.end.milli - move.first.milli for move in (ours, theirs))
+            self.trajectory = scale_move(theirs, ours.first.milli, *ways)
+
+    def run_in_proportion(
+        self, now_us: int, measured: Measure, other: Controller, part: int, whole: int
+    ) -> None:
+        """Begin a motion in proportion to that of another controller, `part` to `whole`.
+
+        Args:
+            measured: Returns where the motion is, from which it begins if this controller is passive.
+            other: The other controller.
+            part, whole: The proportion of their ways.
+        """
+        assert other.trajectory is not None
+        start, _ = self._find_start(now_us, measured)
+        passed = other.milli(now_us) - other.trajectory.first.milli
+        begin = start.milli - divide(passed * part, whole)
+        self._begin(scale_move(other.trajectory, begin, part, whole), timed=True)
 
     def run(
         self,

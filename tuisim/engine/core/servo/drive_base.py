@@ -238,6 +238,8 @@ class DriveBase:
         Raises:
             ValueError: the usual speed is 0, or the move takes too long.
         """
+        if ending is Ending.NONE:
+            return self._run_endlessly(now_us, distance_mm, turn_deg)
         self._begin(now_us)
         speed, acceleration, turn_rate, turn_acceleration = self._pace
         stop, turn_stop = self._slowing
@@ -250,6 +252,23 @@ class DriveBase:
             fast, slow = sorted((self.distance, self.heading), key=lambda one: one.end_us or 0)
             fast.match_pace(slow)
         self._take(ending)
+
+    def _run_endlessly(self, now_us: int, distance_mm: float, turn_deg: float) -> None:
+        """Begin to drive a distance and to turn by an angle, and on at the same speed."""
+        self._begin(now_us)
+        speed, acceleration, rate, turn_acceleration = self._pace
+        distance, heading = self.distance, self.heading
+        if distance_mm:
+            forwards = speed if distance_mm > 0 else -speed
+            distance.run(now_us, self._measure_total, forwards, acceleration)
+            turn = round(MILLI * turn_deg * heading.settings.counts_per_unit)
+            way = round(MILLI * distance_mm * distance.settings.counts_per_unit)
+            heading.run_in_proportion(now_us, self._measure_difference, distance, turn, way)
+        else:
+            _move_relative(distance, now_us, self._measure_total, 0, speed, acceleration, None)
+            clockwise = rate * ((turn_deg > 0) - (turn_deg < 0))
+            heading.run(now_us, self._measure_difference, clockwise, turn_acceleration)
+        self._take(Ending.HOLD)
 
     def drive(self, now_us: int, speed_mm_s: int, turn_rate_dps: int) -> None:
         """Drive on at a speed and a rate of turn."""

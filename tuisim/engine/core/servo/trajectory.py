@@ -270,27 +270,25 @@ def build_timed_move(
     return Trajectory(first, even, last, Segment(t2 + t3, last.find_milli(t2 + t3), 0, 0))
 
 
-def scale_move(trajectory: Trajectory, leader: Trajectory) -> Trajectory:
-    """Return a move with the ends of a trajectory and the times of a leader, in proportion to its positions."""
-    begin = trajectory.first.milli
-    whole = trajectory.end.milli - trajectory.first.milli
-    from_milli = leader.first.milli
-    way = leader.end.milli - leader.first.milli
+def scale_move(leader: Trajectory, begin: int, part: int, whole: int) -> Trajectory:
+    """Return a move with the times of another one, in proportion to its positions: `part` to `whole`.
+
+    Args:
+        leader: The other one.
+        begin: Where the move begins, in thousandths of a count.
+        part, whole: The proportion of their ways.
+    """
 
     def scale(number: int) -> int:
-        return divide(number * whole, way) if way else 0
+        return divide(number * part, whole) if whole else 0
 
     def scale_segment(segment: Segment) -> Segment:
         return Segment(
             segment.start_us,
-            begin + scale(segment.milli - from_milli),
+            begin + scale(segment.milli - leader.first.milli),
             scale(segment.rate),
             scale(segment.acceleration),
         )
 
-    return Trajectory(
-        scale_segment(leader.first),
-        scale_segment(leader.even),
-        scale_segment(leader.last),
-        scale_segment(leader.end),
-    )
+    first, even, last, end = (scale_segment(segment) for segment in leader[:4])
+    return Trajectory(first, even, last, end, leader.endless)

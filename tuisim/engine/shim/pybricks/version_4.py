@@ -197,17 +197,10 @@ class DriveBase(robotics.DriveBase):
         if ending is not Ending.NONE:
             return super()._move(distance_mm, angle_deg, call, ending, wait=wait)
         base, by_way = self._base, bool(distance_mm)
-        speed = base.usual[0] if distance_mm > 0 else -base.usual[0]
-        turn_rate = base.usual[2]
-        if by_way:
-            turn_rate = round(abs(speed) * angle_deg / abs(distance_mm))
-        else:
-            speed = 0
-            turn_rate = turn_rate if angle_deg > 0 else -turn_rate
         begin = base.find_millis(self.brick.command())[0 if by_way else 1]
         control, way = (base.distance, distance_mm) if by_way else (base.heading, angle_deg)
         target = abs(way) * control.settings.counts_per_unit * MILLI
-        self.drive(speed, turn_rate)
+        self.tell(Call.MOVE_BASE, distance_mm, angle_deg, ending)
         if not wait:
             return None
 
