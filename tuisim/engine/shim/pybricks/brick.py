@@ -256,6 +256,14 @@ def not_permitted() -> Any:
     )
 
 
+def build_busy_error() -> Any:
+    """Return the firmware's error about motors that another drive base has."""
+    return FirmwareError(
+        errno.EBUSY,
+        "EBUSY:\n\nAnother DriveBase has these motors.\n--> Make one DriveBase, and use it everywhere.",
+    )
+
+
 def no_device(hint: str) -> Any:
     """Return the firmware's error about a port without the device.
 
@@ -278,6 +286,11 @@ def whole(value: Any) -> int:
     if not isinstance(value, int | float):
         raise TypeError(f"can't convert {type(value).__name__} to int")
     return int(value)
+
+
+def round_number(value: float) -> float:
+    """Return a number with as many digits as the floats of a hub have."""
+    return float(f"{round(value, 4):.7g}") + 0.0
 
 
 def text_of(value: Any) -> str:

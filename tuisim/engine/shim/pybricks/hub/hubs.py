@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import Any
+from typing import Any, ClassVar
 
 from tuisim.engine.runs.readings import HUB_BUTTONS_PORT
 from tuisim.engine.shim.pybricks import hubs
@@ -11,7 +11,7 @@ from tuisim.engine.shim.pybricks.brick import Connected
 from tuisim.engine.shim.pybricks.brick_4 import AnimatedLight, Speaker, System
 from tuisim.engine.shim.pybricks.hub.display import Display, Menu
 from tuisim.engine.shim.pybricks.hub.face import Face
-from tuisim.engine.shim.pybricks.hub.imu import IMU
+from tuisim.engine.shim.pybricks.hub.imu import IMU, Accelerometer
 from tuisim.engine.shim.pybricks.hub.parameters import Button
 from tuisim.engine.shim.pybricks.matrix import Axis
 from tuisim.engine.shim.unsupported.modules import Hardware, refused_part
@@ -79,6 +79,7 @@ class Hub(Connected):
     """Any hub."""
 
     BUTTONS: tuple[str, ...] = ("enter",)
+    SENSES: ClassVar[type[Accelerometer]] = IMU
     ble = refused_part("PrimeHub", "ble", RADIO)
 
     def __init__(
@@ -89,7 +90,7 @@ class Hub(Connected):
         observe_channels: Iterable[int] = (),
     ) -> None:
         self.brick.command()
-        self.imu = IMU(
+        self.imu = self.SENSES(
             Axis.Z if top_side is None else top_side, Axis.X if front_side is None else front_side
         )
         self._face = Face()
@@ -134,7 +135,9 @@ class CityHub(Hub):
 
 
 class MoveHub(Hub):
-    """The hub of BOOST."""
+    """The hub of BOOST, which has no gyro."""
+
+    SENSES = Accelerometer
 
 
 CLASSES: Mapping[str, type[Hub]] = {

@@ -2,23 +2,34 @@
 
 from __future__ import annotations
 
-import errno
 from math import cos, radians, sin
 from typing import Any
 
 from tuisim.engine.core.commands.calls import Call
 from tuisim.engine.core.hub_spec import INSIDE
-from tuisim.engine.shim.pybricks.brick import Connected, FirmwareError, invalid_argument
+from tuisim.engine.shim.pybricks.brick import (
+    Connected,
+    FirmwareError,
+    invalid_argument,
+    round_number,
+)
 from tuisim.engine.shim.pybricks.matrix import Axis, Matrix, Side, cross, vector
 from tuisim.engine.shim.pybricks.robotics import DriveBase
 
 GRAVITY_MM_S2 = 9806.65
 STILL_DPS = 2.0
 """Below this rate a hub is at rest, if nothing moves its motors."""
+UNCORRECTED = (
+    *(STILL_DPS, 2500.0, (0.0, 0.0, 0.0), (360.0, 360.0, 360.0)),
+    *((GRAVITY_MM_S2, -GRAVITY_MM_S2) * 3, 360.0),
+)
+"""The settings of a hub that was not calibrated."""
+MAX_CORRECTION_DEG = 15
+"""The correction of the heading differs from a whole turn by so much at most."""
 
 
-class IMU(Connected):
-    """The gyro and the accelerometer of a hub.
+class Accelerometer(Connected):
+    """The accelerometer of a hub.
 
     Args:
         top, front: Along which axes of the robot the hub's top and its front point; they are perpendicular.
@@ -39,50 +50,9 @@ class IMU(Connected):
             Side.LEFT: left,
             Side.RIGHT: -left,
         }
-        self.brick.tell(0, Call.SET_GYRO, 0.0)
-        self._settings = 2.0, 2500.0
 
     def _read(self, mode: str = "GYRO-ANG") -> None:
         self.brick.read(mode, INSIDE)
-
-    @property
-    def _heading(self) -> float:
-        return self.brick.session.sim.gyro_deg
-
-    @property
-    def _rate_dps(self) -> float:
-        """Counter-clockwise."""
-        return self.brick.session.sim.build_instant().turn_rate_dps
-
-    def heading(self) -> float:
-        """Return the heading in degrees, clockwise, not wrapped."""
-        self._read()
-        return self._heading
-
-    def reset_heading(self, angle: float = 0) -> None:
-        """Make the current heading another one.
-
-        Raises:
-            OSError: a drive base drives or holds by the gyro.
-        """
-        base = DriveBase.current
-        if base is not None and base.holds_by_gyro:
-            raise FirmwareError(
-                errno.EPERM, "Can't reset heading while gyro in use. Stop driving first."
-            )
-        self.brick.command()
-        self.brick.tell(0, Call.SET_GYRO, angle)
-
-    def ready(self) -> bool:
-        """Return whether the gyro is calibrated: it was, before the program began."""
-        self._read()
-        return True
-
-    def stationary(self) -> bool:
-        """Return whether the hub is at rest."""
-        self._read("GYRO-RATE")
-        motors = self.brick.session.sim.motors
-        return abs(self._rate_dps) < STILL_DPS and not any(motor.speed_dps for motor in motors)
 
     def up(self, calibrated: bool = True) -> Side:
         """Return the side of the hub that is up."""
@@ -99,6 +69,52 @@ class IMU(Connected):
         self._read("TILT-ANG")
         return _along(axis, vector(0, 0, GRAVITY_MM_S2))
 
+
+class IMU(Accelerometer):
+    """The gyro and the accelerometer of a hub."""
+
+    def __init__(self, top: Matrix, front: Matrix) -> None:
+        super().__init__(top, front)
+        self.brick.tell(0, Call.SET_GYRO, 0.0)
+        self._settings: tuple[Any, ...] = UNCORRECTED
+
+    @property
+    def _heading(self) -> float:
+        return self.brick.session.sim.gyro_deg
+
+    @property
+    def _rate_dps(self) -> float:
+        """Counter-clockwise."""
+        return self.brick.session.sim.build_instant().turn_rate_dps
+
+    def heading(self) -> float:
+        """Return the heading in degrees, clockwise, not wrapped."""
+        self._read()
+        return round_number(self._heading)
+
+    def reset_heading(self, angle: float) -> None:
+        """Make the current heading another one.
+
+        Raises:
+            OSError: a drive base drives or holds by the gyro.
+        """
+        base = DriveBase.current
+        if base is not None and base.holds_by_gyro:
+            raise FirmwareError("Can't reset heading while gyro in use. Stop driving first.")
+        self.brick.command()
+        self.brick.tell(0, Call.SET_GYRO, angle)
+
+    def ready(self) -> bool:
+        """Return whether the gyro is calibrated: it was, before the program began."""
+        self._read()
+        return True
+
+    def stationary(self) -> bool:
+        """Return whether the hub is at rest."""
+        self._read("GYRO-RATE")
+        motors = self.brick.session.sim.motors
+        return abs(self._rate_dps) < STILL_DPS and not any(motor.speed_dps for motor in motors)
+
     def angular_velocity(self, axis: Matrix | None = None, calibrated: bool = True) -> Any:
         """Return the rate of turn in degrees per second about an axis, or all three."""
         self._read("GYRO-RATE")
@@ -107,7 +123,7 @@ class IMU(Connected):
     def rotation(self, axis: Matrix, calibrated: bool = True) -> float:
         """Return the turn in degrees about an axis since the heading was last reset."""
         self._read()
-        return float(_along(axis, vector(0, 0, -self._heading)))
+        return _along(axis, vector(0, 0, -self._heading))  # type: ignore[no-any-return]
 
     def orientation(self) -> Matrix:
         """Return how the robot is turned: the directions of its axes, as columns."""
@@ -115,9 +131,32 @@ class IMU(Connected):
         angle = -radians(self._heading)
         return Matrix([[cos(angle), -sin(angle), 0], [sin(angle), cos(angle), 0], [0, 0, 1]])
 
-    def settings(self, *given: Any, **named: Any) -> tuple[float, float] | None:
-        """Return the thresholds of rest, or take other settings, which change nothing."""
-        return None if given or named else self._settings
+    def settings(
+        self,
+        angular_velocity_threshold: float | None = None,
+        acceleration_threshold: float | None = None,
+        heading_correction: float | None = None,
+        angular_velocity_bias: Any = None,
+        angular_velocity_scale: Any = None,
+        acceleration_correction: Any = None,
+    ) -> tuple[Any, ...] | None:
+        """Return the thresholds of rest and the corrections, or set them, which changes nothing else.
+
+        Raises:
+            ValueError: the correction of the heading is far from a whole turn.
+        """
+        given = (
+            *(angular_velocity_threshold, acceleration_threshold, angular_velocity_bias),
+            *(angular_velocity_scale, acceleration_correction, heading_correction),
+        )
+        if all(value is None for value in given):
+            return self._settings
+        if heading_correction is not None and abs(heading_correction - 360) > MAX_CORRECTION_DEG:
+            raise invalid_argument()
+        self.brick.command()
+        pairs = zip(given, self._settings, strict=True)
+        self._settings = tuple(before if value is None else value for value, before in pairs)
+        return None
 
 
 def _along(axis: Matrix | None, values: Matrix) -> Any:
@@ -126,4 +165,4 @@ def _along(axis: Matrix | None, values: Matrix) -> Any:
     length = sum(part * part for part in axis) ** 0.5
     if axis.shape != Axis.X.shape or not length:
         raise invalid_argument()
-    return sum(a * b for a, b in zip(axis, values, strict=True)) / length
+    return round_number(sum(a * b for a, b in zip(axis, values, strict=True)) / length)
