@@ -77,6 +77,31 @@ def test_both_parts_of_an_arc_end_together(base: DriveBase) -> None:
         assert angle == pytest.approx(distance / 200 * 57.3, abs=1.5)
 
 
+@pytest.mark.parametrize(
+    "given, message",
+    [
+        ((9, 90), "Invalid argument"),
+        ((100, 90, 50), "Please specify distance or angle but not both"),
+        ((100,), "Please specify distance or angle but not both"),
+    ],
+)
+def test_an_arc_without_a_way_or_with_a_tiny_radius_is_refused(
+    base: DriveBase, given: tuple[int, ...], message: str
+) -> None:
+    with pytest.raises(ValueError, match=message):
+        call(base.arc, *given)
+
+
+def test_two_drive_bases_cannot_have_the_same_motor(base: DriveBase) -> None:
+    motors: tuple[Any, Any] = base.left, base.right
+    with pytest.raises(OSError, match="EBUSY"):
+        DriveBase(*motors, 56, 114)
+    with pytest.raises(ValueError, match="Invalid argument"):
+        DriveBase(motors[1], motors[1], 56, 114)
+    motors[0].close()
+    DriveBase(*motors, 56, 114)
+
+
 def test_settings_change_while_it_drives(base: DriveBase) -> None:
     base.drive(100, 0)
     base.settings(straight_speed=200)

@@ -35,10 +35,10 @@ class DriveBase(Connected):
             raise invalid_argument()
         if left_motor.simulated.control.settings != right_motor.simulated.control.settings:
             raise invalid_argument()
-        if DriveBase.current is not None:
-            DriveBase.current.stop()
-        DriveBase.current = self
         self.left, self.right = left_motor, right_motor
+        if DriveBase.current is not None:
+            self._take_place(DriveBase.current)
+        DriveBase.current = self
         self.port_names = (*left_motor.port_names, *right_motor.port_names)
         sim = self.brick.session.sim
         numbers = (sim.find_number(motor.simulated) for motor in (left_motor, right_motor))
@@ -52,9 +52,17 @@ class DriveBase(Connected):
         self._zeros = 0, 0
         self.reset()
 
+    def _take_place(self, earlier: DriveBase) -> None:
+        """Take the place of an earlier drive base."""
+        earlier.stop()
+
     def tell(self, call: Call, *values: float | None) -> None:
         """Change the drive base or its controllers; None is what is not given."""
         self.brick.tell(self._number, call, *values)
+
+    def has_motor(self, motor: Any) -> bool:
+        """Return whether a motor is one of its two."""
+        return any(ours.simulated is motor.simulated for ours in (self.left, self.right))
 
     @property
     def holds_by_gyro(self) -> bool:

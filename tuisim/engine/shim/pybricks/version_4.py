@@ -15,7 +15,15 @@ from tuisim.engine.core.servo.control import Ending
 from tuisim.engine.core.servo.settings import COUNTS_PER_DEG
 from tuisim.engine.core.servo.trajectory import MILLI
 from tuisim.engine.shim.pybricks import motor, robotics
-from tuisim.engine.shim.pybricks.brick import Connected, Waiting, invalid_argument, refused, whole
+from tuisim.engine.shim.pybricks.brick import (
+    Connected,
+    Waiting,
+    build_busy_error,
+    invalid_argument,
+    refused,
+    round_number,
+    whole,
+)
 from tuisim.engine.shim.pybricks.ev3devices import ColorSensor as EarlierColorSensor
 from tuisim.engine.shim.pybricks.ev3devices import GyroSensor as EarlierGyroSensor
 from tuisim.engine.shim.pybricks.ev3devices import InfraredSensor as EarlierInfraredSensor
@@ -29,6 +37,8 @@ from tuisim.engine.shim.unsupported.modules import refused_part
 NOMINAL_VOLTAGE_MV = 9000
 MAX_SPEED_DPS = 2000
 """A setting of a drive base may ask no more of a motor, even if that cannot do it."""
+MIN_RADIUS_MM = 10
+"""An arc is at least so wide."""
 MIN_ACCELERATION_DPS2, MAX_ACCELERATION_DPS2 = 50, 20_000
 """Nor less, or more, than these."""
 
@@ -138,8 +148,10 @@ class Motor(motor.Motor):
         return None
 
     def close(self) -> None:
-        """Let the motor coast."""
+        """Let the motor coast, and a drive base do without it."""
         self.stop()
+        if DriveBase.current is not None and DriveBase.current.has_motor(self):
+            robotics.DriveBase.current = None
 
 
 class Control(motor.Control):
@@ -182,8 +194,14 @@ class DriveBase(robotics.DriveBase):
     """A robot with two driven wheels. Its settings may be changed while it drives."""
 
     SETTINGS_WHILE_ACTIVE = True
+
     _stops: tuple[int, ...] = ()
     """How it stops, if it was told how."""
+
+    def _take_place(self, earlier: robotics.DriveBase) -> None:
+        if earlier.has_motor(self.left) or earlier.has_motor(self.right):
+            raise build_busy_error()
+        super()._take_place(earlier)
 
     def _move(
         self,
@@ -270,7 +288,9 @@ class DriveBase(robotics.DriveBase):
         wait: bool = True,
     ) -> None:
         """Drive along an arc by an angle or a distance; a negative radius turns the other way."""
-        if (angle is None) == (distance is None) or not radius:
+        if (angle is None) == (distance is None):
+            raise ValueError("Please specify distance or angle but not both.")
+        if abs(whole(radius)) < MIN_RADIUS_MM:
             raise invalid_argument()
         way = whole(distance) if distance is not None else abs(radius) * radians(whole(angle))
         return self._move(way, degrees(way / radius), "arc()", ending_of(ENDINGS, then), wait=wait)
@@ -279,9 +299,8 @@ class DriveBase(robotics.DriveBase):
         """Return the turned angle in degrees, clockwise."""
         now_us = self._read()
         base = self._base
-        return (
-            base.find_millis(now_us)[1] / MILLI - self._zeros[1]
-        ) / base.heading.settings.counts_per_unit
+        counts = base.find_millis(now_us)[1] / MILLI - self._zeros[1]
+        return round_number(counts / base.heading.settings.counts_per_unit)
 
     def use_gyro(self, use_gyro: bool) -> None:
         """Let the gyro of the hub tell the heading, or the wheels; a change lets the motors coast."""
