@@ -9,7 +9,7 @@ import pytest
 
 from tests.programs.robot.reading import PYBRICKS_HEAD, USUAL, built
 from tuisim.base.source import Program
-from tuisim.engine.core.spec import RobotSpec
+from tuisim.engine.core.spec import NO_PORT, RobotSpec
 from tuisim.programs.program_settings import read_source_facts
 
 # A program; the ports of the left and the right wheel, their diameter and their distance.
@@ -175,3 +175,15 @@ def test_motors_that_run_until_they_stall_drive_no_wheels() -> None:
     robot = found.choice.spec
     assert (robot.left_port, robot.right_port) == ("outB", "outC")
     assert [motor.port for motor in robot.extra_motors] == ["outA", "outD"]
+
+
+def test_the_port_of_a_sensor_is_none_of_a_wheel_on_a_hub() -> None:
+    text = (
+        "from pybricks.hubs import EssentialHub\nfrom pybricks.pupdevices import ColorSensor, Motor\n"
+        "from pybricks.parameters import Port\narm, eye = Motor(Port.A), ColorSensor(Port.B)"
+    )
+    robot = built(text, "")
+    assert robot is not None
+    assert robot.choice.spec.left_port == NO_PORT
+    assert [motor.port for motor in robot.choice.spec.extra_motors] == ["A"]
+    assert [sensor.port for sensor in robot.choice.spec.color_sensors] == ["B"]

@@ -149,19 +149,21 @@ def _choose_usual(
 ) -> WheelMotors:
     """Return the usual ports of the wheels, or others if motors of the program take these."""
     ports = (usual.left_port, usual.right_port)
-    if not other_tools and all(
-        port in ports and kind is not DeviceKind.MEDIUM for port, kind in kinds.items()
+    sensors = {device.port for device in devices if not device.kind.is_motor}
+    if (
+        not other_tools
+        and sensors.isdisjoint(ports)
+        and all(port in ports and kind is not DeviceKind.MEDIUM for port, kind in kinds.items())
     ):
         return WheelMotors(*ports)
-    tools = {
-        device.port for device in devices if device.kind.is_motor and is_tool(device.names)
-    } | {*other_tools}
+    tools = {device.port for device in devices if is_tool(device.names)} | sensors | {*other_tools}
     stay = [
         port
         for port in ports
         if kinds.get(port, DeviceKind.LARGE) is not DeviceKind.MEDIUM and port not in tools
     ]
-    free = [*stay, *(port for port in usual.output_ports if port not in kinds and port not in stay)]
+    taken = {*kinds, *stay, *tools}
+    free = [*stay, *(port for port in usual.output_ports if port not in taken)]
     if len(free) >= 2:
         left = usual.left_port if usual.left_port in free else _pick_other(free, usual.right_port)
         right = usual.right_port if usual.right_port in free else _pick_other(free, left)
