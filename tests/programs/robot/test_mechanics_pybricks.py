@@ -68,6 +68,10 @@ STOPS: Mapping[str, tuple[str, tuple[float | None, float | None]]] = {
         "m = Motor(Port.A)\nm.run_until_stalled(-100)\nm.reset_angle(-300)\nm.run_target(200, target_angle=270)",
         (-45, 615),
     ),
+    "then several times the same way": (
+        "m = Motor(Port.A)\nm.run_until_stalled(-100)\nm.run_angle(90, 200)\nm.run_angle(90, 200)",
+        (-45, 445),
+    ),
     "with the other direction": (
         f"m = Motor(Port.A, {CCW})\nm.run_until_stalled(-100)",
         (-225, 45),

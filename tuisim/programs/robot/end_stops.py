@@ -91,8 +91,8 @@ class Mechanics:
         return max(back_deg, -_MAX_REACH_DEG) - _MARGIN_DEG, far
 
     def note_turn(self, port: str, turn: Target) -> None:
-        """Note how far the program turns a motor from where it stands: it must not meet an end stop before."""
-        self.reach_deg[port] = max(self.reach_deg.get(port, 0.0), turn.deg)
+        """Note how far the program turns a motor from where it stands: several turns may lead the same way."""
+        self.reach_deg[port] = self.reach_deg.get(port, 0.0) + turn.deg
         self.turns.setdefault(port, []).append(turn)
 
     def note_targets(self, port: str, targets: Sequence[Target], places: Collection[float]) -> None:

@@ -89,10 +89,10 @@ class _MechanicsReader:
                 motor = _find_motor(left)
                 if motor is not None and self._is_endless(motor, scope):
                     self._stall(motor, scope, node)
-            case ast.Compare(left=left, comparators=[ast.Attribute(value=base, attr="state")]):
-                if "stalled" in self.evaluation.values(left, scope):
-                    self._stall(base, scope, node)
-            case ast.Call(func=ast.Attribute(value=base, attr="wait_until"), args=[state, *_]):
+            case (
+                ast.Compare(left=state, comparators=[ast.Attribute(value=base, attr="state")])
+                | ast.Call(func=ast.Attribute(value=base, attr="wait_until"), args=[state, *_])
+            ):
                 if "stalled" in self.evaluation.values(state, scope):
                     self._stall(base, scope, node)
             case ast.Call(func=ast.Attribute(value=base, attr="wait_until_not_moving")):
@@ -111,11 +111,10 @@ class _MechanicsReader:
                 base, scope, call, [speed > 0 for speed in self._find_speeds(call, scope) if speed]
             )
         elif name == "stalled":
-            match base:
-                case ast.Attribute(value=motor, attr="control"):
-                    self._stall(motor, scope, call)
-                case _:
-                    self._stall(base, scope, call)
+            motor = (
+                base.value if isinstance(base, ast.Attribute) and base.attr == "control" else base
+            )
+            self._stall(motor, scope, call)
         elif name == "reset_angle" and call.args:
             self._note_places(base, call.args[0], scope)
 
