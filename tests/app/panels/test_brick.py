@@ -12,6 +12,7 @@ from tests.app.app_help import notices, open_lab, program, settings, until
 from tuisim.app.app import LabApp
 from tuisim.app.panels.brick import Brick
 from tuisim.app.snapshot import RunPhase
+from tuisim.base.source import Program
 from tuisim.engine.core.profile import PROFILES
 from tuisim.engine.core.spec import RobotSpec, RunSpec, TouchSpec, WorldSpec
 from tuisim.settings.robots import ROBOTS
@@ -36,6 +37,19 @@ while True:
         if 'backspace' in seen:
             break
     sleep(0.02)
+"""
+
+
+BUMPS = """\
+from pybricks.hubs import PrimeHub
+from pybricks.parameters import Port
+from pybricks.pupdevices import ForceSensor
+from pybricks.tools import wait
+hub, bumper = PrimeHub(), ForceSensor(Port.E)
+print('ready')
+while not bumper.pressed():
+    wait(10)
+print('bump')
 """
 
 
@@ -101,6 +115,20 @@ async def test_a_run_may_end_while_a_pressed_button_is_about_to_be_released() ->
         # As the timer does that had fired already.
         panel._release_tapped("down", 0.0)
         assert panel.held == frozenset()
+
+
+async def test_a_digit_presses_a_force_sensor_whose_port_is_a_letter() -> None:
+    robot = replace(ROBOTS["Prime_Robot"], touch_sensors=(TouchSpec("bumper", "E"),))
+    spec = RunSpec(robot, WorldSpec(), PROFILES["pybricks4"])
+    program = Program("bumps.py", BUMPS, prelude="none")
+    async with open_lab(replace(settings(), spec=spec, program=program)) as (pilot, app):
+        await pilot.press("K", "R")
+        await until(pilot, lambda: isinstance(app.focused, Brick))
+        await until(pilot, lambda: app.run_controller.run is not None and "ready" in printed(app))
+        assert app.panel_area.brick is not None
+        assert "force sensor" in str(app.panel_area.brick.border_subtitle)
+        await pilot.press("1")
+        await until(pilot, lambda: "bump" in printed(app))
 
 
 @pytest.mark.slow

@@ -45,3 +45,14 @@ def test_another_reading_is_told(text: str, doubt: str) -> None:
 )
 def test_a_program_that_cannot_be_read_has_no_robot(text: str) -> None:
     assert built(text) is None
+
+
+def test_the_parts_of_a_hub_are_told_by_the_names_that_they_have_there() -> None:
+    robot = built(
+        "from pybricks.hubs import PrimeHub\nfrom pybricks.pupdevices import ForceSensor, Motor\n"
+        "from pybricks.parameters import Port\nbumper, arm = ForceSensor(Port.E), Motor(Port.C)",
+        "",
+    )
+    assert robot is not None
+    words = {part.what for part in robot.parts}
+    assert words >= {"force sensor on E", "medium angular motor on C"}

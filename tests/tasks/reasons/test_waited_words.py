@@ -85,12 +85,22 @@ while True:
     sleep(2)
 """
 
+WAIT_FORCE = """
+from pybricks.parameters import Port
+from pybricks.pupdevices import ForceSensor
+from pybricks.tools import wait
+bumper = ForceSensor(Port.E)
+while not bumper.pressed():
+    wait(10)
+"""
+
 PROGRAMS = {
     "button": (
         WAIT_BUTTON,
         "read the brick's buttons N times, none was pressed: --press enter@1, or K in the app",
     ),
     "touch": (WAIT_TOUCH, "touch sensor on in1 was never pressed: --press in1@2"),
+    "force": (WAIT_FORCE, "force sensor on E was never pressed: --press E@2"),
     "remote": (
         REMOTE,
         "infrared sensor on in1: no button of the remote was pressed: --press remote.left_up@2-4",

@@ -15,8 +15,8 @@ from tuisim.app.render.brick import BrickPicture, draw_brick
 from tuisim.app.render.hub import draw_hub
 from tuisim.app.snapshot import IN_RUN, RunPhase, Snapshot
 from tuisim.base.data_class import dataclass
-from tuisim.engine.core.hub_spec import HUBS_WITH_MATRIX
-from tuisim.engine.core.spec import BUTTONS, INPUT_PORTS
+from tuisim.engine.core.hub_spec import HUBS_WITH_MATRIX, find_touch_keys
+from tuisim.engine.core.spec import BUTTONS
 from tuisim.terminal.cell_view import LinesPanel
 from tuisim.terminal.pacer import Throttle
 
@@ -29,8 +29,11 @@ TAP_S = 0.25
 SEEN_S = 0.05
 """Minimum hold in simulated time: programs poll the buttons only now and then."""
 
-_HUB_HELP = "← → enter ↑ press · shift holds · the mouse presses all · + size"
+_HUB_HELP = (
+    "← → enter ↑ press · 1 … 4 a force sensor · shift holds · the mouse presses all · + size"
+)
 _HELP = "arrows enter backspace press · shift holds · 1 … 4 press a touch sensor · + size"
+_TOUCH_KEYS = "1234"
 
 
 class Brick(LinesPanel, can_focus=True):
@@ -43,8 +46,8 @@ class Brick(LinesPanel, can_focus=True):
             for name in BUTTONS
         ),
         *(
-            Binding(port[2:], f"tap('{port}')", "Press the touch sensor on this port", show=False)
-            for port in INPUT_PORTS
+            Binding(key, f"tap_touch('{key}')", "Press the touch sensor on this port", show=False)
+            for key in _TOUCH_KEYS
         ),
         *(
             Binding(
@@ -89,6 +92,8 @@ class Brick(LinesPanel, can_focus=True):
         self._snapshot = snapshot
         if self._hub != former:
             self.border_title = build_title(self.app, "brick", self._hub)
+            if self.has_focus:
+                self.on_focus()
         if not self.has_focus and self.border_subtitle != self._idle_words:
             self.border_subtitle = self._idle_words
         self._throttle.ask()
@@ -140,6 +145,13 @@ class Brick(LinesPanel, can_focus=True):
     def _post_pressed(self, before: frozenset[str]) -> None:
         if self.held != before:
             self.post_message(self.Pressed(self.held))
+
+    def action_tap_touch(self, key: str) -> None:
+        """Press a touch sensor for a moment."""
+        if self._snapshot is not None:
+            touches = [sensor.port for sensor in self._snapshot.spec.robot.touch_sensors]
+            if port := find_touch_keys(touches).get(key):
+                self.action_tap(port)
 
     def action_tap(self, name: str) -> None:
         """Press a button for a moment; key repeat keeps it pressed."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from tuisim.base.errors import require_one_of
@@ -66,3 +66,8 @@ def check_motor_kinds(hub: str, kinds: Mapping[str, str]) -> None:
     """
     for key, kind in kinds.items():
         require_one_of(kind, "kind of motor", HUB_MOTORS if hub else EV3_MOTORS, key)
+
+
+def find_touch_keys(ports: Sequence[str]) -> dict[str, str]:
+    """Return ports of touch sensors by the digits that press them: one after another where ports are letters."""
+    return {port[2:] or str(number): port for number, port in enumerate(ports, 1)}

@@ -179,7 +179,9 @@ class _Builder:
             place = where.get(motor.port) or self._find(further_kinds[motor.port])
             self.parts.append(
                 RobotPart(
-                    f"{motor.kind} motor on {motor.port}{stops}", f"motors.{motor.port}", place
+                    f"{motor.kind.replace('-', ' ')} motor on {motor.port}{stops}",
+                    f"motors.{motor.port}",
+                    place,
                 )
             )
         if wheels.doubt:
@@ -486,10 +488,11 @@ class _Builder:
                 where = by_port[port].where
             elif usual.get(port) != sensor:
                 where = first.get(kind)
+            words = "force sensor" if self.usual.hub and kind is DeviceKind.TOUCH else kind
             if where or usual.get(port) != sensor:
                 self.parts.append(
                     RobotPart(
-                        f"{kind} on {port}", find_path(sensor), where, usual.get(port) != sensor
+                        f"{words} on {port}", find_path(sensor), where, usual.get(port) != sensor
                     )
                 )
         names = {sensor.name for sensor in placed.values()}

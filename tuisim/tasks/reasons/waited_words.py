@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, assert_never
 
 from tuisim.base.data_class import dataclass
-from tuisim.engine.core.hub_spec import CONTROLLERS
+from tuisim.engine.core.hub_spec import CONTROLLERS, HUB_PORTS, find_touch_keys
 from tuisim.engine.core.spec import EMPTY_MAT, InfraredSpec, RunSpec, UltrasonicSpec
 from tuisim.engine.runs.readings import BUTTONS_PORT, HUB_BUTTONS_PORT, KEYS_BY_PORT
 from tuisim.engine.runs.run_folder import StoredRun
@@ -98,7 +98,10 @@ def describe_awaited(awaited: Awaited) -> str:
             )
         case Subject.TOUCH:
             presses = _describe_presses(awaited)
-            return f"touch sensor on {port}" + (f": {presses}" if presses else " was never pressed")
+            kind = "force" if port in HUB_PORTS else "touch"
+            return f"{kind} sensor on {port}" + (
+                f": {presses}" if presses else " was never pressed"
+            )
         case Subject.REMOTE:
             presses = _describe_presses(awaited) or "no button of the remote was pressed"
             return f"infrared sensor on {port}: {presses}"
@@ -234,7 +237,7 @@ def _name_nearest(awaited: Awaited, spec: RunSpec) -> str:
 def name_remedy_with_keys(awaited: Awaited, spec: RunSpec) -> str:
     """Return the key that gives a program what it waited for, as an id of an action in braces; else the option."""
     names = awaited.sought if awaited.needs_all else awaited.sought[:1]
-    brick = "hub" if awaited.port == HUB_BUTTONS_PORT else "brick"
+    brick = "hub" if awaited.port in (HUB_BUTTONS_PORT, *HUB_PORTS) else "brick"
     match awaited.subject:
         case Subject.BUTTONS if awaited.port in CONTROLLERS:
             return f"{{panel-brick}} opens the hub, where the mouse presses {' and '.join(names) or 'them'}"
@@ -245,6 +248,8 @@ def name_remedy_with_keys(awaited: Awaited, spec: RunSpec) -> str:
         case Subject.BUTTONS:
             return f"{{panel-brick}} opens the {brick}, whose buttons the arrows and Enter press"
         case Subject.TOUCH:
-            return f"{{panel-brick}} opens the brick, where {awaited.port[2:]} presses it"
+            ports = [sensor.port for sensor in spec.robot.touch_sensors]
+            digits = {port: digit for digit, port in find_touch_keys(ports).items()}
+            return f"{{panel-brick}} opens the {brick}, where {digits.get(awaited.port, 'the mouse')} presses it"
         case _:
             return name_remedy(awaited, spec, is_live=True)
