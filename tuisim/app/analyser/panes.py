@@ -71,6 +71,8 @@ class Pane:
     empty: str = ""
     wraps: bool = False
     """Whether its last column is prose, which wraps instead of being cut."""
+    block: int = 0
+    """The first of its last columns, if they belong together and are not separated; else 0."""
 
 
 def _format_figure(value: float, digits: str = ".4g") -> str:
@@ -214,6 +216,7 @@ PANES: Mapping[str, Pane] = {
         ),
         _describe_interval,
         empty="No variable is shown: v selects one, space shows it",
+        block=6,
     ),
     "events": Pane(
         "Events",
@@ -279,8 +282,7 @@ def pane_lines(name: str, model: AnalysisModel, chosen: int, width: int, height:
     below, room = _split_below(pane, model, width, height)
     first = find_first_row(chosen, len(rows), room)
     measured = rows if len(rows) <= _MEASURED else rows[first : first + room]
-    widths = [max(map(len, column)) for column in zip(pane.heads, *measured, strict=True)]
-    used, gap = _choose_columns(measured, widths, width)
+    used, widths, gap = _choose_columns(pane, measured, width)
     head = _build_row(
         [pane.heads[index] for index in used], [widths[index] for index in used], gap, HEAD
     )
@@ -375,18 +377,21 @@ def describe_place(name: str, model: AnalysisModel, chosen: int, width: int, hei
 
 
 def _choose_columns(
-    rows: Sequence[Cells], widths: Sequence[int], width: int
-) -> tuple[list[int], int]:
-    """Return the columns that are shown, and the gap between them.
+    pane: Pane, rows: Sequence[Cells], width: int
+) -> tuple[list[int], list[int], int]:
+    """Return the columns that are shown, the widths of all of them, and the gap between two.
 
     Where they do not all fit, the gap is smaller, and a first column that is the same in all rows is left out.
     """
+    widths = [max(map(len, column)) for column in zip(pane.heads, *rows, strict=True)]
     filled = [index for index in range(len(widths)) if any(row[index] for row in rows)]
     rest = filled[1:] if len({row[0] for row in rows}) == 1 else filled
     for columns, gap in ((filled, _GAP), (rest, _GAP), (rest, 1)):
         if sum(widths[index] + gap for index in columns) - gap <= width:
-            return columns, gap
-    return _fit_columns(filled, widths, width), _GAP
+            return columns, widths, gap
+    fitting = _fit_columns(filled, widths, width)
+    whole = fitting[: fitting.index(pane.block)] if pane.block in fitting[1:] else fitting
+    return whole, widths, _GAP
 
 
 def _build_rows(
