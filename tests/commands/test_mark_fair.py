@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -12,12 +11,10 @@ from pathlib import Path
 
 import pytest
 
-from tests.conftest import ROOT
-from tests.hosts import GOALS, MAGIC, Stored, hosted
+from tests.hosts import Stored, hosted
 from tests.tasks.marks.fair import FAIR
 
 QUICK = ("plain", "busy_daemon", "raises", "exits", "condition")
-MOST_S = 900.0
 
 
 @pytest.fixture(scope="module")
@@ -71,33 +68,10 @@ def busy() -> Iterator[None]:
         yield
 
 
-def _marks(folder: Path, isolation: str) -> bytes:
-    (folder / "class").mkdir(parents=True)
-    for name, text in islice(FAIR.items(), 0, None, 8):
-        (folder / "class" / f"{name}.py").write_text(f"# {MAGIC}\n{text}\n")
-    (folder / "goals.toml").write_text(GOALS)
-    words = ("mark", "goals.toml", "class", "--export", "marks.csv", "--keep", "none", isolation)
-    done = subprocess.run(
-        [sys.executable, "-m", "tuisim", *words],
-        cwd=folder,
-        env={**os.environ, "PYTHONPATH": str(ROOT), "TUISIM_HOME": str(folder / "home")},
-        stdin=subprocess.DEVNULL,
-        capture_output=True,
-        text=True,
-        timeout=MOST_S,
-    )
-    assert done.returncode == 0, done.stderr
-    return (folder / "marks.csv").read_bytes()
-
-
-@pytest.fixture(scope="module")
-def idle(tmp_path_factory: pytest.TempPathFactory) -> bytes:
-    """The marks of every eighth of the fifty while the tests run nothing else."""
-    return _marks(tmp_path_factory.mktemp("idle") / "place", "--no-isolate")
-
-
 @pytest.mark.slow
-def test_the_marks_are_the_same_beside_four_busy_processes(
-    idle: bytes, busy: None, tmp_path: Path
+def test_the_end_is_the_same_beside_four_busy_processes(
+    in_run: dict[str, Stored], busy: None, tmp_path: Path
 ) -> None:
-    assert _marks(tmp_path / "place", "--no-isolate") == idle
+    programs = dict(islice(FAIR.items(), 0, None, 8))
+    runs = hosted("mark", programs, tmp_path / "place").runs
+    assert runs == {name: in_run[name] for name in programs}
