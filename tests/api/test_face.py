@@ -308,28 +308,12 @@ def test_an_editor_completes(call: str, expected: list[str]) -> None:
     assert [one.name for one in completions] == expected
 
 
-MISSPELT = """\
-import tuisim
-
-tuisim.simulate("log_greys", backgrond="Loop")
-tuisim.experiment("log_greys", sensornose=[0, 20])
-tuisim.World(anlge=3)
-tuisim.experiment("log_greys", sensornoise=[0, 20], robot=tuisim.Robot(gear_ratio=2))
-"""
-
-
-@pytest.mark.slow
-def test_type_checks_refuse_what_is_misspelt(tmp_path: Path) -> None:
-    (tmp_path / "misspelt.py").write_text(MISSPELT)
-    words = [sys.executable, "-m", "mypy", "--strict", "--config-file=", "--cache-dir"]
-    words += [str(tmp_path), str(tmp_path / "misspelt.py")]
-    done = subprocess.run(words, cwd=ROOT, capture_output=True, text=True, check=False)
-    assert re.findall(r":(\d+): error: .* did you mean \"(\w+)\"", done.stdout) == [
-        ("3", "background"),
-        ("4", "sensornoise"),
-        ("5", "angle"),
-    ]
-    assert "Found 3 errors" in done.stdout
+def _misspell() -> None:
+    """Never called: the type check of all tests refuses a comment where it has nothing to ignore."""
+    tuisim.simulate("log_greys", backgrond="Loop")  # type: ignore[call-arg]
+    tuisim.experiment("log_greys", sensornose=[0, 20])  # type: ignore[call-arg]
+    tuisim.World(anlge=3)  # type: ignore[call-arg]
+    tuisim.experiment("log_greys", sensornoise=[0, 20], robot=tuisim.Robot(gear_ratio=2))
 
 
 def test_a_run_is_one_line_and_a_notebook_shows_it() -> None:
