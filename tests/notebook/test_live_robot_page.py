@@ -79,24 +79,18 @@ async def test_the_app_shows_the_run_that_began_before_it(tmp_path: Path) -> Non
                 pass
 
 
-async def test_a_saved_notebook_that_is_not_trusted_keeps_its_picture(tmp_path: Path) -> None:
-    cells = code({"load": LOAD, "picture": "%sim_magic -b Grey_bands"})
+async def test_the_picture_is_the_app_at_the_first_address_and_stays_where_it_is_not_trusted(
+    tmp_path: Path,
+) -> None:
+    """The first address that Jupyter prints, and a notebook that was saved elsewhere."""
+    cells = code({name: STEPS[name] for name in ("load", "picture")})
     (tmp_path / "first").mkdir()
-    async with jupyterlab(tmp_path / "first", cells) as lab:
+    async with jupyterlab(tmp_path / "first", cells, "localhost", is_private=True) as lab:
         await lab.run("load", "picture")
         await lab.until_live()
+        assert await lab.pictures() == 0
         saved = await lab.outputs()
     (tmp_path / "second").mkdir()
     async with jupyterlab(tmp_path / "second", saved) as lab:
         assert SENTENCE in await lab.text()
         assert await lab.pictures() == 1
-
-
-async def test_the_picture_becomes_the_app_at_the_first_address_that_jupyter_prints(
-    tmp_path: Path,
-) -> None:
-    cells = code({name: STEPS[name] for name in ("load", "picture")})
-    async with jupyterlab(tmp_path, cells, "localhost", is_private=True) as lab:
-        await lab.run("load", "picture")
-        await lab.until_live()
-        assert await lab.pictures() == 0
