@@ -21,7 +21,7 @@ from tuisim.app.analyser.app import Analyser, AnalyserApp
 from tuisim.app.app import LabApp
 from tuisim.app.terminal_app import TerminalApp
 
-PRESSES = 1000
+PRESSES = 500
 AT_ONE_GO = 250
 """How often something is pressed for one seed, and at most before the app is left and opened anew."""
 

@@ -14,7 +14,7 @@ from tests.logs.log_files import MAX_REFUSED, MAX_SEED, Verdict, describe, draw,
 QUICK_SEEDS = range(40)
 FAILED_SEEDS: tuple[int, ...] = ()
 """Files that were once read wrongly."""
-MANY = 2000
+MANY = 500
 MAX_SHOWN = 20
 
 

@@ -161,7 +161,7 @@ SPEED = st.floats(-1050, 1050)
 
 
 @settings(
-    max_examples=300,
+    max_examples=120,
     deadline=None,
     phases=[Phase.generate],
     suppress_health_check=list(HealthCheck),
