@@ -29,7 +29,7 @@ print('A: 1')""",
     "busy_daemon_in_c": """
 import threading
 def spin():
-    while True: sum(range(10000))
+    while True: sum(range(1000))
 threading.Thread(target=spin, daemon=True).start()
 tank_drive.on_for_rotations(50, 50, 1)
 print('A: 1')""",
