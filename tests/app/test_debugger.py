@@ -219,7 +219,7 @@ async def test_breaks_and_watches_are_listed_added_switched_and_deleted() -> Non
             field.value = text
             await pilot.press("enter")
             message = str(app.screen.query_one("#message", Static).render())
-            assert ("the program has no line 99 (it has 7 lines)" in message) is (text == "99")
+            assert ("line 99 does not exist (the program has 7 lines)" in message) is (text == "99")
         assert "no expression" not in str(app.screen.query_one("#message", Static).render())
         assert [one.text for one in app.debugger.breaks] == ["sample Total > 5", "4 if i == 3"]
         app.screen.query_one(OptionList).focus()

@@ -247,7 +247,7 @@ def test_missing_wrong_way_is_a_warning(here: Command, tmp_path: Path) -> None:
     )
     done = here("learn", "check", "mine.md", "--no-runs")
     assert (
-        "warning: mine.md, line 74: no wrong way “no sensor” is tried on “Drive them”, nor excluded"
+        "warning: mine.md, line 74: step “Drive them” does not try the wrong way “no sensor”, or name it in `excludes`"
         in done.stdout
     )
     assert (

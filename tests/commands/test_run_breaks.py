@@ -60,8 +60,8 @@ def test_a_break_may_end_the_run(program: str, capsys: pytest.CaptureFixture[str
 @pytest.mark.parametrize(
     "line, said",
     [
-        ("99", "'99': the program has no line 99 (it has 9 lines)"),
-        ("8 if total > 1", "'8 if total > 1': no code follows line 8 (it has 9 lines)"),
+        ("99", "'99': line 99 does not exist (the program has 9 lines)"),
+        ("8 if total > 1", "'8 if total > 1': no code follows line 8 (the program has 9 lines)"),
     ],
 )
 def test_a_break_on_no_line_of_code_is_refused(

@@ -98,10 +98,10 @@ def _without_source() -> Any:
     "program, words",
     {
         "a value that cannot go along": (use_world, "use_world uses WORLD, a World, which cannot"),
-        "a lambda": (lambda: None, "<lambda> .* is no program"),
+        "a lambda": (lambda: None, "<lambda> .* is not a program"),
         "parameters": (build_inner, "build_inner as a program takes no arguments: number"),
         "no source": (_without_source(), "the function typed has no source"),
-        "no function": (3, "3 is no program"),
+        "no function": (3, "3 is not a program"),
     },
 )
 def test_what_is_no_program_is_refused_by_name(program: Any, words: str) -> None:

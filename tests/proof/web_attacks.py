@@ -227,7 +227,7 @@ async def _uploads(target: Target) -> None:
             f"{target.origin}{path}", params={"name": name}, data=b"x", headers=sent
         ) as answer:
             said = await answer.text()
-        if answer.status != 400 or "no name for a file" not in said or os.getcwd() in said:
+        if answer.status != 400 or "not a name for a file" not in said or os.getcwd() in said:
             raise FaultError(f"a name that is too long: {answer.status} {said[:500]}")
         if _resident_mb() - before > _CUT * _CUT_MB / 2:
             raise FaultError(f"uploads take {_resident_mb() - before:.0f} MB")

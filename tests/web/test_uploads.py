@@ -45,7 +45,7 @@ async def test_a_file_that_breaks_off_is_none_and_takes_no_room(
         "larger than one may be": ("lab.py", 9, "larger than 0 MB"),
         "more than all may be": ("lab.py", 3, "no room: 0 GB"),
         "no folder": ("lab.py", 1, "lab.py cannot be written: No such file or directory"),
-        "a long name": ("é" * 190, 1, "no name for a file"),
+        "a long name": ("é" * 190, 1, "not a name for a file"),
     },
 )
 async def test_what_has_no_room_is_refused_without_a_path(

@@ -219,5 +219,5 @@ async def test_a_file_is_kept_in_the_folder_only(
     async with visitor.client.post(
         url, params={"name": name}, data=b"x", headers=headers
     ) as answer:
-        assert (answer.status, "no name for a file" in await answer.text()) == (400, True)
+        assert (answer.status, "not a name for a file" in await answer.text()) == (400, True)
     assert list(tmp_path.iterdir()) == []

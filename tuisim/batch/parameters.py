@@ -315,7 +315,7 @@ def _sample(name: str, inside: str, key: str) -> SampleValues:
     """
     if name not in [*RandomDraw]:
         raise ConfigError(
-            f"there is no random draw {name}(…)", nearest(name, [*RandomDraw]), key=key
+            f"{name}(…) does not draw random values", nearest(name, [*RandomDraw]), key=key
         )
     words = [word.strip() for word in inside.split(",")]
     seed = 0

@@ -113,7 +113,7 @@ class Rounds(Iterator[int]):
         if column is None:
             return math.inf
         if column.dtype.kind not in "bif":
-            raise ConfigError(f"{self._precision.column!r} is no number", key="until")
+            raise ConfigError(f"{self._precision.column!r} is not a number", key="until")
         return compute_margin([value for value in column.tolist() if math.isfinite(value)])
 
 

@@ -125,8 +125,8 @@ def check_line(one: Breakpoint, lines: Sequence[str]) -> None:
     line = break_line_of(one)
     if line and not find_code_line(lines, line):
         last = len(lines)
-        why = f"the program has no line {line}" if line > last else f"no code follows line {line}"
-        raise _refuse(one.text, why, f"it has {counted(last, 'line')}")
+        why = f"line {line} does not exist" if line > last else f"no code follows line {line}"
+        raise _refuse(one.text, why, f"the program has {counted(last, 'line')}")
 
 
 def break_lines(breaks: Iterable[Breakpoint]) -> dict[int, Breakpoint]:

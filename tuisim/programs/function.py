@@ -32,7 +32,9 @@ def read_function(function: Callable[[], object]) -> ProgramSource:
         ConfigError: it is no function with a name and a source, takes arguments, or uses something else.
     """
     if not isinstance(function, FunctionType) or function.__name__ == "<lambda>":
-        raise ConfigError(f"{function!r} is no program", "name a file, or a function made by def")
+        raise ConfigError(
+            f"{function!r} is not a program", "name a file, or a function made by def"
+        )
     needed = [
         parameter.name
         for parameter in inspect.signature(function).parameters.values()

@@ -71,7 +71,7 @@ def _check_name(name: str) -> None:
         or not 0 < len(name.encode("utf-8", "replace")) <= _MAX_NAME_BYTES
     ):
         raise ConfigError(
-            f"no name for a file: {name!r}",
+            f"not a name for a file: {name!r}",
             "letters, digits and a suffix, such as lab.py",
             key="name",
         )

@@ -134,7 +134,7 @@ HEARD: dict[str, tuple[str, str]] = {
         "[[294, 500, 50], [0, 550, 0], [330, 1000, 50]]",
     ),
     "s.play_song([('D4', 'w')])": ("[♪ song of 1 note, 2.0 s]", "[[294, 2000, 50]]"),
-    "s.beep('-f high')": ("[beep refuses -f high: 'high' is no number]", "[[0, 0, 0]]"),
+    "s.beep('-f high')": ("[beep refuses -f high: 'high' is not a number]", "[[0, 0, 0]]"),
     "s.play_file('bark.wav')": ("[plays bark.wav, 1.5 s]", "[[0, 1500, 0]]"),
     "s.play_file('noise.wav')": (
         "[cannot play noise.wav: file does not start with RIFF id]",

@@ -110,7 +110,7 @@ def test_who_is_missing_and_who_is_absent(tmp_path: Path) -> None:
         ("", "no column that names the submissions"),
         ("name,mail\nben,x\n", "submission, Username, SIS Login ID"),
         ("submission\nben\nben\n", "two rows for 'ben'"),
-        ('submission\n"ben\n', "is not a CSV"),
+        ('submission\n"ben\n', "is not a CSV file"),
         ("submission\nb\xe9n\n".encode("latin-1"), "is not a CSV file in UTF-8"),
     ],
 )

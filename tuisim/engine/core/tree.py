@@ -129,7 +129,7 @@ def restore(data: Mapping[str, Any]) -> RunSpec:
 
 def _load_part(part: Part, data: Any, is_checked: bool) -> Any:
     if not isinstance(data, Mapping):
-        raise TypeError(f"{part.of.__name__} is {data!r:.60}")
+        raise TypeError(f"{part.of.__name__} must be a table, got {data!r:.60}")
     make = part.of if is_checked or not issubclass(part.of, Spec) else part.of.restore
     inside = ((name, part.values.get(name), node) for name, node in data.items())
     return make(

@@ -114,7 +114,7 @@ def parse_beep(words: Sequence[str]) -> list[Tone]:
     except getopt.GetoptError as error:
         raise ValueError(str(error)) from error
     if rest:
-        raise ValueError(f"{rest[0]} is no option")
+        raise ValueError(f"{rest[0]} is not an option")
     notes: list[dict[str, float]] = [{}]
     for name, value in options:
         if name in ("-n", "--new"):
@@ -130,7 +130,7 @@ def _number(text: str) -> float:
     except ValueError:
         number = math.nan
     if not math.isfinite(number):
-        raise ValueError(f"{text!r} is no number")
+        raise ValueError(f"{text!r} is not a number")
     return number
 
 

@@ -181,7 +181,9 @@ class TouchNothingCondition(Condition):
 
     def __post_init__(self) -> None:
         if not (self.obstacles or self.walls):
-            raise ConfigError("obstacles and walls are both false", "set one of them to true")
+            raise ConfigError(
+                "has nothing to check: obstacles and walls are both false", "set one to true"
+            )
 
 
 @dataclass(frozen=True, slots=True)

@@ -147,11 +147,13 @@ def find_warnings(lesson: Lesson) -> list[str]:
     for step in lesson.steps:
         place = f"{lesson.path}, line {step.line}"
         warnings += [
-            f"{place}: no wrong way “{way}” is tried on “{step.title}”, nor excluded"
+            f"{place}: step “{step.title}” does not try the wrong way “{way}”, or name it in `excludes`"
             for way in step.find_missing_ways()
         ]
         if isinstance(step.check, QuestionCheck | RunCheck) and not step.why:
-            warnings.append(f"{place}: no `why` says why what passes “{step.title}” is right")
+            warnings.append(
+                f"{place}: step “{step.title}” has no `why`, which says why an answer or a run is right"
+            )
     return warnings
 
 

@@ -43,7 +43,7 @@ DID: dict[str, tuple[str, list[str], list[str]]] = {
     "beep refuses": (
         "print(os.system('beep -f high'), ms())",
         ["256 0"],
-        ["[beep refuses -f high: 'high' is no number]"],
+        ["[beep refuses -f high: 'high' is not a number]"],
     ),
     "echo": ("os.system('echo hello \"big  world\"')", ["hello big  world"], []),
     "echo without an end": ("os.system('echo -n a'); print('b')", ["ab"], []),
@@ -77,7 +77,7 @@ DID: dict[str, tuple[str, list[str], list[str]]] = {
     "&& goes on after success only": (
         "print(os.system('echo a && beep -f high && espeak --stdout b | aplay; echo c'), ms())",
         ["a", "c", "0 0"],
-        ["[beep refuses -f high: 'high' is no number]"],
+        ["[beep refuses -f high: 'high' is not a number]"],
     ),
     "echo into the brick's files": (
         "print(os.system(f'echo run-timed > {TACHO}/command && cat {TACHO}/commands'))\n"
@@ -104,13 +104,13 @@ DID: dict[str, tuple[str, list[str], list[str]]] = {
     "call": (
         "print(subprocess.call('beep'), subprocess.call(['beep', '-f', 'high']), ms())",
         ["0 1 200"],
-        ["[beep]", "[beep refuses -f high: 'high' is no number]"],
+        ["[beep]", "[beep refuses -f high: 'high' is not a number]"],
     ),
     "check_call": (
         "try: subprocess.check_call(['beep', '-f', 'high'])\nexcept subprocess.CalledProcessError as error: "
         "print(error.returncode)",
         ["1"],
-        ["[beep refuses -f high: 'high' is no number]"],
+        ["[beep refuses -f high: 'high' is not a number]"],
     ),
     "check_output": (
         "print(subprocess.check_output('echo a', shell=True, stderr=STDOUT))",

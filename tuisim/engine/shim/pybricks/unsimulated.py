@@ -40,7 +40,8 @@ NXT_DEVICES: Mapping[str, Hardware] = {
     ),
     "LightSensor": Hardware("the NXT light sensor", "use pybricks.ev3devices.ColorSensor"),
     "SoundSensor": Hardware(
-        "the NXT sound sensor", "there is no sound here: start with a TouchSensor or a button"
+        "the NXT sound sensor",
+        "the simulated world has no sound: start with a TouchSensor or a button",
     ),
     "TemperatureSensor": Hardware("the NXT temperature sensor", _LEGO),
     "TouchSensor": Hardware("the NXT touch sensor", "use pybricks.ev3devices.TouchSensor"),

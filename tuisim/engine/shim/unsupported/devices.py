@@ -28,7 +28,8 @@ _ALONE = "the simulated sensors are those of ev3dev2.sensor.lego for colour, dis
 DRIVERS: Mapping[str, Hardware] = {
     "lego-nxt-light": Hardware("the NXT light sensor", _LIGHT),
     "lego-nxt-sound": Hardware(
-        "the NXT sound sensor", "there is no sound here: start with a TouchSensor or a Button"
+        "the NXT sound sensor",
+        "the simulated world has no sound: start with a TouchSensor or a Button",
     ),
     "lego-nxt-touch": Hardware("the NXT touch sensor", "use the one of the EV3, lego-ev3-touch"),
     "lego-nxt-us": Hardware("the NXT ultrasonic sensor", "use the one of the EV3, lego-ev3-us"),

@@ -52,7 +52,9 @@ _RADIO = (
 _BUS = "the sensors of {sensors} are simulated"
 CAMERA = "use a ColorSensor for colours, and an UltrasonicSensor for distances"
 _GAMEPAD = "to drive by hand, use the brick's buttons or {remote}"
-_MICROPHONE = "there is no sound here: start with a TouchSensor or a button; {sound} makes sounds"
+_MICROPHONE = (
+    "the simulated world has no sound: start with a TouchSensor or a button; {sound} makes sounds"
+)
 
 
 @dataclass(frozen=True, slots=True)
