@@ -180,7 +180,9 @@ def choose_programs(word: str) -> list[NotebookProgram]:
     name, sharp, cell = word.partition("#")
     programs = read_notebook_programs(Path(name))
     if not programs:
-        raise ConfigError("has no program cells", "they begin with %%sim_magic", file=name)
+        raise ConfigError(
+            "has no program cells", "a program cell begins with %%sim_magic", file=name
+        )
     if not sharp:
         return programs
     if not cell.isdecimal() or not 1 <= int(cell) <= len(programs):

@@ -93,10 +93,10 @@ def _replace(path: Path, begin: int, data: bytes) -> None:
     [
         (0, b"TUISIMTL", "not a tuisim recording"),
         (8, b"\x09", "format version 9"),
-        (HEADER_BYTES, b"\xff" * 8, "these are no readings"),
-        (HEADER_BYTES + 12, bytes([len(READING_PORTS)]), "these are no readings"),
-        (HEADER_BYTES + 13, b"\x7f", "these are no readings"),
-        (HEADER_BYTES, b"\x09", "these are no readings"),
+        (HEADER_BYTES, b"\xff" * 8, "the records are not readings"),
+        (HEADER_BYTES + 12, bytes([len(READING_PORTS)]), "the records are not readings"),
+        (HEADER_BYTES + 13, b"\x7f", "the records are not readings"),
+        (HEADER_BYTES, b"\x09", "the records are not readings"),
     ],
 )
 def test_a_damaged_file_is_refused(tmp_path: Path, begin: int, data: bytes, complaint: str) -> None:

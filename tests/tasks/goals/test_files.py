@@ -214,15 +214,15 @@ BAD = {
     ),
     "limit of the wrong kind": (
         goal("finish = true", "until = 5"),
-        "line 8: goal[2].until: does not fit this condition (it is met once: use before)",
+        "line 8: goal[2].until: does not fit this condition (a run meets the condition once: use before)",
     ),
     "other limit of the wrong kind": (
         goal("touch_nothing = true", "before = 5"),
-        "goal[2].before: does not fit this condition (it must hold all the time",
+        "goal[2].before: does not fit this condition (the condition must hold all the time",
     ),
     "limit of the text": (
         goal("use = 'f'", "after = 5"),
-        "goal[2].after: does not fit this condition (it is known before",
+        "goal[2].after: does not fit this condition (the condition is known before",
     ),
     "limit that is no time": (
         goal("finish = true", "before = true"),

@@ -459,7 +459,9 @@ class Document:
 
     def _write(self, path: Path) -> None:
         if path.suffix != ".py":
-            raise ConfigError("is not a valid program name", "it ends in .py", file=str(path))
+            raise ConfigError(
+                "is not a valid program name", "the name of a program ends in .py", file=str(path)
+            )
         if is_protected(path):
             raise ConfigError(
                 "is an example, or cannot be written", "choose another file", file=str(path)

@@ -124,7 +124,7 @@ def read_commands(folder: Path) -> RecordedCommands:
         )
     size, published = read_header(data, COMMANDS_MAGIC, str(path))
     if size != COMMAND_RECORD.size:
-        raise LogError("damaged: these are no commands", file=str(path))
+        raise LogError("damaged: the records are not commands", file=str(path))
     count = min(published, MAX_COMMANDS, (len(data) - HEADER_BYTES) // size)
     rows = np.frombuffer(data, _find_kind(), count, HEADER_BYTES)
     return RecordedCommands(rows, published - count)

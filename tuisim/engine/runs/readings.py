@@ -190,5 +190,5 @@ def read_readings(folder: Path, *, is_over: bool = True) -> Readings:
         or (rows["port"] >= len(READING_PORTS)).any()
         or (rows["mode"] >= len(READING_MODES)).any()
     ):
-        raise LogError("damaged: these are no readings", file=str(path))
+        raise LogError("damaged: the records are not readings", file=str(path))
     return Readings(rows, published - count)

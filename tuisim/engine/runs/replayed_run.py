@@ -85,7 +85,7 @@ def _replay_commands(
     try:
         ticks = replay(run.first_spec, commands.unpack(), actions, last_tick, limit_s)
     except ValueError as error:
-        raise LogError("damaged: these are no commands", file=str(run.folder)) from error
+        raise LogError("damaged: the records are not commands", file=str(run.folder)) from error
     if ticks.robot != run.spec.robot:
         raise LogError("the robot's parts differ from those that the program has reported")
     return ticks

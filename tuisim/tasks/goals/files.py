@@ -351,9 +351,9 @@ def _parse_limit(data: object, location: Location) -> str | float:
 
 
 _UNFIT = {
-    ConditionKind.REACHED: "it is met once: use before",
-    ConditionKind.HELD: "it must hold all the time: use until",
-    ConditionKind.FIXED: "it is known before the run",
+    ConditionKind.REACHED: "a run meets the condition once: use before",
+    ConditionKind.HELD: "the condition must hold all the time: use until",
+    ConditionKind.FIXED: "the condition is known before the run",
     ConditionKind.COMBINED: "give it to the goals that are combined",
 }
 

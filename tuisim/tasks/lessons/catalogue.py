@@ -43,7 +43,7 @@ def find_lesson_paths(folder: Path | str | None = None) -> dict[str, Path]:
     lessons = _find_folder_paths(own)
     if not lessons:
         raise ConfigError(
-            f"no lessons in {own}", f"they are {SUFFIX} files, see `tuisim learn new`", key=key
+            f"no lessons in {own}", f"lessons are {SUFFIX} files, see `tuisim learn new`", key=key
         )
     return paths | lessons
 

@@ -167,7 +167,9 @@ def _end_of_front(lines: Sequence[str], path: Path) -> int:
         if line.strip() == FENCE:
             return index
     raise ConfigError(
-        f"there is no second line {FENCE}", "it ends the TOML", file=f"{path}, line {len(lines)}"
+        f"there is no second line {FENCE}",
+        "this line ends the TOML",
+        file=f"{path}, line {len(lines)}",
     )
 
 

@@ -435,7 +435,7 @@ def _list_place(world: WorldSpec) -> tuple[object, ...]:
 def _explain_miss(missed: Judgement) -> str:
     """Return why a goal is missed in another world, without the numbers and words that would give the answer away."""
     if any(isinstance(part, LogCondition | PrintCondition) for part in missed.goal.parts):
-        return "it does not print what the robot sees there, where the robot sees it."
+        return "the program does not print the robot's readings at the places where the robot reads them."
     return missed.reason
 
 

@@ -196,9 +196,7 @@ def _suggest_remedy(goal: Goal) -> str:
             case AvoidCondition() | UseCondition():
                 return "give it a second condition, one that the robot must meet"
     if goal.until is not None:
-        return (
-            "it holds without doing anything: join it by `all` with a goal that the robot must meet"
-        )
+        return "a program that does nothing meets this goal: join it by `all` with a goal that the robot must meet"
     if any(part.KIND is ConditionKind.HELD for part in goal.parts):
-        return "a robot that stands still keeps to it: give it `until`, a goal that the robot must meet"
+        return "a robot that stands still meets this goal: give it `until`, a goal that the robot must meet"
     return "give it `after`, a goal that the robot must have met"

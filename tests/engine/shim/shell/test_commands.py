@@ -213,7 +213,7 @@ REFUSED = {
     "os.system('espeak')": ("espeak without a text", "use espeak TEXT"),
     "os.system('espeak -w a.wav hi')": (
         "the option w of espeak",
-        "it has --stdout and a:s:v:p:g:k:l:b:mz",
+        "espeak has --stdout and a:s:v:p:g:k:l:b:mz",
     ),
     "os.system('espeak --stdout hi')": (
         "espeak --stdout alone",

@@ -46,10 +46,10 @@ def note_of(text: Any, whole_ms: int) -> Tone:
     """
     match = NOTE.fullmatch(text_of(text))
     if match is None:
-        raise ValueError(f"{text!r} is no note such as 'C4/4', 'F#5/8.' or 'R/2'")
+        raise ValueError(f"{text!r} is not a note such as 'C4/4', 'F#5/8.' or 'R/2'")
     name, accidental, octave, fraction, dot, tied = match.groups()
     if f"{name}{accidental}" in NO_NOTES or not int(fraction):
-        raise ValueError(f"{text!r} is no note that the brick knows")
+        raise ValueError(f"{text!r} is not a note that the brick knows")
     length_ms = whole_ms // int(fraction)
     if dot:
         length_ms = 3 * length_ms // 2

@@ -310,7 +310,9 @@ def _parse_options(
     try:
         options, arguments = getopt.gnu_getopt(words, short, [long])
     except getopt.GetoptError as error:
-        raise refuse(f"the option {error.opt} of {name}", f"it has --{long} and {short}") from None
+        raise refuse(
+            f"the option {error.opt} of {name}", f"{name} has --{long} and {short}"
+        ) from None
     return dict(options), arguments
 
 

@@ -105,7 +105,7 @@ ADDRESSES: Mapping[str, Hardware] = {
 _BOARDS = ("spi0.1:", "serial0-0:", "ttyAMA0:", "pistorms:")
 _BOARD = Hardware(
     "a port of a BrickPi or PiStorms",
-    "this is an EV3: use OUTPUT_A to OUTPUT_D, INPUT_1 to INPUT_4",
+    "the simulated brick is an EV3: use OUTPUT_A to OUTPUT_D, INPUT_1 to INPUT_4",
 )
 
 FOREIGN_MODES: Mapping[str, str] = {

@@ -116,9 +116,9 @@ ON_THE_BRICK: Mapping[str, Hardware] = {
 }
 """Modules that can be imported but not used, by name."""
 
-_PI = Hardware("the Raspberry Pi", "this is an EV3: use {library}")
+_PI = Hardware("the Raspberry Pi", "the simulated brick is an EV3: use {library}")
 _PI_CAMERA = Hardware("the camera of the Raspberry Pi", CAMERA)
-_BRICKPI = Hardware("the BrickPi", "this is an EV3: use {library}")
+_BRICKPI = Hardware("the BrickPi", "the simulated brick is an EV3: use {library}")
 
 ELSEWHERE: Mapping[str, Hardware] = {
     "RPi": _PI,
@@ -130,7 +130,7 @@ ELSEWHERE: Mapping[str, Hardware] = {
     "picamera2": _PI_CAMERA,
     "brickpi": _BRICKPI,
     "brickpi3": _BRICKPI,
-    "microbit": Hardware("the micro:bit", "this is an EV3: use {library}"),
+    "microbit": Hardware("the micro:bit", "the simulated brick is an EV3: use {library}"),
     **{
         name: Hardware("LEGO's own Python for SPIKE", f"in Pybricks, for the same hub: {instead}")
         for name, instead in SPIKE_MODULES.items()
