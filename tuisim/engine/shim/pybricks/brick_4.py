@@ -8,11 +8,11 @@ from enum import Enum
 from typing import Any
 
 from tuisim.engine.core.profile import MS, NS_PER_S
+from tuisim.engine.runs.readings import BUTTONS_PORT
 from tuisim.engine.shim.pybricks import hubs
 from tuisim.engine.shim.pybricks import speaker as tones
 from tuisim.engine.shim.pybricks.brick import Connected, Waiting, invalid_argument, whole
 from tuisim.engine.shim.pybricks.hsv_color import Color
-from tuisim.engine.shim.pybricks.parameters import Button
 from tuisim.engine.shim.tones import Tone, song_of, tones_heard
 from tuisim.engine.shim.unsupported.modules import Hardware, refused_part
 
@@ -189,12 +189,35 @@ class System(Connected):
         return 0
 
 
-class Buttons(hubs.Buttons):
-    """The buttons of the brick."""
+class Buttons(Connected):
+    """Buttons that a hand presses.
 
-    def pressed(self) -> set[Button]:  # type: ignore[override]
+    Args:
+        buttons: They, by their names in the session.
+        port: Where they are, one of `READING_PORTS`.
+    """
+
+    def __init__(self, buttons: Mapping[str, Enum], port: str = BUTTONS_PORT) -> None:
+        self._buttons = buttons
+        self._place = port
+
+    def pressed(self) -> set[Any]:
         """Return the pressed buttons."""
-        return set(super().pressed())
+        self.brick.read("pressed", self._place)
+        names = self.brick.session.pressed & self._buttons.keys()
+        return {self._buttons[name] for name in names}
+
+
+class Battery(hubs.Battery):
+    """The battery, which can be charged."""
+
+    temperature = refused_part(
+        "Battery", "temperature", Hardware("the temperature of the battery", "it stays as it is")
+    )
+
+    def type(self) -> str:
+        """Return its type."""
+        return "Li-ion"
 
 
 class Light(AnimatedLight, hubs.Light):  # type: ignore[misc]
@@ -214,7 +237,8 @@ class Light(AnimatedLight, hubs.Light):  # type: ignore[misc]
 class EV3Brick(hubs.EV3Brick):
     """The brick."""
 
-    buttons = Buttons()
+    buttons = Buttons(hubs.BUTTON_NAMES)  # type: ignore[assignment]
+    battery = Battery()
     light = Light()
     speaker = Speaker()  # type: ignore[assignment]
     system = System("EV3", hubs.BUTTON_NAMES)

@@ -9,9 +9,9 @@ from typing import Any, ClassVar
 from tuisim.engine.core.hub_spec import CONTROLLERS, WAYS
 from tuisim.engine.runs.brick_state import REMOTE_LIGHT_NAMES, XBOX_LIGHT_NAMES
 from tuisim.engine.shim.pybricks.brick import Connected, FirmwareError, Waiting, text_of, whole
+from tuisim.engine.shim.pybricks.brick_4 import Buttons
 from tuisim.engine.shim.pybricks.hsv_color import Color
 from tuisim.engine.shim.pybricks.hub.face import Face
-from tuisim.engine.shim.pybricks.hub.hubs import Buttons
 from tuisim.engine.shim.pybricks.hub.parameters import Button
 from tuisim.engine.shim.unsupported.modules import Hardware, refused_part
 

@@ -5,10 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any, ClassVar
 
-from tuisim.engine.runs.readings import HUB_BUTTONS_PORT
-from tuisim.engine.shim.pybricks import hubs
 from tuisim.engine.shim.pybricks.brick import Connected
-from tuisim.engine.shim.pybricks.brick_4 import AnimatedLight, Speaker, System
+from tuisim.engine.shim.pybricks.brick_4 import AnimatedLight, Battery, Buttons, Speaker, System
 from tuisim.engine.shim.pybricks.hub.display import Display, Menu
 from tuisim.engine.shim.pybricks.hub.face import Face
 from tuisim.engine.shim.pybricks.hub.imu import IMU, Accelerometer
@@ -24,39 +22,6 @@ BUTTON_NAMES: Mapping[str, Button] = {
     "up": Button.BLUETOOTH,
 }
 """By the name of the button in the session."""
-FULL_MV = 8190
-"""From this voltage on a charged battery is shown as full."""
-
-
-class Buttons(Connected):
-    """Buttons that a hand presses.
-
-    Args:
-        buttons: They, by their names in the session.
-        port: Where they are, one of `READING_PORTS`.
-    """
-
-    def __init__(self, buttons: Mapping[str, Button], port: str = HUB_BUTTONS_PORT) -> None:
-        self._buttons = buttons
-        self._place = port
-
-    def pressed(self) -> set[Button]:
-        """Return the pressed buttons."""
-        self.brick.read("pressed", self._place)
-        names = self.brick.session.pressed & self._buttons.keys()
-        return {self._buttons[name] for name in names}
-
-
-class Battery(hubs.Battery):
-    """The battery, which can be charged."""
-
-    temperature = refused_part(
-        "Battery", "temperature", Hardware("the temperature of the battery", "it stays as it is")
-    )
-
-    def type(self) -> str:
-        """Return its type."""
-        return "Li-ion"
 
 
 class Charger(Connected):
