@@ -134,6 +134,11 @@ CASES: Mapping[str, tuple[str, dict[str, Any], tuple[str, str, tuple[float, floa
         {"above": {"background": "Loop"}},
         ("lego-micropython", "Robot of p.py", LINE),
     ),
+    "a hub and a mat in a magic line": (
+        "# %sim_magic -b Loop\nfrom pybricks.hubs import PrimeHub\nhub = PrimeHub()\n",
+        {},
+        ("pybricks4", "Robot of p.py", LINE),
+    ),
     "pybricks and a magic line": (
         f"# %%sim_magic\n{BASE}",
         {},

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ProfileError, RobotError
 from tuisim.base.source import FOR_SPIKE, Program
+from tuisim.engine.core.hub_spec import HUBS
 from tuisim.engine.core.profile import PROFILES, PYBRICKS_4, Library, MotorLaw, ProfileSpec
 from tuisim.programs.program_file import ProgramSource
 from tuisim.programs.robot.course import has_course_names
@@ -270,7 +271,8 @@ def decide(
         layer["profile"] = DEFAULT_PROFILE if for_course or facts.of_course else facts.brick_profile
     profile = layer.get("profile", settings["profile"])
     has_rules = has_brick_rules(profile)
-    if "for_brick" in free and (by_brick_rules or (has_rules and not source.has_magic)):
+    is_for_brick = facts.version_4_name in HUBS or not source.has_magic
+    if "for_brick" in free and (by_brick_rules or (has_rules and is_for_brick)):
         layer["for_brick"] = True
     if by_brick_rules and has_rules:
         layer |= _decide_ground(facts, free)
