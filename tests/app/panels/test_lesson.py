@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -195,25 +195,38 @@ async def test_panel_that_a_step_asks_for_is_not_open_already(tmp_path: Path) ->
         await until(pilot, lambda: states().get("do") == "done")
 
 
-@pytest.mark.quick_cases("debug", "output")
 # The settings are too high to stand beside a lesson in a low terminal.
-@pytest.mark.parametrize("panel", [name for name in PANELS if name not in ("lesson", "settings")])
-async def test_page_keys_scroll_the_text_beside_every_panel(panel: str, tmp_path: Path) -> None:
+BESIDE = [name for name in PANELS if name not in ("lesson", "settings")]
+
+
+@pytest.mark.parametrize(
+    "panels",
+    [("debug", "output"), pytest.param(BESIDE, marks=pytest.mark.slow)],
+    ids=["two", "every one"],
+)
+async def test_page_keys_scroll_the_text_beside_every_panel(
+    panels: Sequence[str], tmp_path: Path
+) -> None:
     async with open_lab(with_lines(opened(tmp_path), 40), size=SMALL) as (pilot, app):
-        app.panel_area.request({panel: True, "lesson": True})
-        await until(pilot, lambda: app.panel_area.is_shown(panel) and "Line 0" in shown(app))
-        lesson = app.panel_area.lesson
-        assert lesson is not None
-        for widget in [
-            one for one in app.screen.focus_chain if lesson not in one.ancestors_with_self
-        ]:
-            app.set_focus(widget)
-            await pilot.pause()
-            assert lesson.border_subtitle == "page down reads on"
-            await pilot.press("pagedown")
-            await until(pilot, lambda: "Line 0\n" not in shown(app))
-            await pilot.press("pageup")
-            await until(pilot, lambda: "Line 0\n" in shown(app))
+        for panel in panels:
+            app.panel_area.request({panel: True, "lesson": True})
+
+            def has_both(panel: str = panel) -> bool:
+                return app.panel_area.is_shown(panel) and "Line 0" in shown(app)
+
+            await until(pilot, has_both, panel)
+            lesson = app.panel_area.lesson
+            assert lesson is not None
+            for widget in [
+                one for one in app.screen.focus_chain if lesson not in one.ancestors_with_self
+            ]:
+                app.set_focus(widget)
+                await pilot.pause()
+                assert lesson.border_subtitle == "page down reads on", panel
+                await pilot.press("pagedown")
+                await until(pilot, lambda: "Line 0\n" not in shown(app), panel)
+                await pilot.press("pageup")
+                await until(pilot, lambda: "Line 0\n" in shown(app), panel)
 
 
 async def test_page_keys_belong_to_the_editor_while_it_is_typed_in(tmp_path: Path) -> None:
