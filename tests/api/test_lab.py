@@ -61,6 +61,14 @@ def test_recorded_commands_give_the_same_poses_to_the_bit(
     assert len(np.unique(expected, axis=0)) > 20
 
 
+def test_the_time_of_the_last_tick_leads_to_the_last_pose() -> None:
+    # It ends between two ticks, while the robot drives.
+    run = tuisim.simulate("import time\ntank_drive.on(30, 30)\ntime.sleep(0.517)\n", world=SMOOTH)
+    lab = tuisim.Lab.of_run(run)
+    lab.step(period_s=run.telemetry["time"].iloc[-1], commands=run.commands)
+    assert lab.pose == run.pose
+
+
 def test_sensors_see_what_the_pen_draws() -> None:
     pen = {"x_mm": -20, "y_mm": 30, "color": "black", "down": True}
     robot = tuisim.Robot(parts={"pen": pen})
