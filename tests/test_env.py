@@ -71,7 +71,7 @@ def test_a_thousand_seeds_give_the_same_episodes() -> None:
 
 def test_a_function_rewards_and_ends() -> None:
     env = LabEnv(
-        ("left_red_pc",),
+        "left_red_pc",
         lambda before, after: after["x_mm"] - before["x_mm"],
         lambda values: values["x_mm"] > 200,
         world=tuisim.World(background="Grey_bands", x=100, angle=0),

@@ -5,17 +5,22 @@ It needs the extra `gym`. Each task is registered when this module is imported, 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-import gymnasium
 import numpy as np
-from gymnasium.spaces import Box
 
 from tuisim.api.face import Robot, World
 from tuisim.api.lab import MOTION, Lab
 from tuisim.engine.core.values import MAX_SEED
+
+try:
+    import gymnasium
+    from gymnasium.spaces import Box
+except ImportError as error:
+    hint = "pip install -e '.[gym]' in the clone of tuisim"
+    raise ImportError(f"tuisim.env needs Gymnasium: {hint}") from error
 
 Values = Mapping[str, float]
 """Values by the name of their column."""
@@ -47,7 +52,7 @@ class LabEnv(gymnasium.Env[Vector, Vector]):
 
     def __init__(
         self,
-        columns: tuple[str, ...],
+        columns: Sequence[str],
         reward: Callable[[Values, Values], float] = lambda *_: 0.0,
         is_over: Callable[[Values], bool] = lambda _: False,
         *,
@@ -57,15 +62,17 @@ class LabEnv(gymnasium.Env[Vector, Vector]):
         profile: str | Path | None = None,
         period_s: float = 0.1,
     ) -> None:
-        every = tuple(dict.fromkeys((*columns, *MOTION)))
-        self.lab = Lab(world, robot, profile=profile, columns=every, goals=goals)
-        self.columns = columns
+        names = (columns,) if isinstance(columns, str) else tuple(columns)
+        self.lab = Lab(world, robot, profile=profile, columns=(*names, *MOTION), goals=goals)
+        self.columns = self.lab.columns[: len(names)]
         self._reward = reward
         self._is_over = is_over
         self._period_s = period_s
         self._before: Values = self.lab.read()
         self._points, _ = self.lab.judge()
-        bounds = [_BOUNDS.get(name.rpartition("_")[2], (-_FARTHEST, _FARTHEST)) for name in columns]
+        bounds = [
+            _BOUNDS.get(name.rpartition("_")[2], (-_FARTHEST, _FARTHEST)) for name in self.columns
+        ]
         low, high = zip(*bounds, strict=True)
         self.observation_space = Box(np.array(low, np.float32), np.array(high, np.float32))
         self.action_space = Box(-1.0, 1.0, (2,), np.float32)
