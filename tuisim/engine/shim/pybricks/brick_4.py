@@ -164,6 +164,8 @@ class System(Connected):
             "name": self._name,
             "reset_reason": 0,
             "host_connected_ble": False,
+            "host_connected_usb": False,
+            "program_id": 0,
             "program_start_type": 1,
         }
 

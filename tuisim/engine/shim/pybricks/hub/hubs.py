@@ -27,9 +27,9 @@ BUTTON_NAMES: Mapping[str, Button] = {
 class Charger(Connected):
     """The charger, which is not connected."""
 
-    def connected(self) -> bool:
-        """Return whether it is connected."""
-        return False
+    def connected(self) -> int:
+        """Return the kind of the USB port that it is connected to: none."""
+        return 0
 
     def status(self) -> int:
         """Return its state: it does not charge."""

@@ -1,0 +1,19 @@
+"""What a hub tells of itself and of its charger."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from tests.engine.shim.pybricks.lab import Lab
+from tuisim.engine.core.profile import MotorLaw
+from tuisim.engine.shim.pybricks.hub.hubs import PrimeHub
+
+
+def test_a_hub_tells_what_programs_look_up() -> None:
+    Lab(MotorLaw.PYBRICKS_4, {}, hub="PrimeHub")
+    hub: Any = PrimeHub()
+    assert repr(hub.charger.connected()) == "0"
+    assert hub.system.info().keys() == {
+        *("name", "reset_reason", "host_connected_ble", "host_connected_usb"),
+        *("program_id", "program_start_type"),
+    }
