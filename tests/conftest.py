@@ -31,6 +31,16 @@ ROOT = Path(__file__).resolve().parent.parent
 MATS = {name: getattr(mat_cache, name) for name in ("_in_use", "_store")}
 """How mats are looked for and stored by users."""
 
+LONGEST = {
+    "test_app_monkey.py",
+    "test_live_robot_page.py",
+    "test_mark_attacks.py",
+    "test_rules.py",
+    "test_runs_damaged.py",
+    "test_server_page.py",
+}
+"""Files that take the most time; types are checked in that of the rules."""
+
 settings.register_profile(
     "quick",
     max_examples=15,
@@ -49,6 +59,12 @@ def pytest_sessionstart() -> None:
     """Do not look for garbage among the thousands of tests that are collected: it costs as much as the tests."""
     # Not when this is imported: programs that import it, too, would grow without a bound.
     gc.disable()
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Begin with the files whose slow tests take minutes: at the end, one worker would wait for another's."""
+    items.sort(key=lambda item: item.path.name not in LONGEST)
 
 
 def pytest_collection_finish() -> None:
