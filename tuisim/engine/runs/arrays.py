@@ -37,7 +37,7 @@ def compute_world_points_mm(
 
 
 def compute_cos_and_sin(angles_deg: NDArray[Any]) -> tuple[FloatArray, FloatArray]:
-    """Return cosine and sine of angles, shape (n,), to the bit as `math` does; NaN where there is no angle."""
-    # Those of numpy may differ in the last bit, which can change a pixel. A damaged record may have no valid heading.
+    """Return cosine and sine of angles, shape (n,), bit by bit those of `math`; NaN where there is no angle."""
+    # numpy's results may differ in the last bit, which can change a pixel. A damaged record may have no valid heading.
     turns = list(map(math.radians, np.where(np.isfinite(angles_deg), angles_deg, np.nan).tolist()))
     return np.array(list(map(math.cos, turns))), np.array(list(map(math.sin, turns)))

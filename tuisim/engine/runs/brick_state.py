@@ -53,7 +53,7 @@ class TextScreen:
 
 @dataclass(frozen=True, slots=True)
 class BrickState:
-    """What the brick shows at one time."""
+    """All that the brick shows at one time: LEDs, display, text screen, further motors, sound."""
 
     leds: Mapping[str, int] = field(default_factory=dict)
     """Brightness by name, as in `LED_NAMES`, 0 to 255. Empty until the program sets an LED: then they are green."""
@@ -79,22 +79,26 @@ class BrickState:
 
 
 def build_led_row(brightness: Mapping[str, int]) -> str:
-    """Return the row for the LEDs: brightness 0 to 255 by name, as in `LED_NAMES`."""
+    """Return the text of an output row for the LEDs.
+
+    Args:
+        brightness: 0 to 255 by name, as in `LED_NAMES`.
+    """
     return json.dumps(dict(brightness))
 
 
 def display_row(picture: bytes) -> str:
-    """Return the row for a picture in the format of `BrickState.picture`."""
+    """Return the text of an output row for a picture in the format of `BrickState.picture`."""
     return base64.b85encode(zlib.compress(picture, 6)).decode()
 
 
 def build_console_row(screen: TextScreen) -> str:
-    """Return the row for the text screen."""
+    """Return the text of an output row for the text screen."""
     return json.dumps([screen.columns, screen.rows, screen.lines, screen.inverse])
 
 
 def build_motors_row(turns: Iterable[tuple[float, float]]) -> str:
-    """Return the row for the motors: `BrickState.turns`, valid from the row's tick on."""
+    """Return the text of an output row for the motors: `BrickState.turns`, valid from the row's tick on."""
     return json.dumps(list(turns))
 
 
@@ -103,7 +107,7 @@ DRAWN_STREAMS = frozenset({Stream.LED, Stream.DISPLAY, Stream.CONSOLE, Stream.MO
 
 
 def is_sound(stream: Stream, text: bytes) -> bool:
-    """Return whether a row of one of `DRAWN_STREAMS` is what the functions of this module write."""
+    """Return whether a row of one of `DRAWN_STREAMS` has a text that the functions of this module can have written."""
     try:
         face = update_face(BrickState(), [OutputRow(text.decode(), 0, 0, 0, stream)])
     except (ValueError, TypeError, AttributeError, RecursionError, zlib.error):
@@ -135,12 +139,12 @@ def _is_screen(screen: TextScreen) -> bool:
 
 
 def _unpack_picture(text: str) -> bytes:
-    """Return the picture in a row; at most one byte more than a picture has, whatever the row claims."""
+    """Return the picture in a row's text; a longer one is cut off one byte after the size of a picture."""
     return zlib.decompressobj().decompress(base64.b85decode(text), len(BLANK) + 1)
 
 
 def update_face(face: BrickState, rows: Iterable[OutputRow]) -> BrickState:
-    """Return the state after more output; rows of other streams are ignored."""
+    """Return the brick's state after further output; rows of streams that do not show the brick are ignored."""
     for row in rows:
         match row.stream:
             case Stream.LED:

@@ -70,7 +70,7 @@ class RunInfo:
     ticks: int | None = None
     time_s: float | None = None
     samples: int | None = None
-    """None in the file until they are counted."""
+    """Number of samples; None, and empty in the file, until they are counted."""
     summary: str = ""
     tags: str = ""
     """Tags, separated by spaces."""
@@ -283,7 +283,7 @@ def _open(path: Path) -> sqlite3.Connection:
 
 
 def _must_be_made_again(error: sqlite3.DatabaseError) -> bool:
-    """Return whether the file is missing, damaged or foreign."""
+    """Return whether an error means that the catalogue's file is missing, damaged or foreign."""
     if isinstance(error, _ForeignFile):
         return True
     code = getattr(error, "sqlite_errorcode", sqlite3.SQLITE_OK) & 0xFF

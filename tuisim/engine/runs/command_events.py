@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 _REPEAT_NS = NS_PER_S // 4
 """A call to a part that comes again within this time repeats the one before."""
 _MAX_EVENTS = 1 << 17
-"""Of a run; further commands are left out. At four a second, these are nine hours."""
+"""Events of a run; further commands are left out. At four events a second, this is enough for nine hours."""
 _PIECE = 1 << 15
 """So many commands are read at a time."""
 _FINEST = 500
@@ -56,24 +56,24 @@ class CommandedRun(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class CommandEvent:
-    """What a program asked of a part, once or repeatedly."""
+    """A command that a program gave to a part of the robot, once or repeatedly."""
 
     time_s: float
-    """When it was asked first, simulated."""
+    """Simulated time of the first command."""
     part: str
-    """Such as `left motor B`."""
+    """Name of the part, such as `left motor B`."""
     asked: str
-    """Such as `run 500 °/s`."""
+    """The command in words, such as `run 500 °/s`."""
     count: int
-    """How often it was asked, each time soon after the time before."""
+    """How often the command was given, each time soon after the time before."""
     last_s: float
-    """When it was asked last."""
+    """Simulated time of the last command."""
     came: str
-    """What came of it, until the part was asked for something else; empty if that is not known."""
+    """Its result, until the part got another command; empty if that is not known."""
 
     @property
     def words(self) -> str:
-        """What was asked, how often, and what came."""
+        """The command, how often it was given, and its result, in one line."""
         repeats = f", {self.count:,} times" if self.count > 1 else ""
         if self.last_s - self.time_s >= 0.01:
             repeats += f" until {self.last_s:.2f} s"
@@ -88,10 +88,10 @@ def parse_command_search(text: str) -> str | None:
 
 
 class CommandIndex:
-    """The commands of a run in the order in which they came, repetitions as one; the run may go on.
+    """The commands of a run as events, in the order in which they came; repetitions are one event. The run may go on.
 
     Args:
-        run: The run; one without a record of commands has none.
+        run: The run; without a record of commands there are no events.
     """
 
     def __init__(self, run: CommandedRun) -> None:
@@ -127,12 +127,12 @@ class CommandIndex:
         return bool(len(rows))
 
     def read_all(self) -> None:
-        """Read all that there is so far."""
+        """Read all commands that have been recorded so far."""
         while self.read_piece():
             pass
 
     def _take(self, rows: Array) -> None:
-        """Add commands to the events: one that repeats another belongs to its event."""
+        """Group commands into events and add these: a command that repeats another belongs to its event."""
         import numpy as np
 
         times = np.maximum.accumulate(np.maximum(rows["time_ns"], self._newest_ns))
@@ -158,7 +158,7 @@ class CommandIndex:
             self._add(*event)
 
     def _read_codes(self, rows: Array) -> Array:
-        """Return the codes of commands; take note of parts that were plugged in."""
+        """Return a code of robot, call and part for each command; take note of parts that were plugged in."""
         import numpy as np
 
         plugs = rows["call"] == Call.PLUG
@@ -169,7 +169,7 @@ class CommandIndex:
         return codes
 
     def _plug_parts(self, values: list[float]) -> RobotSpec:
-        """Return the robot after parts were plugged in; the same one if they cannot have been."""
+        """Return the robot with the parts that a command's values describe; the same robot if they do not fit."""
         with suppress(ValueError, IndexError, TuisimError):
             return plug_parts(self._robots[-1], decode_parts(values, 0))
         return self._robots[-1]
@@ -204,7 +204,7 @@ class CommandIndex:
     # Finding
 
     def find_events(self, text: str = "") -> list[int]:
-        """Return the numbers of the events with these words in the names of part and call; of all without a word."""
+        """Return the numbers of the events whose part and call contain all words of a text; of all without a text."""
         words = text.lower().split()
         names = {
             code: f"{self._name_part(code)} {_name_call(code)} {CALL_WORDS[_find_call(code)].text}".lower()
@@ -255,7 +255,7 @@ class CommandIndex:
     # What came
 
     def _measure(self, number: int, aim: Aim) -> str:
-        """Return what came of an event, as far as telemetry knows: of the wheels."""
+        """Return in words what a command to the wheels led to, by telemetry; empty for other commands."""
         import numpy as np
 
         part = self._codes[number] & 0xFF
@@ -293,13 +293,13 @@ class CommandIndex:
         return f"turned {_round(speeds[:count].sum() / self._hz)}° {when}"
 
     def _find_end(self, number: int) -> int:
-        """Return the tick at which the part of an event was asked for something else, or the newest one."""
+        """Return the tick at which the part of an event got its next command to move; the newest tick without one."""
         if len(self._ends) != len(self):
             self._ends = self._list_ends()
         return self._ends[number]
 
     def _list_ends(self) -> list[int]:
-        """Return for each event the tick at which the next motion of its part was asked for."""
+        """Return for each event the tick at which its part got its next command to move."""
         newest = self._run.telemetry.count - 1
         ends = [0] * len(self)
         following: dict[tuple[bool, int], int] = {}
@@ -322,7 +322,7 @@ def _find_call(code: int) -> Call:
 
 
 def _find_aim(call: Call, values: Sequence[float]) -> Aim:
-    """Return what a call with these values asks for."""
+    """Return the kind of motion that a call with these values asks for."""
     is_to_position = call is Call.MOVE and not values[3]
     return Aim.POSITION if is_to_position else CALL_WORDS[call].aim
 
@@ -332,7 +332,7 @@ def _name_call(code: int) -> str:
 
 
 def _find_mains() -> Array:
-    """Return the number of the main value by the number of the call."""
+    """Return the index of each call's main value, by the number of the call."""
     import numpy as np
 
     mains = np.zeros(256, np.int64)

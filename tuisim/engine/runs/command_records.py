@@ -41,7 +41,7 @@ MAX_COMMANDS = 1 << 21
 """Further commands of a run are only counted."""
 _FIRST_BYTES = 1 << 14
 _PACKERS = tuple(Struct(f"<qBB6x{count}d").pack_into for count in range(MAX_VALUES + 1))
-"""By the number of values."""
+"""Functions that pack a command, by the number of its values."""
 _CALLS = {call.value: call for call in Call}
 
 
@@ -65,7 +65,7 @@ class CommandsWriter(MappedWriter):
         self._count = self._length[0] = count + 1
 
     def _extend(self, count: int) -> bool:
-        """Make room for one more command than `count`; return whether there is any."""
+        """Make room for one more command than `count`; return whether that was possible."""
         if count >= MAX_COMMANDS or self._is_full:
             return False
         self._make_room(HEADER_BYTES + (count + 1) * COMMAND_RECORD.size)
@@ -84,10 +84,10 @@ class RecordedCommands:
     rows: Array
     """One row of `COMMAND_FIELDS` for each."""
     left_out: int = 0
-    """How many more there were than the file holds."""
+    """Number of commands that the file had no room for."""
 
     def unpack(self) -> Iterator[SimulationCommand]:
-        """Yield the commands, all their values with them.
+        """Yield the commands, each with as many values as a record has.
 
         Raises:
             ValueError: one has a number that stands for no call.
@@ -131,7 +131,7 @@ def read_commands(folder: Path) -> RecordedCommands:
 
 
 def read_command_rows(folder: Path, first: int, count: int) -> Array:
-    """Return at most `count` rows of `COMMAND_FIELDS` from one on; none where the file has none, or is none."""
+    """Return at most `count` rows of `COMMAND_FIELDS` from row `first` on; none beyond its end or if it is invalid."""
     import numpy as np
 
     kind = _find_kind()

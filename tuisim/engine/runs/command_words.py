@@ -19,16 +19,16 @@ from tuisim.engine.core.servo.trajectory import MILLI
 
 @dataclass(frozen=True, slots=True)
 class Quantity:
-    """How a value is written."""
+    """How one value of a call is written: as a number with a unit, or as a name."""
 
     unit: str = ""
     share: float = 1.0
-    """How many of its unit a value of 1 is."""
+    """Factor from the value to `unit`."""
     names: Sequence[str] = ()
-    """What its whole numbers stand for, from 0; none for a value that is a number."""
+    """What the values 0, 1, … stand for; empty for a number."""
 
     def write(self, low: float, high: float) -> str:
-        """Return a value, or the least and the highest of several."""
+        """Return a value in words, or a range if `low` and `high` differ."""
         if self.names:
             return self.names[int(low)] if 0 <= low < len(self.names) else f"{low:g}"
         ends = dict.fromkeys(f"{value * self.share:.5g}" for value in sorted((low, high)))
@@ -47,10 +47,10 @@ _SETTING = Quantity(names=[name.replace("_", " ") for name in SETTINGS])
 
 
 class Aim(Enum):
-    """What a call asks for, by which is told what came of it."""
+    """What a call asks for, which decides how its result is described."""
 
     NONE = auto()
-    """Nothing that telemetry tells."""
+    """Nothing that telemetry records."""
     SPEED = auto()
     """A speed or a power of a motor."""
     POSITION = auto()
@@ -60,19 +60,19 @@ class Aim(Enum):
     BASE_SPEED = auto()
     """A drive base drives on."""
     BASE_WAY = auto()
-    """It drives so far, and stops."""
+    """A drive base drives or turns so far, and stops."""
 
 
 @dataclass(frozen=True, slots=True)
 class CallWords:
-    """How a call is written."""
+    """How a call is written in words."""
 
     text: str
-    """With the numbers of its values, in the order of the call, in braces."""
+    """The words, with the index of each value in braces, such as `run {0}`."""
     quantities: tuple[Quantity, ...] = ()
-    """Of its first values."""
+    """How its first values are written."""
     main: int = 0
-    """The number of the value that differs most when the call is repeated."""
+    """The index of the value that differs most when the call is repeated."""
     aim: Aim = Aim.NONE
     part: str = ""
     """The part that the call is for; empty for a motor or a drive base."""
@@ -153,7 +153,7 @@ _WITHOUT: Mapping[Call, str] = {
     Call.LIMIT_DUTY: "limit power no longer",
     Call.STOP_BASE: "stop, coast",
 }
-"""The words of calls in which a value is not given that the others name."""
+"""Words of calls without a value that `CALL_WORDS` names."""
 
 
 def describe_command(
@@ -164,8 +164,7 @@ def describe_command(
     Args:
         call: The call.
         values: Its values.
-        low: The least of its main value, where it was repeated; else that value.
-        high: The highest of its main value.
+        low, high: Range of its main value over all repetitions.
         tick_hz: Ticks per second.
     """
     if call is Call.PLUG:

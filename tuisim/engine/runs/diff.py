@@ -197,7 +197,10 @@ def find_first_difference_s(
 def _measure_apart(
     left: np.ndarray[Any, Any], right: np.ndarray[Any, Any], tick_hz: tuple[int, int]
 ) -> tuple[_Series, ...]:
-    """Return times in s, distances in mm and differences of heading in degrees; arguments as there."""
+    """Return how far two robots are apart: times in s, distances in mm, differences of heading in degrees.
+
+    Arguments as of `measure_divergence`.
+    """
     import numpy as np
 
     end_s = min((len(left) - 1) / tick_hz[0], (len(right) - 1) / tick_hz[1])

@@ -144,7 +144,7 @@ def build_telemetry_columns(
 
     Args:
         field: The mat; by default that of the run.
-        names: Some of `list_columns` the run, in place of those after `time`.
+        names: Names of columns from `list_columns`, which replace all columns after `time`.
 
     Raises:
         LogError: a recording is damaged, or the mat no longer exists.
@@ -169,7 +169,7 @@ def compute_column_values(
     """Return columns at every tick by name: float64, shape (n,).
 
     Args:
-        names: Some of `list_columns` the run.
+        names: Names of columns from `list_columns`.
         records: Telemetry, structured as `TICK_FIELDS`, shape (n,).
         run: The run.
         actions: The user's actions, which may have changed the noise.
@@ -212,7 +212,13 @@ def compute_owner_column(
     measured: Mapping[str, Array],
     spec: RunSpec,
 ) -> Array:
-    """Return what is computed from the measured columns of an owner, at every tick, shape (n,)."""
+    """Return a column that is computed from measured ones, at every tick, shape (n,).
+
+    Args:
+        of: Computes its values from one row of measured values for each tick.
+        columns: The columns of its owner, such as a sensor.
+        measured: The measured columns by name.
+    """
     import numpy as np
 
     rows = zip(*(measured[name].tolist() for name in list_measured_names(columns)), strict=True)
@@ -220,10 +226,10 @@ def compute_owner_column(
 
 
 def evaluate_condition(condition: ValueCondition, values: Array) -> Array:
-    """Return whether a condition on a column is true at each tick, from its values there.
+    """Return whether a condition is true at each tick; `values` are those of its column.
 
     Raises:
-        ValueError: what it compares with is no number.
+        ValueError: the condition compares with something that is no number.
     """
     import numpy as np
 
@@ -232,7 +238,7 @@ def evaluate_condition(condition: ValueCondition, values: Array) -> Array:
 
 
 def find_begins(condition: ValueCondition, true: Array) -> Array:
-    """Return the ticks at which a condition becomes true, in ascending order, from whether it is true at each."""
+    """Return the ticks at which a condition becomes true, in order; `true` tells whether it is true at each tick."""
     import numpy as np
 
     before = np.concatenate(([False], true[:-1]))
@@ -318,7 +324,7 @@ def _measure_columns(
     rows = np.empty((len(records), len(names)))
     field_at = field_at or _field_with_marks(field, spec)
     every = chain.from_iterable(repeat(noise, count) for noise, count in noises)
-    # One by one: all at once, as objects, the records of a long run take much memory.
+    # One by one: all records of a long run at once would take much memory as objects.
     for index, (record, noise) in enumerate(
         zip(TICK_RECORD.iter_unpack(records.data), every, strict=True)
     ):
@@ -333,7 +339,7 @@ def _measure_columns(
 
 
 def _field_with_marks(field: Field, spec: RunSpec) -> FieldAt:
-    """Return a function that takes every record from tick 0 on, and returns the mat as the sensors saw it then."""
+    """Return a function that takes every record in turn, from tick 0 on, and returns the mat with the marks by then."""
     if not spec.world.pen_marks:
         return lambda _: field
     pen = PenMarks(field, spec)

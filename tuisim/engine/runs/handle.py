@@ -75,7 +75,7 @@ STUCK_AFTER_S = 0.3
 """A child that has not ended this long after a stop is killed; see `RunHandle.time_used_s`."""
 ASK_AGAIN_S = 0.05
 LOOK_EVERY_S = 0.03
-"""What a child records is looked at this often while it runs: most are over before the first look."""
+"""Interval of checks of a running child's recording: most runs are over before the first check."""
 ENDED_CHILD_S = 0.2
 """Time for a child to exit after its last event."""
 _BEYOND_LIMIT_S = CLEANUP_S + 1.0
@@ -107,7 +107,7 @@ class RunFolders(Protocol):
 def _build_template_key(program: Program, spec: RunSpec, field: FieldFiles) -> Hashable:
     """Return what a template is prepared for: all of a run except its program, its options, seed, noise and start."""
     world = replace(spec.world, noise=NoiseSpec(), start=Pose(0.0, 0.0, 0.0))
-    # A file of the mat that was made again is another one.
+    # With identities: a file of the mat that was made again does not count as the old one.
     return program.prelude, field, field.identities(), replace(spec, seed=0, world=world)
 
 
@@ -230,8 +230,8 @@ class RunHandle:
     def pump(self) -> list[Message]:
         """Return the events that have arrived, without blocking; `Ended` comes once, as the last.
 
-        Must be called regularly while the run is active: it also kills a child that does not stop, and one that sends
-        or records what the simulation does not: such a run ends as falsified.
+        Must be called regularly while the run is active. It also kills a child that does not stop, and one that sends
+        or records something that the simulation never sends or records: such a run ends as falsified.
         """
         if self.ended is not None:
             return []
@@ -261,7 +261,7 @@ class RunHandle:
                 case Ended():
                     self._announced, self._announced_at = event, time.monotonic()
         now_s = time.monotonic()
-        # A view that holds is one that somebody follows: only this lets it go on.
+        # A view that holds is followed by somebody: only this check lets it read on.
         is_due = now_s >= self._look_at_s or self.telemetry.holds or self.output.holds
         if is_due or self._events.falsified or (exited and self._is_followed):
             self._look_for_falsified()
@@ -289,7 +289,7 @@ class RunHandle:
             self.unstored = self._describe_damage(error)
 
     def _look_for_falsified(self) -> None:
-        """Kill a child that has sent or recorded what the simulation does not."""
+        """Kill a child that has sent or recorded something that cannot come from the simulation."""
         # In a folder that was deleted there is nothing to look at: such a run is stopped.
         if not self._falsified and self.folder.is_dir():
             damages = self.telemetry.read_new(), self.output.read_new()
@@ -308,7 +308,7 @@ class RunHandle:
                 end_group(self._process.pid)
 
     def _find_excess(self, telemetry: TelemetryView) -> str:
-        """Return what is larger than the run can have made it; empty if nothing is."""
+        """Return, in words, what is larger than the run can have made it; empty if nothing is."""
         with suppress(OSError):
             if (self.folder / LOG_FILE).stat().st_size > MAX_BYTES:
                 return f"it has written more than {MAX_BYTES >> 20} MiB to {LOG_FILE}"
@@ -360,11 +360,11 @@ class RunHandle:
         )
 
     def _find_falsified(self) -> str:
-        """Return what the run has left that the simulation does not leave; empty if there is nothing."""
+        """Return, in words, what an ended run has left that cannot come from the simulation; empty if nothing."""
         end = self._announced
-        # One that could not begin, or found no room, leaves what it could write.
+        # A run that could not begin, or found no room on the disk, may leave incomplete files.
         is_whole = end is not None and end.end not in (End.CRASHED, End.DISK_FULL)
-        # As whoever opens the run later finds them: what this host has seen before may be gone.
+        # Opened anew, as anyone who opens the run later does: data that this host has read may be gone.
         telemetry, output = open_views(self.folder, is_checked=True)
         # Each is read once: the process has ended.
         damages = telemetry.read_new(), output.read_new()
@@ -493,7 +493,7 @@ class RunHandle:
             case Reply():
                 self.waiting_for_reply = False
             case _ if not self._options.can_pause:
-                # It may pause at this command, and tell what is asked for.
+                # The command may pause a run that could not pause so far: accept a debugger's events from now on.
                 self._events.allow(DEBUGGED)
         # If it cannot be written completely, the child is gone or stuck: pump() handles that.
         if write_command(self._command_fd, command.encode()):
@@ -581,7 +581,7 @@ class RunHandle:
 
 
 def describe_falsified(what: str) -> str:
-    """Return the summary of a run whose recording is not what the program did."""
+    """Return the summary of a falsified run; `what` is what in it cannot come from the simulation."""
     return f"the program has falsified its recording: {what}"
 
 
@@ -594,7 +594,7 @@ def _find_here() -> str:
 
 
 def set_surroundings(program: Program) -> Program:
-    """Return a program with the working directory and PYTHONPATH of this process, unless it has its own."""
+    """Return a program with this process's working directory and PYTHONPATH, unless it has a working directory."""
     if program.working_directory:
         return program
     return replace(program, python_path=user_python_path(), working_directory=_find_here())

@@ -34,11 +34,11 @@ if TYPE_CHECKING:
 MOTORS_MAGIC = b"TUISIMMO"
 _FIRST_BYTES = 1 << 16
 MAX_MOTORS = 2 + len(OUTPUT_PORTS)
-"""A robot without wheels has motors in their places, too."""
+"""Records have places for two wheel motors, also of a robot without wheels."""
 
 
 class MotorsWriter(MappedWriter):
-    """The records of all motors. Telemetry says how many ticks there are: this file's own length is told at its end.
+    """Writes the records of all motors. Until it is closed, readers take the number of ticks from telemetry.
 
     Args:
         folder: The run folder.
@@ -51,17 +51,17 @@ class MotorsWriter(MappedWriter):
         super().__init__(self._path, MOTORS_MAGIC, self._size, _FIRST_BYTES)
 
     def extend_buffer(self, ticks: int) -> mmap.mmap:
-        """Return the map, with space for the records of so many ticks."""
+        """Return the map, with space for the records of `ticks` ticks."""
         if (need := HEADER_BYTES + ticks * self._size) > self._capacity:
             self._make_room(need)
         return self._map
 
     def arrange(self, sources: Sequence[int | None], ticks: int) -> None:
-        """Write the records of so many ticks again for other motors; see `MotorSink.arrange`."""
+        """Write the records of the first `ticks` ticks again, for other motors; see `MotorSink.arrange`."""
         before, after = self._size // MOTOR_RECORD.size, len(sources)
         recorded = self._map[HEADER_BYTES : HEADER_BYTES + ticks * self._size]
         arranged = arrange_records(recorded, before, sources, ticks)
-        # A reader has the old file or the new one.
+        # A new file replaces the old one: a reader has either, never a mixture.
         path = Path(self._path)
         full = self.full
         self._size = MOTOR_RECORD.size * after
@@ -85,7 +85,13 @@ class MotorsWriter(MappedWriter):
 def arrange_records(
     recorded: bytes, before: int, sources: Sequence[int | None], ticks: int
 ) -> bytes:
-    """Return the records of so many ticks for other motors; `before` is how many there were, others see `MotorSink`."""
+    """Return records rearranged for other motors.
+
+    Args:
+        recorded: The records.
+        before: The number of motors in them.
+        sources, ticks: As of `MotorSink.arrange`.
+    """
     numbers = array("Q", recorded)
     after = len(sources)
     arranged = array("Q", bytes(MOTOR_RECORD.size * after * ticks))
@@ -136,7 +142,7 @@ def read_motor_columns(folder: Path, robot: RobotSpec, ticks: Array) -> dict[str
 
 
 def _read_part(folder: Path, first: int, end: int) -> tuple[int, bytes]:
-    """Return the number of motors, and their records of some ticks as far as there are any: whole ones."""
+    """Return the number of motors, and the complete records that exist of the ticks from `first` to before `end`."""
     path = folder / MOTORS_FILE
     try:
         with open_regular(path) as file:

@@ -10,7 +10,7 @@ from tuisim.engine.protocol import SetButtons, UserAction
 
 
 def press_actions(presses: Iterable[str], tick_hz: int) -> tuple[UserAction, ...]:
-    """Return the changes of what a hand presses, ordered by tick.
+    """Return the user actions that press and release what a hand presses, ordered by tick.
 
     Args:
         presses: As texts, see `parse_press`; they may overlap, and each lasts at least one tick.

@@ -6,11 +6,11 @@ import fcntl
 import os
 
 RAW_BYTES = 4 << 20
-"""What is written beyond this between two instants of the program is refused."""
+"""Size of the file: more than this between two instants of the program cannot be written."""
 
 
 def create_raw_file(fd: int) -> int:
-    """Return a descriptor of a new file that stands for another one, and can neither grow nor shrink.
+    """Return a descriptor of a new file in memory that stands for descriptor `fd`; its size cannot change.
 
     Raises:
         OSError, AttributeError: this system has no such files, or no descriptors left.

@@ -45,7 +45,7 @@ KEYS_BY_PORT: Mapping[str, tuple[str, ...]] = {
     HUB_BUTTONS_PORT: HUB_BUTTONS,
     **CONTROLLERS,
 }
-"""Which of `PRESSABLE` are read there."""
+"""Which of `PRESSABLE` are read, by what stands for the port."""
 SOCKET_PORT = "socket"
 """What stands for a port when the program waits for a socket."""
 GAMEPAD_PORT = "gamepad"
@@ -75,7 +75,7 @@ READING_CODES: Mapping[tuple[str, str], int] = {
     for port_index, port in enumerate(READING_PORTS)
     for mode_index, mode in enumerate(READING_MODES)
 }
-"""What `ReadingsWriter.add` is told, by port and mode."""
+"""The code for `ReadingsWriter.add`, by port and mode."""
 
 MAX_READINGS = 1 << 22
 """Further readings of a run are only counted."""
@@ -109,7 +109,7 @@ class ReadingsWriter(MappedWriter):
         self._count = self._length[0] = count + 1
 
     def has(self, code: int) -> bool:
-        """Return whether a reading was taken at the newest time already."""
+        """Return whether a reading with this code is already recorded for the newest time."""
         for index in range(min(self._count, self._room) - 1, -1, -1):
             time_ns, _, other = _PACKED.unpack_from(self._map, HEADER_BYTES + (index << 4))
             if time_ns != self.newest_ns:
@@ -119,7 +119,7 @@ class ReadingsWriter(MappedWriter):
         return False
 
     def _extend(self, count: int) -> bool:
-        """Make room for one more reading than `count`; return whether there is any."""
+        """Make room for one more reading than `count`; return whether that was possible."""
         if count >= MAX_READINGS or self._is_full:
             return False
         self._make_room(HEADER_BYTES + (count + 1) * READING_RECORD.size)
@@ -138,7 +138,7 @@ class Readings:
     rows: Array
     """One row of `READING_FIELDS` for each."""
     left_out: int = 0
-    """How many more there were than the file holds."""
+    """Number of readings that the file had no room for."""
 
     def find(self, modes: tuple[str, ...]) -> Array:
         """Return the rows with one of some modes, in their order."""
@@ -151,18 +151,18 @@ class Readings:
 
 
 def find_ticks(rows: Array, hz: int) -> Array:
-    """Return the tick at which each of some readings was taken, by ticks a second."""
+    """Return the tick at which each of some readings was taken; `hz` is ticks per second."""
     seconds, rest_ns = divmod(rows["time_ns"], NS_PER_S)
     ticks: Array = seconds * hz + rest_ns * hz // NS_PER_S
     return ticks
 
 
 def read_readings(folder: Path, *, is_over: bool = True) -> Readings:
-    """Return what the program of a run has read so far.
+    """Return the record of what the program of a run has read so far.
 
     Args:
         folder: The run's folder.
-        is_over: Whether the run is; one that has just begun may have no record yet.
+        is_over: Whether the run is over; one that has just begun may have no record yet.
 
     Raises:
         LogError: the file is missing, damaged or of another version, or this machine cannot read it.

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from tuisim.engine.runs.views import OutputView, TelemetryView, TickRecord
 
 _STILL_DEG = 0.05
-"""Less rotation than this in that time counts as none."""
+"""Less rotation than this in the time until a stall counts as none."""
 
 
 class Recording:
@@ -76,16 +76,16 @@ class Recording:
 
     @property
     def spec(self) -> RunSpec:
-        """The run with all parts that have been plugged in."""
+        """The spec of the run, with all parts that have been plugged in so far."""
         return self._source.spec
 
     @property
     def plugged(self) -> Sequence[PluggedPart]:
-        """These parts."""
+        """The parts that have been plugged in so far."""
         return self._source.plugged
 
     def hold(self) -> None:
-        """Stay as written up to now, until the next `RunHandle.pump` of a running run."""
+        """Show telemetry and output as written up to now, until the next `RunHandle.pump` of a running run."""
         for view in (self.telemetry, self.output):
             view.read_new()
             view.holds = True
@@ -109,7 +109,7 @@ class Recording:
         last = self.telemetry.last()
         # The record counts the actions modulo 65536, and may be slightly ahead of their file.
         if last is not None and 0 < (last.actions - len(self.known_actions)) & 0xFFFF < 0x8000:
-            # What is damaged makes the end of the run, or is a note of a stored one.
+            # Damage is reported elsewhere: it ends the run, or is a note of a stored run.
             with suppress(LogError):
                 self.known_actions = read_actions(self.folder)[0]
         return self.known_actions
@@ -135,7 +135,7 @@ class Recording:
         return self._marks.at(tick)
 
     def instant(self, record: TickRecord, spec: RunSpec, noise: NoiseSpec) -> Instant:
-        """Return the instant of a record, with what the drivers knew of the motors if that is not damaged."""
+        """Return the instant of a record, with the drivers' values of the motors unless those are damaged."""
         motors: tuple[MotorValues, ...] = ()
         with suppress(LogError):
             motors = read_motor_values(self.folder, self.spec, record.tick)
@@ -159,7 +159,7 @@ class Recording:
 
 
 class _TimedMarks:
-    """The pen's marks at any tick: they only grow, and are stored in drawing order."""
+    """The mat with the pen's marks at any tick: marks are only added, and are stored in drawing order."""
 
     def __init__(self, mat: Field, run: Recording) -> None:
         self._run = run
@@ -172,7 +172,7 @@ class _TimedMarks:
     def at(self, tick: int) -> Field:
         marks = self._drawn.field.marks
         if tick >= len(self._counts):
-            # One by one: all at once, as objects, the records of a long run take much memory.
+            # One by one: all records of a long run at once would take much memory as objects.
             for record in TICK_RECORD.iter_unpack(
                 self._run.telemetry.array(len(self._counts)).data
             ):
@@ -195,13 +195,13 @@ _FINEST = 500
 
 
 class _Level:
-    """Tracks the level of one variable."""
+    """Tells when a variable has changed by more than `_LEVEL_SHARE` of its range."""
 
     def __init__(self, value: float) -> None:
         self._low = self._high = self._level = value
 
     def changes(self, value: float) -> bool:
-        """Process a value; return whether it has reached another level."""
+        """Process a value; return whether the variable has reached another level with it."""
         self._low, self._high = min(self._low, value), max(self._high, value)
         if abs(value - self._level) <= _LEVEL_SHARE * (self._high - self._low):
             return False
@@ -210,7 +210,7 @@ class _Level:
 
 
 class RowIndex:
-    """Tick and position of each row that has been read of an output, which may still grow."""
+    """Tick, line and position of each row that has been read of an output, which may still grow."""
 
     def __init__(self, output: OutputView) -> None:
         self._output = output
@@ -263,11 +263,11 @@ class RowIndex:
                 self.marks.append((row.tick, Mark.SAMPLE))
 
     def until(self, tick: int) -> int:
-        """Return the number of rows when a tick was complete."""
+        """Return the number of rows up to the end of a tick."""
         return bisect_right(self._ticks, tick)
 
     def list_texts(self, tick: int, most: int) -> tuple[list[OutputRow], int]:
-        """Return the last readable rows at the end of a tick, and the number of readable rows before them."""
+        """Return the last readable rows up to the end of a tick, at most `most`, and how many are before them."""
         end = bisect_right(self._texts, self.until(tick) - 1)
         first = max(0, end - most)
         return [self.row(number) for number in self._texts[first:end]], first

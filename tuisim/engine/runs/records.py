@@ -39,7 +39,7 @@ OUTPUT_ROW = Struct("<IIqIB3x")
 
 
 class Mark(StrEnum):
-    """What a tick of a run is marked for."""
+    """Why a tick of a run is marked."""
 
     ERROR = "error"
     """An error text."""
@@ -54,7 +54,7 @@ class Mark(StrEnum):
 
 
 class Stream(IntEnum):
-    """What an output row belongs to."""
+    """Where an output row comes from, or which part of the brick's state it holds."""
 
     NOTE = 0
     """A line of the app itself; never recorded."""
@@ -98,7 +98,7 @@ MAX_OUTPUT_BYTES = 256 << 20
 """A run that prints more than this is stopped."""
 MAX_OUTPUT_ROWS = 1_000_000
 MAX_ROWS_PER_S = 1_000
-"""So is one with more rows than these together: for each, whoever judges a run needs time and memory."""
+"""A run with more rows than these two allow together is stopped: each row costs its readers time and memory."""
 _NS_PER_ROW = 1_000_000_000 // MAX_ROWS_PER_S
 
 
@@ -113,11 +113,11 @@ def is_full(error: OSError) -> bool:
 
 
 def _allow_address_space(more: int) -> None:
-    """Raise this process's limit of address space: it is for the memory of the program, not for its recording."""
+    """Raise this process's limit of address space by `more` bytes: it is for the program's memory, not its record."""
     soft, hard = resource.getrlimit(resource.RLIMIT_AS)
     if soft != resource.RLIM_INFINITY:
         limit = soft + more if hard == resource.RLIM_INFINITY else min(hard, soft + more)
-        # Where the system refuses, the program may use the less.
+        # Where the system refuses, the program has less memory.
         with suppress(OSError, ValueError):
             resource.setrlimit(resource.RLIMIT_AS, (limit, hard))
 
@@ -144,7 +144,7 @@ class MappedWriter:
     """A recording in a memory-mapped file that grows in ever larger steps while the disk has space.
 
     Raises:
-        OSError: by the constructor, without space.
+        OSError: by the constructor, if the disk is full.
     """
 
     def __init__(self, path: str, magic: bytes, record_bytes: int, first_bytes: int) -> None:
@@ -313,7 +313,7 @@ def is_hole(part: bytes | memoryview) -> bool:
 
 
 def iterate_raw_rows(data: bytes | memoryview, end: int) -> Iterator[tuple[int, bytes]]:
-    """Yield stream and text of each complete row, a cheaper variant of `iterate_rows`."""
+    """Yield stream and text of each complete row before `end`, faster than `iterate_rows`."""
     start = HEADER_BYTES
     head = OUTPUT_ROW.unpack_from
     after_head = OUTPUT_ROW.size

@@ -13,11 +13,11 @@ def remove_tree(folder: Path, ignore_errors: bool = True) -> None:
     """Delete a folder, however deep it is and whatever the permissions in it are.
 
     Args:
-        folder: The folder; what is not there is ignored.
-        ignore_errors: Whether what cannot be deleted is left without an error.
+        folder: The folder; it need not exist.
+        ignore_errors: Whether to leave files that cannot be deleted, without an error.
 
     Raises:
-        OSError: it cannot be deleted, unless errors are ignored.
+        OSError: something cannot be deleted, unless errors are ignored.
     """
     import shutil
 
@@ -33,7 +33,7 @@ def remove_tree(folder: Path, ignore_errors: bool = True) -> None:
 
 
 def _remove_by_layers(folder: Path) -> None:
-    """Delete a folder; of each folder in it, first move those in it up into the outermost one."""
+    """Delete a folder without recursion: move each folder two levels down up to the first level, until none is left."""
     os.chmod(folder, _OWNER)
     while entries := list(os.scandir(folder)):
         for entry in entries:

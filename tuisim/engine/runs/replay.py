@@ -28,25 +28,25 @@ if TYPE_CHECKING:
 
 
 _LOOK_EVERY = 1000
-"""After so many commands it is looked how long they take."""
+"""The time limit is checked once in this many commands."""
 
 
 @dataclass(frozen=True, slots=True)
 class ReplayedTicks:
-    """What a run would have recorded."""
+    """The records that a run would have made."""
 
     telemetry: bytearray
     """A record for each tick, without a header; the lines of the program are 0."""
     motors: bytearray
     """The records of the motors for each tick; empty if they have no driver."""
     motor_bytes: int
-    """Of the motors' records of one tick."""
+    """Size of the motors' records of one tick."""
     robot: RobotSpec
-    """With all parts that were plugged in."""
+    """The robot with all parts that were plugged in."""
 
 
 class _Motors:
-    """Records of motors in memory."""
+    """Records of motors in memory, in place of those of a `MotorsWriter`."""
 
     def __init__(self, robot: RobotSpec) -> None:
         self.tick_bytes = MOTOR_RECORD.size * len(name_motors(robot))
@@ -73,13 +73,13 @@ def replay(
     last_tick: int,
     limit_s: float = inf,
 ) -> ReplayedTicks:
-    """Work a run out from what is known of it, and what its program did.
+    """Simulate a run again from its spec, the recorded commands of its program, and the user's actions.
 
     Args:
         spec: The run, as it began.
-        commands: Those of the program in their order, with all values of their records.
-        actions: What a user did, in the order of the ticks.
-        last_tick: The last tick that is wanted.
+        commands: The program's commands in their order, with all values of their records.
+        actions: The user's actions, in the order of the ticks.
+        last_tick: The last tick to simulate.
         limit_s: Seconds of processor time that it may take.
 
     Raises:
@@ -126,7 +126,7 @@ def give_command(sim: Simulation, command: SimulationCommand) -> None:
 
 
 def _build_advance(sim: Simulation, actions: Iterable[UserAction]) -> Callable[[int], None]:
-    """Return what runs ticks up to one; right before it runs a tick, the user does what is due."""
+    """Return a function that runs all ticks up to a tick, and the user's actions right before the ticks of these."""
     script = deque(action for action in actions if not isinstance(action.command, Stop))
 
     def advance(tick: int) -> None:

@@ -35,7 +35,7 @@ class Position:
 
     @property
     def _sort_key(self) -> tuple[int, float]:
-        """Sort key: before the next tick comes after every line of this one."""
+        """The key to sort by: `BEFORE_NEXT_TICK` comes after every line of the tick."""
         return self.tick, float("inf") if self.ordinal == BEFORE_NEXT_TICK else self.ordinal
 
     def precedes(self, other: Position) -> bool:
@@ -52,9 +52,9 @@ class ReplayDebugger:
     """A re-run that is paused at the requested instant; it can step forward, and is restarted to go back.
 
     Args:
-        arrived: Called with the position and the program's state there.
-        failed: Called with the reason why it cannot pause there.
-        passed: Called when it was resumed and reached the end of the program.
+        arrived: Called with the position of the pause and the program's state there.
+        failed: Called with the reason why the re-run cannot pause at the requested instant.
+        passed: Called when the re-run was resumed and reached the end of the program.
     """
 
     def __init__(self, arrived: Arrived, failed: Failed, passed: Passed) -> None:
@@ -84,7 +84,7 @@ class ReplayDebugger:
     # Requests
 
     def go(self, recording: Recording, at: Position, look: protocol.Inspect) -> None:
-        """Pause at an instant of a recording and inspect."""
+        """Pause at an instant of a recording, and request the program's state with `look`."""
         self._line = 0
         self._request = look
         self._back = 0
@@ -104,7 +104,7 @@ class ReplayDebugger:
         self._go(recording, Position(tick), tick)
 
     def look(self, look: protocol.Inspect) -> None:
-        """Inspect again, with another request."""
+        """Inspect the paused program again, with another request."""
         self._request = look
         if self.run is not None and self._paused is not None:
             self.busy = True
@@ -113,7 +113,7 @@ class ReplayDebugger:
     def go_on(
         self, recording: Recording, at: Position, command: protocol.Message, look: protocol.Inspect
     ) -> None:
-        """Pause at an instant, resume with a command, and inspect where that ends."""
+        """Pause at an instant, resume with a command, and inspect where the program pauses next."""
         self._line = 0
         self._request = look
         self._back = 0
@@ -151,7 +151,7 @@ class ReplayDebugger:
             here = Position(self._paused.tick, self._paused.ordinal)
             assert self.run is not None
             if here == at:
-                # It would run on from there without a pause.
+                # `RunToInstant` would run on: the re-run is already paused there.
                 self.run.send(self._request)
                 return
             if here.precedes(at):

@@ -1,4 +1,4 @@
-"""A run as its world, its user and the commands of its program make it, whatever its recording says."""
+"""Replaces the recording of a run by what its world, its user and its program's commands lead to."""
 
 from __future__ import annotations
 
@@ -34,21 +34,22 @@ if TYPE_CHECKING:
 def replay_run(
     run: StoredRun, actions: Sequence[UserAction], limit_s: float = inf
 ) -> tuple[StoredRun, str]:
-    """Work a run that is over out again, and put what comes out in place of what was recorded.
+    """Simulate a run that is over again, and replace its recording by the result where they differ.
 
     The lines of the program stay as they were recorded, and so does its output.
 
     Args:
         run: The run.
-        actions: What a user has done, as whoever started the run knows it.
+        actions: The user's actions, as known to the process that started the run.
         limit_s: Seconds of processor time that it may take.
 
     Returns:
-        The run with these ticks and actions, and from when on its recording differs, in words; empty if it does not.
+        The run with the new ticks and actions, and the time from which its recording differed, such as `1.50 s`; empty
+        if it did not.
 
     Raises:
-        LogError: the commands are damaged, take too long, no program can have given them, or the disk refuses what
-            comes out.
+        LogError: the commands are damaged, take too long, no program can have given them, or the disk refuses the
+            result.
     """
     import numpy as np
 
@@ -124,7 +125,7 @@ def _find_motor_parting(run: StoredRun, ticks: ReplayedTicks) -> int:
 
 
 def _replace_files(run: StoredRun, ticks: ReplayedTicks, actions: Sequence[UserAction]) -> None:
-    """Write anew what is recorded of ticks, motors and a user."""
+    """Write the files of ticks, motors and user actions anew."""
     count = len(ticks.telemetry) // TICK_RECORD.size
     begin = pack_header(TELEMETRY_MAGIC, TICK_RECORD.size, count)
     _replace_file(run.folder / TELEMETRY_FILE, begin, ticks.telemetry)

@@ -39,7 +39,7 @@ def rerun(run: StoredRun, store: RunStore, **options: Any) -> RunHandle:
 
     Args:
         run: The run.
-        store: Where the new run is stored; not the user's store, who did not request another run.
+        store: Where to store the new run; not the user's store: the user did not ask for another run.
         options: Fields of `RunOptions` to change, such as `hold_at`.
 
     Raises:
@@ -73,7 +73,7 @@ def same(run: StoredRun, again: StoredRun) -> RunDiff:
 
 
 def list_changed_files(run: StoredRun) -> tuple[str, ...]:
-    """Return a note for each file that the run has read and that is another one now, so that a re-run may differ.
+    """Return a note for each file that the run has read and that has changed since: a re-run may differ.
 
     Raises:
         LogError: the list of the files is damaged.
@@ -93,7 +93,7 @@ def list_changed_files(run: StoredRun) -> tuple[str, ...]:
 
 def _has_obeyed_stop(run: StoredRun) -> bool:
     """Return whether the program obeyed a stop that can be repeated at the same position."""
-    # The summary of a run that had to be killed says more than that.
+    # A run that had to be killed has a longer summary.
     return (
         run.end is not None
         and run.end.summary == "stopped"

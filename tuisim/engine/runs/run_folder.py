@@ -67,9 +67,9 @@ class StoredRun:
     live: bool
     program: Program
     spec: RunSpec
-    """With all parts that were plugged in."""
+    """The spec with all parts that were plugged in."""
     first_spec: RunSpec
-    """As it began."""
+    """The spec as the run began."""
     plugged: tuple[PluggedPart, ...]
     field: Mapping[str, Any] | None
     """Files of the prepared mat, as written by the host."""
@@ -85,14 +85,14 @@ class StoredRun:
 
     @property
     def state(self) -> RunState:
-        """How it ended, or its state without an end."""
+        """How the run ended; whether it is running or was interrupted if it has no end."""
         if self.end is not None:
             return self.end.end
         return find_state_without_end(self.folder)
 
     @property
     def time_s(self) -> float:
-        """Simulated seconds: up to its end or, without an end, its newest tick."""
+        """Simulated seconds up to the run's end or, without an end, its newest tick."""
         if self.end is not None:
             return self.end.time_ns / NS_PER_S
         last = self.telemetry.last()
@@ -109,7 +109,7 @@ def find_state_without_end(folder: Path) -> Unended:
 
 
 def restore_program(program: Program, folder: Path) -> Program:
-    """Return the program of a run with its arguments, working directory and own modules, to be run again.
+    """Return a run's program so that it can run again, with the copies of its own modules from the run folder.
 
     Args:
         program: The program.
@@ -169,7 +169,7 @@ def write_run_file(folder: Path, data: Mapping[str, Any]) -> None:
     """
     path = folder / RUN_FILE
     if path.is_dir() and not path.is_symlink():
-        # The program has put it there.
+        # Only the program can have made a folder of this name.
         remove_tree(path)
     try:
         with replacing(path, owner_only=True, follow_links=False) as handle:
@@ -210,7 +210,11 @@ def _check_type(value: Any, kind: type[_Kind], name: str) -> _Kind:
 
 
 def _restore_spec(plain: Mapping[str, Any]) -> RunSpec:
-    """Return the spec in a run file, whose numbers are ones to reckon with."""
+    """Return the spec in a run file.
+
+    Raises:
+        ValueError: one of its numbers is out of range.
+    """
     spec = restore(plain)
     if not 1 <= spec.profile.tick_hz <= NS_PER_S:
         raise ValueError(f"a tick rate of {spec.profile.tick_hz}")
@@ -226,7 +230,7 @@ def _restore_spec(plain: Mapping[str, Any]) -> RunSpec:
 
 
 def add_plugged(spec: RunSpec, parts: Sequence[PluggedPart]) -> RunSpec:
-    """Return a run whose robot has the parts, too, that were plugged in."""
+    """Return a run's spec with plugged-in parts added to its robot."""
     return replace(spec, robot=plug_parts(spec.robot, parts)) if parts else spec
 
 
@@ -312,7 +316,7 @@ def read_run(folder: Path, document: str | None = None, known: RunSpec | None = 
 
 
 def _describe_lost(view: TelemetryView | OutputView, end: Ended | None) -> str:
-    """Return what a sound recording lacks of a run that has told its own end; empty if nothing."""
+    """Return what an undamaged recording lacks although the run's process reported its end; empty if nothing."""
     if end is None or end.end not in _TOLD:
         return ""
     if view.is_missing:
@@ -323,7 +327,7 @@ def _describe_lost(view: TelemetryView | OutputView, end: Ended | None) -> str:
 
 
 def field_files(spec: RunSpec) -> FieldFiles:
-    """Prepare the mat of a run for its robot's sensors, unless it is cached.
+    """Return the files of a run's mat, prepared for its robot's sensors; prepare them unless they are cached.
 
     Raises:
         BackgroundError: the mat does not exist, or its image cannot be read.

@@ -48,7 +48,7 @@ class RunOptions:
 
     @property
     def can_pause(self) -> bool:
-        """Whether the run can be paused without further commands."""
+        """Whether the run may pause without a later command from the host."""
         return bool(self.live or self.start_paused or self.breaks or self.hold_at)
 
     def to_plain(self) -> dict[str, Any]:

@@ -102,7 +102,8 @@ def list_samples(rows: Iterable[OutputRow]) -> list[Sample]:
 def build_value_reader(condition: ValueCondition) -> Callable[[str], float | None]:
     """Return a function that takes a printed line, and returns the value that a condition on such lines tests.
 
-    That is the number of a sample with its name, or 1 for a line that it matches; None where there is nothing to test.
+    The value is the number of a sample with the condition's name, or 1 for a line that matches its pattern; None for
+    any other line.
     """
     if condition.source is ValueSource.PRINT:
         pattern = re.compile(condition.value)
@@ -116,10 +117,10 @@ def build_value_reader(condition: ValueCondition) -> Callable[[str], float | Non
 
 
 def select_rows(condition: ValueCondition, rows: Iterable[OutputRow]) -> Iterator[OutputRow]:
-    """Yield the rows of printed lines of which a condition is true.
+    """Yield the printed rows for which a condition is true.
 
     Raises:
-        ValueError: what a sample is to be compared with is no number.
+        ValueError: the condition compares a sample with something that is no number.
     """
     read = build_value_reader(condition)
     test = condition.test()

@@ -40,7 +40,7 @@ Array = NDArray[Any]
 def measure_array(
     sensor: SensorSpec, records: Array, run: RunSpec, field: Field, has_light_noise: bool
 ) -> tuple[Array, ...] | None:
-    """Return what is measured of a sensor at every tick, in the order of its columns; None if it cannot be at once.
+    """Return the measured columns of a sensor at all ticks, in their order; None if it must be measured tick by tick.
 
     Args:
         records: Telemetry, structured as `TICK_FIELDS`, shape (n,).
@@ -91,11 +91,11 @@ def measure_quiet_color(
 
 
 def _sum_discs(col: Array, row: Array, diameter: int, field: Field) -> tuple[Array, Array]:
-    """Return the sums of red, green and blue over discs, and whether there is anything below them.
+    """Return the sums of red, green and blue over discs, and whether each disc is over the mat or the floor.
 
     Args:
-        col, row: The corners of their boxes, from `diameter` before those of the mat, shape (n,).
-        diameter: Of the discs.
+        col, row: Upper left corners of the discs' boxes, counted from `diameter` pixels before the mat's, shape (n,).
+        diameter: Diameter of the discs in pixels.
         field: The mat.
     """
     height, width = field.height_px + diameter, field.width_px + diameter
@@ -173,10 +173,10 @@ def _cut_off(
     """Return the lengths of rays that end at the first of some edges, as `ultrasonic.find_first_hit_mm`.
 
     Args:
-        nearest_mm: Their lengths without the edges, shape (n,).
-        edges: Parallel to one axis.
-        start: Where they begin: across the edges, and along them.
-        step: Change in each direction per mm along the ray.
+        nearest_mm: The lengths without the edges, shape (n,).
+        edges: Edges parallel to one axis.
+        start: Where the rays begin: across the edges, and along them.
+        step: Change in each direction per mm along a ray.
         echoes: Whether the edges return an echo at each tick.
     """
     across, along = start

@@ -78,7 +78,7 @@ SIDE_FILES = (
 """All of them but the lock."""
 
 MAX_BYTES = 64 << 20
-"""More than any of those has that are read whole."""
+"""Larger than any side file that is read whole."""
 
 
 def hold(folder: Path) -> int:
@@ -102,9 +102,9 @@ def hold(folder: Path) -> int:
 
 
 def is_held(folder: Path) -> bool | None:
-    """Return whether a living process holds the lock; None if it was never acquired, or cannot be asked for."""
+    """Return whether a living process holds the lock; None if no process ever did, or this machine cannot tell."""
     try:
-        # Not blocked by a pipe in its place.
+        # O_NONBLOCK: a pipe that a program has put in its place would block.
         descriptor = os.open(folder / LOCK_FILE, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
     except OSError:
         return None
@@ -157,7 +157,7 @@ def read_actions(folder: Path) -> tuple[tuple[UserAction, ...], str]:
 
 @contextmanager
 def _convert_errors(path: Path) -> Iterator[None]:
-    """Turn whatever goes wrong while a file is read, and taken apart, into a LogError."""
+    """Turn any error while a file is read and parsed into a LogError."""
     try:
         yield
     except (OSError, ValueError, KeyError, TypeError, OverflowError, RecursionError) as error:
@@ -190,7 +190,7 @@ def write_stop_tick(folder: Path, tick: int) -> None:
 
 
 def read_stop_tick(folder: Path) -> int | None:
-    """Return the tick before which the user's stop reached the program; None if it was not stopped there.
+    """Return the tick before which the user's stop reached the program; None if the file is missing.
 
     Raises:
         LogError: the file is damaged.
@@ -206,7 +206,7 @@ def read_stop_tick(folder: Path) -> int | None:
 
 @dataclass(frozen=True, slots=True)
 class OwnModule:
-    """Result of one import of a name."""
+    """One import of the program: the module that was found, or none of that name."""
 
     name: str
     """Full name with packages, such as `tools.drive`."""
@@ -224,7 +224,7 @@ class OwnModule:
 
 
 def note_module(run_folder: Path, module: OwnModule) -> None:
-    """Add a module to those of a run.
+    """Record that the program of a run has imported a module.
 
     Raises:
         LogError: it cannot be written.
@@ -278,7 +278,7 @@ def copy_modules(source: Path, target: Path) -> None:
 
 @dataclass(frozen=True, slots=True)
 class FileRead:
-    """A file when a program first opened it to read it."""
+    """The state of a file when a program first opened it to read it."""
 
     path: str
     there: bool
@@ -303,7 +303,7 @@ class FilesRead:
 
     files: tuple[FileRead, ...] = ()
     left_out: int = 0
-    """How many more there were."""
+    """Number of files that were read and are not listed."""
 
 
 _stat = os.stat
@@ -311,14 +311,14 @@ _lstat = os.lstat
 _open = os.open
 _read = os.read
 _close = os.close
-"""Saved before those of the program are replaced, which note what it opens."""
+"""Saved before a program's `os` functions are replaced by ones that note what it opens."""
 _PART_BYTES = 1 << 20
 MAX_SUMMED_BYTES = 1 << 22
 """A larger file has no checksum: its size and time tell whether it has changed."""
 
 
 def read_state(path: str) -> FileRead | None:
-    """Return a file as it is now, or that there is none; None for folders, devices and the like."""
+    """Return the present state of a file, also of a missing one; None for folders, devices and the like."""
     try:
         status = _stat(path)
     except (OSError, ValueError) as error:
@@ -350,7 +350,7 @@ def _compute_checksum(path: str, size: int) -> int:
 
 
 def note_read(run_folder: Path, read: FileRead) -> None:
-    """Add a file to those that were read.
+    """Record that the program has read a file.
 
     Raises:
         OSError: it cannot be written.
@@ -359,7 +359,7 @@ def note_read(run_folder: Path, read: FileRead) -> None:
 
 
 def note_reads_left_out(run_folder: Path, count: int) -> None:
-    """Note how many more files were read.
+    """Record how many files were read beyond those that are listed.
 
     Raises:
         OSError: it cannot be written.

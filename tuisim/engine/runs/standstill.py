@@ -38,10 +38,10 @@ _POSE = ["x_mm", "y_mm", "heading_deg"]
 
 @dataclass(frozen=True, slots=True)
 class Standstill:
-    """Every time that something stopped the robot in a run."""
+    """A summary of all times that something solid stopped the robot in a run."""
 
     at: str
-    """What did: `the wall`, `an obstacle`, or both."""
+    """What stopped it: `the wall`, `an obstacle`, or both."""
     times: int
     """How often it stood; it stands once until it moves, whatever its motors do meanwhile."""
     since_s: float
@@ -51,11 +51,11 @@ class Standstill:
     pushed_s: float
     """How long its wheels pushed in all."""
     on_floor: bool = False
-    """Whether there would be a floor behind the wall."""
+    """Whether there would be a floor behind the wall, with `--walls off`."""
 
     @property
     def words(self) -> str:
-        """The sentence for people, without a subject."""
+        """A sentence for people about it, without its subject, the robot."""
         if self.on_floor and WALL in self.at:
             return f"stood at {self.at} for {self.pushed_s:.1f} s (--walls off)"
         pushed = f"its wheels pushed for {self.pushed_s:.1f} s"
@@ -67,7 +67,7 @@ class Standstill:
 
 @dataclass(frozen=True, slots=True)
 class _Stretch:
-    """Ticks in which the wheels pushed."""
+    """A stretch of ticks in which the wheels pushed against something."""
 
     start: int
     end: int
@@ -76,7 +76,7 @@ class _Stretch:
 
 
 def find_standstill(telemetry: TelemetryView, spec: RunSpec) -> Standstill | None:
-    """Return when the robot of a run stood at something solid; None if it never did, or if nothing is solid.
+    """Return where and when something solid stopped the robot of a run; None if that never happened.
 
     Raises:
         LogError: the recording is damaged.

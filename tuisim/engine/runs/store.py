@@ -113,7 +113,7 @@ class RunStore:
             number = self._catalogue.add(info)
             data = build_run_data(run_id, number, created, program, spec, field, options, live)
             write_run_file(folder, data)
-        # Interrupted, too: nobody else closes the lock.
+        # Also when interrupted: nobody else closes the lock.
         except BaseException:
             os.close(lock_fd)
             remove_tree(folder)
@@ -138,7 +138,7 @@ class RunStore:
             raise LogError(
                 f"cannot be stored: {error.strerror or error}", HOME_HINT, file=str(place)
             ) from error
-        # Interrupted: a half of it must not be listed.
+        # Also when interrupted: half of a run must not be listed.
         except BaseException:
             remove_tree(place)
             raise
@@ -231,7 +231,7 @@ class RunStore:
     # Reading
 
     def runs(self) -> list[RunInfo]:
-        """Return all runs, oldest first; `end` is never empty.
+        """Return all runs, oldest first; `end` is known of each.
 
         Raises:
             LogError: the home folder cannot be used.
@@ -315,7 +315,7 @@ class RunStore:
     # Internals
 
     def _create_folder(self, now: datetime) -> tuple[str, Path, int]:
-        """Create and lock a folder: what nobody holds counts as interrupted, and can be removed by any process.
+        """Create and lock a folder: a run whose lock nobody holds counts as interrupted, and any process can remove it.
 
         Returns:
             The id of the run, its folder, and the descriptor of the lock.
@@ -366,7 +366,7 @@ class RunStore:
         return RunInfo(0, run_id, "", "", "", "", 0, Unended.DAMAGED, summary=summary)
 
     def _complete(self, info: RunInfo, most_bytes: int) -> tuple[RunInfo, dict[str, Any], int]:
-        """Add the data that is missing in the catalogue.
+        """Return a run with the data that its catalogue row lacks, read from its folder.
 
         Args:
             info: The catalogue row.
@@ -403,7 +403,7 @@ class RunStore:
                 known = _add_last_record(known, folder)
         except LogError as error:
             return replace(known, summary=known.summary or str(error)), {}, counted
-        # Where the lock cannot be asked for, it may be running.
+        # Where this machine cannot tell whether the lock is held, the run may be running.
         unlocked = is_held(folder) is False
         if known.end in (Unended.RUNNING, Unended.DAMAGED) or (
             known.end is Unended.INTERRUPTED and not unlocked
@@ -500,7 +500,7 @@ def _build_info(run_id: str, data: Mapping[str, Any]) -> RunInfo:
 
 
 def _copy_files(folder: Path, place: Path) -> None:
-    """Copy the files of a run, but for `run.json` and the lock; not what its program has put there.
+    """Copy the files that every run records, but for `run.json` and the lock; no links, no other files of the program.
 
     A link would be followed with the rights of this process, which the program may not have had.
     """
@@ -528,7 +528,7 @@ def _delete(folder: Path) -> None:
     if removed.is_symlink():
         removed.unlink()
         return
-    # Another process may take it for left over, and delete the rest.
+    # Another process may take the folder for left over, and delete the rest.
     with suppress(FileNotFoundError):
         remove_tree(removed, ignore_errors=False)
 
@@ -542,7 +542,7 @@ def _remove_unfinished(folder: Path) -> None:
 
 
 def _read_tags(folder: Path) -> list[str]:
-    """Return the tags of a run that is over, without what the program may have put in their place."""
+    """Return the tags in the `run.json` of a run that is over, without anything else that its program has put there."""
     try:
         tags = read_run_file(folder).get("tags", ())
     except LogError:

@@ -34,7 +34,7 @@ from tuisim.engine.runs.store import NewRun
 _MEMORY = Path("/dev/shm")
 """A file system in memory, on Linux: to create and delete files on a disk takes longer than a short run."""
 _FREE_BYTES = 2 << 30
-"""It is used with at least this much space: programs may print a lot."""
+"""`_MEMORY` is used if it has at least this much space: programs may print a lot."""
 _PREFIX = "tuisim-"
 """Each folder that is created here begins with it."""
 _BATCH_PREFIX = f"{_PREFIX}batch-"
@@ -52,7 +52,7 @@ def create_batch_folder() -> Path:
 def create_owned_folder(prefix: str = _PREFIX, parent: Path | None = None) -> Path:
     """Create a folder that counts as used as long as this process lives; its name begins with the prefix.
 
-    The first one also removes those that killed processes have left, there and in the other usual places.
+    The first call also removes folders that killed processes have left in `parent` and in the usual places.
 
     Raises:
         LogError: it cannot be created.
@@ -74,7 +74,7 @@ def create_owned_folder(prefix: str = _PREFIX, parent: Path | None = None) -> Pa
 _held: dict[Path, int] = {}
 """The locks of the folders of this process."""
 _held_lock = threading.Lock()
-"""Held while they are changed: threads of an app try programs at the same time."""
+"""Held while `_held` is changed: threads of an app try programs at the same time."""
 
 
 @cache

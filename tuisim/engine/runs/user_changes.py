@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def change_simulation(sim: Simulation, action: Message) -> None:
-    """Do what a user does, right before the next tick, and count it. Answers change nothing else.
+    """Apply a user's action right before the next tick, and count it. Answers are only counted.
 
     Raises:
         TypeError: the message is not a user action that is counted.

@@ -51,9 +51,9 @@ if TYPE_CHECKING:
 
 _LARGE_BYTES = 1 << 20
 _CHUNK_BYTES = 1 << 22
-"""So much is read and checked at a time: a file may claim, or seem to have, any length."""
+"""Bytes that are read and checked at a time: a file may claim, or seem to have, any length."""
 _AGAIN_BYTES = 1 << 14
-"""So much is read at a time of rows that are no longer in memory."""
+"""Bytes that are read at a time of rows that are no longer in memory."""
 _MANY_TICKS = 1 << 13
 """From this number on it is worth importing numpy to check them."""
 _MAX_NUMBER = 1e12
@@ -105,26 +105,26 @@ def build_instant(record: TickRecord, spec: RunSpec, noise: NoiseSpec) -> Instan
 
 
 class _View(ABC):
-    """A recording as far as it has been written, copied incrementally.
+    """A copy of a recording as far as it has been written, which follows the file while that grows.
 
     It is not mapped: truncating a mapped file would kill its reader.
 
     Args:
         folder: The run folder.
-        is_checked: Whether it is read only as far as it is what the simulation writes, as of a run that is running or
-            falsified. Then a file that was there stays.
+        is_checked: Whether to read only what the simulation can have written, as for a run that is running or
+            falsified. A file that disappears is damage then.
 
     Raises:
         LogError: by every method, if this machine cannot read the file.
     """
 
     name: ClassVar[str]
-    """That of the file."""
+    """Name of the file."""
     _magic: ClassVar[bytes]
     _record_bytes: ClassVar[int]
     """Size of a record; 1 if it varies."""
     _kept: ClassVar[int | None] = None
-    """So many records of a run that is running are kept in memory, at least; None for all."""
+    """At least this many records of a running run are kept in memory; None for all."""
     _most_bytes: ClassVar[int | None] = None
     """The length that the program's process never exceeds; None if there is none."""
 
@@ -166,32 +166,32 @@ class _View(ABC):
 
     @abstractmethod
     def _find_sound_end(self, data: memoryview, begin: int, end: int) -> int:
-        """Return up to where the recording, already read up to `end`, is what the simulation writes.
+        """Return up to where the recording, already read up to `end`, can come from the simulation.
 
         Args:
-            data: The copy.
+            data: The copy of the recording.
             begin: The first record, or byte, to check.
             end: The one after the last.
         """
 
     @property
     def _done(self) -> int:
-        """How many records need not be checked any more."""
+        """Number of records that need not be checked any more."""
         return self._there
 
     def _look(self) -> tuple[memoryview, int]:
-        """Return the recording, and the length that exists."""
+        """Return the recording, and how many records or bytes of it exist."""
         there = self._measure_length()
         return memoryview(self._copy).toreadonly(), there
 
     def _measure_length(self) -> int:
-        """Return the length that exists, unless it holds after a look at what has been published since."""
+        """Return how many records or bytes exist, after reading new ones unless the view holds."""
         if not self.holds:
             self.read_new()
         return self._there
 
     def read_new(self) -> str:
-        """Look at what has been published since. Return why it is not a recording; empty as long as it is one."""
+        """Read what has been published since. Return why it is not a recording; empty as long as it is one."""
         if not self._damage:
             self._read_new()
         return self._damage
@@ -214,7 +214,7 @@ class _View(ABC):
             self._damage = f"{self._path.name} cannot be read: {reason}"
 
     def _is_withheld(self, error: OSError) -> bool:
-        """Return whether this machine forbids to read a file whose owner may read it: no program has seen to that."""
+        """Return whether this machine forbids to read a file that its owner may read: no program has caused that."""
         try:
             return isinstance(error, PermissionError) and bool(self._path.stat().st_mode & S_IRUSR)
         except OSError:
@@ -248,7 +248,7 @@ class _View(ABC):
                 return
 
     def _read_chunk(self, fd: int, head: bytes, begin_count: int, end_count: int) -> int:
-        """Read and check the records between two positions; return the position up to which there are sound ones."""
+        """Read and check the records between two positions; return the position up to which they are sound."""
         begin, end = (
             HEADER_BYTES + self._record_bytes * (count - self._dropped)
             for count in (begin_count, end_count)
@@ -490,7 +490,7 @@ class OutputView(_View):
         return rows
 
     def read_all_rows(self) -> list[OutputRow]:
-        """Return all rows up to now; does not affect `new_rows`."""
+        """Return all rows up to now; does not affect `read_new_rows`."""
         return list(self.rows())
 
     def read_rows(self, position: int) -> Iterator[tuple[OutputRow, int]]:
@@ -512,7 +512,7 @@ class OutputView(_View):
                 yield row, dropped + after
 
     def _read_dropped_rows(self, position: int, end: int) -> Iterator[tuple[OutputRow, int]]:
-        """Yield the rows between two positions that were dropped from memory, as far as the program left them."""
+        """Yield the rows between two positions that were dropped from memory, unless the program has changed them."""
         size = _AGAIN_BYTES
         while position < end and self._source is not None:
             part = bytearray(HEADER_BYTES + size)
@@ -528,7 +528,7 @@ class OutputView(_View):
                 if position >= end:
                     return
             if position == begin:
-                # A row longer than that; or one that was changed meanwhile, and seems to be.
+                # The row is longer than the piece that was read, or was changed and now seems to be.
                 if got < size or size > MAX_OUTPUT_BYTES:
                     self._damage = (
                         self._damage

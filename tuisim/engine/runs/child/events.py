@@ -68,7 +68,7 @@ def decode_event(line: bytes) -> Message:
 
 
 def build_part(event: Plugged) -> PluggedPart:
-    """Return the part that an event tells of.
+    """Return the part that was plugged in, from the event that reports it.
 
     Raises:
         ValueError: there is no such part.
@@ -77,7 +77,7 @@ def build_part(event: Plugged) -> PluggedPart:
 
 
 def _is_sound(value: object) -> bool:
-    """Return whether all integers in a part of an event are ones that catalogue, files and screen can hold."""
+    """Return whether all integers in a value of an event are small enough for catalogue, files and screen."""
     match value:
         case int():
             return abs(value) < _MAX_NUMBER
@@ -108,11 +108,11 @@ class EventStream:
         """Why what has arrived does not come from the simulation; nothing is read after it. Empty if it does."""
 
     def allow(self, kinds: _Kinds) -> None:
-        """Let the child send further classes of events: it has been asked for them."""
+        """Accept further classes of events: the host has asked the child for them."""
         self._allowed = (*self._allowed, *kinds)
 
     def read(self) -> list[Message]:
-        """Return the events that have arrived; see `falsified`."""
+        """Return the events that have arrived, up to one that cannot come from the simulation; see `falsified`."""
         events: list[Message] = []
         for line in self._split_lines():
             event = self._decode_event(line)
@@ -139,7 +139,7 @@ class EventStream:
         return lines
 
     def _decode_event(self, line: bytes) -> Message | None:
-        """Return the event in a line; None if there is none that can come now."""
+        """Return the event in a line; None, with the reason in `falsified`, if it is no event or must not come now."""
         try:
             event = decode_event(line)
         except HostError as error:
@@ -166,7 +166,7 @@ def list_allowed_events(options: RunOptions, *, plugs: bool) -> _Kinds:
     """Return the classes of events that a run can send besides its start, its sounds and its end.
 
     Args:
-        options: How it is run.
+        options: The options of the run.
         plugs: Whether parts may be plugged in.
     """
     return (

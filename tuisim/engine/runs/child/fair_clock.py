@@ -13,9 +13,9 @@ _CLOCK_HZ = os.sysconf("SC_CLK_TCK")
 
 
 class FairClock:
-    """A clock without the time in which a process waits for a processor: it cannot help that others run.
+    """A clock that leaves out the time in which a process waits for a processor, because other processes run.
 
-    It is never slower than the computing of the process: of many threads, some always wait.
+    It runs at least as fast as the process computes: of many threads, some always wait.
 
     Args:
         pid: The process, which has just been started.
@@ -27,7 +27,7 @@ class FairClock:
         self._waits_s = self._without_s = 0.0
 
     def read_s(self) -> float:
-        """Return the seconds since the start, without the waits."""
+        """Return the seconds since the start of the process, without its waits."""
         now_s, waits_s = time.monotonic(), measure_waited_s(self._pid)
         self._without_s += min(max(0.0, waits_s - self._waits_s), now_s - self._looked_s)
         self._waits_s, self._looked_s = waits_s, now_s
@@ -35,9 +35,9 @@ class FairClock:
 
 
 def measure_waited_s(pid: int) -> float:
-    """Return how long the threads of a process have waited for their turn on a processor, together.
+    """Return the seconds that the threads of a process have waited for a processor, added up.
 
-    It is 0 if the process is gone, or where that is unknown; what a thread that has ended waited is lost.
+    0 if the process is gone or the system does not tell. The waits of threads that have ended are missing.
     """
     total_ns = 0
     with suppress(OSError):
@@ -51,7 +51,7 @@ def measure_waited_s(pid: int) -> float:
 
 
 def measure_computed_s(pid: int) -> float:
-    """Return the time that a process has spent on processors; 0 if it is gone, or where that is unknown."""
+    """Return the seconds that a process has spent on processors; 0 if it is gone or the system does not tell."""
     try:
         # The name, in parentheses, may contain anything. Then the state, and 10 more: proc_pid_stat(5).
         fields = Path(f"/proc/{pid}/stat").read_bytes().rpartition(b")")[2].split()

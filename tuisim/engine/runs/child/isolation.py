@@ -41,7 +41,7 @@ _KEY = "--isolate"
 _TMP_BYTES = 64 << 20
 """Size of the program's own `/tmp`, which is in memory."""
 MOST_FILES, MOST_BYTES = 20_000, 1 << 30
-"""Files, and bytes in them, that it may have in its folders; see `Quota`."""
+"""Files, and bytes in them, that a program may add to its folders; see `Quota`."""
 _MEMORY_BYTES = 2 << 30
 """Address space of its process; it is told at half of that."""
 _OPEN_FILES = 256
@@ -58,20 +58,20 @@ for kind, most in (
     resource.setrlimit(kind, (most, most))
 del resource, kind, most, hard
 """
-"""Code for the start of the process: it sets limits that cannot be raised again."""
+"""Code that the process runs first: it sets limits that cannot be raised again."""
 _MAX_THREADS = 2_000
-"""Threads that it may have: more than the simulation allows."""
+"""Threads that a program may have: more than the simulation allows."""
 _MAX_SOCKETS = 512
-"""Sockets that it may have: one of which it has no descriptor any more still holds what was sent."""
+"""Sockets that a program may have: one without a descriptor still holds the data that was sent to it."""
 _SOCKETS_USED = "sockets: used "
 _LOOK_EVERY_S = 0.25
 _BLOCK_BYTES = 512
 _HIDDEN = (errno.ENAMETOOLONG, errno.EACCES)
-"""Errors of folders that are nested too deep to be looked at, or that the program has closed."""
+"""Errors of folders that are nested too deep, or that the program has made unreadable."""
 
 
 def check_isolation() -> None:
-    """Start bubblewrap once, and wait for its end.
+    """Check that bubblewrap works here: start it once, and wait for its end.
 
     Raises:
         ConfigError: it is not installed, or cannot start here.
@@ -144,8 +144,8 @@ class Quota:
     """How many threads and sockets an isolated program may have, and how much it may add to its folders.
 
     Args:
-        pid: Its process.
-        folders: The folders, before it has begun; empty names are left out.
+        pid: The program's process.
+        folders: The program's folders, before it begins; empty names are left out.
     """
 
     def __init__(self, pid: int, folders: Iterable[str | Path]) -> None:
@@ -157,7 +157,7 @@ class Quota:
         self._files, self._bytes = self._count_growth(MOST_FILES, MOST_BYTES)
 
     def exceeded(self, now_s: float) -> str:
-        """Return which limit is exceeded; empty if none is, or if it has been looked at a moment ago.
+        """Return which limit the program exceeds; empty if none, or if the last check was only a moment ago.
 
         Args:
             now_s: The time on any clock.
@@ -180,7 +180,7 @@ class Quota:
         return ""
 
     def _count_sockets(self) -> int:
-        """Return the number of sockets in the program's own network."""
+        """Return the number of sockets in the program's own network; 0 if the system does not tell."""
         with suppress(OSError):
             first = Path(f"{self._process}/net/sockstat").read_text("ascii").partition("\n")[0]
             if first.startswith(_SOCKETS_USED):
@@ -188,7 +188,7 @@ class Quota:
         return 0
 
     def _count_growth(self, most_files: int, most_bytes: int) -> tuple[int, int]:
-        """Return how many files and bytes there are more than at the beginning; it stops counting at these numbers."""
+        """Return how many files and bytes the folders have gained since the beginning; stop counting at `most_…`."""
         files = -self._files
         size = -self._bytes
         for block in self._measure_blocks():
@@ -199,10 +199,10 @@ class Quota:
         return files, size
 
     def _measure_blocks(self) -> Iterator[int]:
-        """Yield the bytes that each file and folder takes."""
+        """Yield the bytes on the disk of each file in the folders; more than is allowed for an unreadable folder."""
         folders = list(self._folders)
         while folders:
-            # Another process writes there: what is gone takes no space.
+            # The program goes on meanwhile: a file or folder that is gone takes no space.
             try:
                 with os.scandir(folders.pop()) as entries:
                     for entry in entries:
@@ -212,11 +212,11 @@ class Quota:
                             folders.append(entry.path)
             except OSError as error:
                 if error.errno in _HIDDEN:
-                    # Whatever it holds: too much.
+                    # Its contents cannot be measured: it counts as too large.
                     yield MOST_BYTES + 1
 
     def _measure_nameless(self) -> Iterator[int]:
-        """Yield the bytes of open files that have no name, or none any more: also those in memory."""
+        """Yield the bytes of the program's open files that have no name (any more), also of those in memory."""
         with suppress(OSError):
             for entry in os.scandir(f"{self._process}/fd"):
                 with suppress(OSError):
@@ -272,7 +272,7 @@ def spawn_isolated(
         for fd in theirs:
             os.close(fd)
     with open(info_fd, "rb") as info:
-        # It is closed when the child starts, or when bubblewrap has given up.
+        # bubblewrap closes its end when the child starts, or when it has given up.
         text = info.read() if is_readable(info_fd, START_S) else b""
     try:
         return IsolatedChild(process, int(json.loads(text)["child-pid"]))
@@ -283,7 +283,7 @@ def spawn_isolated(
 
 
 def _build_command(cwd: Path, writable: Sequence[Path], readable: Sequence[Path]) -> list[str]:
-    """Return the command of bubblewrap, up to its last options; what it starts ends when bubblewrap is ended.
+    """Return bubblewrap's command without its last options; the process that bubblewrap starts ends with it.
 
     Args:
         cwd: The working directory.
@@ -291,7 +291,7 @@ def _build_command(cwd: Path, writable: Sequence[Path], readable: Sequence[Path]
         readable: Files and folders that it may read, besides Python and the system.
     """
     words = [BWRAP, "--unshare-all", "--new-session", "--die-with-parent"]
-    # It leaves them to root, who could mount again for writing what is mounted for reading.
+    # bubblewrap leaves capabilities to root, who could mount read-only folders again for writing.
     words += ["--cap-drop", "ALL"]
     words += ["--proc", "/proc", "--dev", "/dev", "--size", str(_TMP_BYTES), "--tmpfs", "/tmp"]
     for place in (*_SYSTEM, *_list_python_folders(), *map(str, readable)):

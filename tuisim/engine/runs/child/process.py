@@ -39,30 +39,30 @@ BOOT = (
 MAX_TEMPLATES = 4
 
 MAX_ID_GAP = 32
-"""So many process ids are tried one by one: it takes longer to list all processes of the machine."""
+"""Up to this many process ids are tried one by one: listing all processes of the machine takes longer."""
 FILE_LOCKS = 10
 """Number of a limit that every process inherits on Linux, and that is unused since 2.4.25."""
 
 STACK_WRITTEN_WITHIN_S = 0.05
 STACK_AWAITED_S = 0.1
 LOOK_AGAIN_S = 0.003
-"""Time for a stuck child to write its stack, that with its wait for a processor, and the interval of checks."""
+"""Time for a stuck child to write its stack; the same with its waits for a processor; interval of checks."""
 
 _DIGITS = 10
-"""Fewer than these has the number of a line."""
+"""More digits than the number of a line has."""
 MAX_SHOWN = 500
 """Stacks contain at most this many characters of a file name."""
 
 
 class _Starts:
-    """What this process has started: the warm process, templates by what they are prepared for, number of children."""
+    """What this process has started: the warm process, the templates, and the number of children."""
 
     warm: WarmProcess | None = None
     templates: ClassVar[OrderedDict[Hashable, Template]] = OrderedDict()
-    """The one used last comes last."""
+    """By what each is prepared for; the one used last comes last."""
     count = 0
     lock: ClassVar = threading.RLock()
-    """Held while they are looked up or changed: threads of an app start runs at the same time."""
+    """Held while any of these is looked up or changed: threads of an app start runs at the same time."""
 
 
 def start_warm_process() -> None:
@@ -134,7 +134,7 @@ def start_child(
                 process = forked or _spawn(folder, cwd, log, inherited)
             else:
                 for fd in (1, 2):
-                    # It may create none itself: they could outlive their descriptors.
+                    # An isolated child may not create such files itself: they could outlive their descriptors.
                     inherited.append(raw_fd := create_raw_file(fd))
                     theirs.callback(os.close, raw_fd)
                 command = [*_build_command(LIMITS), str(folder), *map(str, inherited)]
@@ -149,7 +149,7 @@ def start_child(
 
 
 def _open_pipe(reader: ExitStack, writer: ExitStack) -> tuple[int, int]:
-    """Return the ends of a pipe, which are closed with these stacks."""
+    """Return the read end and the write end of a new pipe; each stack closes its end."""
     read_fd, write_fd = os.pipe()
     reader.callback(os.close, read_fd)
     writer.callback(os.close, write_fd)
@@ -160,8 +160,8 @@ def prepare_template(key: Hashable, folder: Path, run: Mapping[str, Any]) -> Non
     """Make a template unless there is one, if the warm process runs. Does not block until it is ready.
 
     Args:
-        key: What it is prepared for.
-        folder: A run folder with that.
+        key: What the template is prepared for.
+        folder: The folder of a run that has this key.
         run: The contents of its `run.json`, as it was started.
     """
     with _Starts.lock:
@@ -184,13 +184,17 @@ def _fork(
     run: Mapping[str, Any],
     key: Hashable,
 ) -> ChildProcess | None:
-    """Fork a child from a template or the warm process; return None if there is none, or it cannot."""
+    """Fork a child from the template for `key`, or from the warm process if `key` is None.
+
+    Returns:
+        The child; None if the warm process does not run, or cannot fork one.
+    """
     if _Starts.warm is None or not _Starts.warm.is_usable:
         return None
     try:
         here = cwd or os.getcwd()
     except OSError:
-        # The working directory no longer exists; only a process that is started there can be in it.
+        # It has been deleted: a forked child could not enter it, only a child that is started here inherits it.
         return None
     try:
         server = _Starts.warm if key is None else _get_template(_Starts.warm, key, folder, run)
@@ -229,7 +233,7 @@ def mark(pid: int) -> int:
     """Mark a child and all its future descendants; no new session, program or environment removes the mark.
 
     Returns:
-        The mark; 0 if that is not supported.
+        The mark; 0 if the child cannot be marked.
     """
     new_mark = 1 << 62 | int.from_bytes(os.urandom(7))
     try:
@@ -249,7 +253,12 @@ def end_group(pid: int) -> None:
 
 
 def end_descendants(pid: int, marked: int) -> None:
-    """Kill all processes that an exited child has left behind; without a mark not those in sessions of their own."""
+    """Kill all processes that an exited child has left behind.
+
+    Args:
+        pid: The child.
+        marked: What `mark` returned; with 0, descendants in sessions of their own are not found.
+    """
     ended = {pid}
     try:
         while marked and (
@@ -271,7 +280,7 @@ def end_descendants(pid: int, marked: int) -> None:
 
 
 def _list_younger(pid: int) -> set[int]:
-    """Return the processes that may have been started after a process, and ids that may belong to none."""
+    """Return the ids of all processes that may be younger than a process; some of the ids may belong to none."""
     last = int(Path("/proc/loadavg").read_text("ascii").split()[-1])
     # Process ids increase, and wrap around when they are used up.
     if pid <= last < pid + MAX_ID_GAP:
@@ -323,7 +332,7 @@ def write_command(fd: int, data: bytes) -> bool:
 
 
 def await_stack(folder: Path, pid: int) -> None:
-    """Block for a short time until a stuck child has written its stack."""
+    """Block until a stuck child has written its stack, but only for a short time."""
     start_s = time.monotonic()
     waited_before_s = measure_waited_s(pid)
     size = 0

@@ -6,10 +6,13 @@ import select
 
 
 def is_readable(descriptor: int, timeout_s: float | None) -> bool:
-    """Return whether a descriptor can be read without blocking, or is at its end; block for so long, or until it is.
+    """Return whether a descriptor can be read without blocking, or is at its end.
+
+    Args:
+        timeout_s: How long to wait until it can be; None waits without a limit.
 
     Raises:
-        OSError: it is closed.
+        OSError: the descriptor is closed.
     """
     poll = select.poll()
     poll.register(descriptor, select.POLLIN)

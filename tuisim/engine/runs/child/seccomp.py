@@ -32,7 +32,7 @@ _X32 = 0x40000000
 
 @dataclass(frozen=True, slots=True)
 class _Machine:
-    """The calls of one processor, from its tables in Linux."""
+    """The numbers of system calls on one kind of processor, from its tables in Linux."""
 
     architecture: int
     """`AUDIT_ARCH_…`"""
@@ -57,7 +57,7 @@ _MACHINES = {
 
 
 def build_filter() -> bytes | None:
-    """Return the filter as bubblewrap takes it; None for a processor whose calls are not known here."""
+    """Return the filter in the form that bubblewrap takes; None for a processor whose calls are not known here."""
     machine = _MACHINES.get(platform.machine())
     if machine is None:
         return None
@@ -72,14 +72,14 @@ def build_filter() -> bytes | None:
         _pack_instruction(_LOAD, _NUMBER_AT),
         _pack_instruction(_AT_LEAST, _X32, 0, 1),
         _pack_instruction(_RETURN, unknown),
-        # Its flags lie in memory, where a filter cannot look; the C library then uses clone.
+        # clone3 has its flags in memory, which a filter cannot read. Without it the C library uses clone.
         _pack_instruction(_EQUAL, machine.clone3, 0, 1),
         _pack_instruction(_RETURN, unknown),
     ]
     for number in (*machine.refused, *machine.refused_everywhere):
         program += [_pack_instruction(_EQUAL, number, 0, 1), _pack_instruction(_RETURN, fails)]
     program += [
-        # The buffers of a socket keep their size: they are memory, too. The program hears that it has been changed.
+        # A socket's buffers are memory, too: they keep their size, but setsockopt reports success.
         _pack_instruction(_EQUAL, machine.setsockopt, 0, 7),
         _pack_instruction(_LOAD, _SECOND_AT),
         _pack_instruction(_EQUAL, socket.SOL_SOCKET, 0, 4),
@@ -103,7 +103,7 @@ def _pack_instruction(code: int, operand: int, if_true: int = 0, if_false: int =
 
 
 def filter_descriptor() -> int | None:
-    """Return a descriptor from which the filter can be read once; None as of `build_filter`.
+    """Return a descriptor from which the filter can be read once; None if `build_filter` has none.
 
     Raises:
         OSError: this process can open no more files.

@@ -37,7 +37,7 @@ def list_processes() -> dict[int, tuple[int, str]]:
 
 
 def walk_processes(root: int, known: dict[int, tuple[int, str]]) -> Iterator[int]:
-    """Yield a process and all that descend from it."""
+    """Yield the ids of a process and of all that descend from it; `known` comes from `list_processes`."""
     children: dict[int, list[int]] = {}
     for pid, (parent, _) in known.items():
         children.setdefault(parent, []).append(pid)
@@ -49,7 +49,15 @@ def walk_processes(root: int, known: dict[int, tuple[int, str]]) -> Iterator[int
 
 
 def continue_stopped(root: int, before: set[int]) -> set[int]:
-    """Continue the processes that were stopped at the last look, too; return those that are stopped now."""
+    """Continue the processes that are stopped now and were stopped before.
+
+    Args:
+        root: These are `root` and its descendants.
+        before: What this function returned last.
+
+    Returns:
+        The processes that are stopped now.
+    """
     known = list_processes()
     stopped = {
         pid
@@ -65,7 +73,7 @@ def continue_stopped(root: int, before: set[int]) -> set[int]:
 
 
 def supervise(root: int) -> None:
-    """Look after a process until it has ended. Blocks."""
+    """Continue what a program stops of a process and its descendants, until that process has ended. Blocks."""
     stopped: set[int] = set()
     is_suspended = False
     while True:
@@ -84,7 +92,7 @@ def keep_running() -> Iterator[None]:
     Without `/proc` nothing is continued.
 
     Raises:
-        HostError: this machine cannot start the process that does it.
+        HostError: the supervisor cannot be started.
     """
     if not os.path.isdir("/proc/self"):
         yield
@@ -108,7 +116,7 @@ def keep_running() -> Iterator[None]:
         fd = process.stdin.fileno()
 
         def suspend(number: int, frame: FrameType | None) -> None:
-            # By the user: the supervisor leaves it so.
+            # The user suspends this process: the supervisor must not continue it.
             with suppress(OSError):
                 os.write(fd, b"s")
             os.kill(os.getpid(), signal.SIGSTOP)

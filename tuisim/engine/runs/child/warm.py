@@ -28,7 +28,7 @@ _LENGTH_BYTES = 4
 
 
 class ChildProcess(Protocol):
-    """What a run needs of its process; `subprocess.Popen` has it, too."""
+    """What the host uses of a run's process; `subprocess.Popen` offers the same."""
 
     pid: int
     returncode: int | None
@@ -67,7 +67,7 @@ class ForkedChild:
                 if len(data) == _NUMBER_BYTES:
                     self.returncode = int.from_bytes(data, sys.byteorder, signed=True)
                 else:
-                    # The warm process has ended, and nobody will know how its children do.
+                    # The warm process has ended: nobody can report the end of its children any more.
                     with suppress(OSError):
                         os.killpg(self.pid, signal.SIGKILL)
                     self.returncode = -signal.SIGKILL
@@ -110,7 +110,7 @@ def _continue_parent(pid: int) -> None:
 
 
 class ForkClient:
-    """A process that forks children.
+    """The host's side of a process that forks children.
 
     Args:
         connection: The socket to it.
@@ -186,7 +186,7 @@ class ForkClient:
         return ForkedChild(pid, status_fd)
 
     def _select_changes(self, _run: Mapping[str, Any]) -> dict[str, Any]:
-        """Return what the server has to know of a run, whose process reads the rest."""
+        """Return what the server must be told of a `run.json`; the child reads the rest from the file."""
         return {}
 
     def _answer(self, status_fd: int) -> bytes:
@@ -197,7 +197,7 @@ class ForkClient:
         raise TimeoutError(errno.ETIMEDOUT, "the server does not answer")
 
     def close(self) -> None:
-        """End it, unless it belongs to a process that has forked this one; its children go on."""
+        """End the server, unless it belongs to a process that has forked this one; the server's children go on."""
         self._socket.close()
         if self._pid != os.getpid():
             return
@@ -223,7 +223,7 @@ class Template(ForkClient):
     ) -> None:
         super().__init__(connection, process)
         self._last = _select_varying(run)
-        """What it knows of the last run."""
+        """What the template knows of the last run."""
 
     def _select_changes(self, run: Mapping[str, Any]) -> dict[str, Any]:
         last = self._last
@@ -232,7 +232,7 @@ class Template(ForkClient):
 
 
 def _select_varying(run: Mapping[str, Any]) -> dict[str, Any]:
-    """Return all in which two runs of a template may differ, from the contents of a `run.json`."""
+    """Return the parts of a `run.json` in which two runs from one template may differ."""
     spec = run["spec"]
     world = run["spec"]["world"]
     return {
