@@ -85,6 +85,14 @@ while True:
     sleep(2)
 """
 
+WAIT_HUB = """
+from pybricks.hubs import PrimeHub
+from pybricks.parameters import Button
+from pybricks.tools import wait
+hub = PrimeHub()
+while Button.LEFT not in hub.buttons.pressed():
+    wait(10)
+"""
 WAIT_FORCE = """
 from pybricks.parameters import Port
 from pybricks.pupdevices import ForceSensor
@@ -100,6 +108,10 @@ PROGRAMS = {
         "read the brick's buttons N times, none was pressed: --press enter@1, or K in the app",
     ),
     "touch": (WAIT_TOUCH, "touch sensor on in1 was never pressed: --press in1@2"),
+    "button of a hub": (
+        WAIT_HUB,
+        "read the hub's buttons N times, none was pressed: --press left@1, or K in the app",
+    ),
     "force": (WAIT_FORCE, "force sensor on E was never pressed: --press E@2"),
     "remote": (
         REMOTE,

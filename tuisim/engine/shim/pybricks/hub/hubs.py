@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any, ClassVar
 
+from tuisim.engine.runs.readings import HUB_BUTTONS_PORT
 from tuisim.engine.shim.pybricks.brick import Connected
 from tuisim.engine.shim.pybricks.brick_4 import AnimatedLight, Battery, Buttons, Speaker, System
 from tuisim.engine.shim.pybricks.hub.display import Display, Menu
@@ -62,7 +63,8 @@ class Hub(Connected):
         self.brick.stop_buttons = frozenset({"enter"})
         self.light = AnimatedLight(self._face.shine)
         self.battery, self.system = Battery(), System(type(self).__name__, BUTTON_NAMES)
-        self.buttons = self.button = Buttons({name: BUTTON_NAMES[name] for name in self.BUTTONS})
+        buttons = {name: BUTTON_NAMES[name] for name in self.BUTTONS}
+        self.buttons = self.button = Buttons(buttons, HUB_BUTTONS_PORT)
 
 
 class PrimeHub(Hub):
