@@ -143,7 +143,7 @@ def open_app(**given: Any) -> int:
 
 
 def _select_app_settings(settings: Settings) -> dict[str, Any]:
-    """Return what the settings say about the app, by field of `AppSettings`."""
+    """Return the settings that are about the app and not about a run, by the names of the fields of `AppSettings`."""
     return {
         "quiet": settings["quiet"],
         "rays": settings["rays"],
@@ -221,7 +221,7 @@ def _load_world_goals(world: WorldFile | None, mats: str | None) -> GoalsFile | 
 
 
 def _list_words(arguments: Arguments, goals: GoalsFile | None) -> tuple[str, ...]:
-    """Return the words of the command line; unless another world is named, with the goals file as the world."""
+    """Return the words of the command line, with the goals file before them as the world if they name no other one."""
     from tuisim.settings.worlds import is_world_name
 
     words: tuple[str, ...] = arguments.words
@@ -261,7 +261,11 @@ def analyse(**given: Any) -> int:
 
 
 def _read_terminal_keys() -> None:
-    """Read the log from the original standard input, and keys from the terminal."""
+    """Let `sys.stdin` read the log from the original standard input; keys come from the terminal, as file descriptor 0.
+
+    Raises:
+        ConfigError: there is no terminal.
+    """
     try:
         terminal = os.open("/dev/tty", os.O_RDWR)
     except OSError as error:

@@ -89,7 +89,7 @@ def batch(**given: Any) -> int:
 
 
 class _Batch:
-    """The run of a batch."""
+    """Runs a batch in this process and its workers, and shows how far it is and what came out."""
 
     def __init__(self, request: Request, *, as_json: bool) -> None:
         self.request = request
@@ -100,7 +100,7 @@ class _Batch:
         self.rows = self.sweep.rows
 
     def run(self) -> int:
-        """Run what is not done, write the table, print the results and return the exit code."""
+        """Run what has not been run before, write the table, print the results and return the exit code."""
         plan = self.request.plan
         code = 0
         with Progress(counted(len(plan), "run"), len(plan), in_lines=True):
@@ -124,7 +124,7 @@ class _Batch:
         return max([code, *map(_exit_code, self.rows.values())])
 
     def _rate(self) -> Any:
-        """Return a function that shows how many runs are done, how many there are a second, and how long it takes."""
+        """Return a function to call after each run: it shows how many are done, their rate and the time left."""
         total, before, begun = len(self.request.plan), len(self.rows), time.monotonic()
 
         def tell_row(_: Row) -> None:
@@ -179,7 +179,7 @@ class _Batch:
 
 
 def _format_summary(lines: Sequence[ColumnSummary], width: int) -> str:
-    """Return a summary as text; without the outer quantiles if it is wider than the terminal."""
+    """Return a summary as text; fewer quantiles, or none, if it is wider than `width` characters."""
     text = ""
     for quantiles in (QUANTILES, QUANTILES[1:-1], ()):
         heads = [
@@ -210,7 +210,7 @@ def _exit_code(row: Row) -> int:
 
 
 def _round_figure(value: float) -> FigureCell:
-    """Return a number with few digits; a mere rounding error is 0."""
+    """Return a number as a cell with four digits; a number so near to 0 that only rounding makes it differ is 0."""
     return FigureCell(0.0 if abs(value) < _ROUNDING else value, ".4g")
 
 

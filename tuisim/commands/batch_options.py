@@ -13,7 +13,7 @@ _WORKERS = Whole(1, MAX_JOBS)
 
 
 def build_workers_option(flag: str, text: str, **how: Any) -> GroupedOption:
-    """Return an option for a number of workers; 0 if it is not given."""
+    """Return an option for a number of workers, whose value is 0 if the user does not give it."""
     return option(
         flag,
         default=0,
@@ -32,7 +32,7 @@ def build_jobs_option(**how: Any) -> GroupedOption:
 
 
 def keep_option(usual: Keep, group: str) -> GroupedOption:
-    """Return `--keep all|failed|none`; None if it is not given, which means `usual`."""
+    """Return `--keep all|failed|none`, None if the user does not give it; its help names `usual` as the default."""
     return choice(
         "--keep",
         [kept_runs.value for kept_runs in Keep],

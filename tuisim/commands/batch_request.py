@@ -121,7 +121,7 @@ def read_request(arguments: Arguments) -> Request:
     }
     choices = {**free_choices, **typed}
     if SEED in choices:
-        # Runs that differ in the seed only are neighbours.
+        # The seed varies fastest: runs that differ in nothing else follow each other.
         choices[SEED] = choices.pop(SEED)
     plan = Plan(
         subjects,
@@ -157,7 +157,7 @@ def _choose_workers(arguments: Arguments, file: BatchFile) -> Workers:
 
 
 def _find_goals_world(arguments: Arguments) -> str | None:
-    """Return the world file that is named, if it has goals."""
+    """Return the first world file that the user names and that has goals; None if there is none."""
     words: list[str] = [
         *filter(is_world_name, arguments.programs),
         *filter(None, [arguments.world]),
@@ -170,7 +170,10 @@ def _find_goals_world(arguments: Arguments) -> str | None:
 
 
 def _take_batch_file(arguments: Arguments) -> BatchFile:
-    """Return the batch file among the programs, and leave it out of them; an empty one if there is none."""
+    """Return the batch file that is among the programs, an empty one if there is none.
+
+    The file is removed from the programs; its own programs take its place unless the user names some.
+    """
     named = [word for word in arguments.programs if is_batch_file(word)]
     if len(named) > 1:
         raise ConfigError(f"two batches: {named[0]} and {named[1]}", "name one")
@@ -186,7 +189,7 @@ def _take_batch_file(arguments: Arguments) -> BatchFile:
 def _prepare_subjects(
     arguments: Arguments, file: BatchFile, goals: GoalsFile | None
 ) -> tuple[Subject, ...]:
-    """Return the programs; without a world of its own, a batch takes place in that of its goals."""
+    """Return the programs with their settings; a batch file without a world uses that of its goals."""
     check_arguments(arguments.programs, arguments)
     world = file.world
     if world is None and goals is not None:
@@ -194,7 +197,7 @@ def _prepare_subjects(
     elif world is not None and goals is not None:
         settings = {**world.settings, **goals.presses}
         world = replace(world, settings=settings, program=world.program or goals.program)
-    # A notebook stands for all of its cells.
+    # A batch runs all programs of a notebook, as with --all.
     arguments.all = True
     subjects = []
     refusals = []

@@ -40,7 +40,7 @@ def echo_wrapped(line: str) -> None:
 
 def _measure_columns() -> int:
     """Return the width of the terminal."""
-    # Imported on demand: what is not written to a terminal is as wide as it is.
+    # Imported on demand: only text for a terminal needs the width.
     import shutil
 
     return shutil.get_terminal_size().columns
@@ -80,7 +80,7 @@ def _stream_json(items: Iterable[Any]) -> None:
 
 
 def replace_infinite(row: Mapping[Any, Any]) -> dict[Any, Any]:
-    """Return a row for JSON, which has no infinite numbers: they, and those that are missing, become None."""
+    """Return a row with None for infinite numbers and NaN, which JSON does not have."""
     return {
         name: None if isinstance(value, float) and not math.isfinite(value) else value
         for name, value in row.items()
@@ -97,7 +97,7 @@ def echo_error(line: str) -> None:
 
 
 def echo_written(file: str | Path) -> None:
-    """Tell who watches which files an export has written."""
+    """Print which files an export has written, if stderr is a terminal."""
     from tuisim.logs.export import describe_files
 
     if is_watched():
@@ -145,7 +145,7 @@ class CsvOut:
 
 
 class FigureCell(float):
-    """A number in a table, written by a format spec of its own; one that is missing is empty."""
+    """A number in a table, written with its own format spec; NaN is written as an empty text."""
 
     how: str
     """The format spec, such as `.2f`."""
@@ -165,7 +165,7 @@ _GOOD_CELLS, _MIN_CELLS = 20, 8
 
 
 def draw_table(heads: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
-    """Return rows of text under their heads, as `draw_table_lines` has them; columns of numbers are right-aligned."""
+    """Return a table as `draw_table_lines` draws it; columns with nothing but numbers are right-aligned."""
     columns = list(zip(*rows, strict=True)) if rows else [()] * len(heads)
     right = [
         bool(rows) and all(isinstance(cell, int | float) for cell in column) for column in columns
@@ -239,7 +239,7 @@ def draw_table_lines(
 
 
 def _stack_heads(heads: Sequence[str]) -> list[list[str]]:
-    """Return heads as lines of one word each, the last of them in the last line."""
+    """Return the lines of heads with one word in each line; a head of fewer words begins further down."""
     words = [head.split() for head in heads]
     count = max(map(len, words), default=0) or 1
     return [[([""] * (count - len(word)) + word)[row] for word in words] for row in range(count)]
@@ -266,7 +266,15 @@ def _wrap_row(row: Sequence[str], widths: Sequence[int]) -> Iterator[tuple[str, 
 def _narrow_columns(
     room: int, widths: Sequence[int], figures: Sequence[bool], gap: str, min_widths: Sequence[int]
 ) -> list[int]:
-    """Return the widths of columns with the widest texts made narrower until they fit, as far as they can be."""
+    """Return the widths of columns after the widest texts were narrowed until the row fits or no text can be narrower.
+
+    Args:
+        room: For the row with its gaps, in characters.
+        widths: Of the columns.
+        figures: Which columns are numbers or dates: these stay as wide as they are.
+        gap: The text between two columns.
+        min_widths: The least width of each column.
+    """
     widths = [*widths]
     while _sum_widths(widths, gap) > room:
         texts = [
@@ -292,7 +300,7 @@ _REDRAWS_PER_S = 10
 
 
 def is_watched() -> bool:
-    """Return whether stderr is a terminal that can show a bar."""
+    """Return whether stderr is a terminal that can show a progress bar."""
     return sys.stderr.isatty() and os.environ.get("TERM", "") not in ("", "dumb")
 
 
@@ -302,7 +310,7 @@ _active: list[Progress] = []
 
 @contextmanager
 def hide_progress(stream: TextIO) -> Iterator[None]:
-    """Hide the bar, if any, while text is written to a stream that may be the same terminal."""
+    """Hide the progress bar, if any, while text is written to a stream that may be the same terminal."""
     if _active and stream.isatty():
         with _active[-1].hide():
             yield
@@ -311,20 +319,20 @@ def hide_progress(stream: TextIO) -> Iterator[None]:
 
 
 def tell(what: str, done: float = 0.0, total: float | None = None) -> None:
-    """Update the shown progress, if any."""
+    """Update the description and the amount of the innermost `Progress`, if there is one."""
     if _active:
         _active[-1].tell(what, done, total)
 
 
 class Progress:
-    """Progress of a piece of work, as a context manager.
+    """Shows how far a piece of work is, as a context manager.
 
     A thread draws the bar, so the work need not yield; rich is imported when a bar is first shown.
 
     Args:
         what: The description, such as `exporting log.csv`.
         total: The amount of work, None if unknown.
-        in_lines: Whether it writes lines where no bar can be shown.
+        in_lines: Whether to write lines if stderr can show no bar.
         wait: Waits for some seconds, or until the work is over, and returns whether it is; None is the real clock.
     """
 
@@ -401,7 +409,7 @@ class Progress:
         if self._bar is None:
             self._bar = _build_bar()
             self._bar.add_task("")
-            # The bar may have been hidden for a while.
+            # The time on the bar counts from the start of the work, also if the bar was hidden since.
             self._bar.tasks[0].start_time = self._bar.get_time() - (time.monotonic() - self._begun)
             self._bar.start()
         task = self._bar.tasks[0]

@@ -40,7 +40,9 @@ def choose_exit_code(end: End, exit_code: int) -> int:
 
 
 def choose_unstored_code(code: int) -> int:
-    """Return the exit code of a run that could not be stored: how it ended may be a consequence."""
+    """Return the exit code of a run that could not be stored: `code` only if a signal ended it, as another may be a
+    consequence of that.
+    """
     return code if code > SIGNALLED else EXIT_BAD_OUTPUT
 
 

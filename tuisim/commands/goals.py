@@ -68,7 +68,7 @@ _MARKS = {
     """,
 )
 def check(goals_path: str, words: Sequence[str], as_json: bool) -> int:
-    """Check runs."""
+    """Judge runs by a goals file and print the judgements; return 0 if every goal is met, else 1."""
     file = load_goals(goals_path)
     all_met = True
     with Progress("goals check"):
@@ -92,10 +92,10 @@ def check(goals_path: str, words: Sequence[str], as_json: bool) -> int:
 
 
 def _iterate_names(word: str, store: RunStore) -> Iterator[str]:
-    """Yield the runs that a word names; of a range those that exist.
+    """Yield the names of the runs that a word stands for: itself, or for a range such as `3..7` the numbers that exist.
 
     Raises:
-        ConfigError: a range is empty.
+        ConfigError: no run is in the range.
     """
     limits = _RANGE.fullmatch(word)
     if limits is None:
@@ -109,20 +109,20 @@ def _iterate_names(word: str, store: RunStore) -> Iterator[str]:
 
 
 def _find_differences(file: GoalsFile, run: StoredRun) -> Iterator[str]:
-    """Yield notes if a run is not one of the program alone, from the start that a goals file names."""
+    """Yield a note if the user changed the run while it ran, and one if its start is not that of the goals file."""
     presses = press_actions(merge_settings(file.settings)["press"], run.spec.profile.tick_hz)
     if run.actions and run.actions != presses:
         yield f"run {run.number} was changed while it ran: {counted(len(run.actions), 'action')} of the user"
     try:
         settings = extract_settings(run.spec)
-        # A mat of one's own is known by its path: the file may name it in another way. All else that moves the mat's
-        # start is as it was in the run.
+        # The goals file may name a user's own mat by another path than the run, so mats are not compared. All other
+        # settings of the run remain, as some of them move the start.
         elsewhere = {path: value for path, value in settings.items() if path not in _WHERE}
         of_file = extract_settings(build_run_spec(merge_settings(elsewhere, file.settings)))
     except ConfigError:
-        # A mat no longer exists.
+        # A mat no longer exists: the two worlds cannot be compared.
         return
-    # The mat that the file names has a start of its own.
+    # A mat has a start of its own: the file sets it by naming the mat.
     starts = "background" in file.settings and of_file["background"] == settings["background"]
     named = [key for key in _WHERE if starts or key in file.settings]
     named_values = {key: of_file[key] for key in named}
@@ -175,7 +175,7 @@ def _show(file: GoalsFile, run: StoredRun, judgements: Sequence[Judgement]) -> N
 
 
 def _choose_mark(judgement: Judgement) -> str:
-    """Return the mark before a goal; one that takes points off is at its best if it is missed."""
+    """Return the character before a goal; a goal that takes points off gets that of a met one if it is missed."""
     is_decided = judgement.state in (GoalState.MET, GoalState.MISSED)
     is_penalty = judgement.goal.points < 0 and is_decided
     return (
@@ -225,7 +225,7 @@ def _list_details(judgement: Judgement) -> Iterator[str]:
     """,
 )
 def try_task(goals_path: str, wrong: Sequence[str], seeds: str, timeout: float, jobs: int) -> int:
-    """Try a task out."""
+    """Run programs that do not do a task and print the points that they get; return 1 if one gets too many, else 0."""
     from tuisim.tasks.marks.trial import run_trial
 
     task = load_goals(goals_path)
@@ -254,7 +254,7 @@ def try_task(goals_path: str, wrong: Sequence[str], seeds: str, timeout: float, 
     """,
 )
 def draw_mat(kind: str, seed: int, out: str | None) -> int:
-    """Write a drawn mat."""
+    """Draw a mat to an image file and print its world for a goals file; return 0."""
     from tuisim.pictures.charts.files import check_format, write_whole
 
     if kind not in DRAWN_MATS:

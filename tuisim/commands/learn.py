@@ -76,7 +76,7 @@ def open_lesson(word: str | None, folder: str | None, library: str | None, as_te
 
 
 def _choose_next_lesson(lessons: Sequence[Lesson], progress: dict[str, LessonProgress]) -> Lesson:
-    """Return the lesson to go on with: the one opened last if it is not over, else the first that is not."""
+    """Return the lesson to go on with: the one opened last if a step is left, else the first lesson that has one."""
 
     def is_open(lesson: Lesson) -> bool:
         return progress.get(lesson.name, LessonProgress()).current(lesson) is not None
@@ -257,7 +257,7 @@ def check(paths: Sequence[str], no_runs: bool, strict: bool) -> int:
 
 
 def _count_ways(lesson: Lesson) -> str:
-    """Return in words how many wrong ways are tried."""
+    """Return how many wrong answers and programs the check of a lesson tries, such as `3 wrong ways`."""
     return counted(
         sum(len(step.wrong_programs) + len(step.wrong) for step in lesson.steps), "wrong way"
     )

@@ -195,7 +195,9 @@ def robots(robot: str | None, program: str | None, out: str | None, as_json: boo
 
 
 def _print_program_robot(program: str, out: str | None, *, as_json: bool) -> int:
-    """Print or write the robot that a program talks about."""
+    """Print the robot that a program describes, or of the run that a number or `last` names; with `out`, write it
+    there.
+    """
     if program.isdecimal() or program == "last":
         return _print_robot_of_run(program, out, as_json=as_json)
     from tuisim.programs.program_file import find_program, read_program

@@ -28,7 +28,7 @@ from tuisim.settings.command_line import (
 
 
 def _replace_none(_: object, __: object, word: str | None) -> str:
-    """Return the word of a choice, an empty one if nothing was chosen."""
+    """Return the word that the user chose, an empty one for None: the callback of an option with choices."""
     return word or ""
 
 
@@ -176,7 +176,7 @@ _CHART = ("facets", "marks", "from", "to", "against", "size", "variable", "telem
 
 @dataclass(frozen=True, slots=True)
 class Subcommand:
-    """One line of `SUBCOMMANDS`."""
+    """A subcommand of `tuisim log`: its help, its options and the function that carries it out."""
 
     does: str
     path: str
@@ -188,7 +188,7 @@ class Subcommand:
     """What else its help says."""
 
     def load(self) -> Callable[[Arguments], int]:
-        """Import the function."""
+        """Import the function that `path` names, and return it."""
         module, _, function = self.path.partition(":")
         return cast(
             "Callable[[Arguments], int]",

@@ -225,7 +225,7 @@ def _mark(marking: Marking, arguments: Arguments) -> int:
             _tell_so_far(marking)
             return interrupted.exit_code
         sheet = marking.build_sheet()
-        # First, so that marks are seen also if a file cannot be written.
+        # Printed before the files are written: the user sees the marks even if writing fails.
         _print(sheet)
         _tell_notes(marking)
         code = _write(marking.list_exports(sheet, tell))
@@ -233,7 +233,7 @@ def _mark(marking: Marking, arguments: Arguments) -> int:
 
 
 def _tell_strangers(marking: Marking, roster: str) -> None:
-    """Say which submissions are not in the class list, and who is absent."""
+    """Print which submissions are not in the class list, and who in the list has none."""
     if marking.unlisted:
         echo_error(f"note: not in {roster}: {listed(map(printable, marking.unlisted))}")
     if marking.absent:
@@ -243,7 +243,7 @@ def _tell_strangers(marking: Marking, roster: str) -> None:
 
 
 def _tell_so_far(marking: Marking) -> None:
-    """Print the marks of the students whose programs have had all their runs, and what is kept of the others."""
+    """Print the marks of the students whose programs have had all their runs, and how many runs are stored."""
     sheet = marking.build_sheet_so_far()
     if sheet.rows:
         _print(sheet)
@@ -256,7 +256,7 @@ def _tell_so_far(marking: Marking) -> None:
 
 
 def _tell_notes(marking: Marking) -> None:
-    """Tell what was not marked, and whose programs would not start on a brick."""
+    """Print which files were not marked and why, and which programs would not start on a brick."""
     if marking.ignored:
         names = listed(marking.ignored)
         echo_error(f"note: not marked, because they are not Python programs: {names}")
@@ -270,7 +270,7 @@ def _tell_notes(marking: Marking) -> None:
 
 
 def _tell_unread(marking: Marking) -> int:
-    """Tell whose programs this machine could not read; return the exit code."""
+    """Print whose programs this machine could not read; return 1 if there are some, else 0."""
     unread = [student for student in marking.students if student.is_unread]
     for student in unread:
         echo_error(f"tuisim: the marks do not include {printable(student.name)}: {student.problem}")
@@ -278,7 +278,7 @@ def _tell_unread(marking: Marking) -> int:
 
 
 def _tell_missing(marking: Marking) -> int:
-    """Tell which runs are missing in the marks; return the exit code."""
+    """Print which runs this machine could not make; return 1 if there are some, else 0."""
     missing = marking.missing
     if not missing:
         return 0
@@ -295,7 +295,7 @@ def _tell_missing(marking: Marking) -> int:
 
 
 def _tell_unknown(marking: Marking) -> int:
-    """Tell which goals could not be judged; return the exit code."""
+    """Print which goals could not be judged, and for whom; return 1 if there are some, else 0."""
     unjudged = marking.unjudged
     for goal, reason, names in unjudged:
         echo_error(
@@ -351,7 +351,7 @@ def _check(arguments: Arguments, task: GoalsFile) -> None:
 
 
 def _write(exports: Iterable[tuple[Path, Callable[[], None]]]) -> int:
-    """Write everything that can be written; return the exit code."""
+    """Write every file, also after one that cannot be written; return the highest exit code of the failures, else 0."""
     code = 0
     for target, write in exports:
         tell(f"writing {target}")
@@ -360,7 +360,7 @@ def _write(exports: Iterable[tuple[Path, Callable[[], None]]]) -> int:
         except TuisimError as error:
             code = max(code, error.exit_code)
             echo_error(f"tuisim: {' '.join(source_lines(str(error)))}")
-        except Exception as error:  # Whatever it is, the other files are written.
+        except Exception as error:  # a fault of tuisim's in one export must not prevent the others
             code = max(code, 1)
             echo_error(f"tuisim: {target}: {describe_fault(error)}")
             echo_error(f"tuisim: the report is in {report_file()}")
@@ -395,10 +395,10 @@ def _measure_width(text: str) -> int:
 
 
 def _should_isolate(arguments: Arguments) -> bool:
-    """Return whether programs are isolated; say so if they are not, and nobody has asked for that.
+    """Return whether programs run isolated; print a note if they cannot be and the user has not asked for that.
 
     Raises:
-        ConfigError: they cannot be isolated, and must be; or the options contradict each other.
+        ConfigError: the user asks for isolation that cannot be had, or both for it and against it.
     """
     if arguments.isolate and arguments.no_isolate:
         raise ConfigError(

@@ -119,7 +119,7 @@ def picture(word: str, out: str | None, time_s: float | None, panels: str | None
 
 
 def _build_default_name(run: StoredRun, end: str) -> str:
-    # Not the program's name alone: its mat may be called so.
+    # With an ending: the program's mat may be an image of the program's name.
     return f"{name_of(Path(run.program.name)).strip('-.') or 'run'}-{end}"
 
 
@@ -140,7 +140,7 @@ def _check_number(value: float, low: float, high: float, key: str) -> None:
 
 
 def _choose_panels(recorded: ClipRun, size: Size | None) -> tuple[ClipPanel, ...]:
-    """Return the panels that have something to show, and room for it."""
+    """Return the panels of a picture: the world, and the chart if there are samples and the picture is high enough."""
     from tuisim.pictures.movies.clip import ClipPanel
 
     has_room = size is None or size[1] >= _MIN_CHARTED_PX
@@ -149,7 +149,7 @@ def _choose_panels(recorded: ClipRun, size: Size | None) -> tuple[ClipPanel, ...
 
 
 def _parse_panels(text: str | None) -> tuple[ClipPanel, ...]:
-    """Return the named panels, in their order on the picture; none for None."""
+    """Return the panels that a text names, in their order on the picture; an empty tuple for None."""
     from tuisim.pictures.movies.clip import ClipPanel
 
     if text is None:

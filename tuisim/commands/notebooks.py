@@ -22,7 +22,7 @@ NOT_RUN = "not_run"
 
 
 def find_listed(words: Sequence[str], *, run_all: bool = False) -> list[NotebookProgram]:
-    """Return the programs of a notebook that is named without a cell; empty if there is only one."""
+    """Return the programs of a notebook that is the only word and names no cell; an empty list if there is only one."""
     if run_all or len(words) != 1 or not is_notebook(words[0]) or "#" in words[0]:
         return []
     programs = choose_programs(words[0])
@@ -53,10 +53,10 @@ def _format_title(program: NotebookProgram) -> str:
 
 
 def find_programs(word: str) -> list[NotebookProgram]:
-    """Return the programs that a word names, `drop_unknown`.
+    """Return the programs that a word names and that can run outside the notebook.
 
     Raises:
-        ConfigError: there is no such notebook or program, or it runs in the notebook only.
+        ConfigError: there is no such notebook or program, or none of them can.
     """
     known = drop_unknown(choose_programs(word))
     if not known:
@@ -67,7 +67,7 @@ def find_programs(word: str) -> list[NotebookProgram]:
 
 
 def drop_unknown(programs: Sequence[NotebookProgram]) -> list[NotebookProgram]:
-    """Return the programs without those that run only in the notebook; those are noted on stderr."""
+    """Return the programs that can run outside the notebook; print why each of the others is skipped."""
     known: list[NotebookProgram] = []
     for program in programs:
         for note in program.notes:
@@ -83,7 +83,7 @@ def drop_unknown(programs: Sequence[NotebookProgram]) -> list[NotebookProgram]:
 
 @dataclass(frozen=True, slots=True)
 class NotRun:
-    """A program, or a whole notebook of a folder, that cannot be run."""
+    """A program, or all of a notebook in a folder, that cannot be run, and why."""
 
     label: str
     """Its name in the table."""
@@ -120,7 +120,7 @@ def check_folder(word: str, *, run_all: bool) -> list[Path]:
 
 
 def print_results(results: Sequence[tuple[str, StoredRun | None]]) -> None:
-    """Print a table with one row per label and run, None if it was not run: state, samples, simulated time, run."""
+    """Print a table of runs: label, state, samples, simulated time and number; a label without a run was not run."""
     rows = [_build_row(label, run) for label, run in results]
     echo_lines(draw_table(("cell", "state", "samples", "time s", "run"), rows))
 

@@ -34,7 +34,7 @@ class RelayInterrupts:
         self._handle: RunHandle | None = None
 
     def watch(self, handle: RunHandle) -> None:
-        """Make a run the one that a signal stops."""
+        """Let a signal stop this run from now on; stop it at once if one has come already."""
         self._handle = handle
         if self.exit_code:
             handle.stop()
@@ -58,7 +58,7 @@ class RelayInterrupts:
 
 @dataclass(slots=True)
 class Follower:
-    """Follows one run to its end."""
+    """Writes what one run prints to stdout and stderr until it ends."""
 
     handle: RunHandle
     out: TextIO
@@ -115,16 +115,16 @@ class Follower:
             self.cut = EXIT_BROKEN_PIPE
             self.handle.stop()
         except OSError as error:
-            # The run goes on: its recording has every line.
+            # The run goes on: no line is lost, as the recording has them all.
             self.lost = f"cannot write to stdout: {error.strerror or error}"
 
 
 def is_piped() -> bool:
-    """Return whether stdin is a pipe or a file, whose lines answer `input()`."""
+    """Return whether stdin is a pipe or a file: its lines then answer `input()`."""
     try:
         mode = os.fstat(sys.stdin.fileno()).st_mode
     except (AttributeError, OSError, ValueError):
-        # It is closed, or no file.
+        # stdin is closed, or is an object without a file.
         return False
     return stat.S_ISFIFO(mode) or stat.S_ISREG(mode)
 

@@ -123,12 +123,20 @@ def _find_effective_defaults(
     plain: Settings,
     *above: Mapping[str, Any],
 ) -> tuple[str, ...]:
-    """Return the user's defaults that make the run another one than with the plain settings, in words."""
+    """Return in words which defaults of the user's file change a run; nothing if it is in a world of its own.
+
+    Args:
+        spec: The run with the defaults.
+        world: Its world; None if there is none.
+        config: The user's defaults.
+        plain: The settings without the defaults.
+        above: Settings that take precedence over the defaults.
+    """
     remarks = () if world else tuple(config.list_effective(*above))
     try:
         return remarks if remarks and build_run_spec(plain) != spec else ()
     except ConfigError:
-        # Only with them the run exists, such as one on a mat of the user's own folder.
+        # Without the defaults there is no such run, for example on a mat in the user's own folder.
         return remarks
 
 
@@ -177,7 +185,7 @@ def _prepare_cell(
 
 
 def prepare_app(words: Sequence[str], arguments: Arguments, config: UserConfig) -> Prepared:
-    """Prepare the app for nothing, a program, a world, or a program in a world, as the user named them.
+    """Return what the app opens: nothing, a program, a world, or a program in a world, as the user named them.
 
     Raises:
         ConfigError: program, magic line, world or options are wrong, or there are two programs.
@@ -205,7 +213,7 @@ def prepare_app(words: Sequence[str], arguments: Arguments, config: UserConfig) 
 def prepare_replay(
     run: str, words: Sequence[str], arguments: Arguments, config: UserConfig
 ) -> tuple[StoredRun, Prepared]:
-    """Load a stored run for the app.
+    """Return a stored run for the app, and what the app needs to open it.
 
     Args:
         run: Its number, its id or the start of its id, its folder's path, or `last`.
@@ -234,13 +242,13 @@ def prepare_runs(
     command: str = "run",
     config: UserConfig = NO_CONFIG,
 ) -> list[Prepared | NotRun]:
-    """Prepare the programs that the user named to run one after another, all in the named world, if any.
+    """Return the programs that the user named, to be run one after another, all in the named world, if any.
 
     An error in one notebook of a folder does not prevent the others from running.
 
     Args:
         usual_world: The world if none is named.
-        command: The command that is asked for, for errors.
+        command: The name of the command, for errors.
         config: The user's defaults.
 
     Raises:

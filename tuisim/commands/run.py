@@ -172,7 +172,7 @@ def run(**given: Any) -> int:
 
 
 def _tell_notes(prepared: Sequence[Prepared], *, strict: bool) -> None:
-    """Tell what the sources of the programs decide, and what of them the brick would refuse.
+    """Print which settings come from the programs themselves, and which of their lines the brick would refuse.
 
     Raises:
         ConfigError: the brick would refuse a line, and `strict` makes that an error.
@@ -288,7 +288,7 @@ def _export(done: Sequence[StoredRun], arguments: Arguments) -> None:
 
 
 def _check_only_listed(arguments: Arguments, count: int) -> None:
-    """Raise ConfigError if an export or JSON is asked for where a notebook is only listed."""
+    """Raise ConfigError if an export or JSON is asked for where the cells of a notebook are only listed."""
     if arguments.json or arguments.export or arguments.telemetry is not None:
         (word,) = arguments.programs
         raise ConfigError(
@@ -330,12 +330,17 @@ def _run_all(
 
 
 def _build_progress(number: int, count: int) -> Callable[[RunHandle], None]:
-    """Return a callback that shows the progress of one of several runs."""
+    """Return a callback that shows the progress of a run.
+
+    Args:
+        number: Its place among the runs, from 0.
+        count: How many runs there are.
+    """
 
     def tell_run(handle: RunHandle) -> None:
         ticks = handle.telemetry.count
         what = f"{handle.program.name}: {ticks / handle.spec.profile.tick_hz:.1f} s simulated"
-        # The length of a program is unknown; only their number is known.
+        # How long a program takes is unknown: the bar counts programs.
         tell(
             f"{number + 1} of {count}, {what}" if count > 1 else what,
             number,
@@ -346,7 +351,7 @@ def _build_progress(number: int, count: int) -> Callable[[RunHandle], None]:
 
 
 def _choose_options(prepared: Prepared, arguments: Arguments) -> RunOptions:
-    """Return how a program is run; without given answers, a pipe or a file on stdin answers `input()`."""
+    """Return how to run a program; a pipe or a file on stdin answers `input()` if no answers are given."""
     speed = prepared.settings["speed"] or 0.0
     answers = arguments.input or (prepared.world.inputs if prepared.world else ())
     asks_pipe = not answers and is_piped()

@@ -129,14 +129,14 @@ def list_runs(as_json: bool) -> int:
         if sys.stdout.isatty() and shutil.get_terminal_size().columns < _ALL_COLUMNS:
             heads = tuple(heads[index] for index in _FEWER)
             rows = [tuple(row[index] for index in _FEWER) for row in rows]
-            # The year and the seconds are left out, too.
+            # Such a narrow table also has no room for the year and the seconds.
             rows = [(number, str(created)[5:16], *rest) for number, created, *rest in rows]
         echo_lines(draw_table(heads, rows))
     return 0
 
 
 def _note(run: RunInfo) -> str:
-    """Return what the summary of a run says beyond its end, which has a column."""
+    """Return the summary of a run; nothing if it only repeats the end, which has a column of its own."""
     return "" if run.summary == run.end else _cut(run.summary)
 
 
@@ -162,7 +162,7 @@ def _convert_plain(row: OutputRow) -> dict[str, object]:
 
 
 def _read_values(run: StoredRun) -> dict[str, Any]:
-    """Return the values of a run that options and world files set, by path."""
+    """Return the values of a run for which there are options or keys of world files, by path."""
     return {
         path: toml_form(run_value.value, tree.get_value(run.spec, run_value.spec_path))
         for path, run_value in RUN_VALUES.items()
@@ -170,7 +170,7 @@ def _read_values(run: StoredRun) -> dict[str, Any]:
 
 
 def _list_files_read(run: StoredRun) -> tuple[FilesRead, tuple[str, ...]]:
-    """Return the files that the program has read, and a note if their list is damaged."""
+    """Return which files the program of a run has read, and notes; if the list is damaged: no files, and a note."""
     try:
         return read_reads(run.folder), ()
     except LogError as error:
@@ -178,7 +178,7 @@ def _list_files_read(run: StoredRun) -> tuple[FilesRead, tuple[str, ...]]:
 
 
 def _describe_drawn(spec: RunSpec) -> str:
-    """Return the errors that the seed of a run with drift has drawn."""
+    """Return in words the errors of wheels and sensors that drift has drawn with the seed of the run."""
     drift = find_drift(spec)
     drawn = draw_errors(drift, spec.seed)
     sizes = {"left wheel": drawn.left, "right wheel": drawn.right, "spacing": drawn.spacing}
@@ -274,7 +274,11 @@ def rm(words: Sequence[str], older_than: str | None) -> int:
 
 
 def _find_older(store: RunStore, words: Sequence[str], age: str) -> list[str]:
-    """Return the ids of finished runs older than an age such as `30d`."""
+    """Return the ids of the runs that are older than an age such as `30d` and do not run now.
+
+    Raises:
+        ConfigError: the age cannot be read, or runs are named, too.
+    """
     if words:
         raise ConfigError("takes no run", f"got {' '.join(words)}", key="--older-than")
     match = _AGE.fullmatch(age)
@@ -296,7 +300,7 @@ def _is_older(created: str, moment: datetime) -> bool:
     try:
         return datetime.fromisoformat(created) < moment
     except (ValueError, TypeError):
-        # The age of a damaged run is unknown.
+        # A damaged run may have no date: it is not removed by its age.
         return False
 
 
@@ -314,7 +318,7 @@ def rerun_runs(words: Sequence[str], as_json: bool) -> int:
 
 
 def _rerun(run: StoredRun, *, as_json: bool) -> int:
-    """Run it again and print whether the result is the same; return the exit code."""
+    """Run a stored run again and print whether the result is the same; return the exit code."""
     notes = list_changed_files(run)
     for note in notes:
         echo_error(f"note: {note}")

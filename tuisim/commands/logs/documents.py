@@ -142,7 +142,7 @@ def report(arguments: Arguments) -> int:
         LogError: the log cannot be read, or there is no such variable.
         ExportError: the file cannot be written.
     """
-    # Imported on demand: a chart needs no pictures and movies.
+    # Imported on demand: it imports the code for pictures and movies, which a chart does not need.
     from tuisim.analysis.report import build_default_name, check_report, write_report
 
     if not arguments.words:

@@ -52,7 +52,7 @@ def build_request(arguments: Arguments) -> LogRequest:
 
 
 def build_choices(arguments: Arguments) -> ReadChoices:
-    """Return what the arguments say of a log that is to be read."""
+    """Return how the arguments want a log to be read: its time column, its values and so on."""
     names = (field.name for field in fields(ReadChoices))
     words = {name: getattr(arguments, name) for name in names}
     return ReadChoices(**{**words, "value": tuple(arguments.value)})
@@ -113,7 +113,10 @@ def _open_runs(words: Sequence[str], arguments: Arguments) -> Iterator[Log]:
 
 
 def _read_runs(runs: Sequence[StoredRun], arguments: Arguments) -> list[Log]:
-    """Return the samples of some runs, or the telemetry of each, where that is asked for or has what is asked for."""
+    """Return the samples of runs as one log, or the telemetry of each run.
+
+    The telemetry is returned for `--telemetry`, and if all names in the arguments are columns of it and no samples.
+    """
     if arguments.telemetry:
         _name_columns(arguments, (), runs)
         return list(map(build_telemetry_log, runs))
@@ -130,10 +133,10 @@ def _read_runs(runs: Sequence[StoredRun], arguments: Arguments) -> list[Log]:
 def _name_columns(
     arguments: Arguments, known: Container[str], runs: Sequence[StoredRun]
 ) -> set[str]:
-    """Give the variables that are asked for the names of columns; return these names and those in the expression.
+    """Replace variables in the arguments by the columns of telemetry that they mean; return the names of all columns.
 
     Args:
-        known: The names of samples, which come first.
+        known: Names of samples: a variable of such a name is not replaced.
     """
     run = runs[0].spec
     words: Sequence[str] = getattr(arguments, "variable", None) or ()
@@ -163,7 +166,7 @@ def _open_file(word: str, arguments: Arguments) -> Log:
 
 
 def _prepare_log(log: Log, arguments: Arguments) -> Log:
-    """Tell the notes on a log; return it with the columns that must be asked for by name."""
+    """Print the notes on a log; return the log with those columns that it only has if the arguments name them."""
     # The notes of a summary are its last lines.
     if arguments.action != "summary":
         for note in log.notes:

@@ -190,10 +190,10 @@ def _show_commands(arguments: Arguments, words: str) -> int:
 
 
 def _parse_threshold_option(arguments: Arguments) -> EventChoice:
-    """Return the threshold that is asked for; its name is empty for every variable.
+    """Return the threshold in the arguments, without a name if it is for every variable, or the search for commands.
 
     Raises:
-        ConfigError: none is given, or two are.
+        ConfigError: there is none, there are two, or it cannot be read.
     """
     if bool(arguments.when) is (arguments.at is not None):
         raise ConfigError(
@@ -212,7 +212,12 @@ def _parse_threshold_option(arguments: Arguments) -> EventChoice:
 
 
 def _print_each(arguments: Arguments, column: str, change: Callable[[Series], FloatArray]) -> int:
-    """Output a long frame with one more column, computed per variable."""
+    """Output the chosen variables of a log as a long frame with one more column.
+
+    Args:
+        column: The name of that column.
+        change: Returns its values for one variable.
+    """
     import pandas as pd
 
     log = open_single(arguments)
@@ -300,7 +305,7 @@ def reckon(arguments: Arguments) -> int:
     worst = frame.loc[frame["error_mm"].idxmax()]
     real, reckoned = ([end[f"{of}{name}"] for name in POSE] for of in ("", "reckoned_"))
     error = [number - other for number, other in zip(reckoned, real, strict=True)]
-    # By the shorter way round.
+    # The error of the heading is from -180 to 180 degrees.
     error = [round(number, 2) + 0.0 for number in (*error[:2], (error[2] + 180.0) % 360.0 - 180.0)]
     rows = [("real", *real), ("reckoned", *reckoned), ("error", *error)]
     formats = dict(zip(("at_the_end", *POSE), ("", ".2f", ".2f", ".2f"), strict=True))
@@ -342,7 +347,10 @@ def _export_mcap(arguments: Arguments) -> None:
 
 
 def _select_part(log: Log, arguments: Arguments) -> LogTable:
-    """Return the rows of the chosen variables; of a wide log, their columns and those that are not variables."""
+    """Return the table of a log with the rows in which a chosen variable has a value; all of it if none is chosen.
+
+    A log with a column for each variable loses the columns of the other variables.
+    """
     if not arguments.variable:
         return log.table
     names = choose_names(log, arguments)

@@ -21,7 +21,7 @@ OLDEST_PYTHON = (3, 11)
 
 
 class FindingState(StrEnum):
-    """How good a finding is."""
+    """Whether what was found is good, could be better, or prevents the use of tuisim."""
 
     OK = "ok"
     ADVICE = "advice"
@@ -42,12 +42,12 @@ class Finding:
 
 
 def judge_terminal(name: str, term: str, *, is_remote: bool) -> Finding:
-    """Judge the terminal.
+    """Judge which terminal this is.
 
     Args:
-        name: What it calls itself; empty if it does not tell.
+        name: What the terminal calls itself; empty if it does not tell.
         term: The variable TERM.
-        is_remote: Whether it is reached by SSH.
+        is_remote: Whether the terminal is reached by SSH.
     """
     value = f"{name or 'no name'} (TERM={term or 'not set'}{', over SSH' if is_remote else ''})"
     if term in ("", "dumb", "unknown"):
@@ -67,12 +67,12 @@ def judge_no_terminal() -> Finding:
 
 
 def judge_colors(depth: str, *, is_remote: bool, is_fixed: bool = False) -> Finding:
-    """Judge the number of colours, one of `COLOR_DEPTHS` other than `auto`.
+    """Judge the number of colours.
 
     Args:
-        depth: What the app would draw with.
+        depth: What the app would draw with: one of `COLOR_DEPTHS` other than `auto`.
         is_remote: Whether the terminal is reached by SSH.
-        is_fixed: Whether TERM or NO_COLOR decides, whatever else is set.
+        is_fixed: Whether TERM or NO_COLOR decides, so that COLORTERM changes nothing.
     """
     if depth == "truecolor":
         return Finding("colours", "truecolor (16 million)")
@@ -104,7 +104,7 @@ def judge_cells(cells: CellSet, term: str = "", variable: str = "") -> Finding:
 
     Args:
         cells: The glyphs.
-        term: The variable TERM if it alone limits them, else empty.
+        term: The variable TERM if it is the reason for no finer glyphs, else empty.
         variable: The variable that decides the locale, see `judge_locale`.
     """
     value = f"{cells} ({_POINTS[cells]})"
@@ -126,11 +126,11 @@ def judge_cells(cells: CellSet, term: str = "", variable: str = "") -> Finding:
 
 
 def judge_graphics(protocol: str, *, has_colors: bool = True) -> Finding:
-    """Judge the protocol for real pixels.
+    """Judge by which protocol the terminal shows pixels.
 
     Args:
-        protocol: Empty if there is none.
-        has_colors: Whether colours are used: pixels have some.
+        protocol: Its name; empty if there is none.
+        has_colors: Whether colours are allowed; without colours, there are no pixels.
     """
     why = "" if has_colors else ", as TERM or NO_COLOR says"
     return Finding("graphics", protocol or f"none{why}: the world is drawn with glyphs")
@@ -164,12 +164,12 @@ def judge_locale(variable: str, encoding: str) -> Finding:
 
 
 def _use_utf8(variable: str) -> str:
-    """Return the command that sets the variable which decides the locale: LC_ALL hides the others."""
+    """Return the shell command for UTF-8: it sets the variable that decides the locale, as LC_ALL hides the others."""
     return f"export {variable.partition('=')[0] or 'LANG'}=C.UTF-8"
 
 
 def judge_latency(latency_s: float | None) -> Finding:
-    """Judge how long the terminal takes to answer; None if it does not answer."""
+    """Judge how long the terminal takes to answer; `latency_s` is None if it does not answer."""
     if latency_s is None:
         advice = "It does not answer, so tuisim cannot know what it shows: choose with --cells and --pixels"
         return Finding("latency", "no answer", FindingState.ADVICE, advice)
@@ -283,10 +283,10 @@ def _judge_dependency(name: str, pinned: str, installed: str) -> Finding:
 
 
 def judge_simulator(old_simulator: str) -> list[Finding]:
-    """Judge which `nbev3devsim` the notebooks of a course import: nothing to tell if it is tuisim's.
+    """Return a finding if the notebooks of a course import the old `nbev3devsim` and not tuisim's.
 
     Args:
-        old_simulator: The file of the old simulator; empty if it is not installed.
+        old_simulator: The file of the old simulator; empty if notebooks import tuisim's.
     """
     if not old_simulator:
         return []

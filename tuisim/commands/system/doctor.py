@@ -83,14 +83,17 @@ def _print(findings: list[Finding]) -> None:
 
 @contextmanager
 def _open_terminal() -> Iterator[int | None]:
-    """Open the terminal that this process belongs to, also if its output is redirected; None if there is none."""
+    """Yield the open terminal of this process, also if its output is redirected.
+
+    Yield None if there is none, or if this process is in its background.
+    """
     try:
         fd = os.open("/dev/tty", os.O_RDWR | os.O_NOCTTY)
     except OSError:
         yield None
         return
     try:
-        # A job in the background would be stopped when it changes the terminal.
+        # The system stops a job in the background that changes its terminal.
         yield fd if os.tcgetpgrp(fd) == os.getpgrp() else None
     finally:
         os.close(fd)
@@ -176,7 +179,7 @@ def _check_textual() -> Finding:
 
 
 def _explain_unwritable(folder: Path) -> str:
-    """Return why no file can be written in a folder, or a folder there; empty if it can."""
+    """Return why a file cannot be created in a folder, which need not exist yet; empty if it can."""
     place = folder
     while not place.exists() and place != place.parent:
         place = place.parent
@@ -209,7 +212,7 @@ def _store(home: Path) -> tuple[int, int, int]:
 
 
 def _list_requirements() -> list[tuple[str, str, str]]:
-    """Return the name of each package that tuisim needs, the version that it must have, and the one that it has."""
+    """Return the packages that tuisim needs: name, required version and installed version of each."""
     from importlib.metadata import PackageNotFoundError, requires
 
     try:

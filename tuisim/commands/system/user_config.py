@@ -60,7 +60,7 @@ def config(as_json: bool, init: bool) -> int:
 
 
 def _check_in_app(settings: UserConfig) -> None:
-    """Check what only the app knows: the keys, and the name of the theme."""
+    """Check the keys and the name of the theme in the user's settings, which only the app knows."""
     from tuisim.app.actions.keys import ACTIONS
     from tuisim.app.keymap import apply_keys, check_theme
 
