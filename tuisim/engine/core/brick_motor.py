@@ -98,13 +98,18 @@ class BrickMotor:
         self.end_tick = end_tick
 
     def run_to(self, goal_deg: float, speed_dps: float, backwards: bool) -> None:
-        """Run to an encoder position; the speed has no sign."""
+        """Run to an encoder position.
+
+        Args:
+            speed_dps: Its sign is ignored.
+            backwards: Whether to turn backwards, wherever the goal is.
+        """
         self._begin(POSITION, abs(speed_dps), -1.0 if backwards else 1.0)
         self.goal_deg = goal_deg
 
     def _begin(self, mode: int, speed_dps: float, sign: float) -> None:
         if sign != self.sign:
-            # The wheel keeps its direction: only the sign convention changes.
+            # The wheel keeps its direction: only the meaning of the sign changes.
             self.speed_dps = -self.speed_dps
         self.mode = mode
         self.target_dps = speed_dps
@@ -130,7 +135,7 @@ class BrickMotor:
         if mode == STOPPED or turned_deg == 0.0:
             return
         if mode == POSITION and self.mode == STOPPED:
-            # The motor did not reach its goal after all.
+            # An obstacle has undone the arrival at the goal: the move goes on.
             self.mode = mode
             self.sign = sign
             self.target_dps = target_dps
@@ -220,7 +225,7 @@ class BrickMotor:
         return Glide(turns, counts[1:])
 
     def _advance_speeds(self, ticks: int) -> list[float]:
-        """Advance the speed by `ticks` ticks and return the speed after each."""
+        """Advance the speed by `ticks` ticks and return the speed after each tick."""
         speed = self.speed_dps
         target = self.target_dps
         step = self.ramp_step
@@ -300,7 +305,7 @@ class BrickMotor:
     def _step_to_goal(self, turned: float) -> float:
         left = (self.goal_deg - self.position_deg) * self.sign
         if left < 0.0:
-            # Its count was set beyond the goal: there is no way to go, and no jump back.
+            # The program has set the count beyond the goal: stop here, without a jump back to the goal.
             self.stop()
             return 0.0
         if turned * self.sign >= left:

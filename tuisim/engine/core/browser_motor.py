@@ -81,7 +81,7 @@ class BrowserMotor:
         self.end_tick = end_tick
 
     def run_to(self, goal_deg: float, speed_dps: float, backwards: bool) -> None:
-        """Run to an encoder position."""
+        """Run to an encoder position; see `BrickMotor.run_to`."""
         self._begin(POSITION, speed_dps)
         self.goal_deg = goal_deg
         self.backwards = backwards
@@ -94,7 +94,7 @@ class BrowserMotor:
         self.blocked_ticks = 0
 
     def stop(self) -> None:
-        """Stop from the next tick on; this also ends the state."""
+        """Stop from the next tick on; the motor no longer counts as blocked."""
         self._command = STOPPED
         self.blocked_ticks = 0
 
@@ -123,7 +123,7 @@ class BrowserMotor:
         return turned * self.roll_sign + 0.0
 
     def _step_register(self, speed: float, noise_dps: float = 0.0) -> float:
-        """Return the register after one more tick."""
+        """Return the value of the speed register one tick later."""
         target = self.speed_sp
         step = self._ramp_step
         if speed < target:
@@ -150,12 +150,12 @@ class BrowserMotor:
 
     @property
     def _aim(self) -> float:
-        """The final value of the register."""
+        """The value that the speed register approaches."""
         return min(self.speed_sp, self._limit_dps)
 
     @property
     def _ended(self) -> bool:
-        """Whether a move to a position is over, so that only the encoder continues."""
+        """Whether a move to a position is over, so that only the encoder goes on counting."""
         return self._command == POSITION and self.mode == STOPPED
 
     # Ticks ahead
@@ -220,7 +220,7 @@ class BrowserMotor:
         return Glide([turned * sign + 0.0 for turned in turns], counts)
 
     def _advance_registers(self, ticks: int) -> list[float]:
-        """Advance the register by `ticks` ticks and return it after each."""
+        """Advance the register by `ticks` ticks and return its value after each tick."""
         speed = self.speed_dps
         aim = self._aim
         speeds: list[float] = []

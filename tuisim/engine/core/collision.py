@@ -51,11 +51,11 @@ class Clearance(NamedTuple):
 
     pose: PoseTuple
     any_mm: float
-    """In any direction: how far its fastest point may move."""
+    """How far the body's fastest point may move in any direction."""
     straight: int
     """1 if the way straight ahead was checked, -1 for straight back, 0 for neither."""
     straight_mm: float
-    """How far that way is free."""
+    """How far the body may move straight in that direction."""
 
 
 class Leeway(NamedTuple):
@@ -109,7 +109,7 @@ class Solids:
 
         Args:
             pose: x and y in mm, heading in degrees.
-            wanted_mm: Nothing is checked again if at least this distance is known to be free.
+            wanted_mm: If at least this distance is known to be free, nothing is checked again.
             straight: 1 or -1 for a robot that only moves forwards or backwards, 0 for any motion.
         """
         left = self.remaining_mm(pose)
@@ -131,7 +131,7 @@ class Solids:
         if self.remaining_mm(pose) >= way:
             return UNHINDERED
         motion = (*pose, forward_mm, turn_deg)
-        # A robot that pushes against an obstacle asks the same in every tick.
+        # A robot that pushes against an obstacle has the same pose and motion in every tick.
         if motion != self._last_motion:
             self._last_motion, self._last_leeway = (
                 motion,
@@ -200,7 +200,7 @@ class Solids:
     # Gaps
 
     def measure_gaps_mm(self, pose: PoseTuple) -> tuple[float, ...]:
-        """Return the gaps between the body and everything, negative where they overlap.
+        """Return the gaps in mm between the body and every wall and obstacle, negative where they overlap.
 
         The left, right, lower and upper wall come first, if there are walls, then the obstacles in their order. A gap
         changes by no more than the fastest point of the body moves.
@@ -344,7 +344,7 @@ def _locate_box(body: Body, box: Box) -> tuple[float, float, bool]:
 
 
 def _find_free_part(is_blocked: Callable[[float], bool], way_mm: float) -> float:
-    """Return the largest fraction of a motion that is free of contact; `is_blocked` answers for any fraction."""
+    """Return the largest fraction of a motion without contact; `is_blocked` tells whether a fraction has contact."""
     steps = max(1, math.ceil(way_mm / STEP_MM))
     for step in range(1, steps + 1):
         if is_blocked(step / steps):

@@ -24,20 +24,23 @@ COLOR_NAMES = ("NoColor", "Black", "Blue", "Green", "Yellow", "Red", "White", "B
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """A value at each tick. What is measured with others comes first among the columns of its owner, in that order."""
+    """A value that a run has at each tick, measured or computed from those of the same owner.
+
+    Measured columns come first among those of an owner, in the order in which it measures them.
+    """
 
     name: str
     """An identifier that ends in the unit, such as `left_red_pc`; see `logs.units`."""
     of: Callable[[Iterable[Sequence[float]], RunSpec], list[float]] | None = None
-    """Computes it from what its owner measures, at each of some ticks; None: it is measured."""
+    """Computes the values from the owner's measured ones, a row for each tick; None: the column is measured."""
     is_traced: bool = False
-    """Whether the chart offers it."""
+    """Whether the chart offers the column."""
     also: tuple[str, ...] = ()
     """Other names that are understood."""
 
 
 def list_measured_names(columns: Iterable[Column]) -> tuple[str, ...]:
-    """Return the names of the columns that are measured: those that telemetry exports if it is not asked for others."""
+    """Return the names of the measured columns: telemetry exports these unless it is asked for others."""
     return tuple(column.name for column in columns if column.of is None)
 
 
@@ -54,7 +57,7 @@ MOTION: tuple[Column, ...] = (
 
 
 def measure_motion(instant: Instant, run: RunSpec, field: Field) -> tuple[float, ...]:
-    """Return what is measured of `MOTION`, in that order."""
+    """Return the values of the measured columns of `MOTION`, in their order."""
     pose = instant.pose
     return (
         pose.x_mm,
@@ -71,8 +74,8 @@ def find_column_name(text: str, columns: Iterable[Column]) -> str | None:
     """Return the name of the column that a text means, however its words are joined; None if there is none.
 
     Args:
-        text: Such as `left_red_pc`, or as it was written before, `left.red%` or `left sensor red %`.
-        columns: Those that there are.
+        text: Such as `left_red_pc`, or an earlier spelling, `left.red%` or `left sensor red %`.
+        columns: The columns to choose from.
     """
     names = {column.name: (column.name, *column.also) for column in columns}
     if text in names:

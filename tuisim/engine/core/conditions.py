@@ -18,7 +18,7 @@ from tuisim.engine.core.columns import COLOR_NAMES
 
 
 class Operator(StrEnum):
-    """What a condition asks of a value. Comparisons have the name of their function in numpy and pyarrow."""
+    """The operator of a condition. Comparisons have the name of their function in numpy and pyarrow."""
 
     LESS = "<"
     LESS_EQUAL = "<="
@@ -27,16 +27,16 @@ class Operator(StrEnum):
     EQUAL = "=="
     NOT_EQUAL = "!="
     CONTAINS = "~"
-    """Only for texts: they contain the value, in any case of letters."""
+    """Only for texts: whether they contain the value, in capitals or small letters."""
     CHANGES = "changes"
     MATCHES = "matches"
-    """Only for printed lines: a regular expression is found in them."""
+    """Only for printed lines: whether a regular expression is found in them."""
     SEEN = "is seen"
-    """Only for samples: one was printed, with any value."""
+    """Only for samples: whether one was printed, with any value."""
 
     @property
     def short(self) -> str:
-        """The shortest spelling."""
+        """The shortest spelling of the operator."""
         return next(
             (spelling for spelling, operator in _SPELLINGS.items() if operator is self), self.value
         )
@@ -63,22 +63,22 @@ NUMBER = r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
 
 
 class ValueSource(StrEnum):
-    """Where a condition takes its values from."""
+    """Where the values come from that a condition tests."""
 
     COLUMN = ""
     """A column of a recording or of a log."""
     SAMPLE = "sample"
     """The samples that the program prints."""
     PRINT = "print"
-    """The lines that it prints."""
+    """The lines that the program prints."""
 
 
 @dataclass(frozen=True, slots=True)
 class ValueCondition:
-    """A condition as typed."""
+    """A condition on a column, a sample or a printed line, as typed."""
 
     name: str
-    """The column or variable; of samples empty for any."""
+    """The column, or the variable of a sample; empty for samples of any variable."""
     sign: str
     """The operator as typed."""
     value: str = ""
@@ -91,26 +91,26 @@ class ValueCondition:
 
     @property
     def is_momentary(self) -> bool:
-        """Whether it is true at single instants: it does not stay true."""
+        """Whether the condition is only true at single instants, and never stays true."""
         return self.operator in (Operator.CHANGES, Operator.MATCHES, Operator.SEEN)
 
     @property
     def number(self) -> float:
-        """The value as a number; a colour has a name.
+        """The value to compare with, as a number; the name of a colour stands for its code.
 
         Raises:
-            ValueError: it is none.
+            ValueError: the value is not a number.
         """
         is_name = is_color(self.name) and self.value in COLOR_NAMES
         return float(COLOR_NAMES.index(self.value)) if is_name else parse_finite_number(self.value)
 
     def test(self) -> Callable[[Any, Any], Any]:
-        """Return the function that tells whether it is true of a value, or of each value of an array.
+        """Return a function that tells whether the condition is true of a value, or of each value of an array.
 
         The function takes the value, and the value before it: NaN for the first.
 
         Raises:
-            ValueError: the value to compare with is no number.
+            ValueError: the value to compare with is not a number.
         """
         if self.operator is Operator.CHANGES:
             return lambda value, before: (before == before) & (value != before)
@@ -121,10 +121,10 @@ class ValueCondition:
         return lambda value, _: compare(value, number)
 
     def format_condition(self, name: str) -> ValueCondition:
-        """Return the condition as it is written of a column with this name.
+        """Return the condition for a column with this name, in its usual spelling.
 
         Raises:
-            ValueError: the value to compare with is no number.
+            ValueError: the value to compare with is not a number.
         """
         named = replace(self, name=name, sign=self.operator.value)
         if self.is_momentary:
@@ -138,7 +138,7 @@ class ValueCondition:
 
 
 class Edge:
-    """Follows a value: tells when a condition becomes true of it, not while it stays true."""
+    """Follows a value, and tells when a condition on it becomes true, not while it stays true."""
 
     __slots__ = ("_before", "_held", "_is_momentary", "_test")
 
@@ -158,14 +158,14 @@ class Edge:
 
 
 def parse_condition(text: str, name: str = r".+?", value: str = r"\S+") -> ValueCondition | None:
-    """Return the condition `NAME OP VALUE` or `NAME changes` that a text is; None if it is none.
+    """Return the condition `NAME OP VALUE` or `NAME changes` in a text; None if the text is not such a condition.
 
     `name` and `value` are regular expressions of what is allowed.
     """
     subject, _, last = text.strip().rpartition(" ")
     if last == Operator.CHANGES and subject:
         return ValueCondition(subject.strip(), Operator.CHANGES)
-    # Of several operators the first one counts after which everything is a value.
+    # Of several operators, the first one counts that has nothing but a value after it.
     match = re.fullmatch(
         rf"\s*(?P<name>{name})(?<![<>=!~])\s*(?P<sign>{_SIGNS})\s*(?P<value>{value})\s*", text
     )
@@ -173,10 +173,10 @@ def parse_condition(text: str, name: str = r".+?", value: str = r"\S+") -> Value
 
 
 def parse_run_condition(text: str) -> ValueCondition | None:
-    """Return the condition on a run that a text is, None if it is none.
+    """Return the condition on a run in a text; None if the text is not such a condition.
 
-    On a column as `parse_condition`, except `~`; `sample NAME`, `sample NAME OP VALUE`, `sample NAME changes`;
-    `print matches REGEX`.
+    A condition on a column as of `parse_condition`, except `~`; `sample NAME`, `sample NAME OP VALUE`,
+    `sample NAME changes`; `print matches REGEX`.
     """
     word, _, rest = text.strip().partition(" ")
     rest = rest.strip()
@@ -197,12 +197,12 @@ def parse_run_condition(text: str) -> ValueCondition | None:
 
 
 def list_operators(operators: Iterable[str] = COMPARE) -> str:
-    """Return operators as they are listed in hints, each in its shortest spelling."""
+    """Return operators for a hint, separated by spaces, each in its shortest spelling."""
     return " ".join(Operator(operator).short for operator in operators)
 
 
 def describe_comparison(operators: Iterable[str] = COMPARE) -> str:
-    """Return the form of a comparison, for the hint of an error."""
+    """Return the form of a comparison in words, for the hint of an error."""
     return f"NAME OP VALUE, OP one of {list_operators(operators)}"
 
 
@@ -212,7 +212,7 @@ def is_color(column: str) -> bool:
 
 
 def format_value(value: float, column: str, digits: int = 6) -> str:
-    """Return a value of a column as it is written: a colour by its name."""
+    """Return a value of a column as text: the name of a colour, else up to `digits` digits."""
     if is_color(column) and value in range(len(COLOR_NAMES)):
         return COLOR_NAMES[int(value)]
     return f"{value:.{digits}g}"

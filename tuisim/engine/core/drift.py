@@ -30,7 +30,7 @@ JERK_MM = 1.0
 """How far a wheel slips at once: about the width of a contact patch that lets go."""
 
 MAX_DEVIATIONS = 3.0
-"""What is drawn from a normal distribution is within this many standard deviations."""
+"""Numbers from a normal distribution are limited to this many standard deviations."""
 
 MAX_OVERSHOOT = 1.2
 """A motor turns no faster than this many times its top speed."""
@@ -43,7 +43,7 @@ _FIRST_LOSS_DEG, _LAST_LOSS_DEG = 15.0, 50.0
 
 
 class DrawnErrors(NamedTuple):
-    """What is drawn once per run."""
+    """The errors that are drawn once per run."""
 
     left: float
     """The diameter of the left wheel, as a multiple of the robot's."""
@@ -57,7 +57,7 @@ class DrawnErrors(NamedTuple):
 
 
 def find_drift(spec: RunSpec) -> DriftSpec:
-    """Return what drifts in a run: in a course or a simulator, sensors of one kind are all alike."""
+    """Return the drift of a run. Unless its robot is as bricks were measured, sensors of one kind are all alike."""
     drift = spec.world.drift
     if drift is NO_DRIFT or spec.profile.motor_law.is_measured:
         return drift
@@ -77,20 +77,20 @@ def _draw_normal(seed: int, channel: str) -> float:
 
 
 def draw_light_gain(port: str, drift: DriftSpec, seed: int) -> float:
-    """Return the brightness that the colour sensor on a port sees, as a multiple of the robot's."""
+    """Return the brightness that the colour sensor on a port sees, as a multiple of the true brightness."""
     return 1 + _draw_normal(seed, f"drift/light/{port}") * drift.light_gain_pc / 100
 
 
 @lru_cache(maxsize=64)
 def draw_echo_bias_mm(port: str, drift: DriftSpec, seed: int) -> int:
-    """Return the error of the distances of the ultrasonic sensor on a port."""
+    """Return the constant error in mm of the distances of the ultrasonic sensor on a port."""
     (share,) = draw_numbers(seed, 0, f"drift/echo/{port}", 1)
     return round(drift.echo_bias_mm * (share - (1 - share) / 7))
 
 
 @lru_cache(maxsize=16)
 def draw_errors(drift: DriftSpec, seed: int) -> DrawnErrors:
-    """Return what a seed draws."""
+    """Return the errors that a seed gives a run."""
     ours = draw_numbers(seed, 0, "drift", 9)
     # By Box and Muller.
     pairs = zip(ours[0:8:2], ours[1:8:2], strict=True)
@@ -110,7 +110,7 @@ def draw_errors(drift: DriftSpec, seed: int) -> DrawnErrors:
 def sense_turn_rate_dps(left_dps: float, right_dps: float, spec: RunSpec) -> float:
     """Return the counter-clockwise rate of turn that a gyro senses, from the speeds of the wheels' motors.
 
-    The slip of wheels that accelerate is too short for it.
+    The gyro does not sense the slip of accelerating wheels, which is too short.
     """
     drift = find_drift(spec)
     if drift.is_none:
@@ -124,7 +124,7 @@ def sense_turn_rate_dps(left_dps: float, right_dps: float, spec: RunSpec) -> flo
 
 
 def compute_light_share(x_mm: Any, y_mm: Any, drift: DriftSpec, seed: int) -> Any:
-    """Return the share of the full brightness at places of the field, numbers or arrays: 1 at its brightest side."""
+    """Return the share of the full brightness at places of the field, numbers or arrays; 1 at the brightest side."""
     across, up = draw_bright_side(drift, seed)
     towards = (x_mm - FIELD_WIDTH_MM / 2) * across + (y_mm - FIELD_HEIGHT_MM / 2) * up
     return 1 - (0.5 - towards) * (drift.light_pc / 100)
@@ -132,7 +132,7 @@ def compute_light_share(x_mm: Any, y_mm: Any, drift: DriftSpec, seed: int) -> An
 
 @lru_cache(maxsize=16)
 def draw_bright_side(drift: DriftSpec, seed: int) -> tuple[float, float]:
-    """Return how much a mm along x and along y adds to the brightness: from side to side it is 1."""
+    """Return how much a mm along x and along y adds to the brightness, which grows by 1 from side to side."""
     way = draw_errors(drift, seed).bright_rad
     across = cos(way)
     up = sin(way)
@@ -141,13 +141,13 @@ def draw_bright_side(drift: DriftSpec, seed: int) -> tuple[float, float]:
 
 
 def compute_lost_echoes(flatness_deg: float, drift: DriftSpec) -> float:
-    """Return the share of pulses that a surface does not send back, at an angle off its normal."""
+    """Return the share of pulses that a surface does not send back; `flatness_deg` is the angle off its normal."""
     share = (flatness_deg - _FIRST_LOSS_DEG) / (_LAST_LOSS_DEG - _FIRST_LOSS_DEG)
     return max(0.0, min(1.0, share)) * drift.echo_loss_pc / 100
 
 
 class _Wheel:
-    """A wheel behind its motor."""
+    """A wheel that its motor turns with backlash, and that slips."""
 
     __slots__ = ("_accelerations", "_half_mm", "_play_mm", "_slip", "_times", "before_mm")
 
@@ -157,12 +157,12 @@ class _Wheel:
         self._slip = slip
         self._accelerations = tick_hz * tick_hz / 1000
         self._play_mm = 0.0
-        """Where the motor is in its play: from -half to half."""
+        """Where the motor is in its play: from -_half_mm to _half_mm."""
         self.before_mm = 0.0
         """How far the wheel has turned in the tick before."""
 
     def engage_mm(self, motor_mm: float) -> float:
-        """Return how far the wheel turns if the motor turns so far, by its real diameter."""
+        """Return how far a wheel of its real diameter rolls, after the play, if the motor would roll it `motor_mm`."""
         half = self._half_mm
         if half:
             play_mm = self._play_mm + motor_mm
@@ -171,14 +171,14 @@ class _Wheel:
         return motor_mm * self._times
 
     def compute_slip_mm(self, way_mm: float) -> float:
-        """Return how much of its way the wheel loses in a tick because it accelerates; it gains while it brakes."""
+        """Return how much of its way the wheel loses in a tick while it speeds up; negative while it brakes."""
         speeding = (way_mm - self.before_mm) * self._accelerations
         self.before_mm = way_mm
         return self._slip * speeding * abs(way_mm)
 
 
 class SlippingWheels:
-    """The wheels of a run with drift: their play and speed.
+    """The wheels of a run with drift: with backlash, slip, and sizes that differ from the nominal ones.
 
     Args:
         spec: The run.
@@ -208,7 +208,7 @@ class SlippingWheels:
         self._turn_slip = drift.turn_slip_pc / 100
 
     def turn_deg(self, tick: int, left_deg: float, right_deg: float) -> tuple[float, float]:
-        """Return the turns of the motors that would move a robot without errors as this one moves in a tick."""
+        """Return the turns of the motors that would move a robot without errors as this robot moves in a tick."""
         if not (left_deg or right_deg):
             self._left.before_mm = self._right.before_mm = 0.0
             return left_deg, right_deg
@@ -233,7 +233,7 @@ class SlippingWheels:
 
 
 class WrongGyro:
-    """A gyro that senses something else than the turn of the robot: it drifts, and has a limit.
+    """A gyro that senses something other than the robot's turn: it drifts, and senses turns only up to a rate.
 
     Args:
         spec: The run.
@@ -253,7 +253,7 @@ class WrongGyro:
         self._drifts = not drift.is_none
 
     def roll(self, left_deg: float, right_deg: float) -> None:
-        """Move the robot by one tick's rotation of the wheels' motors, as `Drive.roll`, and the gyro with it."""
+        """Move the robot by one tick's rotation of the wheels' motors, as `Drive.roll`, and the gyro's angle."""
         drive = self._drive
         angle_deg = drive.gyro_zero_deg - drive.heading_deg
         drive.roll(left_deg, right_deg)
@@ -275,13 +275,13 @@ def build_slipping_wheels(spec: RunSpec) -> SlippingWheels | None:
 
 
 def build_gyro(spec: RunSpec, drive: Drive) -> WrongGyro | None:
-    """Return the gyro of a run; None if it senses each turn as it is."""
+    """Return the gyro of a run; None if the gyro senses each turn correctly."""
     is_right = find_drift(spec).is_none and not spec.profile.gyro_max_dps
     return None if is_right else WrongGyro(spec, drive)
 
 
 def can_strain_gyro(spec: RunSpec) -> bool:
-    """Return whether the motors can turn the robot faster than its gyro senses, without noise."""
+    """Return whether the motors can turn the robot faster than its gyro can sense; noise is left out."""
     if not spec.profile.gyro_max_dps:
         return False
     fastest_mm = sum(

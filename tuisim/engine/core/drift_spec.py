@@ -16,7 +16,7 @@ def _build_field(high: float, typical: float, unit: str, about: str, source: str
 
 @spec
 class DriftSpec(Spec):
-    """What makes robot and sensors deviate from what a program assumes. Encoders do not notice it."""
+    """Sizes of the errors of robot and sensors that a program does not expect. Encoders do not notice them."""
 
     KEY = "drift"
 

@@ -34,7 +34,7 @@ def compute_mm_per_degree(robot: RobotSpec) -> tuple[float, float]:
 
 
 def _sign_wheels(forwards_mm: float, robot: RobotSpec) -> tuple[float, float]:
-    """Return the same way for the left and the right wheel, negative where the motor is reversed."""
+    """Return `forwards_mm` for the left and the right wheel, negative where the motor is reversed."""
     return (
         -forwards_mm if robot.left_reversed else forwards_mm,
         -forwards_mm if robot.right_reversed else forwards_mm,
@@ -71,7 +71,7 @@ class Records(NamedTuple):
 def _fill(
     records: Records, offset: int, left: EvenGlide, right: EvenGlide, zero_deg: float
 ) -> None:
-    """Write what is the same in all records from `offset` on; the loops then pack only the positions, quickly."""
+    """Write the fields that are the same in all records from `offset` on; the loops then pack only the positions."""
     left_dps, right_dps = left.roll_deg * records.tick_hz, right.roll_deg * records.tick_hz
     zeros = 0, 0, 0.0, 0.0, 0.0, 0.0, 0.0
     common = TICK_RECORD.pack(*zeros, left_dps, right_dps, zero_deg, records.flags, records.actions)
@@ -80,7 +80,7 @@ def _fill(
 
 
 class Glide(NamedTuple):
-    """Motion of one wheel's motor over several ticks."""
+    """How one wheel's motor moves over several ticks."""
 
     rolls_deg: list[float]
     """Rotation in each tick."""
@@ -89,7 +89,7 @@ class Glide(NamedTuple):
 
 
 class EvenGlide(NamedTuple):
-    """Motion of one wheel's motor at a steady speed over several ticks."""
+    """How one wheel's motor moves over several ticks at a steady speed."""
 
     roll_deg: float
     """Rotation in each tick."""
@@ -226,7 +226,7 @@ class BrickDrive:
     def glide_evenly(
         self, records: Records, left: EvenGlide, right: EvenGlide
     ) -> tuple[float, float]:
-        """As `glide`, with the same rotation in each tick; returns the final encoder positions."""
+        """Do the same as `glide`, with the same rotation in each tick; return the final encoder positions."""
         left_mm, right_mm = (
             left.roll_deg * self._left_mm_per_deg,
             right.roll_deg * self._right_mm_per_deg,
@@ -377,7 +377,7 @@ class BrowserDrive:
     def glide_evenly(
         self, records: Records, left: EvenGlide, right: EvenGlide
     ) -> tuple[float, float]:
-        """As `glide`, with the same rotation in each tick; returns the final encoder positions."""
+        """Do the same as `glide`, with the same rotation in each tick; return the final encoder positions."""
         forward, turned = self._step(left.roll_deg, right.roll_deg)
         if not turned:
             return _glide_straight(self, forward, self._heading, records, left, right)

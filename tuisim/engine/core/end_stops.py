@@ -18,18 +18,18 @@ NEAR_DEG = 2.0
 
 
 def end_flag(robot: RobotSpec, port: str, end: str) -> int:
-    """Return the flag of a tick record for a motor on a port at one of its `MOTOR_ENDS`."""
+    """Return the flag of a tick record that says that the motor on a port is at one of its `MOTOR_ENDS`."""
     number = [motor.port for motor in robot.extra_motors].index(port)
     return FLAG_FIRST_END << len(MOTOR_ENDS) * number + MOTOR_ENDS.index(end)
 
 
 def build_start_flags(robot: RobotSpec) -> int:
-    """Return the flags of all motors at the start of a run."""
+    """Return the end stops at which motors are at the start of a run, as flags of a tick record."""
     return sum(EndStops(robot, motor).flags for motor in robot.extra_motors)
 
 
 class EndStops:
-    """The stops of one motor, and where the motor is between them."""
+    """The end stops of one motor, and where the motor is between them."""
 
     __slots__ = ("_at_deg", "_high_deg", "_high_flag", "_low_deg", "_low_flag")
 
@@ -60,7 +60,7 @@ class EndStops:
 
 
 class Fence(EndStops):
-    """The stops of a motor that feels them itself.
+    """The end stops of a motor that itself keeps its axle between them.
 
     Args:
         robot: The robot.
@@ -73,7 +73,7 @@ class Fence(EndStops):
         motor.limit_axle(self._low_deg, self._high_deg)
 
     def step(self, motor: Motor, tick: int) -> None:
-        """Run one tick of the motor."""
+        """Run one tick of the motor, which stops by itself."""
         self._at_deg += motor.step(tick, 0.0)
 
 

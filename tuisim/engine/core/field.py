@@ -38,7 +38,7 @@ def count_disc_pixels(diameter: int) -> int:
 
 @lru_cache(maxsize=16)
 def list_disc_spans(diameter: int) -> tuple[tuple[int, int, int], ...]:
-    """Return the rows of a disc: the row in its box, and the first and the end column."""
+    """Return the rows of a disc: the number of the row in its box, its first column, and the column after its last."""
     rows = enumerate(build_disc_mask(diameter))
     return tuple(
         (row, inside.index(True), diameter - inside[::-1].index(True))
@@ -60,7 +60,7 @@ class Field:
     pixels: memoryview
     """Rows from the top, three bytes per pixel."""
     sums: Mapping[int, memoryview]
-    """By diameter d: unsigned 32-bit red, green and blue sums of the disc whose box has its
+    """By diameter d: sums of red, green and blue (unsigned, 32 bits) of the disc whose box has its
     corner at (col - d, row - d); shape (height + d, width + d, 3), flat."""
     floor_rgb: Rgb | None = None
     """Colour of the floor around the mat; None for no floor, where nothing reflects."""
@@ -86,7 +86,7 @@ class Field:
         return left_sums[0] + count * red, left_sums[1] + count * green, left_sums[2] + count * blue
 
     def has_box(self, diameter: int, col: int, row: int) -> bool:
-        """Return whether all of a box is on the mat."""
+        """Return whether the whole box of a disc is on the mat."""
         return 0 <= col <= self.width_px - diameter and 0 <= row <= self.height_px - diameter
 
     def _count_on_floor(self, diameter: int, col: int, row: int) -> int:
@@ -99,7 +99,7 @@ class Field:
         return count
 
     def pixel(self, col: int, row: int) -> Rgb:
-        """Return a pixel of the mat, or of what is around it."""
+        """Return the colour of a pixel; off the mat, the colour of what is around it."""
         if 0 <= col < self.width_px and 0 <= row < self.height_px:
             offset = 3 * (row * self.width_px + col)
             return self.pixels[offset], self.pixels[offset + 1], self.pixels[offset + 2]
@@ -136,7 +136,7 @@ class Field:
 
 
 def find_floor_rgb(width_px: int, height_px: int, pixels: memoryview) -> Rgb:
-    """Return the colour in which a mat goes on beyond its edges: the most frequent one on them."""
+    """Return the colour in which a mat goes on beyond its edges: the most frequent colour of its edge pixels."""
     line = 3 * width_px
     ends = range(0, line, 3), range(line * (height_px - 1), line * height_px, 3)
     sides = range(0, line * height_px, line), range(line - 3, line * height_px, line)

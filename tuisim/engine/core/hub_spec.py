@@ -56,13 +56,14 @@ INSIDE = "inside"
 
 
 def check_motor_kinds(hub: str, kinds: Mapping[str, str]) -> None:
-    """Check that motors fit to a hub; to the EV3 if that is empty.
+    """Check that motors fit to a hub.
 
     Args:
-        kinds: Their kinds by the keys in a robot file.
+        hub: One of `HUBS`; empty for the EV3.
+        kinds: The motors' kinds by the keys in a robot file.
 
     Raises:
-        RobotError: one does not.
+        RobotError: a motor does not fit.
     """
     for key, kind in kinds.items():
         require_one_of(kind, "kind of motor", HUB_MOTORS if hub else EV3_MOTORS, key)

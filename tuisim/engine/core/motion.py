@@ -188,16 +188,16 @@ class Motion:
         """Set when a motor ends a move by itself; the caller clears it."""
         self._left_dps = self._right_dps = 0.0
         self._driven: tuple[SimulatedMotor, ...] = ()
-        """The motors whose driver notices changes of their states by itself."""
+        """The motors with a driver, which notices changes of their states late."""
         self.changed_ns = 0
         """When a driver noticed the last such change."""
         self._begin(spec, sink)
 
     def _build_solids(self, spec: RunSpec) -> None:
-        """Prepare what the robot can meet."""
+        """Prepare the walls and obstacles that the robot can meet."""
         self._solids = Solids(spec.world, spec.robot, self._early) if spec.world.solid else None
         if self._solids is not None:
-            # One wheel at full speed forwards, the other backwards.
+            # The longest way of a point in a tick: one wheel turns at full speed forwards, the other backwards.
             fastest = max(
                 find_top_speed_dps(motor.kind, spec.profile) for motor in spec.robot.wheel_motors
             )
@@ -206,7 +206,7 @@ class Motion:
             self._longest_mm = farthest * (1 + 2 * self._solids.reach_mm / self._spacing_mm)
 
     def _begin(self, spec: RunSpec, sink: TickSink, motor_sink: MotorSink | None = None) -> None:
-        """Take up its initial state, as far as it differs between runs of one robot in one world."""
+        """Set the part of the initial state in which runs of one robot in one world can differ."""
         self.spec = spec
         self._sink = sink
         self.noise = spec.world.noise
@@ -227,7 +227,7 @@ class Motion:
         self._publish(1)
 
     def _start_clocks(self) -> None:
-        """Let the drivers' clocks begin where the seed says."""
+        """Start the drivers' clocks at an instant that depends on the seed."""
         self._driven = tuple(motor for motor in self.motors if isinstance(motor, SimulatedMotor))
         if self._driven:
             jiffies = draw_jiffies(self.spec.seed)
@@ -236,28 +236,28 @@ class Motion:
 
     @property
     def notices(self) -> bool:
-        """Whether drivers notice changes of the motors' states late, when they look."""
+        """Whether the motors have drivers, which notice changes of their states late, at their next check."""
         return bool(self._driven)
 
     @property
     def motor_values(self) -> tuple[MotorValues, ...]:
-        """What the drivers of all motors know, as it is recorded at the end of the last tick; empty without drivers."""
+        """What the drivers of all motors knew at the end of the last tick, as recorded; empty without drivers."""
         return self._motor_recorder.read_values(self._sink.count - 1)
 
     def _publish(self, ticks: int) -> None:
-        """Let readers see the records of some more ticks; in all of them the drivers know the same."""
+        """Make the records of some more ticks visible to readers; the drivers' values are the same in all of them."""
         count = self._sink.count
         self._motor_recorder.record(count, ticks)
         self._sink.publish(count + ticks)
 
     def find_next_change_ns(self, now_ns: int) -> int:
-        """Return when a motor may change next, as far as a program can be told: with the next tick or look."""
+        """Return when a program can next notice a change of a motor: at the next tick, or an earlier driver's check."""
         ends_ns = -(-(self.tick + 1) * NS_PER_S // self._hz)
         looks_ns = [motor.next_look_ns for motor in self._driven if motor.next_look_ns > now_ns]
         return min([ends_ns, *looks_ns])
 
     def notice_change(self) -> bool:
-        """Return whether a driver notices a change before the next tick is over; the motors run until then."""
+        """Run the motors up to their drivers' checks in the next tick; return whether a driver notices a change."""
         end_ns = -(-(self.tick + 1) * NS_PER_S // self._hz)
         for motor in self._driven:
             if motor.next_look_ns <= end_ns:
@@ -302,7 +302,7 @@ class Motion:
         )
 
     def _can_glide_with_noise(self) -> bool:
-        """Return whether motors with noise can run several ticks at once: nothing blocks them, and none has a goal."""
+        """Return whether motors with noise can run several ticks at once: without obstacles, and without a goal."""
         left, right = self.left, self.right
         if self._solids is not None or left.mode == POSITION or right.mode == POSITION:
             return False
@@ -311,7 +311,7 @@ class Motion:
     def tick_once(self) -> None:
         """Run one tick in full: the reference for the loops below."""
         count = self._sink.count
-        # Before anything moves: without space for its record there is no tick.
+        # Reserve space before anything moves: if there is none, the tick does not happen.
         buffer = self._buffer if count < self._room_end else self._make_room(1)
         self.tick = tick = self.tick + 1
         left = self.left
@@ -367,7 +367,7 @@ class Motion:
         drive.x_mm, drive.y_mm = drive.x_mm + aside_mm[0], drive.y_mm + aside_mm[1]
 
     def _clear_ticks(self, most: int) -> int:
-        """Return for how many ticks, at most `most`, no collision is possible without a new command."""
+        """Return for how many ticks, at most `most`, no collision is possible unless a command comes."""
         left, right = self.left, self.right
         if self._solids is None or (self._driven and left.resting and right.resting):
             return most
@@ -391,13 +391,13 @@ class Motion:
             return most
         pose = self._pose()
         free = self._solids.find_free_way_mm(pose, way * min(most, CHECK_TICKS), straight)
-        # Without any obstacle it is infinite.
+        # `free` is infinite without any obstacle.
         return most if free >= way * most else int(free / way)
 
     def _list_wheel_speeds(
         self, left: Motor, right: Motor
     ) -> tuple[tuple[float, float], tuple[float, float]]:
-        """Return the current and the target speed that each wheel's motor gives it, positive forwards."""
+        """Return the current and the target speed of the left and of the right wheel, positive forwards."""
         left_ends, right_ends = (left.moving_dps, left.aim_dps), (right.moving_dps, right.aim_dps)
         return (
             left_ends if self._left_mm_per_deg > 0 else (-left_ends[0], -left_ends[1]),
@@ -434,7 +434,7 @@ class Motion:
         return part, aside_mm
 
     def _free_wheels(self) -> None:
-        """Set free the wheels that nothing blocks any more."""
+        """Set both wheels free if nothing blocks the robot any more."""
         left, right = self._driven[0], self._driven[1]
         if not (left.is_barred or right.is_barred):
             return
@@ -445,7 +445,7 @@ class Motion:
         right.bar(right_deg if blocked else 0.0)
 
     def _is_blocked(self, left_mm: float, right_mm: float) -> bool:
-        """Whether an obstacle allows no part of a motion of the wheels that is worth mentioning."""
+        """Whether an obstacle allows no noticeable part of a motion of the wheels."""
         if self._solids is None or (left_mm == 0.0 and right_mm == 0.0):
             return False
         turn_deg = degrees((right_mm - left_mm) / self._spacing_mm)
@@ -500,7 +500,7 @@ class Motion:
                     self.tick_once()
                 ticks -= part
                 continue
-            # Before anything moves: without space for the records there are no ticks.
+            # Reserve space before anything moves: if there is none, the ticks do not happen.
             buffer = self._make_room(part)
             sink = self._sink
             hz = self._hz

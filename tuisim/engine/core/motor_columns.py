@@ -30,16 +30,16 @@ MOTOR_RECORD = Struct("<ihbB")
 
 
 class MotorSink(Protocol):
-    """Receives a `MOTOR_RECORD` of each motor for each tick of telemetry, which says how many there are."""
+    """Receives the `MOTOR_RECORD`s of all motors for each tick; only telemetry says how many ticks there are."""
 
     def extend_buffer(self, ticks: int) -> Buffer:
-        """Return a writable buffer with space for the records of so many ticks, from byte 64 on."""
+        """Return a writable buffer with space for the records of `ticks` ticks, from byte 64 on."""
 
     def arrange(self, sources: Sequence[int | None], ticks: int) -> None:
-        """Write what there is again for other motors.
+        """Rewrite the records of all ticks for another set of motors.
 
         Args:
-            sources: Of each motor the number that it had, in their new order; None for one that was at rest.
+            sources: For each new motor the number that it had before; None for one that has been at rest.
             ticks: How many ticks are recorded.
         """
 
@@ -65,7 +65,7 @@ class MotorRecorder:
     """Writes the records of the motors of a run.
 
     Args:
-        motors: Those with a driver, in the order of `name_motors`.
+        motors: The motors with a driver, in the order of `name_motors`.
         sink: Receives the records; None if nobody does.
     """
 
@@ -75,24 +75,24 @@ class MotorRecorder:
         self._motors = motors
         self._sink = sink
         self._size = MOTOR_RECORD.size * len(motors)
-        """Bytes of a tick."""
+        """Bytes of all motors' records of one tick."""
         self._buffer: Buffer | None = None
 
     def change_motors(
         self, motors: tuple[DrivenMotor, ...], sources: Sequence[int | None], ticks: int
     ) -> None:
-        """Go on with other motors; `sources` and `ticks` as of `MotorSink.arrange`."""
+        """Continue with another set of motors; `sources` and `ticks` as of `MotorSink.arrange`."""
         self._motors, self._size = motors, MOTOR_RECORD.size * len(motors)
         if self._sink is not None:
             self._sink.arrange(sources, ticks)
 
     def make_room(self, ticks: int) -> None:
-        """Make room for the records of so many ticks."""
+        """Make room for the records of `ticks` ticks."""
         if self._sink is not None:
             self._buffer = self._sink.extend_buffer(ticks)
 
     def record(self, tick: int, ticks: int) -> None:
-        """Record what the drivers know at the end of each of some ticks: the same in all."""
+        """Record the drivers' present values for `ticks` ticks from `tick` on, the same for all of them."""
         buffer = self._buffer
         if buffer is None:
             return
@@ -104,7 +104,7 @@ class MotorRecorder:
             buffer[offset : begin + self._size * ticks] = buffer[begin:offset] * (ticks - 1)
 
     def read_values(self, tick: int) -> tuple[MotorValues, ...]:
-        """Return what was recorded at a tick; without a sink, what the drivers know now."""
+        """Return the drivers' values that were recorded at a tick; without a sink, their present values."""
         buffer = self._buffer
         begin = self._size * tick + 64
         if buffer is None:
@@ -121,12 +121,12 @@ def has_driver(run: RunSpec) -> bool:
 
 
 def name_motors(robot: RobotSpec) -> tuple[str, ...]:
-    """Return how the columns of each motor begin: `left`, `right`, then by port such as `motor_a`."""
+    """Return the prefix of each motor's columns: `left`, `right`, then by port such as `motor_a`."""
     return "left", "right", *(f"motor_{motor.port[-1].lower()}" for motor in robot.extra_motors)
 
 
 def build_motor_columns(name: str) -> tuple[Column, ...]:
-    """Return the columns of a motor; each state is 1 as long as it applies, and `state` the sum of their bits."""
+    """Return the columns of a motor: the measured ones, and one for each state, 1 while it applies."""
     measured = (Column(f"{name}_{field}", is_traced=field != "state") for field, _ in MOTOR_FIELDS)
     states = (
         Column(f"{name}_{state}", partial(_apply_bit, bit)) for state, bit in STATE_BITS.items()
@@ -140,14 +140,14 @@ def _apply_bit(bit: int, rows: Iterable[Sequence[float]], _: RunSpec) -> list[fl
 
 
 def measure_motor(number: int, instant: Instant, _: RunSpec, __: Field) -> tuple[float, ...]:
-    """Return what is measured of a motor, by its number among all motors."""
+    """Return the values of a motor's measured columns; `number` is its number among all motors."""
     return tuple(map(float, instant.motors[number]))
 
 
 def find_motor_owners(
     run: RunSpec,
 ) -> list[tuple[tuple[Column, ...], Callable[[Instant, RunSpec, Field], tuple[float, ...]]]]:
-    """Return the columns of each motor, and how they are measured; none without a driver."""
+    """Return the columns of each motor, and the function that measures them; none without a driver."""
     if not has_driver(run):
         return []
     return [

@@ -27,7 +27,7 @@ STANDSTILL_DEG = 1e-3
 
 
 def find_top_speed_dps(kind: str, profile: ProfileSpec) -> float:
-    """Return the speed of a kind of motor without load."""
+    """Return the highest speed of a kind of motor, without load."""
     return MEDIUM_MAX_SPEED_DPS if kind == "medium" else profile.max_speed_dps
 
 
@@ -36,7 +36,7 @@ MotorState = tuple[int, float, float, float]
 
 
 class Motor(Protocol):
-    """One motor with its encoder. Its class implements the motor law; see `BrickMotor` for what is without a text."""
+    """One motor with its encoder. Its class implements the motor law; `BrickMotor` explains what is without a text."""
 
     position_deg: float
     """Encoder position."""
@@ -57,7 +57,7 @@ class Motor(Protocol):
 
     @property
     def end_tick(self) -> float:
-        """End of a timed move."""
+        """The tick at which a timed move ends."""
 
     @property
     def moving_dps(self) -> float: ...
@@ -76,13 +76,13 @@ class Motor(Protocol):
         """Approximate number of ticks until the speed is steady; 0 only if it is steady."""
 
     def step(self, tick: int, noise_dps: float) -> float:
-        """Run one tick of any kind with noise added to the speed, and return the rotation of the wheel, in degrees."""
+        """Run one tick with noise added to the speed; return the rotation of the wheel, in degrees."""
 
     def count_quiet_ticks(self, tick: int) -> int:
         """Return for how many ticks after `tick` only the ramp changes this motor."""
 
     def glide(self, ticks: int) -> Glide:
-        """Run quiet ticks."""
+        """Run quiet ticks: ticks in which only the ramp changes the motor."""
 
     def glide_evenly(self, ticks: int) -> EvenGlide:
         """Run quiet ticks of a motor at a steady speed; the caller sets the final encoder position."""

@@ -36,7 +36,7 @@ def _load_shake_128() -> Any:
 
 
 def prepare() -> None:
-    """Load what noise needs, so that it need not be loaded when the first random bytes are drawn."""
+    """Import what noise needs now, not when the first random bytes are drawn."""
     _load_shake_128()
 
 
@@ -53,10 +53,10 @@ def _list_errors(level: int) -> tuple[int, ...]:
 
 
 class Clamping(NamedTuple):
-    """What the errors of a level do to each value of a pixel."""
+    """What errors of a level do to the values of a pixel, which are clamped to 0 … 255."""
 
     shift: tuple[float, ...]
-    """By value: how far its mean moves, because values beyond the range are clamped."""
+    """By value: its mean error, which is not 0 near the ends of the range, because values are clamped."""
     variance: tuple[float, ...]
     """By value: the variance of its error."""
     even: bytes
@@ -66,7 +66,7 @@ class Clamping(NamedTuple):
 
 @lru_cache(maxsize=8)
 def compute_clamping(level: int) -> Clamping:
-    """Return what errors of up to ±level do to each value of a pixel."""
+    """Return what errors of up to ±level do to each value of a pixel, after clamping."""
     errors = sorted(_list_errors(level))
     first = [0, *accumulate(errors)]
     second = [0, *accumulate(error * error for error in errors)]
@@ -76,7 +76,7 @@ def compute_clamping(level: int) -> Clamping:
     below = 0
     above = len(errors)
     for value in range(_PIXEL_MAX + 1):
-        # Errors from `below` to `above` stay in the range.
+        # Errors between the indices `below` and `above` keep the value in the range.
         while below and errors[below - 1] >= -value:
             below -= 1
         while below < count and errors[below] < -value:
@@ -102,12 +102,12 @@ def add_noise_to_sums(
     level: int,
     normals: tuple[float, ...],
 ) -> tuple[int, int, int]:
-    """Return the sums of red, green and blue of some pixels after the light noise.
+    """Return the sums of red, green and blue of some pixels with the light noise added.
 
     Args:
         disc: Returns the pixels, three bytes each; not called if all are white, or all black.
-        count: Their number.
-        sums: The sums of their channels.
+        count: The number of pixels.
+        sums: The sums of red, green and blue without noise.
         level: The largest error of a pixel.
         normals: Three normally distributed numbers.
     """
@@ -130,7 +130,7 @@ def add_noise_to_sums(
 
 
 def _compute_shift(values: bytes, level: int) -> tuple[float, float]:
-    """Return how far the sum of a channel's values moves on average, and the standard deviation of its error."""
+    """Return the mean error of the sum of a channel's values, and the standard deviation of that error."""
     law = compute_clamping(level)
     count = len(values)
     if values.count(values[0]) == count:
@@ -163,7 +163,7 @@ def draw_numbers(seed: int, tick: int, channel: str, count: int) -> list[float]:
 
 
 def draw_reading_noise(seed: int, tick: int, channel: str) -> tuple[float, float, float]:
-    """Return three normally distributed numbers for what a sensor reads in one tick."""
+    """Return three normally distributed numbers, for the light noise of a sensor's reading in one tick."""
     block, offset = divmod(tick, _BLOCK_TICKS)
     numbers = _FOUR_NUMBERS.unpack_from(
         _generate_reading_block(seed, block, channel), offset * _READING_BYTES
@@ -180,7 +180,7 @@ def draw_reading_noise(seed: int, tick: int, channel: str) -> tuple[float, float
 
 
 def add_noise_to_channel(pixels: bytes, total: int, level: int, random: bytes) -> bytes:
-    """Return one channel of some pixels with errors of up to ±level, whose sum is a given one.
+    """Return one channel of some pixels with errors of up to ±level, chosen so that the sum is `total`.
 
     Args:
         pixels: The values of the channel.
@@ -195,7 +195,7 @@ def add_noise_to_channel(pixels: bytes, total: int, level: int, random: bytes) -
     ]
     missing = total - sum(values)
     step = 1 if missing > 0 else -1
-    # Small steps everywhere, beginning where the stream says, leave the errors as they are distributed.
+    # Steps of 1 at pixels in a random order hardly change how the errors are distributed.
     order = sorted(range(len(values)), key=random.__getitem__)
     while missing:
         before = missing
@@ -222,7 +222,7 @@ def _generate_wheel_block(
 
 
 def draw_noises(seed: int, tick: int, count: int, most_dps: int) -> tuple[list[float], list[float]]:
-    """Return the noise of the left and the right wheel in several ticks: uniform, up to ±`most_dps`."""
+    """Return the noise of the left and the right wheel's speed in `count` ticks: uniform, up to ±`most_dps`."""
     block, offset = divmod(tick, _BLOCK_TICKS)
     left, right = _generate_wheel_block(seed, block, most_dps)
     left, right = left[offset : offset + count], right[offset : offset + count]
@@ -235,7 +235,7 @@ def draw_noises(seed: int, tick: int, count: int, most_dps: int) -> tuple[list[f
 
 
 def draw_noise(seed: int, tick: int, most_dps: int) -> tuple[float, float]:
-    """Return the noise of the left and the right wheel in one tick: uniform, up to ±`most_dps`."""
+    """Return the noise of the left and the right wheel's speed in one tick: uniform, up to ±`most_dps`."""
     left, right = _generate_wheel_block(seed, tick // _BLOCK_TICKS, most_dps)
     return left[tick % _BLOCK_TICKS], right[tick % _BLOCK_TICKS]
 

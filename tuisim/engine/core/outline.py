@@ -21,7 +21,7 @@ Point = tuple[float, float]
 
 @dataclass(frozen=True, slots=True)
 class RobotOutline:
-    """The body, a rectangle, and the parts in it."""
+    """The robot's body, a rectangle, and where its sensors are."""
 
     half_width_mm: float
     """How far the body extends to either side: to the outer edge of its wheels."""
@@ -34,11 +34,11 @@ class RobotOutline:
     wheel_radius_mm: float
     has_wheels: bool
     color_sensors_mm: tuple[tuple[float, float, float], ...]
-    """x, y and radius of the disc that each sees."""
+    """x, y and radius of the disc that each colour sensor sees."""
     bumpers_mm: tuple[tuple[float, float, float], ...]
     """x, y and half the width of each touch sensor."""
     other_sensors_mm: tuple[Point, ...]
-    """All others but the ultrasonic ones."""
+    """x and y of all other sensors except ultrasonic ones."""
     reach_mm: float = field(init=False)
     """The largest distance of the body from the point about which it turns."""
 

@@ -15,7 +15,7 @@ from tuisim.engine.core.spec import FIELD_HEIGHT_MM, RunSpec
 from tuisim.engine.core.tick_record import FLAG_PEN_DOWN
 
 _BLOCK_PX = 32
-"""Side of the square blocks for which it is tracked whether they contain any mark."""
+"""Side of the square blocks of pixels; each block that has any mark is remembered."""
 
 Marks = dict[tuple[int, int], tuple[int, int, int]]
 """Colour of each drawn pixel, by image column and row."""
@@ -23,7 +23,7 @@ Marks = dict[tuple[int, int], tuple[int, int, int]]
 
 @dataclass(frozen=True, slots=True)
 class MarkedField(Field):
-    """A mat with marks on it; it is read like any other.
+    """A mat with pen marks on it; sensors read it like any other.
 
     `marks` and `blocks` are filled by `PenMarks`; nothing else changes them.
     """
@@ -33,7 +33,7 @@ class MarkedField(Field):
 
     @classmethod
     def on(cls, field: Field, marks: Marks) -> MarkedField:
-        """Return a mat with marks on it in place of its own."""
+        """Return a mat with `marks` in place of its own marks."""
         blocks = {(col // _BLOCK_PX, row // _BLOCK_PX) for col, row in marks}
         mat = field.width_px, field.height_px, field.pixels, field.sums, field.floor_rgb
         return cls(*mat, marks, blocks)
@@ -46,8 +46,8 @@ class MarkedField(Field):
         )
 
     def sum_disc(self, diameter: int, col: int, row: int) -> tuple[int, int, int]:
-        """As `Field.sum_disc`, including marks."""
-        # Field.sum_disc by name: `slots=True` makes a new class, which `super()` without arguments does not find.
+        """Do the same as `Field.sum_disc`, including marks."""
+        # Not `super()`: `slots=True` makes a new class, which `super()` without arguments does not find.
         red, green, blue = Field.sum_disc(self, diameter, col, row)
         if not self._has_marks(diameter, col, row):
             return red, green, blue
@@ -62,13 +62,13 @@ class MarkedField(Field):
         return red, green, blue
 
     def read_disc(self, diameter: int, col: int, row: int) -> bytes:
-        """As `Field.read_disc`, including marks."""
+        """Do the same as `Field.read_disc`, including marks."""
         if self._has_marks(diameter, col, row):
             return in_disc(self.read_box(diameter, col, row), diameter)
         return Field.read_disc(self, diameter, col, row)
 
     def read_box(self, diameter: int, col: int, row: int) -> bytes:
-        """As `Field.box`, including marks."""
+        """Do the same as `Field.read_box`, including marks."""
         pixels = Field.read_box(self, diameter, col, row)
         if not self._has_marks(diameter, col, row):
             return pixels

@@ -34,9 +34,9 @@ MOTOR_PARTS: Mapping[str, str] = {"LargeMotor": "large", "MediumMotor": "medium"
 HUB_MOTOR_PARTS: Mapping[str, str] = {
     f"{''.join(word.capitalize() for word in kind.split('-'))}Motor": kind for kind in HUB_MOTORS
 }
-"""Likewise, of the hubs: such as `MediumAngularMotor`."""
+"""Kinds of motors of the hubs, by the classes of parts, such as `MediumAngularMotor`."""
 MOTOR_KIND_OF: Mapping[str, str] = {**MOTOR_PARTS, **HUB_MOTOR_PARTS}
-"""All of them."""
+"""Kinds of all motors, by the classes of parts."""
 SENSOR_PARTS: Mapping[str, type[SensorSpec]] = {
     "ColorSensor": ColorSensorSpec,
     "UltrasonicSensor": UltrasonicSpec,
@@ -46,12 +46,12 @@ SENSOR_PARTS: Mapping[str, type[SensorSpec]] = {
 }
 """Classes of sensors, by the classes of parts."""
 PLUGGED_DIAMETER_MM = ColorSensorSpec("color", "in1", 0.0, 0.0).diameter_mm
-"""What a colour sensor sees that is plugged in."""
+"""Diameter of the disc that a plugged-in colour sensor sees."""
 LEFT = "left"
 RIGHT = "right"
 LATE = "late"
 ROLES = ("", LEFT, RIGHT, LATE)
-"""What a motor that is plugged in is for: nothing special, a wheel, or a wheel if it had not been too late for that."""
+"""What a plugged-in motor drives: no wheel, the left or right wheel, or no wheel only because it came too late."""
 
 
 PART_CODES: Mapping[tuple[str, str, str], int] = {
@@ -73,9 +73,9 @@ class PluggedPart:
 
     port: str
     part: str
-    """Its class, such as `ColorSensor`: one of `MOTOR_KIND_OF` or `SENSOR_PARTS`."""
+    """The part's class, such as `ColorSensor`: a key of `MOTOR_KIND_OF` or `SENSOR_PARTS`."""
     tick: int
-    """After this tick, before the next one."""
+    """The part was plugged in after this tick and before the next."""
     line: int
     """The line of the program that asked for it; 0 if it is in none."""
     role: str = ""
@@ -148,7 +148,10 @@ def _leave_out(motors: Iterable[MotorSpec], ports: Iterable[str]) -> tuple[Motor
 
 
 def _add_sensor(robot: RobotSpec, port: str, kind: type[SensorSpec]) -> RobotSpec:
-    """Return a robot with a sensor at a place that is free, in place of what was on the port; it has one gyro."""
+    """Return a robot with a new sensor, at a free place, in place of the part on the port.
+
+    A gyro also replaces the gyro that the robot had.
+    """
     others = [
         sensor
         for sensor in robot.sensors
@@ -169,7 +172,7 @@ def _find_place(sensor: Any) -> tuple[float, float]:
 
 
 def _put_sensors(robot: RobotSpec, sensors: Sequence[SensorSpec]) -> RobotSpec:
-    """Return a robot with these sensors and no others: those of a kind in the given order."""
+    """Return a robot that has exactly these sensors; those of a kind in the given order."""
     fields: dict[str, Any] = {}
     left = [*sensors]
     for mount in sorted(MOUNTS, key=lambda mount: mount.many):

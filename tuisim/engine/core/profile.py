@@ -58,7 +58,7 @@ class MotorLaw(StrEnum):
     NBEV3DEVSIM = "nbev3devsim"
     """As in the browser simulator of that name, to the last bit."""
     PYBRICKS = "pybricks"
-    """They follow trajectories, as Pybricks 2.0 moves them."""
+    """Motors follow trajectories, as in Pybricks 2.0."""
     PYBRICKS_4 = "pybricks-4"
     """Likewise, with the settings of Pybricks 4."""
 
@@ -73,7 +73,7 @@ class MotorLaw(StrEnum):
 
     @property
     def is_measured(self) -> bool:
-        """Whether the robot is as bricks were measured, and not as a course or a simulator has it."""
+        """Whether the robot behaves as bricks were measured to, and not as a course or a simulator says."""
         return self not in (MotorLaw.BRICK, MotorLaw.NBEV3DEVSIM)
 
 
@@ -85,7 +85,7 @@ MAX_COST_MS = 60_000
 
 
 def _build_cost(*, default: int, source: str, later: bool = False) -> Any:
-    """Return a field for a cost in simulated nanoseconds, which files give in milliseconds, too."""
+    """Return a field for a cost in simulated nanoseconds; files may also give it in milliseconds."""
     return whole(0, MAX_COST_MS * MS, default=default, unit="ns", source=source, later=later)
 
 

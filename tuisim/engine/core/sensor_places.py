@@ -41,26 +41,26 @@ ORDERS: Mapping[type[SensorSpec], tuple[str, ...]] = {
     TouchSpec: ("left", "right", "back", "front"),
     GyroSpec: ("middle",),
 }
-"""The sides of sensors of which nothing says the side, in turn."""
+"""Sides that sensors get one after another, unless something says the side."""
 
 
 @dataclass(frozen=True, slots=True)
 class Body:
-    """How far a robot extends."""
+    """How far a robot's body extends, in mm."""
 
     half_width_mm: float
-    """To either side of its middle."""
+    """How far the body extends to either side of its middle."""
     back_mm: float
-    """Behind the axle, as a negative y."""
+    """How far the body extends behind the axle, as a negative y."""
 
 
 def measure_body(robot: RobotSpec) -> Body:
-    """Return how far a robot extends."""
+    """Return how far a robot's body extends."""
     return Body((robot.wheel_spacing_mm + robot.wheel_width_mm) / 2, robot.back_mm)
 
 
 def _name(base: str, side: str, names: Collection[str]) -> str:
-    """Return a name that is free: the base, else with its side, else with a number."""
+    """Return a sensor's name that is not in `names`: `base`, else with the side, else with a number."""
     choices = [base, f"{base}_{side}", *(f"{base}{number}" for number in range(2, 6))]
     return next(name for name in choices if name not in names)
 

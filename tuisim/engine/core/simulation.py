@@ -69,7 +69,7 @@ class Simulation(Motion):
 
     @property
     def motors_by_port(self) -> dict[str, Motor]:
-        """The motors that are on a port, by it."""
+        """The motors that are on a port, by the name of the port."""
         pairs = zip(self.spec.robot.motors, self.motors, strict=True)
         return {spec.port: motor for spec, motor in pairs if spec.port != NO_PORT}
 
@@ -93,7 +93,7 @@ class Simulation(Motion):
         """Return the current instant, with values rounded as the telemetry stores them.
 
         Args:
-            with_motors: Whether with what the drivers know of the motors.
+            with_motors: Whether to include what the drivers know of the motors.
         """
         left = round_to_float32(self._left_dps)
         right = round_to_float32(self._right_dps)
@@ -128,14 +128,14 @@ class Simulation(Motion):
         return self.motors.index(motor)
 
     def press(self, hand_flags: int) -> None:
-        """Let hands press the touch sensors with these flags, and no others."""
+        """Set which touch sensors hands press: those with these flags, and no others."""
         self.press_flags = self.press_flags & END_FLAGS | hand_flags
 
     def restart(self, spec: RunSpec, sink: TickSink, motor_sink: MotorSink | None = None) -> None:
-        """Begin the recorded run of a simulation that was prepared without one, and has not run yet.
+        """Begin the recorded run of a simulation that was prepared without a recording, and has not run yet.
 
         Args:
-            spec: Differs from the earlier one at most in seed, noise and start.
+            spec: The run; it may differ from the prepared one in seed, noise and start only.
             sink: Receives the tick records.
             motor_sink: Receives what the drivers of the motors know; None if they have none, or nobody asks.
         """
@@ -151,7 +151,7 @@ class Simulation(Motion):
             self._free_wheels()
 
     def reset_gyro(self, shown_deg: float = 0.0) -> None:
-        """Let the gyro show an angle at the current heading, clockwise."""
+        """Let the gyro show `shown_deg` at the current heading, clockwise."""
         self.drive.gyro_zero_deg = round_to_float32(self.drive.heading_deg + shown_deg)
 
     @property
@@ -160,9 +160,11 @@ class Simulation(Motion):
         return self.drive.gyro_zero_deg - self.drive.heading_deg
 
     def change_robot(self, robot: RobotSpec) -> None:
-        """Go on with a robot that has other parts.
+        """Continue with a robot that has other parts.
 
-        A motor of the same kind stays where its port is, as a wheel's or not; any other one is new, and at rest.
+        A motor keeps its state if its port has the same kind of motor as before, even if it now drives a wheel or no
+        longer
+        does; every other motor is new, and at rest.
         """
         before = {
             find_place(number, motor): number for number, motor in enumerate(self.spec.robot.motors)
@@ -185,11 +187,11 @@ class Simulation(Motion):
         self._build_solids(self.spec)
         self._strains_gyro = can_strain_gyro(self.spec)
         if others:
-            # The robot had wheel motors only, until now.
+            # The robot had only wheel motors until now.
             self.__class__ = FurtherMotors
 
     def _take_others(self, sources: Sequence[int | None]) -> None:
-        """Take over the stops and the reports of the other motors, by the numbers that they had among all motors."""
+        """Keep stops and reports of the motors that drive no wheel, by their earlier numbers among all motors."""
         stops = self._stops
         reported = self._reported
         robot = self.spec.robot
@@ -204,7 +206,7 @@ class Simulation(Motion):
         )
 
     def _add_motor(self, kind: str, *, free: bool) -> Motor:
-        """Return a motor that has been at rest until now."""
+        """Return a new motor that is at rest at the present tick."""
         motor = create_motor(self.spec, kind, free=free)
         if isinstance(motor, SimulatedMotor):
             motor.start_clock(draw_jiffies(self.spec.seed))
@@ -212,7 +214,13 @@ class Simulation(Motion):
         return motor
 
     def _keep_motor(self, motor: Motor, kind: str, before: int, after: int) -> Motor:
-        """Return a motor that was at rest until now, or stays what it is: a wheel's or not, by its number."""
+        """Return the motor, with another load if it now drives a wheel or no longer does.
+
+        Args:
+            motor: The motor.
+            kind: Its kind.
+            before, after: Its number before and now: 0 and 1 are the wheels'.
+        """
         free = after > 1
         if free != (before > 1) and isinstance(motor, SimulatedMotor | ServoMotor):
             change_load(motor.axle, self.spec, kind, free=free)
@@ -225,13 +233,13 @@ class Simulation(Motion):
         return bool(is_moving) or any(record[7] or record[8] for record in self.read_records(0))
 
     def has_turned(self, number: int) -> bool:
-        """Return whether a motor that drives no wheel has turned or is about to, by its number among them."""
+        """Return whether a motor that drives no wheel has turned or is about to; `number` is its number among those."""
         motor = self.others[number]
         return bool(motor.mode or motor.position_deg) or self._reported[number] != (0.0, 0.0)
 
     def update_record(self) -> None:
-        """Write the current tick's record again, after a change from outside."""
-        # In one write: readers see this record already.
+        """Write the current tick's record again, after a user or program has changed something."""
+        # In one write: readers already see this record, and must not see half of a change.
         offset = 64 * self._sink.count
         self._buffer[offset : offset + 64] = TICK_RECORD.pack(*self._build_record())
 
@@ -241,7 +249,7 @@ REPORT_DEG = 0.25
 
 
 def find_place(number: int, motor: MotorSpec) -> tuple[str | int, str]:
-    """Return by what a motor is known again: its port, or its number if it has none, and its kind."""
+    """Return what identifies a motor when the robot changes: its port, or its number if it has none, and its kind."""
     return number if motor.port == NO_PORT else motor.port, motor.kind
 
 
@@ -251,7 +259,7 @@ class FurtherMotors(Simulation):
     __slots__ = ()
 
     def advance(self, ticks: int, until_change: bool = False) -> int:
-        """Run ticks as `Motion.advance` does, one by one while an extra motor runs."""
+        """Run ticks as `Motion.advance` does, but one by one while a motor that drives no wheel runs."""
         done = 0
         self._report_turns()
         while done < ticks and not all(motor.resting for motor in self.others):
@@ -264,16 +272,16 @@ class FurtherMotors(Simulation):
         return done + super().advance(ticks - done, until_change) if done < ticks else done
 
     def notice_change(self) -> bool:
-        """Report the turns first, as `advance` does."""
+        """Report the motors' turns, as `advance` does, then do the same as `Motion.notice_change`."""
         self._report_turns()
         return super().notice_change()
 
     def tick_once(self) -> None:
-        """Run one tick of the extra motors, then of the robot, which records it."""
+        """Run one tick of the motors that drive no wheel, then of the robot, and record it."""
         if self._reports_first:
             # A position may have been set since the last tick.
             self._report_turns()
-        # Before anything moves: without space for its record there is no tick.
+        # Reserve space before anything moves: if there is none, the tick does not happen.
         self._make_room(1)
         for motor, stops in zip(self.others, self._stops, strict=True):
             if not motor.resting:
@@ -300,5 +308,5 @@ class FurtherMotors(Simulation):
 
 
 def build_simulation(spec: RunSpec, sink: TickSink) -> Simulation:
-    """Return the simulation of a run: the plain one if the wheel motors are its only motors."""
+    """Return the simulation of a run; a `FurtherMotors` if it has motors besides the wheel motors."""
     return FurtherMotors(spec, sink) if spec.robot.extra_motors else Simulation(spec, sink)

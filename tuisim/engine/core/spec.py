@@ -137,7 +137,7 @@ SENSOR_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,30}")
 class MotorSpec(Spec):
     """A motor on a port. Its end stops are in degrees of the motor from its position at the start; None is no stop.
 
-    A motor that is mounted the other way round just has its stops at other degrees, so this is no value of its own.
+    There is no value for a motor that is mounted the other way round: its stops just are at other degrees.
     """
 
     port: str = choice((*OUTPUT_PORTS, NO_PORT, *HUB_PORTS), what="port")
@@ -503,7 +503,7 @@ class RobotSpec(Spec):
 
     @property
     def further_sensors(self) -> tuple[SensorSpec, ...]:
-        """Sensors that are not standard equipment, in the same order."""
+        """Sensors that are not standard equipment, in the order of the telemetry columns."""
         return tuple(
             sensor for mount in MOUNTS if not mount.standard for sensor in self.list_sensors(mount)
         )
@@ -542,7 +542,7 @@ class RobotSpec(Spec):
             self._check_presser(touch)
 
     def _check_wheel_ports(self) -> set[str]:
-        """Return the ports of the wheels."""
+        """Check the ports of the wheels' motors, and return them."""
         if self.left_port == self.right_port == NO_PORT:
             return set()
         for key in ("left_port", "right_port"):

@@ -106,18 +106,18 @@ _Spec = TypeVar("_Spec", bound="Spec")
 
 
 class Spec:
-    """Frozen data whose values are checked when it is made.
+    """Frozen data whose values are checked when an object is made.
 
-    Its methods serve all specs, where those of an ordinary data class are compiled for each class, at each start.
+    All specs share its methods; those of an ordinary data class are compiled for each class, at each start.
     """
 
     __slots__ = ("_hash",)
     _hash: int
     __dataclass_fields__: ClassVar[dict[str, Field[Any]]]
     ERROR: ClassVar[type[ConfigError]] = RobotError
-    """What is raised about its values."""
+    """The error that is raised about values of the spec."""
     KEY: ClassVar[str] = ""
-    """What its keys in errors begin with."""
+    """The prefix of the names of values in errors."""
 
     def __init__(self, *args: Any, **given: Any) -> None:
         names = self.__dataclass_fields__
@@ -133,10 +133,10 @@ class Spec:
 
     @classmethod
     def restore(cls, **values: Any) -> Self:
-        """Return a spec with values that were checked when they were stored.
+        """Return a spec from values that were checked when they were stored: they are not checked again.
 
         Raises:
-            TypeError: one is missing or unknown.
+            TypeError: a value is missing or unknown.
         """
         spec = cls.__new__(cls)
         spec._set_values(values)
@@ -164,14 +164,14 @@ class Spec:
                 ) from None
 
     def check(self) -> None:
-        """Check the rules across values.
+        """Check the rules that involve several values.
 
         Raises:
-            ConfigError: one is broken.
+            ConfigError: a rule is broken.
         """
 
     def name_key(self, name: str) -> str:
-        """Return the name of a value in errors."""
+        """Return the name of a value as errors give it."""
         return f"{self.KEY}.{name}" if self.KEY else name
 
     def __setattr__(self, name: str, value: object) -> NoReturn:

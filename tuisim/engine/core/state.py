@@ -13,7 +13,7 @@ from tuisim.engine.core.profile import ROBOLAB, ProfileSpec
 from tuisim.engine.core.spec import NoiseSpec
 
 MotorValues: TypeAlias = tuple[int, int, int, int]
-"""Of one motor, in the order of `MOTOR_FIELDS`."""
+"""Values of one motor, in the order of `MOTOR_FIELDS`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,11 +46,11 @@ class Instant:
 
     @property
     def gyro_rate_dps(self) -> int:
-        """The clockwise rate of turn, in whole degrees per second, as far as a gyro measures it."""
+        """The clockwise rate of turn, in whole degrees per second, limited to what the gyro can measure."""
         fastest = self.profile.gyro_max_dps or inf
         return round(max(-fastest, min(fastest, -self.turn_rate_dps)))
 
     def stop(self) -> Instant:
-        """Return the same instant with motors that stand, and of which nothing is asked."""
+        """Return the same instant with all motors standing, and without commands to them."""
         motors = ((0, 0, 0, 0),) * len(self.motors)
         return replace(self, left_speed_dps=0.0, right_speed_dps=0.0, motors=motors)

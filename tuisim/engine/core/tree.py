@@ -14,9 +14,9 @@ _Node = TypeVar("_Node")
 
 
 def list_leaves(kind: type) -> Iterator[tuple[str, Value]]:
-    """Yield path and value of all that every spec of a class has: not of sensors, which may be there or not.
+    """Yield path and value of everything that all specs of a class have; not of sensors, which a robot may lack.
 
-    Values that are given together are one.
+    Values that are given together, such as those of a `NamedPart`, count as one.
     """
     for name, value in list_values(kind).items():
         yield from _list_leaves(name, value)
@@ -34,7 +34,7 @@ def get_value(node: object, path: str) -> Any:
     """Return the value at a path; several sensors of a field are told apart by name.
 
     Raises:
-        LookupError: there is none.
+        LookupError: there is no such path.
     """
     for name in path.split("."):
         node = _find_part(node, name)
@@ -67,6 +67,9 @@ def put(node: _Node, path: str, value: object) -> _Node:
 def put_all(node: _Node, values: Mapping[str, object]) -> _Node:
     """Return a spec with other values at some paths; values of one part are checked together.
 
+    Args:
+        values: The new values by path.
+
     Raises:
         As for `put`.
     """
@@ -87,7 +90,7 @@ _RUN = Part(RunSpec)
 
 
 def dump_run(spec: RunSpec) -> dict[str, Any]:
-    """Return a run as data for JSON. What came later is left out at its default, so that exports do not change."""
+    """Return a run as data for JSON. Values of later versions are left out at their default: exports do not change."""
     return _dump_part(_RUN, spec)
 
 
@@ -107,7 +110,7 @@ def _dump_value(value: Value, data: Any) -> Any:
 
 
 def load_run(data: Mapping[str, Any]) -> RunSpec:
-    """Return the run of which `dump_run` has returned the data, which may have been changed since.
+    """Return the run from the output of `dump_run`, which may have been edited.
 
     Raises:
         KeyError, TypeError, ValueError: `data` is not the output of `dump_run`.
@@ -118,7 +121,7 @@ def load_run(data: Mapping[str, Any]) -> RunSpec:
 
 
 def restore(data: Mapping[str, Any]) -> RunSpec:
-    """Return the run of which tuisim itself has stored the data: they are of the right types, and not checked again.
+    """Return the run from data that tuisim itself has stored: their types are right, and they are not checked again.
 
     Raises:
         KeyError, TypeError, ValueError: `data` is not the output of `dump_run`.

@@ -19,7 +19,7 @@ from typing import Any, ClassVar
 from tuisim.base.errors import closest, did_you_mean, nearest
 
 METADATA = "value"
-"""Where a field has its value."""
+"""The key in a field's metadata under which its `Value` is."""
 
 _SHORT = reprlib.Repr()
 _SHORT.maxstring = _SHORT.maxother = _SHORT.maxlong = 60
@@ -30,7 +30,7 @@ MAX_SEED = 2**63 - 1
 
 
 class WrongValue(ValueError):  # noqa: N818  # the name says what it is
-    """A value is not one of those that are allowed; whoever knows where it stands raises a ConfigError.
+    """A value is not one of those that are allowed. Whoever knows where the value is from raises a ConfigError.
 
     Args:
         message: What is wrong.
@@ -57,12 +57,12 @@ def format_number(value: float) -> str:
 
 
 class Value(ABC):
-    """What is true of one value, whatever spec has it. Each kind of value is a subclass.
+    """Everything that is known about one value of a spec. Each kind of value is a subclass.
 
     Args:
-        help: What it says, in a phrase that begins in lower case: for files, options, forms and tables.
+        help: What the value means, in a phrase that begins in lower case: for files, options, forms and tables.
         unit: Its unit.
-        label: Its name in a form, with the unit; empty for one that no form shows.
+        label: Its name in a form, with the unit; empty for a value that no form shows.
         flags: The names of the option that sets it, if there is one.
         source: Where its numbers come from.
         later: Whether stored runs may lack it. They leave it out at its default, so that they stay as they were.
@@ -71,7 +71,7 @@ class Value(ABC):
 
     __slots__ = ("flags", "help", "in_config", "label", "later", "optional", "source", "unit")
     stored_as: ClassVar[Any] = str
-    """Of which types it is in a stored run."""
+    """Type or types of the value in a stored run."""
 
     def __init__(
         self,
@@ -85,7 +85,7 @@ class Value(ABC):
         in_config: bool = True,
     ) -> None:
         self.optional = False
-        """Whether it may be None: a file leaves it out then."""
+        """Whether the value may be None, which a file expresses by leaving it out."""
         self.help = help
         self.unit = unit
         self.label = label
@@ -97,20 +97,20 @@ class Value(ABC):
     @property
     @abstractmethod
     def allowed(self) -> str:
-        """What it may be, in words."""
+        """The allowed values, in words."""
 
     @property
     def metavar(self) -> str:
-        """What stands for it in the help of its option; empty for a flag."""
+        """The placeholder of the value in the help of its option; empty for a flag."""
         return {"mm": "MM", "°": "DEG"}.get(self.unit, "N")
 
     @property
     def choices(self) -> tuple[Any, ...]:
-        """All that it may be, if that is a short list."""
+        """All allowed values if they are few, else empty."""
         return ()
 
     def check(self, value: Any) -> None:
-        """Check a value of Python.
+        """Check a value that a Python program gives.
 
         Raises:
             WrongValue: it is not allowed.
@@ -119,14 +119,14 @@ class Value(ABC):
 
     @abstractmethod
     def parse_data(self, data: object) -> Any:
-        """Return the value that a document gives: texts, numbers, booleans, lists.
+        """Return the value from the data of a document: texts, numbers, booleans, lists.
 
         Raises:
             WrongValue: it is not allowed.
         """
 
     def parse_text(self, text: str) -> Any:
-        """Return the value that an option or a form gives.
+        """Return the value from the text of an option or a form.
 
         Raises:
             WrongValue: it is not allowed.
@@ -134,11 +134,11 @@ class Value(ABC):
         return self.parse_data(text)
 
     def format_text(self, value: Any) -> str:
-        """Return a value as an option or a form has it."""
+        """Return a value as text for an option or a form."""
         return str(value)
 
     def build_error(self, value: object) -> WrongValue:
-        """Return the error about a value, to be raised."""
+        """Return the error that says that a value is not allowed."""
         return WrongValue(f"must be {self.allowed}, got {quote(value)}")
 
 
@@ -146,8 +146,8 @@ class Flag(Value):
     """True or false.
 
     Args:
-        off_flag: The option that makes it false, where another value decides what it is by default.
-        off_help: What it says then.
+        off_flag: The option that sets it to false; needed if its default depends on another value.
+        off_help: The help of that option.
     """
 
     __slots__ = ("off_flag", "off_help")
@@ -184,7 +184,7 @@ class Flag(Value):
 
 
 class Number(Value):
-    """A number from `low` to `high`, which are allowed."""
+    """A number from `low` to `high`, both included."""
 
     __slots__ = ("high", "low")
     stored_as: ClassVar[Any] = int | float
@@ -227,7 +227,7 @@ class Number(Value):
 
 
 class Whole(Number):
-    """A whole number from `low` to `high`, which are allowed."""
+    """A whole number from `low` to `high`, both included."""
 
     __slots__ = ()
     stored_as = int
@@ -252,7 +252,7 @@ class Whole(Number):
 
 
 class Seed(Whole):
-    """A whole number for users to choose in its range; a stored run may have any."""
+    """A whole number. Users choose one from its range; a stored run may have any."""
 
     __slots__ = ()
 
@@ -292,7 +292,7 @@ class NamedNumber(Number):
         return self.names[name] if name in self.names else super().parse_text(text)
 
     def named(self, value: float) -> str | float:
-        """Return the name of a number that has one, else the number."""
+        """Return the name of a number, or the number if it has no name."""
         return next((name for name, number in self.names.items() if number == value), value)
 
     def format_text(self, value: Any) -> str:
@@ -301,7 +301,7 @@ class NamedNumber(Number):
 
 
 class Numbers(Number):
-    """Some numbers, at most `most`, each from `low` to `high`."""
+    """Up to `most` numbers, each from `low` to `high`."""
 
     __slots__ = ("most",)
     stored_as = (list, tuple)
@@ -344,9 +344,9 @@ class Text(Value):
     """One line of text.
 
     Args:
-        what: What it is, in errors.
-        most: Most characters.
-        pattern: What it must be as a whole.
+        what: What the text is, in errors.
+        most: Maximum number of characters.
+        pattern: Regular expression that the whole text must match.
     """
 
     __slots__ = ("most", "pattern", "what")
@@ -391,7 +391,7 @@ class Choice(Value):
     Args:
         choices: All of them; an enumeration for its members.
         what: What one of them is, in errors.
-        metavar: What stands for it in the help; by default all of them.
+        metavar: The placeholder in the help; by default a list of all choices.
     """
 
     __slots__ = ("_choices", "_metavar", "what")
@@ -462,7 +462,7 @@ class Choices(Choice):
 
 
 class Color(Value):
-    """A colour of CSS."""
+    """A colour by its CSS name or as `#rrggbb`."""
 
     __slots__ = ()
 
@@ -492,11 +492,11 @@ class Color(Value):
 
 
 class Part(Value):
-    """A spec inside another one, perhaps none.
+    """A spec inside another one; it may be optional.
 
     Args:
-        of: Its class.
-        values: Its values by name, for another frozen class than a spec.
+        of: The class of the spec.
+        values: Its values by name, for a frozen class that is not a spec.
         key: Its name in a file, if it differs from the field's.
         standard: Whether it is standard equipment of a robot: panels and files have a place of its own for it.
     """
@@ -532,10 +532,11 @@ class Part(Value):
 
 
 class NamedPart(Part):
-    """A spec of numbers inside another one, all given together: by the name of their sizes, or one by one.
+    """A spec of numbers inside another one; it is given as a whole, by the name of its sizes or number by number.
 
-    The names are those that its numbers have, and `none` for their defaults. As text it is a name and what differs from
-    it, such as `typical gyro_dps=0`.
+    The names are those that its numbers have, and `none` for their defaults. As text it is a name followed by the
+    numbers
+    that differ, such as `typical gyro_dps=0`.
     """
 
     __slots__ = ()

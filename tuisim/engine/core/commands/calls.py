@@ -69,14 +69,14 @@ class SimulationCommand(NamedTuple):
     """The number of a motor among `Simulation.motors`, or of a drive base among `Simulation.bases`; else 0."""
     call: Call
     values: tuple[float, ...]
-    """As many as the call takes; NaN stands for one that is not given."""
+    """As many as the call takes; NaN stands for a value that is not given."""
 
 
 def find_index(numbers: tuple[float, ...], place: int, count: int) -> int:
-    """Return a value that counts from 0 up to below `count`.
+    """Return `numbers[place]` as an index from 0 to below `count`.
 
     Raises:
-        ValueError: it is something else.
+        ValueError: it is no such index.
     """
     index = int(numbers[place])
     if not 0 <= index < count or index != numbers[place]:

@@ -34,7 +34,7 @@ class CommandCheck:
         """The ranges of the values of calls to parts, as far as they are known of this robot."""
 
     def find_disorder(self, time_ns: int) -> str:
-        """Take the time of the next command, and return why it cannot be; words as of `find_fault`."""
+        """Take the time of the next command; return why the time is not possible, in words as those of `find_fault`."""
         if time_ns < self._newest_ns:
             return "goes back in time"
         self._count = self._count + 1 if time_ns == self._newest_ns else 1
@@ -42,7 +42,7 @@ class CommandCheck:
         return "the time is too short for" if self._count > MAX_AN_INSTANT else ""
 
     def find_fault(self, command: SimulationCommand) -> str:
-        """Return why no program can have given a command, as words after "that"; empty if one can.
+        """Return why no program can have given a command, in words that follow "a command that"; empty if one can.
 
         Args:
             command: The command, right before it is obeyed. Values that its call does not take do not matter.
@@ -65,7 +65,7 @@ class CommandCheck:
 
 
 def _count_parts(call: Call, sim: Simulation) -> int:
-    """Return how many parts there are of the kind that a call is for."""
+    """Return the number of parts of the kind that a call is for: robot, motors or drive bases."""
     match CALLS[call].target:
         case Target.ROBOT:
             return 1
@@ -76,7 +76,7 @@ def _count_parts(call: Call, sim: Simulation) -> int:
 
 
 def _narrow_ranges(call: Call, part: int, sim: Simulation) -> tuple[Range, ...]:
-    """Return the ranges of the values of a call, that of a speed as the kind of its motor has it."""
+    """Return the ranges of a call's values; the range of a speed depends on the kind of motor."""
     ranges = [*CALLS[call].ranges]
     place = CALLS[call].speed_place
     if place is not None and sim.spec.profile.motor_law is not MotorLaw.NBEV3DEVSIM:

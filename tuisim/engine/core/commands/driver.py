@@ -26,9 +26,9 @@ COMMAND_CALLS: dict[Command, Call] = {
 }
 """The call of each command of the driver; its values are those of `SetPoints`."""
 STOP_ACTIONS = (*StopAction,)
-"""In the order of their numbers in commands, which count from 0."""
+"""In the order of their numbers in commands, from 0."""
 MAX_SET_POINTS = 1024
-"""A control loop comes back to the same set points: so many are built once."""
+"""So many set points are cached: a control loop gives the same ones again and again."""
 CONTROLS = ("speed", "hold")
 CONSTANTS = ("kp", "ki", "kd")
 
@@ -47,7 +47,7 @@ def _build_set_points(values: tuple[float, ...]) -> SetPoints:
 
 
 def build_effect(command: Command) -> Effect:
-    """Return what a command of the driver does, with all set points."""
+    """Return the function that gives a command of the driver to a motor, with all set points."""
 
     def obey(sim: Simulation, time_ns: int, part: int, values: tuple[float, ...]) -> None:
         _find_motor(sim, part).obey(time_ns, command, _build_set_points(values))
@@ -56,17 +56,17 @@ def build_effect(command: Command) -> Effect:
 
 
 def set_duty(sim: Simulation, time_ns: int, part: int, values: tuple[float, ...]) -> None:
-    """Set the duty, which takes effect at once after `run-direct`."""
+    """Set the duty; it takes effect at once if `run-direct` was the last command, else it is ignored."""
     _find_motor(sim, part).obey(time_ns, Setting.DUTY, int(values[0]))
 
 
 def set_position(sim: Simulation, time_ns: int, part: int, values: tuple[float, ...]) -> None:
-    """Make the present position another one."""
+    """Set the number that the motor shows as its present position."""
     _find_motor(sim, part).obey(time_ns, Setting.POSITION, int(values[0]))
 
 
 def set_constant(sim: Simulation, time_ns: int, part: int, values: tuple[float, ...]) -> None:
-    """Set a constant of a controller: the numbers of both, and the value."""
+    """Set a constant of a controller. Values: the number of the controller, that of the constant, and the new value."""
     control = CONTROLS[find_index(values, 0, len(CONTROLS))]
     name = CONSTANTS[find_index(values, 1, len(CONSTANTS))]
     constant = Constant(control, name, int(values[2]))

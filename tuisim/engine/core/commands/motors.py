@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 _DRIVEN = BrickMotor, BrowserMotor
-"""A union is built anew each time that it is written, and commands come by the thousand."""
+"""For `isinstance`: a union in its place would be built anew for each of thousands of commands."""
 
 
 def _find_motor(sim: Simulation, part: int) -> BrickMotor | BrowserMotor:
@@ -43,12 +43,12 @@ def stop(sim: Simulation, _time_ns: int, part: int, _values: tuple[float, ...]) 
 
 
 def set_count(sim: Simulation, _time_ns: int, part: int, values: tuple[float, ...]) -> None:
-    """Make the position of the encoder another one."""
+    """Set the number that the encoder shows as its present position."""
     _find_motor(sim, part).position_deg = values[0]
 
 
 def limit_ramps(sim: Simulation, _time_ns: int, part: int, values: tuple[float, ...]) -> None:
-    """Limit the acceleration of a move that has begun, and its deceleration before it ends."""
+    """Limit the acceleration of the move that has begun, and its deceleration before its end."""
     motor = _find_motor(sim, part)
     assert isinstance(motor, BrickMotor)
     motor.slowest_ramp_dps2, motor.approach_dps2 = values
@@ -69,10 +69,10 @@ def set_backwards(sim: Simulation, _time_ns: int, part: int, values: tuple[float
 
 
 def set_roll(sim: Simulation, _time_ns: int, part: int, values: tuple[float, ...]) -> None:
-    """Let the wheel roll as the encoder counts, 1, or the other way, -1.
+    """Set in which direction the wheel rolls: 1 as the encoder counts, -1 the other way.
 
     Raises:
-        ValueError: it is neither.
+        ValueError: the value is neither.
     """
     motor = _find_motor(sim, part)
     assert isinstance(motor, BrowserMotor)

@@ -15,17 +15,17 @@ _PLACES = {code: place for place, code in PART_CODES.items()}
 
 
 def encode_parts(parts: Iterable[PluggedPart]) -> tuple[float, ...]:
-    """Return what `PLUG` takes for parts: a number for each."""
+    """Return the values of a `PLUG` command: a number for each part."""
     return tuple(float(PART_CODES[part.role, part.port, part.part]) for part in parts)
 
 
 def reset_gyro(sim: Simulation, _time_ns: int, _part: int, _values: tuple[float, ...]) -> None:
-    """Make the current heading the gyro's 0."""
+    """Let the gyro show 0 at the current heading."""
     sim.reset_gyro()
 
 
 def set_gyro(sim: Simulation, _time_ns: int, _part: int, values: tuple[float, ...]) -> None:
-    """Let the gyro show a heading in degrees, clockwise."""
+    """Let the gyro show an angle at the current heading, in degrees, clockwise."""
     sim.reset_gyro(values[0])
 
 
@@ -38,17 +38,17 @@ def plug_in(sim: Simulation, _time_ns: int, _part: int, values: tuple[float, ...
     """Plug in parts, all at once.
 
     Raises:
-        ValueError: they are no parts.
-        RobotError: they do not fit.
+        ValueError: a value is not the number of a part.
+        RobotError: the parts do not fit.
     """
     sim.change_robot(plug_parts(sim.spec.robot, decode_parts(values, sim.tick)))
 
 
 def decode_parts(values: Iterable[float], tick: int) -> list[PluggedPart]:
-    """Return the parts that `PLUG` plugs in at a tick.
+    """Return the parts that the values of a `PLUG` command stand for, plugged in at a tick.
 
     Raises:
-        ValueError: they are no parts.
+        ValueError: a value is not the number of a part.
     """
     codes = [int(code) for code in values if code == code]
     if not _PLACES.keys() >= {*codes}:

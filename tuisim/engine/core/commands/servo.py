@@ -29,18 +29,18 @@ def _find_ending(values: tuple[float, ...], place: int) -> Ending:
 
 
 def _read_optional(number: float) -> int | None:
-    """Return a number, or None for NaN."""
+    """Return a value as a whole number; None for NaN."""
     return int(number) if number == number else None
 
 
 def _change_setting(control: Controller, values: tuple[float, ...]) -> None:
-    """Change one setting, by its number."""
+    """Change one setting of a controller. Values: the index in `SETTINGS`, and the new value."""
     name = SETTINGS[find_index(values, 0, len(SETTINGS))]
     control.settings = replace(control.settings, **{name: int(values[1])})
 
 
 def begin_anew(sim: Simulation, time_ns: int, part: int, values: tuple[float, ...]) -> None:
-    """Begin anew: the sign of the motor's direction, the gear ratio, whether the angle is kept."""
+    """Set a motor up as new. Values: the sign of its direction, the gear ratio, whether it keeps its angle."""
     sign, ratio, keeps_angle = values
     _find_motor(sim, part).set_up(time_ns // 1000, int(sign), ratio, keeps_angle=bool(keeps_angle))
 
@@ -51,26 +51,26 @@ def run_freely(sim: Simulation, time_ns: int, part: int, values: tuple[float, ..
 
 
 def set_milli(sim: Simulation, time_ns: int, part: int, values: tuple[float, ...]) -> None:
-    """Make the current position another one."""
+    """Set the number that the motor shows as its present position, in thousandths of a count."""
     _find_motor(sim, part).set_position(time_ns // 1000, int(values[0]))
 
 
 def hold(sim: Simulation, time_ns: int, part: int, _values: tuple[float, ...]) -> None:
-    """Let the controller stay where the motor is."""
+    """Let the motor's controller hold the present position."""
     motor = _find_motor(sim, part)
     now_us = time_ns // 1000
     motor.control.hold(now_us, motor.measure_start(now_us).milli)
 
 
 def hold_milli(sim: Simulation, time_ns: int, part: int, values: tuple[float, ...]) -> None:
-    """Let the controller stay at a position."""
+    """Let the motor's controller hold a position, in thousandths of a count."""
     _find_motor(sim, part).control.hold(time_ns // 1000, int(values[0]))
 
 
 def run_control(sim: Simulation, time_ns: int, part: int, values: tuple[float, ...]) -> None:
-    """Let the controller run at a rate, with an acceleration, for a time in microseconds or without an end.
+    """Let the motor's controller run. Values: the rate, the acceleration, the time in microseconds (NaN: no end).
 
-    The motor follows it with an ending, if one is given.
+    The fourth value is an ending, with which the motor follows its controller. NaN: it follows what it did before.
     """
     rate, acceleration, time_us, ending = values
     motor = _find_motor(sim, part)
@@ -82,7 +82,7 @@ def run_control(sim: Simulation, time_ns: int, part: int, values: tuple[float, .
 
 
 def move(sim: Simulation, time_ns: int, part: int, values: tuple[float, ...]) -> None:
-    """Let the controller move to a position, at a rate, with an acceleration, relative or not."""
+    """Let the motor's controller move. Values: target, rate, acceleration, whether the target is relative."""
     target, rate, acceleration, relative = values
     motor = _find_motor(sim, part)
     motor.control.move_to_position(
@@ -96,10 +96,10 @@ def move(sim: Simulation, time_ns: int, part: int, values: tuple[float, ...]) ->
 
 
 def follow(sim: Simulation, _time_ns: int, part: int, values: tuple[float, ...]) -> None:
-    """Follow the controller, which has just got its trajectory, with an ending.
+    """Let a motor follow its own controller, which has just got its trajectory; the value is the ending.
 
     Raises:
-        ValueError: it has got none.
+        ValueError: the controller has no trajectory.
     """
     motor = _find_motor(sim, part)
     if motor.control.trajectory is None:
@@ -113,7 +113,7 @@ def limit_duty(sim: Simulation, _time_ns: int, part: int, values: tuple[float, .
 
 
 def set_control(sim: Simulation, _time_ns: int, part: int, values: tuple[float, ...]) -> None:
-    """Change a setting of a motor's controller: its number, and the value."""
+    """Change a setting of a motor's controller. Values: as of `_change_setting`."""
     _change_setting(_find_motor(sim, part).control, values)
 
 
@@ -121,7 +121,7 @@ def set_control(sim: Simulation, _time_ns: int, part: int, values: tuple[float, 
 
 
 def build_base(sim: Simulation, _time_ns: int, _part: int, values: tuple[float, ...]) -> None:
-    """Make a drive base of two motors: their numbers, the wheels' diameter, the track."""
+    """Make a drive base. Values: the numbers of two motors, the wheels' diameter, the track."""
     # Imported on demand: only programs with a drive base need it.
     from tuisim.engine.core.servo.drive_base import DriveBase
 
@@ -146,30 +146,30 @@ def drive_base(sim: Simulation, time_ns: int, part: int, values: tuple[float, ..
 
 
 def stop_base(sim: Simulation, time_ns: int, part: int, values: tuple[float, ...]) -> None:
-    """Let go of the motors, and run them with a power or let them coast."""
+    """Let go of a drive base's motors: run them with a power, or let them coast (NaN)."""
     _find_base(sim, part).stop(time_ns // 1000, _read_optional(values[0]))
 
 
 def set_base(sim: Simulation, _time_ns: int, part: int, values: tuple[float, ...]) -> None:
-    """Set how it usually moves."""
+    """Set speeds and accelerations with which a drive base moves unless the program gives others."""
     speed, acceleration, turn_rate, turn_acceleration = map(int, values)
     _find_base(sim, part).set_usual((speed, acceleration, turn_rate, turn_acceleration))
 
 
 def set_slowing(sim: Simulation, _time_ns: int, part: int, values: tuple[float, ...]) -> None:
-    """Set how a drive base stops, otherwise than it speeds up."""
+    """Set with which accelerations a drive base stops, if not with those with which it speeds up."""
     straight, turn = map(int, values)
     _find_base(sim, part).set_slowing(straight, turn)
 
 
 def use_gyro(sim: Simulation, time_ns: int, part: int, values: tuple[float, ...]) -> None:
-    """Let the gyro tell the heading, or the wheels."""
+    """Let the gyro tell a drive base the heading, or the wheels again."""
     find_heading = (lambda: sim.gyro_deg) if values[0] else None
     _find_base(sim, part).use_gyro(time_ns // 1000, find_heading)
 
 
 def set_base_control(sim: Simulation, _time_ns: int, part: int, values: tuple[float, ...]) -> None:
-    """Change a setting of a controller of a drive base: 0 for the distance or 1 for the heading, number, value."""
+    """Change a setting of a drive base. Values: 0 for the distance or 1 for the heading; index; new value."""
     base = _find_base(sim, part)
     control = (base.distance, base.heading)[find_index(values, 0, 2)]
     _change_setting(control, values[1:])

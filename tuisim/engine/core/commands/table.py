@@ -35,7 +35,7 @@ _SET_POINTS = (_SPEED, _INT, (-100.0, 100.0), _INT, _RAMP_MS, _RAMP_MS, (0.0, 2.
 
 
 class Target(Enum):
-    """What a call is for."""
+    """The kind of part that a call is for."""
 
     ROBOT = auto()
     MOTOR = auto()
@@ -45,18 +45,18 @@ class Target(Enum):
 
 @dataclass(frozen=True, slots=True)
 class CallSpec:
-    """One call."""
+    """What a call does, and which motors and values it takes."""
 
     apply: Callable[[Simulation, int, int, tuple[float, ...]], None]
-    """Does it: the simulation, the time in ns, the part's number, the values."""
+    """Obeys the call; takes the simulation, the time in ns, the part's number and the values."""
     ranges: tuple[Range, ...] = ()
-    """The least and the highest of each value."""
+    """The lowest and the highest allowed number for each value."""
     laws: frozenset[MotorLaw] = ALL_LAWS
     may_be_missing: bool = False
     """Whether values may be NaN."""
     target: Target = Target.MOTOR
     speed_place: int | None = None
-    """Which value is a speed that the kind of the motor limits; None for none."""
+    """Index of the value that is a speed, limited by the kind of motor; None without one."""
 
 
 CALLS: Mapping[Call, CallSpec] = {
@@ -135,7 +135,7 @@ EFFECTS = {call: spec.apply for call, spec in CALLS.items()}
 
 
 def obey(sim: Simulation, time_ns: int, part: int, call: Call, *values: float) -> None:
-    """Do what a program wants; arguments as of `SimulationCommand`. All that it changes comes through here.
+    """Do what a program wants; arguments as of `SimulationCommand`. A program changes the simulation only through here.
 
     Raises:
         ValueError: a move is not possible.

@@ -13,18 +13,18 @@ _WORD = 1 << 32
 
 
 def _wrap(number: int) -> int:
-    """Return a whole number as 32 bits hold it."""
+    """Return a whole number as a signed integer of 32 bits holds it."""
     return (number + _WORD // 2) % _WORD - _WORD // 2
 
 
 def divide(dividend: int, divisor: int) -> int:
-    """Return a quotient, cut off as in C."""
+    """Return a quotient, rounded towards zero as in C."""
     quotient = abs(dividend) // divisor
     return quotient if dividend >= 0 else -quotient
 
 
 class Controller:
-    """One controller, which makes a duty of a setpoint and a value.
+    """A controller: it computes a duty from a setpoint and a measured value.
 
     Args:
         constants: Proportional, integral and derivative constant; `reset` restores them.
@@ -45,12 +45,12 @@ class Controller:
     def clear(self) -> None:
         """Forget the errors."""
         self.error = self.total = 0
-        """Of the last step, and of all."""
+        """The error of the last step, and the sum of all."""
         self.overloaded = False
-        """Whether it asks for more than the full duty."""
+        """Whether the last step asked for more than the full duty."""
 
     def compute_duty(self, value: int) -> int:
-        """Return the duty of the next step, in percent."""
+        """Return the duty of the next step, in percent; `value` is the measured position or speed."""
         error = self.setpoint - value
         change = self.error - error
         self.error = error
@@ -66,7 +66,7 @@ class Controller:
         return scaled // SCALE if scaled > 0 else -(-scaled // SCALE)
 
     def is_steady(self, value: int, duty: int) -> bool:
-        """Return whether a value that stays makes a duty that stays."""
+        """Return whether the controller repeats this duty in every step, as long as `value` stays the same."""
         error = self.error
         if error != self.setpoint - value:
             return False

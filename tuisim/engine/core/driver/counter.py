@@ -12,14 +12,14 @@ TICKS_PER_NS = CLOCK_HZ / 1_000_000_000
 MIN_SPAN = CLOCK_HZ * 20 // 1000
 """A speed is measured over at least this time, in ticks of that clock."""
 LOOK = CLOCK_HZ // 1000
-"""Whether the counter stands is looked up once in this time..."""
+"""The driver checks once in this time whether the counter stands..."""
 IDLE_LOOKS = 51
-"""...and noted with the first look more than 50 ms after the last note."""
+"""...and notes it at the first check more than 50 ms after the last note."""
 MIN_IDLE = 50.0 * LOOK
 CAPACITY = 256
 """How many of the last changes are remembered."""
 LAST_NOTE = -43 * LOOK
-"""When a counter that stood was noted last before the run: the driver has been at work for 400 ms."""
+"""Time of the last note before the run that the counter stands: the driver has been at work for 400 ms."""
 MAX_CHANGES = 2 * CAPACITY
 FIRST_NOTE = LAST_NOTE - (CAPACITY - 1) * IDLE_LOOKS * LOOK
 STRIDE = 4
@@ -28,7 +28,7 @@ MAX_DEPTH = 16 * STRIDE
 
 
 class Counter:
-    """The counter of one motor, which has stood at 0 for a while."""
+    """The counter of one motor; before the run it has been at 0 for a while."""
 
     __slots__ = ("_counts", "_depth", "_speed_dps", "_straight", "_times", "count")
 
@@ -38,9 +38,9 @@ class Counter:
         self._straight = 0
         """How many of the last changes went in one direction, negative if backwards."""
         self._depth = STRIDE
-        """By how many changes the driver looked back for the last speed."""
+        """Over how many changes the driver measured the last speed."""
         self._speed_dps: int | None = 0
-        """The speed since the last change; None if it is to be measured anew."""
+        """The speed measured at the last change; None if it must be measured anew."""
         self.count = 0
 
     def record(
@@ -49,8 +49,8 @@ class Counter:
         """Count while the axle turns in one direction.
 
         Args:
-            begin: When it begins, in ticks of the clock.
-            duration: How long it takes, in ticks.
+            begin: When the turn begins, in ticks of the clock.
+            duration: How long the turn takes, in ticks.
             begin_deg: The axle's angle at the begin.
             end_deg: The axle's angle at the end.
             middle: The part of the way that it turns in the first half of the time; each half is taken as even.
@@ -96,7 +96,7 @@ class Counter:
             del times[:-CAPACITY], counts[:-CAPACITY]
 
     def record_rest(self, end: float) -> None:
-        """Note that the counter has stood until a time."""
+        """Note that the count has not changed until a time."""
         times = self._times
         if end - times[-1] < MIN_IDLE:
             return
@@ -111,7 +111,7 @@ class Counter:
         del times[:-MAX_CHANGES], self._counts[:-MAX_CHANGES]
 
     def take_back(self, angle_deg: float) -> None:
-        """Forget the last changes in one direction: an obstacle has stopped the axle at an angle before them."""
+        """Forget the last changes in one direction, beyond an angle: an obstacle has stopped the axle there."""
         count = floor(2 * angle_deg)
         counts = self._counts
         direction = 1 if self.count > count else -1
@@ -122,19 +122,19 @@ class Counter:
             self._speed_dps = None
 
     def is_straight(self, speed_dps: float) -> bool:
-        """Return whether all changes that matter for the speed went in the direction of this speed."""
+        """Return whether all changes that matter for the speed went in the direction of `speed_dps`."""
         return (self._straight if speed_dps > 0 else -self._straight) >= self._depth + STRIDE
 
     def find_time(self, back: int) -> int:
-        """Return when the count changed, so many changes before the last one, in ticks of the clock."""
+        """Return when the count changed, in ticks of the clock: `back` changes before the last one."""
         return self._times[-1 - back]
 
     def add_straight(self, count: int, times: list[int]) -> None:
-        """Take over a stretch of changes in the direction of the last ones.
+        """Add several changes in the direction of the last ones.
 
         Args:
             count: The count after the last of them.
-            times: When the last ones came, in ticks of the clock: all that matter from now on.
+            times: When the newest of them came, in ticks of the clock: all that matter from now on.
         """
         if not times:
             return
@@ -152,7 +152,7 @@ class Counter:
         Args:
             time: Now, in ticks of the clock.
             angle_deg: The axle's angle now.
-            speed_dps: Its speed, not 0.
+            speed_dps: The axle's speed, not 0.
         """
         self.count = count = floor(2 * angle_deg)
         per_count = CLOCK_HZ / (2 * speed_dps)
@@ -166,7 +166,7 @@ class Counter:
         self._speed_dps = None
 
     def measure_speed_dps(self) -> int:
-        """Return the speed that the driver reads."""
+        """Return the speed that the driver computes from the last changes."""
         speed_dps = self._speed_dps
         if speed_dps is not None:
             return speed_dps
@@ -174,7 +174,7 @@ class Counter:
         depth = self._depth
         straight = self._straight
         time = times[-1]
-        # Most often the depth is that of the last time, or the next one.
+        # Most often the depth is the same as last time, or one step more or less.
         while depth > STRIDE and time - times[STRIDE - 1 - depth] >= MIN_SPAN:
             depth -= STRIDE
         while (span := time - times[-1 - depth]) < MIN_SPAN and depth < MAX_DEPTH:
@@ -194,7 +194,7 @@ class Counter:
         return speed_dps
 
     def _search(self, time: int) -> tuple[int, int]:
-        """Return how many counts are looked back, and the time that they took, in ticks of the clock."""
+        """Return over how many counts the speed is measured, and the time that they took, in ticks of the clock."""
         turned = span = 0
         for depth in range(STRIDE, MAX_DEPTH + 1, STRIDE):
             turned = self.count - self._counts[-1 - depth]

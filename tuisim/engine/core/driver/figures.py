@@ -26,11 +26,11 @@ PLANT_SOURCES = {
     f"{_MEDIUM}",
     "breakaway_nm": f"large: a free motor in the logs of Lab_1 starts at 6 to 7 % of duty; {_GUESS}",
 }
-"""By the fields of `PlantSpec`."""
+"""Source of each constant, by the fields of `PlantSpec`."""
 
 
 class Figure(NamedTuple):
-    """A figure of both kinds of motors."""
+    """A figure of the large and of the medium motor, with its source."""
 
     name: str
     large: float

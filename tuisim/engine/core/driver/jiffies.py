@@ -10,9 +10,9 @@ NS_PER_US = 1000
 STEP_US = 2000
 """The period of the driver's control."""
 LOOK_JIFFIES = 6
-"""A driver looks once in this time whether its state has changed."""
+"""A driver checks once in this time whether its state has changed."""
 FIRST_JIFFIES = 4096
-"""A run begins at any of so many."""
+"""A run begins at one of so many jiffies, which the seed draws."""
 LEVEL_JIFFIES = 63
 """The finest wheel of the timers holds this many jiffies."""
 COARSER = 8
@@ -21,17 +21,17 @@ COARSER = 8
 
 @dataclass(frozen=True, slots=True)
 class Jiffies:
-    """Where a run begins on the kernel's clock."""
+    """The kernel's clock in a run: at which jiffy, and how far into it, the run begins."""
 
     first: int = 0
     """Jiffies at the start of the run."""
     phase_us: int = 0
-    """How long the first jiffy has lasted by then."""
+    """How long the first jiffy has lasted at the start of the run."""
     first_look: int = 2
     """Number of jiffies until the drivers look for the first time whether a state has changed."""
 
     def count(self, time_ns: int) -> int:
-        """Return how many jiffies the kernel has counted."""
+        """Return how many jiffies the kernel has counted at a time."""
         return self.first + (time_ns // NS_PER_US + self.phase_us) // JIFFY_US
 
     def begin_ns(self, jiffy: int) -> int:
@@ -39,7 +39,7 @@ class Jiffies:
         return ((jiffy - self.first) * JIFFY_US - self.phase_us) * NS_PER_US
 
     def find_expiry_ns(self, now_ns: int, jiffies: int) -> int:
-        """Return when a timer fires that is set now for a number of jiffies."""
+        """Return when a timer fires that is set at `now_ns` for a number of jiffies."""
         expiry = self.count(now_ns) + jiffies
         grain = 1
         reach = LEVEL_JIFFIES
@@ -50,7 +50,7 @@ class Jiffies:
 
 
 def draw_jiffies(seed: int) -> Jiffies:
-    """Return the clock of a run; its jiffies begin with a step of the control."""
+    """Return the kernel's clock in a run; its jiffies begin together with a step of the control."""
     first, phase, look = draw_numbers(seed, 0, "jiffies", 3)
     steps = JIFFY_US // STEP_US
     return Jiffies(
@@ -59,5 +59,5 @@ def draw_jiffies(seed: int) -> Jiffies:
 
 
 def round_up(time_ms: int) -> int:
-    """Return how many jiffies a time in milliseconds takes."""
+    """Return how many jiffies a time in milliseconds takes, rounded up."""
     return -(-time_ms * NS_PER_US // JIFFY_US)

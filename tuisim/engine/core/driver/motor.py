@@ -24,9 +24,9 @@ from tuisim.engine.core.motor_columns import (
 
 NEVER_NS = 1 << 62
 RAMP_JIFFIES = 10
-"""A ramp changes the setpoint again after about this time, less the time since its change before."""
+"""About the time between two changes of the setpoint by a ramp."""
 LOOK_NS = LOOK_JIFFIES * JIFFY_US * NS_PER_US
-"""A state that has changed is noticed with the next look, once in this time."""
+"""Interval of the driver's checks, at which it notices a changed state."""
 RAMP_LEAD_JIFFIES = 5
 """A ramp begins this long before its command."""
 
@@ -44,11 +44,11 @@ class Command(StrEnum):
 
 
 RUN_FOREVER, RUN_TO_ABS_POS, RUN_TO_REL_POS, RUN_TIMED, RUN_DIRECT, STOP, RESET = Command
-"""By themselves: to look up a member in its class takes longer than a call."""
+"""Members as plain names: to look one up in its class takes longer than a call."""
 
 
 class State(StrEnum):
-    """What `state` can list, in this order."""
+    """The states that `state` can list, in this order."""
 
     RUNNING = "running"
     RAMPING = "ramping"
@@ -61,11 +61,11 @@ STATES = tuple(
     tuple(state for state in State if STATE_BITS[state] & bits)
     for bits in range(2 * max(STATE_BITS.values()))
 )
-"""What `state` lists, by the bits that are recorded."""
+"""The list in `state`, by the bits that are recorded."""
 
 
 class Setting(StrEnum):
-    """What a program sets without a command, and what takes effect at once."""
+    """What a program can set without a command: it takes effect at once."""
 
     DUTY = "duty"
     POSITION = "position"
@@ -76,7 +76,7 @@ DUTY, POSITION, CONSTANT = Setting
 
 
 class SetPoints(NamedTuple):
-    """What a program has set by the time of its command, in the motor's own direction."""
+    """All that a program has set when it gives a command, in the motor's own direction."""
 
     speed_dps: int = 0
     position: int = 0
@@ -88,12 +88,12 @@ class SetPoints(NamedTuple):
 
     @property
     def ramped(self) -> bool:
-        """Whether the speed changes by ramps."""
+        """Whether the speed changes gradually, by ramps."""
         return bool(self.ramp_up_ms or self.ramp_down_ms)
 
 
 class Constant(NamedTuple):
-    """A constant of one of the two controllers."""
+    """A new value for a constant of one of the two controllers."""
 
     control: str
     """`speed` or `hold`."""
@@ -104,16 +104,16 @@ class Constant(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Ramp:
-    """A change of the speed setpoint."""
+    """A gradual change of the speed setpoint."""
 
     start_jiffy: int
     jiffies: int
-    """How long it takes."""
+    """How long the ramp takes."""
     start_dps: int
     end_dps: int
 
     def compute_setpoint(self, jiffy: int) -> int:
-        """Return the setpoint at a time."""
+        """Return the speed setpoint at a jiffy."""
         left = self.start_jiffy + self.jiffies - jiffy
         if left <= 0:
             return self.end_dps
@@ -121,12 +121,12 @@ class Ramp:
 
 
 class DriverMotor(MotorDriver):
-    """A motor with the class of all motors above its driver.
+    """A motor with its driver, and the class of all motors above the driver, which programs see.
 
     Args:
         model: The kind of motor.
         plant: The motor with its load.
-        battery_v: The voltage of the battery, open.
+        battery_v: The voltage of the battery without load.
         jiffies: The kernel's clock.
     """
 
@@ -171,7 +171,7 @@ class DriverMotor(MotorDriver):
         """Whether time changes nothing: a fresh motor, or one that `settle` found so."""
 
     def start_clock(self, jiffies: Jiffies) -> None:
-        """Take a clock, before any time has passed."""
+        """Set the kernel's clock, before any time has passed."""
         self._jiffies = jiffies
         self._look_ns = jiffies.begin_ns(jiffies.first + jiffies.first_look)
         self._due_ns = self._look_ns
@@ -179,7 +179,7 @@ class DriverMotor(MotorDriver):
 
     @property
     def state_bits(self) -> int:
-        """The bits of `STATES` that apply."""
+        """The present states, as bits in the order of `STATES`."""
         bits = 0
         if self.is_running:
             bits = STALLED | RUNNING if self.is_stalled else RUNNING
@@ -195,12 +195,12 @@ class DriverMotor(MotorDriver):
 
     @property
     def states(self) -> tuple[State, ...]:
-        """What `state` lists."""
+        """The present states, as `state` lists them."""
         return STATES[self.state_bits]
 
     @property
     def ends_alone(self) -> bool:
-        """Whether it runs, and stops by itself: at a time, at a position, or at the end of a ramp."""
+        """Whether the motor runs, and will stop by itself: at a time, at a position, or at the end of a ramp."""
         return self.is_running and (
             self._timed_ns < NEVER_NS
             or self._arrival_action is not None
@@ -211,7 +211,7 @@ class DriverMotor(MotorDriver):
 
     @property
     def next_look_ns(self) -> int:
-        """When the driver looks next whether the state has changed."""
+        """When the driver next checks whether the state has changed."""
         return self._look_ns
 
     def run_until(self, time_ns: int) -> None:
@@ -247,11 +247,11 @@ class DriverMotor(MotorDriver):
             self._fire()
 
     def _try_to_roll(self) -> bool:
-        """Return whether the motor rolls on from now, without any control or timer."""
+        """Return whether the motor rolls on from now, without any control or timer; if so, begin to."""
         return self._timers_ns == NEVER_NS and super()._try_to_roll()
 
     def _follow_roll(self, time_ns: int) -> bool:
-        """Roll until a time, and return whether the roll goes on."""
+        """Roll until a time; return whether the motor still rolls then."""
         rolls_on = self._advance_roll(time_ns)
         self._step_ns = (self._moved_ns // STEP_NS + 1) * STEP_NS
         while rolls_on and self._due_ns <= time_ns:
@@ -259,7 +259,7 @@ class DriverMotor(MotorDriver):
         return rolls_on
 
     def _is_still(self) -> bool:
-        """Return whether only the reading of its speed changes: the axle stands, and no timer is set."""
+        """Return whether only the measured speed can still change: the axle stands, and no timer is set."""
         return (
             self._timers_ns == NEVER_NS
             and self.axle.stands
@@ -268,7 +268,7 @@ class DriverMotor(MotorDriver):
         )
 
     def settle(self) -> bool:
-        """Return whether time changes nothing any more: the axle stands, and its driver leaves it alone."""
+        """Return, and remember, whether the motor is at rest: the passing of time changes nothing any more."""
         self.is_at_rest = (
             self.is_stalled == self.is_running
             and not (self.speed_dps or self._timers_ns < NEVER_NS)
@@ -279,21 +279,21 @@ class DriverMotor(MotorDriver):
         return self.is_at_rest
 
     def _skip(self, time_ns: int) -> None:
-        """Go on to a time, of a motor at rest."""
+        """Let time pass for a motor at rest."""
         if self._step_ns <= time_ns:
             self._step_ns = (time_ns // STEP_NS + 1) * STEP_NS
             self._moved_ns = time_ns
         self._skip_looks(time_ns)
 
     def _skip_looks(self, time_ns: int) -> None:
-        """Let looks pass that have nothing to notice."""
+        """Let pass the driver's checks that have no new state to notice."""
         if self._look_ns <= time_ns:
             passed = (time_ns - self._look_ns) // LOOK_NS + 1
             self._look_ns += passed * LOOK_NS
             self._due_ns = min(self._timers_ns, self._look_ns)
 
     def _fire(self) -> None:
-        """Do what a timer is for."""
+        """Run the timer that is due: the end of a timed move, a change of a ramp, or a check of the state."""
         time_ns = self._due_ns
         if self._timed_ns == time_ns:
             self._set_timers(ramp_ns=self._ramp_ns)
@@ -317,7 +317,7 @@ class DriverMotor(MotorDriver):
     # Commands
 
     def wake(self, time_ns: int) -> None:
-        """Run until a time at which something changes that a motor at rest does not expect."""
+        """Run until a time, and end rest and roll: a command or an obstacle changes something then."""
         if self._step_ns <= time_ns or self._due_ns <= time_ns:
             self.run_until(time_ns)
         if self._roll is not None:
@@ -330,7 +330,7 @@ class DriverMotor(MotorDriver):
         """Do what a program wants, after all steps and timers that are due.
 
         Args:
-            time_ns: When.
+            time_ns: When the program does so.
             call: A command, or what is set.
             values: The set points of a command; the constant, duty or position that is set.
         """
@@ -383,7 +383,7 @@ class DriverMotor(MotorDriver):
             self._reset(time_ns)
 
     def _keeps_running(self, active: SetPoints) -> bool:
-        """Whether `run-forever` was the last command, too, and no ramp was or is set: at most the speed changes."""
+        """Whether a new `run-forever` follows another one, without ramps: then at most the speed changes."""
         before = self.active
         return (
             self._last_command is RUN_FOREVER
@@ -449,7 +449,7 @@ class DriverMotor(MotorDriver):
     # Ramps
 
     def _begin_ramp(self, time_ns: int, goal_dps: int) -> None:
-        """Begin to change the speed setpoint: first to 0 if it changes its sign."""
+        """Begin to change the speed setpoint to a goal; first to 0 if the sign changes."""
         start_dps = self._ramp_setpoint if self.is_ramping else self.speed_dps
         self._ramp_goal_dps = goal_dps
         end_dps = 0 if start_dps * goal_dps < 0 else goal_dps
@@ -477,7 +477,7 @@ class DriverMotor(MotorDriver):
         self._set_timers(self._jiffies.find_expiry_ns(time_ns, wait), self._timed_ns)
 
     def _continue_ramp(self, time_ns: int) -> None:
-        """Change the setpoint again, or end the ramp if the last change was its last."""
+        """Change the setpoint again; end the ramp if it has reached its goal."""
         if self._ramp_setpoint != self._ramp.end_dps:
             self._change_ramp(time_ns)
         elif self._ramp_setpoint != self._ramp_goal_dps:

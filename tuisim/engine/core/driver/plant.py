@@ -18,10 +18,10 @@ STEP_S = STEP_NS / NS_PER_S
 
 @dataclass(frozen=True, slots=True)
 class PlantSpec:
-    """The constants of a motor with what it moves."""
+    """The constants of a motor together with the load that it moves."""
 
     resistance_ohm: float
-    """Of the winding, the bridge and the battery."""
+    """Resistance of the winding, the bridge and the battery."""
     back_emf_v_s: float
     torque_nm_per_a: float
     inertia_kg_m2: float
@@ -32,7 +32,7 @@ class PlantSpec:
     """Torque that an axle at rest withstands."""
 
     def add_load(self, inertia_kg_m2: float, friction_nm: float) -> PlantSpec:
-        """Return the constants with something more to move."""
+        """Return the constants of the motor with a further load."""
         return replace(
             self,
             inertia_kg_m2=self.inertia_kg_m2 + inertia_kg_m2,
@@ -63,17 +63,17 @@ MEDIUM = PlantSpec(
 
 @dataclass(frozen=True, slots=True)
 class Circuit:
-    """What the constants amount to while the bridge is in one state; braking is a duty of 0."""
+    """What follows from a motor's constants while the bridge is in one state; braking is a duty of 0."""
 
     dps_per_percent: float
     """Steady speed per percent of duty, without friction; 0 while it coasts."""
     friction_dps: float
-    """How much slower friction makes it."""
+    """How much friction lowers the steady speed."""
     breakaway_dps: float
-    """The steady speed without friction that an axle at rest withstands."""
+    """An axle at rest does not start if its steady speed without friction would be lower than this."""
     time_constant_s: float
     step_decay: float
-    """What remains of a difference in speed after one step of the control."""
+    """Share of a difference to the steady speed that remains after one step of the control."""
 
 
 def build_circuit(plant: PlantSpec, battery_v: float | None) -> Circuit:
@@ -99,7 +99,7 @@ class Axle:
 
     Args:
         plant: The motor, with its load.
-        battery_v: The voltage of the battery, open.
+        battery_v: The voltage of the battery without load.
     """
 
     __slots__ = (
@@ -119,30 +119,30 @@ class Axle:
         self.goal_dps = 0.0
         """The speed that the duty leads to, without friction."""
         self.angle_deg = 0.125
-        """From the zero of the counter, which stands in the middle of a count."""
+        """Angle from the counter's zero; the axle begins in the middle of a count."""
         self.speed_dps = 0.0
         self.low_deg, self.high_deg = -inf, inf
         """An obstacle keeps the axle between these angles."""
 
     def change_load(self, plant: PlantSpec, battery_v: float) -> None:
-        """Let the motor move something else from now on; arguments as for the class."""
+        """Change the load that the motor moves from now on; arguments as of the class."""
         is_powered = self.circuit is self._powered
         self._powered, self._coasting = build_circuit(plant, battery_v), build_circuit(plant, None)
         self.circuit = self._powered if is_powered else self._coasting
 
     @property
     def stands(self) -> bool:
-        """Whether it is at rest, and the torque is too small to start it."""
+        """Whether the axle is at rest, and the torque is too small to start it."""
         return self.speed_dps == 0.0 and abs(self.goal_dps) <= self.circuit.breakaway_dps
 
     @property
     def is_blocked(self) -> bool:
-        """Whether it is at rest because an obstacle is in the way of a torque that is enough."""
+        """Whether only an obstacle keeps the axle at rest: the torque is large enough to start it."""
         return not (self.speed_dps or self.stands or self._can_start(self.goal_dps > 0.0))
 
     @property
     def turns_freely(self) -> bool:
-        """Whether it turns with power on, and no obstacle is anywhere."""
+        """Whether the axle turns with power on, and no obstacle limits it."""
         return (
             self.circuit is self._powered
             and self.speed_dps != 0.0
@@ -156,7 +156,10 @@ class Axle:
         self.goal_dps = 0.0 if duty is None else duty * self._powered.dps_per_percent
 
     def turn_step(self) -> bool:
-        """Turn for one step of the control; return False, and do nothing, unless it turns on freely all the time."""
+        """Turn for one step of the control; return whether that was possible.
+
+        It is not if the axle would come to rest or meet an obstacle in the step: then nothing has changed.
+        """
         circuit = self.circuit
         speed_dps = self.speed_dps
         if speed_dps > 0.0:
@@ -178,7 +181,7 @@ class Axle:
         return True
 
     def advance(self, duration_ns: float) -> float:
-        """Turn until the time is over or the axle comes to rest on its way, and return the time that is left, in ns."""
+        """Turn until the time is over or the axle comes to rest on its way; return the rest of the time, in ns."""
         circuit = self.circuit
         speed_dps = self.speed_dps
         forwards = speed_dps > 0.0 if speed_dps else self.goal_dps > 0.0
@@ -204,7 +207,7 @@ class Axle:
         return left_ns
 
     def _can_start(self, forwards: bool) -> bool:
-        """Whether the axle at rest begins to turn: the torque is enough, and no obstacle is in the way."""
+        """Whether an axle at rest begins to turn: the torque is large enough, and no obstacle is in the way."""
         if abs(self.goal_dps) <= self.circuit.breakaway_dps:
             return False
         return self.angle_deg < self.high_deg if forwards else self.angle_deg > self.low_deg

@@ -32,7 +32,7 @@ class StopAction(StrEnum):
 
 
 COAST, BRAKE, HOLD = StopAction
-"""By themselves: to look up a member in its class takes longer than a call."""
+"""Members as plain names: to look one up in its class takes longer than a call."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,7 +53,7 @@ class MotorDriver:
     Args:
         model: The kind of motor.
         plant: The motor with its load.
-        battery_v: The voltage of the battery, open.
+        battery_v: The voltage of the battery without load.
     """
 
     __slots__ = (
@@ -88,10 +88,10 @@ class MotorDriver:
         self._control: Controller | None = None
         """The active controller."""
         self._moved_ns = 0
-        """Up to when the axle has moved."""
+        """Time up to which the axle has been moved."""
         self._raw = self._offset = 0
         self.position = self.speed_dps = 0
-        """As the last step read them."""
+        """As the last step of the control read them."""
         self.duty = 0
         """The duty last set; the bridge may still have an earlier one."""
         self.target = 0
@@ -101,7 +101,7 @@ class MotorDriver:
         self._is_regulated = False
         """Whether nothing but the speed control is active, and the arrival at a target."""
         self._roll: Roll | None = None
-        """How the axle rolls, without any control."""
+        """How the axle rolls without any control; None if it does not."""
         self.ramp_down_ms = 0
         self.is_running = self.is_lowering = self.is_stalled = False
         self._still_ns: int | None = None
@@ -109,23 +109,23 @@ class MotorDriver:
 
     @property
     def lowering_s(self) -> float:
-        """How long before its target a motor begins to slow down."""
+        """How many seconds before its target a motor begins to slow down."""
         return abs(self.speed_dps) * self.ramp_down_ms / self.model.max_speed_dps / 2000
 
     # Commands
 
     def run_regulated(self, speed_dps: int) -> None:
-        """Keep a speed; the next step takes it up."""
+        """Keep a speed, beginning with the next step of the control."""
         self.speed_control.setpoint = speed_dps
         self._start(self.speed_control)
 
     def run_direct(self, time_ns: int, duty: int) -> None:
-        """Keep a duty."""
+        """Keep a duty, without any control."""
         self._start(None)
         self._set_duty(time_ns, duty)
 
     def run_to(self, target: int, speed_dps: int, action: StopAction) -> None:
-        """Run to a position, at a speed without sign."""
+        """Run to a position; the sign of the speed is ignored."""
         self.speed_control.setpoint = -abs(speed_dps) if self.position > target else abs(speed_dps)
         self._start(self.speed_control)
         self.target = target
@@ -140,7 +140,7 @@ class MotorDriver:
         self._is_regulated = control is not None and control.setpoint != 0
 
     def halt(self, time_ns: int, action: StopAction, held: int | None = None) -> None:
-        """Stop, and hold a position if the action says so: if none is given, the present one."""
+        """Stop; if `action` is to hold, hold the position `held`, by default the present one."""
         self.speed_control.clear()
         self.hold_control.clear()
         self._control = self._arrival_action = self._still_ns = None
@@ -154,7 +154,7 @@ class MotorDriver:
             self.axle.power(None if action is COAST else 0)
 
     def set_position(self, position: int) -> None:
-        """Make the present position another one; a target becomes it, too."""
+        """Set the number that stands for the present position; it becomes the target, too."""
         self._offset = position - self._raw
         self.position = self.target = self.hold_control.setpoint = position
 
@@ -181,12 +181,12 @@ class MotorDriver:
                 self.counter.record_rest(time_ns * TICKS_PER_NS)
 
     def read_counts(self, count: int) -> None:
-        """Take the position from a count."""
+        """Set the position from a count of half degrees."""
         self._raw = raw = count // 2 if count >= 0 else -(-count // 2)
         self.position = raw + self._offset
 
     def control(self, time_ns: int) -> None:
-        """Run one step of the control."""
+        """Run one step of the control: read the counter, and set the duty."""
         axle = self.axle
         counter = self.counter
         begin_deg, begin_dps = axle.angle_deg, axle.speed_dps
@@ -221,14 +221,14 @@ class MotorDriver:
             self._slow_down(time_ns, self._arrival_action)
 
     def _try_to_roll(self) -> bool:
-        """Return whether the motor rolls on from now, without any control, and its steps can be left out."""
+        """Begin to roll, without single steps, if the motor turns on without any control; return whether it does."""
         if self.is_running and not self.speed_dps:
             return False
         self._roll = begin_roll(self.axle, self.counter, self._moved_ns)
         return self._roll is not None
 
     def _advance_roll(self, time_ns: int) -> bool:
-        """Roll until the last step that is due; return False, and roll no further, if the roll ends before."""
+        """Roll until the last step that is due; if the roll ends before that, roll no further and return False."""
         roll = self._roll
         if roll is None:
             return False
@@ -250,7 +250,7 @@ class MotorDriver:
             self._roll = None
 
     def _can_regulate(self, step_ns: int) -> bool:
-        """Whether the next step is one of the speed control alone, with a motor that turns."""
+        """Whether the next step needs the speed control alone: the motor turns freely, and is not about to stall."""
         return (
             self.speed_dps != 0
             and self._still_ns is None
@@ -259,7 +259,7 @@ class MotorDriver:
         )
 
     def _find_arrival_ns(self, step_ns: int) -> int:
-        """Return before when a motor that does not slow down cannot be at its target."""
+        """Return a time until which the motor cannot reach its target, unless it slows down before."""
         way = self.target - self.position
         way_deg = (way if self.speed_control.setpoint > 0 else -way) - COUNTED_DEG
         top_dps = max(abs(self.axle.speed_dps), MAX_DUTY * self.axle.circuit.dps_per_percent)
@@ -269,7 +269,7 @@ class MotorDriver:
         """Run steps of the speed control alone, in few calls, as long as the motor turns on.
 
         Returns:
-            When the next step is due: before the end if it is not one of these.
+            When the next step is due: before `end_ns` if that step needs more than the speed control.
         """
         axle = self.axle
         counter = self.counter
@@ -314,7 +314,7 @@ class MotorDriver:
         return step_ns
 
     def _is_count_known(self) -> bool:
-        """Whether nothing has turned the axle since its position was read."""
+        """Whether the position is that of the counter: the axle has not turned since the last step."""
         return self._raw == divide(self.counter.count, 2)
 
     def _is_control_at_rest(self) -> bool:
@@ -349,7 +349,7 @@ class MotorDriver:
         if (end > target and setpoint > 0) or (end < target and setpoint < 0):
             self.speed_control.setpoint = divide(2000 * (target - position), 1 + ramp)
             self.is_lowering = True
-        # A speed of 0 arrives only where it is already.
+        # A move at a speed of 0 arrives only if it is at the target already.
         if (position >= target or setpoint < 0) and (position <= target or setpoint > 0):
             self.end_move(time_ns, action)
 

@@ -17,11 +17,11 @@ from tuisim.engine.core.driver.counter import (
 from tuisim.engine.core.driver.plant import NS_PER_S, STEP_NS, Axle
 
 MIN_ROLL_DPS = 20.0
-"""A slower axle may pass no count for so long that the counter notes it."""
+"""A slower axle may take so long for a count that the counter notes a standstill."""
 MIN_ROLL_NS = 5 * STEP_NS
 ENDLESS_NS = 1 << 62
 MAX_ERROR_S = 1e-6
-"""How well a time is found: another step of Newton's method, which squares its error, is not worth it."""
+"""Error of a time at which Newton's method ends: another step, which squares it, is not worth its cost."""
 KEPT_SPAN = CLOCK_HZ * 50 // 1000
 """A speed is measured over fewer counts than those of this time, in ticks of the clock..."""
 KEPT_COUNTS = 3 * STRIDE
@@ -29,12 +29,12 @@ KEPT_COUNTS = 3 * STRIDE
 
 
 class Roll:
-    """One stretch in which an axle turns on freely, its duty stays, and its counter is not told.
+    """A stretch of time in which an axle turns freely under a constant duty, and its counter is left out.
 
     Args:
-        axle: Turns, at a speed of at least `MIN_ROLL_DPS`.
-        counter: Its counter, which has counted up to the begin.
-        begin_ns: When it begins.
+        axle: The axle, which turns at a speed of at least `MIN_ROLL_DPS`.
+        counter: The axle's counter, up to date at the begin.
+        begin_ns: When the roll begins.
     """
 
     __slots__ = (
@@ -61,15 +61,15 @@ class Roll:
         self._sign = copysign(1.0, axle.speed_dps)
         self._constant_s = axle.circuit.time_constant_s
         self._goal_dps = axle.goal_dps - self._sign * axle.circuit.friction_dps
-        """The speed that it approaches."""
+        """The speed that the axle approaches."""
         self._depth = STRIDE
-        """By how many counts the driver looked back for the last speed."""
+        """Over how many counts the driver measured the last speed."""
         self._now = begin_ns * TICKS_PER_NS
         self.count = counter.count
         self.time_ns = begin_ns - 1
         """Up to which step the axle has turned."""
         self.end_ns = self._find_end_ns()
-        """The last step of the control in which it is quick enough."""
+        """The last step of the control in which the axle is quick enough."""
 
     def _find_end_ns(self) -> int:
         goal_dps = self._sign * self._goal_dps
@@ -80,7 +80,7 @@ class Roll:
         return int(end_ns / STEP_NS) * STEP_NS
 
     def turn_to(self, time_ns: int) -> None:
-        """Turn the axle to where it is at a time after the begin."""
+        """Set the axle's angle and speed to those at a time after the begin."""
         since_s = (time_ns - self._begin_ns) / NS_PER_S
         goal_dps = self._goal_dps
         constant_s = self._constant_s
@@ -108,7 +108,7 @@ class Roll:
         return speed_dps if self._sign > 0 else -speed_dps
 
     def _find_time(self, back: int) -> int:
-        """Return when the axle came to a count, so many before the newest one, in ticks of the clock."""
+        """Return when the axle came to a count, in ticks of the clock: `back` counts before the newest one."""
         counter = self._counter
         count = self.count
         sign = self._sign
@@ -120,7 +120,7 @@ class Roll:
         return floor(self._now - self._find_age_s(way_deg) * CLOCK_HZ)
 
     def _find_age_s(self, way_deg: float) -> float:
-        """Return how long the axle has taken for its last so many degrees."""
+        """Return how many seconds ago the axle was `way_deg` behind its present angle."""
         sign = self._sign
         constant_s = self._constant_s
         speed_dps, goal_dps = sign * self._axle.speed_dps, sign * self._goal_dps
@@ -135,7 +135,7 @@ class Roll:
         return age_s
 
     def tell_counter(self) -> None:
-        """Let the counter know of the counts from which a speed may still be measured."""
+        """Pass on to the counter the newest counts, from which a speed may still be measured."""
         times: list[int] = []
         for back in range(abs(self.count - self._counter.count)):
             times.append(self._find_time(back))

@@ -39,16 +39,16 @@ EVEN_TICKS = 12
 MAX_ERROR_DPS = 2
 MIN_CRUISE_DPS = 80
 CUT_OFF_DPS = 0.5
-"""...faster than it reads, which is cut off, by so much on average..."""
+"""...this much faster than its measured speed, which is rounded down..."""
 MARGIN_S = 0.03
-"""...until so shortly before it arrives somewhere."""
+"""...until this long before it arrives at a target or a stop."""
 MAX_CRUISE_S = 1e9
 PUSH_DEG = 0.05
-"""How far a motor at rest that pushes is taken to turn, to find out whether an obstacle blocks it."""
+"""A motor that pushes at rest would turn so far: an estimate, to find out whether an obstacle blocks it."""
 
 
 def load_wheel(plant: PlantSpec, robot: RobotSpec) -> PlantSpec:
-    """Return a motor with one wheel of a robot and its share of the robot's mass."""
+    """Return the constants of a motor with one wheel of a robot and its share of the robot's mass."""
     radius_m = robot.wheel_diameter_mm / 2000
     gears = robot.gear_ratio
     inertia_kg_m2 = (robot.mass_kg + WHEEL_KG) / 2 * radius_m**2
@@ -57,7 +57,11 @@ def load_wheel(plant: PlantSpec, robot: RobotSpec) -> PlantSpec:
 
 
 def choose_plant(spec: RunSpec, kind: str, *, free: bool) -> PlantSpec:
-    """Return the constants of a motor with what it moves: a wheel with its share of the robot, unless it is free."""
+    """Return the constants of a motor with its load.
+
+    Args:
+        free: Whether it drives no wheel; otherwise it carries a wheel with its share of the robot.
+    """
     plant = MODELS[kind].plant if kind in MODELS else _find_hub_plant(kind)
     return plant if free else load_wheel(plant, spec.robot)
 
@@ -69,29 +73,29 @@ def _find_hub_plant(kind: str) -> PlantSpec:
 
 
 def build_motor(spec: RunSpec, kind: str, *, free: bool) -> SimulatedMotor:
-    """Return a motor in its initial state."""
+    """Return a motor with a driver, in its initial state; arguments as of `choose_plant`."""
     plant = choose_plant(spec, kind, free=free)
     return SimulatedMotor(spec.profile.tick_hz, kind, plant, spec.robot.battery_v)
 
 
 def build_axle(spec: RunSpec, kind: str, *, free: bool) -> Axle:
-    """Return the axle of a motor that something else controls."""
+    """Return the axle of a motor that has another control than the driver's; arguments as of `choose_plant`."""
     return Axle(choose_plant(spec, kind, free=free), spec.robot.battery_v)
 
 
 def change_load(axle: Axle, spec: RunSpec, kind: str, *, free: bool) -> None:
-    """Let a motor carry a wheel from now on, or no longer; arguments as of `choose_plant`."""
+    """Let an axle carry a wheel from now on, or no longer; arguments as of `choose_plant`."""
     axle.change_load(choose_plant(spec, kind, free=free), spec.robot.battery_v)
 
 
 class SimulatedMotor(DriverMotor):
-    """One motor of a robot.
+    """One motor of a robot, with its driver.
 
     Args:
         tick_hz: Ticks per second.
         kind: One of `MODELS`.
         plant: The motor with its load.
-        battery_v: The voltage of the battery, open.
+        battery_v: The voltage of the battery without load.
     """
 
     __slots__ = (
@@ -113,11 +117,11 @@ class SimulatedMotor(DriverMotor):
         self._hz = tick_hz
         self._tick_ns = NS_PER_S / tick_hz
         self._angle_deg = self.axle.angle_deg
-        """At the end of the last tick, from the zero of the counter."""
+        """The axle's angle at the end of the last tick, from the counter's zero."""
         self.position_deg = 0.0
         """Encoder position at the end of the last tick."""
         self.counting_dps = 0.0
-        """Speed of the encoder at the end of the last tick, whoever looks in between."""
+        """Speed of the encoder at the end of the last tick; it does not change within a tick."""
         self.blocked_ticks = 0
         self.is_barred = False
         """Whether an obstacle of the world keeps it from turning on."""
@@ -128,7 +132,7 @@ class SimulatedMotor(DriverMotor):
         self._cruise_dps = 0.0
         """The speed at which it runs on evenly, without single steps; 0 if it does not."""
         self._cruise_end_ns = 0
-        """When that ends at the latest."""
+        """When the even motion ends at the latest."""
 
     # What it shows
 
@@ -148,7 +152,7 @@ class SimulatedMotor(DriverMotor):
 
     @property
     def end_tick(self) -> float:
-        """End of a timed move."""
+        """The tick at which a timed move ends, as a fraction; `ENDLESS` without one."""
         return ENDLESS if self._timed_ns == NEVER_NS else self._timed_ns / self._tick_ns
 
     @property
@@ -158,7 +162,7 @@ class SimulatedMotor(DriverMotor):
 
     @property
     def aim_dps(self) -> float:
-        """Speed of the wheel that its control or its duty leads to, signed."""
+        """Speed that the control keeps, or that the duty leads to, signed."""
         if self._control is self.speed_control:
             return float(self.speed_control.setpoint)
         return self.axle.goal_dps
@@ -174,13 +178,13 @@ class SimulatedMotor(DriverMotor):
         return 0 if self.is_at_rest or self._cruise_dps else 1
 
     def set_position(self, position: int) -> None:
-        """Make the present position another one; a target becomes it, too."""
+        """Set the number that stands for the present position; it becomes the target, too."""
         before = self.position
         super().set_position(position)
         self.position_deg += position - before
 
     def record(self, buffer: Buffer, at: int) -> None:
-        """Write `MOTOR_RECORD` at a place in a buffer; a speed is asked only by the speed control."""
+        """Write a `MOTOR_RECORD` at an offset of a buffer; its asked speed is 0 unless the speed control is active."""
         control = self.speed_control
         asked_dps = control.setpoint if self._control is control else 0
         _pack_into(buffer, at, asked_dps, self.speed_dps, self.duty, self.state_bits)
@@ -226,7 +230,7 @@ class SimulatedMotor(DriverMotor):
     # Even speed
 
     def _begin_cruise(self, now_ns: int, noise_dps: float) -> None:
-        """Run on evenly if the control has kept its speed for a while, and nothing is due for a while."""
+        """Begin to run evenly if the speed has been right for a while, and nothing is due for a while."""
         setpoint = self.speed_control.setpoint
         if noise_dps or not -MAX_ERROR_DPS <= self.speed_dps - setpoint <= MAX_ERROR_DPS:
             self._even_ticks = 0
@@ -242,7 +246,7 @@ class SimulatedMotor(DriverMotor):
             self.axle.speed_dps = cruise_dps
 
     def _estimate_free_ns(self, cruise_dps: float) -> int:
-        """Return how long nothing but the control matters: target and stops are far."""
+        """Return for how long target and end stops are too far to matter."""
         axle = self.axle
         end_deg = axle.high_deg if cruise_dps > 0 else axle.low_deg
         free_s = (end_deg - axle.angle_deg) / cruise_dps
@@ -264,7 +268,7 @@ class SimulatedMotor(DriverMotor):
         self.read_counts(self.counter.count)
 
     def wake(self, time_ns: int) -> None:
-        """Run until a time at which something changes that a motor at rest does not expect."""
+        """Run until a time, and end rest and even motion: a command or an obstacle changes something then."""
         if self._cruise_dps:
             self._leave_cruise()
         DriverMotor.wake(self, time_ns)
@@ -280,7 +284,7 @@ class SimulatedMotor(DriverMotor):
         self.read_counts(floor(2 * (self._angle_deg + self._cruise_dps * since_s)))
 
     def _turn_axle(self, time_ns: int, angle_deg: float) -> None:
-        """Turn the axle from outside, at once."""
+        """Turn the axle to an angle at once, as noise or an obstacle does."""
         self.leave_roll()
         axle = self.axle
         before_deg = self.axle.angle_deg
@@ -315,7 +319,7 @@ class SimulatedMotor(DriverMotor):
     # Obstacles
 
     def state(self) -> MotorState:
-        """Return the state that `hold_back` needs: where the axle is."""
+        """Return the state that `hold_back` needs: the axle's angle at the end of the last tick."""
         return STOPPED, 1.0, 0.0, self._angle_deg
 
     def hold_back(self, before: MotorState, turned_deg: float, part: float) -> None:
@@ -340,7 +344,7 @@ class SimulatedMotor(DriverMotor):
 
     @property
     def tendency_deg(self) -> float:
-        """How far the wheel is about to turn in a tick, roughly: its sign is right."""
+        """Rough estimate of how far the wheel is about to turn in the next tick; its sign is right."""
         axle = self.axle
         if axle.speed_dps:
             return axle.speed_dps / self._hz
@@ -351,7 +355,7 @@ class SimulatedMotor(DriverMotor):
         return -PUSH_DEG
 
     def bar(self, direction: float) -> None:
-        """Let nothing turn the axle further in a direction; 0 sets it free."""
+        """Keep the axle from turning further in the direction of a sign; 0 sets it free."""
         axle = self.axle
         low_deg = axle.angle_deg if direction < 0 else -inf
         high_deg = axle.angle_deg if direction > 0 else inf
@@ -364,7 +368,7 @@ class SimulatedMotor(DriverMotor):
             self.blocked_ticks = 0
 
     def limit_axle(self, low_deg: float, high_deg: float) -> None:
-        """Keep the axle between two angles from where it is now."""
+        """Keep the axle between two angles, both relative to its present one."""
         self.leave_roll()
         angle_deg = self.axle.angle_deg
         self.axle.low_deg, self.axle.high_deg = angle_deg + low_deg, angle_deg + high_deg

@@ -54,7 +54,7 @@ class SensorKind:
     """The port mode it needs; `ev3-analog` for a sensor without a processor of its own."""
 
     def names(self, sensor: Any) -> tuple[str, ...]:
-        """Return the names of what is measured of a sensor: its columns of telemetry."""
+        """Return the names of a sensor's measured columns."""
         return list_measured_names(self.columns(sensor))
 
 
@@ -73,7 +73,7 @@ Measure = Callable[[Instant, RunSpec, Field], tuple[float, ...]]
 
 
 def list_owners(run: RunSpec) -> list[tuple[tuple[Column, ...], Measure]]:
-    """Return the columns of the robot, of each sensor and of each motor with a driver, and how they are measured."""
+    """Return the columns of the robot, of each sensor and of each motor with a driver, and what measures them."""
     of_sensors = [
         (mount.columns, partial(mount.kind.measure, mount.sensor))
         for mount in list_mounted(run.robot)
@@ -108,7 +108,7 @@ def find_named_column(text: str, run: RunSpec) -> str:
 
 
 def build_reader(name: str, run: RunSpec) -> Callable[[Instant, RunSpec, Field], float] | None:
-    """Return a function that gives the value of a column at an instant `with_motors`; None if the run has none."""
+    """Return a function that returns a column's value at an instant built `with_motors`; None without such a column."""
     for columns, measure in list_owners(run):
         for column in columns:
             if column.name == name:
@@ -133,7 +133,7 @@ def _measure_value(
 def measure_sensors(
     sensors: Iterable[SensorSpec], instant: Instant, spec: RunSpec, field: Field
 ) -> dict[str, float]:
-    """Return what some sensors measure at an instant, by column."""
+    """Return the values of the sensors' measured columns at an instant, by name."""
     return {
         name: value
         for mount in map(build_mounted_sensor, sensors)
@@ -146,14 +146,14 @@ def measure_sensors(
 
 
 class MountedSensor(NamedTuple):
-    """A sensor, and what its kind says about it."""
+    """A sensor of a robot, with its kind and columns."""
 
     kind: SensorKind
     sensor: Any
     """Its spec."""
     columns: tuple[Column, ...]
     names: tuple[str, ...]
-    """Those of the columns that are measured."""
+    """Names of the measured columns."""
 
 
 _KINDS = {kind.spec: kind for kind in SENSORS.values()}
@@ -161,7 +161,7 @@ _KINDS = {kind.spec: kind for kind in SENSORS.values()}
 
 @lru_cache(maxsize=64)
 def build_mounted_sensor(sensor: SensorSpec) -> MountedSensor:
-    """Return a sensor with what its kind says about it."""
+    """Return a sensor with its kind and columns."""
     kind = _KINDS[type(sensor)]
     return MountedSensor(kind, sensor, kind.columns(sensor), kind.names(sensor))
 

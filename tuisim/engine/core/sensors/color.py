@@ -127,7 +127,7 @@ MIN_BROWN_SATURATION = 20
 
 
 class LightRead(StrEnum):
-    """What a program can read of a colour sensor, by the name that it uses."""
+    """The readings that a program can ask of a colour sensor, by the names that it uses."""
 
     REFLECTED = "reflected_light_intensity"
     PERCENT = "reflected_light_intensity_pc"
@@ -139,14 +139,14 @@ class LightRead(StrEnum):
 
     @property
     def is_color(self) -> bool:
-        """Whether it is the colour, and no number."""
+        """Whether the reading is a colour, not a number."""
         return self in (LightRead.COLOR, LightRead.COLOR_NAME)
 
     def compute_value(self, seen: ColorReading, reflected_max: int) -> float:
-        """Return what a program gets; the colour code for a colour.
+        """Return the value that a program gets for this reading; the code of a colour.
 
         Args:
-            seen: The reading.
+            seen: What the sensor sees.
             reflected_max: Value of `reflected_light_intensity` on white in the profile.
         """
         match self:
@@ -164,12 +164,12 @@ class LightRead(StrEnum):
                 assert_never(self)
 
     def find_white(self, reflected_max: int) -> int:
-        """Return the value on white."""
+        """Return the value that a program gets on white."""
         return reflected_max if self is LightRead.REFLECTED else 100
 
 
 def find_box_corner(pose: Pose, spec: ColorSensorSpec) -> tuple[int, int]:
-    """Return the image column and row of the corner of the box under a sensor."""
+    """Return the image column and row of the upper left corner of the box under a sensor."""
     x_mm, y_mm = world_point(pose, spec.x_mm, spec.y_mm)
     radius = spec.diameter_mm / 2
     # Truncated toward zero, not floored: this matches the original simulator.
@@ -177,26 +177,26 @@ def find_box_corner(pose: Pose, spec: ColorSensorSpec) -> tuple[int, int]:
 
 
 class Response(NamedTuple):
-    """What a colour sensor makes of the channels of the mat."""
+    """How a colour sensor changes the channels of the mat, from 0 … 255."""
 
     dark: int
-    """What it reads of black."""
+    """Value of a channel on black."""
     span: int
-    """What it reads of white in addition."""
+    """How much larger the value is on white."""
 
     def channel(self, value: float, is_over_field: bool) -> float:
-        """Return what it reads of a channel; beyond the edge of the field nothing reflects."""
+        """Return the sensor's value of a channel; beyond the edge of the field nothing reflects."""
         if self == EVEN:
             return value
         return (self.dark if is_over_field else 0) + value * self.span / WHITE
 
 
 EVEN = Response(0, WHITE)
-"""It reads the channels as they are."""
+"""The response of a sensor that reads the channels as they are."""
 
 
 def find_response(spec: ColorSensorSpec, profile: ProfileSpec) -> Response:
-    """Return the response of a sensor, in whole channels that give at least its percents of black and white."""
+    """Return the response of a sensor, in whole channels that give at least its percentages of black and white."""
     white = profile.white_percent if spec.white_percent is None else spec.white_percent
     black = profile.black_percent if spec.black_percent is None else spec.black_percent
     dark = ceil(WHITE * black / 100)
@@ -204,13 +204,13 @@ def find_response(spec: ColorSensorSpec, profile: ProfileSpec) -> Response:
 
 
 def compute_light(x_mm: Any, y_mm: Any, spec: ColorSensorSpec, drift: DriftSpec, seed: int) -> Any:
-    """Return the brightness that a sensor sees at places of the field, numbers or arrays: 1 without drift."""
+    """Return the brightness that a sensor sees at places of the field, numbers or arrays; 1 without drift."""
     share = compute_light_share(x_mm, y_mm, drift, seed) if drift.light_pc else 1.0
     return share * draw_light_gain(spec.port, drift, seed) if drift.light_gain_pc else share
 
 
 def _has_floor(field: Field, diameter: int, corner: tuple[int, int]) -> bool:
-    """Return whether a box is on the mat, at least in part, or on the floor around it."""
+    """Return whether anything is under a box: a part of the mat, or the floor around it."""
     col, row = corner
     is_on_mat = -diameter <= col < field.width_px and -diameter <= row < field.height_px
     return is_on_mat or field.floor_rgb is not None
@@ -363,7 +363,7 @@ def measure_color(spec: ColorSensorSpec, instant: Instant, field: Field) -> Colo
 def _build_channel_reader(
     spec: ColorSensorSpec, instant: Instant, field: Field
 ) -> Callable[[float], float]:
-    """Return a function that gives what a sensor reads of a channel of the mat."""
+    """Return a function that turns a channel of the mat into the sensor's value, by its response and the light."""
     response = find_response(spec, instant.profile)
     is_over = _has_floor(field, spec.diameter_mm, find_box_corner(instant.pose, spec))
     place = world_point(instant.pose, spec.x_mm, spec.y_mm)
@@ -410,7 +410,7 @@ _LEVELS = range(WHITE + 1)
 
 
 def _compute(name: str) -> Callable[[Iterable[Sequence[float]], RunSpec], list[float]]:
-    """Return a function of channels at some ticks, which returns what a reading says there."""
+    """Return a function that computes an attribute of `ColorReading` from the channels at several ticks."""
     read = attrgetter(name)
     return lambda channels, run: [
         float(read(ColorReading(red, green, blue, run.profile.brick_colors)))
@@ -419,7 +419,7 @@ def _compute(name: str) -> Callable[[Iterable[Sequence[float]], RunSpec], list[f
 
 
 def columns(spec: ColorSensorSpec) -> tuple[Column, ...]:
-    """Return the columns of a sensor: the channels, and what a program reads of them."""
+    """Return the columns of a sensor: its channels, and the readings that a program gets."""
     name = spec.name
     return (
         Column(f"{name}_red"),
@@ -443,6 +443,6 @@ def columns(spec: ColorSensorSpec) -> tuple[Column, ...]:
 def measure(
     spec: ColorSensorSpec, instant: Instant, run: RunSpec, field: Field
 ) -> tuple[float, ...]:
-    """Return what is measured of `columns`: mean red, green and blue, 0 … 255."""
+    """Return the values of the measured columns: mean red, green and blue, 0 … 255."""
     seen = measure_color(spec, instant, field)
     return seen.red, seen.green, seen.blue

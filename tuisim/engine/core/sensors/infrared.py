@@ -36,7 +36,7 @@ _REM_A_BUTTONS = {"top_left": 16, "bottom_left": 32, "top_right": 64, "bottom_ri
 def _measure_way_mm(
     place: tuple[float, float], angle_deg: float, world: WorldSpec, most_mm: float
 ) -> float:
-    """Return how far light travels before it meets a surface, at most `most_mm`."""
+    """Return how far light travels from a place before it meets a surface, at most `most_mm`."""
     edges = find_surfaces(world)
     angle = math.radians(angle_deg)
     (x_mm, y_mm), cos, sin = place, math.cos(angle), math.sin(angle)
@@ -89,12 +89,12 @@ def _find_pressed(
 def remote(
     time_s: float, world: WorldSpec, by_hand: Collection[str] = ()
 ) -> tuple[int, int, int, int]:
-    """Return the code of the pressed buttons, for channels 1 to 4; 0 is none.
+    """Return the code of the pressed buttons, for channels 1 to 4; 0 if none is pressed.
 
     Args:
-        time_s: Simulated time, for the presses that the world has.
+        time_s: Simulated time, which selects the presses that are part of the world.
         world: The world.
-        by_hand: Names of `REMOTE_BY_HAND`: while there is one, its buttons are pressed on every channel, and no others.
+        by_hand: Names of `REMOTE_BY_HAND`: if there is one, these buttons are pressed on every channel, and no others.
     """
     button_1, two, three, four = (
         REMOTE_CODES.get(_find_pressed(channel, time_s, world, by_hand), 0)

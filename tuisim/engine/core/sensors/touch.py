@@ -28,7 +28,7 @@ _PORTS_OF_FLAG = tuple(
     frozenset((port, *HUB_PORTS[number :: len(INPUT_PORTS)]))
     for number, port in enumerate(INPUT_PORTS)
 )
-"""The ports of each flag: of a hub's six, E has that of A, and F that of B."""
+"""The ports of each flag: of a hub's six ports, A and E share one, and so do B and F."""
 REACH_MM = 2.0
 """The bumper reacts at this distance: it gives way before the robot is stopped."""
 

@@ -148,9 +148,9 @@ def measure_distance_mm(
     """Return the distance to the nearest echo in whole mm, `max_range_mm` if there is none, without noise.
 
     Args:
-        pose: The robot's.
+        pose: The robot's pose.
         spec: The sensor.
-        world: Its surroundings.
+        world: The walls and obstacles.
         heard: The surfaces that send this pulse back; None for all.
     """
     start = world_point(pose, spec.x_mm, spec.y_mm)
@@ -166,7 +166,7 @@ def measure_distance_mm(
 def _find_echoing_surfaces(
     spec: UltrasonicSpec, instant: Instant, world: WorldSpec
 ) -> Surfaces | None:
-    """Return the surfaces that send back the pulse of an instant; None if no pulse can be lost."""
+    """Return the surfaces that send back the pulse of an instant; None if all surfaces always do."""
     drift = instant.drift
     if not drift.echo_loss_pc:
         return None
@@ -184,7 +184,7 @@ def _find_echoing_surfaces(
 def measure_noisy_mm(spec: UltrasonicSpec, instant: Instant, world: WorldSpec) -> int:
     """Return the distance in whole mm including the sensor's errors and noise, 0 … `max_range_mm`.
 
-    Without an echo it is `max_range_mm`, also at what is closer than the sensor measures.
+    It is `max_range_mm` without an echo, and for a surface closer than the sensor can measure.
     """
     distance = measure_distance_mm(
         instant.pose, spec, world, _find_echoing_surfaces(spec, instant, world)

@@ -8,11 +8,11 @@ if TYPE_CHECKING:
     from tuisim.engine.core.servo.drive_base import DriveBase
 
 MAX_BASES = 256
-"""A program may make a drive base in each turn of a loop, and uses the newest ones: these have numbers."""
+"""Only so many newest drive bases have numbers: a program may make one in each turn of a loop."""
 
 
 class DriveBases:
-    """The newest drive bases that a program has made."""
+    """The drive bases that a program has made most recently, by number."""
 
     __slots__ = ("_bases", "_made")
 
@@ -28,10 +28,10 @@ class DriveBases:
 
     @property
     def newest(self) -> int:
-        """The number of the one that was made last."""
+        """The number of the drive base that was made last."""
         return (self._made - 1) % MAX_BASES
 
     def add(self, base: DriveBase) -> None:
-        """Add one; it has the number of the oldest one if there are `MAX_BASES`."""
+        """Add a drive base; once there are `MAX_BASES`, it replaces the oldest one and has its number."""
         self._made += 1
         self._bases[self.newest : self.newest + 1] = [base]

@@ -31,15 +31,16 @@ class Ending(IntEnum):
     BRAKE = 1
     HOLD = 2
     NONE = 3
-    """It keeps on running."""
+    """The motor keeps on running."""
 
 
 class Controller:
     """Follows one trajectory, or none.
 
     Args:
-        slips: Whether a move after something held the motion back begins where the motion is, not where it would be:
-            the wheels of a real robot that pushes a wall slip, and count on.
+        slips: Whether, after something has held the motion back, a new motion begins where the last one is, not where
+            it
+            should be. Wheels of a real robot that pushes a wall slip, and count on.
     """
 
     __slots__ = (
@@ -59,9 +60,9 @@ class Controller:
         self.settings = settings
         self._slips = slips
         self.trajectory: Trajectory | None = None
-        """None while it is passive."""
+        """The trajectory to follow; None while the controller is passive."""
         self.timed = False
-        """Whether it controls the speed, not the position."""
+        """Whether the motion is one at a speed, not to a position."""
         self.settles = False
         """Whether a motion for a time is done only when the motor has come to rest."""
         self.duty_limit: int | None = None
@@ -71,9 +72,9 @@ class Controller:
         self._behind_milli = 0
         """How far a motion at a speed is behind its trajectory for good, in thousandths of a count."""
         self._stalled_us = 0
-        """For how long it has hardly moved at its full power."""
+        """For how long the motion has hardly moved at full power."""
         self._released = 0, 0
-        """When it became passive, and the mean rate then, where the firmware begins a motion at a mean rate."""
+        """When the controller became passive, and its mean rate then: some firmware begins a motion at a mean rate."""
 
     @property
     def actuation(self) -> int:
@@ -83,13 +84,13 @@ class Controller:
     # The reference
 
     def milli(self, now_us: int) -> int:
-        """Return where the motion is wanted to be, in thousandths of a count."""
+        """Return the position that the motion should have, in thousandths of a count."""
         assert self.trajectory is not None
         then_us = now_us - self._paused_us
         return self.trajectory.find_segment(then_us).find_milli(then_us) - self._behind_milli
 
     def list_millis(self, times_us: range) -> list[int]:
-        """Return where the motion is wanted to be at several times of one segment."""
+        """Return the positions that the motion should have at several times of one segment."""
         assert self.trajectory is not None
         paused_us = self._paused_us
         behind = self._behind_milli
@@ -98,15 +99,15 @@ class Controller:
         return [milli - behind for milli in millis] if behind else millis
 
     def find_target(self, now_us: int, _motor: object) -> int:
-        """Return where a motor is wanted to be; see `motor.Guide`."""
+        """Return the position that a motor should have; see `motor.Guide`."""
         return 2 * self.milli(now_us)
 
     def list_targets(self, times_us: range, _motor: object) -> list[int]:
-        """Return where a motor is wanted to be at several times of one segment."""
+        """Return the positions that a motor should have at several times of one segment; see `motor.Guide`."""
         return [2 * milli for milli in self.list_millis(times_us)]
 
     def rate(self, now_us: int, _motor: object = None) -> int:
-        """Return the wanted rate; 0 while it is passive."""
+        """Return the rate that the motion should have; 0 while the controller is passive."""
         if self.trajectory is None:
             return 0
         then_us = now_us - self._paused_us
@@ -114,13 +115,13 @@ class Controller:
 
     @property
     def end_us(self) -> int | None:
-        """When the trajectory ends; None if it has no end, or there is none."""
+        """When the trajectory ends; None without a trajectory, or if that has no end."""
         if self.trajectory is None or self.trajectory.endless:
             return None
         return self.trajectory.end_us + self._paused_us
 
     def find_segment_end_us(self, now_us: int) -> int | None:
-        """Return when the current segment of the trajectory ends; None if it does not."""
+        """Return when the current segment of the trajectory ends; None if it has no end."""
         if self.trajectory is None:
             return None
         end_us = self.trajectory.find_segment_end_us(now_us - self._paused_us)
@@ -129,7 +130,7 @@ class Controller:
     # Commands
 
     def release(self, now_us: int | None = None) -> None:
-        """Become passive; at a time from which on a motion may begin at the mean rate of the last one."""
+        """Become passive. With a time, remember the mean rate until then, at which a motion may soon begin."""
         window_us = self.settings.speed_window_ms * MS_US
         if window_us and now_us is not None and self.trajectory is not None and not self._paused_us:
             self._released = now_us, self._mean_rate(now_us, self.milli(now_us), window_us)
@@ -155,10 +156,10 @@ class Controller:
         """Begin a move to a position.
 
         Args:
-            measured: Returns where the motion is, from which it begins if this controller is passive.
-            target: Where it shall end, in counts.
-            rate, acceleration: How.
-            deceleration: How it stops; None for the acceleration.
+            measured: Returns where the motion is; the move begins there if this controller is passive.
+            target: Where the move ends, in counts.
+            rate, acceleration: In counts per second (squared); the sign of the rate does not count.
+            deceleration: How the move stops; None for the acceleration.
             relative: Whether `target` counts from where the motion begins.
 
         Raises:
@@ -177,7 +178,7 @@ class Controller:
         self._begin(trajectory, timed=False)
 
     def match_pace(self, other: Controller) -> None:
-        """Make the new trajectory take as long as that of another controller, in proportion to it at every time."""
+        """Make the new trajectory as long in time as another controller's, and proportional to it at every time."""
         if self.trajectory is not None and other.trajectory is not None:
             ours, theirs = self.trajectory, other.trajectory
             ways = (move.end.milli - move.first.milli for move in (ours, theirs))
@@ -210,9 +211,9 @@ class Controller:
         """Begin a motion at a speed.
 
         Args:
-            measured: Returns where the motion is, from which it begins if this controller is passive.
-            rate, acceleration: How.
-            time_us: How long it takes; None if it does not end.
+            measured: Returns where the motion is; the new one begins there if this controller is passive.
+            rate, acceleration: In counts per second (squared).
+            time_us: How long the motion takes; None if it does not end.
 
         Raises:
             ValueError: the time is negative or too long.
@@ -231,7 +232,7 @@ class Controller:
             if spliced is not None and trajectory.first.acceleration == start.acceleration:
                 takes_us = time_us + now_us - spliced.start_us
                 trajectory = build_timed_move(spliced, takes_us, rate, acceleration, settings.speed)
-        # What a motion at a speed has forgotten, the next one does not catch up either.
+        # The distance that a motion at a speed has lost, the next motion does not catch up either.
         behind_milli = (
             self._behind_milli
             if self.timed and self.trajectory is not None and not self._slips
@@ -241,13 +242,13 @@ class Controller:
         self._behind_milli = behind_milli
 
     def _limit(self, acceleration: int) -> int:
-        """Return the size of an acceleration, at most that of the settings where the firmware limits it."""
+        """Return an acceleration without its sign, limited to that of the settings where the firmware does so."""
         if self.settings.speed_window_ms:
             return abs(acceleration)
         return min(abs(acceleration), self.settings.acceleration)
 
     def _is_running_evenly(self, now_us: int, rate: int) -> bool:
-        """Return whether a motion at a rate has reached it, so that the same command changes nothing."""
+        """Return whether the motion already runs evenly at a rate, so that the same command would change nothing."""
         if (
             not self.timed
             or self.trajectory is None
@@ -267,7 +268,7 @@ class Controller:
         )
 
     def _find_start(self, now_us: int, measured: Measure) -> tuple[Segment, Segment | None]:
-        """Return where a new trajectory begins, and where the running segment began, if it changes the speed."""
+        """Return where a new trajectory begins, and the running segment if that changes the speed, else None."""
         if self.trajectory is None or (self._slips and self._behind_milli):
             start, (then_us, rate) = measured(now_us), self._released
             window_us = self.settings.speed_window_ms * MS_US
@@ -294,11 +295,11 @@ class Controller:
     # Following
 
     def note_lag(self, now_us: int, passed_us: int, milli: int, rate: int) -> None:
-        """Take note that the motion is not where it is wanted to be.
+        """React to a motion that is not where it should be: pause, or forget the distance that is missing.
 
         Args:
-            passed_us: Time since the last call, or since the motion was last where it was wanted.
-            milli, rate: Where the motion is, and how fast.
+            passed_us: Time since the last call, or since the motion was last where it should be.
+            milli, rate: Position and rate of the motion.
         """
         settings = self.settings
         trajectory = self.trajectory
@@ -324,20 +325,20 @@ class Controller:
 
     @property
     def stalled(self) -> bool:
-        """Whether the motion has hardly moved at full power for the time of the settings."""
+        """Whether the motion has hardly moved at full power for the stall time of the settings."""
         return (
             self.trajectory is not None and self._stalled_us >= self.settings.stall_time_ms * MS_US
         )
 
     def has_ended(self, now_us: int) -> bool:
-        """Return whether a motion for a time has come to its end."""
+        """Return whether the time of a timed motion is over."""
         return self.timed and (end_us := self.end_us) is not None and now_us >= end_us
 
     def done(self, now_us: int, milli: int, rate: int) -> bool:
         """Return whether no move is under way.
 
         Args:
-            milli, rate: Where the motion is, and how fast.
+            milli, rate: Position and rate of the motion.
         """
         end_us = self.end_us
         if end_us is None:
@@ -353,7 +354,7 @@ class Controller:
         return near and abs(rate) < self.settings.speed_tolerance
 
     def _mean_rate(self, now_us: int, milli: int, window_us: int) -> int:
-        """Return the mean rate over a time until now."""
+        """Return the mean rate over `window_us` until now."""
         assert self.trajectory is not None
         begin_us = max(now_us - window_us, self.trajectory.first.start_us + self._paused_us)
         return (milli - self.milli(begin_us)) * (1_000_000 // window_us) // MILLI

@@ -32,7 +32,7 @@ COUNTS_PER_STEP = 2 * COUNTS_PER_DEG / 1000
 def compute_base_settings(
     left: ControlSettings, right: ControlSettings, wheel_diameter_mm: float, axle_track_mm: float
 ) -> tuple[ControlSettings, ControlSettings]:
-    """Return the settings of both controllers: of the distance in mm, and of the heading in degrees."""
+    """Return the settings of a drive base's controllers: of the distance in mm, and of the heading in degrees."""
     per_deg = left.counts_per_unit
     return (
         combine_settings(left, right, 2 * per_deg * 360 / (pi * wheel_diameter_mm)),
@@ -47,7 +47,7 @@ Pace = tuple[int, int, int, int]
 def compute_usual_settings(
     law: MotorLaw, distance: ControlSettings, heading: ControlSettings
 ) -> tuple[Pace, Pace]:
-    """Return how a new drive base moves, in mm and degrees, and in counts, which may be more exact."""
+    """Return speeds and accelerations of a new drive base, in mm and degrees, and in counts (maybe more exact)."""
     firmware = FIRMWARES[law]
     limits = (
         (distance, distance.speed, firmware.straight_speed),
@@ -126,7 +126,7 @@ class DriveBase:
         """How it moves, unless the program says something else: in mm and degrees, and in counts; until the program
         sets it, these are not rounded to whole units."""
         self._slowing: tuple[int | None, int | None] = None, None
-        """How it stops straight moves and turns, in counts; None as it speeds up."""
+        """How straight moves and turns stop, in counts; None: as they speed up."""
         self._ending = Ending.HOLD
         self._find_heading: Callable[[], float] | None = None
         """Returns the heading that a gyro shows, in degrees, clockwise; None while the wheels tell the heading."""
@@ -140,17 +140,17 @@ class DriveBase:
 
     @property
     def active(self) -> bool:
-        """Whether it moves or holds its motors, both of them."""
+        """Whether the drive base moves or holds both of its motors."""
         return self.left.guide is self and self.right.guide is self
 
     def find_millis(self, now_us: int) -> tuple[int, int]:
-        """Return sum and difference, in thousandths of a count."""
+        """Return sum and difference of the motors' positions, in thousandths of a count."""
         left, right = self.left.find_milli(now_us), self.right.find_milli(now_us)
         self._follow_gyro()
         return left + right, left - right - self._offset
 
     def find_rates(self, now_us: int) -> tuple[int, int]:
-        """Return the rates of sum and difference, in counts per second."""
+        """Return sum and difference of the motors' rates, in counts per second."""
         left, right = self.left.find_counts_per_s(now_us), self.right.find_counts_per_s(now_us)
         return left + right, left - right
 
@@ -165,7 +165,7 @@ class DriveBase:
 
     @property
     def _ends_at_once(self) -> bool:
-        """Whether a move ends with its trajectory: the controller that has nothing to do is done then."""
+        """Whether a move ends as soon as its trajectory does, without waiting for the motors to come to rest."""
         windowed = self.distance.settings.speed_window_ms > 0
         return windowed and self._ending in (Ending.COAST, Ending.BRAKE)
 
@@ -189,7 +189,7 @@ class DriveBase:
         """Let a gyro tell the heading from now on, or the wheels again; the motors coast.
 
         Args:
-            find_heading: Returns the heading in degrees, clockwise; None for the wheels.
+            find_heading: Returns the gyro's heading in degrees, clockwise; None: the wheels tell the heading.
         """
         self.stop(now_us, None)
         self._find_heading = find_heading
@@ -198,7 +198,7 @@ class DriveBase:
         self.heading.settings = replace(self.heading.settings, speed_window_ms=window_ms)
 
     def _follow_gyro(self) -> None:
-        """Take note of how far the motors have turned the robot otherwise than the gyro shows."""
+        """Note how far the heading by the motors differs from that of the gyro."""
         if self._find_heading is not None:
             counts = self._find_heading() * self.heading.settings.counts_per_unit
             self._offset = self.left.milli - self.right.milli - round(counts * MILLI)
@@ -211,7 +211,7 @@ class DriveBase:
         return distance(usual[0]), distance(usual[1]), heading(usual[2]), heading(usual[3])
 
     def set_usual(self, usual: Pace) -> None:
-        """Set how it usually moves, in mm and degrees; a value that stays is as exact as before."""
+        """Set the usual speeds and accelerations, in mm and degrees; unchanged values stay as exact as before."""
         speed, acceleration, rate, turn_acceleration = (
             before if value == known else count
             for value, known, before, count in zip(
@@ -223,7 +223,7 @@ class DriveBase:
         self._pace = (speed, acceleration, rate, turn_acceleration)
 
     def set_slowing(self, straight: int, turn: int) -> None:
-        """Set how it stops straight moves and turns, in mm and degrees per second squared."""
+        """Set with which accelerations straight moves and turns stop, in mm and degrees per second squared."""
         counts = self.distance.settings.counts, self.heading.settings.counts
         self._slowing = counts[0](straight), counts[1](turn)
 
@@ -308,7 +308,7 @@ class DriveBase:
         return Segment(now_us, left.milli - right.milli - self._offset, left.rate - right.rate, 0)
 
     def _begin(self, now_us: int) -> None:
-        """Make the controllers passive unless they move both motors; let go of one that is left."""
+        """Make the controllers passive unless they move both motors; let a motor coast that follows this base alone."""
         if not self.active:
             for motor in self.motors:
                 if motor.guide is self:
@@ -332,7 +332,7 @@ class DriveBase:
         return None if one is None or other is None else max(one, other)
 
     def find_target(self, now_us: int, motor: ServoMotor) -> int:
-        """Return where a motor is wanted to be."""
+        """Return the position that a motor should have; see `motor.Guide`."""
         if now_us != self._at_us:
             self._follow_gyro()
             self._at_us, self._millis = (
@@ -343,7 +343,7 @@ class DriveBase:
         return total + difference if motor is self.left else total - difference
 
     def list_targets(self, times_us: range, motor: ServoMotor) -> list[int]:
-        """Return where a motor is wanted to be at several times of one segment."""
+        """Return the positions that a motor should have at several times of one segment; see `motor.Guide`."""
         both = zip(
             self.distance.list_millis(times_us), self.heading.list_millis(times_us), strict=True
         )
@@ -352,7 +352,7 @@ class DriveBase:
         return [total - difference for total, difference in both]
 
     def rate(self, now_us: int, motor: ServoMotor) -> float:
-        """Return the wanted rate of a motor, in counts per second."""
+        """Return the rate that a motor should have, in counts per second."""
         total = self.distance.rate(now_us)
         difference = self.heading.rate(now_us)
         return (total + difference) / 2 if motor is self.left else (total - difference) / 2
@@ -370,7 +370,7 @@ class DriveBase:
         return min(ends, default=None)
 
     def note_lag(self, now_us: int, passed_us: int, _milli: int, _rate: int) -> None:
-        """Take note that a motor is not where it is wanted to be; the second of two calls for a time does nothing."""
+        """React to a motor that is not where it should be; a second call for the same time does nothing."""
         if now_us == self._behind_us:
             return
         self._behind_us, self._at_us = now_us, -1

@@ -38,29 +38,29 @@ HALVES_PER_DEG = 2 * MILLI * COUNTS_PER_DEG
 
 
 class Guide(Protocol):
-    """What a motor follows; times in microseconds, positions in half thousandths of a count."""
+    """What a motor follows, a controller or a drive base. Times in µs, positions in half thousandths of a count."""
 
     @property
     def end_us(self) -> int | None:
         """When the motion ends; None if it does not."""
 
     def find_target(self, now_us: int, motor: ServoMotor) -> int:
-        """Return where the motor is wanted to be."""
+        """Return the position that the motor should have."""
 
     def list_targets(self, times_us: range, motor: ServoMotor) -> list[int]:
-        """Return where the motor is wanted to be at several times of one segment."""
+        """Return the positions that the motor should have at several times of one segment."""
 
     def rate(self, now_us: int, motor: ServoMotor) -> float:
-        """Return the wanted rate, in counts per second."""
+        """Return the rate that the motor should have, in counts per second."""
 
     def find_segment_end_us(self, now_us: int) -> int | None:
-        """Return when the current segment of the motion ends; None if it does not."""
+        """Return when the current segment of the motion ends; None if it has no end."""
 
     def note_lag(self, now_us: int, passed_us: int, milli: int, rate: int) -> None:
-        """Take note that a motor is not where it is wanted to be, for a time since the last call."""
+        """React to a motor that has not been where it should be for `passed_us`, until now."""
 
     def lets_go(self, now_us: int, ending: Ending) -> bool:
-        """Return whether a motor that has arrived stops following, at an ending other than to hold."""
+        """Return whether a motor that has arrived stops following; only asked at endings other than to hold."""
 
 
 class ServoMotor:
@@ -70,7 +70,7 @@ class ServoMotor:
         tick_hz: Ticks per second.
         law: Which firmware moves it.
         kind: One of `MOTOR_KINDS`.
-        axle: How it turns while nothing controls it.
+        axle: The electric motor that turns it while nothing controls it.
     """
 
     __slots__ = (
@@ -116,7 +116,7 @@ class ServoMotor:
         self._guide: Guide | None = None
         self._ending = Ending.HOLD
         self._course: int | None = 0
-        """Its position in the program's direction while it is exactly where it is wanted to be."""
+        """The motor's position in the program's direction, in half thousandths of a count; None if held back."""
         self.duty: int | None = None
         """Its power while it runs freely, in hundredths of a percent; None if it coasts."""
         self._free_us = 0
@@ -129,38 +129,38 @@ class ServoMotor:
 
     @property
     def guide(self) -> Guide | None:
-        """What it follows; None while it runs freely."""
+        """The controller or drive base that the motor follows; None while it runs freely."""
         return self._guide
 
     @property
     def follows_itself(self) -> bool:
-        """Whether it follows its own controller."""
+        """Whether the motor follows its own controller."""
         return self._guide is self.control
 
     @property
     def milli(self) -> int:
-        """Its position in thousandths of a count, in the program's direction."""
+        """The motor's position in thousandths of a count, in the program's direction."""
         return round((self.position_deg + self._jump_deg) * self.sign * MILLI * COUNTS_PER_DEG)
 
     @property
     def counts_per_s(self) -> int:
-        """Its speed, in the program's direction."""
+        """The motor's speed in counts per second, in the program's direction."""
         return round(self.speed_dps * self.sign * COUNTS_PER_DEG)
 
     def find_milli(self, now_us: int) -> int:
-        """Return where it is at a time after the last tick, before anything can hold it back."""
+        """Return the motor's position at a time after the last tick, before anything can hold it back."""
         if self._guide is not None and self._course is not None:
             return self._guide.find_target(now_us, self) // 2
         return self.milli
 
     def find_counts_per_s(self, now_us: int) -> int:
-        """Return its speed at a time after the last tick."""
+        """Return the motor's speed at a time after the last tick."""
         if self._guide is None:
             return round(self._free_dps * self.sign * COUNTS_PER_DEG)
         return self.counts_per_s if self._course is None else round(self._guide.rate(now_us, self))
 
     def measure_start(self, now_us: int) -> Segment:
-        """Return where a motion begins that nothing has controlled before, as the encoder shows it."""
+        """Return position and speed at which a controller takes over a motor, as the encoder shows them."""
         return Segment(
             now_us,
             round(self.find_milli(now_us) / MILLI) * MILLI,
@@ -173,7 +173,7 @@ class ServoMotor:
     def set_up(
         self, now_us: int, sign: int, gear_ratio: float, *, keeps_angle: bool = False
     ) -> None:
-        """Begin anew, as a program does that makes a motor: it coasts, and its position is 0 unless it is kept."""
+        """Set the motor up as new: it coasts, and its position is 0 unless `keeps_angle`."""
         self.run_freely(now_us, None)
         self.sign = sign
         if not keeps_angle:
@@ -181,10 +181,11 @@ class ServoMotor:
         self.control.settings = compute_motor_settings(self.law, self.kind, gear_ratio)
 
     def follow(self, guide: Guide | None = None, ending: Ending = Ending.HOLD) -> None:
-        """Follow a guide from now on, if none is given the motor's own controller, which has just got its trajectory.
+        """Follow a guide from now on.
 
         Args:
-            ending: What it does at the end of the motion.
+            guide: The guide; None for the motor's own controller, which has just got its trajectory.
+            ending: What the motor does at the end of the motion.
         """
         if guide is not None and guide is self._guide:
             self._ending = ending
@@ -213,16 +214,16 @@ class ServoMotor:
 
     @property
     def lets_go(self) -> bool:
-        """Whether nothing holds the motor after the motion that it follows."""
+        """Whether the motor coasts or brakes after the motion that it follows, instead of holding."""
         return self._guide is not None and self._ending in (Ending.COAST, Ending.BRAKE)
 
     def _limit_speed(self) -> None:
-        """Take note of the highest speed that its power allows."""
+        """Compute the highest speed that the motor's power allows."""
         self._actuation = self.control.actuation
         self._fastest_deg = self.model.find_steady_dps(self._actuation, BATTERY_V) * self._tick_s
 
     def run_freely(self, now_us: int, duty: int | None) -> None:
-        """Let go of what it follows, and run with a power.
+        """Follow no guide any more, and run with a power.
 
         Args:
             duty: In hundredths of a percent; 0 brakes, None coasts.
@@ -240,7 +241,7 @@ class ServoMotor:
         self.mode = FOREVER if self.duty or self._free_dps or self._jump_deg else STOPPED
 
     def set_position(self, now_us: int, milli: int) -> None:
-        """Make the current position another one; a motion ends there, and the motor holds."""
+        """Set the number that stands for the present position; a motion ends there, and the motor holds."""
         shift = milli - self.find_milli(now_us)
         self.position_deg += shift * self.sign / (MILLI * COUNTS_PER_DEG)
         if self._course is not None:
@@ -253,7 +254,7 @@ class ServoMotor:
 
     @property
     def goal_deg(self) -> float:
-        """Where the motion ends."""
+        """Position at which the motion ends."""
         guide = self._guide
         end_us = guide.end_us if guide else None
         return (
@@ -264,7 +265,7 @@ class ServoMotor:
 
     @property
     def end_tick(self) -> float:
-        """When the motion ends."""
+        """The tick at which the motion ends; `ENDLESS` if it does not."""
         end_us = self._guide.end_us if self._guide else None
         return ENDLESS if end_us is None else end_us / self._tick_us
 
@@ -317,7 +318,7 @@ class ServoMotor:
 
     @property
     def ramping_ticks(self) -> int:
-        """Ticks that the last `count_quiet_ticks` allowed: a servo motor always glides along its trajectory."""
+        """Number of ticks that `count_quiet_ticks` last returned: a servo motor always glides along its trajectory."""
         return 0 if self.mode == STOPPED else self._quiet
 
     def count_quiet_ticks(self, tick: int) -> int:
@@ -378,7 +379,7 @@ class ServoMotor:
             return self._run_freely(now_us)
         if self._course is None:
             if guide is self.control and self.control.has_ended(now_us):
-                # A motion for a time ends where it is.
+                # A timed motion has no goal: it ends at the position that the motor has now.
                 self.control.hold(now_us, self.milli)
                 self._end(now_us)
                 return 0.0
@@ -395,7 +396,7 @@ class ServoMotor:
         return self._catch_up(halves, noise_dps)
 
     def _catch_up(self, halves: int, noise_dps: float) -> float:
-        """Run towards where the motor is wanted to be."""
+        """Run one tick towards the position that the motor should have."""
         fastest_deg, wanted_deg = self._fastest_deg, self._convert_to_deg(halves)
         turned = max(-fastest_deg, min(fastest_deg, wanted_deg - self.position_deg))
         reached = turned == wanted_deg - self.position_deg and not noise_dps

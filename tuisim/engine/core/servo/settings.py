@@ -44,7 +44,7 @@ class ControlSettings:
     integral_range: int
     integral_rate: int
     feed_forward: int
-    """In hundredths of a percent."""
+    """Power that is added in the direction of motion, in hundredths of a percent."""
     position_tolerance: int
     """A move is done when it is this close to its target..."""
     speed_tolerance: int
@@ -71,14 +71,14 @@ class ControlSettings:
 
 
 def _multiply(number: int, factor: int) -> int:
-    """Return a number times a factor of 1/65,536, rounded."""
+    """Return a number times `factor` / 65,536, rounded."""
     size = (abs(number) * factor + _ONE // 2) // _ONE
     return size if number >= 0 else -size
 
 
 @dataclass(frozen=True, slots=True)
 class MotorModel:
-    """What a motor that is controlled can do at most, by the data that the firmware's authors measured."""
+    """The limits of a motor under control, by the data that the firmware's authors measured."""
 
     resistance_ohm: float
     back_emf_v_s: float
@@ -86,7 +86,7 @@ class MotorModel:
     friction_nm: float
 
     def find_steady_dps(self, actuation: int, battery_v: float) -> float:
-        """Return the speed that a power leads to; 0 if friction holds the motor."""
+        """Return the speed that a power leads to in the end; 0 if friction holds the motor."""
         ideal_dps = battery_v * abs(actuation) / FULL_ACTUATION / self.back_emf_v_s * 180 / pi
         speed = max(0.0, ideal_dps - self.friction_dps)
         return speed if actuation >= 0 else -speed
@@ -108,7 +108,7 @@ MODELS: Mapping[str, MotorModel] = {
     "large": MotorModel(5.504587, 0.473084, 0.274603, 0.016476),
     "medium": MotorModel(10.727729, 0.291152, 0.245926, 0.024593),
 }
-"""By `MotorSpec.kind`."""
+"""Limits of each kind of motor, by `MotorSpec.kind`."""
 
 BATTERY_V = 8.0
 """The voltage at which the motors' numbers hold."""
@@ -116,7 +116,7 @@ BATTERY_V = 8.0
 
 @dataclass(frozen=True, slots=True)
 class ServoKind:
-    """What differs between kinds of motor; angles in degrees, power in percent."""
+    """Settings that differ between kinds of motor; angles in degrees, power in percent."""
 
     speed: int
     acceleration: int
@@ -128,18 +128,18 @@ class ServoKind:
 
 @dataclass(frozen=True, slots=True)
 class Firmware:
-    """One version of the firmware."""
+    """The settings of one version of the firmware."""
 
     motors: Mapping[str, ServoKind]
     position_tolerance_deg: int
     stall_speed_dps: int
     straight_speed: tuple[int, int]
-    """The usual speed of a drive base, as a fraction of its limit; likewise the following."""
+    """The usual speed of a drive base, as a fraction of its limit; so are the next three."""
     straight_acceleration: tuple[int, int]
     turn_rate: tuple[int, int]
     turn_acceleration: tuple[int, int]
     divides_units: bool
-    """Whether it takes these fractions of limits that are rounded to units of the program."""
+    """Whether these are fractions of limits that are rounded to units of the program."""
     speed_window_ms: int
     """As `ControlSettings.speed_window_ms`."""
 
@@ -188,7 +188,7 @@ def compute_motor_settings(law: MotorLaw, kind: str, gear_ratio: float = 1.0) ->
 
 
 def find_model(kind: str) -> MotorModel:
-    """Return what a kind of motor can do at most."""
+    """Return the limits of a kind of motor."""
     if kind in MODELS:
         return MODELS[kind]
     plant = _find_hub_motor(kind).plant
@@ -198,7 +198,7 @@ def find_model(kind: str) -> MotorModel:
 
 
 def _build_hub_kind(kind: str) -> ServoKind:
-    """Return the settings of a hub's motor, its gains in hundredths of a percent of the power per count."""
+    """Return the settings of a hub's motor, with gains in hundredths of a percent of the power per count."""
     motor = _find_hub_motor(kind)
     kp, ki, kd = (
         round(gain * FULL_ACTUATION / motor.torque_unm / COUNTS_PER_DEG) for gain in motor.gains

@@ -28,17 +28,17 @@ def divide(dividend: int, divisor: int) -> int:
 
 
 def compute_duration_us(change: int, rate: int) -> int:
-    """Return how long a change takes at a rate per second."""
+    """Return how long a change takes at a rate per second, in microseconds."""
     return divide(change * 1000, rate) * MS_US
 
 
 def rate_change(acceleration: int, time_us: int) -> int:
-    """Return how much an acceleration changes a rate."""
+    """Return by how much an acceleration changes a rate in a time."""
     return divide(acceleration * (time_us // MS_US), 1000)
 
 
 class Segment(NamedTuple):
-    """The start of one of a trajectory's parts: speeding up or down, running evenly, stopping, standing."""
+    """The start of one part of a trajectory: speeding up or down, running evenly, stopping or standing."""
 
     start_us: int
     milli: int
@@ -50,7 +50,7 @@ class Segment(NamedTuple):
         passed_us = time_us - self.start_us
         rate = self.rate
         acceleration = self.acceleration
-        # Each quotient rounds towards zero; each motor asks in every tick.
+        # Inlined, because each motor calls it in every tick; each quotient rounds towards zero.
         milli = self.milli + (
             rate * passed_us // 1000 if rate >= 0 else -(-rate * passed_us // 1000)
         )
@@ -69,7 +69,7 @@ class Segment(NamedTuple):
         )
 
     def list_millis(self, times_us: range) -> list[int]:
-        """Return the positions at several times in this segment, which `time_us` gives one by one."""
+        """Return the positions at several times in this segment: those that `find_milli` returns one by one."""
         sign = 1 if self.rate >= 0 else -1
         way = abs(self.rate)
         steps = [time_us - self.start_us for time_us in times_us]
@@ -100,7 +100,7 @@ class Trajectory(NamedTuple):
 
     @property
     def end_us(self) -> int:
-        """When it stops."""
+        """When the motion stops."""
         return self.end.start_us
 
     def find_segment(self, time_us: int) -> Segment:
@@ -112,7 +112,7 @@ class Trajectory(NamedTuple):
         return self.last if time_us <= self.end.start_us else self.end
 
     def find_segment_end_us(self, time_us: int) -> int | None:
-        """Return when the segment of a time ends; None if it does not."""
+        """Return when the segment of a time ends; None if it has no end."""
         if time_us < self.even.start_us:
             return self.even.start_us
         if self.endless or time_us > self.end.start_us:
@@ -121,7 +121,12 @@ class Trajectory(NamedTuple):
 
 
 def build_rest(time_us: int, milli: int) -> Trajectory:
-    """Return the trajectory that stays at a position, given in thousandths of a count."""
+    """Return the trajectory that stays at a position.
+
+    Args:
+        time_us: When it begins.
+        milli: The position, in thousandths of a count.
+    """
     there = Segment(time_us, milli, 0, 0)
     return Trajectory(there, there, there, there)
 
@@ -137,12 +142,12 @@ def build_angle_move(
     """Return the move to a position.
 
     Args:
-        start: Where it begins; its acceleration does not count.
-        target: Where it stops, in counts.
-        rate: The wanted rate; its sign does not count.
-        acceleration: How it speeds up.
+        start: Where the move begins; its acceleration does not count.
+        target: Where the move stops, in counts.
+        rate: The rate to reach; its sign does not count.
+        acceleration: How the move speeds up.
         fastest: The highest rate.
-        deceleration: How it stops; None for the acceleration.
+        deceleration: How the move stops; None for the acceleration.
 
     Raises:
         ValueError: the rate is 0, or the move takes longer than half an hour.
@@ -188,12 +193,12 @@ def build_angle_move(
 def _speed_up(
     length: int, from_rest: int, top_rate: int, acceleration: int, slowing: int
 ) -> tuple[int, int, int]:
-    """Return where a move that speeds up runs evenly, from and to, and how fast.
+    """Return between which positions a move that speeds up runs evenly, and at which rate.
 
     Args:
-        length: How far it goes.
+        length: How far the move goes.
         from_rest: Where it would have begun at rest.
-        top_rate: The top_rate rate.
+        top_rate: The highest rate.
         acceleration, slowing: How it speeds up, and how it stops.
     """
     ramps = top_rate * top_rate * (acceleration + slowing) // (2 * acceleration * slowing)
@@ -208,9 +213,9 @@ def build_endless_move(start: Segment, rate: int, acceleration: int, fastest: in
     """Return the motion at a speed that does not end.
 
     Args:
-        start: Where it begins; its acceleration does not count.
-        rate: The wanted rate.
-        acceleration: How it speeds up or down.
+        start: Where the motion begins; its acceleration does not count.
+        rate: The rate to reach.
+        acceleration: How the motion speeds up or down.
         fastest: The highest rate.
     """
     start_us = start.start_us
@@ -231,13 +236,13 @@ def build_endless_move(start: Segment, rate: int, acceleration: int, fastest: in
 def build_timed_move(
     start: Segment, time_us: int, rate: int, acceleration: int, fastest: int
 ) -> Trajectory:
-    """Return the move that takes a time, with its ramps.
+    """Return the move that takes a given time, including its ramps.
 
     Args:
-        start: Where it begins; its acceleration does not count.
-        time_us: How long it takes.
-        rate: The wanted rate.
-        acceleration: How it speeds up and stops.
+        start: Where the move begins; its acceleration does not count.
+        time_us: How long the move takes.
+        rate: The rate to reach.
+        acceleration: How the move speeds up and stops.
         fastest: The highest rate.
 
     Raises:
