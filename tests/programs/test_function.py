@@ -68,8 +68,12 @@ def test_a_function_knows_the_values_around_it() -> None:
 
 
 def test_functions_are_programs_of_an_experiment() -> None:
-    frame = tuisim.experiment([build_inner(1), build_inner(2)], seeds=[0], jobs=1)
-    assert frame["Number_last"].tolist() == [1, 2]
+    frame = tuisim.experiment([build_inner(1), use_course_names], seeds=[0], jobs=1)
+    assert frame["Number_last"].tolist()[:1] == [1]
+    assert frame["program"].tolist() == [
+        "test_function.py:show",
+        "test_function.py:use_course_names",
+    ]
 
 
 def test_a_function_of_another_file_goes_along(

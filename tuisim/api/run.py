@@ -36,9 +36,8 @@ class Run:
 
     def __repr__(self) -> str:
         number = f" {self.stored.number}" if self.stored.number else ""
-        return (
-            f"<run{number} of {self.stored.program.name}: {self.state} after {self.time_s:.2f} s>"
-        )
+        what = f"{self.stored.program.name} under {self.stored.spec.profile.name}"
+        return f"<run{number} of {what}: {self.state} after {self.time_s:.2f} s>"
 
     def _repr_html_(self) -> str:
         """Return what a notebook shows."""

@@ -48,7 +48,7 @@ def read_function(function: Callable[[], object]) -> ProgramSource:
     reader.add_function(function)
     file = inspect.getsourcefile(function) or ""
     path = file if os.path.isfile(file) else ""
-    name = os.path.basename(path) or function.__name__
+    name = ":".join(filter(None, (os.path.basename(path), function.__name__)))
     source = parse_program(reader.write(function.__name__), name, path)
     if reader.unknown.isdisjoint(list_global_names(PRELUDE_TEXTS["preloaded"])[1]):
         return source

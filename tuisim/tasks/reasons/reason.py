@@ -7,6 +7,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 from enum import IntEnum, auto
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tuisim.base.data_class import dataclass
@@ -139,7 +140,7 @@ def _find_raised(run: StoredRun) -> Iterator[Reason]:
 
 def _find_tracebacks(run: StoredRun) -> Iterator[Reason]:
     """Yield each traceback in the program's error output."""
-    place = re.compile(rf'  File ".*{re.escape(run.program.name)}", line ([0-9]+)')
+    place = re.compile(rf'  File ".*{re.escape(Path(run.program.file).name)}", line ([0-9]+)')
     line = 0
     is_inside = False
     for row in run.output.rows():
