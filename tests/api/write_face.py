@@ -146,7 +146,7 @@ def experiment(
     """Run a program with all combinations of what varies, block until they end, and return a table of the runs.
 
     An option takes one value for all runs, or several, such as `sensornoise=[0, 20]`. An exception in a program is not
-    raised here: see the columns `end` and `summary`.
+    raised here: a warning counts them, and the columns `end` and `summary` say what each was.
 
     Args:
         program: As for `simulate`; or several.
@@ -167,7 +167,7 @@ def experiment(
             the rows so far.
         until: A column of the runs and how well its mean is to be known, such as `"x_mm ± 2"` or `"error_mm +- 2"`:
             each combination takes the seeds in their order, ten or more, until the mean is within this margin with
-            95 % (Student's t). Warns if the seeds do not suffice.
+            95 % (Student's t). Runs that raise do not count. Warns if the seeds do not suffice.
         scheduler: Address of a Dask scheduler whose workers run the programs, such as `tcp://host:8786`.
         arguments, answers, timeout_s, world: As for `simulate`.
 {help}

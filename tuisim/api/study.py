@@ -19,6 +19,7 @@ from tuisim.batch.parameters import SEED, Choice, parse_values
 from tuisim.batch.plan import Plan, Subject
 from tuisim.batch.rounds import Rounds, parse_precision
 from tuisim.batch.sweep import Sweep, Workers, is_interrupted
+from tuisim.engine.protocol import End
 from tuisim.logs.export import check_target
 from tuisim.programs.constants import set_constants
 from tuisim.programs.program_file import ProgramSource
@@ -66,9 +67,10 @@ def run_experiment(
     rounds = Rounds(plan, sweep, precision) if precision else None
     with show_progress(len(plan) - len(sweep.rows)) as tell:
         sweep.run(workers, tell, measures.measure, rounds)
-    warn_unknown(until, rounds.unknown if rounds else ())
     frames = take_columns(sweep.rows)
     frame = study.add_variants(sweep.build_frame())
+    warn_unknown(until, rounds.unknown if rounds else ())
+    warn_raised(frame)
     if columns:
         frame = join_columns(frame, frames, own)
     sweep.export(frame)
@@ -91,9 +93,18 @@ def warn_unknown(until: str, margins: Sequence[float]) -> None:
     """Warn that the means of some combinations are not known well enough."""
     if not margins:
         return
-    known = f"only to ± {max(margins):.3g}" if max(margins) < inf else "not at all"
-    text = f"until {until!r}: {counted(len(margins), 'mean')} known {known}, after all seeds"
+    known = f"only to ± {max(margins):.3g}, after all seeds"
+    known = known if max(margins) < inf else "not at all"
+    text = f"until {until!r}: {counted(len(margins), 'mean')} known {known}"
     warn(text, stacklevel=5)
+
+
+def warn_raised(table: pd.DataFrame) -> None:
+    """Warn of the runs in which a program has raised an error: their values are those of a part of a run."""
+    raised = table["summary"][table["end"] == End.RAISED]
+    if len(raised):
+        what = f"{len(raised)} of {counted(len(table), 'run')} raised"
+        warn(f"{what}; the first: {raised.iloc[0]}", stacklevel=5)
 
 
 class Study:

@@ -14,6 +14,7 @@ from tuisim.batch.plan import Plan
 from tuisim.batch.sweep import Sweep
 from tuisim.batch.table import POINTS, POSE, is_statistic, name_goals
 from tuisim.engine.core.conditions import NUMBER
+from tuisim.engine.protocol import End
 
 MIN_RUNS = 10
 """So many runs of a combination come first: the spread of fewer says little."""
@@ -77,7 +78,7 @@ class Rounds(Iterator[int]):
         self._counts = {range(first, first + seeds): 0 for first in range(0, len(plan), seeds)}
         """How many of its runs are asked for, by the indices of the combination; only while it needs more."""
         self.unknown: list[float] = []
-        """The margins of the combinations that have no more seeds."""
+        """The margins of the combinations that have no more seeds, or whose runs have all raised."""
 
     def __next__(self) -> int:
         if not self._due:
@@ -93,7 +94,10 @@ class Rounds(Iterator[int]):
         while all(index in rows for index in indices[: self._counts[indices]]):
             count = self._counts[indices]
             margin = self._find_margin(indices[:count]) if count else math.inf
-            if margin <= self._precision.margin or count == len(indices):
+            has_raised = count and all(
+                rows[index]["end"] == End.RAISED for index in indices[:count]
+            )
+            if margin <= self._precision.margin or count == len(indices) or has_raised:
                 self.unknown += [margin] if margin > self._precision.margin else []
                 del self._counts[indices]
                 return
@@ -109,6 +113,7 @@ class Rounds(Iterator[int]):
 
     def _find_margin(self, indices: Iterable[int]) -> float:
         frame = self._sweep.build_frame(indices)
+        frame = frame[frame["end"] != End.RAISED]
         column = frame.get(self._precision.column)
         if column is None:
             return math.inf
