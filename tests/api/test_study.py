@@ -13,6 +13,7 @@ import tuisim
 from tests.cases import cases
 from tuisim.base.errors import ConfigError
 from tuisim.batch.sweep import Workers
+from tuisim.guide.catalogue import find_page
 
 PROGRAM = """\
 GAIN = 1.2
@@ -132,6 +133,17 @@ def test_what_is_wrong_is_refused_before_anything_runs(given: dict[str, Any], wo
         tuisim.experiment(**{"program": PROGRAM, **given})
 
 
+def test_runs_that_raise_are_told_and_make_no_mean_known() -> None:
+    how: dict[str, Any] = {"seeds": range(20), "until": "x_mm ± 1", "jobs": 1}
+    with pytest.warns(UserWarning) as warnings:
+        frame = tuisim.experiment("print('A: 1')\n\nslep(1)\n", **how)
+    first, second = (str(warning.message) for warning in warnings)
+    assert "1 mean known not at all" in first
+    assert second.startswith("10 of 10 runs raised; the first: NameError: name 'slep'")
+    assert second.endswith("(line 3)") and warnings[1].filename == __file__
+    assert len(frame) == 10
+
+
 def test_what_a_metric_raises_ends_the_experiment() -> None:
     def fail(run: object) -> None:
         raise LookupError("nothing there")
@@ -139,3 +151,18 @@ def test_what_a_metric_raises_ends_the_experiment() -> None:
     with pytest.raises(LookupError, match="nothing there") as raised:
         tuisim.experiment(PROGRAM, seeds=[0], metrics={"n": fail}, jobs=1)
     assert raised.value.__notes__ == ["in the metric 'n' of run 1"]
+
+
+def test_the_experiments_of_the_page_measure_what_noise_changes(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    page = find_page("python").source
+    blocks = [part.partition("```")[0] for part in page.split("```python\n")[1:]]
+    names: dict[str, Any] = {"tuisim": tuisim}
+    for number, block in enumerate(blocks):
+        if "def drive" in block or "aside_mm" in block:
+            (tmp_path / f"block_{number}.py").write_text(block)
+            exec(compile(block, str(tmp_path / f"block_{number}.py"), "exec"), names)
+    spread_mm = names["asides_mm"].std()
+    assert (spread_mm[0] == 0).all() and (spread_mm[20] > 1).all()
