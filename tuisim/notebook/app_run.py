@@ -24,10 +24,11 @@ class AppRun:
 
     Args:
         view: The app, which has been asked to start a run.
-        is_interrupted: Whether the user does not want to wait for it any more.
+        is_interrupted: Returns whether the user has interrupted the cell.
 
     Raises:
-        HostError: the app has told why it cannot, does not answer, or the user has interrupted the cell before.
+        HostError: the app has told why it cannot start the run, does not answer, or the user has interrupted the cell
+            before.
     """
 
     waiting_for_reply = False
@@ -43,7 +44,11 @@ class AppRun:
         self.output = RunStore().load_run(self.run_id).output
 
     def _wait_for_news(self, *kinds: str) -> Mapping[str, Any]:
-        """Wait until the app tells one of these, but not for ever."""
+        """Return the next message of the app of one of these kinds.
+
+        Raises:
+            HostError: it is a problem, the user has interrupted the cell, or none comes in time.
+        """
         until_s = time.monotonic() + _START_WITHIN_S
         while self._view.is_alive and time.monotonic() < until_s:
             if self._is_interrupted():
@@ -69,7 +74,7 @@ class AppRun:
             return {}
 
     def wait_for_event(self, timeout_s: float) -> None:
-        """Wait until the run has ended, or the time is over."""
+        """Wait until the run has ended, for at most `timeout_s` seconds."""
         if self.ended is None:
             news = self._receive(timeout_s)
             if (
@@ -90,7 +95,7 @@ class AppRun:
             self._view.ask("stop")
 
     def wait(self, timeout_s: float) -> None:
-        """Wait until the run has ended, or the time is over."""
+        """Wait until the run has ended, for at most `timeout_s` seconds."""
         until = time.monotonic() + timeout_s
         while self.ended is None and (left_s := until - time.monotonic()) > 0:
             self.wait_for_event(left_s)
@@ -98,8 +103,8 @@ class AppRun:
     kill = stop
 
     def close(self) -> None:
-        """Leave the run to the app."""
+        """Do nothing: the run belongs to the app."""
 
     def stored(self) -> StoredRun:
-        """Return the run as it is stored."""
+        """Load the run from the store."""
         return RunStore().load_run(self.run_id)

@@ -29,7 +29,7 @@ _SIZE_AT_FIRST = (100, 30)
 
 @dataclass(frozen=True, slots=True)
 class CellState:
-    """What the cells have left."""
+    """World, program and run of a notebook as its cells have left them."""
 
     settings: Mapping[str, Any]
     """By path."""
@@ -39,12 +39,12 @@ class CellState:
 
 
 class AppView:
-    """One app, shown by the page that has asked for it last. It knows nothing of other apps of its user.
+    """One app, shown by the page that has asked for it last. Its panels and unsaved texts are not those of other apps.
 
     Args:
-        words: What it opens, as words of `tuisim open`.
-        origins: Origins of pages that may show it.
-        find_state: Returns what it shows first; called in another thread.
+        words: What the app opens, as words of `tuisim open`.
+        origins: Origins of pages that may show the app.
+        find_state: Returns what the app shows first; called in another thread.
     """
 
     def __init__(
@@ -66,7 +66,7 @@ class AppView:
         self._visit: Visit = visit
 
     def create_address(self, origins: tuple[str, ...]) -> dict[str, Any]:
-        """Return the port and a new token: whoever has had another one cannot open the app again."""
+        """Return the port and a new token; a page with an earlier token can no longer open the app."""
         server = self._server.server
         frames = dict.fromkeys((*server.gate.frames, *origins))
         server.gate = replace(server.gate, token=create_token(), frames=tuple(frames))
@@ -79,14 +79,18 @@ class AppView:
 
     @property
     def is_alive(self) -> bool:
-        """Whether the app has not ended."""
+        """Whether the app is starting or runs, and has not ended."""
         return not self._visit.has_ended
 
     def ask(self, what: str, **details: Any) -> None:
-        """Ask the app for something, as soon as it has started; see `do_asked`.
+        """Send the app a request, as soon as it has started; see `do_asked`.
+
+        Args:
+            what: The kind of request.
+            details: Its other values.
 
         Raises:
-            HostError: it does not start.
+            HostError: the app does not start.
         """
         if not self._is_ready.wait(_START_WITHIN_S) or not self.is_alive:
             raise HostError("the app in the cell has not started", "%sim_app starts it again")
@@ -101,14 +105,15 @@ class AppView:
         runs: bool,
         speed: float | None,
     ) -> None:
-        """Let the app have the world and the program of a cell.
+        """Let the app show the world and the program of a cell.
 
         Args:
-            settings: By path.
-            program: None leaves the one that is open.
-            home: Whether it puts the robot back to its start.
-            runs: Whether it also runs the program; `told` says whether it does.
-            speed: Of that run, as in `RunOptions`; None for the one that its user has set, or else as fast as possible.
+            settings: Of the world, by path.
+            program: None leaves the program that is open.
+            home: Whether to put the robot back to its start.
+            runs: Whether the app also runs the program; `told` gets the run, or why there is none.
+            speed: Of that run, as in `RunOptions`; None for the speed that the app's user has set, else as fast as
+                possible.
 
         Raises:
             HostError: the app does not start.
@@ -119,7 +124,7 @@ class AppView:
         self.ask(**_ask_cell(settings, program, home=home, runs=runs, speed=speed))
 
     def show_state(self) -> None:
-        """Let the app show what the cells have left, unless it is still starting and asks for it itself."""
+        """Let the app show what the cells have left; an app that is still starting does so by itself."""
         with self._lock:
             is_told = self._is_ready.is_set() and self.is_alive
         if is_told:
@@ -148,7 +153,7 @@ class AppView:
 
 
 def _ask_state(state: CellState) -> Iterator[dict[str, Any]]:
-    """Yield what to ask the app for, so that it shows what the cells have left."""
+    """Yield the requests that let the app show what the cells have left."""
     is_home = not state.run_id
     yield _ask_cell(state.settings, state.program, home=is_home, runs=False, speed=None)
     if state.run_id:

@@ -25,7 +25,7 @@ _SHOWN = {Stream.STDOUT, Stream.STDERR, Stream.SPEECH}
 
 
 def format_row(row: OutputRow) -> str:
-    """Return the line that a cell shows for a row."""
+    """Return the text that a cell shows for a row of output."""
     if row.text.startswith(IMAGE_DATA) and (side := parse_side(row)):
         return f"{side} image data logged..."
     return line_of(row)
@@ -36,7 +36,7 @@ class CellOutput:
 
     Args:
         folds: Whether a long output is folded, which needs displays that can be updated.
-        quiet: Whether speech is not shown.
+        quiet: Whether speech is hidden.
     """
 
     def __init__(self, *, folds: bool, quiet: bool) -> None:
@@ -50,7 +50,7 @@ class CellOutput:
         self._due_s = 0.0
 
     def show(self, rows: Sequence[OutputRow]) -> None:
-        """Show rows in order, batched by stream; errors are never folded."""
+        """Show rows in order, those of the same stream together; errors are never folded."""
         streams = _SHOWN - {Stream.SPEECH} if self._quiet else _SHOWN
         printed = (row for row in rows if row.stream in streams)
         for is_error, group in groupby(printed, key=lambda row: row.stream == Stream.STDERR):
@@ -73,7 +73,7 @@ class CellOutput:
                 self._due_s = time.monotonic() + _REDRAW_S
 
     def finish(self) -> None:
-        """Show what is folded now."""
+        """Show the folded lines as they are now."""
         if not self._folded:
             return
         bundle = fold_lines(self._folded, self._count)
@@ -86,11 +86,11 @@ class CellOutput:
 
 
 def fold_lines(lines: Sequence[str], count: int) -> dict[str, str]:
-    """Return lines as a display: the last ones, and all others on a click.
+    """Return lines as a display that shows the last ones; a click shows the others.
 
     Args:
         lines: The lines, at most `MAX_FOLDED_LINES`.
-        count: How many there are, with those that are not among them any more.
+        count: How many lines were printed, with those that are no longer in `lines`.
     """
     hidden = lines[:-LAST_LINES]
     last = lines[-LAST_LINES:]
@@ -104,6 +104,6 @@ def fold_lines(lines: Sequence[str], count: int) -> dict[str, str]:
 
 
 def _format_pre(lines: Sequence[str]) -> str:
-    # As large as what JupyterLab shows of printed text.
+    # The font size of printed text in JupyterLab.
     style = "margin: 0; font-size: var(--jp-code-font-size, inherit)"
     return f'<pre style="{style}">{html.escape(chr(10).join(lines))}</pre>'

@@ -69,7 +69,7 @@ Result = TypeVar("Result")
 
 @dataclass(frozen=True, slots=True)
 class Listener:
-    """The notebook's functions that hear a program and may answer it."""
+    """The notebook's functions that are called with what a program prints and may answer it."""
 
     responder: Responder | None = None
     """Called with each line for the notebook, in collaborative mode."""
@@ -81,13 +81,13 @@ class Listener:
 
     @property
     def answers(self) -> bool:
-        """Whether the program may get answers."""
+        """Whether there is a function that may answer the program."""
         return self.responder is not None or self.image_handler is not None
 
 
 @dataclass(frozen=True, slots=True)
 class CellRun:
-    """A program to run, and how."""
+    """The program of a cell, its world, and how to run it."""
 
     program: Program
     spec: RunSpec
@@ -114,8 +114,11 @@ def run_cell(
 ) -> StoredRun:
     """Run a program and show it; block until it ends or the kernel is interrupted.
 
-    `begun` is called with the run as soon as its recording exists, and again at its end. With a `view`, the app in a
-    cell starts the run, which it has been asked for.
+    Args:
+        cell: The program.
+        stage: Where it is shown.
+        begun: Called with the run as soon as its recording exists, and again at its end.
+        view: The app in a cell that has been asked to start the run; None to start it here.
 
     Raises:
         ConfigError: the responder has returned what a program cannot get; the run has been stopped.
@@ -140,7 +143,7 @@ def run_cell(
     ):
         run = store.load_run(handle.run_id)
         if view is not None:
-            # The user may have put the robot elsewhere in it.
+            # In the app, the user may have moved the robot before the run.
             cell = replace(cell, spec=run.spec, files=field_files(run.spec))
         begun(run, handle.wheels)
         screen = _Screen(cell, stage, run)
@@ -155,7 +158,7 @@ def run_cell(
             handle.close()
             done = handle.stored()
             begun(done, handle.wheels)
-            # A user who has interrupted a flood of lines does not wait until all are read.
+            # After an interrupt, the user does not want to wait until millions of lines are read.
             hurry = interruption.count > 0
             screen.draw(describe_end(done, hurry=hurry), ROWS_A_DRAWING if hurry else None)
     return done
@@ -164,7 +167,7 @@ def run_cell(
 def describe_end(run: StoredRun, *, hurry: bool = False) -> str:
     """Return a status line of a finished run: state, simulated time, samples.
 
-    In a hurry, the number of samples is omitted if counting them would be slow.
+    In a hurry, the number of samples is left out if counting them would be slow.
     """
     state = describe_state(run.state, run.end.summary if run.end else "")
     plugged = f" · plugged in {parts}" if (parts := list_parts(run.plugged)) else ""
@@ -176,9 +179,9 @@ def describe_end(run: StoredRun, *, hurry: bool = False) -> str:
 
 
 class Interruption:
-    """Counts interrupts instead of raising at any point, such as between starting and storing a child.
+    """Counts the user's interrupts, which so do not raise at a bad point, such as between starting and storing a child.
 
-    Only in user code do they raise KeyboardInterrupt as usual, see `call`.
+    Only in the user's functions an interrupt raises KeyboardInterrupt as usual, see `call`.
     """
 
     def __init__(self) -> None:
@@ -207,7 +210,7 @@ class Interruption:
         try:
             return None if self.count else act()
         except KeyboardInterrupt:
-            # The function may also have raised it itself.
+            # If the user's function itself raised it, no signal was counted.
             self.count = max(1, self.count)
             return None
         finally:
@@ -228,7 +231,7 @@ class _Follower:
         self._screen = screen
         self._interruption = interruption
         self._run, self._arrays = run, ArrayReader(run)
-        # What the notebook's functions print stands among the lines that they hear.
+        # Nothing is folded if the notebook's functions print, too: their text belongs between the program's lines.
         folds = screen.redraws and not cell.listener.answers
         self._printed = CellOutput(folds=folds, quiet=cell.quiet)
         self._answers: list[Any] = []
@@ -239,7 +242,7 @@ class _Follower:
         """Block until the run ends; relay its output and events until then."""
         handle = self._handle
         interruption = self._interruption
-        # Before anything is printed, so that the order of a cell's outputs does not depend on the program's speed.
+        # First the panels, then printed text: the order of a cell's outputs must not depend on the program's speed.
         self._screen.draw_if_due()
         more = False
         while handle.ended is None:
@@ -259,14 +262,14 @@ class _Follower:
         self._finish()
 
     def _relay(self) -> bool:
-        """Show new output, pass lines to the responder, and return whether there is more."""
+        """Show new output and call the notebook's functions with its lines; return whether there is more output."""
         rows = self._handle.output.read_new_rows(ROWS_AT_ONCE)
         start = 0
         for stop, row in enumerate(rows, 1):
             side = parse_side(row)
             addressed = self._is_addressed(row)
             if side or addressed:
-                # What the notebook's functions print belongs below the line that they hear.
+                # First show the lines up to this one: what the notebook's functions print about it belongs below.
                 self._printed.show(rows[start:stop])
                 start = stop
             if side:
@@ -305,7 +308,12 @@ class _Follower:
         self._take_text("roboSim.pyresponder", call(partial(listener.responder, heard)))
 
     def _take_text(self, who: str, answer: object) -> None:
-        """Show an answer of the old kind; keep what of it is for the program."""
+        """Print an answer of the old simulator's kind; if it begins with `JSON_PREFIX`, keep the rest for the program.
+
+        Args:
+            who: The name of the function that gave the answer, for errors.
+            answer: None for no answer.
+        """
         if answer is None:
             return
         print(f"{RESPONSE_HEADING}\n{answer}")
@@ -357,11 +365,11 @@ class _Screen:
         return self._stage.redraws
 
     def draw_if_due(self) -> None:
-        """Draw if the last drawing is missing or old; never if drawings cannot be updated in place."""
+        """Draw if nothing is drawn yet or the drawing is old; never if drawings cannot be updated in place."""
         if not self._stage.redraws or time.monotonic() < self._due:
             return
         self.draw(f"running · {self._run.telemetry.count / self._cell.spec.profile.tick_hz:.2f} s")
-        # Counted from the end of the drawing, so that slow drawing does not use up all the time.
+        # The pause counts from the end of the drawing, so that slow drawing does not take all the time.
         self._due = time.monotonic() + self._cell.refresh_s
 
     def draw(self, status: str, most_rows: int | None = ROWS_A_DRAWING) -> None:
@@ -380,7 +388,11 @@ class _Screen:
 
 
 def _convert_plain(value: Any) -> Any:
-    """Convert numbers and arrays of other libraries to Python types."""
+    """Return a number or an array of another library, such as NumPy, as Python's own type.
+
+    Raises:
+        TypeError: it is neither.
+    """
     if hasattr(value, "tolist"):
         return value.tolist()
     raise TypeError(f"a {type(value).__name__}")
@@ -404,12 +416,12 @@ def _build_message(who: str, answer: object) -> Any:
 
 
 def _ask(prompt: str) -> str | None:
-    """Ask the user for input; None if the frontend does not support it."""
+    """Ask the user for a line of input; print why and return None if that is not possible."""
     from IPython.core.error import StdinNotImplementedError
 
     try:
         return input(prompt)
-    # Raised by a kernel, by a shell at end of input, and without any stdin.
+    # In this order: from a kernel whose front end has no input, from a shell at end of input, without any stdin.
     except (StdinNotImplementedError, EOFError, OSError):
         print("tuisim: the program waits for input(), which is not supported here", file=sys.stderr)
         return None

@@ -54,7 +54,10 @@ def bundle_picture(picture: Any, name: str) -> dict[str, Any]:
 def build_table(title: str, rows: Sequence[Row], *, keep_blanks: bool = False) -> dict[str, Any]:
     """Return rows of name and value as a displayable table.
 
-    Blanks in the values, as in a program, are preserved only on request; a browser collapses them.
+    Args:
+        title: Above the rows.
+        rows: Names and values.
+        keep_blanks: Whether several blanks in a value stay, as a program needs them; else a browser shows one.
     """
     begin, end = (
         ('<td style="text-align: left"><pre>', "</pre></td>") if keep_blanks else ("<td>", "</td>")
@@ -89,7 +92,7 @@ def _find_unit(column: str) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Scene:
-    """The state to display."""
+    """What the panels of a cell show: a world, the robot at one tick, pen traces, samples and lines."""
 
     spec: RunSpec
     files: FieldFiles
@@ -109,7 +112,7 @@ class Scene:
 
 
 def start_record(spec: RunSpec) -> TickRecord:
-    """Return the state before any run."""
+    """Return the state of the robot at its start, before any run."""
     start = spec.world.start
     flags = build_start_flags(spec.robot)
     return TickRecord(
@@ -118,7 +121,7 @@ def start_record(spec: RunSpec) -> TickRecord:
 
 
 def list_instruments(scene: Scene) -> list[Row]:
-    """Return motors, sensors and pose of a scene."""
+    """Return names and values of the motors, the sensors and the pose in a scene."""
     spec = scene.spec
     record = scene.last
     field = scene.open_field()
@@ -190,7 +193,7 @@ class Stage:
 
     Args:
         settings: Say which panels there are.
-        captions: What stands below the picture of the world and stays as it is, by a name.
+        captions: Displays below the picture of the world, by name; they are not updated.
     """
 
     def __init__(

@@ -27,7 +27,7 @@ def get_dataframe_from_datalog(log: Iterable[StoredRun]) -> pd.DataFrame:
     from tuisim.engine.runs.frames import build_samples_frame
     from tuisim.notebook.eds import use_seconds
 
-    # It may be plotted next.
+    # A notebook usually plots the frame next.
     use_seconds()
     return build_samples_frame(log)
 
@@ -74,10 +74,14 @@ def picture_of(vals: Iterable[int]) -> Image:
 
 
 def check_logged(index: int, count: int) -> None:
-    """Check the index of a logged array, or of a pair of them.
+    """Check that a logged array, or pair of arrays, with this index exists.
+
+    Args:
+        index: From 0; -1 is the last.
+        count: How many there are.
 
     Raises:
-        LogError: there are not so many.
+        LogError: there is none with this index.
     """
     if not count:
         raise LogError(
@@ -88,7 +92,7 @@ def check_logged(index: int, count: int) -> None:
 
 
 def image_pair(frame: pd.DataFrame, index: int = -1) -> list[Image]:
-    """Return the left and right images that were logged at the same time.
+    """Return the images that were logged at the same time: usually of the left and the right sensor.
 
     Args:
         frame: As from `get_image_data_from_datalog`.
@@ -130,7 +134,7 @@ def bw_image_data(
 
 
 def use_seconds() -> None:
-    """Let matplotlib, and seaborn with it, label spans in seconds; nothing happens where it is not installed."""
+    """Let matplotlib, and with it seaborn, label time spans in seconds; do nothing if matplotlib is not installed."""
     with suppress(ImportError):
         import numpy as np
         from matplotlib import ticker, units
@@ -138,18 +142,18 @@ def use_seconds() -> None:
         from tuisim.engine.core.profile import NS_PER_S
 
         class Seconds(units.ConversionInterface):
-            """Converts spans."""
+            """Lets matplotlib plot time spans."""
 
             @staticmethod
             def convert(value: Any, unit: object, axis: object) -> Any:
-                """Return spans in nanoseconds, as what is plotted without this converter; numbers are that already."""
+                """Return time spans as numbers of nanoseconds; other values stay as they are."""
                 spans = np.asarray(value)
                 is_span = spans.dtype.kind in "mO"
                 return spans.astype("timedelta64[ns]").astype("float64") if is_span else value
 
             @staticmethod
             def axisinfo(unit: object, axis: object) -> units.AxisInfo:
-                """Return how an axis shows them: its numbers are nanoseconds, its labels seconds."""
+                """Return how an axis shows time spans: its numbers are nanoseconds, its labels seconds."""
                 seconds = ticker.FuncFormatter(lambda ns, _: f"{ns / NS_PER_S:g} s")
                 return units.AxisInfo(majfmt=seconds, label="time")  # type: ignore[no-untyped-call]
 

@@ -36,8 +36,8 @@ class LoggedArray:
 
 
 def parse_side(row: OutputRow) -> str:
-    """Return the side of the pixel arrays that a line asks for: left, right or both; empty if it asks for none."""
-    # Most lines are told apart without the slower search.
+    """Return for which side a printed row asks to log pixels: left, right or both; empty if it does not ask."""
+    # A quick test first: most lines ask for no pixels.
     if row.stream != Stream.STDOUT or not row.text.startswith((IMAGE_DATA, SENT_DATA)):
         return ""
     match = _LINE.fullmatch(row.text)
@@ -72,7 +72,7 @@ class ArrayReader:
         self._field: Field | None = None
 
     def read_arrays(self, row: OutputRow) -> list[LoggedArray]:
-        """Return the arrays that a line logs.
+        """Return the pixel arrays that a printed row asks to log.
 
         Raises:
             LogError: the recording is damaged, or its mat is gone.
@@ -86,10 +86,10 @@ class ArrayReader:
         ]
 
     def read_pixels(self, row: OutputRow) -> dict[str, bytes]:
-        """Return RGBA bytes by sensor, from the tick of a row; empty if that is lost.
+        """Return RGBA bytes by the name of the sensor at the tick of a row; empty if that tick is not in the recording.
 
         Raises:
-            LogError: as for `arrays`.
+            LogError: as for `read_arrays`.
         """
         from tuisim.engine.runs.run_folder import open_mat
 
@@ -115,15 +115,15 @@ def list_logged_arrays(run: StoredRun) -> list[LoggedArray]:
 class ImageLog:
     """The pixel arrays of a notebook's runs, each computed once.
 
-    Those of the run in progress are added as its lines are heard: a function of the notebook that
-    hears a line finds what was logged up to this line, however far the program is by then.
+    Arrays of a run in progress are added line by line: a function of the notebook that is called with a line finds what
+    was logged up to this line, even if the program is further on.
     """
 
     def __init__(self) -> None:
         self._arrays: dict[str, list[LoggedArray]] = {}
 
     def begin(self, run: StoredRun) -> None:
-        """Start to add the arrays of a run; without effect if that has begun."""
+        """Start to collect the arrays of a run; do nothing if that has begun."""
         self._arrays.setdefault(run.id, [])
 
     def add(self, run: StoredRun, array: LoggedArray) -> None:
@@ -131,11 +131,11 @@ class ImageLog:
         self._arrays[run.id].append(array)
 
     def mark_incomplete(self, run: StoredRun) -> None:
-        """Note that not all lines of a run were heard: its arrays are computed when they are asked for."""
+        """Forget the arrays of a run of which not all lines were read: `list_arrays` computes them again."""
         self._arrays.pop(run.id, None)
 
     def clear(self) -> None:
-        """Discard all arrays up to now; a run in progress continues to add."""
+        """Discard all arrays up to now; those that a run in progress logs later are added."""
         for arrays in self._arrays.values():
             arrays.clear()
 

@@ -23,8 +23,8 @@ first.
 
 
 def find_old_simulator() -> Path | None:
-    """Return the file of the old simulator if a cell that imports `nbev3devsim` gets that one, else None."""
-    # A module that was put in its place need not say where it is from.
+    """Return the file of the old simulator if a cell's `import nbev3devsim` imports it, else None."""
+    # `find_spec` raises ValueError for a module without a spec, which a notebook may have put there.
     with suppress(ValueError):
         spec = find_spec("nbev3devsim")
         if spec is not None and spec.origin is not None:
@@ -34,7 +34,7 @@ def find_old_simulator() -> Path | None:
 
 
 def tell_old_simulator() -> None:
-    """Say it if a cell that imports `nbev3devsim` gets the old simulator."""
+    """Print a warning if a cell's `import nbev3devsim` imports the old simulator."""
     if find_old_simulator() is not None:
         print(
             "tuisim: note: nbev3devsim is the old simulator here, and tuisim in the kernel RoboLab (tuisim)",
@@ -46,6 +46,6 @@ def load_ipython_extension(shell: InteractiveShell) -> None:
     """Provide the modules and magics of a course, so that its cells run unchanged."""
     from tuisim.notebook.magics import install
 
-    # First, so that these modules win over the old simulator where that is installed.
+    # At the front of the path: these modules come before an installed old simulator.
     sys.path.insert(0, str(OLD_NAMES))
     install(shell)

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class _CellPlan:
-    """The validated settings of a cell."""
+    """What a cell sets, checked, and the world and program that result."""
 
     persistent: Mapping[str, Any]
     settings: Settings
@@ -47,7 +47,7 @@ class _CellPlan:
 class Lab:
     """The simulated robot shared by the cells of a notebook.
 
-    Its world lasts from cell to cell, its log until it is cleared.
+    Its world stays from cell to cell, its log until it is cleared.
     """
 
     def __init__(self) -> None:
@@ -131,7 +131,7 @@ class Lab:
         return eds.image_frame(self._images.list_arrays(self.results_log))
 
     def logged_arrays(self) -> list[list[LoggedArray]]:
-        """Return the pixel arrays that `raw_image_data` has, run by run."""
+        """Return the pixel arrays in `raw_image_data`, one list for each run."""
         return [
             [array for array in of_run if not array.sent]
             for of_run in self._images.list_arrays(self.results_log)
@@ -201,9 +201,9 @@ class Lab:
 
     @property
     def state(self) -> dict[str, Any]:
-        """The robot's pose in mm and degrees, and the world and the end of the last run."""
+        """The robot's pose in mm and degrees, and world and end of the last run."""
         self._catch_up()
-        # A run in the app may have had other settings than the cells.
+        # The user may have changed settings in the app, so that its run had others than the cells.
         spec = self._last.spec if self._last else self.spec
         record = self._last.telemetry.last() if self._last else None
         pose = record.pose if record else spec.world.start
@@ -228,10 +228,11 @@ class Lab:
     # Cells
 
     def apply(self, words: Arguments, text: str | None, prelude: str) -> None:
-        """Apply a cell's magic; on an error nothing changes.
+        """Do what the magic of a cell says; after an error the world and the program are as before.
 
         Args:
-            text: The program below it, None for none.
+            words: The words of the magic, parsed.
+            text: The program below the magic, None for none.
             prelude: none, imports or preloaded.
 
         Raises:
@@ -263,7 +264,7 @@ class Lab:
         self._show(plan, words, listener, runs=runs)
 
     def _show(self, plan: _CellPlan, words: Arguments, listener: Listener, *, runs: bool) -> None:
-        """Run the program of a cell, in the app if a page shows that, or show the world."""
+        """Run the program of a cell, or show the world; if a page shows the app, the app takes the cell."""
         from tuisim.notebook.display import Stage
 
         stage = Stage(plan.settings, self._build_captions(words, plan))
@@ -291,7 +292,7 @@ class Lab:
             self._live.view.show_state()
 
     def find_state(self) -> CellState:
-        """Return what the cells have left, for an app that begins, or that no page has shown meanwhile."""
+        """Return what the cells have left, for an app that starts or that did not take the last cell."""
         from tuisim.notebook.app_view import CellState
 
         last = self._last
@@ -319,14 +320,14 @@ class Lab:
         persistent = update_persistent(self._persistent, words.settings)
         program = self._program
         if text is not None:
-            # The first line is that of the magic, so that line numbers are those of the cell.
+            # An empty line stands for that of the magic, so that line numbers are those of the cell.
             preload = str(words.settings.get("preload", prelude))
             program = Program("cell", "\n" + text, preload)
         layers = persistent, {"press": self._presses if text is None else ()}, words.settings
         settings = merge_settings(*layers)
         if program is not None:
             source = ProgramSource(program, has_magic=True)
-            # A line says what holds for the cells below it: the program above it has run already.
+            # A magic line sets the world of the cells below: it need not fit the program above, which has run already.
             insists = text is not None or settings["autorun"]
             effective = build_program_settings(source, *layers, insists=insists)
             settings = effective.settings
@@ -352,7 +353,7 @@ class Lab:
         return Listener(responder, self._in_texts, None if handler is None else call_handler)
 
     def _build_captions(self, words: Arguments, plan: _CellPlan) -> dict[str, dict[str, Any]]:
-        """Return what stands below the picture of the cell; without a picture, only the app that it asks for."""
+        """Return the displays below the picture of the cell, by name; without a picture, only an app it asks for."""
         app_words = words.app if words.app is not None and not words.app.off else None
         if words.app is not None:
             self._live.turn(on=app_words is not None)
@@ -361,7 +362,7 @@ class Lab:
         return self._live.build_captions(plan.spec.world.background, app_words)
 
     def _catch_up(self) -> None:
-        """Take the runs that have begun in the app into the log, as far as they are."""
+        """Add the runs that were started in the app to the log, each as far as it is recorded."""
         if self._live.view is None:
             return
         while not self._live.view.begun.empty():
@@ -404,7 +405,8 @@ class Lab:
 
         def note(run: StoredRun, wheels: Wheels) -> None:
             self._wheels = wheels
-            # The run is in the log from its start, for a responder, which may have started runs itself.
+            # From its start the run is in the log, where a responder can read it; the responder may start runs, too, so
+            # that this run need not be the last one there.
             places = [index for index, stored in enumerate(self._runs) if stored.id == run.id]
             if not places:
                 self._images.begin(run)
@@ -414,7 +416,7 @@ class Lab:
         try:
             run_cell(cell, stage, note, view)
         finally:
-            # Also after a responder's error has ended the run.
+            # Keep the trace also if a responder's error has ended the run.
             if self._last is not None:
                 self._traces = (
                     *self._traces,
@@ -422,7 +424,7 @@ class Lab:
                 )
 
     def _build_scene(self, plan: _CellPlan) -> tuple[Scene, str]:
-        """Return the scene while nothing runs, and its status line."""
+        """Return the scene while no program runs, and its status line."""
         from tuisim.engine.runs.records import TEXT_STREAMS
         from tuisim.engine.runs.run_folder import find_mat_files
         from tuisim.engine.runs.samples import list_samples
@@ -450,7 +452,7 @@ class Lab:
 
 
 def _select_given(plan: _CellPlan, words: Arguments) -> Mapping[str, Any]:
-    """Return what the cells have set, by path, as the app gets it."""
+    """Return the settings, by path, that the cells have set and that the app takes over."""
     from tuisim.settings.options import merge_settings
 
     presses = {"press": plan.settings["press"]}

@@ -36,7 +36,7 @@ _LOCAL = ("localhost", "127.0.0.1")
 
 
 def find_notebook_origins(environment: Mapping[str, str] = os.environ) -> tuple[str, ...]:
-    """Return the origins under which the Jupyter server that has started this kernel is reached on this machine."""
+    """Return the addresses, such as `http://localhost:8888`, of the Jupyter server that started this kernel."""
     from jupyter_core.paths import jupyter_runtime_dir
 
     parent = environment.get("JPY_PARENT_PID", "")
@@ -52,7 +52,7 @@ def find_notebook_origins(environment: Mapping[str, str] = os.environ) -> tuple[
 
 
 class LiveRobot:
-    """The app of a notebook: at most one, begun when the first page asks for it.
+    """The app of a notebook: at most one, started when the first page asks for it.
 
     Args:
         find_state: Returns what the app shows first; called in another thread.
@@ -81,8 +81,10 @@ class LiveRobot:
         return self.view
 
     def build_captions(self, background: str, words: AppWords | None) -> dict[str, dict[str, Any]]:
-        """Return what stands below the picture of a cell, by a name: a sentence with the offer, and how to drag the
-        robot where the cell says so.
+        """Return the displays below the picture of a cell, by name.
+
+        `offer` is a sentence with the offer of the app, if it is due; `drag` says how to drag the robot, if the text of
+        the cell has that word.
 
         Args:
             background: The mat that the app opens.
@@ -112,8 +114,10 @@ class LiveRobot:
         return bundle
 
     def _is_due(self, kernel: Any) -> bool:
-        """Return whether a picture offers it unasked: the first one, that of the same cell, or one after a page that
-        has shown it has gone."""
+        """Return whether to offer the app below a picture although the cell does not ask for it.
+
+        So do the first picture, another one of the same cell, and one after the page that showed the app has gone.
+        """
         if not self.is_wanted:
             return False
         if self.view is not None and not self.view.is_alive:
@@ -135,13 +139,15 @@ class LiveRobot:
         return text
 
     def _answer(self, stream: Any, identity: Any, message: Mapping[str, Any]) -> None:
-        """Answer a page that asks for the address of the app; one whose offer is not the newest gets none."""
+        """Send the address of the app to a page that asks for it; an empty one if its offer is not the newest."""
         content = self.open(str(message["content"].get("offer")))
         _find_kernel().session.send(stream, REPLY, content, message, identity)
 
     def open(self, offer: str) -> dict[str, Any]:
-        """Begin the app if there is none yet; return its port and token, nothing for an old offer or once it has
-        ended."""
+        """Start the app if there is none yet; return its port and token.
+
+        Return an empty dict for an offer that is not the newest, or after the app has ended.
+        """
         from tuisim.notebook.app_view import AppView
 
         if offer != self._offer or (self.view is not None and not self.view.is_alive):
@@ -152,7 +158,7 @@ class LiveRobot:
         return self.view.create_address(self._origins)
 
     def turn(self, *, on: bool) -> None:
-        """Offer the app from now on, another one if it has ended; or end it and show pictures only."""
+        """Turn the offer of the app on or off. Off ends the app; on lets a new one start if the last one has ended."""
         self.is_wanted = on
         if self.view is not None and not (on and self.view.is_alive):
             self.view.close()
@@ -165,12 +171,12 @@ def _build_bundle(sentence: str) -> dict[str, Any]:
 
 
 def _find_cell(kernel: Any) -> str:
-    """Return the id of the cell that the kernel executes; empty where the front end does not tell it."""
+    """Return the id of the cell that the kernel executes; empty if the front end does not send it."""
     return str(kernel.get_parent("shell")["metadata"].get("cellId", ""))
 
 
 def _find_kernel() -> Any:
-    """Return the kernel that this code runs in; None in a shell and in kernels of another make."""
+    """Return the kernel that this code runs in; None if that is not ipykernel, as in a shell."""
     from IPython.core.getipython import get_ipython
 
     kernel = getattr(get_ipython(), "kernel", None)
@@ -182,7 +188,7 @@ def _find_kernel() -> Any:
 
 
 def _find_kernel_id() -> str:
-    """Return the name that the notebook server has for this kernel."""
+    """Return the id by which the notebook server knows this kernel."""
     from ipykernel.connect import get_connection_file
 
     return Path(get_connection_file()).stem.removeprefix("kernel-")

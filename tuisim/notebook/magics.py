@@ -25,7 +25,7 @@ Handler = Callable[[str, str | None], Any]
 
 
 def _guard_magic(act: Handler) -> Callable[..., Any]:
-    """Print expected errors as one line in the cell."""
+    """Return the magic as a function that prints expected errors as one line in the cell."""
 
     def call_magic(line: str, cell: str | None = None) -> Any:
         try:
@@ -33,7 +33,7 @@ def _guard_magic(act: Handler) -> Callable[..., Any]:
         except TuisimError as error:
             print("tuisim:", " ".join(str(error).split("\n")), file=sys.stderr)
         except KeyboardInterrupt:
-            # An interrupt during a run stops that run; this one came between two.
+            # A run handles its interrupts itself: this one came while no program ran.
             print("tuisim: interrupted; no program was running", file=sys.stderr)
         return None
 

@@ -52,19 +52,23 @@ def record_text(array: LoggedArray) -> str:
 
 
 def format_sent(seen: Mapping[str, bytes]) -> str:
-    """Return what a responder is called with for `IMG_DATA`; a sensor that the robot has not got is empty."""
+    """Return the line `IMG_DATA::` and JSON with which a responder is called; a side without a sensor is an empty text.
+
+    Args:
+        seen: RGBA bytes by the name of the sensor.
+    """
     import json
 
     return f"IMG_DATA::{json.dumps({side: format_values(seen.get(side, b'')) for side in SIDES})}"
 
 
 def process_raw_image_data(text: str, mode: str = "rgb", to_str: bool = True) -> str | list[str]:
-    """Return a part of the numbers in `r,g,b,a,…`, as text joined by commas or as a list of texts.
+    """Return some of the numbers in `r,g,b,a,…`, as text joined by commas or as a list of texts.
 
     Args:
         text: Four numbers a pixel.
-        mode: `rgb` is all but each fourth number; `reflected` and `greyscale` are the first of each pixel; `bw` is 1
-            where that is above 3, else 0.
+        mode: `rgb` drops the fourth number of each pixel; `reflected` and `greyscale` keep only the first; `bw` is 1
+            where the first is above 3, else 0.
         to_str: Whether to join the result.
 
     Raises:
@@ -194,14 +198,14 @@ def build_robot_state(
     highest_deg: float,
     wheels: Wheels,
 ) -> dict[str, Any]:
-    """Return the old simulator's dictionary of a robot's state.
+    """Return the dictionary with which the old simulator describes a robot.
 
     Args:
         spec: The run.
-        record: The moment.
-        noise: The noise at that moment.
+        record: The tick to describe.
+        noise: The noise at that tick.
         field: The mat.
-        highest_deg: The largest heading up to then.
+        highest_deg: The largest heading up to that tick.
         wheels: The registers of the wheel motors.
     """
     from tuisim.engine.core.sensors import measure_sensors
@@ -249,7 +253,7 @@ def build_robot_state(
 
 
 def _wrap_heading(heading_deg: float, highest_deg: float) -> float:
-    """Return a heading as the old simulator counts it: it drops by 360° when it passes 360°, but never rises."""
+    """Return a heading as the old simulator counts it: less 360° for each full turn of the highest; never raised."""
     return heading_deg - 360 * max(0, math.ceil(highest_deg / 360) - 1)
 
 
@@ -279,7 +283,7 @@ def _build_wheel(
 
 
 def _build_light(side: str, rgb: list[float]) -> dict[str, Any]:
-    # Unlike what a program reads, the means are not truncated.
+    # A program reads whole numbers; here the means keep their decimals.
     return {
         f"{side}_light_raw": rgb,
         f"{side}_light": rgb[0],
@@ -292,7 +296,7 @@ _LONG_TEXT = 60
 
 
 class RobotState:
-    """The robot's state as a dictionary in `state`, from the time when it was asked for, or of the last `update()`."""
+    """The robot's state as the dictionary `state`, as it was when this object was made, or at the last `update()`."""
 
     def __init__(self, read: Callable[[], dict[str, Any]]) -> None:
         self._read = read

@@ -37,7 +37,7 @@ class SoundedBar(tqdm):  # type: ignore[misc] # tqdm ships no types
 
     def close(self) -> None:
         """End the bar; the first time with a tone."""
-        # A bar that has been closed, or is not shown, is disabled.
+        # `disable` is true for a bar that is closed already or not shown: no tone then.
         sounds = not self.disable and hasattr(get_ipython(), "kernel")
         super().close()
         if sounds:
