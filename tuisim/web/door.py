@@ -22,10 +22,10 @@ _NO_ROOM = (errno.EMFILE, errno.ENFILE, errno.ENOBUFS, errno.ENOMEM)
 
 
 class Door:
-    """Lets connections in.
+    """Accepts connections; closes those that do not send the token in time, or that are too many.
 
     Args:
-        report: Called with what the server's terminal is told.
+        report: Called with a message for the server's terminal.
         clock: A monotonic clock in seconds.
     """
 
@@ -39,10 +39,10 @@ class Door:
 
     @asynccontextmanager
     async def open(self, answers: web.Server, host: str | None, port: int) -> AsyncIterator[int]:
-        """Let connections in while in the context, which gets the port.
+        """Listen while in the context; yield the port.
 
         Args:
-            answers: The server behind it.
+            answers: The server that handles the connections.
             host: Host name or address to listen on.
             port: Port to listen on; 0 takes any free one.
 
@@ -70,7 +70,7 @@ class Door:
                 timer.cancel()
 
     def admit(self, request: web.BaseRequest) -> None:
-        """Let the connection of a request stay."""
+        """Keep the connection of a request that the gate allows: it is no longer closed after a time."""
         if (timer := self._strangers.pop(request.protocol, None)) is not None:
             timer.cancel()
 
@@ -79,11 +79,11 @@ class Door:
         if handler.transport is not None:
             handler.transport.abort()
         else:
-            # It has gone, or comes in this moment.
+            # A connection without a transport is already closed, or not open yet: try again later.
             asyncio.get_running_loop().call_later(_NOT_YET_S, _abort_connection, handler)
 
     def _hear(self, loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
-        """Tell what has gone wrong in the loop; that nobody can come in now, only from time to time."""
+        """Handle an error of the event loop; one that prevents any connection is reported only from time to time."""
         error = context.get("exception")
         if not isinstance(error, OSError) or error.errno not in _NO_ROOM:
             loop.default_exception_handler(context)

@@ -20,7 +20,7 @@ _MAX_PIECE_BYTES = 4 * DOWNLOAD_CHUNK_SIZE
 
 
 class Downloads(DownloadManager):
-    """Offers and passes on files; what an app sends without being asked for it is dropped."""
+    """Offers files of apps and passes them on; data that an app sends without being asked is dropped."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -30,7 +30,7 @@ class Downloads(DownloadManager):
     async def create_download(
         self, *, app_service: AppService, delivery_key: str, **about: Any
     ) -> None:
-        """Offer a file, unless there is one of this key."""
+        """Offer a file, unless one with the same key is offered; an app with too many offers loses its first one."""
         if len(delivery_key) > MAX_KEY or delivery_key in self._active_downloads:
             return
         own = self._list_keys(app_service.app_service_id)
@@ -39,10 +39,10 @@ class Downloads(DownloadManager):
         await super().create_download(app_service=app_service, delivery_key=delivery_key, **about)
 
     def take(self, key: str) -> Download:
-        """Return what is offered under a key, and offer it no more.
+        """Return the file that is offered under a key, and withdraw the offer.
 
         Raises:
-            KeyError: nothing is.
+            KeyError: no file is offered under it.
         """
         return self._active_downloads.pop(key)
 
@@ -50,7 +50,7 @@ class Downloads(DownloadManager):
         """Yield the pieces of a file.
 
         Raises:
-            TimeoutError: its app does not hand it over.
+            TimeoutError: the app does not send the next piece in time.
         """
         key = download.delivery_key
         request: dict[str, str | int | bool | None] = {
@@ -78,7 +78,7 @@ class Downloads(DownloadManager):
             answer.set_result(chunk)
 
     async def cancel_app_downloads(self, app_service_id: str) -> None:
-        """Offer the files of an app no more."""
+        """Withdraw the offers of an app."""
         for key in self._list_keys(app_service_id):
             del self._active_downloads[key]
 

@@ -30,7 +30,7 @@ def create_token() -> str:
 
 @dataclass(frozen=True, slots=True)
 class Gate:
-    """The rules for every request."""
+    """The rules that say which requests are answered and who may show the page."""
 
     listens_on: str
     """Host name or address that the server listens on."""
@@ -44,12 +44,12 @@ class Gate:
 
         Args:
             path: Its path; must begin with the token.
-            host: Its header of that name. The host must be the one that the server listens on, or this machine, so
-                that no other site can pass this server off as a part of itself.
-            origin: Its header of that name: the site whose page sends the request; None if there is none.
-            from_a_page: Whether only a page can send the request, so that it must have an origin.
+            host: Its header `Host`. It must name the host that the server listens on, or this machine, so that no other
+                site can pass this server off as a part of itself.
+            origin: Its header `Origin`: the site whose page sends the request; None if it has none.
+            from_a_page: Whether only a page may send the request, so that it must have an origin.
         """
-        # Compared in the same time whatever they have in common.
+        # In constant time: nobody can find out the token letter by letter from how long an answer takes.
         if not secrets.compare_digest(
             path.partition("/")[2].partition("/")[0].encode(), self.token.encode()
         ):
@@ -62,8 +62,8 @@ class Gate:
 
     @property
     def framed_by(self) -> str:
-        """Who may show the page in a frame, as a content security policy says it."""
-        # Its own origin is that of the proxy, behind one.
+        """Who may show the page in a frame, in the words of a content security policy."""
+        # 'self': behind a proxy, the page has the proxy's origin, which `frames` need not name.
         return " ".join(("'self'", *self.frames)) if self.frames else "'none'"
 
     def _is_ours(self, host: str) -> bool:

@@ -17,7 +17,7 @@ _Data = TypeVar("_Data")
 
 
 async def close(socket: web.WebSocketResponse, reason: str, code: int = WSCloseCode.OK) -> None:
-    """Close a socket and say why; the page has words of its own for no reason."""
+    """Close a socket with a reason, which the page shows; for an empty one, the page shows a text of its own."""
     text = reason.encode()[:_MAX_REASON_BYTES].decode("utf-8", "ignore")
     await socket.close(code=code, message=text.encode())
 
@@ -25,7 +25,7 @@ async def close(socket: web.WebSocketResponse, reason: str, code: int = WSCloseC
 async def _send(
     socket: web.WebSocketResponse, send: Callable[[_Data], Awaitable[None]], data: _Data
 ) -> bool:
-    """Send to a browser that may have gone. Return whether it was there."""
+    """Send data to a browser; return False if the browser has gone."""
     if socket.closed:
         return False
     try:
@@ -36,7 +36,7 @@ async def _send(
 
 
 class Link:
-    """Passes on what an app sends; a picture that nobody sees is dropped, an offered file waits for a browser."""
+    """Passes on to the browser what an app sends; without a browser, pictures are dropped and messages wait."""
 
     def __init__(self) -> None:
         self.socket: web.WebSocketResponse | None = None
@@ -44,12 +44,12 @@ class Link:
         self._waiting: list[str] = []
 
     async def send_bytes(self, data: bytes) -> None:
-        """Send what the app draws."""
+        """Send what the app draws; drop it if no browser shows the app."""
         if self.socket is not None:
             await _send(self.socket, self.socket.send_bytes, data)
 
     async def send_str(self, text: str) -> None:
-        """Send a message, at once or to the next browser."""
+        """Send a message to the browser; without one, keep it for the next browser."""
         if self.socket is None or not await _send(self.socket, self.socket.send_str, text):
             self._waiting = [*self._waiting, text][-_MAX_WAITING:]
 
@@ -57,8 +57,8 @@ class Link:
         """Show the app in another browser from now on.
 
         Args:
-            socket: The connection to it.
-            first: The first message that it gets.
+            socket: The connection to the new browser.
+            first: The first message that the new browser gets.
             reason: What the browser that has shown the app until now is told.
         """
         await _send(socket, socket.send_str, first)
@@ -72,7 +72,7 @@ class Link:
             await close(before, reason, TAKEN_OVER)
 
     def leave(self, socket: web.WebSocketResponse) -> bool:
-        """Note that a browser has gone. Return whether the app has none now."""
+        """Note that a browser has gone; return whether no other browser shows the app."""
         if self.socket is socket:
             self.socket = None
         return self.socket is None

@@ -58,7 +58,7 @@ _Result = TypeVar("_Result")
 
 @dataclass(frozen=True, slots=True)
 class ServerLimits:
-    """What visitors may use."""
+    """How many apps visitors may use, and for how long."""
 
     visitors: int
     """Most apps at the same time, with those that no tab shows now."""
@@ -94,10 +94,11 @@ class Server:
         self._lives: dict[str, asyncio.Task[None]] = {}
 
     def build_application(self) -> web.Application:
-        """Return the web application, in which everybody gets the same answer who may not see something, whatever it
-        is."""
+        """Return the web application; requests that the gate does not allow all get the same answer, whatever is
+        there.
+        """
         application = web.Application(middlewares=[self._guard])
-        # The gate looks at the token, which may change.
+        # The router takes any token, as it may change: the gate compares it.
         application.router.add_routes(
             [
                 web.get("/{token}", _redirect),
@@ -118,7 +119,7 @@ class Server:
 
     @web.middleware
     async def _guard(self, request: web.Request, handler: Handler) -> web.StreamResponse:
-        # What does something is sent by a page of ours only.
+        # A request that changes something must come from a page of this server.
         acts = request.path.endswith("/ws") or request.method == "POST"
         origin = request.headers.get("Origin")
         if self.gate.is_allowed(request.path, request.host, origin, from_a_page=acts):
@@ -129,8 +130,11 @@ class Server:
         raise web.HTTPForbidden(text=_REFUSAL)
 
     async def _protect(self, request: web.Request, response: web.StreamResponse) -> None:
-        """Let the page load nothing from elsewhere, be part of other pages only as the gate says, and tell nobody its
-        address."""
+        """Set the headers of every response.
+
+        The page may load nothing from other sites, only the sites that the gate names may show it in a frame, and it
+        tells no other site its address, which has the token.
+        """
         sockets = f"ws://{request.host} wss://{request.host}" if request.host else ""
         response.headers.update(
             {
@@ -184,13 +188,15 @@ class Server:
         socket: web.WebSocketResponse | None = None,
         on_message: Callable[[Mapping[str, Any]], None] | None = None,
     ) -> Visit | None:
-        """Start an app for a visitor, if need be once one that is ending has gone; return None if all live.
+        """Start an app for a visitor; return None if the most apps run that may.
+
+        If one of them is ending, wait until it has ended and start the new one then.
 
         Args:
             width: Columns of the visitor's terminal.
             height: Its rows.
-            socket: The connection to the browser that shows it from its first frame; None for none yet.
-            on_message: Called with what the app tells, from its start on; see `Visit.listen`.
+            socket: The connection to the browser that shows the app from its first frame; None for none yet.
+            on_message: Called with each message of the app from its start on; see `Visit.listen`.
         """
         while self._free <= 0:
             ending = [life for id_, life in self._lives.items() if self._visits[id_].is_ending]
@@ -233,7 +239,7 @@ class Server:
         except TuisimError as error:
             raise web.HTTPBadRequest(text=f"{error}\n") from None
         except (ConnectionError, ClientError):
-            # The visitor has left while the file came.
+            # The visitor has left before the file was complete.
             raise web.HTTPBadRequest from None
         await visit.open_file(path)
         return web.json_response({"name": path.name})
@@ -254,7 +260,7 @@ class Server:
             async for piece in self._downloads.read_pieces(download):
                 await response.write(piece)
         except TimeoutError:
-            # An app has not answered in time: the browser must not take the part for the whole.
+            # The app has not sent the rest in time: the browser must not take the part for the whole file.
             if request.transport is not None:
                 request.transport.abort()
             return response
@@ -269,7 +275,7 @@ class Server:
 
 
 async def _redirect(request: web.Request) -> web.StreamResponse:
-    """Send to the address of the page, which ends in a slash: what it loads is beside it."""
+    """Redirect to the address of the page, which ends in a slash: addresses in the page are relative to it."""
     raise web.HTTPFound(f"{request.rel_url.raw_path}/")
 
 
@@ -285,7 +291,7 @@ async def _handle_page_file(request: web.Request) -> web.StreamResponse:
 
 
 def _read_size(request: web.Request) -> tuple[int, int]:
-    """Return the size of the visitor's terminal in cells, as its page says."""
+    """Return columns and rows of the visitor's terminal, which the page sends; default ones if it does not."""
     try:
         return int(request.query["width"]), int(request.query["height"])
     except (KeyError, ValueError):
@@ -315,7 +321,7 @@ async def _serve(server: Server, host: str, port: int, announce: Callable[[int],
     async with run_server(server, host, port) as actual_port:
         announce(actual_port)
         number = await ended_by
-    # ctrl+c is how a server is meant to end.
+    # ctrl+c is the usual way to end the server, so it is no failure.
     return 0 if number is signal.SIGINT else SIGNALLED + number
 
 
@@ -355,7 +361,7 @@ async def run_server(server: Server, host: str, port: int) -> AsyncIterator[int]
 
 
 def _is_no_wrong_request(record: logging.LogRecord) -> bool:
-    """Return whether to log something: anybody can send a request that is not HTTP, which is no failure of ours."""
+    """Return whether to log a record: False for a request that is not HTTP, which anybody can send."""
     return not (record.exc_info and isinstance(record.exc_info[1], HttpProcessingError))
 
 
@@ -379,10 +385,10 @@ def _build_listen_error(host: str, port: int, error: OSError) -> ConfigError:
 
 
 class BackgroundServer:
-    """Answers requests on a port of its own, on this machine only.
+    """A server in a thread of its own, on a free port of this machine only.
 
     Args:
-        server: Answers them.
+        server: Answers the requests.
     """
 
     def __init__(self, server: Server) -> None:
@@ -391,7 +397,7 @@ class BackgroundServer:
         self._thread = Thread(target=self._loop.run_forever, name="tuisim-server", daemon=True)
         self._thread.start()
         self.port: int = self.call(self._listen())
-        # A daemon thread would leave the apps to find out that this process has ended.
+        # The daemon thread just stops with this process: end the apps here.
         atexit.register(self.close)
 
     async def _listen(self) -> int:
@@ -399,10 +405,10 @@ class BackgroundServer:
         return await self._listening.__aenter__()
 
     def call(self, work: Coroutine[Any, Any, _Result], timeout_s: float | None = None) -> _Result:
-        """Do something in the server's thread and wait for it.
+        """Run a coroutine in the server's thread, wait for it and return its result.
 
         Raises:
-            TimeoutError: it takes longer.
+            TimeoutError: it takes longer than `timeout_s`.
         """
         return asyncio.run_coroutine_threadsafe(work, self._loop).result(timeout_s)
 

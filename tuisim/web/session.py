@@ -62,11 +62,11 @@ _PACKAGE_FOLDER = str(Path(__file__).parent.parent.parent)
 
 
 def build_app_command(words: Sequence[str], session_folder: str = "") -> list[str]:
-    """Return the command, as words, of an app.
+    """Return the command, as words, that starts an app.
 
     Args:
-        words: What it opens, as words of `tuisim open`.
-        session_folder: Where it finds panels and unsaved texts again; empty for where the user's other apps do.
+        words: What the app opens, as words of `tuisim open`.
+        session_folder: Where the app keeps panels and unsaved texts; empty for the folder of the user's other apps.
     """
     return [sys.executable, "-P", "-c", _BOOT, _PACKAGE_FOLDER, session_folder, "open", *words]
 
@@ -76,7 +76,7 @@ class WebSession(AppService):
 
     Args:
         command: The command of the app, as words.
-        link: The way to its browser.
+        link: Passes on to a browser what the app sends.
         downloads: The files that apps offer.
     """
 
@@ -142,25 +142,26 @@ class WebSession(AppService):
         while True:
             kind = await output.readexactly(1)
             size = int.from_bytes(await output.readexactly(4), "big")
-            # What follows cannot be understood either. A program can reach the app that runs it: it is not trusted.
+            # After a wrong kind or size, no later packet can be understood. A program, which can
+            # reach the app that runs it, may have forged it: end the app.
             if kind not in handlers or size > _MAX_PACKET_BYTES:
                 self._kill()
                 return
             payload = await output.readexactly(size)
             try:
                 await handlers[kind](payload)
-            # Whatever a packet that makes no sense raises: other apps go on.
+            # A bad packet may raise anything. It ends this app only, not the server with the others.
             except Exception:
                 self._kill()
                 return
 
     async def show(self, width: int, height: int) -> None:
-        """Draw everything: a terminal of this size, in columns and rows, shows the app from now on."""
+        """Tell the app that a terminal of this size, in columns and rows, shows it from now on: it draws everything."""
         await self.send_meta({"type": "show", "width": width, "height": height})
 
     async def wait_until_ended(self) -> None:
         """Wait until the app has ended by itself."""
-        # One that could not be started has no task.
+        # An app that could not be started has no task.
         if self._task is not None:
             await asyncio.shield(self._task)
 
@@ -176,7 +177,7 @@ class WebSession(AppService):
 
     @property
     def reason(self) -> str:
-        """What to tell the visitor after the app has ended; empty if nothing has failed."""
+        """What to tell the visitor after the app has failed; empty if it has not."""
         if not self.has_failed:
             return ""
         last = self.errors.rpartition("\n")[2]
@@ -187,7 +188,7 @@ class WebSession(AppService):
         )
 
     async def stop(self) -> None:
-        """End the app and everything it has started, at once if it does not end by itself."""
+        """Ask the app to end, and wait; kill it and the processes of its group if it does not end in time."""
         if self._task is None or self._process is None:
             return
         await self._download_manager.cancel_app_downloads(app_service_id=self.app_service_id)
@@ -207,11 +208,11 @@ class WebSession(AppService):
 
 
 async def _do_nothing() -> None:
-    """The socket is closed after the app has ended, not when it says that it will."""
+    """Do nothing when the app says that it will end: the socket is closed after it has ended."""
 
 
 async def _read_last_bytes(stream: asyncio.StreamReader) -> bytes:
-    """Read a stream to its end; return its last bytes."""
+    """Read a stream to its end; return the last bytes, at most `_MAX_ERROR_BYTES`."""
     last = b""
     while data := await stream.read(_MAX_ERROR_BYTES):
         last = (last + data)[-_MAX_ERROR_BYTES:]

@@ -21,22 +21,22 @@ _PIECE = 1 << 20
 
 
 class Uploads:
-    """Takes files as long as there is room for them."""
+    """Stores files that visitors bring, as long as there is room for them."""
 
     def __init__(self) -> None:
         self._used_bytes = 0
 
     async def take(self, folder: Path, name: str, content: AsyncIterable[bytes]) -> Path:
-        """Write a file under its own name, or with a number if another file has that; return its path.
+        """Store a file under its name, with a number if another file has that name; return its path.
 
         Raises:
-            ConfigError: the name is no plain one, there is no room, or the file cannot be written.
+            ConfigError: the name has parts of a path or is hidden, there is no room, or the file cannot be written.
         """
         _check_name(name)
         size = 0
         path = None
         try:
-            # It has no name: whatever ends this process, nothing of it is left.
+            # The file has no name yet: if this process is killed, nothing is left of it.
             with TemporaryFile(dir=folder) as file:
                 async for piece in content:
                     size = size + len(piece)
@@ -63,7 +63,7 @@ class Uploads:
 
 
 def _check_name(name: str) -> None:
-    # Hidden files are settings of other programs.
+    # No hidden files: other programs may read settings from them.
     if (
         not name.isprintable()
         or set("/\\") & set(name)
@@ -78,7 +78,7 @@ def _check_name(name: str) -> None:
 
 
 def keep_file(folder: Path, name: str, content: IO[bytes]) -> Path:
-    """Write a file as `Uploads.take` does, unless there is one of this name and content; return its path.
+    """Store a file as `Uploads.take` does, unless one of this name has the same content; return the path.
 
     Raises:
         OSError: it cannot be written.
@@ -103,7 +103,7 @@ def keep_file(folder: Path, name: str, content: IO[bytes]) -> Path:
 
 
 def _has_content(path: Path, content: IO[bytes]) -> bool:
-    """Return whether a file has this content."""
+    """Return whether a file has the same bytes as `content`."""
     with path.open("rb") as file:
         while piece := content.read(_PIECE):
             if file.read(_PIECE) != piece:

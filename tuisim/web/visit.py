@@ -33,12 +33,12 @@ _MOVE = re.compile(r"\x1b\[<(3[59]|4[37]|5[159]|63);\d+;\d+M")
 
 
 def is_done_by_a_person(text: str) -> bool:
-    """Return whether input contains more than answers of the terminal: a key, the mouse, a paste."""
+    """Return whether input has more than answers of the terminal: a key, the mouse or pasted text."""
     return _ANSWER.sub("", text) != ""
 
 
 def is_use(text: str) -> bool:
-    """Return whether input does something in the app: a key, a click, a paste; the mouse on its way does not."""
+    """Return whether input has a key, a click or pasted text, and not only movements of the mouse."""
     return is_done_by_a_person(_MOVE.sub("", text))
 
 
@@ -76,12 +76,12 @@ class VisitLimits:
 
 
 class Visit:
-    """The app of a visitor and the browser that shows it: at most one at a time, and none for a while.
+    """The app of a visitor and the browser, if any, that shows it now.
 
     Args:
         command: The command of the app, as words.
         downloads: The files that apps offer.
-        limits: How long it lasts.
+        limits: How long the visit lasts.
         report: Called with what an app that has failed wrote to stderr.
     """
 
@@ -113,23 +113,25 @@ class Visit:
 
     @property
     def id(self) -> str:
-        """What the page of the visitor calls it."""
+        """The name by which the page and the server know the visit."""
         return self._session.app_service_id
 
     def to_plain(self) -> dict[str, Any]:
-        """Return what a list of visits tells about it."""
+        """Return the visit for a list in JSON: id, age, idle time, whether it is shown, its program and if that
+        runs.
+        """
         age_s = time.monotonic() - self._begun_s
         times = {"age_s": round(age_s), "idle_s": round(self._activity.idle_s)}
         shows = {"shown": self.is_shown, "program": self._program}
         return {"id": self.id, **times, **shows, "runs": self._runs}
 
     async def run(self, width: int, height: int, began: Callable[[], None]) -> None:
-        """Run the app until it ends, or nobody uses it for too long; then end it.
+        """Run the app until it ends, or until nobody has used it for too long; then end it.
 
         Args:
             width: Columns of the visitor's terminal.
             height: Its rows.
-            began: Called once a browser can show it.
+            began: Called once a browser can show the app.
         """
         self._size = _clamp_size(width, height)
         try:
@@ -141,7 +143,7 @@ class Visit:
         try:
             await asyncio.wait({self._end, *waits}, return_when=asyncio.FIRST_COMPLETED)
             reason = next(wait.result() for wait in (self._end, *waits) if wait.done())
-            # For a browser that comes now.
+            # A browser that comes from now on is told the reason at once.
             self.end(reason)
             if self._link.socket is not None:
                 await close(self._link.socket, reason)
@@ -152,7 +154,7 @@ class Visit:
             await self._session.stop()
 
     async def take(self, socket: web.WebSocketResponse) -> None:
-        """Let a browser show the app from now on, which has not begun yet or is asked to draw everything."""
+        """Let a browser show the app, which has not drawn yet or is asked afterwards to draw everything."""
         self._cancel_timeout()
         await self._link.take(
             socket, json.dumps(["session", self.id]), "Another tab has taken this session over."
@@ -161,7 +163,7 @@ class Visit:
             await self._tell_panels()
 
     async def replace_socket(self, socket: web.WebSocketResponse, width: int, height: int) -> None:
-        """Let another browser show the app from now on; the one before is told.
+        """Let another browser show the app from now on, and tell the one before that it no longer does.
 
         Args:
             socket: The connection to the browser.
@@ -185,12 +187,12 @@ class Visit:
                 self._telling = asyncio.create_task(self._tell_panels())
 
     async def _tell_panels(self) -> None:
-        # Of no use to a later browser, which is told when it comes.
+        # Not kept for a later browser, which gets the panels when it comes.
         if (socket := self._link.socket) is not None and not socket.closed:
             await self._link.send_str(json.dumps(["panels", self._panels]))
 
     async def follow(self, socket: web.WebSocketResponse) -> None:
-        """Do what the visitor does in the browser that shows the app, until that has gone."""
+        """Handle the messages of the browser that shows the app until it has gone; then, end the visit after a time."""
         if self._end.done():
             await close(socket, self._end.result())
         try:
@@ -207,12 +209,12 @@ class Visit:
                 )
 
     async def open_file(self, path: Path) -> None:
-        """Let the app open a file that the visitor has brought."""
+        """Let the app open a file that the visitor has dropped on the page."""
         self._note_use()
         await self.ask({"what": "open", "path": str(path)})
 
     async def ask(self, request: Mapping[str, Any]) -> None:
-        """Ask the app for something; see `ServerAsks`."""
+        """Send the app a request; see `ServerAsks`."""
         await self._session.send_meta({"type": "ask", **request})
 
     @property
@@ -222,16 +224,16 @@ class Visit:
 
     @property
     def has_ended(self) -> bool:
-        """Whether the app has ended, or is about to."""
+        """Whether the app has ended, or will because the visit has."""
         return self._end.done() or self._session.has_ended
 
     def listen(self, on_message: Callable[[Mapping[str, Any]], None]) -> None:
-        """Call a function with what the app tells from now on: a start or an end of a run, a problem."""
+        """Call a function with each message of the app from now on: a run begins or ends, a problem."""
         self._session.told = on_message
 
     @property
     def is_ending(self) -> bool:
-        """Whether it has ended for the visitor; its app may still be ending."""
+        """Whether the visit has ended; its app may still be ending."""
         return self._end.done()
 
     def end(self, reason: str) -> None:
@@ -262,7 +264,7 @@ class Visit:
         )
 
     async def _handle_page_message(self, data: str) -> None:
-        """Handle one message of the page; what no page sends is ignored."""
+        """Handle one message of the page; ignore one that no page sends."""
         with suppress(ValueError, RecursionError):
             match json.loads(data):
                 case ["stdin", str(text)]:
@@ -287,5 +289,5 @@ class Visit:
 
 
 def _clamp_size(width: int, height: int) -> tuple[int, int]:
-    """Return a size that an app can have."""
+    """Return a size, in columns and rows, within the limits for an app."""
     return min(max(width, 1), _LARGEST_SIZE), min(max(height, 1), _LARGEST_SIZE)
