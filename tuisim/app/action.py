@@ -45,7 +45,7 @@ class Act(Message):
 
 @dataclass(frozen=True, slots=True)
 class Action(Generic[Host, Now]):
-    """One line of a table of keys."""
+    """A key, what it does, and its words in the footer, the help and the command palette."""
 
     id: str
     key: str
@@ -115,7 +115,7 @@ def label_of_key(key: str) -> str:
 
 
 def build_bindings(actions: Iterable[Action[Any, Any]]) -> list[BindingType]:
-    """Return the bindings of an `ActionHost`."""
+    """Return Textual's bindings for the keys of actions."""
     return [
         Binding(action.key, _call(action), action.title, show=False, priority=action.comes_first)
         for action in actions
@@ -127,12 +127,12 @@ def _call(action: Action[Any, Any]) -> str:
 
 
 def fill_keys(app: App[Any], text: str) -> str:
-    """Return a text with the keys of an app in place of the ids in braces."""
+    """Return a text in which each id of an action in braces, such as `{run}`, is replaced by its key in an app."""
     return app.fill_keys(text) if isinstance(app, ActionHost) else text
 
 
 def action_link(app: App[Any], action: str, word: str) -> str:
-    """Return the markup of a word that runs an action when it is clicked, after the key of the action."""
+    """Return the markup of the key of an action and a word; a click on either runs the action."""
     key = escape_markup(fill_keys(app, f"{{{action}}}"))
     return f"[@click=app.act('{action}')]{key} {word}[/]"
 
@@ -147,7 +147,7 @@ class ActionHost(DOMNode):
     """The lines by id."""
 
     def take_keys(self, actions: Mapping[str, Action[Any, Any]]) -> None:
-        """Use a table with other keys of the same actions."""
+        """Replace the table by one with the same actions, some of them with other keys, and bind those keys."""
         changed = [
             action for name, action in actions.items() if action.key != self.ACTIONS[name].key
         ]
@@ -169,7 +169,7 @@ class ActionHost(DOMNode):
         """Return the state that decides which keys are available."""
 
     def action_target(self) -> Any:
-        """Return what the functions behind the keys get."""
+        """Return the argument that the functions of the actions get."""
         return self
 
     def action_act(self, name: str) -> None:
@@ -229,7 +229,7 @@ CLICKED_KEYS: tuple[KeyWord, ...] = (("letters", "edit"), ("esc", "keys"), ("^p"
 
 
 def find_panel_keys(focused: DOMNode | None) -> tuple[KeyWord, ...]:
-    """Return the keys that a panel has for the footer, as `FOOTER_KEYS`, while the focus is in it; else nothing."""
+    """Return the `FOOTER_KEYS` of the focused widget, or of the nearest one around it that has some; else none."""
     around = focused.ancestors_with_self if focused else ()
     return next((node.FOOTER_KEYS for node in around if hasattr(node, "FOOTER_KEYS")), ())
 
@@ -238,18 +238,18 @@ BETWEEN_GROUPS = " │"
 _FEWEST = 9
 _FEWEST_AT = 80
 _COLUMNS_FOR_ONE = 20
-"""A footer has so many entries at so many columns, and one more for every further ones: more are not read."""
+"""A footer has `_FEWEST` entries at `_FEWEST_AT` columns, and one more for each further 20: nobody reads more."""
 
 
 def find_max_entries(columns: int) -> int:
-    """Return how many entries the footer of a terminal has at most."""
+    """Return how many entries the footer has at most in a terminal of that width."""
     return _FEWEST + max(0, columns - _FEWEST_AT) // _COLUMNS_FOR_ONE
 
 
 def fit_actions(
     actions: Sequence[Action[Any, Any]], width: int, max_count: int
 ) -> list[Action[Any, Any]]:
-    """Return the actions that fit a footer, those of a group beside each other, the keys for help and for leaving last.
+    """Return the actions that fit a footer: those of one group together, those for help and for leaving last.
 
     Args:
         actions: The available ones, the most useful first.
@@ -293,7 +293,7 @@ class ActionWords(Widget):
 
 
 async def press(screen: Screen[Any], key: str) -> None:
-    """Run the action of a key, as the widget with the focus, or one around it, understands it."""
+    """Run the action that the focused widget, or else the nearest one around it, has for a key."""
     for node in (screen.focused or screen).ancestors_with_self:
         if bound := find_bindings(node).key_to_bindings.get(key):
             await screen.app.run_action(bound[0].action, node)
@@ -328,7 +328,7 @@ class KeyFooter(ActionWords):
         self._of_dialog: tuple[KeyWord, ...] = ()
 
     def show_dialog(self, keys: tuple[KeyWord, ...]) -> None:
-        """Show the keys of the dialog above in place of all others; none if the others work."""
+        """Show only the keys of the dialog above the screen; with (), show the usual keys again."""
         if keys != self._of_dialog:
             self._of_dialog = keys
             self.refresh()
@@ -339,7 +339,7 @@ class KeyFooter(ActionWords):
 
     @on(events.Click)
     async def press_key_of_field(self, event: events.Click) -> None:
-        """Press the key of the text field whose word was clicked: a phone may lack it."""
+        """Press the key whose word was clicked while a text field has the focus: a phone may lack that key."""
         if not self._of_dialog and (label := _find_key(event.x, self._typing)):
             # The field keeps the focus.
             event.stop()
@@ -398,7 +398,7 @@ COLUMN_CELLS = 50
 def build_key_table(groups: Mapping[str, Iterable[KeyWord]], width: int) -> Text:
     """Return every key by group, in as many columns as fit; a group without a name has no heading.
 
-    Text that is laid out already: Textual would measure and draw a nested table several times.
+    The columns are laid out as text here: Textual would measure and draw a nested table several times.
     """
     rows = [(group, list(keys)) for group, keys in groups.items()]
     count = max(1, min(width // COLUMN_CELLS, len(rows)))

@@ -89,17 +89,17 @@ if TYPE_CHECKING:
     from tuisim.terminal.pixels import Pixels
 
 FIRST_PAINT_DELAY_S = 0.05
-"""Large data is sent this much later: the screen is painted more than once at startup."""
+"""Seconds until large data is sent: before that, the screen is painted more than once."""
 MAX_PROBLEMS = 3
-"""So many errors of `config.toml` are shown."""
+"""Maximum number of errors in `config.toml` that are shown."""
 _CURSOR_QUERY = "\x1b[6n"
 _REST_GAP_S = 0.25
 """Seconds between two polls of the run while nothing happens."""
 _WARM_UP_AFTER_S = 0.3
-"""Seconds until the process is started from which runs are forked: the first paint, or frame, needs the processor."""
+"""Seconds until the process that forks runs is started: until then, the first paint or frame needs the processor."""
 _STARTING_S = 0.25
 _START_GAP_S = 0.004
-"""Until its first tick, but not for longer, a run that starts is polled so often: that tick is drawn at once."""
+"""Seconds between two polls of a starting run, for at most `_STARTING_S`, so that its first tick is drawn at once."""
 _AWAKE_S = 1.0
 """Seconds to keep polling at frame rate after something has happened."""
 
@@ -122,7 +122,7 @@ class AppSettings:
     lessons_folder: str | None = None
     """The folder of own lessons, if one was named."""
     welcomes: bool = False
-    """Show the welcome, at the first start or with something to go on with: nothing was named to be opened."""
+    """Show the welcome at the first start, or if there is recent work: the command line names nothing to open."""
     replay: StoredRun | None = None
     """A stored run to show; spec and program are its own."""
     panels_on: frozenset[str] = field(default_factory=frozenset)
@@ -186,7 +186,7 @@ class LabApp(PanelMessages):
         self.feed = PanelFeed(self.panel_area, self.run_controller)
         self._drawn: tuple[Any, ...] = ((None,),)
         self._footed: tuple[Any, ...] = ()
-        """What of the state the footer tells."""
+        """The part of the state that the footer shows now."""
         runs = self.run_controller
         panels = self.panel_area
         self.goals = GoalsController(self, runs, panels, settings.goals)
@@ -281,7 +281,7 @@ class LabApp(PanelMessages):
         time_travel.go_to_now(self.context)
 
     def _waits(self, event: events.Event) -> bool:
-        """Let the keys of a run wait also for the mat, without which none can start."""
+        """Return whether an event has to wait; keys that start or need a run also wait until the mat is prepared."""
         is_of_run = (
             isinstance(event, events.Key) and event.key in RUN_KEYS and len(self.screen_stack) == 1
         )
@@ -301,7 +301,7 @@ class LabApp(PanelMessages):
     # The world
 
     def show_mat(self, pixels: Pixels | None) -> None:
-        """Show the image of the mat that has been prepared, unless it is shown already."""
+        """Show the image of the prepared mat, None if it is shown already; then start a run that waits for the mat."""
         if pixels is not None and (world := self.panel_area.world):
             world.set_mat(pixels)
         self.draw(force=True)
@@ -349,7 +349,12 @@ class LabApp(PanelMessages):
         return True
 
     def run_changed(self, last_words: str = "", error_line: int = 0) -> None:
-        """Prepare the panels for another run, which may have ended already with some last words."""
+        """Prepare the panels for another run.
+
+        Args:
+            last_words: How the run ended, if it has ended already; shown below its output.
+            error_line: The line at which it ended with an error, 0 for none.
+        """
         self.undo = None
         self._last_words = last_words
         self.feed.run_changed()
@@ -376,7 +381,7 @@ class LabApp(PanelMessages):
                 self.goals.update()
             if self.lesson.lesson is not None:
                 self.lesson.update()
-            # A frame that has to wait counts as drawn.
+            # A frame that has to wait counts as drawn, so that the timer goes on.
             drew = self._is_starting() or not self.pacer.ready() or self.draw()
             if drew or news or self.debugger.busy:
                 self._wake()
@@ -514,11 +519,11 @@ class LabApp(PanelMessages):
 
     @on(Driver.SignalResume)
     def pace_again(self) -> None:
-        """Wait for no answers of a terminal that was away, or of another page."""
+        """Do not wait for answers any longer: the terminal was away, or another page has taken its place."""
         self.pacer.record_interruption()
 
     def handle_situation_change(self) -> None:
-        """Update the footer; together with the world once it stands still, or it would be said to before it does."""
+        """Update the footer; when the run has stopped, draw the panels with it, so that neither is ahead."""
         self._wake()
         state = self.state()
         has_stopped = state.run.state in AT_REST and self._drawn[0][0] not in (
@@ -621,7 +626,7 @@ class LabApp(PanelMessages):
     # What the user does
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """Leave the page keys to the widget with the focus, without a lesson."""
+        """Leave the keys that scroll lesson or code to the widget with the focus if they would scroll neither."""
         if action == "act" and parameters[0] in PAGES:
             return accept_page_keys(self.panel_area)
         if action == "act" and parameters[0] in TEXT_KEYS:
@@ -644,7 +649,7 @@ class LabApp(PanelMessages):
 
 
 def _list_footer_state(state: AppState) -> tuple[Any, ...]:
-    """Return what of a state the footer tells."""
+    """Return the part of a state that the footer shows."""
     run = state.run
     return (
         state.situation,

@@ -26,7 +26,7 @@ Made = TypeVar("Made")
 Given = ParamSpec("Given")
 
 FINISHES_WITHIN_S = 1.0
-"""So long an app that has been left waits for files that are being written."""
+"""Seconds for which an app that has been left waits for files that are being written."""
 COLLECT_EVERY = 50_000
 """New objects after which the collector looks for cycles: no key waits for it longer than a frame takes."""
 _LOOK_S = 0.02
@@ -67,7 +67,7 @@ def begin(
     exclusive: bool = False,
 ) -> None:
     """Run a coroutine function in the app's loop, as work of a node. Does not block."""
-    # Not called here: a node that is being removed never awaits it.
+    # The function itself is passed: a node that is being removed would never await its coroutine.
     called_later: Any = work
     node.run_worker(called_later, group=group, exclusive=exclusive)
 
@@ -75,7 +75,7 @@ def begin(
 async def _run_and_wait(work: Callable[[], None]) -> None:
     """Call a function in a thread of its own.
 
-    Not in one of asyncio's, which the app would wait for when it has been left, however long that takes.
+    An app that has been left would wait for a thread of asyncio, however long the function takes.
     """
     loop = asyncio.get_running_loop()
     done: asyncio.Future[None] = loop.create_future()
@@ -99,7 +99,7 @@ async def _run_and_wait(work: Callable[[], None]) -> None:
         with suppress(RuntimeError):
             loop.call_soon_threadsafe(settle, problem)
 
-    # With the context, which tells the thread its worker.
+    # The copied context lets the thread find its worker.
     start(partial(copy_context().run, run_work))
     await done
 
@@ -112,7 +112,7 @@ def start(work: Callable[[], object]) -> None:
 
 
 def enter() -> None:
-    """Begin an app: what has been made by now, such as modules, stays until the end, and is left out of collections."""
+    """Let the garbage collector leave out what exists by now, such as modules, and run seldom: an app begins."""
     gc.freeze()
     gc.set_threshold(COLLECT_EVERY)
 
@@ -134,7 +134,7 @@ def leave(code: int) -> int:
             for stream in (sys.stdout, sys.stderr):
                 with suppress(OSError, ValueError):
                     stream.flush()
-            # Python would wait for what they hold, such as a lock of a library.
+            # A normal exit would wait for what the threads hold, such as a lock of a library.
             os._exit(code)
         time.sleep(_LOOK_S)
     return code

@@ -80,12 +80,12 @@ class Branch:
         return self.of.find_noise(self.of.telemetry.record(self.tick))
 
     def script(self) -> tuple[UserAction, ...]:
-        """Return the user's actions until then."""
+        """Return the user's actions up to that instant."""
         return tuple(action for action in self.of.actions() if action.tick <= self.tick)
 
     @property
     def runs(self) -> Program:
-        """The program with the arguments of the former run. Its answers are the same, too, edited or not."""
+        """The program to run: its present text, with the arguments and the answers of the former run."""
         return replace(
             self.of.program,
             name=self.program.name,
@@ -95,7 +95,7 @@ class Branch:
 
 
 def find_first_difference(before: Recording, now: Recording, tick: int) -> int | None:
-    """Return the first tick, up to one that both runs have reached, at which their worlds differ; or None."""
+    """Return the first tick, up to a given one, at which the worlds of two runs differ or one has ended; or None."""
     old, new = (run.telemetry.array()[: tick + 1] for run in (before, now))
     both = min(len(old), len(new))
     differs = np.zeros(both, bool)

@@ -42,11 +42,11 @@ class CopiedPanel(Protocol):
     """The additional interface of a panel that knows better what to copy than what is on the screen."""
 
     def copy_text(self) -> Copied | None:
-        """Return what is copied now; None for the panel's text on the screen."""
+        """Return the text to copy now; None to copy the panel's text on the screen."""
 
 
 def find_copied(panel: str, widget: Widget) -> Copied:
-    """Return what is copied of a panel, whose widget is on the screen."""
+    """Return the text to copy from a panel: what its widget provides, or else its rows on the screen."""
     if isinstance(widget, CopiedPanel) and (own := widget.copy_text()):
         return own
     return Copied(PANELS[panel].title, "\n".join(read_rows(widget)))
@@ -66,7 +66,7 @@ def describe_world(now: Snapshot, mat: str, rows: Sequence[str]) -> Copied | Non
 
 
 def describe_copy(panel: str, copied: Copied) -> str:
-    """Return what to tell: what was copied, and the action in braces that writes a file of it."""
+    """Return the notice about a copy: what was copied, and in braces the action that writes a file of it."""
     action = _WRITES.get(panel, _PICTURE)
     return f"{copied.name}: sent to the terminal's clipboard. {{{action}}} writes a file"
 

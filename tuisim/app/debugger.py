@@ -35,7 +35,7 @@ SHOWS_PANELS = frozenset({PauseReason.STEP, PauseReason.LINE, PauseReason.BREAK}
 """Pause reasons that open the debug panels automatically."""
 
 _GOES_ON = frozenset({PauseReason.STEP, PauseReason.LINE, PauseReason.INSTANT})
-"""Pause reasons after which the steps that wait go on: those that a step, or a start for one, ends with."""
+"""Pause reasons with which a step, or the start for one, ends: the next of the waiting steps follows."""
 
 
 class DebugController:
@@ -153,7 +153,7 @@ class DebugController:
 
     @property
     def _count_words(self) -> str:
-        """How many breakpoints can pause a run, if one of them is on no line, where its mark would tell."""
+        """The number of active breakpoints in words; empty if each is on a line, where its mark shows it."""
         active = [entry for entry in self.breaks if not entry.disabled]
         if all(map(break_line_of, active)):
             return ""
@@ -250,7 +250,7 @@ class DebugController:
         self._frame = 0
         self._thread = ""
         self._is_stepping = False
-        # In the past they wait for an instant, and this pause is none of theirs.
+        # While the past is viewed, steps wait for an instant of it, not for this pause of the live run.
         if not self.is_away:
             if self._steps and paused.reason in _GOES_ON:
                 self._take_step()
@@ -274,7 +274,7 @@ class DebugController:
         self._panels_opened = True
         for panel in ("code", "debug"):
             self._panel_area.open(panel)
-        # The arrow keys are for what is read now; a field that is typed into keeps them.
+        # The code gets the arrow keys, as it is read now; a field that is typed into keeps them.
         if self._panel_area.find_focused_panel() in ("", "world"):
             self._app.call_after_refresh(self._panel_area.focus_opened, "code")
 
@@ -344,8 +344,8 @@ class DebugController:
     def _has_past_variables(self) -> bool:
         """Return whether the program is run again up to an instant in view, for the values of its variables.
 
-        The debug panel asks for that. Beside the code it is done for runs of this session, not for stored ones, whose
-        programs may be somebody else's.
+        The debug panel needs that. If only the code is shown, it is done for runs of this session, not for stored ones,
+        whose programs may be somebody else's.
         """
         run = self._run_controller.run
         recording = self._run_controller.timeline.recording
@@ -353,9 +353,9 @@ class DebugController:
         return self._panel_area.is_shown("debug") or (is_own and self._panel_area.is_shown("code"))
 
     def choose_line(self, tick: int, line: int) -> None:
-        """Stand at a line of an instant that is gone to next, such as the one that printed a sample; 0 for none.
+        """Choose the line to show at the instant to go to next, such as the line that printed a sample; 0 for none.
 
-        It stays the line of this instant until another one, or another line of it, is gone to.
+        It stays the line of this instant until another instant, or another line of it, is gone to.
         """
         self._run_controller.chosen_line = (tick, line) if line else None
         self.position = self._wanted = None
@@ -518,7 +518,7 @@ class DebugController:
         self.show()
 
     def step_back(self) -> None:
-        """Go back by an executed line, once the step on its way in the past has arrived."""
+        """Go back by one executed line; while an earlier step in the past is computed, this one waits."""
         if not self.replay.busy:
             self._forget_steps()
             self._go_back(1)

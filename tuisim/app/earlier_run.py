@@ -27,7 +27,7 @@ def find_pose(run: Recording, time_s: float) -> Pose:
 
 
 def find_run_before(later: Recording) -> Recording | None:
-    """Return the last stored run of a program file before another one that repeats it; None if there is none.
+    """Return the newest stored run that a later run repeats; None if there is none.
 
     Raises:
         LogError: the store cannot be read.
@@ -37,7 +37,7 @@ def find_run_before(later: Recording) -> Recording | None:
 
 
 def find_similar_run(program: Program, spec: RunSpec) -> StoredRun | None:
-    """Return the last stored run of a program file; None if there is none, or if it was made of something else."""
+    """Return the newest stored run of a program file; None without one, or if its text or specification differs."""
     with suppress(LogError):
         run = next(_load_runs(program, ""), None)
         if run and run.program.text == program.text and run.spec == spec:
@@ -52,7 +52,7 @@ def _load_runs(program: Program, before: str) -> Iterator[StoredRun]:
     store = RunStore()
     listed = takewhile(lambda info: info.id != before, store.runs() if program.path else ())
     for info in reversed([info for info in listed if info.program == program.name and info.ticks]):
-        # One that cannot be read is no reason to find none.
+        # Skip a run that cannot be read.
         with suppress(LogError):
             if (run := store.load_run(info.id)).program.path == program.path:
                 yield run

@@ -47,7 +47,7 @@ def _list_parts(words: str) -> str | None:
 
 
 def fit_words(words: str, width: int) -> str:
-    """Return an error in at most so many letters: what matters of it, whole if there is room."""
+    """Return an error in at most `width` letters: whole if there is room, else the part that helps most."""
     wordings = list(_list_wordings(words))
     return next(
         (wording for wording in wordings if len(wording) <= width), cut(wordings[-1], width)
@@ -57,7 +57,7 @@ def fit_words(words: str, width: int) -> str:
 def find_remedy(words: str) -> str:
     """Return what to do in the app about an error, with ids of actions in braces.
 
-    Which name was meant is told by the error itself.
+    About a mistyped name nothing more is said, as the error itself names the right one.
     """
     if (parts := _list_parts(words)) is None:
         return "{went-wrong} goes to where it went wrong"
@@ -65,7 +65,7 @@ def find_remedy(words: str) -> str:
 
 
 def shorten_error(error: TuisimError) -> str:
-    """Return an error about what was typed into a list: without the names that are in the list, or a shell command."""
+    """Return the text of an error about a name typed into a list, without a hint that repeats the list or a command."""
     guess, question, _ = error.hint.partition("?")
     if question and guess.startswith("did you mean"):
         return f"{error.message} ({guess}?)"

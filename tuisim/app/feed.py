@@ -75,7 +75,7 @@ class Feed:
         return self._charted + POINTS_A_FEED < self.recording.telemetry.count
 
     def begin_again(self) -> bool:
-        """Chart the run anew if a part was plugged in, which brings columns; return whether that is so."""
+        """If a part was plugged in, which adds columns, chart the run from its start; return whether there was one."""
         if self._parts == len(self.recording.plugged):
             return False
         self._parts = len(self.recording.plugged)
@@ -147,7 +147,7 @@ def trace_run(run: Recording, tick: int) -> Points:
 def _count_jumps(
     records: np.ndarray[Any, Any], before_mm: tuple[float, float] | None
 ) -> npt.NDArray[np.int64]:
-    """Count the placements of the robot up to each record."""
+    """Return for each record how often the robot has been placed elsewhere up to it."""
     before_x, before_y = before_mm or (np.nan, np.nan)
     way = np.hypot(
         np.diff(records["x_mm"], prepend=before_x), np.diff(records["y_mm"], prepend=before_y)
@@ -245,7 +245,7 @@ class PanelFeed:
         )
 
     def _send_telemetry(self, feed: Feed) -> None:
-        """Pass on telemetry as often as the chart is drawn; at once where there is much of it, or no more to come."""
+        """Pass on telemetry as often as the chart is drawn; at once if much of it waits, or the run does not go on."""
         now_s = time.monotonic()
         is_soon = now_s < self._charted_s + CHART_PERIOD_S and not feed.is_far_behind
         if is_soon and self._runs.state is RunPhase.RUNNING:

@@ -224,7 +224,7 @@ class NumberInput(Input):
         super().__init__(value, id=id, compact=True, select_on_focus=True, restrict=r"[-+0-9.,]*")
 
     def on_key(self, event: events.Key) -> None:
-        """Say how to leave the field to somebody who presses a letter, which is no key here."""
+        """When a letter is pressed, which the field does not take, say how to leave the field."""
         if event.character and event.character.isalpha() and isinstance(self.app, ActionHost):
             self.app.say("This field takes a number: escape leaves it, and letters are keys again")
 

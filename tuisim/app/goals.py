@@ -92,7 +92,7 @@ class GoalsController:
         self.change(file)
 
     def is_of_task(self, recording: Recording) -> bool:
-        """Return whether a run was on the mat and from the start of the next one."""
+        """Return whether a run had the mat and the start pose of the next run."""
         was = recording.spec.world
         now = self._run_controller.next_run.spec.world
         return (was.background, was.start) == (now.background, now.start)
@@ -176,14 +176,14 @@ def _judge_run(
 ) -> tuple[tuple[Judgement, ...], float] | None:
     """Return the judgements of a run, and the seconds that they took; None if a live run ended meanwhile.
 
-    The app goes on reading the recording, so that this needs views of its own.
+    The run is loaded anew, as the app goes on reading its own views of the recording.
     """
     from tuisim.tasks.goals.judge import judge
 
     began_s = time.monotonic()
     run = load_run(folder)
     judgements = judge(goals, run, field)
-    # How it ended is not stored yet.
+    # The run has ended just now, and how it ended is not stored yet.
     if live and run.end is None and run.state is not Unended.RUNNING:
         return None
     return judgements, time.monotonic() - began_s

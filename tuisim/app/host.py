@@ -15,21 +15,25 @@ if TYPE_CHECKING:
 
 
 class LabHost(ActionHost, TerminalApp):
-    """Notices, dialogs and timers of an app with keys; and what changes its screen as a whole."""
+    """The app as its parts see it: notices, dialogs, timers, and methods that redraw the screen or start a run."""
 
     undo: Callable[[], None] | None = None
-    """Takes back what the last key has changed at once; None if there is nothing to take back."""
+    """Undoes the last change; None if there is nothing to undo."""
 
     def action_act(self, name: str) -> None:
         self.notices.release()
         super().action_act(name)
 
     def answer(self, text: str) -> None:
-        """Show what a key has found out until the next one does something; ids of actions are in braces."""
+        """Show the result of a key until another key does something.
+
+        Args:
+            text: Ids of actions in braces, such as `{run}`, are shown as their keys.
+        """
         self.notify(self.fill_keys(text), timeout=inf)
 
     def offer_undo(self, undo: Callable[[], None] | None) -> None:
-        """Offer a key that takes something back, until a run starts or another key changes something."""
+        """Let the undo key call a function until a run starts or another change can be undone; None withdraws it."""
         self.undo = undo
         self.handle_situation_change()
 
@@ -67,4 +71,4 @@ class LabHost(ActionHost, TerminalApp):
 
     @abstractmethod
     def run_changed(self, last_words: str = "", error_line: int = 0) -> None:
-        """Prepare the panels for another run, which may have ended already with some last words."""
+        """Prepare the panels for another run; one that has ended already has last words, and the line of its error."""

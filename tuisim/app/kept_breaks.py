@@ -15,7 +15,7 @@ from tuisim.engine.files import MAX_FILE_BYTES
 
 FOLDER = "breaks"
 MAX_KEPT = 200
-"""Breakpoints and watches of one program."""
+"""Maximum number of breakpoints, and of watches, of one program that are read."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -136,7 +136,7 @@ class LessonController:
             self._loader.open_run(run)
 
     def _choose_panels(self, lesson: Lesson) -> dict[str, bool | None]:
-        """Return which panels to show and hide: the text gets the side column, but for readings where there is room."""
+        """Return which panels to show or hide: the lesson gets the side column, in a high area with the readings."""
         beside = [info.id for info in PANELS.values() if info.place is PanelPlace.SIDE]
         usual: dict[str, None] = {}
         if self._panel_area.size.height >= _ROOMY_ROWS:
@@ -152,7 +152,7 @@ class LessonController:
         session.begin_step(recording.run_id if recording else "")
         match session.step.check if session.step is not None else None:
             case ShowCheck(panel=panel):
-                # The student is to open it.
+                # It is the student's task to open this panel.
                 self._panel_area.request({panel: False})
             case QuestionCheck(at_x_mm=(_, *_)):
                 # The arrow keys are to move the robot, not the lines of the program.
@@ -265,7 +265,7 @@ class LessonController:
             change = session.look(self._look())
         except TuisimError as error:
             self._app.complain(error)
-        # What a run from elsewhere needs depends on whether it is over.
+        # The words about a run that started elsewhere depend on whether it is over.
         self._follow(Change.SHOW if change is Change.NONE and session.attempt.elsewhere else change)
 
     def _look(self) -> Sight:
@@ -296,7 +296,7 @@ class LessonController:
         )
 
     def _follow(self, change: Change) -> None:
-        """Do what follows from a change."""
+        """Go on to the next step, or save the session, try other worlds and update the panel, as a change requires."""
         session = self.session
         if session is None or change is Change.NONE:
             return
@@ -329,7 +329,7 @@ class LessonController:
             self._app.complain(error)
 
     def _find_error(self, session: LessonSession) -> str:
-        """Return how the run has failed that the goals were judged on; empty if it has not."""
+        """Return the error with which the judged run ended; empty if it ended in another way."""
         run, (recording, _) = self._run_controller.run, self._goals.judged
         if (
             not session.attempt.judgements

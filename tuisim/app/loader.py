@@ -146,7 +146,7 @@ class Loader:
         """Set a plan and a program together with their mat, which must have been prepared already."""
         self._run_controller.mat = mat
         self._good = plan, mat
-        # One that is open already keeps what its cell has set.
+        # A program that is open already keeps the settings noted from its cell.
         if program != self._run_controller.program:
             self._note_program(program, read_first_line(program))
         self._load(plan, program)
@@ -174,7 +174,7 @@ class Loader:
         return make(self._run_controller.next_run)
 
     def set_next_run(self, plan: NextRun) -> None:
-        """Set a plan that differs in other things than the start."""
+        """Set a plan with the same start; the robot stays where it is."""
         if plan.robot != self._run_controller.next_run.robot:
             for note in plan.robot.notes:
                 self._app.say(note)
@@ -253,7 +253,7 @@ class Loader:
         self.tell(decided)
 
     def open_task(self, program_path: str, world: Mapping[str, Any], goals: GoalsFile) -> None:
-        """Open a program in a world, given as settings, that is in no world file, with goals. Not during a run.
+        """Open a program with goals, in a world that is given as settings. Not during a run.
 
         Raises:
             TuisimError: program or world are wrong; nothing has changed.
@@ -426,8 +426,8 @@ class Loader:
 
         Args:
             text: As it would stand in the file.
-            path: Of the file, empty for none.
-            name: Of the file.
+            path: Path of the file, empty for none.
+            name: Name of the file.
 
         Raises:
             TuisimError: its magic line is wrong.
@@ -437,11 +437,13 @@ class Loader:
         self._apply_program(build_program(text, Path(path) if path else None, name))
 
     def take_cell(self, source: ProgramSource | None, settings: Mapping[str, Any]) -> None:
-        """Take the world and the program of a notebook's cell; what it repeats stays as the user has set it since.
+        """Take the world and the program of a notebook's cell. Not during a run.
+
+        A setting that the cell only repeats keeps the value that the user has given it since.
 
         Args:
             source: The program; None leaves the one that is open.
-            settings: By path. Not during a run.
+            settings: The settings of the world, by path.
 
         Raises:
             TuisimError: a setting is wrong.

@@ -23,10 +23,10 @@ def do_asked(context: ActionContext, asked: Mapping[str, Any]) -> None:
     """Do what the server of the page asks for.
 
     Args:
-        context: What it is done with.
-        asked: `what`, and its details: `open` a file by its `path`; take the `settings` and the `program` of a `cell`,
-            put the robot back to its start if it goes `home`, and run the program if it `runs`, at a `speed` if it has
-            one; `stop` the program; show the stored `run` with an `id`.
+        context: The parts of the app.
+        asked: `what`, and its details: `open` a file by its `path`; `stop` the program; show the stored `run` with an
+            `id`; take the `settings` and the `program` of a `cell`, put the robot back to its start if `home` is true,
+            and run the program if `runs` is true, at its `speed` if it has one.
     """
     match asked:
         case {"what": "open", "path": str(path)}:

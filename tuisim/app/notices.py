@@ -47,7 +47,7 @@ class Notice:
 def split_message(message: str, columns: int) -> list[str]:
     """Return the parts of a message that are shown one after the other, each of up to three rows of that many columns.
 
-    Several ones are numbered, so that the reader knows that another one comes, or has been there.
+    Several parts are numbered, so that the reader knows that others follow, or came before.
     """
     text = " ".join(message.split())
     columns = max(columns, len(_NUMBER) + len(_MORE) + 1)
@@ -66,9 +66,9 @@ def split_message(message: str, columns: int) -> list[str]:
 
 
 class NoticeRow(Static):
-    """The row of a notice; a long one has more rows, at the top, where neither keys nor the axis of a chart are.
+    """The row of a notice. A long one has more rows, at the top, where they cover neither keys nor a chart's axis.
 
-    One that stays has them at the bottom, where no title of a panel is.
+    A long one that stays has its rows at the bottom, where they cover no title of a panel.
 
     Args:
         notice: What it shows.
@@ -116,7 +116,7 @@ class NoticeRow(Static):
         self.call_after_refresh(self._leave_dialog)
 
     def _leave_dialog(self) -> None:
-        """Lie on the lower border of a dialog instead of on what that says."""
+        """Move to the lower border of a dialog whose text the row would cover."""
         if not self.is_attached or self.has_class("-long"):
             return
         for frame in self.screen.query(".dialog"):
@@ -177,7 +177,7 @@ class Notices:
         return [notice.message for until_s, notice in self._told if until_s > now_s]
 
     def release(self) -> None:
-        """Show no longer what stays until a key does something."""
+        """Remove the notices that stay until a key does something."""
         now_s = time.monotonic()
         self._told = [
             (
@@ -201,7 +201,7 @@ class Notices:
         self._remove_row()
 
     def follow_screen(self) -> None:
-        """Show the notice on the topmost screen: the one that it was on has been closed."""
+        """If the screen with the notice was closed, show the notice on the topmost screen."""
         row = self._row
         if row is not None and not row.is_attached:
             self._row = None

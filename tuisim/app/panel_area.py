@@ -53,7 +53,7 @@ _STACKED_ROWS = 18
 _READINGS = ("instrumentation", "arrays", "positioning")
 """The panels with numbers of an instant, which is the same in all of them and in the time bar."""
 _READINGS_PERIOD_S = 0.1
-"""Values that change faster cannot be read."""
+"""Seconds between two updates of the readings: values that change faster cannot be read."""
 _ARRAYS_PERIOD_S = 0.25
 """All pixels of the discs may change at once: with them, a shorter period would saturate a slow link."""
 
@@ -166,16 +166,16 @@ class PanelArea(Container):
         if show:
             self.front = panel
         self._chosen.pop(panel, None)
-        # One that no terminal shows unasked belongs to what is done now.
+        # A panel that no terminal shows by default is needed only now, and is not kept.
         if PANELS[panel].sizes:
             self._chosen[panel] = show
         if self.preset == self._kept_preset:
             self.keep_panels()
 
     def can_take_focus(self, panel: str) -> bool:
-        """Return whether a panel that can have the focus is shown beside others, one of which has it.
+        """Return whether a panel that is shown beside others can get the focus, and does not have it yet.
 
-        One that has just been shown will have it in a moment.
+        A panel that was shown just now counts as having it.
         """
         beside = self.is_shown(panel) and not self.alone and not self.is_single
         return beside and panel != self.front and self._can_focus(panel)
@@ -189,7 +189,7 @@ class PanelArea(Container):
             self.request({panel: True})
 
     def show_next_panel(self, by: int) -> str:
-        """Return the panel after the one with the focus; where there is room for one only, show it."""
+        """Return the panel `by` places after the one with the focus; where there is room for one only, show it."""
         if self.is_single:
             usual = choose_panels(self.preset, self._asked, self.size.width, self.size.height)
             panels = list(dict.fromkeys([*usual[0], *usual[1], self.front]))
@@ -308,7 +308,7 @@ class PanelArea(Container):
             self.lay_out()
 
     def make_room(self, panel: str, columns: int, rows: int) -> None:
-        """Give a panel of the bottom strip the whole strip, or the whole area if that is still too small."""
+        """Give a panel so many columns and rows, taken from those beside it; the whole area if that is too little."""
         if panel != self.alone:
             self._roomy = panel, columns, rows
             self.lay_out()

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 ROOMY_ROWS = 15
 """A code panel with fewer rows, or too narrow for lines of 79 characters, grows while the user types."""
 _HIGH_ROWS = 35
-"""It grows from fewer rows, too, if lines are whole beside the world."""
+"""A code panel with fewer rows grows, too, if its lines are whole beside the world."""
 _LESSON_COLUMNS = 74
 """Columns that are enough while the text of a lesson is beside the code."""
 
@@ -49,7 +49,7 @@ def has_button_calls(program: str) -> bool:
 
 
 def _find_typing_room(area: PanelArea) -> tuple[int, int]:
-    """Return the columns and rows of the code panel that are room enough for who types in it."""
+    """Return the columns and rows that are room enough in the code panel for typing."""
     if area.is_shown("lesson"):
         return _LESSON_COLUMNS, ROOMY_ROWS
     is_wide = area.is_shown("world") and area.size.width >= EDITOR_COLS + DISCS_COLS
@@ -61,10 +61,14 @@ class PanelMessages(LabHost):
 
     context: ActionContext
     has_hinted = False
-    """Whether the panel of the brick was named."""
+    """Whether a notice has named the panel of the brick."""
 
     def suggest_brick(self, does: str) -> None:
-        """Name the panel of the brick, if it is hidden, to whoever runs a program that needs it; once."""
+        """Say, once, which key opens the panel of the brick if it is hidden.
+
+        Args:
+            does: What the program does with the brick, such as `reads the brick's buttons`.
+        """
         if not self.has_hinted and not self.context.panels.is_shown("brick"):
             self.say(f"The program {does}: {{panel-brick}} opens its panel")
         self.has_hinted = True
@@ -97,7 +101,7 @@ class PanelMessages(LabHost):
         self.handle_situation_change()
 
     def _end_former_text(self) -> None:
-        """End a run of the text before the edit: the user wants the new one to run."""
+        """End a run of the text before the edit, so that the edited text can run."""
         controller = self.context.runs
         code = self.context.panels.code
         if (
@@ -146,7 +150,7 @@ class PanelMessages(LabHost):
 
     @on(ClosesOnce.Changed)
     def show_keys_of_the_screen(self) -> None:
-        """Update the footer: below a dialog that closed another widget has the focus."""
+        """Update the footer: when a dialog has opened or closed, another widget has the focus."""
         self.handle_situation_change()
 
     def on_world_pose_dragged(self, message: World.PoseDragged) -> None:

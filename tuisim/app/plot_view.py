@@ -84,8 +84,7 @@ class PlotView(LinesView):
         """Show lines with charts.
 
         Args:
-            paint: Returns all lines, and the charts, each with the row in which it begins; whether it is to leave the
-                canvases blank.
+            paint: Gets whether to leave the canvases blank; returns all lines, and the charts, each with its first row.
         """
         graphics = self.graphics
         lines, pictures = paint(graphics is not None)

@@ -36,7 +36,7 @@ class ReasonTour:
         return has_gone_wrong or can_differ
 
     def begin(self, recording: Recording) -> None:
-        """Forget another run."""
+        """Begin with a run, whose reasons are not known yet; forget those of another run."""
         self._of = recording
         self._at = None
         self.reasons = ()
@@ -45,7 +45,7 @@ class ReasonTour:
     def take(
         self, recording: Recording, reasons: tuple[Reason, ...], earlier: Recording | None
     ) -> None:
-        """Keep the reasons of a run, unless another one is in view by now."""
+        """Store the reasons of a run, unless the tour is about another run by now."""
         if self._of is recording:
             self.reasons = reasons
             self.earlier = earlier

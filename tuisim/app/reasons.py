@@ -26,11 +26,11 @@ NO_REASON = "No error, block, missed goal or lost line found. {compare} compares
 
 
 FoundReasons = tuple[tuple["Reason", ...], "Recording | None"]
-"""The reasons, and the run before that they may speak of."""
+"""The reasons, and the earlier run that they may refer to."""
 
 
 def look(context: ActionContext) -> None:
-    """Find out in the background whether the run in view, which has ended, went wrong; once."""
+    """Find the reasons of the run in view in the background, once, when it has ended."""
     recording = context.runs.timeline.recording
     tour = context.reasons
     if recording is None or context.runs.state is not RunPhase.ENDED or tour.is_about(recording):
@@ -45,7 +45,7 @@ def look(context: ActionContext) -> None:
 
 
 def note(context: ActionContext, recording: Recording, reasons_so_far: FoundReasons) -> None:
-    """Keep the reasons of a run, and let the footer name the key."""
+    """Store the reasons of a run, and update the footer, which names their key."""
     context.reasons.take(recording, *reasons_so_far)
     context.app.handle_situation_change()
 
@@ -64,7 +64,7 @@ def find(
         recording: The run.
         earlier: The run to compare with, if the one in view repeats it.
         then: Called with what was found.
-        searches: Whether the store is searched for a run to compare with, if that is none.
+        searches: Whether to show errors, and to search the store for a run to compare with if `earlier` is none.
     """
     session = context.lesson.session
     file = context.loader.goals.file
@@ -95,7 +95,7 @@ def _read(
     earlier: Recording | None,
     mat: Field | None,
 ) -> tuple[Reason, ...]:
-    """Return the reasons of a run. The app goes on reading the recording, so that this needs views of its own."""
+    """Return the reasons of a run, which is loaded anew: the app goes on reading its own views of the recording."""
     from tuisim.tasks.goals.judge import judge
 
     run = load_run(folder)

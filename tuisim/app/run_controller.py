@@ -114,12 +114,12 @@ class RunController:
         self.has_chosen_speed = False
         """Whether a key of the user's has set the speed."""
         self.next_options: RunOptions | None = None
-        """Those of the next run only, in place of the usual ones."""
+        """Options of the next run only, in place of the usual ones."""
         self.mat: Mat | None = None
         self.run: RunHandle | None = None
         """The live run or the last one; None before the first one, and while a stored run is shown."""
         self._mat_of_run: Mat | None = None
-        """That on which the run in view drove; another one is prepared for another robot."""
+        """The mat on which the run in view drove; for another robot, another mat is prepared."""
         self.timeline = Timeline()
         self.earlier: Recording | None = None
         """The run before, or one that was compared with the run in view: it is drawn beside it."""
@@ -307,7 +307,7 @@ class RunController:
         )
 
     def find_mat(self, spec: RunSpec) -> Field | None:
-        """Return the mat of the next run or of that in view, if it is one for a run's sensors; else None."""
+        """Return the mat of the next run, or of the run in view, if it is prepared for a specification; else None."""
         recording = self.timeline.recording
         mats = (self.mat, self._mat_of_run)
         if recording and self.mat and self.mat.serves(recording.spec):
@@ -345,7 +345,7 @@ class RunController:
         self._show_run(start_run(program, self.next_run.spec, options))
 
     def prepare_next(self) -> None:
-        """Prepare a process for the next run, which moves the robot sooner; a run in another world needs its own."""
+        """Prepare a process for the next run, so that the robot moves sooner; a run in another world cannot use it."""
         if self.run:
             self.run.prepare_next()
 
@@ -374,7 +374,7 @@ class RunController:
         self._branch = branch
 
     def _finish_branch(self, paused: protocol.Paused | None = None) -> Branch | None:
-        """Switch from the former run to the new one, which is paused at the instant of the branch or has ended.
+        """Continue a branch that is paused at its instant, or forget one that has ended; return it, if there is one.
 
         A program that ends before that instant is paused at its end.
         """
@@ -419,7 +419,7 @@ class RunController:
         self.show_earlier(self.companion or before)
 
     def _show_recording(self, recording: Recording) -> None:
-        # What is drawn of a frame is of one instant.
+        # Everything that is drawn in a frame belongs to one instant.
         recording.hold()
         self.timeline.show_run(recording)
         self.show_earlier(self.companion)
@@ -507,7 +507,7 @@ class RunController:
         self._set_start(plan.spec.world.start)
 
     def change(self, plan: NextRun) -> None:
-        """Set a plan that differs in other things than the start; the robot stays where it is. Not during a run.
+        """Set a plan with the same start; the robot stays where it is. Not during a run.
 
         The view returns from the past, so that the change is visible.
         """

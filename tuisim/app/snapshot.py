@@ -105,7 +105,7 @@ class Snapshot:
 
     @cached_property
     def colors(self) -> Mapping[str, ColorReading]:
-        """By sensor name, such as `left`."""
+        """The readings of the colour sensors by their names, such as `left`; empty without a mat."""
         if self.field is None:
             return {}
         return {
@@ -149,7 +149,7 @@ class Snapshot:
         return measure_sensors(self.spec.robot.further_sensors, self.instant, self.spec, self.field)
 
     def has_stopped_since(self, before: Snapshot | None) -> bool:
-        """Whether the run stands still now, and did not at an earlier moment."""
+        """Return whether the run stands still now, and did not at an earlier moment."""
         return before is not None and self.state in AT_REST and before.state is not self.state
 
     @property
@@ -239,7 +239,7 @@ def speed_label(speed: float) -> str:
 
 
 def end_words(ended: Ended, stood: str) -> tuple[str, str]:
-    """Return the end of a run for the notice and for the end of the output.
+    """Return two texts about the end of a run: for the notice, and for the end of the output.
 
     Args:
         stood: Where the robot stood in the way of something solid, in words; may be empty.

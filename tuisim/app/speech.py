@@ -38,7 +38,7 @@ def build_wav(tones: Sequence[Sequence[float]]) -> bytes:
     """Return tones as a mono WAV file, cut after MAX_SOUND_S.
 
     Args:
-        tones: Hz (0 is silence), ms, and ms of pause after it, for each.
+        tones: For each, Hz (0 is silence), ms, and ms of the pause after it.
     """
     samples = array("h")
     room = int(MAX_SOUND_S * RATE_HZ)
@@ -65,7 +65,7 @@ class Voice:
 
     Args:
         quiet: Never make a sound.
-        environment: Where a remote terminal shows; by default that of this process.
+        environment: Variables that tell whether the terminal is remote; by default those of this process.
     """
 
     def __init__(self, quiet: bool = False, environment: Mapping[str, str] = os.environ) -> None:

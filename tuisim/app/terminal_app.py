@@ -98,7 +98,7 @@ class TerminalApp(BufferedApp):
     def __init__(self, picture_mode: PictureMode | None = None) -> None:
         super().__init__(picture_mode)
         self.notices = Notices(self)
-        """What the user is told."""
+        """The notices to the user."""
         self.too_small: Size | None = None
         """Size of a terminal that is too small, else None."""
         for theme in (HIGH_CONTRAST, LIGHT):
@@ -163,11 +163,11 @@ class TerminalApp(BufferedApp):
         timeout: float | None = None,
         markup: bool = False,
     ) -> None:
-        """Tell the user something, in a row on the lower edge of the panels; always as it is, without markup.
+        """Show a notice to the user, in a row on the lower edge of the panels; its text is no markup.
 
         Args:
-            message: What.
-            title: Comes before it.
+            message: The text.
+            title: Comes before the text, unless it is empty.
             severity: An error stays until it can have been read.
             timeout: How long it is shown at least, in seconds; None for the usual time.
             markup: Not used.
@@ -177,7 +177,7 @@ class TerminalApp(BufferedApp):
         self.notices.add(Notice(text, severity, shown_s))
 
     def clear_notifications(self) -> None:
-        """Forget what the user was told."""
+        """Remove all notices."""
         self.notices.clear()
 
     async def on_event(self, event: events.Event) -> None:
@@ -193,7 +193,7 @@ class TerminalApp(BufferedApp):
         await super().on_event(event)
 
     def _waits(self, event: events.Event) -> bool:
-        """Return whether the topmost screen is still being opened and would lose a key, or a text is completed."""
+        """Return whether an event has to wait: the topmost screen is not ready for it, or a text looks up names."""
         top = self.screen_stack[-1] if self.screen_stack else None
         if top is not None and getattr(top.focused, "is_completing", False):
             return True
@@ -320,7 +320,7 @@ class TerminalApp(BufferedApp):
             self.notify("That works only in the lab: leave this screen first", markup=False)
 
     def action_command_palette(self) -> None:
-        """Offer every action of the screen, else of the app; not above a dialog, which its dialogs would cover."""
+        """Offer every action of the screen, else of the app; not above a dialog, which other dialogs would cover."""
         host = self.screen if isinstance(self.screen, ActionHost) else self
         if isinstance(self.screen, Dialog) or not isinstance(host, ActionHost) or is_leaving(self):
             return

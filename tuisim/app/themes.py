@@ -85,7 +85,7 @@ class ThemeColors(LineFilter):
 
     Args:
         theme: The theme.
-        traces: Colours of lines of charts, which are own ones, too.
+        traces: Colours of the lines of charts, which also belong to the app's own.
     """
 
     def __init__(self, theme: Theme, traces: Sequence[Rgb] = ()) -> None:

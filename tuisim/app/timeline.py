@@ -190,9 +190,9 @@ _HINT = (
     "print REGEX, start or end"
 )
 _IN_FRONT = re.compile(r"^(back|first)\s+(.+)$", re.IGNORECASE)
-"""The direction, where it stands in front."""
+"""A direction in front of the other words."""
 _MAX_DESCRIBED = 3
-"""So many commands of one instant are told."""
+"""Maximum number of commands of one instant that are described."""
 _SECONDS = re.compile(r"([0-9]+\.?[0-9]*|\.[0-9]+)\s*s?")
 
 
@@ -228,7 +228,7 @@ class _Search:
         return next((row.tick for row in select_rows(condition, self.texts())), None)
 
     def find_nearest(self, ticks: list[int]) -> int | None:
-        """Return the next of some sorted ticks."""
+        """Return the next of some sorted ticks in the direction of the search; None if there is none."""
         where = bisect_left(ticks, self.at) - 1 if self.back else bisect_right(ticks, self.at)
         return ticks[where] if 0 <= where < len(ticks) else None
 
@@ -240,7 +240,7 @@ def find(
 
     Args:
         text: One of `list_forms`.
-        timeline: The run, and where one is in it.
+        timeline: The run, and the instant in view.
         mat: The run's mat, which readings are taken from; None if there is none yet.
         first_at_end: Whether a search at the newest instant, after which there is nothing, begins at the start of the
             run; else it goes backwards.
@@ -298,7 +298,7 @@ def _find_condition(search: _Search, condition: ValueCondition, mat: Field | Non
 
 
 def describe_commands(text: str, timeline: Timeline) -> str:
-    """Return what the program asked at the instant in view, if a text has searched for that; else nothing."""
+    """Return the program's commands at the instant in view, if a text has searched for commands; else nothing."""
     words = parse_command_search(re.sub(r"\b(?:back|first)\b", "", text))
     if words is None or timeline.recording is None:
         return ""
@@ -325,7 +325,7 @@ def _parse_condition(word: str, rest: str, text: str) -> ValueCondition | None:
 
 
 def _refuse(word: str, recording: Recording) -> ConfigError:
-    """Return the error for what is no instant, with the form that is meant if it is like a name of the run."""
+    """Return the error for words that name no instant, with the form meant if they are like a name in the run."""
     printed = _read_printed_names(recording)
     close = closest(word, [*list_column_names(recording.spec), *printed], 1)
     forms = [f"`{name} < 50`" for name in close]

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class ActionContext:
-    """What the functions behind the keys get."""
+    """The parts of the app, which every function behind a key gets."""
 
     app: LabHost
     runs: RunController

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def toggle(context: ActionContext, panel: str) -> None:
-    """Show a panel and focus it; focus one that is shown beside the focus; else hide it."""
+    """Focus a panel that is shown without the focus; else, show a hidden panel and focus it, or hide it."""
     if not context.panels.can_take_focus(panel):
         context.panels.toggle(panel)
     context.app.handle_situation_change()
@@ -37,7 +37,7 @@ def enlarge(context: ActionContext) -> None:
 
 
 def undo(context: ActionContext) -> None:
-    """Take back what the last key has changed at once."""
+    """Undo the last change that can be undone."""
     if take_back := context.app.undo:
         context.app.offer_undo(None)
         take_back()
@@ -86,7 +86,7 @@ def keep_layout(context: ActionContext) -> None:
 
 
 def focus_next_panel(context: ActionContext, by: int) -> None:
-    """Focus the next panel; where there is room for one only, show it."""
+    """Focus the panel that comes `by` places later; where there is room for one panel only, show it."""
     if panel := context.panels.show_next_panel(by):
         context.app.handle_situation_change()
         context.app.call_after_refresh(context.panels.focus_opened, panel)
@@ -134,7 +134,7 @@ def show_help(context: ActionContext) -> None:
 
 
 def choose_cells(context: ActionContext) -> None:
-    """Show the test card, and draw the world with the glyphs that are chosen."""
+    """Show the test card with the glyphs; draw the world with those that the user chooses, and remember the choice."""
     from tuisim.app.dialogs.cells import CellsCard
 
     app = context.app
@@ -163,7 +163,7 @@ _APPLY: Mapping[str, Callable[[ActionContext, Any], None]] = {
     "app.pixels": lambda context, value: context.app.choose_pixels(value),
     THEME: _apply_theme,
 }
-"""What applies a setting to the app that is open, by its path."""
+"""Functions that apply a changed setting to the open app, by the path of the setting."""
 
 
 def change_setting(context: ActionContext, setting: Setting, value: Scalar | None) -> None:
@@ -196,7 +196,7 @@ def choose_theme(context: ActionContext) -> None:
 
 
 def open_palette(context: ActionContext) -> None:
-    """Show every command."""
+    """Open the command palette."""
     context.app.action_command_palette()
 
 
@@ -230,5 +230,5 @@ def switch_pixels(context: ActionContext) -> None:
 
 
 def suspend(context: ActionContext) -> None:
-    """Leave the terminal to the shell."""
+    """Suspend the app and return to the shell; `fg` resumes the app."""
     context.app.action_suspend_process()

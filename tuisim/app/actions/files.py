@@ -25,7 +25,7 @@ from tuisim.settings.options import Settings
 from tuisim.settings.preferences import get_preference, keep
 
 _LOGGING_MAT = "Grey_bands"
-"""What a new program is offered in place of the empty mat, on which there is nothing to log."""
+"""The mat proposed for a new program in place of the empty one, on which there is nothing to log."""
 
 if TYPE_CHECKING:
     from tuisim.analysis.source import LogRequest
@@ -72,7 +72,10 @@ _OPENABLE_SUFFIXES = frozenset({".py", ".toml"})
 
 
 def open_brought(context: ActionContext, path: Path) -> None:
-    """Open a file that the user has brought to the page: a program, a world, goals, or a log to be analysed."""
+    """Open a file that the user has given to the web page: a program, a world, goals, or a log to be analysed.
+
+    During a run, a program, a world or goals are not opened; a notice names the key that opens them later.
+    """
     if path.suffix in _OPENABLE_SUFFIXES and context.runs.in_run:
         context.app.say(
             f"{path.name} has arrived; you can open it when the run has ended: {{open}} opens it"
@@ -90,7 +93,7 @@ EXAMPLE = "log_greys.py"
 
 
 def greet(context: ActionContext) -> None:
-    """Show the welcome at the first start, and at later ones if there is something to go on with."""
+    """Show the welcome at the first start; at later ones only if there is recent work to continue."""
     from tuisim.app.setup.recent import list_recent
 
     if not get_preference(_WELCOMED_PREFERENCE):
@@ -105,19 +108,19 @@ def greet(context: ActionContext) -> None:
 
 
 def show_welcome(context: ActionContext) -> None:
-    """Show the ways to begin, and what there is to go on with."""
+    """Show the welcome: the ways to begin, and recent work to continue."""
     from tuisim.app.setup.recent import list_recent
 
     _push_welcome(context, partial(list_recent, NEW_NAME))
 
 
 def _push_welcome(context: ActionContext, find: Callable[[], list[Recent]]) -> None:
-    """Show the welcome; `find` returns what there is to go on with, and is called in a thread."""
+    """Show the welcome; `find` returns the recent work to list, and is called in a thread."""
     from tuisim.app.dialogs.welcome import Begin, Welcome
     from tuisim.app.setup.recent import Recent
 
     def handle_choice(what: Begin | Recent | None) -> None:
-        # Without a home folder it appears again, which is no reason to fail.
+        # If this cannot be written, the welcome appears again, which is no reason to fail.
         with suppress(OSError):
             keep(_WELCOMED_PREFERENCE, True)
         match what:
@@ -177,7 +180,7 @@ def _save(context: ActionContext, what: str, name: str, write: Callable[[Path], 
         write(path)
         context.loader.note_saved(path)
 
-    # The file that it came from, if it came from one.
+    # Propose the file from which it was loaded, if there is one.
     word = context.runs.next_run.words.get(what, "")
     context.app.push_screen(SaveDialog(what, word if word.endswith(".toml") else name, save))
 
@@ -261,7 +264,7 @@ def _ask_new_program(context: ActionContext) -> None:
     current = next(
         (name for name, mat in known.items() if spec_name(mat) == plan.spec.world.background), ""
     )
-    # A mat that is laid out from a file of its own can be kept, too.
+    # The list has no mats from the user's own files: offer the current one, too.
     own = {} if current else {plan.spec.world.background: Path(plan.spec.world.background).name}
     laid = current or plan.spec.world.background
     if laid == Settings()["background"] and _LOGGING_MAT in known:
@@ -363,14 +366,14 @@ def choose_run(context: ActionContext) -> None:
 
 
 VARIABLES = ("VISUAL", "EDITOR")
-"""What names the editor; the first that is set counts."""
+"""Environment variables that name the user's editor; the first one that is set counts."""
 
 
 def own_editor(environment: Mapping[str, str] = os.environ) -> list[str]:
-    """Return the command of the editor, without the file.
+    """Return the command of the user's editor as a list of words, without a file.
 
     Raises:
-        TuisimError: none is named, or its command cannot be read.
+        TuisimError: no variable names an editor, or its command cannot be read.
     """
     for variable in VARIABLES:
         named = environment.get(variable, "")

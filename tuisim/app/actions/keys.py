@@ -667,7 +667,7 @@ RUN_KEYS = frozenset(
 
 
 def _find_next_steps(now: Situation) -> tuple[str, ...]:
-    """Return the ids of the likely next steps: out of the past, on with a run, to its results, or to a first run."""
+    """Return the ids of the actions that the user is likely to need next, the likeliest first."""
     code = ("to-cursor", "break") if now.reads_code else ()
     wrong = ("went-wrong",) if now.has_reasons else ()
     mended = ("edit",) if now.has_reasons else ()
@@ -697,9 +697,15 @@ TEXT_KEYS = frozenset({"lesson-back", "lesson-on"})
 def list_footer_actions(
     table: Mapping[str, LabAction], names: Iterable[str], now: Situation, playing: bool
 ) -> list[LabAction]:
-    """Return actions of a table with the words of the footer: the pause key says what it does now.
+    """Return actions with the words of the footer: that of the pause key says what the key does now.
 
-    Keys of lessons are left out that do nothing in the step to do.
+    Keys of lessons that do nothing in the current step are left out, and so is `run` while a program is paused.
+
+    Args:
+        table: The actions by id.
+        names: Ids of the actions, in order.
+        now: The state of the app.
+        playing: Whether the past is played back.
     """
     word = ""
     if now.in_past:

@@ -17,7 +17,7 @@ SPEEDS = (0.25, 0.5, 1.0, 2.0, 4.0, 16.0, 0.0)
 
 
 def run(context: ActionContext) -> None:
-    """Start the program, a paused one from its start again; in the past, ask whether to start from that instant."""
+    """Start the program; restart a paused one; in the past, ask whether to branch from that instant or to restart."""
     if context.runs.in_past:
         propose_branch(context, None, restart=True)
     elif context.runs.state is RunPhase.PAUSED:
@@ -45,7 +45,7 @@ def pause(context: ActionContext) -> None:
 
 
 def change_speed(context: ActionContext, by: int) -> None:
-    """Go to a higher or lower speed, by a number of steps."""
+    """Change the speed by a number of places in `SPEEDS`; a negative number makes it slower."""
     speed = context.runs.speed
     index = (
         SPEEDS.index(speed)
@@ -70,7 +70,10 @@ def run_to_cursor(context: ActionContext) -> None:
 
 
 def toggle_break(context: ActionContext) -> None:
-    """Set or remove a breakpoint on the line that is shown as current, or on the cursor's if the code has the focus."""
+    """Set or remove a breakpoint: on the line of the cursor if the code has the focus, else on the current line.
+
+    Without a current line, give the code the focus, so that the user can choose a line.
+    """
     code = context.panels.code
     current = context.debugger.current_line
     if current and not (code and code.is_read):
@@ -82,7 +85,7 @@ def toggle_break(context: ActionContext) -> None:
 
 
 def _find_cursor_line(context: ActionContext) -> int:
-    """Return the line of the cursor; show the code first if it is hidden."""
+    """Return the line of the cursor in the code; if the code is hidden, show it and return 0."""
     area = context.panels
     if area.is_shown("code"):
         return area.code.cursor_line if area.code else 0

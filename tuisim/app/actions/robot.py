@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def switch_pen(context: ActionContext) -> None:
-    """Put the pen up or down."""
+    """Lift the pen if it is down, else lower it."""
     runs = context.runs
     runs.set_pen(not runs.pen_down)
     if not runs.in_past:
@@ -33,7 +33,7 @@ def home(context: ActionContext) -> None:
 
 
 def _move(context: ActionContext, pose: Pose) -> None:
-    """Place the robot, so that it can be taken back."""
+    """Place the robot at a pose, and offer to undo that."""
     before = context.runs.pose
     context.runs.place(pose)
     if not context.runs.in_past:
@@ -41,7 +41,7 @@ def _move(context: ActionContext, pose: Pose) -> None:
 
 
 def move_slightly(context: ActionContext, right_mm: float, up_mm: float, turn_deg: float) -> None:
-    """Move the robot a little."""
+    """Move the robot in the directions of the mat, and turn it counter-clockwise."""
     pose = context.runs.pose
     context.runs.place(Pose(pose.x_mm + right_mm, pose.y_mm + up_mm, pose.heading_deg + turn_deg))
 
@@ -98,7 +98,7 @@ def choose_mat(context: ActionContext) -> None:
 
 
 def _propose_write(context: ActionContext, mat: str) -> None:
-    """Ask whether a mat is to be written into the magic line of the program that is open, if that names another."""
+    """Offer to write a mat into the magic line of the open program, if that line names another mat or none."""
     from tuisim.app.dialogs.question import Question
 
     document = context.document
@@ -117,7 +117,12 @@ def _propose_write(context: ActionContext, mat: str) -> None:
 
 
 def choose(context: ActionContext, what: str) -> None:
-    """Ask for a robot, a profile or a set of obstacles, and apply the choice to the plan."""
+    """Ask for a robot, a profile or a set of obstacles, and use the choice for the next run.
+
+    Args:
+        context: The parts of the app.
+        what: `robot`, `profile` or `obstacles`.
+    """
     from tuisim.app.dialogs.chooser import build_obstacle_chooser, build_profile_chooser
     from tuisim.app.dialogs.robots import PROGRAM_ROBOT, build_robot_picker
 

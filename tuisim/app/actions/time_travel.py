@@ -25,7 +25,10 @@ MANY_TICKS = 10
 
 
 def go_to_tick(context: ActionContext, tick: int | None) -> None:
-    """Go to a tick of the run; None and ticks beyond the newest mean now. A running program is paused first."""
+    """Show a tick of the run, and pause a running program; None shows the newest instant.
+
+    If the mat was changed since the run, only a notice appears.
+    """
     recording = context.runs.timeline.recording
     if recording is None or (tick is not None and not _is_laid_out(context, recording)):
         return
@@ -50,13 +53,16 @@ def _is_laid_out(context: ActionContext, recording: Recording) -> bool:
 
 
 def refresh(context: ActionContext) -> None:
-    """Show another instant: redraw the panels and the footer."""
+    """Redraw the panels and the footer after the instant in view has changed."""
     context.app.handle_situation_change()
     context.app.draw(force=True)
 
 
 def go_to_time(context: ActionContext, time_s: float | None, sample: str = "") -> None:
-    """Go to a time of the run, None for now; and to the line that printed the sample of that name then."""
+    """Go to a time of the run in s, or with None to the newest instant.
+
+    With `sample`, go also to the line that printed a sample of that name at that time.
+    """
     tick = None if time_s is None else round(time_s * context.runs.timeline.tick_hz)
     recording = context.runs.timeline.recording
     if (
@@ -92,7 +98,7 @@ def step_tick(context: ActionContext) -> None:
 
 
 def step_ten_ticks(context: ActionContext) -> None:
-    """Run ten ticks."""
+    """Go forward ten ticks, in the same way as `step_tick`."""
     timeline = context.runs.timeline
     if context.runs.in_past:
         tick = timeline.at or 0
@@ -120,7 +126,7 @@ def stop_time(context: ActionContext) -> None:
 
 
 def advance_playback(context: ActionContext) -> None:
-    """Continue playback; a paused run that has been played to its newest instant resumes automatically."""
+    """Show the next instant of the playback; after the last one, resume the program if it is paused."""
     if context.runs.timeline.advance_playback(time.monotonic(), context.runs.speed):
         if context.runs.state == RunPhase.PAUSED:
             context.runs.send(protocol.Resume())
@@ -160,7 +166,12 @@ def ask_instant(context: ActionContext) -> None:
 
 
 def go_to_sample(context: ActionContext, words: str) -> None:
-    """Go to a sample: words that `find` understands."""
+    """Go to a sample.
+
+    Args:
+        context: The parts of the app.
+        words: A command of `find`, such as `sample back`.
+    """
     try:
         go_to_tick(context, find(words, context.runs.timeline))
     except TuisimError as error:
@@ -168,9 +179,9 @@ def go_to_sample(context: ActionContext, words: str) -> None:
 
 
 def go_wrong(context: ActionContext) -> None:
-    """Go to the first reason why the run went wrong, then each time to the next; after the last to the end.
+    """Go to the first reason why the run went wrong; at each further press to the next one, after the last to the end.
 
-    A program that runs is paused, and its reasons are those until then.
+    A running program is paused; its reasons are those of the run so far.
     """
     recording = context.runs.timeline.recording
     if recording is None:
@@ -190,7 +201,7 @@ def go_wrong(context: ActionContext) -> None:
 
 
 def _show_reason(context: ActionContext, earlier: Recording | None) -> None:
-    """Go to the next reason, and say it."""
+    """Go to the next reason and show its text; after the last one, go to the newest instant."""
     tour = context.reasons
     if (reason := tour.advance()) is None:
         go_to_now(context)

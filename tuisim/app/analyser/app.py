@@ -27,7 +27,7 @@ class Analyser(LogScreen):
 
 
 class AnalyserApp(TerminalApp):
-    """An app with one screen.
+    """The app of `tuisim analyse`; its only screen is the analyser.
 
     Args:
         request: What to open.
@@ -48,17 +48,17 @@ class AnalyserApp(TerminalApp):
 
 
 class _First(Analyser):
-    """The only screen: an error before anything is shown ends the app."""
+    """The only screen of an `AnalyserApp`: an error before anything is shown ends the app."""
 
     def set_model(self, model: AnalysisModel) -> None:
         first = not self.is_open
         super().set_model(model)
         if first:
-            # Modules imported by drawing stay as well; no key should wait for a garbage collection of all that.
+            # Rows and imported modules stay until the end: no key should wait for a garbage collection of them.
             self.call_after_refresh(gc.freeze)
 
     def complain(self, error: TuisimError) -> None:
-        """Show an error, or keep it for the shell."""
+        """Show an error; before a log is open, store it in the app instead, for the shell."""
         app = self.app
         if not self.is_open and isinstance(app, AnalyserApp):
             app.failure = error

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 _EVENTS = Style(color=palette.EVENT, bold=True)
 _MAX_BANDS = 100
-"""More are too narrow to be told apart."""
+"""More bands of a variable are not shaded: they are too narrow to be told apart."""
 _MIN_FACET_ROWS = 6
 """Minimum height of the chart of one variable."""
 FACETS_ROWS = 2 * _MIN_FACET_ROWS
@@ -57,7 +57,7 @@ class ChartOptions:
 
 
 class LogChart(LinesPanel):
-    """The chart."""
+    """The panel with one chart of all variables, or one for each, and the values at the cursor or the pointer."""
 
     ALLOW_SELECT = False
     DEFAULT_CSS = f"""
@@ -187,7 +187,7 @@ class LogChart(LinesPanel):
         return draw_xy_chart(xs, ys, model.sample, names, trace.rgb, marker, width, height)
 
     def columns(self) -> int:
-        """Return the width of the canvas in characters, 1 if there is none."""
+        """Return the width of the canvas in characters; 1 if no chart over time is drawn."""
         return max(self._pictures[0][1].columns, 1) if self._pictures else 1
 
     def time_beside(self, time_s: float, columns: int) -> float:
@@ -245,7 +245,7 @@ def _select_facets(facets: list[LogTrace], selected: str, max_count: int) -> lis
 
 
 def _build_measure_line(model: AnalysisModel, unit: str, width: int) -> list[list[Run]]:
-    """Return the line with the differences between the two cursors."""
+    """Return one line with the differences and the statistics between the two cursors; none without a second cursor."""
     if model.mark_s is None or not model.log.rows:
         return []
     plain = Style(color=palette.SOFT)

@@ -46,25 +46,25 @@ Cells = tuple[str, ...]
 _GAP = 2
 """Columns between those of a table."""
 _MAX_BELOW = 20
-"""Lines below the rows of a pane at most, if there is room for all."""
+"""Maximum number of lines below the rows that count for the height of a pane."""
 _MEASURED = 1000
-"""In panes with more rows than this, the visible ones determine it."""
+"""In panes with more rows than this, only the visible ones determine the widths of the columns."""
 SEARCHED_AT_ONCE = 20_000
 """Up to this many rows, the search for bands takes a few hundredths of a second."""
 
 _MIN_ROWS = 10
-"""A pane with few rows leaves the rest of its lines to the chart, but these."""
+"""A pane may always have so many rows; lines that it does not need beyond them are left to the chart."""
 
 EMPTY = ("This log is empty. T shows the telemetry of a run.",)
 
 
 @dataclass(frozen=True, slots=True)
 class Pane:
-    """One line of `PANES`."""
+    """A pane: its title and headings, and the functions that return its content."""
 
     title: str
     rows: Callable[[AnalysisModel], Sequence[Cells]]
-    """Its rows as texts; None for the table, which has too many."""
+    """Its rows as texts; no rows for the table, which has too many and is drawn by itself."""
     heads: Cells
     below: Callable[[AnalysisModel], Sequence[str]] = lambda _: ()
     """Text below the rows."""
@@ -72,7 +72,7 @@ class Pane:
     wraps: bool = False
     """Whether its last column is prose, which wraps instead of being cut."""
     block: int = 0
-    """The first of its last columns, if they belong together and are not separated; else 0."""
+    """Index of the first of the last columns, if these are shown all or not at all; else 0."""
 
 
 def _format_figure(value: float, digits: str = ".4g") -> str:
@@ -243,7 +243,7 @@ PANES: Mapping[str, Pane] = {
 
 
 def build_frame(name: str, model: AnalysisModel) -> pd.DataFrame:
-    """Return the rows of a pane other than the table; bands with all their properties."""
+    """Return the rows of a pane other than the table as a data frame; bands with all their properties."""
     import pandas as pd
 
     if name == "bands":
@@ -327,7 +327,7 @@ def _build_continuation(
     width: int,
     height: int,
 ) -> list[Line]:
-    """Return the columns that do not fit as a table below the others, with the first one; none without room for all."""
+    """Return the columns that do not fit as a second table, which repeats the first column; none without room."""
     columns_below = [0, *columns]
     wide = [widths[index] for index in columns_below]
     if height < 1 + len(rows) or sum(wide) + _GAP * (len(wide) - 1) > width:
@@ -341,7 +341,7 @@ def _build_continuation(
 
 
 def _count_rows(name: str, model: AnalysisModel, width: int) -> int:
-    """Return the number of lines that show all of a pane."""
+    """Return the number of lines that show all of a pane; for one that wraps, an upper bound."""
     if name == "table":
         return 1 + len(model.rows)
     rows = PANES[name].rows(model)
@@ -358,8 +358,8 @@ def _split_below(
 ) -> tuple[list[str], int]:
     """Return the lines below the rows of a pane, and the number of rows for which there is room.
 
-    All rows come first, if they fit; among many, a sixth of the lines is for what is below them. No line is for what
-    would be cut in it.
+    If all rows fit, the text below them gets the lines that are left, else a sixth of all lines. A text that would be
+    cut to one line is left out.
     """
     spare = height - 1 - len(pane.rows(model))
     texts = pane.below(model)
@@ -370,7 +370,7 @@ def _split_below(
 
 
 def describe_place(name: str, model: AnalysisModel, chosen: int, width: int, height: int) -> str:
-    """Return which row of a pane other than the table is selected, where not all of them fit; else nothing."""
+    """Return the number of the selected row in a pane other than the table; empty if all rows are in view."""
     count = len(PANES[name].rows(model))
     fits = count <= _split_below(PANES[name], model, width, height)[1]
     return "" if fits else f"↑↓ row {chosen + 1:,} of {count:,}"
@@ -379,9 +379,9 @@ def describe_place(name: str, model: AnalysisModel, chosen: int, width: int, hei
 def _choose_columns(
     pane: Pane, rows: Sequence[Cells], width: int
 ) -> tuple[list[int], list[int], int]:
-    """Return the columns that are shown, the widths of all of them, and the gap between two.
+    """Return the columns that are shown, the widths of all columns, and the gap between two.
 
-    Where they do not all fit, the gap is smaller, and a first column that is the same in all rows is left out.
+    If not all columns fit, a first column with the same text in all rows is left out, and then the gap is made smaller.
     """
     widths = [max(map(len, column)) for column in zip(pane.heads, *rows, strict=True)]
     filled = [index for index in range(len(widths)) if any(row[index] for row in rows)]
@@ -409,7 +409,7 @@ def _build_rows(
 
 
 def _fit_columns(columns: Sequence[int], widths: Sequence[int], width: int) -> list[int]:
-    """Return the first column, those that fit, and the last one if it is a text that may be cut."""
+    """Return as many columns as fit: the first one in any case; a wide text may be the last one, and is cut."""
     left = width
     seen: list[int] = []
     for index in columns:
@@ -501,7 +501,7 @@ class PaneView(LinesPanel):
             self.styles.max_height = max(_count_rows(self.name_shown, model, width), _MIN_ROWS) + 2
 
     def _compute(self, model: AnalysisModel, pane: str) -> None:
-        """Compute the missing content of a pane, once at a time; that of a small log at once."""
+        """Compute what a pane still lacks, unless a job does it already; for a long log, in the background."""
         names = {"bands": model.list_unsearched, "statistics": model.list_unsummed}.get(
             pane, list
         )()
@@ -539,7 +539,10 @@ def find_bands(model: AnalysisModel, names: Sequence[str]) -> None:
 
 
 def build_band_search(rows: int) -> Search:
-    """Return the search for bands in so many rows: of many, in another process, until this worker is cancelled."""
+    """Return the function that searches a log of that many rows for bands; for a long log, call this in a worker.
+
+    It searches more than `SEARCHED_AT_ONCE` rows in another process, until the worker is cancelled.
+    """
     if rows <= SEARCHED_AT_ONCE:
         return find_plateaus
     worker = get_current_worker()

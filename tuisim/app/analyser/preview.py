@@ -25,9 +25,9 @@ from tuisim.logs.reader import read_beginning, read_first_lines
 
 _ROWS = 30
 _COLUMNS = 60
-"""Cells that are shown."""
+"""Maximum numbers of rows and columns that are shown."""
 _MAX_CELL, _MAX_LINE = 24, 60
-"""Characters of a cell, and of a line of the file."""
+"""Maximum numbers of characters of a cell, and of a line of the file."""
 _FIELDS = {
     "header": "Heading",
     "separator": "Separator",
@@ -40,13 +40,13 @@ _COLUMN_CHOICES = ("header", "separator")
 """Choices that change which columns there are."""
 
 _EXAMPLES = {".": "1.5", ",": "1,5"}
-"""Numbers in place of signs that are hard to see."""
+"""Numbers that are shown in place of decimal signs, which are hard to see."""
 Offers = list[tuple[str, Any]]
-"""What can be chosen: words, and values of `ReadChoices`."""
+"""The options of a list: pairs of a label and a value in `ReadChoices`."""
 
 
 class PreviewDialog(Dialog[ReadChoices]):
-    """Returns how the file is to be read.
+    """The dialog with the first rows of a file; it returns how the file is to be read.
 
     Args:
         file: Its path.
@@ -108,7 +108,7 @@ class PreviewDialog(Dialog[ReadChoices]):
     @on(Select.Changed)
     def _change(self, event: Select.Changed) -> None:
         name = event.select.id or ""
-        # The message may be late: a list of other offers has its first one for a moment.
+        # The message may be late, and new options select their first one for a moment: read the present value.
         chosen: Any = event.select.value
         if chosen == getattr(self._choices, name):
             return
@@ -151,12 +151,12 @@ class PreviewDialog(Dialog[ReadChoices]):
         return "\n".join(self._log.notes)
 
     def _list_offers(self, name: str) -> Offers:
-        """Return what can be chosen; the first is to find it."""
+        """Return the options of a choice; the first one leaves it to the reader to find the value."""
         chosen = getattr(self._choices, name)
         offers = self._list_words(name)
         usual = getattr(NO_CHOICES, name)
         if chosen not in (usual, *dict(offers).values()):
-            # It was named in the shell.
+            # An option in the shell named a value that is not in the list.
             offers.append((str(chosen), chosen))
         is_found = chosen == usual
         label = f"found: {self._find_word(name) or 'none'}" if is_found else "find it"
@@ -176,7 +176,7 @@ class PreviewDialog(Dialog[ReadChoices]):
                 return [(_EXAMPLES.get(word, word), word) for word in WORDS[name]]
 
     def _find_word(self, name: str) -> str:
-        """Return what was found for a choice that nobody made; empty if nothing was."""
+        """Return the value that the reader found for a choice, as a label; empty if it found none."""
         layout = self._log.layout
         form = self._log.form
         match name:
@@ -208,7 +208,7 @@ def _build_rows(log: Log) -> Table:
 
 
 def _describe_role(log: Log, name: str) -> str:
-    """Return what a column was taken for, empty for values."""
+    """Return the role that a column was taken to have, such as `time`; empty for a column of values."""
     layout = log.layout
     if name == layout.time:
         return "time"

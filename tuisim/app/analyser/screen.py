@@ -122,7 +122,7 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         yield self.key_footer
 
     def can_take(self, event: Event) -> bool:
-        """Return whether what a key is meant for is there: the log, unless the key works without one."""
+        """Return whether an event can be handled now; a key that works on the log needs an open one."""
         is_there = self.is_open or not (isinstance(event, Key) and event.key in self._keys_of_log)
         return super().can_take(event) and is_there
 
@@ -153,7 +153,7 @@ class LogScreen(ActionHost, ClosesOnce[None]):
 
     @property
     def model(self) -> AnalysisModel:
-        """The open log; a growing one is another model after each reading.
+        """The model of the open log; each reading of a growing log makes a new one.
 
         Raises:
             LogError: there is none yet.
@@ -203,7 +203,7 @@ class LogScreen(ActionHost, ClosesOnce[None]):
             self.update()
 
     def set_model(self, model: AnalysisModel) -> None:
-        """Show the log that was read, unless another one was requested since."""
+        """Show the log that was read, unless another one was requested since; without samples, open the telemetry."""
         opened = model.opened
         before = self._model
         if opened.request is not self.request:
@@ -236,7 +236,7 @@ class LogScreen(ActionHost, ClosesOnce[None]):
                 self.say(note)
 
     def poll(self) -> None:
-        """Read on when the log has grown; the longer a reading takes, the less often."""
+        """Read the log again if it has grown; the longer a reading takes, the longer the pause before the next one."""
         model = self._model
         if self.job is not None:
             self._show_title(self._describe_progress())
@@ -261,7 +261,7 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         return None if self._model is None else self._model.log.rows
 
     def update(self) -> None:
-        """Update the views that have changed."""
+        """Draw title, footer, pane, chart and world from the model."""
         if self._model is None:
             return
         self._show_title(self._describe_progress())
@@ -285,7 +285,7 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         self.call_after_refresh(self.update)
 
     def show_world(self, is_on: bool) -> None:
-        """Show or hide the world; where there is little room, instead of what is beside the log."""
+        """Show or hide the world; in a narrow terminal it takes the place of the widget beside the log."""
         self.world.display = self.world.is_on = is_on
         if self._beside is not None:
             self._beside.display = not is_on or self.size.width >= _WIDE_COLS
@@ -446,7 +446,7 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         )
 
     def begin(self, task: TableTask) -> None:
-        """Show the name of a background job; results of older jobs are ignored."""
+        """Make a task the current background job and show its label; the result of an older job is ignored."""
         self.give_up()
         self.job = task
         self.update()

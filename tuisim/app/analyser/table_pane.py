@@ -18,7 +18,7 @@ CHOSEN = Style(color=palette.YELLOW, bold=True)
 MAX_CELL = 28
 """Characters of the widest cell."""
 _SAMPLED = 40
-"""Number of rows that determine the width of a table's column, besides the visible ones."""
+"""Number of visible rows, from the first, that determine the widths of the columns."""
 
 
 def build_table_lines(model: AnalysisModel, width: int, height: int) -> list[Line]:
@@ -106,7 +106,7 @@ def _fit_columns(
 def build_heading(model: AnalysisModel, column: str) -> str:
     """Return the heading of a column.
 
-    The column `run` counts the runs of the log: beside the number of a stored run in the title, its heading says so.
+    The title has the numbers of stored runs; the column `run` counts the runs in the log, so its heading says that.
     """
     return f"{column} (in log)" if column == "run" and model.opened.runs else column
 

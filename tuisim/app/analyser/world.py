@@ -54,7 +54,7 @@ class RunWorld:
         spec: The run's specification.
         mat: Its mat.
         run: The run, if it is in the store.
-        log: The source of the poses otherwise.
+        log: The log that has the poses if the run is not in the store.
     """
 
     def __init__(self, spec: RunSpec, mat: Mat, run: StoredRun | None, log: Log) -> None:
@@ -145,7 +145,7 @@ def load_world(opened: OpenedLog, run: int) -> RunWorld | None:
 
 
 class WorldPane(Vertical):
-    """The column at the right."""
+    """The column beside the log: the world, the program around the line that printed the sample, the pixels seen."""
 
     DEFAULT_CSS = f"""
     WorldPane {{ width: 34%; min-width: 30; }}
@@ -199,7 +199,7 @@ class WorldPane(Vertical):
         self.show(model)
 
     def show(self, model: AnalysisModel) -> None:
-        """Show the row of the cursor."""
+        """Show the world at the row of the cursor; the mat of a run is prepared in the background first."""
         self._model = model
         if not model.log.rows or not self.display:
             return

@@ -66,7 +66,7 @@ def draw_test_card(cols: int, rows: int, cell_px: tuple[int, int]) -> Pixels:
 
 
 class _TestCard(PixelView):
-    """The picture in the set that is highlighted."""
+    """The test picture, drawn with the highlighted set of glyphs."""
 
     def __init__(self, best: CellSet) -> None:
         super().__init__()
@@ -75,7 +75,7 @@ class _TestCard(PixelView):
 
     @property
     def graphics(self) -> None:
-        """Glyphs are shown even where pixels are possible."""
+        """None: glyphs are shown even where the terminal can draw pixels."""
 
     @property
     def cell_set(self) -> CellSet:
@@ -96,7 +96,7 @@ class _TestCard(PixelView):
 
 
 class CellsCard(ListDialog):
-    """Returns the name of the chosen set.
+    """The dialog with the test card; it returns the name of the chosen set.
 
     Args:
         current: What is set now.

@@ -65,7 +65,7 @@ class ChoiceGroup:
 def list_files(
     suffixes: Iterable[str], fits: Callable[[Path], object] | None = None
 ) -> ChoiceGroup:
-    """Return the files in the current folder but hidden ones.
+    """Return the files in the current folder, without hidden ones, as a group of choices.
 
     Args:
         suffixes: With their dots.
@@ -95,12 +95,12 @@ def _is_readable(fits: Callable[[Path], object], path: Path) -> bool:
 
 
 class ListDialog(Dialog[str]):
-    """A list, usually with a field for a path. Its result is what was chosen or typed."""
+    """A dialog with a list, usually with a field for a path; it returns what was chosen or typed."""
 
     BINDINGS: ClassVar[list[BindingType]] = [*MOVE_KEYS]
 
     def on_mount(self) -> None:
-        # What was said before would cover the lowest rows of a small window.
+        # Earlier notices would cover the lowest rows of a small window.
         self.app.clear_notifications()
         self.query_one(OptionList).focus()
 
@@ -122,7 +122,7 @@ class ListDialog(Dialog[str]):
         self.choose(event.option.id or "")
 
     def choose(self, value: str) -> None:
-        """Return what was chosen from the list."""
+        """Close the dialog, and return the value that was chosen."""
         self.dismiss(value)
 
     @on(Input.Submitted)
@@ -145,12 +145,12 @@ class ListDialog(Dialog[str]):
         return typed
 
     def report_unread(self, error: TuisimError) -> None:
-        """Say why nothing can be chosen by what was typed, which stays to be corrected."""
+        """Say what is wrong with the typed text, which stays in the field."""
         self.app.notify(shorten_error(error), severity="error", markup=False)
 
 
 class Chooser(ListDialog):
-    """Returns the name or the path that was chosen. What is typed searches the list, and may be a path.
+    """The dialog that returns a name or a path. What is typed searches the list, and may be a path.
 
     Args:
         title: Title of the dialog.
@@ -193,13 +193,13 @@ class Chooser(ListDialog):
         yield Static(id="message", markup=False)
 
     def field(self) -> Input:
-        """Return the field."""
+        """Return a new field, for words to search for or a path."""
         return Input(
             placeholder=f"Search, or the {self._path_hint}", compact=True, select_on_focus=False
         )
 
     def build_list(self) -> OptionList:
-        """Return the list."""
+        """Return the list of all groups, with the current value highlighted."""
         listed = OptionList(*self._build_options(self._groups))
         names = [option.id for option in listed.options]
         if self._current in names:
@@ -247,7 +247,7 @@ class Chooser(ListDialog):
             )
 
     def clear_preview(self) -> None:
-        """Show nothing of what was chosen before."""
+        """Remove the preview of the entry that was highlighted before; a plain list has none."""
 
     def _search_groups(self, typed: str) -> Sequence[ChoiceGroup]:
         if not (self._suffixes and is_path(typed)):
@@ -292,7 +292,7 @@ class Chooser(ListDialog):
         return self._read(typed)
 
     def report_unread(self, error: TuisimError) -> None:
-        """Choose what the search has found; without that, say what is wrong."""
+        """Choose the entry that the search has highlighted; if there is none, say what is wrong."""
         listed = self.query_one(OptionList)
         if listed.highlighted is None:
             self.say(shorten_error(error), wrong=True)
@@ -312,7 +312,7 @@ def search_groups(groups: Iterable[ChoiceGroup], typed: str) -> list[ChoiceGroup
 
 
 def find_best_match(groups: Iterable[ChoiceGroup], typed: str) -> str:
-    """Return the value of the entry that a text means: whose name begins with it, else has it, else the first one."""
+    """Return the value of the first entry whose name begins with a text; else contains it; else of the first entry."""
     entries = [entry for group in groups for entry in group.entries]
     prefix = typed.lower()
     return min(
@@ -421,11 +421,11 @@ MAX_NAME_COLUMNS = 32
 
 
 _STALE_S = 0.15
-"""How long the picture of another mat may stand beside the title of the chosen one."""
+"""Seconds for which the picture of another mat may stay beside the title of the chosen one."""
 
 
 class MatPicker(Chooser):
-    """Returns the name of the chosen mat, or the path of an image.
+    """The dialog that returns the name of a mat, or the path of an image.
 
     Args:
         current: The current mat, as named in a specification.
@@ -538,6 +538,6 @@ class _MatPicture(PixelView):
 
 
 def find_field_view(view: PixelView) -> Viewport:
-    """Return the view of the whole field in the finest points of a widget."""
+    """Return the viewport in which a widget shows the whole field, in its finest points."""
     cell = view.choose_cell(view.graphics)
     return fit_field(cell.cols * view.size.width, cell.rows * view.size.height, cell)

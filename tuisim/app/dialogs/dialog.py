@@ -63,7 +63,7 @@ _TRANSPARENT = Color(0, 0, 0, 0)
 
 
 def _strip_links(strip: Strip) -> Strip:
-    """Return a part of the screen below a dialog, where nothing can be clicked."""
+    """Return a part of the screen below a dialog without its links, as nothing there can be clicked."""
     if isinstance(strip, LazyStrip):
         return strip
     return Strip(BackgroundScreen.process_segments(strip, _TRANSPARENT), strip.cell_length)
@@ -112,7 +112,7 @@ class ClosesOnce(HookedScreen[Result], Generic[Result]):
         self.app.post_message(self.Changed())
 
     def can_take(self, event: Event) -> bool:
-        """Return whether what a key is meant for is there; those that follow wait with it."""
+        """Return whether an event can be handled now; a key that cannot waits, as do the keys after it."""
         return self.is_ready and not (
             self._is_at_work and isinstance(event, Key) and event.key != "escape"
         )
@@ -162,11 +162,11 @@ class ClosesOnce(HookedScreen[Result], Generic[Result]):
         return super().dismiss(result)
 
     def _dismiss_later(self, result: Result | None) -> None:
-        # Nobody may await it from the screen's own messages.
+        # Textual refuses to wait for the removal of a screen in a message of that screen.
         self.dismiss(result)
 
     def render_lines(self, crop: Region) -> list[Strip]:
-        """Return what is below the dialog. Textual would make plain text of it, and pictures lose their pixels."""
+        """Return rows of the screen below the dialog; Textual would make plain text of them, without pixels."""
         below = None if self.styles.background.a else self.read_lower_parts(crop)
         if below is None:
             return super().render_lines(crop)
@@ -187,7 +187,7 @@ class Dialog(ClosesOnce[Result], Generic[Result]):
     BINDINGS: ClassVar[list[BindingType]] = [Binding("escape", "leave", "Close", show=False)]
 
     def compose(self) -> ComposeResult:
-        # Textual does so after it has drawn the dialog once.
+        # Textual would set this class only after it has drawn the dialog once.
         self.add_class(max(height for height in _HEIGHTS if height[0] <= self.app.size.height)[1])
         frame = Vertical(classes="dialog")
         frame.border_title = self.TITLE_TEXT
@@ -197,7 +197,7 @@ class Dialog(ClosesOnce[Result], Generic[Result]):
 
     @property
     def keys(self) -> tuple[KeyWord, ...]:
-        """Enter, then its own keys that work where the focus is, then Escape; none if the keys of the app work."""
+        """Enter, the dialog's keys that work where the focus is, then Escape; none if the keys of the app work."""
         words = (
             (binding.key.split(","), binding.description.lower())
             for binding in self._collect_bindings()
@@ -221,7 +221,7 @@ class Dialog(ClosesOnce[Result], Generic[Result]):
         ]
 
     async def on_click(self, event: Click) -> None:
-        """Do what the word in the row below that was clicked stands for: a phone may lack its key."""
+        """Press the key whose word was clicked in the footer below the dialog: a phone may lack that key."""
         keys = {
             _shorten_label(key): key
             for binding in self._collect_bindings()

@@ -148,7 +148,7 @@ class _TextList(_List[None], Generic[Entry]):
 
 
 class BreaksDialog(_TextList[Breakpoint]):
-    """The breakpoints."""
+    """The dialog of the breakpoints."""
 
     TITLE_TEXT: str = "Breakpoints"
     HINT: str = "Enter changes · Space switches · Delete removes · Escape closes"
@@ -193,7 +193,7 @@ class BreaksDialog(_TextList[Breakpoint]):
 
 
 class WatchesDialog(_TextList[str]):
-    """The watches."""
+    """The dialog of the watches."""
 
     TITLE_TEXT: str = "Watches"
     HINT: str = "Enter changes · Delete removes · Escape closes"
@@ -214,7 +214,7 @@ def label_pose(pose: Pose) -> str:
 
 
 class SavedPoses(_List[Pose]):
-    """Returns the pose to go to.
+    """The dialog of the saved poses; it returns the pose to go to.
 
     Args:
         here: The current pose of the robot.

@@ -35,7 +35,7 @@ SKELETON_TITLES = {
 
 
 class SkeletonSensor(NamedTuple):
-    """What a sensor of the usual robot tells a program."""
+    """The words with which a new program reads one sensor of the usual robot."""
 
     noun: str
     """The sensor in words."""
@@ -64,7 +64,7 @@ READINGS = {
     ),
     "gyro": SkeletonSensor("gyro", "Angle", "angle", "GyroSensor(INPUT_4)", "< 90", (30, 10)),
 }
-"""By name of its object in the prelude."""
+"""The sensors by the names of their objects in the prelude."""
 
 _LOG = """\
 {drive}.on(SpeedPercent({speeds[0]}), SpeedPercent({speeds[1]}))
@@ -137,7 +137,7 @@ _LISTS = ("mat", "sensor", "skeleton")
 
 
 class NewProgramDialog(Dialog[str]):
-    """Returns the text of a new program.
+    """The dialog that returns the text of a new program.
 
     Args:
         mats: The mats that can be chosen: titles by the word that names one in a magic line.
@@ -213,7 +213,7 @@ class NewProgramDialog(Dialog[str]):
 
 
 def _find_title(titles: Sequence[str], typed: str) -> int | None:
-    """Return the index of the first title that begins with a text, else with its letters in their order; or None."""
+    """Return the index of the first title that begins with a text; else, has its letters in their order; or None."""
     for fits in (lambda title: title.startswith(typed), lambda title: _has_letters(title, typed)):
         if (
             index := next(

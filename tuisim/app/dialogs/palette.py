@@ -19,10 +19,10 @@ from tuisim.terminal.text_runs import cut
 
 _WIDTH = 74
 _BESIDE = 10
-"""Cells of the frame, and those of it that no line has: borders, padding, scroll bar."""
+"""Width of the frame in cells, and how many of them borders, padding and scroll bar take."""
 _SHOW = "show or hide "
 _MIN_ROWS, _OTHER_ROWS = 16, 5
-"""Rows of a long list at least, and those of the frame beside it."""
+"""Minimum number of rows of a long list, and the number of rows of the frame around it."""
 
 
 class Entry(NamedTuple):
@@ -39,11 +39,11 @@ class Entry(NamedTuple):
 
 
 def find_entries(entries: Iterable[Entry], typed: str) -> list[Entry]:
-    """Return the entries that have every word of a text.
+    """Return the entries that contain every word of a text.
 
-    Those come first whose titles begin with it, or name it as what they show or hide; then those with words of the
-    title that begin so, with such letters in title or group, and with such further words. Of equals, those that show or
-    hide something come first.
+    They are ranked by where the words are: the start of the title, or of what it shows or hides; the starts of words of
+    the title; anywhere in title or group; among the further words. Of equals, entries that show or hide something come
+    first.
     """
     words = typed.lower().split()
 
@@ -66,7 +66,7 @@ def find_entries(entries: Iterable[Entry], typed: str) -> list[Entry]:
 
 
 class SearchList(Dialog[str]):
-    """Returns the id of the chosen entry.
+    """The dialog with a list to search; it returns the id of the chosen entry.
 
     Args:
         entries: The list, in its order.
@@ -75,7 +75,7 @@ class SearchList(Dialog[str]):
 
     HINT: str = "type to search · ↑ ↓ and Enter · Escape closes"
     NOTHING: str = "Nothing found"
-    """What to say where the list is empty."""
+    """The message in place of an empty list."""
     BINDINGS: ClassVar[list[BindingType]] = [*MOVE_KEYS]
 
     def __init__(self, entries: Sequence[Entry], current: str = "") -> None:
@@ -127,7 +127,7 @@ class SearchList(Dialog[str]):
             self.handle_unfound(event.value.strip())
 
     def handle_unfound(self, typed: str) -> None:
-        """Enter was pressed where nothing has the words that are typed."""
+        """Handle Enter while no entry matches the typed text; here, do nothing."""
 
     @on(OptionList.OptionSelected)
     def _handle_selection(self, event: OptionList.OptionSelected) -> None:
@@ -152,7 +152,10 @@ GUIDE_PREFIX = "?"
 
 
 class Palette(SearchList):
-    """Returns the id of an action: those that work now come first. Where none is found, words for the guide."""
+    """The command palette: returns the id of an action; if no action matches, words for the guide after `GUIDE_PREFIX`.
+
+    Actions that work now come first.
+    """
 
     TITLE_TEXT: str = "Commands"
     NOTHING: str = (
@@ -181,7 +184,7 @@ class Palette(SearchList):
 
 
 class ThemeChooser(SearchList):
-    """Returns the name of a theme; the one that is selected is shown while one looks.
+    """The dialog that returns the name of a theme; meanwhile, the app has the highlighted one.
 
     Args:
         names: The themes.

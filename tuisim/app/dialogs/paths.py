@@ -42,12 +42,12 @@ def list_completions(typed: str, suffixes: Collection[str]) -> list[tuple[str, s
             completions.append((f"{stem}{file.name}/", f"{file.name}/", ""))
         elif Path(file.name).suffix.lower() in suffixes and not is_companion(Path(file.path)):
             completions.append((f"{stem}{file.name}", file.name, ""))
-    # Files are what is looked for.
+    # Files come before folders: the user looks for a file.
     return sorted(completions, key=lambda entry: entry[0].endswith("/"))
 
 
 def complete_path(typed: str, entries: Collection[tuple[str, str, str]]) -> str:
-    """Return a typed path with what all of its entries have in common after it."""
+    """Return a typed path with the letters that all of its completions have in common after it."""
     values = [value for value, *_ in entries]
     columns = zip(*(value.lower() for value in values), strict=False)
     common = sum(1 for _ in takewhile(lambda letters: len({*letters}) == 1, columns))

@@ -26,14 +26,14 @@ Answer = tuple[str, str]
 
 
 def _compose_answers(answers: Iterable[tuple[str, str, str]]) -> Iterator[Static]:
-    """Yield the row of answers, below a free one: for each an action, its key, and what it does."""
+    """Yield an empty row, and the row of answers: for each an action of the dialog, its key, and what it does."""
     yield Static()
     words = (f"[@click=screen.{action}]  {key}  {does}  [/]" for action, key, does in answers)
     yield Static("   ".join(words), classes="link")
 
 
 class Question(Dialog[str]):
-    """Returns the key of the answer, None on Escape.
+    """The dialog that returns the key of an answer, None on Escape.
 
     Args:
         title: The subject.
@@ -75,7 +75,7 @@ RESTART = "restart"
 
 
 class BranchQuestion(Dialog[str]):
-    """Returns `BRANCH`, `RESTART` or None.
+    """The dialog that asks about a branch; it returns `BRANCH`, `RESTART` or None.
 
     Args:
         branch: The proposed branch.
@@ -135,7 +135,7 @@ class BranchQuestion(Dialog[str]):
 
 
 class LeaveQuestion(Dialog[bool]):
-    """Returns True if the user wants to quit nevertheless."""
+    """The dialog that asks whether to quit during a run; it returns True to quit."""
 
     TITLE_TEXT: str = "Quit?"
     HINT: str = "y quits · n stays"
@@ -219,7 +219,7 @@ def build_form_table(forms: Sequence[Form]) -> Static:
 
 
 class LinePrompt(Dialog[bool]):
-    """Returns True once the action has been carried out.
+    """The dialog that asks for a line of text; it returns True once the line has been applied.
 
     Args:
         title: Title of the dialog.
@@ -269,7 +269,7 @@ class LinePrompt(Dialog[bool]):
             yield build_form_table(self._forms)
 
     def on_mount(self) -> None:
-        # It would cover a dialog at the bottom.
+        # A notice would cover a dialog at the bottom.
         self.app.clear_notifications()
 
     @on(Input.Submitted)
@@ -279,7 +279,7 @@ class LinePrompt(Dialog[bool]):
             self._do(event.value.strip())
         except TuisimError as error:
             self.say(str(error), wrong=True)
-            # What is wrong takes their place, so that the dialog covers no more than before.
+            # The message takes the place of the forms, so that the dialog covers no more than before.
             self.query("#forms").remove()
             # The next key replaces the line, an arrow key corrects it.
             event.input.action_select_all()

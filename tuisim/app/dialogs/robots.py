@@ -64,7 +64,7 @@ def build_robot_picker(plan: NextRun) -> RobotPicker:
 
 
 class RobotPicker(Chooser):
-    """Returns the name or the path of the chosen robot, or `PROGRAM_ROBOT`.
+    """The dialog that returns the name or the path of a robot, or `PROGRAM_ROBOT`.
 
     Args:
         groups: The list.
@@ -194,7 +194,7 @@ def draw_robot_picture(
     picture[:] = (255, 255, 255) if mono else _PAPER_RGB
     outline = build_outline(robot)
     if (sonar := robot.ultrasonic) is not None:
-        # The world shows its rays instead.
+        # The outline lacks this sensor, as the world draws its rays.
         outline = replace(
             outline, other_sensors_mm=(*outline.other_sensors_mm, (sonar.x_mm, sonar.y_mm))
         )

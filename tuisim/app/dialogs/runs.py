@@ -71,7 +71,7 @@ def _format_date(run: RunInfo) -> str:
 
 
 _COLUMNS = {"run": 5, "when": 11, "program": 12, "mat": 10, "end": 9, "s": 6, "samples": 7}
-"""Columns of the list, with a note behind them, and their cells."""
+"""Columns of the list and their widths in cells; a note may follow them."""
 _NUMBERS = ("run", "s", "samples")
 """Columns whose texts stand at the right."""
 _LEFT_OUT = {
@@ -80,7 +80,7 @@ _LEFT_OUT = {
     47: ("when", "mat", "samples"),
     0: ("when", "mat", "s", "samples"),
 }
-"""What a terminal of so many columns has no room for."""
+"""Columns of the list that are left out, by the least number of columns of the terminal."""
 _MIN_NOTE_COLUMNS = 100
 """Columns of a terminal from which the list has notes."""
 
@@ -135,8 +135,9 @@ def parse_branch_root(run: RunInfo) -> int | None:
 
 
 def find_likeliest(listed: Sequence[RunInfo], this: RunInfo) -> int:
-    """Return the place in a list of the run with which another one is compared most often: the run that it branched off
-    from, else the first of the same program, else the first of all.
+    """Return the index of the run that another run is most often compared with.
+
+    It is the run from which that one branched off, else the first of the same program, else the first of all.
     """
     root = parse_branch_root(this)
     likely = [index for index, run in enumerate(listed) if run.number == root]
@@ -145,7 +146,7 @@ def find_likeliest(listed: Sequence[RunInfo], this: RunInfo) -> int:
 
 
 class RunChooser(ListDialog):
-    """Returns the id of the chosen run.
+    """The dialog of the stored runs; it returns the id of the chosen one.
 
     Args:
         compared: The run to compare the chosen one with, if any.
@@ -224,7 +225,7 @@ class RunChooser(ListDialog):
             return
         work = partial(_draw_path, self._looked_at, find_field_view(view), view.ground_rgb)
         show = partial(self._show_way, self._looked_at)
-        # The list says of each run how it ended, and opening it says what is wrong.
+        # A path that cannot be drawn needs no message here: opening the run says what is wrong.
         background.run(self, work, show, lambda _: show(None), group="way", exclusive=True)
 
     def _show_way(self, run_id: str, picture: Pixels | None) -> None:
@@ -262,7 +263,7 @@ def _load_runs() -> list[RunInfo]:
 
 
 class RunsChooser(RunChooser):
-    """Returns the ids of one or several runs, separated by blanks."""
+    """The dialog that returns the ids of one or several runs, separated by blanks."""
 
     TITLE_TEXT: str = "Open runs"
     HINT: str = "Enter opens · space marks several · type to search · Escape closes"
@@ -311,7 +312,7 @@ class RunsChooser(RunChooser):
 
 
 class Differences(Dialog[bool]):
-    """Returns True if the user wants to go to the first difference.
+    """The dialog with the differences of two runs; it returns True to go to the first one.
 
     Args:
         first: Name of the first run.

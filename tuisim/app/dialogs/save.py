@@ -83,7 +83,7 @@ class FileDialog(Dialog[Path]):
         return path
 
     def write(self, target: Path) -> None:
-        """Write the file, then call `written` or `failed`.
+        """Write the file, then close the dialog or call `report_failure`.
 
         Raises:
             TuisimError: it cannot be written.
@@ -220,7 +220,7 @@ class ExportDialog(FileDialog):
         return f"[@click=screen.switch]{_KINDS[self._telemetry]}[/]"
 
     def resolve_target(self, path: Path) -> Path:
-        """Raise a TuisimError for a file that no exporter can write."""
+        """Return the target; raise a TuisimError for a file that no exporter can write."""
         return check_target(path)
 
     def write(self, target: Path) -> None:

@@ -46,11 +46,11 @@ _MAX_NUMBERED = 9
 
 
 class Welcome(Dialog[Begin | Recent]):
-    """Returns what to begin with, or to go on with; None on Escape.
+    """The welcome; it returns the way to begin, or the recent work to continue; None on Escape.
 
     Args:
         is_first: Whether this is the first start, so that the text says what the app is.
-        find: Returns what there is to go on with; called in a thread.
+        find: Returns the recent work to list; called in a thread.
     """
 
     TITLE_TEXT: str = "Welcome to tuisim"
@@ -80,7 +80,7 @@ class Welcome(Dialog[Begin | Recent]):
 
     def on_mount(self) -> None:
         actions = self.app.ACTIONS if isinstance(self.app, ActionHost) else {}
-        # What is seen in the footer, and told above it, works.
+        # The keys in the footer, and those named in the text above it, work here, too.
         for name, action in actions.items():
             for key in (
                 action.key.split(",") if action.footer or f"{{{name}}}" in _KEY_WORDS else ()
@@ -92,7 +92,7 @@ class Welcome(Dialog[Begin | Recent]):
         )
 
     def _add(self, entries: list[Recent]) -> None:
-        """List what there is to go on with; the likeliest is chosen."""
+        """Add recent work to the list, and highlight its first entry."""
         if not entries:
             return
         listed = self.query_one(OptionList)

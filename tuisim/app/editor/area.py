@@ -125,9 +125,9 @@ class CodeArea(TextArea):
         self.is_completing = False
         """Whether names are looked up: keys wait for them, however long it takes."""
         self.unknown_word: str | None = None
-        """What nothing that may follow begins with, until something else is typed."""
+        """The word at the cursor if no possible name begins with it, until something else is typed."""
         self.path = ""
-        """Of the program's file, or its name."""
+        """Path of the program's file, or its name."""
         self.candidates = CandidateList()
         """The list of names; it takes its keys from here."""
         self._unknown: tuple[UnknownName, ...] = ()
@@ -415,7 +415,7 @@ class CodeArea(TextArea):
         if event.character in _NAME_ENDINGS and self.candidates.can_complete(
             self._find_word() or ""
         ):
-            # Who types on has not waited for the list.
+            # The user types on instead of choosing from the list.
             self.replace_word(self.candidates.take_key("enter"))
         elif self.candidates.takes_key(event.key):
             self._consume_event(event)
@@ -443,7 +443,7 @@ class CodeArea(TextArea):
             self._consume_event(event)
             self.post_message(self.Wanted(command))
         elif event.key.startswith("alt+"):
-            # The event has a character that nobody has typed.
+            # Textual would insert the character of the event.
             self._consume_event(event)
 
     def _begin_typing(self, event: events.Key) -> None:
@@ -542,7 +542,7 @@ class CodeArea(TextArea):
             self.candidates.filter(word, self._locate_word(word))
 
     def on_blur(self) -> None:
-        """Close the list of names."""
+        """Close the list of names; letters are keys of the app again."""
         self.candidates.close()
         self.await_letters(False)
 

@@ -19,17 +19,17 @@ from tuisim.terminal.text_runs import cut
 CHECK_DELAY_S = 0.5
 """Names are checked when nothing has been typed for this long."""
 ASK_DELAY_S = 0.15
-"""Likewise for the signature, and after a dot for what may follow it."""
+"""The signature, or what may follow a dot, is looked up when nothing has been typed for this long."""
 MAX_LINES = 5000
 """Longer texts are not checked: it would hold up the keys."""
 
 
 class Assistant:
-    """What helps in one text.
+    """Helps to type in one text: marks unknown names, and shows signatures and what may follow a dot.
 
     Args:
         area: The text, with its list of names.
-        changed: Called when there is something else to say.
+        changed: Called when `describe_cursor` may return something else.
     """
 
     def __init__(self, area: CodeArea, changed: Callable[[], None]) -> None:
@@ -45,7 +45,7 @@ class Assistant:
         self._is_asking = self._asks_again = False
 
     def describe_cursor(self, width: int) -> Text:
-        """Return what there is to say at the cursor, in at most so many cells."""
+        """Return the message about an unknown name at the cursor, else the signature of the call, in `width` cells."""
         row, column = self._area.cursor_location
         unknown = next(
             (
@@ -65,7 +65,7 @@ class Assistant:
         """Forget all about another program, and check the names of this one.
 
         Args:
-            path: Of its file, or its name.
+            path: Path of its file, or its name.
         """
         self._area.path = path
         self._signature = None
@@ -75,7 +75,7 @@ class Assistant:
         self.check_names()
 
     def schedule_check(self) -> None:
-        """Follow an edit."""
+        """After an edit, check the names soon, and offer names after a dot."""
         self._check_timer = self._restart_timer(self._check_timer, CHECK_DELAY_S, self.check_names)
         row, column = self._area.cursor_location
         is_after_dot = completion.find_word(self._area.document.get_line(row), column) == ""
@@ -85,7 +85,7 @@ class Assistant:
             )
 
     def follow_cursor(self) -> None:
-        """Follow the cursor."""
+        """After the cursor has moved, shorten the list of names and look up the signature of the call around it."""
         self._area.follow_word()
         row, column = self._area.cursor_location
         if self._area.typing and completion.is_in_call(self._area.document.lines, row, column):
@@ -107,7 +107,7 @@ class Assistant:
             background.start(completion.preload)
 
     def stop(self) -> None:
-        """End what only helps while typing."""
+        """When typing ends, close the list of names and forget the signature."""
         self._area.candidates.close()
         self._signature = None
 

@@ -180,13 +180,16 @@ class CandidateList(Widget):
         self.display = False
 
     def can_complete(self, word: str) -> bool:
-        """Return whether what follows a word means that the chosen name is to be put in, as the word is none itself."""
+        """Return whether a dot or a parenthesis typed after a word puts the chosen name in its place.
+
+        It does so if the user asked for the list, and the word is no whole name itself.
+        """
         return (
             self.is_open and bool(word) and not self.is_offered and not self._has_whole_name(word)
         )
 
     def takes_key(self, key: str) -> bool:
-        """Return whether a key is one of the list's; enter after a whole name begins a line if nobody asked for it."""
+        """Return whether the list handles a key; in an offered list, enter after a whole name begins a line instead."""
         ends_line = key == "enter" and self.is_offered and self._has_whole_name(self._word)
         return self.is_open and key in self._KEYS and not ends_line
 
@@ -194,7 +197,7 @@ class CandidateList(Widget):
         return any(candidate.name == word for candidate in self._shown)
 
     def take_key(self, key: str) -> str:
-        """Do what a key of the list does; return the name that is to be put in, empty if none is yet."""
+        """Handle a key of the list; return the name that is to be put in, empty if the key chooses none."""
         name = ""
         match key:
             case "escape":

@@ -28,9 +28,9 @@ if TYPE_CHECKING:
 Result = TypeVar("Result")
 
 MAX_DESCRIBED = 200
-"""So many candidates get a signature and a line of help; that of a library with many functions takes long."""
+"""Maximum number of candidates with a signature and a line of help, which take long in a large library."""
 MAX_CALL_LINES = 20
-"""A call is looked for so many lines up."""
+"""Number of lines, from the cursor upwards, in which the beginning of a call is looked for."""
 
 _PACKAGE = Path(__file__).resolve().parents[2]
 _WORD_END = re.compile(r"[^\W\d]\w*$")
@@ -61,7 +61,7 @@ _USUAL = (
 _UNUSUAL = frozenset({"mro"})
 _EXTENSIONS = [path for path in sys.path if path.endswith("lib-dynload")]
 _WARM_UP_PLACE = "colorLeft.r", "", 0, len("colorLeft.r")
-"""What it is asked first: an object of the prelude, and what it has."""
+"""The first question to Jedi, as arguments of `find_candidates`: what an object of the prelude has."""
 _asking = Lock()
 
 
@@ -207,17 +207,17 @@ def _is_library_object(kind: Any) -> bool:
 
 
 def is_ready() -> bool:
-    """Return whether it has been asked before, so that it answers at once."""
+    """Return whether Jedi is imported already, so that it answers without delay."""
     return "jedi" in sys.modules
 
 
 def preload() -> None:
-    """Read what every program uses, so that nobody waits for it later. Blocks."""
+    """Let Jedi read what every program uses, so that no key waits for it later. Blocks."""
     find_candidates(*_WARM_UP_PLACE)
 
 
 def _ask_jedi(ask: Callable[[], Result], otherwise: Result) -> Result:
-    """Return what Jedi answers."""
+    """Return the answer of Jedi, or `otherwise` if Jedi fails."""
     try:
         return ask()
     # Jedi has errors of its own with some programs that are not finished.

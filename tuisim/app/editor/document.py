@@ -302,7 +302,7 @@ class Document:
         """
         self.show_program()
         if self._name == NEW_NAME and not self._path:
-            # What has run is worth saving.
+            # A new program that has run counts as unsaved.
             self._saved = ""
         is_applied = self._is_applied
         if is_applied and not self._lacks_mat:
@@ -362,13 +362,13 @@ class Document:
         try:
             self._loader.open_new(text, NEW_NAME)
         except TuisimError as error:
-            # The draft of a magic line that is not finished: it opens without it.
+            # The magic line of the draft is not finished: open an empty program, then put the text in.
             self._app.complain(error)
             self._loader.open_new("", NEW_NAME)
             self._text = text
 
     def write_mat(self, mat: str) -> None:
-        """Write a mat into the magic line, and into the file unless that has to wait for other changes."""
+        """Write a mat into the magic line, and save the program unless it has other unsaved changes."""
         from tuisim.programs.program_file import replace_mat
 
         was_dirty = self.dirty

@@ -18,7 +18,7 @@ from tuisim.guide.search import SearchResult, compile_pattern
 
 _FIRST_LINES = 11
 _LINES = ((9, 1), (6, 1), (3, 1), (3, 0))
-"""Lines of the best answer; of each other, with those between two: as many as leave all in sight, else the fewest."""
+"""Lines of a further answer and of the gap below it: the first pair with which all answers fit, else the last."""
 _EDGES = 3
 """Columns beside the text: a space at each side, and the scroll bar."""
 _MIN_COLUMNS = 20
@@ -33,7 +33,7 @@ _SECTION, _PAGE, _TEXT = (
 
 
 class AnswerList(OptionList):
-    """The answers, the best one first, as many as the window shows; the others below."""
+    """The list of answers, the best one first and longest; the others are as long as leaves all in view."""
 
     def __init__(self) -> None:
         super().__init__(id="answers")

@@ -47,7 +47,7 @@ class KeyPage:
 
 @dataclass(frozen=True, slots=True)
 class Topic:
-    """What belongs to a panel."""
+    """The page of the guide and the groups of keys about a panel."""
 
     page: str = ""
     """Empty for the page with every key."""
@@ -86,9 +86,9 @@ _CORNERS = 4
 """Columns of a frame beside its title."""
 
 _FOUND = Style(bgcolor=palette.CHOSEN)
-"""What a search has found."""
+"""The style of a passage that a search has found."""
 _ROWS_OF_PASSAGE = 6
-"""Of a passage, so many rows at least are in sight."""
+"""Minimum number of rows of a passage that are in view."""
 
 Place: TypeAlias = tuple[str, str]
 """The name of a page, empty for the keys, and a heading in it, empty for its beginning."""
@@ -136,7 +136,7 @@ class _Contents(Tree[Place | None]):
             node.add_leaf(f"→ {load_pages()[other].title}", (other, ""))
 
     def say(self, words: str) -> None:
-        """Say in place of the contents how a search goes."""
+        """Show words about a search in place of the contents."""
         self.clear()
         self.root.add_leaf(words, None)
 
@@ -147,7 +147,7 @@ class _Contents(Tree[Place | None]):
             self.move_cursor(node)
 
     def walk(self) -> list[TreeNode[Place | None]]:
-        """Return every node below the root, those on top first."""
+        """Return every node below the root, level by level."""
         nodes = []
         level = list(self.root.children)
         while level:
@@ -157,7 +157,7 @@ class _Contents(Tree[Place | None]):
 
 
 class _Page(VerticalScroll):
-    """A page as wide as there is room, drawn again at each other width.
+    """A page of the guide, drawn for the width of the widget, and again when that changes.
 
     Args:
         keys: The page with every key.
@@ -216,7 +216,7 @@ class _Page(VerticalScroll):
         self._text.update(
             build_key_table(groups, width).append("\n").append_text(drawn) if groups else drawn
         )
-        # The heading stays in sight where the passage does, too; the end of another passage does not.
+        # Begin with the heading if enough of the passage is in view below it, else with the passage.
         near = row - top < self.scrollable_content_region.height - _ROWS_OF_PASSAGE
         if near:
             first = top
@@ -256,7 +256,7 @@ class GuideScreen(Dialog[None]):
         self._found: list[SearchResult] = []
 
     def can_take(self, event: events.Event) -> bool:
-        """Return whether what a key is meant for is there: the results of the search, where it leads to them."""
+        """Return whether an event can be handled now; a key that leads to the results of a search waits for them."""
         leads_there = isinstance(event, events.Key) and event.key in (
             "enter",
             "down",
@@ -314,7 +314,7 @@ class GuideScreen(Dialog[None]):
 
     def on_resize(self, event: events.Resize) -> None:
         self._arrange(self._page.has_focus)
-        # They may be removed by then.
+        # The widgets may be removed by then, and a query would fail.
         answers, room = self._answers, self.query_one("#both")
         self.call_after_refresh(lambda: answers.fit(room.size))
 
@@ -326,7 +326,7 @@ class GuideScreen(Dialog[None]):
         self._arrange(event.widget is self._page)
 
     def _arrange(self, reading: bool) -> None:
-        """Leave out what has no room beside what is being read; answers have the whole width."""
+        """Show what there is room for beside what is being read; answers have the whole width."""
         columns = self.app.size.width
         searched = bool(self._found)
         self._answers.display = searched and not reading

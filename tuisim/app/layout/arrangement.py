@@ -46,7 +46,7 @@ from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 from tuisim.settings.preferences import get_preference, keep
 
 _MIN_CODE_COLS = 120
-"""From this width on, code is shown beside them."""
+"""In a narrower area, the standard preset shows no code, and beside the debug panel neither chart nor arrays."""
 _MIN_EDITOR_COLS = 110
 """From this width on, the code that is typed in stands beside the world."""
 _MIN_STRIP_COLS = 190
@@ -54,7 +54,7 @@ _MIN_STRIP_COLS = 190
 EDITOR_COLS = 86
 """Columns in which lines of 79 characters are whole."""
 _MAX_WASTE = 0.3
-"""A panel with more empty space beside its mat counts as a poor form."""
+"""A form in which a larger share of the world's panel is empty counts as poor."""
 _POOR = 0.7
 _MIN_FILLED = 0.6
 """A form other than the first of a preset is not chosen if the mat fills less of the world's panel."""
@@ -70,9 +70,9 @@ class Preset(StrEnum):
 
 
 def is_low(preset: Preset, width: int, height: int) -> bool:
-    """Return whether an area has room for few panels: the world in its whole width, or one with long lines or a chart.
+    """Return whether an area is low: it has room for the world in its whole width, or one panel with long lines.
 
-    A lower area shows one panel only.
+    An even smaller area shows one panel only.
     """
     shows_board = (
         preset == Preset.STANDARD and classify_size(width, height + 1) != TerminalSize.SMALL
@@ -279,11 +279,11 @@ def arrange(
 
 
 _STEPPED = ("world", "instrumentation", "debug", "output", "code")
-"""What somebody who steps looks at."""
+"""The panels that a user who steps through a program looks at."""
 
 
 def _is_cramped(width: int, height: int) -> bool:
-    """Return whether code and variables have no room below a world in the whole width, nor beside it."""
+    """Return whether code and variables find room neither below a world in the whole width nor beside it."""
     fits_below = is_tall(width, height) and sum(count_tight_rows(_STEPPED, width)) <= height
     return width < _MIN_CODE_COLS and not fits_below
 
@@ -363,7 +363,7 @@ def make_room(
     """Return the panels to show so that one has room: as they are, else without those beside it, else it alone.
 
     Args:
-        panel: The one.
+        panel: The one that needs room.
         panels: Ids, the most wanted first.
         min_size: Columns and rows that are room enough.
         size: Columns and rows of the screen.
@@ -391,7 +391,7 @@ class KeptLayout:
 
 
 def load_layout(size: TerminalSize) -> KeptLayout:
-    """Return what was kept for a size; what is damaged or unknown is left out."""
+    """Return the stored arrangement for a size of the terminal, without its damaged or unknown parts."""
     size_table = _check_table(get_preference(_NAME)).get(size)
     layout_table = _check_table(size_table)
     layout = KeptLayout()

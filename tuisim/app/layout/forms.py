@@ -38,16 +38,16 @@ _CODE_COLS = 64
 """Columns in which most lines of code are whole, with the values beside them."""
 _CHART_COLS = 80
 _LEAST_CODE_COLS = 46
-"""Columns of the strip of a wide screen in which a chart is read, if so many are left to the code."""
+"""Columns that a chart gets in the strip of a wide screen, if at least so many are left to the code."""
 _LINE_COLS = 80
 _LEAST_CHART_COLS = 64
-"""Columns of code in which lines of an example are whole, and those that the chart then has above the output."""
+"""Columns of code in which lines of an example are whole, and minimum of a chart beside it, above the output."""
 _STACKED_ROWS = 14, 7
 """Rows of such a chart and of the output below it."""
 MAX_TAKEN_ROWS = 7
-"""So many rows such a strip takes from the world."""
+"""Maximum number of rows that such a strip takes from the world."""
 _ERROR_ROWS = 8
-"""Rows of the panels below it, so that *Output* shows an error with its traceback."""
+"""Rows of the panels below code in the whole width, so that *Output* shows an error with its traceback."""
 COLUMN_COLS = 40
 """Columns below the world are not made narrower."""
 _LEAST_TEXT, _MOST_TEXT = 40, 58
@@ -112,7 +112,7 @@ def _build_stacks(columns: Sequence[Sequence[str]], fixed: Mapping[int, int], wi
 
 
 def _strip(panels: Sequence[str], width: int, height: int) -> list[Node]:
-    """Return the bottom strip: panels side by side, as many as fit, the others below the first ones.
+    """Return the bottom strip, none without panels: as many columns as fit, each with one panel or a few stacked ones.
 
     Code that would be narrow has the whole width, above the others, if all of them are high enough.
     """
@@ -137,7 +137,7 @@ def _strip(panels: Sequence[str], width: int, height: int) -> list[Node]:
 
 
 def _needs_stack(panels: Sequence[str], width: int, height: int) -> bool:
-    """Return whether lines of code are whole beside the chart above the output, but not beside both."""
+    """Return whether lines of code are whole beside a chart above the output, but not beside these two side by side."""
     beside = _LINE_COLS + _CHART_COLS + PANELS["output"].min_cols
     return (
         set(panels) == {"output", "code", "chart"}
@@ -154,7 +154,7 @@ def _build_output_stack(width: int) -> Node:
 
 
 def _find_strip_shares(stacks: Sequence[Node], width: int) -> list[float]:
-    """Return the shares of a strip in which code would leave little to the chart; none for the usual ones."""
+    """Return the shares of the width in a strip where code would leave little to the chart; none for the usual ones."""
     if not {"chart", "code"}.issubset(stacks) or not {"chart", "code", "output"}.issuperset(stacks):
         return []
     columns = {"chart": _CHART_COLS, "output": PANELS["output"].min_cols}
@@ -178,7 +178,10 @@ def _split_side(side: Sequence[str], height: int) -> tuple[list[str], list[str]]
 
 
 def build_wide(panels: Sequence[str], width: int, height: int) -> Node:
-    """The world above the bottom strip, and a column beside both; a lesson has that column, as far as there is room."""
+    """Return the world above the bottom strip, and a column beside both.
+
+    With a lesson in the column, other panels move from there to the strip if it has room for them.
+    """
     side, strip, main = (
         select_panels(panels, where)
         for where in (PanelPlace.SIDE, PanelPlace.BOTTOM, PanelPlace.MAIN)
@@ -216,13 +219,13 @@ _CODE_STRIP_ROWS = 16
 screen."""
 _CHART_ROWS = 10
 _CHART_SHARE = 5 / 8
-"""Of the width, beside the output."""
+"""Share of the width that the chart gets beside the output."""
 _MAX_EMPTY_ROWS = 3
-"""The readings beside the world make it so much higher than its shape at most."""
+"""Maximum number of rows by which readings beside the world make it higher than its mat needs."""
 
 
 def build_board(panels: Sequence[str], width: int, height: int) -> Node:
-    """The world with readings beside it, and below both a strip with the chart; the wide form without these three."""
+    """Return the world with readings beside it above a strip with the chart; else, or without room, the wide form."""
     side = select_panels(panels, PanelPlace.SIDE)
     main = select_panels(panels, PanelPlace.MAIN)
     roomy = [panel for panel in ("code", "brick") if panel in panels]
@@ -295,7 +298,7 @@ def _build_column(panels: Sequence[str], width: int, height: int) -> Node:
 
 
 def build_below(panels: Sequence[str], width: int, height: int) -> Node:
-    """The world in the whole width, and everything else in columns below it."""
+    """Return the world in the whole width, and everything else in columns below it."""
     side, strip, main = (
         select_panels(panels, where)
         for where in (PanelPlace.SIDE, PanelPlace.BOTTOM, PanelPlace.MAIN)
@@ -339,13 +342,13 @@ _LINE_ROWS = 5
 _ROOMY = ("code", "chart", "brick")
 """Panels that get the whole width of a low screen."""
 _MAX_YIELDED_ROWS = 2
-"""So many rows it leaves to those beside the world, if they find no room otherwise."""
+"""Maximum number of rows that such a panel leaves to those beside the world, if they find no room otherwise."""
 _FAIR_ROWS = 22
-"""From this height on, such a panel shows enough beside a world, even if others find no room."""
+"""From this height of the screen on, such a panel keeps its rows, even if the panels above it find too few."""
 
 
 def build_low(panels: Sequence[str], width: int, height: int) -> Node:
-    """The world in the whole width, or above a panel that needs it; readings and output below or beside it."""
+    """Return the world in the whole width, or above a panel that needs it; readings and output below or beside it."""
     roomy = [panel for panel in _ROOMY if panel in panels]
     beside = [
         panel for panel in (*select_panels(panels, PanelPlace.SIDE), "output") if panel in panels
@@ -390,7 +393,7 @@ def _list_read_rows(panels: Sequence[str]) -> tuple[int, ...]:
 
 
 def _stack_readings(panels: Sequence[str], height: int) -> Node:
-    """Return stacked panels; if there is room, the pose is in sight."""
+    """Return stacked panels; if there is room, the readings get a row for the pose."""
     column = join_nodes(Axis.ROWS, panels)
     if isinstance(column, str) or count_min_rows(column) >= height:
         return column
@@ -409,7 +412,13 @@ def _sum_fair_rows(panels: Sequence[str]) -> int:
 
 
 def build_halves(first: Sequence[str], second: Sequence[str], share: float) -> Form:
-    """Return the form with two columns, of these panels in this order; further ones go below them."""
+    """Return the form with two columns of these panels, in this order; further panels go below them.
+
+    Args:
+        first: Panels of the left column.
+        second: Panels of the right column.
+        share: Of the width, for the left column; 0 gives the right one the width of the side column.
+    """
 
     def build_form(panels: Sequence[str], width: int, height: int) -> Node:
         if is_tall(width, height) and width < 2 * COLUMN_COLS:

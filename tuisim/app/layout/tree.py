@@ -36,7 +36,7 @@ class Split:
     shares: tuple[float, ...] = ()
     """Share of the width of each part, for parts side by side; the sum is 1."""
     least: tuple[int, ...] = ()
-    """Rows that each part gets at least, for parts one above the other; none for what its panels need."""
+    """Rows that each part gets at least, for parts one above the other; if empty, what its panels need."""
 
 
 Node = str | Split
@@ -157,7 +157,7 @@ def _divide_columns(split: Split, width: int) -> list[int]:
 
 
 def _divide_rows(split: Split, width: int, height: int, rank: Callable[[Node], int]) -> list[int]:
-    """Divide rows: what each part needs, the world's shape, what is fair, what is good; the rest to what grows most."""
+    """Return the rows of each part: what it needs; by rank, what is fair, then good; the rest to what grows most."""
     rows = _list_min_rows(split)
     spare = height - sum(rows)
     order = sorted(range(len(rows)), key=lambda index: rank(split.parts[index]))
@@ -177,7 +177,7 @@ def _divide_rows(split: Split, width: int, height: int, rank: Callable[[Node], i
 
 
 def _divide_extent(split: Split, box: PanelBox, rank: Callable[[Node], int]) -> list[int]:
-    """Return the extent of each part, which is at least what it needs."""
+    """Return the rows or columns of each part of a split, at least what the part needs."""
     rows = split.axis == Axis.ROWS
     needs = _list_min_rows(split) if rows else [count_min_columns(part) for part in split.parts]
     extent = box.height if rows else box.width

@@ -58,7 +58,7 @@ class NextRunPanel(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class PanelInfo:
-    """One line of `PANELS`. Rows and columns include the border."""
+    """What the app knows of a panel without importing it: key, place and sizes. Rows and columns include the border."""
 
     id: str
     title: str
@@ -79,7 +79,7 @@ class PanelInfo:
     grows: bool = False
     """Whether it has a use for more rows than the preferred ones."""
     min_cols: int = 24
-    """Beside another one it is not made narrower. In *Output* a printed fraction is one line."""
+    """Minimum width beside another panel; that of *Output* has room for a printed fraction in one line."""
 
     def load(self) -> type[Panel]:
         """Import the panel's class."""

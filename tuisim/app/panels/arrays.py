@@ -46,7 +46,7 @@ class _DiscPicture(PixelView):
 
 
 class _Disc(Widget):
-    """A disc with its lines."""
+    """The disc of one sensor, and the lines about it."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -99,7 +99,7 @@ class Arrays(Widget):
         self.call_after_refresh(self._draw)
 
     def render(self) -> str:
-        """Return what stands there without any disc."""
+        """Return the text of a panel without discs."""
         if self._snapshot is not None and not self._snapshot.spec.robot.color_sensors:
             return "The robot has no colour sensor"
         return "" if self._discs else "Preparing the mat"

@@ -132,7 +132,7 @@ class Brick(LinesPanel, can_focus=True):
         return frozenset((*self._tapped, *self._latched, *filter(None, [self._clicked])))
 
     def _has_program(self, name: str) -> bool:
-        """Return whether a live program is in view, for which a button can be pressed."""
+        """Return whether a live program is in view; if not, post the press, so that the app explains that."""
         if (
             self._snapshot is not None
             and self._snapshot.state in IN_RUN
@@ -232,7 +232,7 @@ class Brick(LinesPanel, can_focus=True):
             self.release_mouse()
 
     def on_mouse_release(self) -> None:
-        """Release the button: a dialog has captured the mouse."""
+        """Release the button that was clicked, because a dialog has captured the mouse."""
         if self._clicked:
             self._release_clicked()
 

@@ -76,7 +76,7 @@ class Chart(LinesPanel, can_focus=True):
         self._light = PLAIN_LIGHT
         self._is_at_rest = False
         self._spanned: object = None
-        """What the bands were found in."""
+        """The data in which the bands were found last."""
         self._throttle = Throttle(self, CHART_PERIOD_S, self._draw)
 
     def append(
@@ -146,7 +146,7 @@ class Chart(LinesPanel, can_focus=True):
         )
 
     def _find_bands(self) -> None:
-        """Find the bands of the chosen trace, or of the first one that has several, while nothing is added."""
+        """Find the bands of the chosen trace, or of the first trace with several; none while the run goes on."""
         chosen = self._find_chosen()
         if chosen is None or not self._is_at_rest:
             self._spanned = None
@@ -287,7 +287,7 @@ class Chart(LinesPanel, can_focus=True):
             self.border_subtitle = words
 
     def copy_text(self) -> Copied | None:
-        """Return the values of all traces at the pointer, or at the cursor; without both, None."""
+        """Return the values of all drawn traces at the pointer, else at the cursor; None without both, or any trace."""
         time_s = self._state.cursor_s if self._pointed_s is None else self._pointed_s
         drawn = self._traces.list_drawn()
         if time_s is None or not drawn:

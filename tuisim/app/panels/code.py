@@ -126,7 +126,7 @@ class Code(Vertical):
 
     @property
     def is_read(self) -> bool:
-        """Whether the cursor in the text is what the arrow keys move."""
+        """Whether the text has the focus, so that the arrow keys move its cursor."""
         return self._area.has_focus
 
     @property
@@ -176,7 +176,7 @@ class Code(Vertical):
 
     @property
     def differs(self) -> bool:
-        """Whether a run of this program is on with another text."""
+        """Whether a run of this program is in view that runs another text than the one shown."""
         tells = self._run_lines is not None and self._tells_run and self._in_run
         return tells and self._run_lines != source_lines(self._shown)
 
@@ -255,7 +255,7 @@ class Code(Vertical):
             self._area.move_to_code(self.error_line)
 
     def show(self, snapshot: Snapshot) -> None:
-        """Highlight the line during which time passes."""
+        """Highlight the line that the program is at; while it runs, move the highlight at most once in `LIT_GAP_S`."""
         in_run = snapshot.state not in (RunPhase.IDLE, RunPhase.ENDED) or snapshot.past
         if in_run != self._in_run:
             self._in_run = in_run
@@ -281,7 +281,7 @@ class Code(Vertical):
         self._stands = stands
         self.show_line(line)
         if (lit := self._find_shown_line(line)) and not self.typing and stands:
-            # From here the arrow keys go on.
+            # The arrow keys go on from this line.
             self._area.move_to_code(lit)
 
     def show_line(self, line: int) -> None:
@@ -309,7 +309,7 @@ class Code(Vertical):
     def _show_values(self) -> None:
         pause = self._pause
         values = {}
-        # Those of another instant are not shown.
+        # Values of another instant are not shown.
         if pause is not None and self._run_lines is not None and pause.paused.tick == self._tick:
             of_run = map_line_values("\n".join(self._run_lines), pause.inspected)
             values = {

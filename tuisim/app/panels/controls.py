@@ -16,7 +16,7 @@ _LABEL_CELLS = 9
 
 
 class Controls(ActionWords, can_focus=False):
-    """Run, Stop and Pause, speed, program, mat, profile, seed, pen and state."""
+    """The simulator controls panel: Run, Stop, Pause, speed, program, mat, profile, seed, pen and state."""
 
     COMPONENT_CLASSES: ClassVar[set[str]] = {
         "controls--button",

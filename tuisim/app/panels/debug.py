@@ -116,7 +116,7 @@ class Debug(LinesPanel, can_focus=True):
 
 
 def _read_module_line(paused: Paused) -> str:
-    """Return the line of a module beside the program; empty for the program itself, or if it cannot be read."""
+    """Return the paused line of a module beside the program; empty in the program itself, or if it cannot be read."""
     if not paused.file:
         return ""
     linecache.checkcache(paused.file)

@@ -101,7 +101,7 @@ def _build_sensor_lines(now: Snapshot, width: int) -> list[Line]:
 
 
 def _build_tall_lines(now: Snapshot, width: int, height: int) -> list[Line]:
-    """Return all lines, those of motors with what their drivers know; none if that is nothing, or they do not fit."""
+    """Return all lines, those of motors with the values of their drivers; none without such values, or without room."""
     drivers = [build_driver_line(values, width) for values in now.instant.motors]
     if not drivers:
         return []
@@ -157,9 +157,10 @@ def _build_further_line(column: str, value: float, width: int) -> Line:
 
 
 def _build_columns_text(now: Snapshot, width: int, height: int) -> list[Line]:
-    """Return the readings in columns: with speeds and colour names if all fit, then as many as there are.
+    """Return the readings in columns, with as much detail as the width allows.
 
-    The pose goes before names of colours, speeds go before the pose.
+    If not all fits, the names of colours are left out, else the pose, else both, else the speeds, too; then whole
+    columns.
     """
     for detail, with_pose in ((2, True), (1, True), (2, False), (1, False), (0, False)):
         columns, sensing = _arrange_cells(now, height, detail)

@@ -23,7 +23,7 @@ class LessonPanel(LinesPanel, can_focus=True):
     """The lesson panel.
 
     Args:
-        is_brief: Whether it is beside something whose keys work, with what is to be done in its first row.
+        is_brief: Whether it only accompanies a log, which keeps the keys; its first row is the title of the step.
     """
 
     ALLOW_SELECT = False
@@ -114,11 +114,11 @@ class LessonPanel(LinesPanel, can_focus=True):
         return self._picture.first > 0 or self._picture.below > 0
 
     def set_typing(self, is_typing: bool, is_low: bool = False) -> None:
-        """While the user types in the program, the page keys are the editor's.
+        """Draw the lesson for a user who types in the program, where the page keys are the editor's, or no longer.
 
         Args:
             is_typing: Whether typing begins.
-            is_low: Whether there is little room below the editor: what is to be done comes first then.
+            is_low: Whether there is little room below the editor, so that the title of the step comes first.
         """
         self._is_typing = is_typing
         self._top = -1 if is_typing and is_low else 0

@@ -11,7 +11,7 @@ from tuisim.programs.facts import read_facts
 from tuisim.terminal.text_runs import Line
 
 MAX_NAME_CELLS = 7
-"""So that readings do not move when a sensor sees another colour."""
+"""Cells for the name of a colour, so that readings do not move when a sensor sees another colour."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,12 +33,12 @@ class LightSeen:
 
     @property
     def unit(self) -> str:
-        """What stands behind it."""
+        """The unit behind the value."""
         return f"/{self.reflected_max}" if self.read is LightRead.REFLECTED else "%"
 
 
 def list_seen(now: Snapshot, word: str) -> list[tuple[str, LightSeen | None]]:
-    """Return the number of each colour sensor behind a word, and what it sees; None before the mat is known."""
+    """Return a name for each colour sensor, a word with its number, and what it sees; None before the mat is known."""
     read = read_facts(now.program).light_read if now.program else LightRead.PERCENT
     reflected_max = now.spec.profile.reflected_max
     seen = [now.colors.get(sensor.name) for sensor in now.spec.robot.color_sensors]

@@ -44,7 +44,7 @@ def build_extra_motor_lines(now: Snapshot, width: int) -> list[Line]:
 
 
 def build_driver_line(values: MotorValues, width: int) -> Line:
-    """Return the line of what the driver of a motor knows."""
+    """Return the line with the values of a motor's driver: the speed asked for, the duty and the state."""
     asked_dps, _, duty_pc, state = values
     asked_text = f"{asked_dps:5d}"
     duty = f"{duty_pc:4d}"
@@ -76,7 +76,7 @@ def add_states(lines: list[Line], now: Snapshot, width: int) -> list[Line]:
 
 
 def _describe_motor_state(state: int) -> Run:
-    """Return the state of a motor that tells most."""
+    """Return the most important state of a motor, padded; blanks if it has none."""
     for word in ("stalled", "overloaded", "holding", "ramping", "running"):
         if state & STATE_BITS[word]:
             return word.ljust(_MAX_STATE_CELLS), WARNING if word == "stalled" else VALUE

@@ -61,7 +61,7 @@ class Obstacles(EntryPanel):
         """Posted when the user has edited the obstacles."""
 
         change: Callable[[Boxes], Boxes]
-        """Return the obstacles with this edit, for those of the plan when the message arrives."""
+        """Returns the obstacles with this edit; called with those of the plan when the message arrives."""
 
     @dataclass
     class Marked(Message):

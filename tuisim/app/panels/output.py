@@ -145,7 +145,7 @@ _STYLES = {
 }
 
 _BREAKS = " /\\", "(,._"
-"""Behind which a line breaks, those that read best first."""
+"""The characters after which a line may break, the best ones first."""
 _CARETS = re.compile(r" +[~^]+")
 """A line of a traceback that points at a part of the line above."""
 
@@ -179,9 +179,9 @@ def split_row(row: OutputRow, width: int) -> list[str]:
 
 
 def _find_break(text: str, width: int) -> int:
-    """Return where a text of more letters breaks.
+    """Return where to break a text that is longer than the width.
 
-    Behind a blank or a separator, if no half of the row stays empty; else before a word that has room in one row.
+    It breaks after a blank or a separator if no half of the row stays empty; else before a word that fits in one row.
     """
     good, fair = (
         max(text.rfind(sign, width // 2, width) for sign in signs) + 1 for signs in _BREAKS
@@ -310,7 +310,7 @@ class Log(Widget, can_focus=True):
             thumb = range(start, start + size)
         rows = [(self._find_line(top + y), y in thumb) for y in range(height)]
         if (line := rows[0][0])[1] is Stream.STDERR and _CARETS.fullmatch(line[0]):
-            # It points at nothing.
+            # The line that these carets point at is above the view.
             rows[0] = ("", Stream.STDERR), rows[0][1]
         if not self._all and self._empty_words:
             words = split_row(

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from tuisim.app.snapshot import Snapshot
 
 _FIELDS = dict(zip(("x", "y", "angle"), START_VALUES.values(), strict=True))
-"""By id."""
+"""The values by the id of their field."""
 
 
 def parse_field(field: str, text: str) -> float:
@@ -43,7 +43,7 @@ def parse_field(field: str, text: str) -> float:
 class Positioning(FormPanel, can_focus=True):
     """The positioning panel: X, Y and angle of the robot.
 
-    Its key gives the focus to the panel, in which letters are still keys of the app; enter or tab, to the first field.
+    Its key focuses the panel, where letters are still keys of the app; enter or tab then focuses the first field.
     """
 
     USE = "Enter: type, then place"

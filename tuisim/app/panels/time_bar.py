@@ -73,7 +73,7 @@ class BarTimes:
 
 @lru_cache(maxsize=1)
 def _round_end_s(now_s: int) -> float:
-    """Return where the bar of a run at work ends, which changes at whole seconds only."""
+    """Return the time at which the bar of a run that goes on ends; it changes at whole seconds only."""
     return time_limits(now_s)[1]
 
 
@@ -82,7 +82,7 @@ def format_times(times: BarTimes, width: int) -> str:
 
     Args:
         times: What the bar shows.
-        width: Of bar and text.
+        width: Columns of bar and text.
     """
     time_s, now = (f"{tick / times.tick_hz:.2f}" for tick in (times.tick, times.newest))
     both = f"{time_s:>{len(now)}} of {now} s"

@@ -15,7 +15,7 @@ from tuisim.base.source import PRELUDE_TEXTS
 from tuisim.terminal.text_runs import escape_markup
 
 _PREDEFINED = re.compile(r"^(\w+) = ColorSensor\(INPUT_(\d)\)$", re.MULTILINE)
-"""A name that programs find for a sensor, and its port."""
+"""A line of a prelude that makes a colour sensor: its name and its port."""
 _FRAME = 4
 """Columns of the edge beside a title."""
 
@@ -32,7 +32,7 @@ def build_title(app: App[Any], panel: str, name: str = "") -> str:
 
 
 def _count_columns(panel: str, width: int) -> int:
-    """Return the columns that a panel's title leaves for what it names."""
+    """Return the columns that a panel's title leaves for the name behind it."""
     info = PANELS[panel]
     return width - _FRAME - len(f"{info.key} {info.title}: ")
 
@@ -45,7 +45,7 @@ def name_mat(mat: str, layout: str, width: int) -> str:
 
 
 def name_sensors(now: Snapshot, width: int) -> str:
-    """Return all names of each colour sensor, as many as fit a frame: by number, in the robot, port, in the program.
+    """Return the names of each colour sensor that fit a frame: number, name in the robot, port, name in the program.
 
     Empty if not even the numbers with name and port fit.
     """

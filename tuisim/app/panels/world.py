@@ -43,7 +43,7 @@ _RAY_LAG_PX = 1.0
 smaller move is invisible."""
 
 _PAPER = (255, 255, 255)
-"""Off the mat, where there are no colours: nothing is drawn there."""
+"""The colour around the mat in a terminal without colours: nothing is drawn there."""
 
 _ANY_PEN = PenSpec()
 
@@ -141,7 +141,7 @@ class World(Widget, can_focus=True):
             self._say()
 
     def _say_below(self) -> None:
-        """Say below the picture what the mouse does, where a robot is that is not seen, or what the others are."""
+        """Say below the picture what the mouse does, where a robot off the field is, or what the other robots are."""
         words = "drag to draw or move an obstacle" if self._edits_boxes else ""
         if (now := self._snapshot) is not None and not words:
             room = self.size.width - _FRAME
@@ -178,7 +178,7 @@ class World(Widget, can_focus=True):
         return pieces
 
     def restore_trace(self, pieces: list[Piece]) -> None:
-        """Draw pieces of a trace that was cleared below what has been drawn since."""
+        """Put pieces of a cleared trace back, below what has been drawn since."""
         self._view.trace.put_back(pieces)
         self._view.repaint_scene()
 
@@ -194,7 +194,7 @@ class World(Widget, can_focus=True):
         self._view.repaint_scene()
 
     def copy_text(self) -> Copied | None:
-        """Return the picture in characters without colours, and the readings below it."""
+        """Return the picture in characters without colours, and the readings below it; None before it is drawn."""
         rows = self._view.draw_text()
         return describe_world(self._snapshot, self._mat, rows) if self._snapshot else None
 
@@ -511,7 +511,7 @@ class WorldView(PixelView):
         self.post_message(World.ZoomAsked(steps))
 
     def _turn(self, event: events.MouseEvent, angle_deg: float) -> None:
-        """Turn the robot, if the mouse is over it or drags it: a page that is scrolled leaves it as it is."""
+        """Turn the robot if the mouse is over it or drags it, so that scrolling the page does not turn it."""
         if self._snapshot is None or self._port is None:
             return
         pose = self._held or self._snapshot.instant.pose

@@ -14,7 +14,7 @@ from tuisim.pictures.scene.discs import DiscFace
 from tuisim.terminal.text_runs import Line, Run, cut
 
 FULL_COLS, LARGE_COLS = 20, 40
-"""Columns of a disc of one or two cells a mm; sizes between them show no more."""
+"""Columns of a disc with one or two cells per mm; a size between them would show no more."""
 _LEAST_TEXT_COLS, _MOST_TEXT_COLS = 13, 24
 _MAX_LINES = 5
 _FAIR_ROWS = 6
@@ -77,7 +77,7 @@ def arrange_discs(count: int, cols: int, rows: int) -> Arrangement:
 
 
 def _count_disc_columns(cols: int, high_cols: int) -> int:
-    """Return the columns of a disc in a place of some columns and twice as many rows as given."""
+    """Return the columns of a disc in a place whose height is given in columns, two for each row."""
     side = max(min(cols, high_cols), 0)
     return LARGE_COLS if side >= LARGE_COLS else min(side, FULL_COLS)
 
@@ -124,7 +124,7 @@ def _build_value_line(face: DiscFace, width: int) -> Line:
 
 
 def build_swatch(seen: ColorReading) -> Run:
-    """Return two cells in a colour that is seen, with a line below that is seen where the panel has that colour."""
+    """Return two cells in the colour that a sensor sees, underlined, to be visible on a panel of that colour."""
     return "  ", Style(color=palette.LABEL, bgcolor=Color.from_rgb(*seen.rgb), underline=True)
 
 

@@ -60,7 +60,7 @@ class DebugView:
 
     @property
     def is_elsewhere(self) -> bool:
-        """Whether the instant in view differs from the one that is known here."""
+        """Whether the other panels show another instant than the one whose variables are known."""
         return self.now is not None and self.paused is not None and self.now[0] != self.paused.tick
 
 

@@ -32,7 +32,7 @@ _PENALTY_WORDS = {
     GoalState.MISSED: "kept",
     GoalState.UNKNOWN: "?",
 }
-"""What is said of a goal that takes points off."""
+"""The words for the states of a goal that takes points off."""
 _STATE_COLUMNS = 9
 """Columns of the sign and the word, such as `✗ missed `."""
 _TITLED_ROWS = 9
@@ -57,7 +57,7 @@ class GoalsView:
     """What to do next; empty if there is a run."""
 
     def states(self, tick: int | None) -> tuple[GoalState, ...]:
-        """Return the state of each goal when a tick was complete; None: now."""
+        """Return the state of each goal after a tick; None means now."""
         if not self.judgements:
             return (GoalState.OPEN,) * len(self.goals)
         return tuple(each.state if tick is None else each.at(tick) for each in self.judgements)
@@ -77,7 +77,7 @@ class GoalsPicture:
 
 
 def find_current_goal(states: tuple[GoalState, ...]) -> int:
-    """Return the index of the goal to show in detail unless the user chooses one: the first missed, else open, one."""
+    """Return the index of the goal to show in detail by default: the first missed one, else the first open one."""
     for state in (GoalState.MISSED, GoalState.OPEN):
         if state in states:
             return states.index(state)
@@ -169,7 +169,7 @@ def _build_header(goal: Goal, state: GoalState, width: int) -> Iterator[Line]:
 
 
 def _detail(judgement: Judgement, state: GoalState, width: int) -> Iterator[Line]:
-    """Yield what is most useful first, for there may be few rows."""
+    """Yield the text about one goal, the most useful lines first, for there may be few rows."""
     goal = judgement.goal
     line = f", line {judgement.line}" if judgement.line else ""
     match state:

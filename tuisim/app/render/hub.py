@@ -29,7 +29,7 @@ _PRESSED = Style(color=palette.BLACK, bgcolor=palette.PRESSED, bold=True)
 _SYMBOLS: Final = {"left": "◀", "enter": "●", "right": "▶", "up": "B"}
 """The buttons by their names in the session, from the left; the last one is that of Bluetooth."""
 _LIGHTS: Final = {"remote": REMOTE_LIGHT_NAMES, "xbox": XBOX_LIGHT_NAMES}
-"""The LEDs of what can be connected, by the keys of `CONTROLLERS`."""
+"""The LEDs of the controllers that can be connected, by the keys of `CONTROLLERS`."""
 _SIDES: Final = {"left": "L", "right": "R", "dpad": "D", "center": "●"}
 _WAYS: Final = {
     "up": "▲",
@@ -111,7 +111,7 @@ def _draw_buttons(
 
 
 def _mix_light(face: BrickState, names: Sequence[str]) -> Style:
-    """Return a light of three LEDs."""
+    """Return the style of a light whose red, green and blue LEDs have these names."""
     levels = [max(_DARK // 2, face.leds.get(name, 0)) for name in names]
     return Style(bgcolor=Color.from_rgb(*levels))
 
@@ -119,7 +119,7 @@ def _mix_light(face: BrickState, names: Sequence[str]) -> Style:
 def _draw_controllers(
     face: BrickState, pressed: Collection[str], width: int
 ) -> Iterator[tuple[list[Run], list[ButtonBox]]]:
-    """Yield the rows of the keys of what is connected, each row with its light before it, and their areas in it."""
+    """Yield rows of keys of the connected controllers, each with the light of the controller, and the keys' areas."""
     for port, lights in _LIGHTS.items():
         if lights[0] not in face.leds:
             continue

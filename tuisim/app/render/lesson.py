@@ -50,7 +50,7 @@ _GOAL_MARKS = {
 
 
 class Away(StrEnum):
-    """Where the keys go that are meant for the app."""
+    """What has the keys in place of the app: nothing, the editor, or a log."""
 
     NO = "no"
     EDITOR = "editor"

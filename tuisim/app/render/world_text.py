@@ -59,7 +59,7 @@ def draw_world_text(
 
 
 def build_legend(now: Snapshot, width: int) -> str:
-    """Return what the robots are that are drawn beside the one in view, in words that fit."""
+    """Return words that fit for the other robots in the picture, such as `grey: the earlier run`; empty without any."""
     drawn = (
         now.now_pose is not None and not describe_off_field(now.now_pose),
         now.earlier_pose is not None,

@@ -13,7 +13,7 @@ from tuisim.engine.mat_cache import FieldFiles
 from tuisim.engine.runs.run_folder import StoredRun, find_mat_files
 
 PATIENCE_S = 1.0
-"""A run that waits longer than this for its mat says so: mostly it is prepared sooner."""
+"""Seconds after which a notice says that a run waits for its mat; mostly the mat is prepared sooner."""
 SOON = "Preparing the mat; the program starts right after that"
 
 MatKey = tuple[str, str, frozenset[int], bool]

@@ -68,7 +68,7 @@ class NextRun:
     robot: RobotChoice
     """The robot as it was chosen, before any edit."""
     from_program: Mapping[str, Any] = field(default_factory=dict)
-    """What the source of the program has decided, or may decide, by path: nobody has chosen it."""
+    """Settings that the source of the program has decided, or may decide, by path: nobody has chosen them."""
     program_robot: RobotChoice | None = None
     """The robot that the program needs; None for the default one."""
     shown_ports: tuple[str, ...] | None = None
@@ -83,7 +83,7 @@ class NextRun:
 
     @property
     def actions(self) -> tuple[UserAction, ...]:
-        """What a hand presses in it."""
+        """The user actions that the setting `press` asks for."""
         return press_actions(self.settings["press"], self.spec.profile.tick_hz)
 
     @property
@@ -121,7 +121,7 @@ def build_first_plan(
     """Return the plan with which the app begins.
 
     Args:
-        spec: Of the run.
+        spec: The specification of the run.
         settings: What it was built from; None if that is not known, as for a stored run.
         decided: What the source of the program has decided of them.
         program: Its program.
@@ -225,7 +225,7 @@ def apply_choices(plan: NextRun, choices: Mapping[str, Any]) -> NextRun:
 
 
 def follow_program(plan: NextRun, source: ProgramSource) -> tuple[NextRun, Decided]:
-    """Return the plan with what the source of a program decides, where nobody has chosen; and that, if it is new.
+    """Return the plan with what the source of a program decides where nobody has chosen, and the decision if it is new.
 
     Raises:
         ConfigError: the mat is missing.
@@ -346,7 +346,7 @@ def change_obstacles(plan: NextRun, obstacles: tuple[Obstacle, ...]) -> NextRun:
 
 
 def _put(plan: NextRun, values: Mapping[str, Any]) -> NextRun:
-    """Return the plan with values of the run that move nothing else, by path."""
+    """Return the plan with other values, by path, on which nothing else in the specification depends."""
     spec_values = {RUN_VALUES[path].spec_path: value for path, value in values.items()}
     return replace(
         plan, settings=plan.settings.changed(values), spec=tree.put_all(plan.spec, spec_values)

@@ -17,7 +17,7 @@ from tuisim.engine.runs.run_folder import read_run_file
 from tuisim.engine.runs.store import RunStore
 
 _RUNS_READ = 20
-"""So many of the newest runs are read for their programs."""
+"""Number of the newest runs that are read for their programs."""
 _MOST = 5
 _MOST_OF_KIND = 3
 """Entries: each has a number beside the four ways to begin, and all are in sight at 80x24."""
@@ -33,7 +33,7 @@ class Kind(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Recent:
-    """One thing to go on with."""
+    """A piece of recent work: an unsaved text, a program or a run."""
 
     kind: Kind
     word: str
@@ -43,7 +43,7 @@ class Recent:
 
 
 def list_recent(new_name: str) -> list[Recent]:
-    """Return what one may go on with, the likeliest first. Reads files.
+    """Return recent work to continue, the likeliest first. Reads files.
 
     Args:
         new_name: Name of a program without a file.
@@ -94,7 +94,7 @@ def _list_programs(runs: list[RunInfo]) -> Iterator[tuple[str, str]]:
         try:
             program = read_run_file(store.folder(run.id)).get("program")
         except LogError:
-            # It is removed, or damaged; the list of runs tells.
+            # The run was removed, or is damaged, which the list of runs says.
             continue
         path = program.get("path") if isinstance(program, dict) else None
         if (

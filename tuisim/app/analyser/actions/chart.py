@@ -24,12 +24,12 @@ _AGAINST = (
 
 
 def mark(screen: LogScreen) -> None:
-    """Set the second cursor here, or remove it."""
+    """Set the second cursor, A, where the cursor is, or remove it."""
     screen.model.mark_s = screen.model.cursor_s if screen.model.mark_s is None else None
 
 
 def pan_chart(screen: LogScreen, share: float) -> None:
-    """Show an earlier or later time range."""
+    """Show an earlier or later time range, by a share of the present one; a negative share is earlier."""
     screen.model.pan(share)
 
 

@@ -31,7 +31,7 @@ _REPORT = ((".html", "program, world, chart, bands, statistics and notes on one 
 
 
 def copy_value(screen: LogScreen) -> None:
-    """Copy the selected cell."""
+    """Copy the cell in the row of the cursor and the selected column."""
     rows = screen.model.rows
     row = screen.model.row
     screen.copy(rows.text(row, rows.chosen), f"{rows.chosen} of row {row + 1}")
@@ -45,7 +45,7 @@ def copy_row(screen: LogScreen) -> None:
 
 
 def copy_pane(screen: LogScreen) -> None:
-    """Copy the pane: of the table all rows shown, with the header."""
+    """Copy the pane in view with its heading, tabs between the cells; of the table, the rows that the filter shows."""
     model = screen.model
     name = screen.pane.name_shown
     if name != "table":

@@ -91,7 +91,7 @@ def ask_variable(screen: LogScreen) -> None:
 
 
 def note(screen: LogScreen) -> None:
-    """Ask for a note on the sample, on the range between the two cursors, or on the band, which is described."""
+    """Ask for a note on the selected band if bands are in view, else on the range between two cursors, or a sample."""
     model = screen.model
     trace = model.trace_of_row(model.row)
     name = trace.name

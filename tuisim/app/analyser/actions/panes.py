@@ -81,12 +81,12 @@ _FILTERS = (
 
 
 def choose(screen: LogScreen, step: int) -> None:
-    """Select another column."""
+    """Move the selection by a number of columns."""
     screen.model.rows.choose(step)
 
 
 def sort(screen: LogScreen) -> None:
-    """Sort by the selected column: ascending, descending, not at all."""
+    """Sort by the selected column: ascending at first, then descending, then not at all."""
     model = screen.model
     rows = screen.model.rows
     if rows.view.sorted_by != rows.chosen:
@@ -102,7 +102,7 @@ def sort(screen: LogScreen) -> None:
 
 
 def _arrange(screen: LogScreen, model: AnalysisModel, arrangement: TableView) -> None:
-    """Show filtered and sorted rows, the cursor among them."""
+    """Show the rows that a filter or an order has given, with the cursor on one of them, if the log is still open."""
     if screen.model is not model:
         return
     rows = model.rows
@@ -112,7 +112,7 @@ def _arrange(screen: LogScreen, model: AnalysisModel, arrangement: TableView) ->
 
 
 def select(screen: LogScreen) -> None:
-    """Ask for a filter."""
+    """Ask for conditions, and show only the rows that meet them."""
 
     def keep(text: str) -> None:
         model = screen.model
@@ -153,10 +153,10 @@ def search(screen: LogScreen) -> None:
 
 
 def find(screen: LogScreen, step: int) -> None:
-    """Go to the next or previous match; may search in the background.
+    """Go to the next match of the search text (1) or the previous one (-1); ask for the text if there is none.
 
     Raises:
-        LogError: there is no match, if that is known at once.
+        LogError: there is no match. For a long log, which is searched in the background, the screen shows this error.
     """
     model = screen.model
     text = screen.searched
@@ -190,7 +190,7 @@ _PLACES = (
 
 
 def rows(screen: LogScreen, step: int) -> None:
-    """Move by rows of the pane."""
+    """Move the cursor in the table, or the selection in another pane, by a number of rows."""
     model = screen.model
     pane = screen.pane
     if pane.name_shown == "table":
@@ -203,7 +203,7 @@ def rows(screen: LogScreen, step: int) -> None:
 
 
 def move_pages(screen: LogScreen, step: int) -> None:
-    """Move by pages of the pane."""
+    """Move the cursor in the table, or the selection in another pane, by a number of pages."""
     rows(screen, step * screen.pane.lines)
 
 
