@@ -24,30 +24,30 @@ _LOWEST = 1 << 32 if sys.maxsize > 1 << 32 else 1 << 20
 _TEXT_BEFORE = 200
 """The name of an object's type is at most this far before its address."""
 _MAX_SEARCHED = 20_000_000
-"""Objects that are looked at in vain before no more are: a few real seconds."""
+"""After looking at so many objects in all, no more are searched: a few real seconds."""
 _STEPS = 3
 _MOST_REACHED = 1_000
-"""From the program's names: so many steps, each from at most so many objects."""
+"""How far objects are followed from the program's names: number of steps, and of objects in each step."""
 _HEAP_TYPE = 1 << 9
-"""A class that was made by a program: Py_TPFLAGS_HEAPTYPE."""
+"""Flag of a class that is defined in Python: Py_TPFLAGS_HEAPTYPE."""
 _NEVER_KEPT = (types.FrameType, types.TracebackType)
-"""To keep one would keep all that it refers to."""
+"""Types that are never kept alive: each object would keep all that it refers to."""
 
 
 class _Given(NamedTuple):
-    """What stands for an address."""
+    """The number that is printed in place of an address."""
 
     number: int
     is_same: Callable[[], object]
-    """Whether the object is still there, so that no other one can have this address."""
+    """Tells whether the object still exists, so that no other object can have its address."""
 
 
 class Addresses:
     """Gives each object whose address is printed the next of a fixed sequence, in the order of first appearance.
 
-    Only the texts are changed that Python itself writes: ` at 0x…`, and the identifiers of threads. A number that
-    cannot be an address stays as it is. Which memory is used again depends on the machine: so an address stands for
-    the same object only as long as that exists, and for another one afterwards.
+    Only addresses that Python itself writes are changed, after ` at 0x`, and the identifiers of threads. A number
+    that cannot be an address stays as it is. Which memory is used again depends on the machine: so a number stands for
+    an object as long as that exists; a later object at the same address gets another number.
 
     Args:
         names: Returns the program's global names.
@@ -61,7 +61,7 @@ class Addresses:
         self._searched = 0
 
     def stabilize(self, *texts: str) -> tuple[str, ...]:
-        """Return texts of one instant with their addresses replaced; doing that again changes nothing."""
+        """Return texts of one instant with their addresses replaced; replacing them again changes nothing."""
         here: dict[int, int] = {}
 
         def replace(match: re.Match[str]) -> str:
@@ -101,10 +101,10 @@ class Addresses:
         return _FIRST <= number < _FIRST + self._count * _STEP
 
     def _find(self, real: int, before: str) -> object:
-        """Return the object at an address, if there is one of which the text can be; None otherwise."""
+        """Return the object at an address; None if there is none that the text before the address can be about."""
         if self._searched > _MAX_SEARCHED:
             return None
-        # Not all objects are known to the collector, and those that were made before the program are left out.
+        # The collector does not know all objects, and leaves out those that were made before the program.
         by_age = [partial(gc.get_objects, generation) for generation in range(3)]
         searches: list[Callable[[], list[Any]]] = [*by_age, self._list_reached]
         for search in searches:
@@ -116,7 +116,7 @@ class Addresses:
         return None
 
     def _list_reached(self) -> list[object]:
-        """Return what the program's names refer to, as far as a few steps reach."""
+        """Return the objects that the program's names refer to, directly or in a few steps."""
         left_out = (types.ModuleType, type)
         level = [item for item in self._names().values() if not isinstance(item, left_out)]
         objects = level
@@ -131,7 +131,7 @@ class Addresses:
 
     @cached_property
     def _heap(self) -> range:
-        """The addresses of the heap, which begins where the system likes; empty where that is unknown."""
+        """The addresses of the heap, whose begin the system chooses; empty if the system does not tell."""
         with (
             suppress(OSError, ValueError),
             open("/proc/self/maps", encoding="utf-8", errors="replace") as maps,
@@ -139,21 +139,21 @@ class Addresses:
             for row in maps:
                 if row.rstrip().endswith("[heap]"):
                     start, end = (int(part, 16) for part in row.split()[0].split("-"))
-                    # It grows later on.
+                    # The heap grows later on.
                     return range(start, max(end, _LOWEST))
         return range(0)
 
 
 def _is_meant(one: object, before: str) -> bool:
-    """Return whether a text that ends before an address can be about an object, not about one that was there before."""
+    """Return whether the text before an address can be about this object, not about an earlier one there."""
     kind = type(one)
-    # Its own text may name it otherwise.
+    # A program's class can have a `__repr__` without the name of the class.
     is_own = kind.__flags__ & _HEAP_TYPE and not str(kind.__module__).startswith("tuisim")
     return bool(is_own) or kind.__name__ in before
 
 
 def _watch(one: object) -> Callable[[], object]:
-    """Return a function that tells whether an object still exists; such objects as cannot be watched are kept."""
+    """Return a function that tells whether an object still exists; an object that cannot be watched is kept alive."""
     if one is None:
         return lambda: False
     if isinstance(one, _NEVER_KEPT):

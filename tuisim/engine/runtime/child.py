@@ -65,7 +65,7 @@ LOOP_COST_NS = 5_000_000
 
 
 def main(arguments: list[str], prepared: Child | None = None) -> NoReturn:
-    """Run what a folder describes, then end the process.
+    """Run the program that a run folder describes, then end the process.
 
     Args:
         arguments: The run folder; descriptors of the commands, the events, the lifeline, the lock of the folder
@@ -73,7 +73,7 @@ def main(arguments: list[str], prepared: Child | None = None) -> NoReturn:
         prepared: The child, if it has been prepared already.
     """
     command_fd, event_fd, lifeline_fd, lock_fd, *raw_fds = map(int, arguments[1:])
-    # The folder is locked as long as this process lives, and those that it forks.
+    # The folder stays locked as long as this process or one that it forks lives.
     os.set_inheritable(lock_fd, False)
     die_with_host(lifeline_fd)
     channel = Channel(command_fd, event_fd)
@@ -108,7 +108,7 @@ class Child:
         self._config = config
         self._sim = build_simulation(config.spec, NoRecording())
         self._early_commands: list[tuple[int, int, Call, tuple[float, ...]]] = []
-        """Those of the prelude."""
+        """The commands of the prelude."""
         self._sim.on_command = lambda *command: self._early_commands.append(command)
         self._output = OutputRecorder()
         mat = open_field(config.field, has_floor=config.spec.world.is_open)
@@ -120,13 +120,13 @@ class Child:
         self._known_programs = KnownPrograms()
 
     def expect(self, folder: Path, changes: Mapping[str, Any]) -> None:
-        """Prepare for a run, as far as nothing of its program is executed; arguments as of `derive_config`."""
+        """Prepare for a run without executing anything of its program; arguments as of `derive_config`."""
         self._config = config = derive_config(self._config, folder, changes)
         drops_annotations = config.spec.profile.motor_law.library.drops_annotations
         self._runner.code = self._known_programs.code(config.program, drops_annotations)
 
     def _patch_modules(self, turn: Callable[[], None]) -> None:
-        """Patch what programs find, and make what runs them."""
+        """Replace functions of Python's modules, and make the objects that run the program."""
         # Imported here: threads must be patched before anything else imports `threading`.
         from tuisim.engine.runtime.patches.signals import patch_signals
         from tuisim.engine.runtime.patches.threads import patch_threads
@@ -182,7 +182,7 @@ class Child:
         session.make_debugger = lambda: _build_debugger(session, scheduler, self._runner)
 
     def connect(self, channel: Channel, raw_fds: Sequence[int] = ()) -> None:
-        """Create the recording of the run, and connect everything with it.
+        """Create the recording of the run, and connect all parts with it.
 
         Args:
             channel: Pipes to the host.
@@ -229,14 +229,14 @@ class Child:
         self._output.drain = self._runner.raw.drain
 
     def _record_commands(self) -> None:
-        """Record what the program does, and what the prelude has done."""
+        """Record the program's commands from now on, and those that the prelude has given."""
         self._commands = CommandsWriter(self._config.folder)
         for command in self._early_commands:
             self._commands.add(*command)
         self._sim.on_command = self._commands.add
 
     def _stop_when_full(self, *writers: MappedWriter | None) -> None:
-        """Let the run stop when there is no space for what it records."""
+        """Make the run stop when one of its recordings finds no space on the disk."""
         for writer in filter(None, writers):
             writer.full = lambda error: self._session.request_stop(
                 protocol.End.DISK_FULL, _build_memory_error(error)
@@ -263,7 +263,7 @@ class Child:
         self, end: protocol.End, exit_code: int, summary: str, error: str, error_line: int
     ) -> NoReturn:
         if wallclock.getpid() != self._pid:
-            # A copy that the program has forked at a lower level: only the original records and reports.
+            # This is a copy that the program has forked below Python: only the original records and reports.
             wallclock.exit_process(0)
         self._telemetry.close()
         if self._motors is not None:

@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
 
 class SessionFlag(IntFlag):
-    """What keeps time from passing on the short path: the bits of `Session.flags`."""
+    """The bits of `Session.flags`. Each makes the session leave the short path on which time passes."""
 
     LIVE = 1
     """The control is called before ticks."""
@@ -68,7 +68,7 @@ FAST_SLICE_TICKS = 64
 
 
 class DebugHooks(Protocol):
-    """What session and control need of the debugger."""
+    """The methods of the debugger that session and control call."""
 
     def begin(self, options: RunOptions) -> None:
         """Apply the settings that are known before the program's first line."""
@@ -77,7 +77,7 @@ class DebugHooks(Protocol):
         """Process a command; the caller handles pausing and resuming."""
 
     def enter(self) -> None:
-        """Switch tracing in the current thread on or off as needed."""
+        """Switch tracing on or off in the current thread, as the debugger needs it."""
 
     def check_goal(self) -> None:
         """Pause if the goal is reached. Called right before a tick, after user actions."""
@@ -92,7 +92,7 @@ class DebugHooks(Protocol):
         """Pause at the end of the program if a requested instant was never reached."""
 
     def pause(self) -> None:
-        """Pause at the next line, if it is reached before the next tick."""
+        """Pause at the next line of the program; if a tick comes first, the control pauses there instead."""
 
     def answer(self) -> None:
         """Answer the requests received while paused."""
@@ -105,7 +105,7 @@ class DebugHooks(Protocol):
 
 
 class ControlledRun(Protocol):
-    """What the control needs of the session; see there."""
+    """The part of `Session` that the control uses; see there."""
 
     sim: Simulation
     now: int
@@ -165,7 +165,7 @@ class RunControl:
         self.holding = False
         """Whether the run is paused and waits for commands."""
         self.between_ticks = False
-        """While paused: whether no code of the program runs between here and the next tick, or since the last."""
+        """While paused: whether no code of the program runs before the next tick, or has run since the last."""
         self._actions_fd = -1
         self._stop_asked_at: float | None = None
         self.answers: deque[str | None] = deque()
@@ -211,7 +211,7 @@ class RunControl:
 
     @property
     def only_rushes(self) -> bool:
-        """Whether there is nothing to do before the debugger's next goal."""
+        """Whether nothing needs the control before the debugger's next goal."""
         return self._rushing and not self._script and not self._waiting
 
     @staticmethod
@@ -224,7 +224,7 @@ class RunControl:
         self._stop_asked_at = self._read_grace_clock()
 
     def has_grace_ended(self) -> bool:
-        """Whether the time for the program's cleanup is over."""
+        """Whether the time for the program's cleanup after a stop is over."""
         most_s = STOP_GRACE_S if self.live else STOP_GRACE_CPU_S
         return (
             self._stop_asked_at is not None
@@ -239,7 +239,7 @@ class RunControl:
 
     @property
     def wanted(self) -> bool:
-        """Whether it must be called before ticks: the run is live, actions are pending, or the debugger needs it."""
+        """Whether the control must be called before ticks: the run is live, actions are pending, or it is debugged."""
         return self.live or self.debugged or bool(self._script)
 
     def await_ticks(self, session: ControlledRun, most: int) -> int:
@@ -261,7 +261,7 @@ class RunControl:
             session.check_stop(before_tick=True)
             return most
         if self._script:
-            # The next action must find its tick.
+            # Stop right before the tick that the next action is for.
             most = min(most, self._script[0].tick - session.sim.tick)
         if self.debugged:
             debugger = session.debug()
@@ -313,14 +313,18 @@ class RunControl:
         self._raise_here(session, before_tick=moment.ordinal == BEFORE_NEXT_TICK)
 
     def _raise_here(self, session: ControlledRun, before_tick: bool = False) -> None:
-        """Raise a stop in the thread that has waited for commands, not in the main one, which the signal reaches."""
+        """Raise a stop in the thread that has waited for commands; the signal would raise it in the main thread."""
         try:
             session.check_stop(before_tick)
         finally:
             self.holding = False
 
     def replay_next(self, session: ControlledRun, kind: type[Answer | Reply]) -> bool:
-        """Apply the next known action if it has this type and was made here, while simulated time did not pass."""
+        """Apply the next known action if it is of this kind, and was recorded here while simulated time stood still.
+
+        Returns:
+            Whether it was applied.
+        """
         if not self._script or self._script[0].tick > session.sim.tick:
             return False
         action = self._script[0].command
@@ -361,11 +365,11 @@ class RunControl:
 
     def _keep_pace(self, session: ControlledRun, most: int) -> int:
         sim = session.sim
-        # A command that is received meanwhile can change it, also to full speed.
+        # A command that arrives while this waits can change the speed, also to full speed.
         while speed := self._speed:
             wall = wallclock.monotonic()
             simulated = sim.compute_due_ns(sim.tick + 1)
-            # A signal may remove it at any moment.
+            # The handler of a signal may set `_anchor` to None at any moment.
             anchor = self._anchor = self._anchor or (wall, sim.compute_due_ns(sim.tick))
             wait_s = anchor[0] + (simulated - anchor[1]) / 1e9 / speed - wall
             if wait_s < -BEHIND_S:
@@ -400,7 +404,7 @@ class RunControl:
         sim = session.sim
         match action:
             case protocol.Stop():
-                # Does not change the world, and is not counted as a change.
+                # A stop does not change the world, and is not counted as an action.
                 session.ask_stop(End.STOPPED, "stopped")
                 return
             case protocol.SetButtons(pressed=pressed):
@@ -419,8 +423,8 @@ class RunControl:
             )
 
     def write_down_stop(self, tick: int) -> None:
-        """Record that the stop reaches the program right before the tick after `tick`."""
-        # Without it a re-run compares what both runs have.
+        """Record that the user's stop reached the program right before the tick after `tick`."""
+        # If it cannot be written, a re-run is compared only as far as both runs go.
         with suppress(OSError):
             write_stop_tick(self._folder, tick)
 

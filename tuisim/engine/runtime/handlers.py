@@ -16,7 +16,8 @@ from tuisim.engine.runtime.tracebacks import own_files
 def is_caught(error: type[Exception], frame: FrameType | None, program_file: str) -> bool:
     """Return whether the program would catch an error that is raised in a frame.
 
-    A handler for any error counts only in the function that calls the library: around a whole program it is no trial.
+    A handler for any error counts only in the function that calls the library: around a whole program, it does not
+    mean that the program expects an error.
 
     Args:
         error: The class of the error.
@@ -36,7 +37,7 @@ def is_caught(error: type[Exception], frame: FrameType | None, program_file: str
 
 
 def _find_handled(frame: FrameType) -> Iterator[type]:
-    """Yield the classes of errors that the statements around the line of a frame catch."""
+    """Yield the classes of errors that the `try` statements around a frame's current line catch."""
     for block in _parse_tries(frame.f_code.co_filename):
         if block.body[0].lineno <= frame.f_lineno <= (block.body[-1].end_lineno or 0):
             for handler in block.handlers:
@@ -53,7 +54,7 @@ def _parse_tries(file: str) -> list[ast.Try]:
 
 
 def _find_classes(node: ast.expr | None, frame: FrameType) -> list[type]:
-    """Return the classes of errors that an expression of a handler names."""
+    """Return the classes of errors that the expression of an `except` names."""
     match node:
         case None:
             return [BaseException]

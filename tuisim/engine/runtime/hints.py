@@ -15,7 +15,7 @@ _TEXT_AND_NUMBER = re.compile(
 
 
 def add_hint(trace: Any, error: BaseException) -> None:
-    """Add a hint to the message of an error, unless Python has suggested something.
+    """Add a hint to the message of an error, unless Python has already suggested something.
 
     Args:
         trace: The error as a `traceback.TracebackException`.
@@ -31,7 +31,7 @@ def add_hint(trace: Any, error: BaseException) -> None:
 
 
 def _find_meant(error: AttributeError) -> str:
-    """Return which names of an object of a library may have been meant; empty if none is like the wrong one."""
+    """Return a suggestion of similar names for a wrong attribute of a library's object; empty if there are none."""
     kind = type(error.obj)
     wrong = error.name
     library = str(getattr(kind, "__module__", "")).partition(".")[0]

@@ -30,12 +30,12 @@ def format_safely(write: Callable[[object], str], value: object) -> str:
 
 
 class ErrorHooks:
-    """The hooks of `sys` and `threading`.
+    """The hooks of `sys` and `threading` through which Python reports errors.
 
     Args:
         session: The program's clock.
-        output: Where rows go.
-        stderr: The program's error output, unless it has another one.
+        output: Receives the rows of error texts.
+        stderr: The program's error output, unless the program replaces it.
         source: Returns the program's text.
     """
 
@@ -53,7 +53,7 @@ class ErrorHooks:
 
     def install(self) -> None:
         """Replace Python's own hooks."""
-        # Not earlier: its functions are patched first.
+        # Not imported earlier: the functions that `threading` uses must be patched first.
         import threading
 
         replace(sys, "excepthook", lambda _kind, error, _trace: self.show(error), (3, 3))
@@ -75,7 +75,7 @@ class ErrorHooks:
         return ErrorReport(text, report.line, summary)
 
     def show_uncaught(self, error: BaseException) -> ErrorReport:
-        """Show the error that ended the program, as its hook wants it; return the report of it.
+        """Show the error that ended the program, through the program's own hook if it has one; return its report.
 
         Raises:
             SystemExit: by the hook of the program.
@@ -100,20 +100,20 @@ class ErrorHooks:
         return report
 
     def show(self, error: BaseException | None) -> None:
-        """Show an error that ends nothing; a stop is none."""
+        """Show an error that does not end the program; ignore a stop, which is not an error."""
         if error is not None and not isinstance(error, StopProgram):
             self.write(self.report(error).text)
 
     def _show_of_thread(self, args: Any) -> None:
         kind, error, _trace, thread = args
         if error is None or issubclass(kind, SystemExit | StopProgram):
-            # As in Python: it ends the thread silently.
+            # As in Python: such an exception ends the thread silently.
             return
         name = thread.name if thread is not None else wallclock.get_ident()
         self.write(f"Exception in thread {name}:\n{self.report(error).text}")
 
     def _show_ignored(self, ignored: Any) -> None:
-        """Show an error that Python cannot raise, such as in a `__del__`; a stop is raised again elsewhere."""
+        """Show an error that Python cannot raise, such as one in a `__del__`; a stop is raised again later."""
         error = ignored.exc_value
         if isinstance(error, StopProgram):
             self._session.stop_lost()
@@ -125,7 +125,7 @@ class ErrorHooks:
     def show_end_of_bare_thread(
         self, function: Callable[..., object], error: BaseException
     ) -> None:
-        """Show the error that ended a thread of `_thread`."""
+        """Show the error that ended a thread that was started with `_thread`."""
         hook = vars(sys).get("unraisablehook")
         message = "Exception ignored in thread started by"
         ignored = types.SimpleNamespace(
@@ -138,10 +138,10 @@ class ErrorHooks:
         (hook if callable(hook) else self._show_ignored)(ignored)
 
     def write(self, text: str) -> None:
-        """Write an error text to where the program has its error output."""
+        """Write an error text to the program's error output."""
         file = vars(sys).get("stderr")
         if file is None:
-            # As in Python: there is none.
+            # As in Python: without an error output, nothing is shown.
             return
         if file is not self._stderr:
             try:
@@ -152,15 +152,15 @@ class ErrorHooks:
             else:
                 return
         with suppress(LogError):
-            # A full file reports itself.
+            # A recording without space ends the run and reports itself.
             for line in (self._stderr.take_part() + text).rstrip("\n").split("\n"):
                 self._output.row(line, Stream.STDERR)
 
 
 def flush_streams(own: tuple[LineStream, LineStream]) -> None:
-    """Flush the streams that a program has put in the place of its own, as Python does at the end."""
+    """Flush the streams by which a program has replaced its own, as Python does at the end."""
     for stream in (vars(sys).get("stdout"), vars(sys).get("stderr")):
         if stream is not None and not any(stream is own_stream for own_stream in own):
-            # What is wrong with them is nobody's concern any more.
+            # The program is over: errors of its streams no longer matter.
             with suppress(Exception):
                 stream.flush()

@@ -26,7 +26,7 @@ LEFT_TO_OTHERS_S = 0.1
 """Real time that a thread has to take a command before the main thread, which waits for its turn, does."""
 STALL_LOOK_S = 1.0
 
-# Saved: the program gets others.
+# Saved: the program's `faulthandler` gets other functions.
 _enable = faulthandler.enable
 _register = faulthandler.register
 
@@ -50,7 +50,7 @@ class Interrupts:
 
     Args:
         session: The run.
-        soft_codes: Code objects of the runtime inside which a handler may raise nevertheless.
+        soft_codes: Code objects of the runtime in which a handler may raise, unlike in the rest of the runtime.
     """
 
     def __init__(self, session: Session, soft_codes: frozenset[types.CodeType]) -> None:
@@ -81,7 +81,7 @@ class Interrupts:
             wallclock.set_timer(signal.ITIMER_VIRTUAL, STALL_LOOK_S, STALL_LOOK_S)
 
     def remove(self) -> None:
-        """Disarm the handlers when the program is over. Any thread may call this; only the main one can remove them."""
+        """Disarm the handlers when the program is over. Any thread may do so; only the main one could remove them."""
         self._removed = True
         wallclock.set_timer(signal.ITIMER_REAL, 0.0)
         wallclock.set_timer(signal.ITIMER_VIRTUAL, 0.0)
@@ -139,7 +139,7 @@ class Interrupts:
             session.check_stop()
 
     def _can_raise(self, frame: types.FrameType | None) -> bool:
-        """Return whether code of the program, or of the library that it called, is running."""
+        """Return whether a handler may raise: in code of the program or of a library that it called, or in a wait."""
         if self.main_is_parked or (frame is not None and frame.f_code in self._soft_codes):
             return True
         while frame is not None:

@@ -16,13 +16,13 @@ MAX_CHARACTERS = 1 << 16
 MAX_CPU_S = 1.0
 """A program that takes longer to compile ends this process; its runs are then started by themselves."""
 SPARE_FRAMES = 100
-"""What can be compiled with this many frames less can be compiled by the process of a run."""
+"""A program is compiled with this many frames less, so that the process of a run can compile it, too."""
 
 
 class KnownPrograms:
     """Compiles a program when it is run for the second time.
 
-    The first time its own process does it, as always when there is anything to tell: an error, or a warning.
+    The first time, the process of the run compiles it; so it does whenever there is an error or a warning to report.
     """
 
     def __init__(self) -> None:
@@ -30,7 +30,7 @@ class KnownPrograms:
         self._codes: dict[tuple[str, str, bool], types.CodeType | None] = {}
 
     def code(self, program: Program, drops_annotations: bool) -> types.CodeType | None:
-        """Return the code of a program that is about to be run; None if its own process has to compile it."""
+        """Return the code of a program that is about to be run; None if the process of the run has to compile it."""
         key = program.text, program.file, drops_annotations
         if len(program.text) > MAX_CHARACTERS:
             return None

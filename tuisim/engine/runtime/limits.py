@@ -68,5 +68,5 @@ def refuse_processes() -> None:
     for name in _PROCESS_CALLS:
         if hasattr(os, name):
             replace(os, name, _build_refusal(f"os.{name}"))
-    # The debugger forks to inspect values: no code of the program may run then.
+    # No code of the program may run when the debugger forks to inspect values.
     replace(os, "register_at_fork", lambda **_functions: None)

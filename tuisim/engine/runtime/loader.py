@@ -12,11 +12,11 @@ from tuisim.base.source import PRELUDE_TEXTS
 
 
 class MissingPart:
-    """Placeholder for a name of the prelude when the robot has no such part.
+    """Stands for a name of the prelude whose part the robot does not have.
 
     Args:
         name: The name.
-        error: The error on creating the part; raised again on any use.
+        error: The error on creating the part; raised again whenever the name is used.
     """
 
     __slots__ = ("_error", "_name")
@@ -84,7 +84,7 @@ def _check_encoding(text: str, file: str) -> None:
 
 
 def _find_declared_encoding(text: str) -> tuple[int, str] | None:
-    """Return the line of a declaration and its encoding, by the rules of PEP 263; None if there is none."""
+    """Return the line in which a file declares its encoding, and the encoding (see PEP 263); None without one."""
     import re
 
     for number, line in enumerate(text.split("\n", 2)[:2], start=1):
@@ -108,7 +108,7 @@ def compile_program(text: str, file: str, drops_annotations: bool = False) -> ty
     Args:
         text: The source.
         file: The name of its file.
-        drops_annotations: Whether they are not evaluated.
+        drops_annotations: Whether annotations are left out, not evaluated.
 
     Raises:
         SyntaxError, ValueError: the text is not Python.
@@ -147,7 +147,7 @@ def compile_prelude(name: str) -> Iterator[tuple[str, types.CodeType]]:
 
 
 def add_prelude_note(error: BaseException) -> None:
-    """Add a note to an error about a name of the prelude: how the program can get that name."""
+    """Add a note to an error about a name that only a prelude defines: how the program can get that name."""
     if not isinstance(error, NameError) or not error.name:
         return
     statement = _find_statement(error.name)

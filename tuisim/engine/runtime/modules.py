@@ -31,17 +31,17 @@ def is_own(path: str) -> bool:
 
 
 def remember_source(file: str, source: str) -> None:
-    """Make tracebacks show the text that runs, not the current contents of the file."""
+    """Make tracebacks show the source that runs, even if the file changes."""
     lines = [line + "\n" for line in source_lines(source)]
     linecache.cache[file] = len(source), None, lines, file
 
 
 class OwnLoader(SourceFileLoader):
-    """Loads a module from the text that was read first.
+    """Loads a module from the text that was first read of its file.
 
     Args:
         module: The module.
-        drops_annotations: Whether its annotations are not evaluated.
+        drops_annotations: Whether its annotations are left out, not evaluated.
     """
 
     def __init__(self, module: OwnModule, drops_annotations: bool) -> None:
@@ -54,7 +54,7 @@ class OwnLoader(SourceFileLoader):
         return self._data if path == self.path else super().get_data(path)
 
     def source_to_code(self, data: Any, path: Any, *, _optimize: int = -1) -> types.CodeType:  # type: ignore[override]
-        """Return the code of the module: its loops pass time as those of the program do."""
+        """Return the code of the module, in whose loops time passes as in those of the program."""
         return compile_with_hooks(data, path, self._drops_annotations)
 
     def path_stats(self, path: str) -> NoReturn:
@@ -68,8 +68,8 @@ class OwnModules(PathFinder):
     Args:
         run_folder: Where the copies are stored.
         known: Modules of the run that is repeated; they are loaded instead of the files.
-        brick_folder: What the program finds in the home folder of the brick is in this folder; empty without a brick.
-        drops_annotations: Whether annotations are not evaluated.
+        brick_folder: Stands for the home folder of the brick; empty without a brick.
+        drops_annotations: Whether annotations are left out, not evaluated.
     """
 
     def __init__(
@@ -95,7 +95,7 @@ class OwnModules(PathFinder):
     ) -> ModuleSpec | None:
         """Return how to load a module; None if it does not exist."""
         if known := self._known.get(fullname):
-            # A module that was reloaded may have had another text each time.
+            # A module that was imported several times may have had another text each time.
             return self._spec_of(known.pop(0) if len(known) > 1 else known[0])
         if path is None and self._brick_folder:
             path = [place_folder(str(folder), self._brick_folder) for folder in sys.path]
@@ -132,7 +132,7 @@ class OwnModules(PathFinder):
 
 
 def install_finder(run_folder: Path, brick_folder: str, drops_annotations: bool) -> None:
-    """Store modules that the program imports with its run; modules from a repeated run are loaded instead."""
+    """Store modules that the program imports with its run; when a run is repeated, load its stored modules instead."""
     finders: list[Any] = sys.meta_path
     finders[finders.index(PathFinder)] = OwnModules(
         run_folder, read_modules(run_folder), brick_folder, drops_annotations
@@ -140,7 +140,7 @@ def install_finder(run_folder: Path, brick_folder: str, drops_annotations: bool)
 
 
 def _own_module(name: str, spec: ModuleSpec) -> OwnModule | None:
-    """Return the module to store; None if it is not the user's or is compiled: those are loaded from their place."""
+    """Return the module to store; None if it is not the user's, or is compiled: then it is loaded from its place."""
     folders = (
         None if spec.submodule_search_locations is None else tuple(spec.submodule_search_locations)
     )
@@ -152,6 +152,6 @@ def _own_module(name: str, spec: ModuleSpec) -> OwnModule | None:
     try:
         data = loader.get_data(spec.origin)
     except (OSError, AttributeError):
-        # Python reports the error.
+        # Python reports the error when it loads the module.
         return None
     return OwnModule(name, spec.origin, folders, data.decode("utf-8", "surrogateescape"))

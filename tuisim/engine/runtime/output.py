@@ -12,7 +12,7 @@ from tuisim.engine.runtime.addresses import Addresses
 
 
 class OutputRecorder:
-    """Rows of output, each with the time, tick and source line that wrote it."""
+    """Writes rows of output, each with the time, the tick and the source line that wrote it."""
 
     writer: OutputWriter
     """The file; set before the first row."""
@@ -34,18 +34,18 @@ class OutputRecorder:
         self.drain()
         tick, now, line = self.place()
         if (" at 0x" in text or ", st" in text) and stream in TEXT_STREAMS:
-            # Asked here first: most rows have no address.
+            # A quick check: most rows have no address.
             (text,) = self.stabilize(text)
         self.writer.write(text.encode("utf-8", "backslashreplace"), tick, now, line, stream)
         if self.watch is not None:
             self.watch(text, stream)
 
     def stabilize(self, *texts: str) -> tuple[str, ...]:
-        """Return texts of one instant as they are written: with addresses that are the same in every run."""
+        """Return texts of one instant with addresses that are the same in every run."""
         return self._addresses.stabilize(*texts)
 
     def write_row(self, text: str, stream: Stream, tick: int, time_ns: int, line: int) -> None:
-        """Write one row that belongs to a tick, not to a time between two."""
+        """Write one row with a given tick, time and source line, not with the present ones."""
         self.writer.write(text.encode(), tick, time_ns, line, stream)
 
     def close(self) -> None:
@@ -115,12 +115,12 @@ class LineStream(io.TextIOBase):
         return self.put(text)
 
     def put(self, text: str) -> int:
-        """Write text, also if the program has closed the stream."""
+        """Write text, even if the program has closed the stream."""
         self._output.drain()
         if "\n" not in text:
             self._part.write(text)
             if self._part.tell() > MAX_OUTPUT_BYTES:
-                # More than the file accepts anyway: write it before it fills the memory.
+                # The partial line is longer than the file accepts: write it before it fills the memory.
                 self.finish()
             return len(text)
         # Taken first: if writing a row ends the program, nothing is written twice.
@@ -190,9 +190,9 @@ class ByteStream(io.RawIOBase):
         return len(taken)
 
     def put(self, data: bytes) -> None:
-        """Write bytes, also if the program has closed the stream."""
+        """Write bytes, even if the program has closed the stream."""
         self._stream.put(self._decoder.decode(data))
 
     def take_rest(self) -> str:
-        """Return what is there of a character that never came to its end."""
+        """Return the replacement for an unfinished UTF-8 character at the end; empty if there is none."""
         return self._decoder.decode(b"", final=True)

@@ -74,7 +74,7 @@ def _add(outcome: ProgramOutcome, words: str) -> ProgramOutcome:
 
 
 def _add_caught(outcome: ProgramOutcome) -> ProgramOutcome:
-    """Add to the summary what the program used that is not simulated, if it caught the error about it."""
+    """Add to the summary the first missing part of the simulation that the program used, if it caught the error."""
     if not NotSimulated.first or outcome.end not in (End.FINISHED, End.TIME_LIMIT):
         return outcome
     return _add(outcome, f"caught NotSimulated: {NotSimulated.first}")
@@ -85,7 +85,7 @@ class ProgramRunner:
 
     Args:
         session: The program's clock.
-        output: Where its lines go.
+        output: Receives the program's lines.
         scheduler: The program's threads.
         loop_hook: Called at the start of each loop body.
         leave: Ends the process at once, with an outcome.
@@ -118,7 +118,7 @@ class ProgramRunner:
         self._loop_hook = loop_hook
 
     def prepare(self, prelude: str) -> None:
-        """Do what comes before the program and is the same for every program: streams, and the prelude of a name."""
+        """Do what comes before the program and is the same for every program: streams, and the named prelude."""
         vars(builtins)[LOOP_HOOK] = self._loop_hook
         self._patch()
         vars(self._module)["__builtins__"] = builtins
@@ -128,7 +128,7 @@ class ProgramRunner:
         try:
             self._run_prelude(prelude)
         except BaseException as error:
-            # It is an error of the program, and is raised when that begins.
+            # An error of the prelude counts as the program's, and is raised when the program begins.
             self._prelude_error = error
         self._session.free -= 1
 
@@ -142,11 +142,11 @@ class ProgramRunner:
                 self.names[part] = MissingPart(part, error)
 
     def connect(self, config: RunConfig) -> None:
-        """Connect it with the program of a run."""
+        """Set the run and its program."""
         self._config = config
         session = self._session
         self._starts_in_own_folder = config.starts_in_own_folder
-        # A relative path would mean another file from there.
+        # A relative path would mean another file from the program's folder.
         in_own_folder = os.path.join(config.own_folder, os.path.basename(session.program_file))
         self._file = in_own_folder if self._starts_in_own_folder else session.program_file
         self._answers = list(config.options.answers)
@@ -157,7 +157,7 @@ class ProgramRunner:
         try:
             return self._run()
         except StopProgram as stop:
-            # The last write had no space.
+            # There was no space for the last rows.
             return ProgramOutcome(stop.end, 0, stop.summary, error_line=stop.line)
 
     def _run(self) -> ProgramOutcome:
@@ -176,7 +176,7 @@ class ProgramRunner:
         self._finish_streams()
         if outcome.end is End.FINISHED and self._session.stop_reason is None:
             outcome = self._finish_moves(outcome)
-        # A stop in another thread, an exit function or a `__del__` need not have arrived here.
+        # A stop in another thread, an exit function or a `__del__` may not have reached this thread.
         stop = self._session.stop_reason
         if stop is not None and outcome.end is End.FINISHED:
             outcome = ProgramOutcome(stop.end, 0, stop.summary)
@@ -190,7 +190,7 @@ class ProgramRunner:
         return ProgramOutcome(End.FINISHED)
 
     def _hold_at_end(self, outcome: ProgramOutcome) -> ProgramOutcome:
-        """Let the debugger pause a program that ended before the requested instant."""
+        """If the program ended before the instant that the debugger was asked for, let the debugger pause here."""
         if self._session.debugger is None or self._session.stop_reason is not None:
             return outcome
         try:
@@ -200,7 +200,7 @@ class ProgramRunner:
         return outcome
 
     def _finish_moves(self, outcome: ProgramOutcome) -> ProgramOutcome:
-        """Let the moves end that the program has begun, as they do on a brick, and say what it left running."""
+        """Let the moves end that the program has begun, as on a brick; add to the summary which motors still run."""
         try:
             left = finish_moves(self._session)
         except StopProgram as stop:
@@ -208,22 +208,22 @@ class ProgramRunner:
         return _add(outcome, left)
 
     def _shut_down(self) -> None:
-        """Do what Python does at the end of a program: exit functions, open files, finalizers."""
+        """Do what Python does at the end of a program: call exit functions, close files, run finalizers."""
         try:
             atexit._run_exitfuncs()
             flush_streams((self.stdout, self.stderr))
             if self._session.stop_reason is not None:
-                # Its traceback keeps frames alive.
+                # The traceback of the stop would keep frames alive.
                 self._session.stop_reason.with_traceback(None)
             if self._session.stop_reason is None or len(self._scheduler.tasks) == 1:
-                # A thread that still computes when the user stops the program needs its names.
+                # Otherwise a thread still computes after a stop by the user, and needs the program's names.
                 self._clear_module()
         except BaseException as error:  # the program is over: later errors are only reported
             self.hooks.show(error)
 
     def _clear_module(self) -> None:
-        """Clear the program's module in such an order that finalizers still find most of its names."""
-        # The program's functions that are called all the time need theirs, too.
+        """Clear the program's module in an order in which finalizers still find most of its names."""
+        # Functions of the program that Python calls all the time would need its names: remove them first.
         gc.collect()
         wallclock.settrace(None)
         wallclock.setprofile(None)
@@ -246,12 +246,12 @@ class ProgramRunner:
             try:
                 stream.finish()
             except LogError:
-                # The file is full, and reports that itself.
+                # A recording without space has ended the run and reported itself.
                 continue
 
     @property
     def _has_brick_folder(self) -> bool:
-        """Whether the program's folder is in the home folder of the brick."""
+        """Whether the program's folder counts as part of the brick's home folder."""
         return self._session.sim.spec.profile.starts_in_own_folder
 
     def _patch(self) -> None:
@@ -276,7 +276,7 @@ class ProgramRunner:
         self.names["__file__"] = self._file
         if self._prelude_error is not None:
             raise self._prelude_error
-        # Not earlier: a program named logging.py is not what the library means by `import logging`.
+        # Only now: earlier, the library's `import logging` would find a program named logging.py.
         folder = self._config.own_folder
         sys.path[:0] = [folder, *self._config.program.python_path]
         brick_folder = folder if self._has_brick_folder else ""
@@ -349,7 +349,7 @@ class ProgramRunner:
 
     @waits_for(Wait.INPUT)
     def _read_input(self, prompt: object = "") -> str:
-        """Replacement for input(): returns scripted answers, or the user's."""
+        """Replacement for input(): returns a scripted answer, or the user's."""
         self.stdout.write(str(prompt))
         (prompt_text,) = self._output.stabilize(self.stdout.take_part())
         answer: str | None
@@ -360,7 +360,7 @@ class ProgramRunner:
         else:
             answer = self._await_answer(prompt_text)
         self._output.row(prompt_text + (answer or ""), Stream.INPUT)
-        # Answers that exist already let no time pass: a stop is checked between them.
+        # No time passes for answers that have arrived: check for a stop here.
         self._output.after_write()
         if answer is None:
             raise EOFError(NO_ANSWER)

@@ -18,14 +18,14 @@ from typing import Any
 from tuisim.engine.runs.raw_files import RAW_BYTES, create_raw_file
 
 _NOTHING = b"\0"
-"""What a descriptor begins with to which nothing has been written."""
+"""First byte of a file to which nothing has been written."""
 _MIN_FD = 200
-"""Our own descriptors are beyond those that programs count through."""
+"""The runtime's own descriptors begin here, beyond those that programs try one by one."""
 _LINE_BUFFERED = 1
 
 
 def silence_descriptors() -> None:
-    """Lose what is written from now on: this process is a copy, and shares the files with the original."""
+    """Discard what is written to descriptors 1 and 2: this process is a copy that shares the original's files."""
     with suppress(OSError):
         null = os.open(os.devnull, os.O_WRONLY)
         for fd in (1, 2):
@@ -33,7 +33,7 @@ def silence_descriptors() -> None:
 
 
 class RawFile:
-    """One of the descriptors.
+    """The file in memory that replaces one of the descriptors 1 and 2.
 
     Args:
         fd: 1 or 2.
@@ -57,14 +57,14 @@ class RawFile:
         self._identity = os.fstat(self._fd)
         # Reading one byte of memory shows whether there is anything: asking the system would take much longer.
         self.first = mmap.mmap(self._fd, mmap.PAGESIZE)
-        """Begins with 0 unless something has been written; what begins with a null byte is not seen."""
+        """Begins with 0 unless something has been written; output that begins with a null byte is not noticed."""
 
     def drain(self) -> int:
         """Pass on what was written; return its length."""
         try:
             length = min(os.lseek(self._fd, 0, os.SEEK_CUR), RAW_BYTES)
             if not length or not os.path.samestat(os.fstat(self._fd), self._identity):
-                # Or the program has closed it, and opened another file in its place.
+                # Nothing was written, or the program has closed the descriptor and opened another file in its place.
                 return 0
             data = os.pread(self._fd, length, 0)
             os.lseek(self._fd, 0, os.SEEK_SET)
@@ -76,7 +76,7 @@ class RawFile:
 
 
 class RawOutput:
-    """Both descriptors.
+    """Passes on what is written to descriptors 1 and 2.
 
     Args:
         stdout: Receives what was written to descriptor 1.
@@ -95,7 +95,7 @@ class RawOutput:
         self._write = os.write
 
     def open(self, created: Sequence[int] = ()) -> None:
-        """Take over the descriptors, as far as this system can; `created` as for each `RawFile`."""
+        """Replace the descriptors, as far as this system can; `created` has one file for each, see `RawFile`."""
         with suppress(OSError, AttributeError):
             for (fd, take), file in zip_longest(self._takers.items(), created):
                 self._files.append(RawFile(fd, take, file))
@@ -103,8 +103,8 @@ class RawOutput:
         self._first_out, self._first_err, *_ = *firsts, _NOTHING, _NOTHING
 
     def drain(self) -> None:
-        """Pass on what was written, if it is seen at once."""
-        # A loop would take longer than both looks, and this is called at each reading.
+        """Pass on what was written, unless it begins with a null byte: a quick check."""
+        # No loop, which would take longer: this is called at each reading.
         if self._first_out[0] or self._first_err[0]:
             self.drain_all()
 
@@ -119,24 +119,24 @@ class RawOutput:
             self._busy = False
 
     def finish(self) -> None:
-        """Pass on everything, also what C has not written yet."""
+        """Pass on everything, also what C has buffered."""
         self._flush_c()
         self.drain_all()
 
     def write(self, fd: int, data: Any) -> int:
-        """Replacement for os.write(): what is output is passed on at once."""
+        """Replacement for os.write(): pass on output at once."""
         count = self._write(fd, data)
         drained = self.drain_all()
         size = memoryview(data).nbytes
         while drained and count < size:
-            # More than the file can take.
+            # The file had no room for more: write the rest now that it is empty.
             count += self._write(fd, memoryview(data).cast("B")[count:])
             drained = self.drain_all()
         return count
 
     def finish_ctypes(self, module: Any) -> None:
-        """Let C write its lines at once, as to a terminal: nobody calls the functions that would write them later."""
-        # Where C has other names for this, its output comes at the end.
+        """Make C write each line at once, as to a terminal: nobody would flush its buffers later."""
+        # If C has other names for these functions, its output is passed on at the end.
         with suppress(OSError, ValueError, AttributeError):
             c = module.CDLL(None)
             self._flush_c = lambda: c.fflush(None)

@@ -40,7 +40,7 @@ class RunConfig:
 
     @property
     def starts_in_own_folder(self) -> bool:
-        """Whether the program starts in its own folder. What an example writes is for the user."""
+        """Whether the program starts in its own folder. An example does not: its files are for the user."""
         program = self.program
         if not self.spec.profile.starts_in_own_folder or not (
             program.path or program.module_folder
@@ -76,7 +76,7 @@ def parse_config(folder: Path, data: Mapping[str, Any]) -> RunConfig:
     """Return the configuration in the contents of a `run.json`.
 
     Raises:
-        ValueError, KeyError, TypeError: they are none.
+        ValueError, KeyError, TypeError: the contents are not valid.
     """
     return RunConfig(
         folder=folder,
@@ -91,7 +91,7 @@ def derive_config(last: RunConfig, folder: Path, changes: Mapping[str, Any]) -> 
     """Return the configuration of another run of the same robot and world.
 
     Args:
-        last: That of the run before.
+        last: The configuration of the run before.
         folder: The run folder.
         changes: What is different, as the host sends it; see `tuisim.engine.runs.child.warm.Template`.
     """
@@ -110,7 +110,7 @@ _VALUES: dict[str, tuple[str, Callable[[Any], object]]] = {
     "noise": ("world.noise", lambda plain: NoiseSpec(**plain)),
     "start": ("world.start", lambda plain: Pose(**plain)),
 }
-"""Values of a spec that may be different, by their names as changes: their paths, and what makes them."""
+"""Values of a spec in which runs may differ, by their names in `changes`: path, and function that builds them."""
 
 
 def _parse_program(plain: Mapping[str, Any]) -> Program:

@@ -20,7 +20,7 @@ from tuisim.engine.runtime.session import Deadlock, Session, StopProgram
 from tuisim.engine.shim.waits import Wait, waits_for
 
 MAX_THREADS = 1000
-"""Each is a real thread, and a machine limits their number."""
+"""Each thread of a program is a real thread, and a machine limits their number."""
 FOREVER = -1
 """A wait without a time limit."""
 
@@ -107,8 +107,9 @@ class Scheduler:
         Args:
             until: Simulated ns, or FOREVER.
             on_change: Whether a motor that ends a move ends the wait.
-            queue: Holds the thread while it waits, so that another one can wake it. Such a wait also ends after
-                an interrupt was called in the thread: what it waits for may be available by then.
+            queue: Holds the thread while it waits, so that another one can wake it. Such a wait also ends after an
+                interrupt
+                has run in the thread: what the thread waits for may be available by then.
 
         Returns:
             Whether another thread (or a motor) ended the wait before its time.
@@ -136,11 +137,11 @@ class Scheduler:
                 return False
 
     def pause(self) -> None:
-        """Block the main thread until an interrupt was called in it."""
+        """Block the main thread until an interrupt has been called in it."""
         self.wait(FOREVER, queue=[])
 
     def interrupt_main(self, call: Callable[[], None]) -> None:
-        """Call something in the main thread as soon as it waits; unless that raises, it continues to wait."""
+        """Call a function in the main thread as soon as that waits; unless the function raises, the wait goes on."""
         main = self.main
         main.interrupt = call
         if main.order:
@@ -153,7 +154,7 @@ class Scheduler:
             return
         call = me.interrupt
         me.interrupt = None
-        # The call belongs to the program, wherever the thread waits.
+        # The function is the program's: its calls cost time even if the thread waits in a free call.
         free = self._session.free
         self._session.free = 0
         try:
@@ -187,7 +188,7 @@ class Scheduler:
             self._leave_if_stopping(me)
 
     def give_way(self) -> None:
-        """Let every ready thread run first, without time passing."""
+        """Let every other thread that is ready run first, without time passing."""
         me = self.current
         self._order += 1
         me.order = self._order
@@ -313,7 +314,7 @@ class Scheduler:
             self.wake(joiner)
         reason = self._session.stop_reason
         if reason is not None and self._session.stop_raised_in == task.ident:
-            # The main thread has not been told, and goes first.
+            # The main thread does not know of the stop yet: it runs first.
             self._ready.appendleft(self._send_to_main(reason))
         chosen = self._choose()
         self.current = chosen

@@ -58,20 +58,20 @@ CHUNK_TICKS = 2000
 
 @dataclass(frozen=True, slots=True)
 class RunLimits:
-    """What ends a headless run; 0 is no limit."""
+    """The limits that end a headless run; 0 is no limit."""
 
     time_ns: int = 0
     stall_s: float = 0.0
-    """CPU seconds in one instant of simulated time."""
+    """CPU seconds that may pass in one instant of simulated time."""
 
 
 class StopProgram(BaseException):
-    """Unwinds the program. Not an `Exception`, so that the program's handlers do not catch it.
+    """Ends the program by unwinding it. Not an `Exception`, so that the program's handlers do not catch it.
 
     Args:
-        end: How the run ends by it.
+        end: How the run ends.
         summary: One line for the user.
-        line: The program's line that it is about; 0 for none.
+        line: The program's line that the summary is about; 0 for none.
     """
 
     def __init__(self, end: End, summary: str, line: int = 0) -> None:
@@ -147,7 +147,7 @@ class Session:
     def connect(
         self, channel: Channel, steering: RunControl, limits: RunLimits, program_file: str
     ) -> None:
-        """Connect it with the run that is about to begin; arguments as the attributes."""
+        """Connect the session with the run that is about to begin; arguments as the attributes."""
         self.channel = channel
         self.steering = steering
         self.limits = limits
@@ -179,7 +179,7 @@ class Session:
         elif until < self._due:
             self.now = until
             if code >= 0:
-                # No reading is as new.
+                # The time is new: no other reading has it.
                 self.readings.add(code, until, self.program_line(3))
             return
         else:
@@ -210,21 +210,21 @@ class Session:
             self.note_reading(code, line)
 
     def note_reading(self, code: int, line: int = 0) -> None:
-        """Record that the program has read something, in this line if it is known; see `DeviceSession`."""
+        """Record that the program has read something, in `line` or, for 0, in the present line; see `DeviceSession`."""
         readings = self.readings
         now = self.now
-        # While no time passes, a loop may read the same any number of times: that is written once.
+        # While no time passes, a loop may read the same value again and again: record it once.
         if now == readings.newest_ns and readings.has(code):
             return
         readings.add(code, now, line or self.program_line(3))
 
     def charge(self, cost_ns: int) -> None:
-        """Let the time of a call pass, unless calls are free."""
+        """Let the time that a call costs pass, unless calls are free."""
         if not self.free:
             self.spend(cost_ns)
 
     def command(self) -> None:
-        """Count a call without a cost; a burst of them costs a little."""
+        """Count a call that costs nothing; many such calls at one time together cost a little."""
         if self._commands_at != self.now:
             self._commands_at = self.now
             self._commands = 0
@@ -240,7 +240,7 @@ class Session:
 
         Args:
             timeout_ns: The timeout.
-            again: The caller only waits again after the timeout.
+            again: Whether the caller would only wait again after the timeout.
         """
         if again and not self.flags & THREADS:
             # Nothing else can change during the wait, so many short waits are equivalent to one long wait.
@@ -248,7 +248,7 @@ class Session:
         self._pass(self.now + timeout_ns, True)
 
     def describe_part(self, port: str, part: str, role: str = "") -> PluggedPart:
-        """Return a part that is plugged in now; arguments as of `PluggedPart`."""
+        """Return a part as plugged in now, in the program's present line; arguments as of `PluggedPart`."""
         from tuisim.engine.core.plugged import PluggedPart
 
         return PluggedPart(port, part, self.sim.tick, self.program_line(), role)
@@ -273,11 +273,11 @@ class Session:
         self.spend(wait_ns)
 
     def show(self, row: str, stream: Stream) -> None:
-        """Record what the brick shows."""
+        """Record a row of the brick's state."""
         self.output.row(row, stream)
 
     def messages(self) -> list[Any]:
-        """Return all answers of the host's responder; waits for pending ones, without simulated time passing."""
+        """Return all answers of the host's responder; wait for pending ones, while simulated time stands still."""
         self.command()
         steering = self.steering
         if not steering.replay_next(self, Reply) and self.replies and self.stop_reason is None:
@@ -364,10 +364,10 @@ class Session:
         if not steering.wanted:
             self.flags &= ~LIVE
         while sim.tick < target:
-            # User actions take effect right before a tick: not if the program goes on before it.
+            # User actions take effect right before a tick: not now if the program goes on before the tick.
             if on_change and sim.notice_change():
                 return True
-            # Never beyond the last tick of this wait.
+            # The clock shows the last tick, but never goes back.
             self.now = max(self.now, sim.compute_due_ns(sim.tick))
             ticks = steering.await_ticks(self, target - sim.tick)
             sim.advance(ticks, on_change)
@@ -431,14 +431,14 @@ class Session:
         self.flags |= STOPPING
 
     def stop_lost(self) -> None:
-        """Raise the stop again at the next checkpoint: Python has dropped it, such as in a `__del__`."""
+        """Make the next checkpoint raise the stop again: Python has dropped it, such as in a `__del__`."""
         self._stop_raised_at = None
 
     def program_line(self, skipped: int = 1) -> int:
         """Return the line of the program that is running; 0 if there is none.
 
         Args:
-            skipped: How many frames need no look: this one, and those of its callers that are not the program's.
+            skipped: How many frames are certainly not the program's: this one, and some of its callers.
         """
         frame: types.FrameType | None = _getframe(skipped)
         file = self.program_file

@@ -33,7 +33,7 @@ _shows_whole = False
 
 @contextmanager
 def show_whole_stacks() -> Iterator[None]:
-    """Let `traceback` and `inspect` return the frames of the runtime, too."""
+    """Make `traceback` and `inspect` return the frames of the runtime, too, within the block."""
     global _shows_whole
     _shows_whole = True
     try:
@@ -112,7 +112,7 @@ def _build_listed(walk: Callable[..., Iterator[Any]]) -> Callable[..., list[Any]
 
 
 def patch_faulthandler() -> None:
-    """Let a program enable what is always enabled: crashes are written for the host, and their line is reported.
+    """Let a program enable the fault handler, which always is: crashes are written for the host, with their line.
 
     Functions that write the stack after a real time do nothing: time in a run is simulated, its limits are the host's.
     """
@@ -140,7 +140,7 @@ def patch_faulthandler() -> None:
 
 
 def _patch_registration() -> None:
-    """Write the stack on a signal that the runtime does not use itself."""
+    """Let a program register signals that write the stack, except signals that the runtime uses itself."""
     before: dict[int, Any] = {}
 
     def register(
@@ -197,7 +197,7 @@ def _format_stack(heading: str, frame: types.FrameType) -> str:
 
 
 def _write(text: str, file: Any) -> None:
-    """Write to a file, which may be a descriptor as in the real function."""
+    """Write to a file, which may be a descriptor, as the real function does."""
     if isinstance(file, int):
         os.write(file, text.encode("utf-8", "backslashreplace"))
     else:

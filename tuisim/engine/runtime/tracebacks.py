@@ -69,7 +69,7 @@ def report_error(error: BaseException, file: str, source: str, alone: bool = Fal
         text = _format_chain(chain)
         summary = _summarize(trace)
     except Exception as problem:
-        # An error may be anything, and nested too deeply: it is reported nevertheless.
+        # Any error must be reported, also one that is nested too deeply for Python's own report.
         stack = traceback.StackSummary.from_list(
             [
                 frame
@@ -89,14 +89,14 @@ def report_error(error: BaseException, file: str, source: str, alone: bool = Fal
 
 
 def _cut(text: str) -> str:
-    """Return a text that can be sent; of one that is too long, the beginning."""
+    """Return a text that can be sent to the host: only the beginning if it is too long."""
     if len(text) <= _MAX_CHARACTERS:
         return text
     return f"{text[:_MAX_CHARACTERS]}… (too long: {len(text):,} characters)"
 
 
 def _add_text(error: BaseException, file: str, source: str) -> None:
-    """Add the program's line to a syntax error for which Python has looked for the file, which need not exist."""
+    """Add the program's line to a syntax error without one: Python looks for it in the file, which need not exist."""
     if type(error) in _SYNTAX_ERRORS and isinstance(error, SyntaxError) and error.text is None:
         lines = source_lines(source)
         line = _find_line(error)
@@ -135,7 +135,7 @@ def _add_suggestions(trace: Trace, error: BaseException) -> None:
 
 
 def _find_suggestion(error: Any) -> str:
-    """Return what Python adds to the message of a NameError or an AttributeError."""
+    """Return the suggestion that Python adds to the message of a NameError or an AttributeError."""
     kind = type(error)
     # Without a message, whose text might be written by the program.
     bare = kind(name=error.name) if kind is NameError else kind(name=error.name, obj=error.obj)
@@ -144,7 +144,7 @@ def _find_suggestion(error: Any) -> str:
 
 
 def _print_as_python(trace: Trace, error: SyntaxError) -> None:
-    """Let a syntax error be formatted by Python itself, whose carets differ."""
+    """Let a syntax error be formatted as Python itself prints it: `traceback` sets the carets differently."""
     bare: Any = type(error)()
     for name in (
         "msg",
@@ -163,7 +163,7 @@ def _print_as_python(trace: Trace, error: SyntaxError) -> None:
 
 
 def _print_error(error: BaseException) -> str:
-    """Return what Python prints of an error, without its frames."""
+    """Return the text that Python prints of an error, without its frames."""
     names = vars(sys)
     printed = io.StringIO()
     meanwhile = {"stderr": printed, "tracebacklimit": 0}
@@ -196,7 +196,7 @@ def _summarize(trace: Trace) -> str:
 
 
 def own_files(file: str) -> Callable[[str], bool]:
-    """Return a function that tests for the program's files: itself, those beside it, and those it has imported."""
+    """Return a function that tells whether a file is the program, beside the program, or imported by it."""
     beside = os.path.dirname(wallclock.absolute(file)) + os.sep
 
     def own(name: str) -> bool:
@@ -226,7 +226,7 @@ def add_namesake_note(error: BaseException, file: str) -> None:
 
 
 def _keep_program_frames(trace: Trace, own: Callable[[str], bool]) -> list[Trace]:
-    """Remove all other frames from an error and the errors linked to it; return it and its causes, newest first."""
+    """Remove frames that are not the program's from an error and its causes; return these, newest first."""
     chains = [[trace]]
     limit = vars(sys).get("tracebacklimit")
     max_frames = max(limit, 0) if isinstance(limit, int) else sys.maxsize
@@ -249,7 +249,7 @@ def _keep_program_frames(trace: Trace, own: Callable[[str], bool]) -> list[Trace
 
 
 def _find_linked(trace: Trace) -> Trace | None:
-    """Return the error that is printed before this one."""
+    """Return the error that is printed before this one, its cause or context; None if there is none."""
     return trace.__cause__ or (None if trace.__suppress_context__ else trace.__context__)
 
 

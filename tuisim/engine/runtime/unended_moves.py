@@ -16,10 +16,10 @@ MAX_REST_NS = NS_PER_S // 2
 
 
 def finish_moves(session: Session) -> str:
-    """Let all moves end that are for a time or to a position, and then all wheels come to rest if none turns on.
+    """Let all moves end that are for a time or to a position; then let the wheels come to rest, unless a motor runs on.
 
     Returns:
-        Which motors would turn on for ever, in words; empty for none, and where no driver runs the motors.
+        Which motors would turn on for ever, in words; empty for none, and for motors without a driver.
 
     Raises:
         StopProgram: the time limit is reached, or the user stops the run.
@@ -33,7 +33,7 @@ def finish_moves(session: Session) -> str:
     if any(motor.ends_alone for motor in motors.values()):
         sim.line = 0
     while any(motor.ends_alone for motor in motors.values()):
-        # Without the program's threads, which are over.
+        # `advance`, not a wait of the scheduler: the program's threads are over.
         session.advance(session.now + NS_PER_S, True)
     turning = sorted(port for port, motor in motors.items() if motor.mode and motor.aim_dps)
     if not turning:
@@ -45,7 +45,7 @@ def finish_moves(session: Session) -> str:
 
 
 def _let_rest(session: Session, motors: Collection[SimulatedMotor]) -> None:
-    """Let wheels roll out, or swing back to where they are held, within the time limit."""
+    """Let wheels roll out, or swing back to the position that they hold, within the time limit."""
     if all(motor.axle.stands for motor in motors):
         return
     end_ns = min(session.now + MAX_REST_NS, session.limits.time_ns or 1 << 62)

@@ -35,7 +35,7 @@ def _start_folder() -> str:
     try:
         return os.getcwd()
     except OSError:
-        # It no longer exists.
+        # The working directory no longer exists.
         return os.sep
 
 
@@ -44,5 +44,5 @@ start_folder = _start_folder()
 
 
 def absolute(path: str) -> str:
-    """Return the absolute path of a file that was named at the start."""
+    """Return the absolute path of a file, relative to the working directory at the start."""
     return os.path.normpath(os.path.join(start_folder, path))

@@ -37,11 +37,11 @@ _NEEDED_LATER = (
     "tuisim.engine.runtime.scheduler",
     "tuisim.engine.shim.install",
 )
-"""What a child imports after it has begun."""
+"""Modules that a child imports only after it has begun."""
 _ONLY_HERE = ("_socket", "hashlib", "_hashlib", "_blake2", "_sha3", "tuisim.engine.runtime.warm")
-"""Modules that other children have not imported."""
+"""Modules that only forked children have: they are removed from `sys.modules`."""
 
-# Saved: the program, whose functions a template has, gets others.
+# Saved: a template replaces these functions of `os` for the program.
 _read = os.read
 _write = os.write
 _close = os.close
@@ -82,7 +82,7 @@ class ForkServer:
 
     Args:
         socket_fd: The socket to the host.
-        prepared: What its children continue with; None if it is not prepared for a robot and a world.
+        prepared: The child that is prepared for a robot and a world; None in the warm process.
     """
 
     def __init__(self, socket_fd: int, prepared: Child | None = None) -> None:
@@ -96,7 +96,7 @@ class ForkServer:
         for fd in (self._ended, self._wake):
             os.set_blocking(fd, False)
         signal.set_wakeup_fd(self._wake)
-        # Any handler makes the signal arrive at the pipe.
+        # SIGCHLD writes to the pipe only if it has a handler.
         wallclock.set_signal(signal.SIGCHLD, lambda *_: None)
         self._status_fds: dict[int, int] = {}
         """Where to report the end of each child, by process id."""
@@ -122,7 +122,7 @@ class ForkServer:
             more = self._socket.recv(_READ_BYTES)
             data = data + more if more else b""
         if not data:
-            # The host has ended; children are ended by their lifelines.
+            # The host has ended. The children end by themselves, see `die_with_host`.
             wallclock.exit_process(0)
         return json.loads(data[LENGTH_BYTES:]), files
 
@@ -159,7 +159,7 @@ class ForkServer:
 
     def _become_child(self, request: dict[str, Any], given: list[int], status_fd: int) -> None:
         os.setsid()
-        # Not before: the host may kill it at once, and kills its process group.
+        # Not before `setsid`: the host may kill the child's process group at once.
         _report(status_fd, os.getpid())
         signal.set_wakeup_fd(-1)
         wallclock.set_signal(signal.SIGCHLD, int(signal.SIG_DFL))

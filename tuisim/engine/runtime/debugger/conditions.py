@@ -53,7 +53,7 @@ Apart = Callable[[Callable[[], bytes]], bytes | None]
 class LineCondition:
     """The condition of one line breakpoint.
 
-    It is evaluated in place if no code of the program can run, otherwise in a copy of the process.
+    It is evaluated in this process if that cannot run code of the program, otherwise in a copy of the process.
 
     Args:
         text: A syntactically valid expression.
@@ -69,7 +69,7 @@ class LineCondition:
         self._plain = all(isinstance(node, _PLAIN_NODES) for node in nodes)
 
     def holds(self, frame: types.FrameType, apart: Apart) -> str:
-        """Return why the run has to pause; empty if it does not.
+        """Return why the run has to pause; empty if the condition is false.
 
         Args:
             frame: Where the expression is evaluated.
@@ -108,7 +108,7 @@ Value = Callable[[], float]
 
 
 class Watcher:
-    """The breakpoints of one run that have no line. They cost nothing while there are none.
+    """Checks the breakpoints of a run that have no line. It costs nothing while there are none.
 
     Args:
         session: The run.
@@ -131,7 +131,7 @@ class Watcher:
         return bool(self._on_row)
 
     def set(self, breaks: Iterable[Breakpoint]) -> None:
-        """Replace the breakpoints; those that stay keep their state."""
+        """Replace the breakpoints; those that were set before keep their state."""
         ticks = self._after_tick
         rows = self._on_row
         self._after_tick = {}
@@ -150,11 +150,11 @@ class Watcher:
                         self._after_tick[break_point.text] = check
 
     def match_tick(self) -> tuple[str, str] | None:
-        """Return text and value of a breakpoint that matches after this tick."""
+        """Return text and value of a breakpoint that matches after this tick; None if none does."""
         return _find_first((text, check()) for text, check in self._after_tick.items())
 
     def match_row(self, row: str, stream: Stream) -> tuple[str, str] | None:
-        """Return text and value of a breakpoint that matches this printed row."""
+        """Return text and value of a breakpoint that matches this printed row; None if none does."""
         if stream not in SAMPLE_STREAMS:
             return None
         return _find_first((text, check(row)) for text, check in self._on_row.items())
@@ -182,7 +182,7 @@ class Watcher:
             return None
         edge = Edge(condition)
         if isinstance(rule, TimeBreak) and self._time_s() >= rule.time_s:
-            # That time has passed already and does not come again.
+            # The time has passed already, and does not come again.
             edge.update(rule.time_s)
 
         def check() -> str:
@@ -210,7 +210,7 @@ class Watcher:
 
 
 def _find_first(matches: Iterator[tuple[str, str]]) -> tuple[str, str] | None:
-    """Return the first match; every check is called nevertheless."""
+    """Return the first match, but make all checks: each has to follow its value."""
     met = [(text, value) for text, value in matches if value]
     return met[0] if met else None
 

@@ -36,9 +36,9 @@ class Step:
     """A step in progress."""
 
     task: ScheduledThread | None
-    """Thread that is stepped; None completes it at the next line of any thread."""
+    """Thread that is stepped; None: the next line of any thread completes the step."""
     most_depth: int
-    """Largest number of open calls of the program's own code at which it is complete."""
+    """The step is complete at a line with at most this many open calls of the program's own code."""
 
     def is_done(self, task: ScheduledThread, depth: int) -> bool:
         """Return whether a line that is about to run completes the step."""
@@ -56,7 +56,7 @@ def build_step(how: LineStep, task: ScheduledThread, depth: int) -> Step:
 
     Args:
         how: The way to step.
-        task: Thread that is paused there.
+        task: The thread that is paused at the line.
         depth: Number of open calls of the program's own code.
     """
     match how:
@@ -75,9 +75,9 @@ NEXT_LINE = Step(None, ENDLESS_DEPTH)
 
 
 def find_code_line(program: types.CodeType | None, line: int) -> int:
-    """Return `line` or, if it has no code in the program, the next line that has: any other would never be hit.
+    """Return `line`, or the next line that has code in the program: a breakpoint on any other line would never be hit.
 
-    After the last such line, and for 0, return `line`.
+    After the last line with code, and for 0, return `line`.
     """
     if program is None or not line:
         return line
@@ -195,7 +195,7 @@ class Debugger:
                 self._session.channel.send(protocol.LineHistory(lines))
 
     def _take_more(self) -> bool:
-        """Process commands that arrive during an inspection; return False if it is no longer needed."""
+        """Process commands that arrive during an inspection; return False if its result is no longer needed."""
         self._session.steering.receive(self._session)
         return self._session.stop_reason is None
 
@@ -207,7 +207,7 @@ class Debugger:
             self._update_session()
 
     def pause(self) -> None:
-        """Pause at the next line, if it is reached before the next tick."""
+        """Pause at the next line of the program; if a tick comes first, the control pauses there instead."""
         self.forget_goals()
         if self._tracer.on and not self._session.steering.holding:
             self._step = NEXT_LINE
@@ -306,7 +306,7 @@ class Debugger:
             self._hold_at_tick(PauseReason.END, self._tracer.ordinal)
 
     def enter(self) -> None:
-        """Switch tracing in the current thread on or off as needed."""
+        """Switch tracing on or off in the current thread, as the debugger needs it."""
         self._tracer.enter()
 
     # Lines and rows

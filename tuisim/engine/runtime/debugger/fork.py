@@ -38,17 +38,17 @@ def run_apart(
     limit_s: float,
     go_on: Callable[[], bool],
 ) -> bytes | None:
-    """Return the result of `work` from a copy of this process.
+    """Call a function in a copy of this process, and return its result.
 
     Args:
         session: The run, frozen in the copy.
         scheduler: The program's threads.
-        work: Function to call in the copy.
+        work: The function to call in the copy.
         limit_s: CPU seconds after which the copy is killed: load on the machine changes no result.
         go_on: Called when a command has arrived; False cancels.
 
     Returns:
-        The result; None if there is none in time.
+        The result; None if it did not come in time.
     """
     try:
         answer_fd, answer_write = os.pipe()

@@ -82,7 +82,7 @@ class Inspector:
 
         Args:
             wanted: The request.
-            go_on: Called when a command arrives before it returns; False cancels the values.
+            go_on: Called when a command arrives during the inspection; False cancels reading the values.
         """
         tops = sys._current_frames()
         place = self._place(wanted, tops)
@@ -170,7 +170,7 @@ class Inspector:
         whole = read_values(LOOK_LIMIT_S / 2, watches)
         if whole is not None:
             return whole, ""
-        # Again without the program's own code, which may be what does not return.
+        # Read again without running the program's own code, which may never return.
         plain = read_values(0.0, ()) or {"locals": [], "globals": []}
         return {**plain, "watches": [(text, "", "takes too long") for text in watches]}, TOO_LONG
 
@@ -181,7 +181,7 @@ class Inspector:
         watches: tuple[str, ...],
         seconds: float,
     ) -> dict[str, Any]:
-        """Return names and watches as plain data. Runs in the copy."""
+        """Return variables and watches as plain data. Runs in the copy."""
         inside = self._module if frame is None else frame.f_globals
         if frame is None:
             names = inside
@@ -206,7 +206,7 @@ class Inspector:
         }
 
     def _read_columns(self, watches: tuple[str, ...]) -> dict[str, float]:
-        """Return the values of the recording's columns that watches name."""
+        """Return the values of those columns of the recording that watches name."""
         sim = self._session.sim
         field = self._session.field
         readers = {
@@ -252,7 +252,7 @@ def _copy_names(names: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _render_names(renderer: Renderer, names: Mapping[str, Any], whole: bool) -> Names:
-    """Return names with their values as text; without hidden names and, unless `whole`, without modules etc."""
+    """Return names with their values as text, without hidden names and, unless `whole`, modules and functions."""
     texts: Names = []
     for name, value in list(names.items()):
         if not isinstance(name, str) or name.startswith(("__", ".")):

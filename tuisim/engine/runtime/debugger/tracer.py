@@ -75,7 +75,7 @@ class Tracer:
         self.enter()
 
     def enter(self) -> None:
-        """Switch tracing in the thread that starts to run on or off as needed."""
+        """Switch tracing on or off in the thread that starts to run, as needed."""
         trace_function = wallclock.gettrace()
         if trace_function is not None and getattr(trace_function, "__self__", None) is not self:
             # The program traces itself: keep its trace function.

@@ -20,7 +20,7 @@ MAX_DIGITS = 200
 """Integers with more digits are shown by their size: converting them takes long."""
 
 _ADDRESS = re.compile(r" at 0x[0-9a-f]{6,}")
-"""Meaningless to the user, and different in every run."""
+"""Addresses are left out: they mean nothing to the user."""
 _BRACKETS = {
     list: ("[", "]"),
     tuple: ("(", ")"),
@@ -42,7 +42,7 @@ def cut(text: str, most: int = MAX_CHARACTERS) -> str:
 
 
 class Renderer:
-    """Renders values until the time limit is reached.
+    """Turns values into short texts until the time limit is reached.
 
     Args:
         seconds: CPU time for the program's own code, for all values together.
@@ -134,12 +134,12 @@ def describe(error: BaseException) -> str:
 def evaluate(
     renderer: Renderer, text: str, names: Mapping[str, Any], builtin: Any
 ) -> tuple[str, str]:
-    """Return value and error of an expression, one of them empty.
+    """Return value and error of an expression as texts, one of them empty.
 
     Args:
         renderer: Renders the value.
         text: The expression.
-        names: Values of its names.
+        names: The variables that the expression can use.
         builtin: The program's builtins.
     """
     try:

@@ -72,7 +72,7 @@ def _find_end_ns(
 def _describe_call(
     session: Session, frame: types.FrameType, outer: list[types.FrameType], until: str
 ) -> str:
-    """Return what a call of the runtime or the library waits for; empty if this frame does not show it."""
+    """Return what a call of the runtime or the library waits for; empty if the call itself does not wait."""
     match wait_of(frame.f_code):
         case None:
             return ""
@@ -103,7 +103,10 @@ def _describe_call(
 
 
 def _describe_reading(read: types.FrameType, outer: list[types.FrameType]) -> str:
-    """Return what is read as the program names it, such as `gyro.angle`; the attribute if no property reads it."""
+    """Return what the program reads, in its own names, such as `gyro.angle`.
+
+    Without a property of the library in the frames `outer`, it is the driver's attribute, such as `value0`.
+    """
     properties = [frame for frame in outer if _is_property(frame)]
     if not properties:
         return str(read.f_locals["name"])

@@ -198,7 +198,7 @@ def _build_simulated_datetime(session: Session, module: types.ModuleType) -> typ
 
 
 def _copy_looks(replacement: Any, real: Any) -> None:
-    """Give a replaced class and its instances the repr and pickle form of the real one."""
+    """Give a replaced class and its instances the `repr` and the pickled form of the real class."""
     replacement.__module__ = "datetime"
     replacement.__qualname__ = real.__name__
     replacement.__doc__ = real.__doc__
@@ -243,7 +243,7 @@ def finish_resource(session: Session, module: types.ModuleType) -> None:
 
 
 def finish_pandas(session: Session, module: types.ModuleType) -> None:
-    """Make "now" of pandas simulated time; its compiled code does not call `time`."""
+    """Make the present time of pandas simulated; its compiled code does not call `time`."""
     cost = session.sim.spec.profile.clock_read_ns
     stamp = module.Timestamp
     period = module.Period

@@ -24,21 +24,21 @@ from tuisim.engine.runtime.modules import OWN_FILES, is_own
 from tuisim.engine.runtime.patches.replacement import replace
 
 MAX_KNOWN = 100_000
-"""Of so many files it is remembered that they were opened."""
+"""At most so many opened files are remembered."""
 MAX_PATH = 4096
-"""No system opens a file of a longer one."""
+"""Longest path in characters: no system opens a file with a longer one."""
 _SYSTEM = ("/usr", "/etc", "/proc", "/sys", "/dev")
 _SHARED = "/dev/shm/"
 _MODES = frozenset("rwxabt+")
 
 
 def _get_argument(index: int, name: str, given: Sequence[Any], named: Mapping[str, Any]) -> Any:
-    """Return an argument of a call; None if it is not given, which is then for the real function to judge."""
+    """Return an argument of a call; None if it is missing, which the real function then reports."""
     return given[index] if index < len(given) else named.get(name)
 
 
 class FileReads:
-    """The files that a program has opened."""
+    """Follows which files a program opens, and notes those that it reads."""
 
     def __init__(self) -> None:
         self._folder: Path | None = None
@@ -47,7 +47,7 @@ class FileReads:
         self._program_file = ""
         self._seen: set[str] = set()
         self._made: set[str] = set()
-        """Files that the run has made itself: what it reads there is its own."""
+        """Files that the run has made itself: reading them is not noted."""
         self._before: dict[str, FileRead] = {}
         """Files to which the run has added something, as they were before."""
         self._noted = self._left_out = 0
@@ -68,7 +68,7 @@ class FileReads:
             return real_open(*given, **named)
 
         def os_open_noted(*given: Any, **named: Any) -> Any:
-            # A path in a folder that is given by its descriptor is not known.
+            # With `dir_fd`, the folder of the file is not known.
             if self._folder is not None and named.get("dir_fd") is None:
                 self._note_os_open(
                     *(
@@ -97,12 +97,12 @@ class FileReads:
         return move
 
     def begin(self, folder: Path, own_folder: str, program_file: str) -> None:
-        """Note from now on what the program reads.
+        """Note from now on which files the program reads.
 
         Args:
-            folder: Of the run.
-            own_folder: Of the program.
-            program_file: The program, which is no data.
+            folder: The run folder.
+            own_folder: The folder of the program.
+            program_file: The program itself, which does not count as a file that it reads.
         """
         self._program_file = os.path.abspath(program_file)
         around = {
@@ -115,9 +115,9 @@ class FileReads:
         self._folder = folder
 
     def end(self) -> None:
-        """Note how many more files were read."""
+        """Note how many files were read beyond those that are listed."""
         if self._folder is not None and self._left_out:
-            # What is noted stays without it.
+            # If it cannot be written, the listed files stay as they are.
             with suppress(OSError):
                 note_reads_left_out(self._folder, self._left_out)
 
@@ -158,7 +158,7 @@ class FileReads:
 
     @staticmethod
     def _resolve_path(file: Any) -> str:
-        """Return the absolute path; empty for a descriptor, and for what is no path."""
+        """Return the absolute path of a file; empty for a descriptor, and for anything else that is not a path."""
         if isinstance(file, os.PathLike):
             file = os.fspath(file)
         if not isinstance(file, str | bytes) or len(file) > MAX_PATH:

@@ -44,7 +44,7 @@ _WRITES = ("send", "sendto")
 
 
 class FileWaits:
-    """Polls sockets without blocking, and the brick's files, and waits on the simulated clock.
+    """Waits for sockets and the brick's files in simulated time: it polls them without blocking.
 
     Args:
         session: The run.
@@ -118,7 +118,7 @@ class FileWaits:
         """Return the device file behind a file; None for a socket.
 
         Raises:
-            NotSimulated: it is neither.
+            NotSimulated: the file is neither a device file nor a socket.
         """
         opened = self.devices.opened(file)
         if opened is None and not _is_socket(file):
@@ -147,7 +147,7 @@ class FileWaits:
             selector_class.select = self._build_select(selector_class.select)
 
     def _build_selector_class(self, name: str) -> Any:
-        """Return what a selector polls with; it waits itself."""
+        """Return a replacement for the class with which a selector polls; it does not wait, the selector does."""
         real: Any = self._classes[name]
         return staticmethod(lambda: _AtOnce(self, real())) if name in ("poll", "epoll") else real
 
@@ -175,7 +175,7 @@ class FileWaits:
         sockets.connect = self._connect(sockets.connect, sockets.connect_ex)
 
     def _wait_for_socket(self, socket: Any, writes: bool, code: int | None = None) -> None:
-        """Wait until a socket is ready; each vain look at one that reads is recorded, by its code."""
+        """Wait until a socket is ready; with a `code`, record under it each time that the socket was not."""
         timeout_s = socket.gettimeout()
         if timeout_s == 0.0:
             return
@@ -205,7 +205,7 @@ class FileWaits:
         @wraps(real)
         def sendall(socket: Any, data: Any, flags: int = 0) -> None:
             rest = memoryview(data).cast("B")
-            # As much at a time as fits: the reader may be another thread of the program.
+            # In parts, as many bytes as fit: the reader may be another thread of the program.
             while len(rest):
                 rest = rest[send(socket, rest, flags | _get_dont_wait()) :]
 
@@ -304,7 +304,7 @@ class _Polling:
             self._polled[_find_descriptor(file)] = opened, events[0] if events else _ALL_EVENTS
 
     def modify(self, file: Any, events: int) -> None:
-        """Change what is asked for of a file."""
+        """Change the events that a file is polled for."""
         if _find_descriptor(file) not in self._polled:
             self._real.modify(file, events)
         else:
@@ -317,7 +317,7 @@ class _Polling:
 
     def poll(self, timeout_ms: Any = None) -> Any:
         """Return the events; blocks in simulated time."""
-        # Negative means without limit, as in the real one.
+        # A negative timeout has no limit, as in the real function.
         unlimited = timeout_ms is None or timeout_ms < 0
         limit = None if unlimited else _convert_to_ns(timeout_ms, _NS_PER_MS)
         return self._waits.poll_files(self._look, limit, self.has_devices)
@@ -331,10 +331,10 @@ class _Polling:
 
 
 class _AtOnce(_Polling):
-    """The same without waiting."""
+    """A `_Polling` that never waits."""
 
     def poll(self, timeout_ms: Any = None, *more: Any) -> Any:
-        """Return the events that there are."""
+        """Return the events that have happened."""
         return self._look(*more)
 
 
@@ -344,7 +344,10 @@ def _has_devices(selector: Any) -> bool:
 
 
 def _join_parts(real: Any) -> Callable[..., int]:
-    """Return a method that sends parts as one, which an isolated program may, unlike to send descriptors with them."""
+    """Return a `sendmsg` that sends its parts as one, as `send` does: an isolated program may only use `send`.
+
+    With ancillary data, such as descriptors, it calls the real `sendmsg`, which is refused there.
+    """
 
     @wraps(real)
     def sendmsg(

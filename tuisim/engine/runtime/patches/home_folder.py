@@ -17,7 +17,7 @@ _FOLDER_CALLS = ("listdir", "scandir", "chdir")
 
 
 class HomeFolder:
-    """Lets the functions that take paths find files of the brick's home folder beside the program.
+    """Makes functions that take paths find files of the brick's home folder beside the program.
 
     Args:
         own_folder: Returns the folder of the program.
@@ -45,7 +45,7 @@ class HomeFolder:
         replace(module, name, call)
 
     def _find_file(self, path: Any) -> Any:
-        """Return the path of a file; one that is not there is to be made in the program's folder."""
+        """Return the real path of a file; a missing file of the home folder will be created in the program's folder."""
         if not (text := _parse_home_path(path)):
             return path
         own_folder = self._own_folder()
@@ -59,11 +59,11 @@ class HomeFolder:
         return os.path.join(own_folder, parts[-1])
 
     def _find_folder(self, path: Any) -> Any:
-        """Return the path of a folder; one that is not there is that of the program."""
+        """Return the real path of a folder; a missing folder of the home folder is the program's folder."""
         return place_folder(text, self._own_folder()) if (text := _parse_home_path(path)) else path
 
 
 def _parse_home_path(path: Any) -> str:
-    """Return the text of a path that begins in the home folder; empty for another one, and for a descriptor."""
+    """Return a path in the brick's home folder as text; empty for any other path, and for a descriptor."""
     text = os.fspath(path) if isinstance(path, os.PathLike) else path
     return text if isinstance(text, str) and text.startswith(HOME) else ""

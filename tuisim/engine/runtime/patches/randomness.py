@@ -15,7 +15,7 @@ from tuisim.engine.runtime.patches.replacement import replace
 
 
 def patch_urandom(seed: Callable[[], int]) -> None:
-    """Derive the system's random bytes from the seed that a function returns: uuid4, secrets and numpy use them."""
+    """Derive the system's random bytes, which uuid4, secrets and numpy use, from the seed that a function returns."""
     draws = count()
     real_urandom = os.urandom
 
@@ -43,7 +43,7 @@ def finish_uuid(seed: int, module: types.ModuleType) -> None:
 
 
 def finish_random(seed: int, module: types.ModuleType) -> None:
-    """Make a generator without a seed take one from the run's seed."""
+    """Make random generators that are created without a seed take one from the run's seed."""
     generator: Any = module.Random
     seeds = count()
     real_seed: Callable[..., None] = generator.seed

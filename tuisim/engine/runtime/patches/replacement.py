@@ -30,7 +30,7 @@ class _Replacement:
 
     @property
     def __class__(self) -> Any:
-        # What it replaces may be a replacement itself.
+        # Not `type`: the replaced function may itself be a replacement.
         return self._real.__class__
 
     @__class__.setter
@@ -43,7 +43,7 @@ class _Replacement:
         return repr(self._real)
 
     def __reduce_ex__(self, _protocol: object) -> str:
-        # By its name, as builtins are pickled: a copy is the same object.
+        # Pickled by its name, as builtins are: unpickling gives the same object.
         return str(self._real.__qualname__)
 
 
@@ -81,7 +81,7 @@ def replace(
     """Replace a function of a module, and of the module that it comes from.
 
     Args:
-        module: Such as `os`, most of whose functions come from `posix`.
+        module: A module such as `os`, most of whose functions come from `posix`.
         name: Name of the function, a builtin or one in Python.
         does, takes: As for `build_replacement`.
     """
@@ -98,7 +98,7 @@ def replace(
 
 
 class PatchedModules:
-    """Finds a patched module again that the program has removed from `sys.modules`: a fresh one has the real clock."""
+    """Finds a patched module after a program has removed it from `sys.modules`: a new one would have the real clock."""
 
     def find_spec(
         self,
@@ -106,13 +106,13 @@ class PatchedModules:
         path: Sequence[str] | None = None,
         target: types.ModuleType | None = None,
     ) -> ModuleSpec | None:
-        """Return how to load a patched module; None for others."""
+        """Return how to load a patched module; None for any other module."""
         loader: Any = self
         return ModuleSpec(fullname, loader) if fullname in _patched else None
 
     def create_module(self, spec: ModuleSpec) -> types.ModuleType:
-        """Return the module as it is."""
+        """Return the patched module."""
         return _patched[spec.name]
 
     def exec_module(self, module: types.ModuleType) -> None:
-        """Leave the module as it is."""
+        """Do nothing: the module has been executed before."""

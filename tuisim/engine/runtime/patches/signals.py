@@ -19,7 +19,7 @@ ALARMS = ("alarm", "setitimer", "getitimer")
 
 
 class Interrupt:
-    """The interrupt of a program, otherwise sent by a terminal: it reaches the main thread at a fixed instant.
+    """The interrupt that a program sends to itself, as a terminal does: it reaches the main thread at a fixed instant.
 
     The signal itself belongs to the runtime: the program's handler is only stored here.
 
@@ -35,7 +35,7 @@ class Interrupt:
         """The program's handler, or the number of a standard action."""
 
     def send(self) -> None:
-        """Call the handler at once in the main thread; otherwise as soon as that waits."""
+        """Call the handler: at once if the main thread sends it, otherwise as soon as the main thread waits."""
         if self.handler in (signal.SIG_IGN, None):
             return
         if self._scheduler.current is self._scheduler.main:
@@ -57,7 +57,7 @@ class Interrupt:
 
 
 def patch_signals(session: Session, scheduler: Scheduler) -> None:
-    """Replace the functions of `signal`, `os` and `_thread` that have to do with alarms and interrupts."""
+    """Replace the functions of `signal`, `os` and `_thread` for alarms and interrupts."""
     interrupt = Interrupt(session, scheduler)
     for name in ALARMS:
         replace(signal, name, lambda *_: _refuse_alarm())
@@ -121,6 +121,6 @@ def _patch_handlers(interrupt: Interrupt) -> None:
     def get_handler(number: Any) -> Any:
         return interrupt.handler if number == signal.SIGINT else real_getsignal(number)
 
-    # Those of `signal` call them, and convert numbers to enum members and back.
+    # The functions of `signal` call these, and convert numbers to enum members and back.
     replace(wallclock.signals, "signal", set_handler, (2, 2))
     replace(wallclock.signals, "getsignal", get_handler, (1, 1))

@@ -18,7 +18,7 @@ EndedBy = Callable[[Callable[..., object], BaseException], None]
 
 
 def patch_threads(scheduler: Scheduler, ended_by: EndedBy) -> None:
-    """Replace the lock and start functions, then import `threading` over them.
+    """Replace the functions for locks and for starting threads, then import `threading`, which uses them.
 
     Must run before anything imports `threading`.
 
@@ -63,7 +63,7 @@ def patch_threads(scheduler: Scheduler, ended_by: EndedBy) -> None:
 
 
 def _build_starter(scheduler: Scheduler, ended_by: EndedBy) -> Callable[..., int]:
-    """Return what starts a thread of `_thread`."""
+    """Return the function that starts a thread of `_thread`."""
 
     def start_new_thread(function: Any, args: Any, kwargs: Any = None) -> int:
         if not callable(function):
@@ -131,7 +131,7 @@ def _patch_thread_class(scheduler: Scheduler, thread: Any) -> None:
             return False
         task = tasks.get(id(self))
         if task is not None and task.done:
-            # Its text says so.
+            # The thread's `repr` says `stopped` from now on.
             self._is_stopped = True
         return task is None or not task.done
 
