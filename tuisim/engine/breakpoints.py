@@ -53,7 +53,7 @@ _NO_CONDITION = {
         f"{describe_comparison()}, such as: sample Colour < 50, sample Colour changes",
     ),
 }
-"""What is wrong with a text that begins like a condition, and the hint."""
+"""Message and hint for a text that begins like a condition but is none, by its first word."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,7 +90,7 @@ class Breakpoint:
     disabled: bool = False
 
     def written(self) -> str:
-        """The text from which `parse_break` creates this breakpoint again."""
+        """The text from which `parse_break` makes this breakpoint again, also a disabled one."""
         return f"# {self.text}" if self.disabled else self.text
 
 
@@ -99,7 +99,7 @@ _NAME = re.compile(r"\w+(?:[. ]\w+)*\s*%?")
 
 
 def parse_break(text: str, run: RunSpec | None = None) -> Breakpoint:
-    """Return the breakpoint that a text describes; without a run any name of a sensor is accepted.
+    """Return the breakpoint that a text describes; without a run, any possible name of a column is accepted.
 
     Raises:
         ConfigError: the text is not a valid breakpoint; the hint lists what is allowed.
@@ -117,10 +117,14 @@ def parse_breakpoints(texts: Iterable[str], run: RunSpec | None = None) -> tuple
 
 
 def check_line(one: Breakpoint, lines: Sequence[str]) -> None:
-    """Check that a breakpoint is on a line of a program, or above one, that can run.
+    """Check that a line breakpoint can be hit: its line, or one after it, must have code.
+
+    Args:
+        one: The breakpoint; one without a line passes.
+        lines: The lines of the program.
 
     Raises:
-        ConfigError: it is not.
+        ConfigError: it can never be hit.
     """
     line = break_line_of(one)
     if line and not find_code_line(lines, line):
@@ -130,7 +134,7 @@ def check_line(one: Breakpoint, lines: Sequence[str]) -> None:
 
 
 def break_lines(breaks: Iterable[Breakpoint]) -> dict[int, Breakpoint]:
-    """Return the line breakpoints by line; of several on one line, an enabled one takes precedence."""
+    """Return the line breakpoints by line; if a line has several, an enabled one takes precedence."""
     by_line: dict[int, Breakpoint] = {}
     for point in sorted(breaks, key=lambda point: not point.disabled):
         line = break_line_of(point)
@@ -183,7 +187,7 @@ def _line_rule(text: str, line: int, condition: str | None) -> LineBreak:
 
 
 def _why_no_expression(text: str) -> str:
-    """Return why Python cannot parse an expression; empty if it can."""
+    """Return why Python cannot parse a text as an expression; empty if it can."""
     try:
         parse_expression(text)
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
@@ -195,7 +199,7 @@ def parse_watch(text: str) -> str:
     """Return a watch expression without surrounding whitespace.
 
     Raises:
-        ConfigError: Python cannot parse it.
+        ConfigError: Python cannot parse the text.
     """
     text = text.strip()
     if why := _why_no_expression(text):
@@ -223,7 +227,7 @@ def _condition(text: str, word: str, run: RunSpec | None) -> ValueCondition:
 
 
 def _column(text: str, written: str, run: RunSpec | None) -> str:
-    """Return the name of a column; without a run, what is written, if it can be one."""
+    """Return the name of the column that is written; without a run, the written text if it can be a name."""
     if run is None:
         if not _NAME.fullmatch(written):
             raise _refuse(text, f"there is no {written!r}")

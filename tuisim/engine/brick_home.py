@@ -1,4 +1,4 @@
-"""The home folder of the brick: what a program looks for under `/home/robot` lies in its own folder."""
+"""The home folder of the brick: files that a program looks for under `/home/robot` lie in its own folder."""
 
 from __future__ import annotations
 
@@ -9,7 +9,10 @@ HOME = "/home/robot"
 
 
 def parts_in_home(path: str, own_folder: str) -> list[str] | None:
-    """Return the parts of a path in the home folder; None for another one, or if the program itself is there."""
+    """Return the parts of a path below the brick's home folder; None for any other path.
+
+    It is None for every path if the program itself is in a folder of that name.
+    """
     if not path.startswith(HOME):
         return None
     path = os.path.normpath(path)
@@ -19,14 +22,17 @@ def parts_in_home(path: str, own_folder: str) -> list[str] | None:
 
 
 def find_beside(parts: Sequence[str], own_folder: str) -> str:
-    """Return the path that is there, empty for none; the program's folder may be anywhere in the home folder."""
+    """Return the file or folder beside the program that a path in the home folder means; empty if there is none.
+
+    The program's folder may be anywhere in the home folder: leading parts of the path are left out until it is found.
+    """
     ends = (parts[first:] for first in range(len(parts)))
     paths = (os.path.join(own_folder, *end) for end in ends)
     return next((path for path in paths if os.path.exists(path)), "")
 
 
 def place_folder(path: str, own_folder: str) -> str:
-    """Return the folder that a path of the program stands for; in the home folder one that is not there is its own."""
+    """Return the folder that a path of the program means; a missing folder of the home folder is the program's own."""
     parts = parts_in_home(path, own_folder)
     return path if parts is None else find_beside(parts, own_folder) or own_folder
 

@@ -37,7 +37,7 @@ MAX_LINE = 1000
 
 MAX_NAME = 100
 MAX_WHOLE = 2**63
-"""Larger integers have no use in any key."""
+"""Larger integers are refused: no key has a use for them."""
 FILE_SUFFIXES = (".toml", ".json")
 
 
@@ -56,7 +56,7 @@ class Location:
         return replace(self, key=f"{self.key}{joint}{key}", error=error or self.error)
 
     def wrong(self, message: str, hint: str = "") -> ConfigError:
-        """Return an error about this value, to be raised."""
+        """Return an error about the value at this location, to be raised."""
         return self.error(message, hint, file=self.file, key=self.key)
 
 
@@ -75,9 +75,13 @@ def read_named(
 ) -> tuple[Any, str, Location]:
     """Read the file that a word names; return its data, the default name of the object in it, and its location.
 
+    Args:
+        word: What the user gave: it is not one of the names `known`.
+        what: What it should name, for errors.
+        key: The option to blame in errors.
+
     Raises:
-        ConfigError: of the class `error`: the word is the name of nothing `known` and of no file, or `read_file`
-            cannot read it. `what` and `key` are what it should name, and the option to blame.
+        ConfigError: of the class `error`: the word names no file, or `read_file` cannot read the file.
     """
     if not means_file(word):
         allowed = f"{nearest(word, known)}; or a {' or '.join(kinds)} file"
@@ -105,7 +109,7 @@ def with_location(error: ConfigError, file: str, key: str) -> ConfigError:
 
 @contextmanager
 def errors_at(file: str, prefix: str = "") -> Iterator[None]:
-    """Add a file and the key of a table to ConfigErrors that are raised in the block without a file."""
+    """Add a file and the key of a table to the ConfigErrors of the block that have no file."""
     try:
         yield
     except ConfigError as error:
@@ -147,12 +151,12 @@ def read_bytes(
     """Return the bytes of a regular file, one more than `most_bytes` if it is larger.
 
     Args:
-        missing, folder: What is wrong if there is no such file, or a folder.
+        missing, folder: The message if there is no such file, or if it is a folder.
         hint: What is allowed instead of a folder or a device.
         neighbours: Returns the hint for a missing file.
 
     Raises:
-        ConfigError: of the class `error`: it is missing, not a regular file, or cannot be read.
+        ConfigError: of the class `error`: the file is missing, not a regular file, or cannot be read.
     """
     file = str(path)
     try:
@@ -191,7 +195,11 @@ def _neighbours(path: Path) -> str:
 
 
 def close_beside(path: Path, suffixes: Collection[str]) -> list[str]:
-    """Return the names of files beside a missing one that are like its name; the suffixes do not count."""
+    """Return the names of existing files beside a missing one that are similar to its name, whatever their suffixes.
+
+    Args:
+        suffixes: The suffixes that the files may have.
+    """
     try:
         beside = sorted(
             other for other in path.parent.iterdir() if other.suffix.lower() in suffixes
@@ -241,7 +249,7 @@ def _json(text: str, file: str, error: type[ConfigError]) -> Any:
 def table(
     data: object, at: Location, keys: Iterable[str] | None = None, unlisted: Collection[str] = ()
 ) -> Any:
-    """Return data that is a table, as a dict.
+    """Return data as a dict, after checking that it is a table.
 
     Args:
         keys: The keys that it may have; None for any.
@@ -274,8 +282,11 @@ def required(data: Mapping[str, object], key: str, at: Location) -> object:
 def entries(data: object, at: Location, most: int, what: str) -> list[tuple[object, Location]]:
     """Return the entries of a list, each with its location; the first is `key[1]`.
 
+    Args:
+        what: What the entries are, in the plural, for errors.
+
     Raises:
-        ConfigError: it is not a list, or has more than `most` entries; `what` is their name in the plural.
+        ConfigError: the data is not a list, or has more than `most` entries.
     """
     if not isinstance(data, list):
         raise at.wrong(f"must be a list, got {quote(data)}")
@@ -285,10 +296,10 @@ def entries(data: object, at: Location, most: int, what: str) -> list[tuple[obje
 
 
 def one_of(data: object, at: Location, allowed: Iterable[str]) -> str:
-    """Return a text that must be one of `allowed`.
+    """Return data that must be one of the texts `allowed`.
 
     Raises:
-        ConfigError: it is another one, or no text.
+        ConfigError: it is another text, or not a text.
     """
     word = convert(data, str, at)
     words = list(allowed)
@@ -298,10 +309,10 @@ def one_of(data: object, at: Location, allowed: Iterable[str]) -> str:
 
 
 def read_value(data: object, value: Value, at: Location) -> Any:
-    """Return a value of a run from a file.
+    """Return a value of a run from the data of a file.
 
     Raises:
-        ConfigError: it is not allowed.
+        ConfigError: the data is not allowed for this value.
     """
     try:
         return value.parse_data(data)
@@ -310,11 +321,11 @@ def read_value(data: object, value: Value, at: Location) -> Any:
 
 
 def read_part(data: object, base: _Spec | type[_Spec], at: Location, **given: object) -> _Spec:
-    """Return a sensor or another spec with the values in a table, which never give its name.
+    """Return a sensor or another spec with the values in a table, which never contains its name.
 
     Args:
-        base: The spec that has the values which the table leaves out; or the class of a new one.
-        given: Values that the table does not give, by name.
+        base: A spec whose values stand for those that the table leaves out; or the class of a new spec.
+        given: Values that are not read from the table, by name.
 
     Raises:
         ConfigError: a key is unknown or missing, or a value is wrong.
@@ -335,15 +346,15 @@ def read_part(data: object, base: _Spec | type[_Spec], at: Location, **given: ob
 
 
 def with_values(base: _Spec | type[_Spec], values: Mapping[str, Any], at: Location) -> _Spec:
-    """Return a spec with other values, or a new one of a class.
+    """Return a spec with other values, or a new spec of a class.
 
     Raises:
-        ConfigError: they break a rule.
+        ConfigError: the values break a rule.
     """
     try:
         return base(**values) if isinstance(base, type) else replace(base, **values)
     except ConfigError as error:
-        # The specs begin the keys in their errors with the name of the part, in which `at` may already end.
+        # Keys in the errors of specs begin with the name of the part, with which `at.key` may already end.
         part = re.sub(r"\[\d+\]$", "", at.key).rpartition(".")[2]
         inner = at.at(error.key.removeprefix(f"{part}.")) if error.key else at
         raise inner.wrong(error.message.removeprefix(f"{error.key}: "), error.hint) from None
@@ -389,7 +400,7 @@ def _type_info(kind: Any) -> types.Type:
 def _walk(
     data: object, info: types.Type, at: Location
 ) -> Iterator[tuple[str, tuple[object, types.Type]]]:
-    """Yield the key, value and type of everything in a file; raise for what types do not express."""
+    """Yield key, value and type of everything in a file; raise ConfigError for faults that types do not express."""
     from msgspec import inspect as types
 
     match info, data:
@@ -441,7 +452,7 @@ _TABLE = "a table of keys and values"
 
 
 def _expected(info: types.Type) -> str:
-    """Return in words what a type allows."""
+    """Return the values that a type allows, in words."""
     from msgspec import inspect as types
 
     match info:
@@ -493,7 +504,7 @@ def toml_value(value: Scalar) -> str:
 def toml_lines(
     values: Mapping[str, Scalar], comments: Mapping[str, str] = MappingProxyType({})
 ) -> list[str]:
-    """Return the lines of one table, with their comments, aligned."""
+    """Return the lines of one table, with aligned comments."""
     pairs = [
         (f"{toml_key(key)} = {toml_value(value)}", comments.get(key, ""))
         for key, value in values.items()
@@ -515,7 +526,7 @@ def value_lines(part: Spec, keys: Iterable[str]) -> list[str]:
 
 
 def toml_form(value: Value, found: Any) -> Scalar:
-    """Return a value as a file gives it."""
+    """Return a value in the form in which a file has it, such as a name or a list."""
     if isinstance(value, NamedNumber):
         return value.named(found)
     if isinstance(value, NamedPart):
@@ -580,9 +591,10 @@ def save_toml(
 
 
 def _updated_text(old: str, new: str, kept: Collection[str], whole: bool) -> str:
-    """Return a TOML text with the values of a new one, but comments, layout and order of the old one.
+    """Return the TOML text `old` with the values of `new`, but with its own comments, layout and order.
 
-    Only the old text has the keys `kept`; `whole` tells whether tables are replaced as a whole.
+    Keys `kept` of the old text stay, though the new one lacks them; `whole` tells whether tables are replaced as a
+    whole.
     """
     import tomlkit
     from tomlkit.exceptions import TOMLKitError
@@ -615,7 +627,7 @@ def _update(old: Any, new: Any, kept: Collection[str] = (), whole: bool = False)
             before is None or isinstance(before, Mapping | AoT) or isinstance(value, Mapping | AoT)
         ):
             old.pop(key, None)
-            # There is no room for the comment of a value in an inline table.
+            # A value in an inline table has no room for a comment.
             old[key] = _plain(value) if isinstance(old, InlineTable) else value
         elif _plain(before) != _plain(value) or isinstance(before, bool) != isinstance(value, bool):
             old[key] = _plain(value)

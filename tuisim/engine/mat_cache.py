@@ -60,19 +60,19 @@ class FieldFiles:
 
     @property
     def paths(self) -> tuple[Path, ...]:
-        """All files that are opened, with the notes of their checksums."""
+        """All files of the mat, and the notes of their checksums."""
         data = (self.pixels, *(path for _, path in self.sums))
         return (*data, *map(_note_of, data))
 
     def is_for(self, diameters: Collection[int]) -> bool:
-        """Return whether these are the files of a whole field with sums of these diameters."""
+        """Return whether these are the files of a mat of the field's size, with sums of these disc diameters."""
         size = self.width_px, self.height_px
         return size == (FIELD_WIDTH_MM, FIELD_HEIGHT_MM) and {
             diameter for diameter, _ in self.sums
         } >= set(diameters)
 
     def identities(self) -> tuple[tuple[int, ...], ...]:
-        """Return what changes when a file is written to, or made again; a missing file has none."""
+        """Return numbers that change when any file is written to or made again; a missing file is left out."""
         identities = []
         for path in (self.pixels, *(path for _, path in self.sums)):
             with suppress(OSError):
@@ -176,12 +176,12 @@ def _note_of(path: Path) -> Path:
 
 
 def _identity(found: os.stat_result) -> tuple[int, ...]:
-    """Return what changes when anything writes to a file, or another one takes its place."""
+    """Return numbers that change when a file is written to, or when another file takes its place."""
     return found.st_ino, found.st_size, found.st_mtime_ns, found.st_ctime_ns
 
 
 def _noted(path: Path) -> tuple[int, tuple[int, ...]] | None:
-    """Return the checksum and the identity in the note of a file; None if there is no sound note."""
+    """Return the checksum and the identity in the note of a file; None if there is no valid note."""
     try:
         checksum, *identity = map(int, read_regular(_note_of(path), _MOST_NOTE_BYTES).split())
     except (OSError, ValueError):
@@ -249,14 +249,14 @@ def _disc_sums(pixels: NDArray[np.uint8], diameter: int) -> NDArray[np.uint32]:
 
 
 def _store(path: Path, array: NDArray[Any]) -> None:
-    # On the disk before it is noted as sound: a power failure could leave zeros in its place.
+    # Write it to the disk before the note says that it is sound: a power failure could leave zeros in its place.
     with replacing(path, owner_only=True, follow_links=False) as stream:
         stream.write(array.data)
     _note(path, zlib.crc32(array.data), path.stat())
 
 
 def _by_age(folder: Path) -> Iterator[tuple[float, Path]]:
-    """Yield each file with the time of its last use: that of its note."""
+    """Yield each file of the cache with the time of its last use, which is that of its note."""
     for path in folder.iterdir():
         # Another process may be removing files too.
         with suppress(FileNotFoundError):
@@ -285,7 +285,7 @@ def _mapped(path: Path, size: int) -> memoryview:
                 what = f"has {status.st_size} bytes, not {size}"
                 raise BackgroundError(what, "remove it to recreate it", file=str(path))
             noted = _noted(path)
-            # The note is that of another file if that has just been made again by another process.
+            # If another process has just made the file again, the note is about the new file.
             if noted is None or (
                 noted[1] != _identity(status) and noted[0] != _checksum(stream.fileno())
             ):

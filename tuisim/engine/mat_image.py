@@ -116,7 +116,8 @@ def decode(content: bytes, path: Path, fit: str) -> NDArray[np.uint8]:
     """Return the pixels of the field with an image on it.
 
     Args:
-        path: Its path, for messages.
+        content: The bytes of the image file.
+        path: The path of the file, for messages.
         fit: One of BACKGROUND_FITS.
 
     Returns:

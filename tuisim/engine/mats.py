@@ -42,7 +42,7 @@ class Background:
     obstacles: tuple[Obstacle, ...] = ()
     """The default obstacles on the mat."""
     brick_start: Pose | None = None
-    """The start pose of programs for a brick, if it is another one: on the line, or in the middle of an empty field."""
+    """The start pose of programs for a brick, if it differs: on the line, or in the middle of an empty field."""
     sensor_x_mm: Mapping[str, float] = field(default_factory=dict)
     """The x positions of colour sensors on this mat, by name, where they differ from the robot's."""
     original: str = ""
@@ -167,7 +167,7 @@ AS_THERE = "corner"
 
 @dataclass(frozen=True, slots=True)
 class Taken:
-    """An imported image."""
+    """An image that was imported."""
 
     name: str
     """The mat's name."""
@@ -183,8 +183,10 @@ def own_folder() -> Path:
 def mats(folder: str | None = None) -> dict[str, Background]:
     """Return every mat by name: the catalogue in its order, then the user's additional ones.
 
-    A mat of the catalogue whose image is not distributed is included even if its image is missing. Another `folder`
-    of the user's own mats takes precedence.
+    A mat of the catalogue whose image is not distributed is included even if its image is missing.
+
+    Args:
+        folder: Another folder with the user's own mats, which takes precedence.
 
     Raises:
         BackgroundError: a folder cannot be read, or the catalogue is wrong.
@@ -222,20 +224,20 @@ def find_mat(word: str, folder: str | None = None) -> Background:
 
 
 def spec_name(mat: Background) -> str:
-    """Return the name of a mat in a run specification: its name if the image is ours, else the path of the image."""
+    """Return the name of a mat in a run specification: its own name if tuisim has the image, else the image's path."""
     ours = catalogue().get(mat.name)
     return mat.name if ours is not None and ours.image == mat.image else str(mat.image)
 
 
 def mat_of_spec(name: str) -> tuple[str, Background]:
-    """Return the mat of a run specification, preceded by the word with which `find_mat` finds it.
+    """Return the word with which `find_mat` finds the mat of a run specification, and the mat.
 
     Raises:
-        BackgroundError: it no longer exists.
+        BackgroundError: the mat no longer exists.
     """
     known = mats()
     if name in known and known[name].is_own:
-        # The user's image now replaces ours, which is the one meant.
+        # The run used our image, which the user's image of the same name replaces now.
         ours = background(name)
         return str(ours.image), ours
     if (mat := _of_path(name, known)) is not None:
@@ -263,7 +265,7 @@ def import_originals(source: Path) -> tuple[list[Taken], list[str]]:
     taken: list[Taken] = []
     for name in (name for name in known if name in images):
         content = contents[name] = read_image(images[name])
-        # All are checked before the first is written.
+        # All images are checked before the first is written.
         decode(content, images[name], AS_THERE)
         taken.append(Taken(name, images[name].name, size_of(content)))
     target = own_folder()
@@ -280,7 +282,7 @@ def import_originals(source: Path) -> tuple[list[Taken], list[str]]:
 
 
 def _places(folder: str | None) -> list[Path]:
-    """Return the folders of the user's mats, in order of precedence."""
+    """Return the existing folders of the user's mats, in order of precedence; `folder` is that of `mats`."""
     named = [] if folder is None else [_named(folder)]
     own = own_folder()
     return [*named, own] if os.path.exists(own) else named
@@ -310,7 +312,7 @@ def _pictures(folder: Path) -> list[Path]:
 
 
 def _in_folder(folder: Path, known: Mapping[str, Background]) -> dict[str, Background]:
-    """Return the mats with an image in a folder, by name."""
+    """Return a mat for each image in a folder, by name."""
     by_original = {mat.original.lower(): mat for mat in known.values() if mat.original}
     by_name = {name.lower(): mat for name, mat in known.items()}
     mats_by_name: dict[str, Background] = {}
@@ -329,7 +331,7 @@ def _in_folder(folder: Path, known: Mapping[str, Background]) -> dict[str, Backg
 
 
 def _of_path(path: str, known: Mapping[str, Background]) -> Background | None:
-    """Return the user's mat with this image path, or ours if one of the user's replaces it."""
+    """Return the user's mat with this image path, or the catalogue's mat whose image at this path the user replaces."""
     for mat in (mat for mat in known.values() if mat.is_own):
         if str(mat.image) == path:
             return mat

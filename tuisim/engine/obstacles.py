@@ -33,7 +33,11 @@ _HEAD = "# Obstacles for tuisim: lower left corner and size in mm; x from the fi
 
 
 def load_obstacles(word: str, key: str = "") -> tuple[Obstacle, ...]:
-    """Return a set of obstacles by name, or from a TOML or JSON file; errors about a name blame the option `key`.
+    """Return a set of obstacles by name, or from a TOML or JSON file.
+
+    Args:
+        word: The name or the path.
+        key: The option to blame in errors about a name.
 
     Raises:
         ObstacleError: the name is unknown, or the file is wrong.

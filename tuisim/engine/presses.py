@@ -44,7 +44,7 @@ def parse_press(text: str) -> Press:
 
 
 class Presses(Value):
-    """Presses by hand as a tuple of texts, of which an option gives one at a time."""
+    """The value of an option for presses by hand: a tuple of texts; each use of the option adds one."""
 
     __slots__ = ()
 

@@ -21,11 +21,11 @@ class ThreadState:
 
     name: str
     line: int
-    """Its current line in the program; 0 if it is in none."""
+    """The thread's current line in the program; 0 if it is not in the program."""
     waiting: str
-    """What it waits for and until when; empty if it is ready to run."""
+    """What the thread waits for and until when; empty if it is ready to run."""
     held: bool
-    """Whether it is the thread that was paused."""
+    """Whether the run was paused in this thread."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +35,7 @@ class FrameState:
     function: str
     line: int
     file: str
-    """Empty for the program itself, otherwise the path of the module."""
+    """Path of the module; empty for the program itself."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,11 +53,11 @@ class Variable:
 
 @dataclass(frozen=True, slots=True)
 class Watched:
-    """A watch and its value."""
+    """A watch expression and its value."""
 
     text: str
     value: str
-    """Empty if evaluation failed."""
+    """The value as text; empty if evaluation failed."""
     error: str
 
 
@@ -74,11 +74,11 @@ class ExecutedLine:
 
 
 CLEANUP_S = 2
-"""Simulated time for the program's cleanup after a stop: so far beyond its time limit a run may be recorded."""
+"""Simulated seconds for the program's cleanup after a stop: a recording may go on so long after the time limit."""
 
 PROTOCOL_VERSION = 4
 COMMAND_SIGNAL, STACK_SIGNAL = signal.SIGRTMIN + 11, signal.SIGRTMIN + 12
-"""To the child: a command has been sent; write the stack to a file. A program has SIGUSR1 and SIGUSR2 for itself."""
+"""Signals to the child: read a command; write the stack to a file. SIGUSR1 and SIGUSR2 are left to the program."""
 
 
 class End(StrEnum):
@@ -101,13 +101,13 @@ class End(StrEnum):
 
 
 class Unended(StrEnum):
-    """State of a stored run without an end."""
+    """State of a stored run that has no end."""
 
     RUNNING = "running"
     INTERRUPTED = "interrupted"
-    """Its process has disappeared."""
+    """The run's process has disappeared without writing an end."""
     DAMAGED = "damaged"
-    """Its end cannot be read."""
+    """The end of the run cannot be read."""
 
 
 def describe_state(state: str, summary: str) -> str:
@@ -115,7 +115,7 @@ def describe_state(state: str, summary: str) -> str:
 
     Args:
         state: A `RunState`.
-        summary: What is known beyond it; empty for nothing.
+        summary: Details beyond the state; empty for none.
     """
     words = state.replace("_", " ")
     return summary if summary.startswith(words) else f"{words}: {summary}" if summary else words
@@ -140,7 +140,7 @@ class PauseReason(StrEnum):
     INSTANT = "instant"
     """The instant of `RunToInstant` is reached."""
     END = "end"
-    """The program is over before that."""
+    """The program is over before the requested line, step or instant."""
 
 
 class LineStep(StrEnum):
@@ -195,12 +195,12 @@ class Stop(Message):
 
 @dataclass(frozen=True, slots=True)
 class Pause(Message):
-    """Pause at the next instant outside a device call."""
+    """Pause at the next instant that is not inside a device call."""
 
 
 @dataclass(frozen=True, slots=True)
 class Resume(Message):
-    """Resume."""
+    """Resume a paused run."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -217,7 +217,7 @@ class StepLine(Message):
     how: LineStep = LineStep.OVER
 
     def __post_init__(self) -> None:
-        # JSON gives a text.
+        # From JSON it is a text.
         object.__setattr__(self, "how", LineStep(self.how))
 
 
@@ -230,7 +230,7 @@ class RunToLine(Message):
 
 @dataclass(frozen=True, slots=True)
 class RunToInstant(Message):
-    """Run at full speed to a later instant and pause there, or at the end if it is never reached."""
+    """Run at full speed to a later instant and pause there; at the end of the program if it comes before."""
 
     tick: int
     ordinal: int = BEFORE_NEXT_TICK
@@ -304,7 +304,7 @@ class SetPen(Message):
 
 @dataclass(frozen=True, slots=True)
 class SetButtons(Message):
-    """User action: this is pressed by hand from now on, all else is released: buttons and touch sensors."""
+    """User action: hold these buttons and touch sensors from now on, and release all others."""
 
     pressed: tuple[str, ...]
     """Names from `PRESSABLE`; others raise a ConfigError."""
@@ -323,12 +323,12 @@ class Answer(Message):
 
     text: str | None
     at_once: bool = False
-    """Whether simulated time was stopped until it arrived."""
+    """Whether simulated time stood still until the answer arrived."""
 
 
 @dataclass(frozen=True, slots=True)
 class Reply(Message):
-    """User action: the answer of a responder to a request of the program; simulated time was stopped until then."""
+    """User action: the answer of a responder to a request of the program; simulated time stood still until then."""
 
     messages: tuple[Any, ...]
     """JSON data, oldest first."""
@@ -360,7 +360,7 @@ class UserAction:
     """An action of the user in a run: one that was recorded, or that is known before the run starts."""
 
     tick: int
-    """It takes effect after this number of ticks, right before the next one."""
+    """The action takes effect after this number of ticks, right before the next one."""
     command: Message
     """One of `ACTIONS`, or `Stop`."""
 
@@ -396,7 +396,7 @@ class Started(Message):
 
 @dataclass(frozen=True, slots=True)
 class Paused(Message):
-    """The run has paused: program and world together."""
+    """The run has paused, the program and its world together."""
 
     tick: int
     time_ns: int
@@ -439,12 +439,12 @@ class Spoke(Message):
 
 @dataclass(frozen=True, slots=True)
 class BusyLoop(Message):
-    """A loop has gone on for long without a wait; sent once, in a live run."""
+    """A loop has run for long without a wait; sent once, in a live run."""
 
     line: int
-    """A line in the loop, or of a function that it calls."""
+    """A line in the loop, or in a function that the loop calls."""
     since_ns: int
-    """When it began."""
+    """Simulated time at which the loop began."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -456,13 +456,12 @@ class InputWanted(Message):
 
 @dataclass(frozen=True, slots=True)
 class ReplyWanted(Message):
-    """The program has called `pyState()`: simulated time is stopped until a `Reply` arrives."""
+    """The program has called `pyState()`: simulated time stands still until a `Reply` arrives."""
 
 
 @dataclass(frozen=True, slots=True)
 class Plugged(Message):
-    """A part was plugged in that the program has asked for; the values are those of
-    `engine.core.plugged.PluggedPart`."""
+    """A part was plugged in because the program asked for it; values as of `engine.core.plugged.PluggedPart`."""
 
     port: str
     part: str
@@ -473,7 +472,7 @@ class Plugged(Message):
 
 @dataclass(frozen=True, slots=True)
 class MotorRegisters:
-    """What a driver holds of a motor at the end of a run: what the program has written, and the speed."""
+    """A driver's values of a motor at the end of a run: those that the program has written, and the speed."""
 
     command: str = ""
     """The last command; empty if it was `stop` or there was none."""
@@ -484,12 +483,12 @@ class MotorRegisters:
     """In degrees."""
     time_sp_s: float = 0.0
     speed_dps: float | None = None
-    """In the browser simulator also of a wheel that stands; None if it is not known."""
+    """The speed; in the browser simulator also of a wheel that stands. None if it is not known."""
 
 
 @dataclass(frozen=True, slots=True)
 class Wheels(Message):
-    """The registers of the two wheel motors; it comes shortly before `Ended`, and is not stored."""
+    """The registers of the two wheel motors; sent shortly before `Ended`, and not stored."""
 
     left: MotorRegisters = MotorRegisters()
     right: MotorRegisters = MotorRegisters()
@@ -497,7 +496,7 @@ class Wheels(Message):
 
 @dataclass(frozen=True, slots=True)
 class Ended(Message):
-    """The end of a run: its last event, and part of what is stored of it."""
+    """The end of a run: its last event, most of which is stored with the run."""
 
     end: End
     tick: int
@@ -508,7 +507,7 @@ class Ended(Message):
     error: str = ""
     """The program's traceback."""
     error_line: int = 0
-    """Its last line in the program; 0 if there is none."""
+    """The last line of the program in the traceback; 0 if there is none."""
     deterministic: bool = True
 
 
