@@ -18,6 +18,7 @@ TYPO = (
     "Did you mean: 'reflected_light_intensity'?"
 )
 NAME = "NameError: name 'tank_drvie' is not defined. Did you mean: 'tank_drive'?"
+IMPORT = "NameError: name 'sleep' is not defined. Did you forget `from time import sleep`?"
 MAT = "line 1: no such mat 'Grey_bnds', did you mean Grey_bands?"
 
 
@@ -34,6 +35,8 @@ MAT = "line 1: no such mat 'Grey_bnds', did you mean Grey_bands?"
         ),
         "what is meant": (TYPO, 39, "did you mean reflected_light_intensity?"),
         "only the name": (TYPO, 28, "reflected_light_intensity?"),
+        "import": (IMPORT, 62, "no sleep: did you forget `from time import sleep`?"),
+        "only the import": (IMPORT, 39, "`from time import sleep`?"),
         "mat": (MAT, 39, "no Grey_bnds: did you mean Grey_bands?"),
         "port, 80x24": (
             PORT,

@@ -13,6 +13,9 @@ _KIND = re.compile(r"^[\w.]+: ")
 _MEANT = re.compile(
     r"'(?P<wrong>\w+)'(?: is not defined\. Did|\. Did|, did) you mean:? (?P<quote>'?)(?P<meant>[\w.]+)(?P=quote)\?"
 )
+_FORGOTTEN = re.compile(
+    r"name '(?P<wrong>\w+)' is not .*[Dd]id you forget (?P<line>to import '\w+'|`[^`]+`)\?"
+)
 _PARTS = re.compile(r"This robot has: (?P<parts>.*?)\.(?:\s|$)")
 _PART = re.compile(r"(\w+) lego-(?:ev3-|nxt-)?([\w-]+)")
 _ASKED = re.compile(r"(?P<what>\w+)\((?:ev3-ports:)?(?P<port>\w+)\) is not connected")
@@ -27,6 +30,10 @@ def _list_wordings(words: str) -> Iterator[str]:
         yield f"{missing}: {parts}"
         yield parts
         yield missing
+    elif forgotten := _FORGOTTEN.search(words):
+        yield _KIND.sub("", words)
+        yield f"no {forgotten['wrong']}: did you forget {forgotten['line']}?"
+        yield f"{forgotten['line']}?"
     elif meant := _MEANT.search(words):
         yield _KIND.sub("", words)
         yield f"no {meant['wrong']}: did you mean {meant['meant']}?"

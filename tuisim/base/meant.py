@@ -1,10 +1,14 @@
-"""Which name of an object was meant by one that it does not have."""
+"""Which name was meant by one that does not exist: one like it, or one that is not imported."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence, Set
+import types
+from collections.abc import Mapping, Sequence, Set
+from functools import cache
+from importlib import import_module
 
 from tuisim.base.errors import closest
+from tuisim.base.source import PRELUDE_TEXTS
 
 _MAX_NAMES = 3
 _MIN_LETTERS = 3
@@ -12,6 +16,8 @@ _MIN_LETTERS = 3
 _LIKENESS = 0.65
 _ON = frozenset({"backward", "drive", "forward", "forwards", "go", "move", "straight"})
 """What a motor does while it is `on`."""
+_WELL_KNOWN = ("time", "random", "math", "statistics", "threading", "datetime")
+"""Modules of the standard library that programs for robots use, those first that a name is looked for in first."""
 
 
 def find_meant_names(wrong: str, names: Set[str]) -> list[str]:
@@ -36,3 +42,32 @@ def _find_shortest(names: Sequence[str]) -> list[str]:
         if not name.startswith(tuple(shortest)):
             shortest.append(name)
     return shortest[:_MAX_NAMES]
+
+
+@cache
+def map_modules() -> Mapping[str, str]:
+    """Return the module of each name that a prelude imports."""
+    lines = PRELUDE_TEXTS["imports"].removeprefix("from ").split("\nfrom ")
+    imports = (line.strip().split(" import ") for line in lines)
+    return {name: module for module, names in imports for name in names.split(", ")}
+
+
+@cache
+def map_functions() -> Mapping[str, str]:
+    """Return the module of each function of the standard library that programs for robots use."""
+    modules = {name: import_module(name) for name in reversed(_WELL_KNOWN)}
+    return {
+        name: module
+        for module, loaded in modules.items()
+        for name in dir(loaded)
+        if _is_function(loaded, name)
+    }
+
+
+def _is_function(module: types.ModuleType, name: str) -> bool:
+    value = getattr(module, name)
+    return (
+        name[0] != "_"
+        and callable(value)
+        and getattr(value, "__module__", None) in (module.__name__, None)
+    )

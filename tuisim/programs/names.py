@@ -12,10 +12,10 @@ import warnings
 from collections.abc import Mapping, Sequence, Set
 from dataclasses import field
 from functools import cache
-from importlib import import_module
 
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import closest, did_you_mean
+from tuisim.base.meant import map_functions, map_modules
 from tuisim.base.source import PRELUDE_TEXTS, source_lines
 from tuisim.base.syntax_tree import parse_module
 from tuisim.programs.program_file import parse_unfinished
@@ -30,8 +30,6 @@ _READS_ANY_NAME = frozenset({"eval", "exec", "globals", "locals", "vars"})
 """Functions that may define names that do not appear in the program."""
 _BUILTINS = frozenset(dir(builtins))
 _MODULE_NAMES = frozenset({"__file__", "__builtins__", "__annotations__", "__path__", "__cached__"})
-_WELL_KNOWN = ("time", "random", "math", "statistics", "threading", "datetime")
-"""Modules of the standard library that programs for robots use, those first that a name is looked for in first."""
 _WORD = re.compile(r"[^\W\d]\w*")
 
 
@@ -178,35 +176,6 @@ def _list_prelude_names(prelude: str) -> frozenset[str]:
     return frozenset(list_global_names(PRELUDE_TEXTS[prelude])[1])
 
 
-@cache
-def _map_modules() -> Mapping[str, str]:
-    """Return the module of each name that a prelude imports."""
-    tree = parse_module(PRELUDE_TEXTS["imports"])
-    imports = (node for node in tree.body if isinstance(node, ast.ImportFrom))
-    return {alias.name: str(node.module) for node in imports for alias in node.names}
-
-
-@cache
-def _map_functions() -> Mapping[str, str]:
-    """Return the module of each function of the standard library that programs for robots use."""
-    modules = {name: import_module(name) for name in reversed(_WELL_KNOWN)}
-    return {
-        name: module
-        for module, loaded in modules.items()
-        for name in dir(loaded)
-        if _is_function(loaded, name)
-    }
-
-
-def _is_function(module: types.ModuleType, name: str) -> bool:
-    value = getattr(module, name)
-    return (
-        name[0] != "_"
-        and callable(value)
-        and getattr(value, "__module__", None) in (module.__name__, None)
-    )
-
-
 def _build_hint(name: str, follows: str, own: set[str], within: Mapping[str, str]) -> str:
     """Return what may help with a name that is not defined.
 
@@ -219,11 +188,11 @@ def _build_hint(name: str, follows: str, own: set[str], within: Mapping[str, str
         return f"`import {name}`"
     if function := within.get(name):
         return f"it exists only inside `{function}`"
-    if follows == "(" and (module := _map_functions().get(name)):
+    if follows == "(" and (module := map_functions().get(name)):
         return f"did you mean `{module}.{name}`? `import {module}`"
     if close := guess_name(name, own | within.keys()) or guess_name(name, _BUILTINS):
         return did_you_mean([f"`{close}`"])
-    if module := _map_modules().get(name):
+    if module := map_modules().get(name):
         return f"`from {module} import {name}`"
     return (
         "put `# %%sim_magic_preloaded` into line 1"

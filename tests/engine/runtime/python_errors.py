@@ -25,7 +25,6 @@ f()
 """,
     "name-builtin": "pritn('x')",
     "name-import": "maths.pi",
-    "name-module": "time.sleep(1)",
     "attr": """\
 import math
 math.sqr(2)

@@ -40,3 +40,44 @@ def test_an_error_has_a_hint(run: Run, text: str, words: str) -> None:
     summary = done.ended.summary.partition(": ")[2]
     assert summary.rpartition(" (line")[0] == words
     assert words in "\n".join(done.errors)
+
+
+IMPORTS = {
+    "a module": ("time.sleep(1)", "Did you forget to import 'time'?"),
+    "a function of a module": ("sleep(1)", "Did you forget `from time import sleep`?"),
+    "a class of ev3dev2": (
+        "MoveTank",
+        "Did you forget `from ev3dev2.motor import MoveTank`?",
+    ),
+    "a name like one of the program": (
+        "MoveTonk = 1\nMoveTank",
+        "Did you mean: 'MoveTonk'? Or did you forget `from ev3dev2.motor import MoveTank`?",
+    ),
+}
+PYBRICKS_IMPORTS = {
+    "a parameter": ("Port.A", "Did you forget `from pybricks.parameters import Port`?"),
+    "a function": ("wait(1)", "Did you forget `from pybricks.tools import wait`?"),
+    "a device": ("Motor", "Did you forget `from pybricks.ev3devices import Motor`?"),
+    "a name of Python": ("sleep(1)", "Did you forget `from time import sleep`?"),
+    "a name like one of the program": (
+        "Moter = 1\nMotor",
+        "Did you mean: 'Moter'? Or did you forget `from pybricks.ev3devices import Motor`?",
+    ),
+}
+
+
+@cases("text, words", IMPORTS)
+def test_a_name_that_is_not_imported_tells_the_import(run: Run, text: str, words: str) -> None:
+    assert f"is not defined. {words}" in run(text, prelude="none").ended.summary
+
+
+@cases("text, words", PYBRICKS_IMPORTS)
+def test_a_name_of_pybricks_tells_its_import(run: Run, text: str, words: str) -> None:
+    assert (
+        f"is not defined. {words}"
+        in run(text, prelude="none", profile="lego-micropython").ended.summary
+    )
+
+
+def test_a_name_that_no_library_has_gets_no_import(run: Run) -> None:
+    assert run("colour").ended.summary == "NameError: name 'colour' is not defined (line 1)"

@@ -1,13 +1,18 @@
-"""Hints of errors for which Python has none: a name of the library that was meant, and text that numbers become."""
+"""Hints of errors for which Python has none: a name that was meant or not imported, and text that numbers become."""
 
 from __future__ import annotations
 
 import re
+import sys
+import types
 from typing import Any
 
-from tuisim.base.meant import find_meant_names
+from tuisim.base.meant import find_meant_names, map_functions, map_modules
 
 _LIBRARIES = frozenset({"ev3dev2", "pybricks"})
+_PYBRICKS = ("parameters", "tools", "hubs", "ev3devices", "pupdevices", "robotics", "media.ev3dev")
+"""Modules of Pybricks, those first that a name is looked for in first: some have names of others as well."""
+_NO_MODULE = types.ModuleType("")
 _TEXT_AND_NUMBER = re.compile(
     r'can only concatenate str \(not "(?:int|float)"\) to str'
     r"|unsupported operand type\(s\) for \+: '(?:int|float)' and 'str'"
@@ -24,10 +29,13 @@ def add_hint(trace: Any, error: BaseException) -> None:
     hint = ""
     if type(error) is AttributeError:
         hint = "" if "Did you mean" in str(trace._str) else _find_meant(error)
+    elif type(error) is NameError:
+        hint = _find_import(error.name, str(trace._str))
     elif type(error) is TypeError and _TEXT_AND_NUMBER.fullmatch(str(trace._str)):
         hint = "`str(number)` makes text of a number"
     if hint:
-        trace._str = f"{trace._str}. {hint}"
+        words = str(trace._str)
+        trace._str = f"{words}{'' if words.endswith('?') else '.'} {hint}"
 
 
 def _find_meant(error: AttributeError) -> str:
@@ -41,3 +49,31 @@ def _find_meant(error: AttributeError) -> str:
     names = {name for base in kind.__mro__ for name in vars(base)}
     meant = find_meant_names(wrong, names)
     return f"Did you mean: {' or '.join(map(repr, meant))}?" if meant else ""
+
+
+def _find_import(name: str | None, words: str) -> str:
+    """Return the import that the program lacks for a name; empty if none is known, or if Python names it.
+
+    Args:
+        name: The name that is not defined.
+        words: What Python says.
+    """
+    if not isinstance(name, str) or "import" in words:
+        return ""
+    has_suggestion = "Did you mean" in words
+    begin = "Or did you forget" if has_suggestion else "Did you forget"
+    if name in sys.stdlib_module_names:
+        return f"{begin} to import '{name}'?"
+    module = _find_module(name)
+    return f"{begin} `from {module} import {name}`?" if module else ""
+
+
+def _find_module(name: str) -> str:
+    """Return the module of the library of the program, or of Python, that has a name; empty if none has."""
+    if "pybricks" in sys.modules:
+        # All modules of the library are there from the start, whatever the program imports.
+        for module in (f"pybricks.{part}" for part in _PYBRICKS):
+            if name[0] != "_" and name in vars(sys.modules.get(module, _NO_MODULE)):
+                return module
+        return map_functions().get(name, "")
+    return map_modules().get(name) or map_functions().get(name, "")
