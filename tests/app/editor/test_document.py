@@ -96,6 +96,21 @@ async def test_a_mistake_is_saved_and_marked(tmp_path: Path) -> None:
         assert "✗ 2 if print" in screen_text(app)
 
 
+async def test_where_it_went_wrong_is_the_line_that_cannot_run(tmp_path: Path) -> None:
+    path = tmp_path / "prog.py"
+    async with open_code(own(path)) as (pilot, app, code):
+        await pilot.press("exclamation_mark")
+        await until(pilot, lambda: any("No run yet" in text for text in notices(app)))
+        await pilot.press("ctrl+r")
+        await until_state(pilot, RunPhase.ENDED)
+        await typed(pilot, code, "enter", "i", "f", "space", "ctrl+r", "ctrl+end", "escape")
+        app.clear_notifications()
+        await pilot.press("exclamation_mark")
+        await until(pilot, lambda: any("cannot run: line 2" in text for text in notices(app)))
+        assert code.error_line == 2
+        await until(pilot, lambda: app.query_one(CodeArea).cursor_location[0] == 1)
+
+
 async def test_a_program_opened_without_its_mat_runs_only_on_one_that_is_chosen(
     tmp_path: Path,
 ) -> None:

@@ -61,6 +61,11 @@ def _can_look_back(now: Situation) -> str:
     return "" if now.has_run else "No run yet: {run} runs the program"
 
 
+def _can_ask_why(now: Situation) -> str:
+    # A program that cannot run at all has gone wrong before its first run.
+    return "" if now.has_program else _can_look_back(now)
+
+
 def _can_go_forward(now: Situation) -> str:
     return "" if now.in_past else _can_look_back(now) or "This is the latest instant"
 
@@ -316,7 +321,7 @@ def _build_travel_actions() -> list[LabAction]:
             "Where did it go wrong? Again: the next reason",
             TIME,
             go.go_wrong,
-            back,
+            _can_ask_why,
             "wrong?",
         ),
         Action(

@@ -181,10 +181,17 @@ def go_to_sample(context: ActionContext, words: str) -> None:
 def go_wrong(context: ActionContext) -> None:
     """Go to the first reason why the run went wrong; at each further press to the next one, after the last to the end.
 
-    A running program is paused; its reasons are those of the run so far.
+    A running program is paused; its reasons are those of the run so far. If the text in the editor cannot run, that is
+    the reason.
     """
-    recording = context.runs.timeline.recording
+    timeline = context.runs.timeline
+    recording = timeline.recording
+    is_in_run = context.runs.in_run or timeline.at is not None
+    if not is_in_run and (mistake := context.document.go_to_mistake()):
+        context.app.answer(mistake)
+        return
     if recording is None:
+        context.app.say("No run yet: {run} runs the program")
         return
     context.runs.pause()
     tour = context.reasons

@@ -94,15 +94,10 @@ class Document:
 
     def open_at_mistake(self) -> None:
         """Show the line of the mistake in the program that has been opened, if there is one."""
-        if self._program is None or not (mistake := self._find_mistake()):
-            return
-        self._error_line, self._error_words = mistake.line, mistake.message
-        self._seeks_error = True
-        self._panel_area.open("code")
-        self.show()
+        words = self.go_to_mistake() if self._program else ""
         # The frame of a narrow panel has no room for all of it.
-        if output := self._panel_area.output:
-            output.note(f"— {self._explain_mistake(mistake)}")
+        if words and (output := self._panel_area.output):
+            output.note(f"— {words}")
 
     def show_program(self) -> None:
         """Show the open program, which may have changed."""
@@ -312,6 +307,22 @@ class Document:
             self._app.complain(TuisimError(self._explain_mistake(mistake)))
             return False
         return is_applied or self._apply_text()
+
+    def go_to_mistake(self) -> str:
+        """Show the line because of which the text cannot run.
+
+        Returns:
+            Why it cannot; empty if it can, or if the run in view ran this text, which knows more.
+        """
+        self.run_changed()
+        is_run = self._ran is not None and self._ran[1] == self._text
+        if is_run or not (mistake := self._find_mistake()):
+            return ""
+        self._error_line, self._error_words = mistake.line, mistake.message
+        self._seeks_error = True
+        self._panel_area.open("code")
+        self.show()
+        return self._explain_mistake(mistake)
 
     def _explain_mistake(self, mistake: Mistake) -> str:
         return f"{self._name} cannot run: {mistake.message}"
