@@ -23,6 +23,7 @@ from tests.app.app_help import (
 from tests.cases import cases
 from tuisim.app.app import AppSettings, LabApp
 from tuisim.app.dialogs.chooser import Chooser
+from tuisim.app.dialogs.dialog import Dialog
 from tuisim.app.dialogs.new_program import NewProgramDialog
 from tuisim.app.dialogs.welcome import Welcome
 from tuisim.app.editor.area import CodeArea
@@ -116,6 +117,26 @@ async def test_all_that_the_first_welcome_offers_is_in_sight(tmp_path: Path) -> 
         await until_shown(pilot, "9 Run 2")
         await until_shown(pilot, "? shows all keys")
         assert "This is a robot lab." in screen_text(lab(pilot))
+
+
+async def test_the_footer_below_the_welcome_names_only_keys_that_work_there() -> None:
+    async with open_lab("print(1)", size=(80, 24)) as (pilot, app):
+        await pilot.press("f4")
+        await until_shown(pilot, "Welcome to tuisim")
+        await until_shown(pilot, "enter choose esc close o open M lessons ? help q quit")
+        await pilot.press("R", "l", "d")
+        await pilot.pause()
+        assert not is_closed(app)
+        assert not app.run_controller.run_id
+        await pilot.press("o")
+        await until(pilot, lambda: isinstance(app.screen, Chooser))
+
+
+def test_every_dialog_tells_the_footer_its_own_keys() -> None:
+    kinds: list[type[Dialog[Any]]] = [Dialog]
+    for kind in kinds:
+        kinds += kind.__subclasses__()
+    assert [kind for kind in kinds if not isinstance(kind.keys, property)] == []
 
 
 NAMED: dict[str, tuple[dict[str, Any], bool]] = {

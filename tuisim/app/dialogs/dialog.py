@@ -197,7 +197,7 @@ class Dialog(ClosesOnce[Result], Generic[Result]):
 
     @property
     def keys(self) -> tuple[KeyWord, ...]:
-        """Enter, the dialog's keys that work where the focus is, then Escape; none if the keys of the app work."""
+        """Enter, the dialog's keys that work where the focus is, then Escape."""
         words = (
             (binding.key.split(","), binding.description.lower())
             for binding in self._collect_bindings()

@@ -60,13 +60,12 @@ class Welcome(Dialog[Begin | Recent]):
         for number in range(1, _MAX_NUMBERED + 1)
     ]
 
-    keys = ()
-
     def __init__(self, is_first: bool, find: Callable[[], list[Recent]]) -> None:
         super().__init__()
         self._is_first = is_first
         self._find = find
         self._entries: list[Begin | Recent] = [*Begin]
+        self._app_keys: list[Binding] = []
 
     def compose_content(self) -> ComposeResult:
         if self._is_first:
@@ -80,16 +79,23 @@ class Welcome(Dialog[Begin | Recent]):
 
     def on_mount(self) -> None:
         actions = self.app.ACTIONS if isinstance(self.app, ActionHost) else {}
-        # The keys in the footer, and those named in the text above it, work here, too.
-        for name, action in actions.items():
-            for key in (
-                action.key.split(",") if action.footer or f"{{{name}}}" in _KEY_WORDS else ()
-            ):
-                find_bindings(self).bind(key, f"leave_for('{name}')", name, show=False)
+        self._app_keys = [
+            Binding(action.key, f"leave_for('{name}')", action.footer or name, show=False)
+            for name, action in actions.items()
+            if f"{{{name}}}" in _KEY_WORDS
+        ]
+        for binding in self._app_keys:
+            for key in binding.key.split(","):
+                find_bindings(self).bind(key, binding.action, binding.description, show=False)
         self.query_one(OptionList).focus()
         self.wait_while(
             self._find, self._add, lambda error: self.app.notify(str(error), markup=False)
         )
+
+    def _collect_bindings(self) -> list[Binding]:
+        # The frame names the numbers. Those keys of the app that the text names work here as well.
+        own = (binding for binding in super()._collect_bindings() if not binding.key.isdigit())
+        return [*own, *self._app_keys]
 
     def _add(self, entries: list[Recent]) -> None:
         """Add recent work to the list, and highlight its first entry."""
