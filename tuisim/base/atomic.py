@@ -48,8 +48,8 @@ def replacing(
     Args:
         path: The file; its folder must exist.
         durable: Whether to `fsync`, so that the file survives a power cut; False is faster.
-        owner_only: Use owner-only permissions regardless of the umask, as for everything in `TUISIM_HOME`; what killed
-            processes have left of this file is removed.
+        owner_only: Use owner-only permissions regardless of the umask, as for everything in `TUISIM_HOME`; temporary
+            files that killed processes left for this file are removed.
         follow_links: Replace the target of a symbolic link, as users expect; False replaces the link itself, which a
             program may have put in its run folder.
 
@@ -72,7 +72,7 @@ def replacing(
         os.replace(beside, target)
     # Also when the command is interrupted.
     except BaseException:
-        # What went wrong first is what counts.
+        # The first error is the one to raise, not one of removing the file.
         with suppress(OSError):
             beside.unlink()
         raise
@@ -85,12 +85,12 @@ _unfinished: dict[Path, Path] = {}
 
 
 def unfinished() -> list[Path]:
-    """Return the files that other threads of this process are writing."""
+    """Return the files that other threads of this process are still writing with `replacing`."""
     return list(_unfinished.values())
 
 
 def drop_unfinished() -> list[Path]:
-    """Remove the temporary files of what is being written, before the process ends; return what was to be written."""
+    """Remove the temporary files of `replacing` before the process ends; return the files that they would replace."""
     dropped = []
     for beside, target in list(_unfinished.items()):
         with suppress(OSError):
@@ -104,7 +104,7 @@ def sweep(folder: Path, name: str = "*") -> None:
 
     Files younger than an hour are kept: a process may still be writing them.
     """
-    # Beside a database, SQLite keeps files of its own.
+    # With `*` at the end: SQLite keeps further files beside a temporary database.
     for beside in folder.glob(f".{name}.*{_PART_SUFFIX}*"):
         # Another process may be sweeping too, and a program may have put anything there.
         with suppress(OSError):

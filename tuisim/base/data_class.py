@@ -20,7 +20,7 @@ _Class = TypeVar("_Class", bound=type)
 
 
 class _Factory:
-    """What stands in a signature for a default that is made for each object."""
+    """Stands as the default in a signature if each object gets a new value of `default_factory`."""
 
     def __repr__(self) -> str:
         return "<factory>"
@@ -53,7 +53,7 @@ def _set_state(self: Any, state: list[Any]) -> None:
 
 
 def _init(cls: type, frozen: bool) -> Any:
-    """Return the `__init__` of a class."""
+    """Return a new `__init__` for a class with fields."""
     names: dict[str, Any] = {"_set": object.__setattr__, "_FACTORY": _FACTORY}
     annotations: dict[str, Any] = {}
     parameters = ["self"]
@@ -91,11 +91,11 @@ def _init(cls: type, frozen: bool) -> Any:
 
 
 class _LateInit:
-    """Stands for the `__init__` of a class until somebody asks for it.
+    """Stands for the `__init__` of a class until somebody asks for it; only then it is compiled.
 
     Args:
         cls: The class.
-        frozen: Whether its objects are.
+        frozen: Whether its objects are frozen.
     """
 
     def __init__(self, cls: type, frozen: bool) -> None:
@@ -108,7 +108,7 @@ class _LateInit:
         return init if instance is None else init.__get__(instance)
 
     def write(self) -> Any:
-        """Write it into the class, and return it."""
+        """Compile the `__init__`, put it into the class and return it."""
         init = _init(self._cls, self._frozen)
         type.__setattr__(self._cls, "__init__", init)
         return init
@@ -118,13 +118,13 @@ _LATE: list[_LateInit] = []
 
 
 def prepare() -> None:
-    """Compile now what would be compiled later: a process does so once for all that are forked from it."""
+    """Compile every `__init__` that waits for its first use, so that no process that is forked from this one has to."""
     while _LATE:
         _LATE.pop().write()
 
 
 def _contents(all_fields: tuple[Field[Any], ...]) -> Callable[[Any], tuple[Any, ...]]:
-    """Return a function that returns the values by which an object is compared."""
+    """Return a function that returns the values of an object that `==` compares."""
     names = [one.name for one in all_fields if one.compare]
     if len(names) > 1:
         return attrgetter(*names)

@@ -34,7 +34,7 @@ MOST_NAME = 80
 
 
 def shortened(text: str, most: int = MOST_REASON) -> str:
-    """Return a text of at most so many characters; the rest, which comes from a damaged file, is cut off."""
+    """Return a text of at most `most` characters, with `…` for the rest: a damaged file may hold a long one."""
     return text if len(text) <= most else f"{text[:most]}…"
 
 
@@ -46,16 +46,18 @@ def listed(names: Iterable[str]) -> str:
 
 
 def counted(count: int, one: str, many: str = "") -> str:
-    """Return how many there are of something, in words: `1 row`, `1,500 rows`; `many` if the plural takes no `s`."""
+    """Return a number with its noun, such as `1 row` or `1,500 rows`; `many` is a plural other than `one` and `s`."""
     return f"{count:,} {one if count == 1 else many or one + 's'}"
 
 
 def closest(name: str, known: Iterable[str], most: int = 3, likeness: float = 0.6) -> list[str]:
-    """Return the known names that are most like a name, the best first; case does not matter.
+    """Return the known names that are most like a name, the most similar first; case does not matter.
 
     Args:
-        most: How many names, at most.
-        likeness: The least likeness, from 0 to 1.
+        name: The name to compare.
+        known: The known names.
+        most: How many names to return, at most.
+        likeness: The least likeness, from 0 to 1, as of `difflib`.
     """
     from difflib import get_close_matches
 
@@ -64,25 +66,25 @@ def closest(name: str, known: Iterable[str], most: int = 3, likeness: float = 0.
 
 
 def nearest(name: str, allowed: Iterable[str]) -> str:
-    """Return the hint for an unknown name: the closest matches, else all names."""
+    """Return the hint for an unknown name: the allowed names that are most like it, or all if none is."""
     names = list(allowed)
     return did_you_mean(closest(name, names, 3, 0.5)) or f"one of {', '.join(names)}"
 
 
 def among(name: str, allowed: Iterable[str], unlisted: Iterable[str] = ()) -> str:
-    """Return the hint for an unknown name in data: all names, after the closest one, which may be an unlisted one."""
+    """Return the hint for an unknown name in data: the most similar name, `unlisted` ones included, and all allowed."""
     names = list(allowed)
     close = closest(name, [*names, *unlisted], 1)
     return f"{did_you_mean(list(map(repr, close)))} there are {listed(names)}".lstrip()
 
 
 def see_page(topic: str) -> str:
-    """Return the hint that names a page of the guide."""
+    """Return the hint to read a page of the guide."""
     return f"see `tuisim guide {topic}`"
 
 
 def did_you_mean(close: Sequence[str]) -> str:
-    """Return the hint that names what the user may have meant; empty if there is nothing."""
+    """Return a hint with the names that the user may have meant; empty if there are none."""
     return f"did you mean {' or '.join(close)}?" if close else ""
 
 
@@ -98,7 +100,7 @@ def printable(text: str) -> str:
 
 
 def _without_middle(line: str) -> str:
-    """Return a line of at most `MOST_LINE` characters: it may quote a word of thousands."""
+    """Return a line of at most `MOST_LINE` characters, with `…` for its middle: it may quote a very long word."""
     return (
         line
         if len(line) <= MOST_LINE

@@ -17,19 +17,19 @@ _MAX_BYTES = 1 << 20
 
 
 def report_file() -> Path:
-    """Return the file with the tracebacks of tuisim's own faults; there may be none."""
+    """Return the path of the file with the tracebacks of tuisim's own faults; the file need not exist."""
     return home_folder() / "faults.txt"
 
 
 def describe_fault(error: Exception) -> str:
-    """Return in one line that something could not be judged, and why; a fault of tuisim's is added to the reports."""
+    """Return in one line why something could not be judged; add a fault of tuisim's own to the report file."""
     if isinstance(error, TuisimError):
         where = str(getattr(error, "file", ""))
         return f"{UNJUDGED}: {printable(error.message.removeprefix(f'{where}: '))}"
-    # Neither a full disk nor a lack of memory may end the others.
+    # If the report cannot be written, as on a full disk, the other runs must still be judged.
     with suppress(Exception):
         _add_report("".join(traceback.format_exception(error)))
-    # What is marked again has the same reason: that of a file has no path.
+    # No path of a file in the reason: it must be the same when the same run is marked again.
     reason = error.strerror if isinstance(error, OSError) else error
     return printable(shortened(f"{UNJUDGED}: {type(error).__name__}: {reason}"))
 

@@ -17,7 +17,7 @@ _FOLDERS = ("backgrounds", "programs")
 
 
 def user_path(word: str | Path) -> Path:
-    """Return a path in which `~` or `~NAME` is the folder of a user; that of an unknown user stays as it is."""
+    """Return a path with `~` or `~NAME` at its start replaced by a user's home folder; an unknown user's name stays."""
     return Path(os.path.expanduser(word))
 
 
@@ -32,8 +32,10 @@ def home_folder() -> Path:
 
 
 def session_folder() -> Path:
-    """Return the folder of what the app finds again, such as panels and unsaved texts: `TUISIM_SESSION` for an app
-    that begins afresh, else `home_folder`."""
+    """Return the folder of panels, unsaved texts and the like that an app opens again at its next start.
+
+    It is `TUISIM_SESSION` for an app with a session of its own, else `home_folder`.
+    """
     session = os.environ.get("TUISIM_SESSION")
     return Path(session) if session else home_folder()
 
@@ -59,7 +61,7 @@ def cache_folder() -> Path:
 def _folder(name: str) -> Path:
     assets = os.environ.get("TUISIM_ASSETS")
     places = [Path(assets)] if assets else [_PACKAGE.parent, _PACKAGE / "_assets"]
-    # Beside the package, a single folder of such a name may belong to something else.
+    # A single folder of such a name beside the package may belong to another project: all must be there.
     needed = (name,) if assets else _FOLDERS
     for place in places:
         if all((place / each).is_dir() for each in needed):

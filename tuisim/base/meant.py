@@ -21,10 +21,10 @@ _WELL_KNOWN = ("time", "random", "math", "statistics", "threading", "datetime")
 
 
 def find_meant_names(wrong: str, names: Set[str]) -> list[str]:
-    """Return the public names that may have been meant by a wrong one; the most likely first, none if none is like it.
+    """Return the public names that may be meant by a wrong name, the most likely first.
 
-    Names that begin with the wrong one come before all, then the one that is spelled most like it, then names that
-    contain it.
+    They are the names that begin with the wrong one; if there are none, the one that is spelled most like it; else
+    those that contain it.
     """
     public = sorted((name for name in names if not name.startswith("_")), key=lambda n: (len(n), n))
     containing = [name for name in public if wrong in name] if len(wrong) >= _MIN_LETTERS else []
@@ -36,7 +36,7 @@ def find_meant_names(wrong: str, names: Set[str]) -> list[str]:
 
 
 def _find_shortest(names: Sequence[str]) -> list[str]:
-    """Return names in their order, without those that only add something to an earlier one."""
+    """Return names in their order, without those that begin with an earlier one; at most `_MAX_NAMES`."""
     shortest: list[str] = []
     for name in names:
         if not name.startswith(tuple(shortest)):

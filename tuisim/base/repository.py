@@ -11,11 +11,11 @@ _MAX_FOLDERS = 200
 
 
 def find_module_folder(name: str, folder: str) -> str:
-    """Return the folder that has a module, as a path from the folder of the program; empty if there is none.
+    """Return the folder that has a module, as a path relative to `folder`; empty if there is none.
 
     Args:
         name: Of the module, without dots.
-        folder: That of the program.
+        folder: Of the program.
     """
     folder = os.path.abspath(folder)
     if not os.path.isdir(folder):
@@ -30,7 +30,7 @@ def find_module_folder(name: str, folder: str) -> str:
 
 
 def _root_of(folder: str) -> str:
-    """Return the folder of the repository; without one, the folder above the program's."""
+    """Return the folder of the repository that `folder` is in; if it is in none, the folder above it."""
     root = folder
     for _ in range(_MAX_LEVELS_UP):
         if os.path.exists(os.path.join(root, ".git")):
@@ -40,7 +40,7 @@ def _root_of(folder: str) -> str:
 
 
 def _folders_in(root: str) -> Iterator[str]:
-    """Yield a folder and those below it, the nearest first."""
+    """Yield a folder and its subfolders, the nearest first."""
     level = [root]
     seen = 0
     for _ in range(_MAX_DEPTH):

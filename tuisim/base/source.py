@@ -72,7 +72,7 @@ APP_MAGIC = "sim_app"
 
 @dataclass(frozen=True, slots=True)
 class Program:
-    """A program to run, or that of a stored run."""
+    """A program to run, or the program of a stored run."""
 
     name: str
     """File name as displayed to the user."""
@@ -98,7 +98,7 @@ class Program:
 
     @property
     def file(self) -> str:
-        """File name of its frames: its path, or the name of a program that is in no file."""
+        """The file name in its tracebacks: its path, or its name if it is in no file."""
         return self.path or self.name
 
     @property
@@ -111,7 +111,10 @@ class Program:
 
 
 def find_code_line(lines: Sequence[str], line: int) -> int:
-    """Return a line, or the next one below it, that is more than a comment, a magic or blank; from 1, 0 if none is."""
+    """Return the number, from 1, of the first line from `line` on with code; 0 if there is none.
+
+    Blank lines, comments and magics are not code.
+    """
     rest = enumerate(lines[line - 1 :], line)
     return next(
         (
@@ -130,12 +133,16 @@ def source_lines(text: str) -> list[str]:
     tracebacks and breakpoints.
     """
     lines = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
-    # A final line ending does not start another line.
+    # After a final line ending there is no further line.
     return lines if lines[-1] else lines[:-1]
 
 
 def decode_source(data: bytes, shown: str) -> tuple[str, str]:
-    """Decode a program file, by its name for the error; return its text and its encoding as Python names it.
+    """Return the text of a program file, and its encoding as Python names it.
+
+    Args:
+        data: The bytes of the file.
+        shown: The name of the file in errors.
 
     Raises:
         ConfigError: it is not text, or its encoding is not a text encoding.
@@ -153,6 +160,6 @@ def decode_source(data: bytes, shown: str) -> tuple[str, str]:
 
 
 def user_python_path() -> tuple[str, ...]:
-    """Return the folders of the user's PYTHONPATH; an empty one is the current folder, as in Python."""
+    """Return the folders in the user's PYTHONPATH; an empty entry is the current folder, as in Python."""
     folders = os.environ.get("PYTHONPATH")
     return tuple(os.path.abspath(folder) for folder in folders.split(os.pathsep)) if folders else ()

@@ -30,7 +30,7 @@ def _collect_later() -> Iterator[None]:
 
 
 def parse_module(text: str) -> ast.Module:
-    """Return the tree of a module.
+    """Return the syntax tree of a module.
 
     Raises:
         SyntaxError, ValueError, RecursionError, MemoryError: it is not Python.
@@ -40,6 +40,6 @@ def parse_module(text: str) -> ast.Module:
 
 
 def parse_expression(text: str) -> ast.Expression:
-    """Return the tree of an expression; errors as of `parse_module`."""
+    """Return the syntax tree of an expression; errors as of `parse_module`."""
     with _collect_later():
         return ast.parse(text, mode="eval")
