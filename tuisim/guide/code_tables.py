@@ -153,7 +153,7 @@ def list_breakpoints() -> Table:
 
 
 def list_columns() -> Table:
-    """Return the columns of a run of the default robot, those of its motors under profile `ev3` alone."""
+    """Return the columns of a run of the default robot, with those of motors that only profile `ev3` has."""
     return _build_column_table(
         list_column_names(RunSpec(RobotSpec(), WorldSpec(), PROFILES["ev3"]))
     )

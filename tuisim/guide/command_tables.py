@@ -12,8 +12,8 @@ from tuisim.settings.command_line import Group, GroupedOption
 
 
 def _iterate_commands() -> Iterator[tuple[str, click.Command, str]]:
-    """Yield every command and subcommand: its words, itself, and what it does."""
-    # The command line is above the guide, which it imports.
+    """Yield every command and subcommand: the words to type, the command, and a sentence on what it does."""
+    # By name: the command line imports the guide, so the guide may not import the command line.
     entries = import_module("tuisim.cli").COMMANDS
     for name, entry in entries.items():
         command = entry.load()
@@ -30,7 +30,7 @@ def _format_usage(words: str, command: click.Command) -> str:
 
 
 def list_commands() -> Table:
-    """Return every command and what it does."""
+    """Return every command with a sentence on what it does."""
     return Table(
         ("command", "does"),
         [

@@ -35,14 +35,14 @@ _MIN_LINES = 3
 def draw_excerpt(
     passage: SearchResult, width: int, max_lines: int, pattern: re.Pattern[str] | None = None
 ) -> list[Line]:
-    """Return what is shown of a passage that was found: its beginning, or what the question is about.
+    """Return the lines that show a found passage: its beginning, or the part with most words of the question.
 
     Args:
-        passage: What was found.
+        passage: The passage.
         width: Columns.
-        max_lines: So many lines at most; what is left out is an ellipsis.
-        pattern: Finds the words of the question. A longer passage begins where most of them follow: at a sentence,
-            and its code at a line.
+        max_lines: The most lines; an ellipsis stands for what is left out.
+        pattern: Matches the words of the question. A longer passage begins at the sentence, its code at the line, from
+            which on there are most matches.
     """
     words, *set_in = (
         ("", passage.passage)
@@ -66,7 +66,9 @@ def draw_excerpt(
 
 
 def _cut_lines(lines: list[Line], max_lines: int) -> list[Line]:
-    """Return the first of more lines, with an ellipsis below them where it is not all that has room."""
+    """Return the first lines, `max_lines` with an ellipsis as the last one; without it if there is room for only
+    one.
+    """
     return (
         [*lines[: max_lines - 1], [(_ELLIPSIS.strip(), PLAIN)]]
         if max_lines > 1
@@ -75,7 +77,9 @@ def _cut_lines(lines: list[Line], max_lines: int) -> list[Line]:
 
 
 def _cut_code(code: list[str], max_lines: int, pattern: re.Pattern[str] | None) -> list[str]:
-    """Return the lines that have most words of a question, with an ellipsis below them if there are more."""
+    """Return the lines of code with most words of a question, at most `max_lines`; an ellipsis stands for later
+    ones.
+    """
     if len(code) <= max_lines or max_lines < _MIN_LINES:
         return code[:max_lines]
     first = _find_best_line(code, max_lines - 1, pattern) if pattern else 0
@@ -84,13 +88,13 @@ def _cut_code(code: list[str], max_lines: int, pattern: re.Pattern[str] | None) 
 
 
 def _wrap_code(line: str, width: int) -> list[str]:
-    """Return a line of code as lines of at most a number of columns; none if it is empty."""
+    """Return a line of code as lines of at most `width` columns; an empty list if it is empty."""
     further = " " * (len(line) - len(line.lstrip()) + 4)
     return wrap(_NOTE.sub("  #", line), width, subsequent_indent=further, replace_whitespace=False)
 
 
 def _draw_shortened(markdown: str, width: int, max_lines: int) -> list[Line]:
-    """Return the first lines, with an ellipsis at their end if there are more."""
+    """Return the first lines of Markdown, with an ellipsis at the end of the last one if there are more."""
     lines = _draw_markdown(markdown, width)
     if len(lines) <= max_lines:
         return lines
@@ -100,7 +104,7 @@ def _draw_shortened(markdown: str, width: int, max_lines: int) -> list[Line]:
 
 @lru_cache(_CACHED_TEXTS)
 def _draw_markdown(markdown: str, width: int) -> list[Line]:
-    """Return Markdown as lines, which nobody changes: answers are drawn again until they fit."""
+    """Return Markdown as lines, which callers must not change: they are stored, as answers are drawn many times."""
     return render_markdown(markdown, width)
 
 
@@ -113,7 +117,7 @@ def _draw_item(item: str, width: int) -> list[Line]:
 
 
 def _cut_beginning(text: str, letters: int, pattern: re.Pattern[str]) -> str:
-    """Return a text from the sentence on from which a number of letters has most words of a question."""
+    """Return a text from one of its sentences on: that whose next `letters` have most words of the question."""
     starts = [0, *(match.end() for match in _SENTENCE_END.finditer(text))]
     start = max(
         starts,
@@ -126,7 +130,7 @@ def _cut_beginning(text: str, letters: int, pattern: re.Pattern[str]) -> str:
 
 
 def _find_best_line(lines: Sequence[str], count: int, pattern: re.Pattern[str]) -> int:
-    """Return the line from which on a number of lines has most words of a question."""
+    """Return the index of the line from which the next `count` lines have most words of the question."""
     starts = range(max(1, len(lines) - count + 1))
     return max(
         starts, key=lambda row: (_count_words("\n".join(lines[row : row + count]), pattern), -row)
@@ -138,7 +142,7 @@ def _count_words(text: str, pattern: re.Pattern[str]) -> int:
 
 
 def _add_heads(passage: str, head: str) -> str:
-    """Return a row of a table of more than two columns with the heads of its columns, but for the first."""
+    """Return a table's row with the head of its column before each cell but the first; one of few columns unchanged."""
     cells = split_cells(passage)
     heads = split_cells(head)
     if not head or len(cells) <= _CLEAR_COLUMNS or len(heads) != len(cells):
@@ -162,14 +166,14 @@ def flatten_passage(markdown: str) -> str:
 
 
 def _strip_marks(markdown: str) -> str:
-    """Return a passage of a page without the mark of an item, the cells of a row and the targets of links."""
+    """Return a passage as one line without the marks of Markdown: of an item, between cells and in links."""
     text = " · ".join(filter(None, split_cells(_MARK.sub("", markdown))))
-    # In one line: a number at the beginning of a line would begin a list.
+    # Joined to one line: a line that begins with a number would be drawn as an item of a list.
     return " ".join(LINK.sub(lambda link: link[1], text).split())
 
 
 def split_cells(markdown: str) -> list[str]:
-    """Return the cells of a passage that is a row of a table, else the passage."""
+    """Return the cells of a passage that is a row of a table, else a list of the passage alone."""
     return (
         [cell.strip() for cell in markdown.strip("|").split(" | ")]
         if markdown.startswith("|")

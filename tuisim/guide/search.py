@@ -33,7 +33,7 @@ _PLAIN = ("not", "one")
 
 @cache
 def load_questions() -> Mapping[str, Mapping[str, tuple[str, ...]]]:
-    """Return by page the questions that it answers, by a text that is in the passage which answers them."""
+    """Return the questions that each page answers: by its name, then by a text in the passage that answers them."""
     text = (Path(__file__).parent / "questions.toml").read_text(encoding="utf-8")
     return {
         page: {key: tuple(asks) for key, asks in of.items()}
@@ -105,11 +105,11 @@ class SearchResult:
 
 
 class _Postings:
-    """Texts by their stems.
+    """Finds by their stems the texts that are like a question.
 
     Args:
         texts: The stems of each text, with their weights.
-        power: 1 for the cosine; below, the length of a text is made up for in part, so that longer texts count more.
+        power: 1 compares by the cosine; below 1, longer texts count more, as their length is divided out only in part.
     """
 
     def __init__(self, texts: Sequence[Mapping[str, float]], power: float = 1.0) -> None:
@@ -121,7 +121,11 @@ class _Postings:
                 self._rows[stem].append((row, weight / (length**power * usual)))
 
     def compute_cosines(self, question: Mapping[str, float]) -> Mapping[int, float]:
-        """Return the texts that have a stem of a question of length 1, by row, with how much they are alike."""
+        """Return how much each text that has a stem of the question is like it, by the text's row.
+
+        Args:
+            question: Weights by stem, with a length of 1 as a vector.
+        """
         cosines: defaultdict[int, float] = defaultdict(float)
         for stem, weight in question.items():
             for row, text_weight in self._rows.get(stem, ()):
@@ -130,7 +134,7 @@ class _Postings:
 
 
 class _Index:
-    """All passages, with the stems of their words and of the questions that they answer."""
+    """All passages of the guide, with the stems of their words and of the questions that they answer."""
 
     def __init__(self) -> None:
         self.passages = list(_iterate_passages())
@@ -166,7 +170,9 @@ class _Index:
         self.all_asks = _Postings(self._sum_questions(question_stems))
 
     def _find_row(self, name: str, key: str) -> int:
-        """Return the passage of a page that has a text; -1 if none has: keys that a user has changed may be in none."""
+        """Return the row of the passage of page `name` with the text `key`; -1 if none has it: a user may change
+        keys.
+        """
         return next(
             (
                 row
@@ -183,7 +189,7 @@ class _Index:
         return rows
 
     def _sum_questions(self, question_stems: Iterable[_Stems]) -> list[dict[str, float]]:
-        """Return by passage the sum of its questions, each of length 1."""
+        """Return for each passage the sum of the vectors of its questions, each of length 1."""
         sums: list[dict[str, float]] = [{} for _ in self.passages]
         for row, stems in zip(self.row_of_ask, question_stems, strict=True):
             weights = self.weights(stems)
@@ -193,7 +199,7 @@ class _Index:
         return sums
 
     def weights(self, stems: Iterable[str]) -> dict[str, float]:
-        """Return how much each stem counts."""
+        """Return the weight of each stem: the fewer passages have it, the larger."""
         count = len(self.passages) + 1
         return {
             stem: max(math.log(count / (self._having[stem] + 0.5)), _MIN_STEM_WEIGHT)
@@ -201,7 +207,7 @@ class _Index:
         }
 
     def expand_stems(self, typed: _Stems) -> _Stems:
-        """Return the stems of a question; one that is nowhere stands for all that begin like it."""
+        """Return the known stems of a question; for an unknown one, all known stems that begin with it."""
         begun = tuple(stem for stem in typed - self.stems if len(stem) >= _MIN_PREFIX_LETTERS)
         return (typed & self.stems).union(
             stem for stem in self.stems if begun and stem.startswith(begun)
@@ -211,7 +217,7 @@ class _Index:
 def _count_passages(
     texts: Sequence[_Stems], question_stems: Iterable[tuple[int, _Stems]]
 ) -> Counter[str]:
-    """Return how many passages have each stem, in themselves or in a question."""
+    """Return in how many passages, or in the questions that they answer, each stem is."""
     of_each = [{*stems} for stems in texts]
     for row, stems in question_stems:
         of_each[row] |= stems
@@ -236,16 +242,16 @@ def _iterate_passages() -> Iterator[SearchResult]:
 
 
 def _indent_fenced(fenced: re.Match[str]) -> str:
-    """Return a text between fences as one that is set in, so that it stays with the passage above it.
+    """Return the text between two fences as indented code, so that it stays with the passage above it.
 
-    What belongs into a shell has its prompt.
+    Lines for a shell begin with `$ `.
     """
     prompt = "$ " if fenced[1].startswith("sh") else ""
     return indent(fenced[2], SET_IN + prompt, lambda _: True)
 
 
 def _pair_heads(passages: Sequence[str]) -> Iterator[tuple[str, str]]:
-    """Yield passages, rows of a table with its head, which answers nothing itself."""
+    """Yield each passage with the head of its table, or an empty text; leave out heads, which answer nothing."""
     head = ""
     for passage, below in pairwise(passages):
         if _RULE.fullmatch(below):
@@ -261,7 +267,7 @@ def _load_index() -> _Index:
 
 
 def _score_passages(index: _Index, typed: _Stems) -> Mapping[int, float]:
-    """Return how well passages answer a question, by row."""
+    """Return how well passages answer a question, by their row."""
     weights = index.weights(typed)
     length = math.hypot(*weights.values())
     question = {stem: weight / length for stem, weight in weights.items()}
@@ -306,7 +312,7 @@ def _rank_passages(index: _Index, question: str) -> list[int]:
 
 
 def _split_question(question: str) -> list[str]:
-    """Return the parts of a question that asks for several things; none if it asks for one."""
+    """Return the parts of a question that asks for several things; an empty list if it asks for one."""
     parts = [
         part
         for part in _PART_BREAK.split(question)
@@ -316,7 +322,7 @@ def _split_question(question: str) -> list[str]:
 
 
 def compile_pattern(question: str) -> re.Pattern[str] | None:
-    """Return what finds the words of a question in an answer, in other forms, too."""
+    """Return a pattern that matches the words of a question, also with other endings; None if it has none."""
     words = [word for word in split_words(question) if word not in _PLAIN]
     begins = [re.escape(word[: max(_MIN_LETTERS, len(word) - _ENDING_LETTERS)]) for word in words]
     return re.compile(rf"(?i)\b(?:{'|'.join(begins)})\w*") if begins else None
@@ -326,8 +332,8 @@ def search(question: str) -> list[SearchResult]:
     """Return the passages that answer a question best, the best one first.
 
     Args:
-        question: Words; one that no page has may be the beginning of another. What answers best a part of a question
-            that asks for several things comes after the first two.
+        question: Words; a word that is on no page may be the beginning of another. If the question asks for several
+            things, the best answers to its parts follow the first two.
     """
     index = _load_index()
     rows = _rank_passages(index, question)

@@ -24,7 +24,7 @@ NO_WORDS = "No page has these words"
 
 
 def list_links(page: Page) -> list[str]:
-    """Return the names of the pages that a page links to, in their order."""
+    """Return the names of the pages that a page links to, in the order of the links."""
     return list(dict.fromkeys(link[2] for link in LINK.finditer(page.source)))
 
 
@@ -34,7 +34,7 @@ def list_headings(page: Page) -> list[str]:
 
 
 def draw_page(page: Page, width: int) -> list[Line]:
-    """Return a page as lines of at most a number of columns; a link shows the name of its page."""
+    """Return a page as lines of at most `width` columns; a link shows the name of its page."""
     return render_markdown(LINK.sub(_format_link, build_markdown(page)), width)
 
 
@@ -46,7 +46,7 @@ def _format_link(link: re.Match[str]) -> str:
 
 
 def draw_contents(width: int) -> list[Line]:
-    """Return the contents: the pages by part."""
+    """Return the contents of the guide as lines: the pages of each part."""
     text = [
         "# The guide",
         "`tuisim guide TOPIC` shows a page, `tuisim guide --search WORDS` finds one.",
@@ -60,7 +60,7 @@ def draw_contents(width: int) -> list[Line]:
 
 
 def draw_results(results: list[SearchResult], width: int) -> list[Line]:
-    """Return what a search has found, the best passage first, each below its page and section."""
+    """Return the results of a search as lines, the best first, each below its page and section."""
     lines = []
     for hit in results:
         title = f"- `{hit.name}` **{load_pages()[hit.name].title}**{f': {hit.heading}' if hit.heading else ''}"
@@ -70,7 +70,9 @@ def draw_results(results: list[SearchResult], width: int) -> list[Line]:
 
 
 def find_rows(lines: list[Line], heading: str, passage: str) -> tuple[int, int]:
-    """Return the rows at which a section of a drawn page and a passage of it begin; that of the section for both.
+    """Return the rows of a drawn page at which a section and a passage in it begin.
+
+    Without the passage, both are the row of the section.
 
     Args:
         lines: The page.
@@ -79,7 +81,7 @@ def find_rows(lines: list[Line], heading: str, passage: str) -> tuple[int, int]:
     """
     texts = ["".join(part for part, _ in line) for line in lines]
     top = next((row for row, text in enumerate(texts) if heading and text.strip() == heading), 0)
-    # Lines break elsewhere than in the source, and a table puts cells side by side or names each.
+    # Compare letters only: drawn lines break elsewhere than the source, and tables lay out their cells anew.
     letters = [_LETTERS.sub("", text) for text in texts[top:]]
     plain_texts = [
         _LETTERS.sub("", text)
@@ -96,7 +98,7 @@ def find_rows(lines: list[Line], heading: str, passage: str) -> tuple[int, int]:
     ends = accumulate(map(len, letters))
     row = top + next((row for row, end in enumerate(ends) if end > offset), 0)
     while passage.startswith("|") and row > top and texts[row].startswith("  "):
-        row -= 1  # the row's first cell
+        row -= 1  # to the first cell of the table's row
     return top, row
 
 
@@ -110,7 +112,7 @@ def find_passage_end(lines: list[Line], row: int, passage: str) -> int:
 
 
 def render_lines(lines: list[Line], *, styled: bool) -> str:
-    """Return lines as one text, with the control sequences of a terminal."""
+    """Return lines as one text; with control sequences for a terminal if `styled`."""
 
     def render_run(text: str, style: Style) -> str:
         # No colours: the terminal may have any background.

@@ -31,13 +31,13 @@ _IGNORED = frozenset(_SAYS_NOTHING.split())
 
 
 def split_words(text: str) -> Iterable[str]:
-    """Return the words of a text that say something, each once."""
+    """Return the words of a text without those that say nothing, such as articles, each once."""
     plain = _COLOR.sub("colour", _CONTRACTED.sub("", _DENIES.sub(" not ", text.lower())))
     return dict.fromkeys(word for word in _WORD.findall(plain) if word not in _IGNORED)
 
 
 def find_stems(texts: Iterable[str]) -> list[frozenset[str]]:
-    """Return the stems of the words of each text, and the meanings of those that have one."""
+    """Return for each text the stems of its words, and the meanings of those stems that have one."""
     return [
         stems.union(*(_load_meanings().get(stem, ()) for stem in stems))
         for stems in _stem_words(texts)
@@ -45,7 +45,7 @@ def find_stems(texts: Iterable[str]) -> list[frozenset[str]]:
 
 
 def _stem_words(texts: Iterable[str]) -> list[frozenset[str]]:
-    """Return the stems of the words of each text, as SQLite finds them."""
+    """Return for each text the stems of its words, as SQLite finds them."""
     rows = [(row, " ".join(split_words(text))) for row, text in enumerate(texts)]
     stems: defaultdict[int, set[str]] = defaultdict(set)
     with sqlite3.connect(":memory:") as index:
@@ -59,7 +59,7 @@ def _stem_words(texts: Iterable[str]) -> list[frozenset[str]]:
 
 @cache
 def _load_meanings() -> Mapping[str, frozenset[str]]:
-    """Return what stems mean, as `=chart`: the groups of `synonyms.toml` that they are in, each by its first word."""
+    """Return the meanings of stems: their groups in `synonyms.toml`, each named by its first word, as `=chart`."""
     groups = tomllib.loads((Path(__file__).parent / "synonyms.toml").read_text(encoding="utf-8"))[
         "groups"
     ]
