@@ -22,7 +22,10 @@ from tuisim.settings.build import build_run_spec
 
 
 def read_source(program: str | Path | Callable[[], object]) -> ProgramSource:
-    """Return a program by its file, the name of an example, its text, or a function.
+    """Return a program.
+
+    Args:
+        program: Its file, the name of an example, its text, or a function.
 
     Raises:
         ConfigError: there is no such program, or its first line is wrong.
@@ -37,7 +40,12 @@ def read_source(program: str | Path | Callable[[], object]) -> ProgramSource:
 def prepare_program(
     source: ProgramSource, arguments: Sequence[str], *layers: Mapping[str, Any]
 ) -> tuple[Program, ProgramSettings]:
-    """Return a program to start, and its settings; arguments of the call take precedence over those of the settings.
+    """Return a program to start, and its settings.
+
+    Args:
+        source: The program.
+        arguments: Its `sys.argv[1:]`; empty for those in the settings.
+        layers: Settings by path, the later ones take precedence.
 
     Raises:
         ConfigError: its settings do not fit it.
@@ -52,7 +60,7 @@ def build_run_options(timeout_s: float, answers: Sequence[str]) -> RunOptions:
     """Return how a run is executed.
 
     Raises:
-        ConfigError: no time is below the limit, or there is one text in place of several.
+        ConfigError: the limit is no number above 0, or the answers are no list of texts.
     """
     limit_s = plain(timeout_s)
     if not isinstance(limit_s, int | float) or not limit_s > 0:
@@ -61,10 +69,10 @@ def build_run_options(timeout_s: float, answers: Sequence[str]) -> RunOptions:
 
 
 def read_texts(texts: Sequence[str], key: str) -> tuple[str, ...]:
-    """Return texts; a single one would be taken for its letters.
+    """Return a list of texts as a tuple; a single text is refused, as it would be taken for a list of letters.
 
     Raises:
-        ConfigError: they are no list of texts; `key` is to blame.
+        ConfigError: it is no list of texts; the error names `key`.
     """
     if isinstance(texts, str) or not all(isinstance(text, str) for text in texts):
         raise ConfigError(f"must be a list of texts, got {texts!r}", key=key)

@@ -30,7 +30,7 @@ OPTIONS_BY_NAME: Mapping[str, Option] = {
 
 
 class Description:
-    """What a script has chosen: values by name. The same values make equal descriptions."""
+    """The values, by name, that a script has chosen for a world or a robot. The same values make equal descriptions."""
 
     __slots__ = ("_values",)
 
@@ -45,29 +45,29 @@ class Description:
         return hash(repr(self))
 
     def _take(self, arguments: Mapping[str, Any]) -> None:
-        """Take the arguments of `__init__` but for those that are None, and check them."""
+        """Store the arguments of `__init__` that are not None, and check them."""
         self._values = {
             name: plain(value)
             for name, value in arguments.items()
             if value is not None and value is not self
         }
-        # What is wrong is said where it is written.
+        # Build a run once: a wrong value is reported in the line of the script that has it.
         build_run_spec(merge_settings(self.settings))
 
     @property
     def settings(self) -> Mapping[str, Any]:
-        """What is chosen as settings of a run, by path."""
+        """The chosen values as settings of a run, by path."""
         raise AssertionError
 
 
 class WorldDescription(Description):
-    """A world: that of a file, and the options that take precedence over it."""
+    """A world: a file, if any, and options that take precedence over it."""
 
     __slots__ = ()
 
     @property
     def settings(self) -> Mapping[str, Any]:
-        """What is chosen as settings of a run, by path; paths in the file are relative to its folder."""
+        """The chosen values as settings of a run, by path; paths in the file are relative to its folder."""
         options = {**self._values}
         file = options.pop("file", None)
         chosen = read_options(options)
@@ -75,13 +75,13 @@ class WorldDescription(Description):
 
 
 class RobotDescription(Description):
-    """A robot: a named one, or that of a file, and the values that differ."""
+    """A robot: one of a name or a file, and the values in which it differs."""
 
     __slots__ = ()
 
     @property
     def settings(self) -> Mapping[str, Any]:
-        """The setting `robot`."""
+        """The robot as settings of a run, by path."""
         values = {**self._values}
         base = values.pop("base", DEFAULT_ROBOT)
         parts = values.pop("parts", {})
@@ -94,14 +94,18 @@ class RobotDescription(Description):
 
 
 def plain(value: Any) -> Any:
-    """Return a value of Python as a file would have it: paths as texts, numbers of NumPy as plain ones."""
+    """Return a value as a file would have it: a path as a text, a number of NumPy as one of Python."""
     if isinstance(value, os.PathLike):
         return os.fspath(value)
     return value.item() if hasattr(value, "item") else value
 
 
 def read_columns(columns: Sequence[str], spec: RunSpec) -> tuple[str, ...]:
-    """Return names of columns as the telemetry of a run has them; a text is one name.
+    """Return the names that the telemetry of a run has for columns.
+
+    Args:
+        columns: Names; a text is a single name.
+        spec: The run.
 
     Raises:
         ConfigError: the run has no such column.
@@ -111,7 +115,7 @@ def read_columns(columns: Sequence[str], spec: RunSpec) -> tuple[str, ...]:
 
 
 def read_seeds(seeds: Any) -> tuple[int, ...]:
-    """Return seeds after checking them.
+    """Return seeds as checked whole numbers.
 
     Raises:
         ConfigError: they are not several, there are none, or one is wrong.
@@ -146,7 +150,7 @@ def read_options(options: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def read_world(world: str | Path | WorldDescription | None, mats: str | None) -> Mapping[str, Any]:
-    """Return the settings of a world, by path; none without one.
+    """Return the settings of a world, by path; no settings for None.
 
     Raises:
         ConfigError: there is no such file, or it is wrong.

@@ -87,7 +87,7 @@ class Lab:
 
     @classmethod
     def of_run(cls, run: Run, columns: Sequence[str] = MOTION) -> Lab:
-        """Return a lab as a run began; arguments as of `Lab`."""
+        """Return a lab in the state in which a run began; arguments as of `Lab`."""
         lab = cls.__new__(cls)
         lab._open(run.stored.first_spec, columns)
         return lab
@@ -152,17 +152,17 @@ class Lab:
         period_s: float = 0.0,
         commands: Iterable[SimulationCommand] = (),
     ) -> dict[str, float]:
-        """Move the robot on by one tick or longer, and return the columns then. Does not block.
+        """Move the robot on by one tick or longer, and return the columns at the end. Does not block.
 
         Args:
-            left, right: Speed of each wheel's motor in degrees per second, positive forwards, as far as it is able to;
-                without them both go on.
+            left, right: Speed of each wheel's motor in degrees per second, positive forwards, at most what the motor
+                can do; without speeds, both motors go on as before.
             period_s: Simulated seconds, rounded to ticks; at least one tick.
-            commands: What a program does meanwhile, such as the part of `Run.commands` that lies in the step: each is
-                obeyed at its own time.
+            commands: What a program asks for meanwhile, such as the part of `Run.commands` that lies in the step: each
+                takes effect at its own time.
 
         Raises:
-            ConfigError: there is one speed only, one is no number, or the period is negative.
+            ConfigError: only one speed is given, one is no number, or the period is negative.
         """
         sim = self._sim
         end = sim.tick + (round(period_s * self._hz) or 1 if period_s else 1)
@@ -198,12 +198,14 @@ class Lab:
         return {name: read(instant, self._spec, field) for name, read in self._readers.items()}
 
     def judge(self) -> tuple[float, bool]:
-        """Return the points of the goals if the run ended now, and whether no goal can be met any more."""
+        """Return the points if the run ended now, and whether all goals not met at the start are met or missed for
+        good.
+        """
         return self._live.judge() if self._live is not None else (0.0, False)
 
 
 def _find_run(sim: Simulation) -> Callable[[int, int, float], None]:
-    """Return what lets a wheel's motor run: it takes the time in ns, the motor's number and its speed."""
+    """Return a function that lets a wheel's motor run, at the time in ns, by its number, at a speed in °/s."""
     robot = sim.spec.robot
     law = sim.spec.profile.motor_law
     signs = -1.0 if robot.left_reversed else 1.0, -1.0 if robot.right_reversed else 1.0

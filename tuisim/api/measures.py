@@ -28,7 +28,7 @@ _TICKS = "(columns)"
 
 
 class Measures:
-    """Takes metrics and columns of the runs of an experiment, from what each has recorded.
+    """Computes metrics and columns of the runs of an experiment from their recordings.
 
     Args:
         metrics: Functions of a run by the names of their columns.
@@ -43,12 +43,12 @@ class Measures:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """What is taken of each run."""
+        """The names of the metrics and of the columns."""
         return *self._metrics, *self._columns
 
     @property
     def needs_files(self) -> bool:
-        """Whether results must have what their runs have recorded."""
+        """Whether workers must return the recorded files of each run."""
         return bool(self._metrics or self._columns)
 
     def check(self, plan: Plan) -> None:
@@ -63,11 +63,11 @@ class Measures:
                 raise ConfigError(f"{name!r} is a column already", key="metrics")
         for subject in plan.subjects:
             spec = plan.build_spec(subject, {})
-            # The time is there in any case.
+            # The time is not asked for: telemetry always has it.
             self._columns = read_columns([name for name in self._columns if name != "time"], spec)
 
     def measure(self, result: Result) -> Row:
-        """Return the metrics of a run by name, and its columns, packed, in a cell of their own."""
+        """Return the metrics of a run by name, and its columns as one packed cell."""
         if not result.files:
             return dict.fromkeys(self._metrics)
         import pandas as pd
@@ -88,10 +88,12 @@ class Measures:
 
 
 def compute_cell(name: str, metric: Metric, run: Run, index: int) -> Any:
-    """Return the value of a metric; what it raises names it and the run.
+    """Return the value of a metric as a cell.
+
+    An exception of the metric gets a note with the names of the metric and the run.
 
     Raises:
-        ConfigError: it is no number and no text.
+        ConfigError: the value is no number and no text.
     """
     try:
         value = metric(run)
@@ -106,7 +108,7 @@ def compute_cell(name: str, metric: Metric, run: Run, index: int) -> Any:
 
 
 def take_columns(rows: Mapping[int, Row]) -> dict[int, pd.DataFrame]:
-    """Return the columns over time by the index of their run, and leave them out of the rows."""
+    """Remove the packed columns over time from the rows, and return them by the index of their run."""
     import pandas as pd
 
     return {
@@ -118,12 +120,12 @@ def take_columns(rows: Mapping[int, Row]) -> dict[int, pd.DataFrame]:
 
 @contextmanager
 def show_progress(total: int | None = None) -> Iterator[Callable[..., None]]:
-    """Show a bar on a terminal or in a notebook where tqdm is installed; the block calls what it gets for each run."""
+    """Show a progress bar on a terminal or in a notebook if there is tqdm; yield a function to call after each run."""
     bar = None
     with suppress(ImportError):
         from tqdm.auto import tqdm
 
-        # By itself it is silent only where there is no terminal, as in a notebook.
+        # Without `disable=False`, tqdm shows nothing where there is no terminal, also not in a notebook.
         bar = tqdm(total=total, unit="run", disable=False if "ipykernel" in sys.modules else None)
     try:
         yield lambda *_: bar.update() if bar is not None else None

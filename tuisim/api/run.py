@@ -40,7 +40,7 @@ class Run:
         return f"<run{number} of {what}: {self.state} after {self.time_s:.2f} s>"
 
     def _repr_html_(self) -> str:
-        """Return what a notebook shows."""
+        """Return the HTML that a notebook shows: picture, end, error and samples."""
         png = BytesIO()
         self.picture().save(png, "PNG")
         picture = f'<img src="data:image/png;base64,{b64encode(png.getvalue()).decode()}">'
@@ -51,7 +51,7 @@ class Run:
 
     @property
     def state(self) -> str:
-        """How it ended: `finished`, `raised`, `stopped`, `time_limit` …"""
+        """How the run ended: `finished`, `raised`, `stopped`, `time_limit` …"""
         return self.stored.state.value
 
     @property
@@ -61,7 +61,7 @@ class Run:
 
     @property
     def time_s(self) -> float:
-        """Its duration in simulated seconds."""
+        """Duration of the run in simulated seconds."""
         return self.stored.time_s
 
     @property
@@ -101,7 +101,7 @@ class Run:
 
     @property
     def commands(self) -> tuple[SimulationCommand, ...]:
-        """What the program asked of motors, gyro and pen: `(time_ns, part, call, values)`, for `Lab.step`.
+        """The calls of the program to motors, gyro and pen, each `(time_ns, part, call, values)`, for `Lab.step`.
 
         Raises:
             LogError: they are not recorded, or damaged.

@@ -82,7 +82,7 @@ def build_workers(jobs: int, scheduler: str) -> Workers:
     """Return the processes that run the programs.
 
     Raises:
-        ConfigError: there cannot be so many.
+        ConfigError: `jobs` is no whole number, or is too large.
     """
     if jobs not in range(MAX_JOBS + 1):
         raise ConfigError(f"must be a whole number from 0 to {MAX_JOBS}, got {jobs!r}", key="jobs")
@@ -90,7 +90,12 @@ def build_workers(jobs: int, scheduler: str) -> Workers:
 
 
 def warn_unknown(until: str, margins: Sequence[float]) -> None:
-    """Warn that the means of some combinations are not known well enough."""
+    """Warn that some means are less exact than `until` asks for.
+
+    Args:
+        until: The column and its margin.
+        margins: The margins that these means have after all seeds.
+    """
     if not margins:
         return
     known = f"only to ± {max(margins):.3g}, after all seeds"
@@ -108,13 +113,13 @@ def warn_raised(table: pd.DataFrame) -> None:
 
 
 class Study:
-    """The programs of an experiment, and what varies besides seeds and parameters.
+    """The programs of an experiment, and what varies besides seeds.
 
     Args:
         program: As of `tuisim.experiment`.
         constants: Values of the programs' constants, or several of each.
+        parameters, world, arguments, answers, timeout_s: As of `tuisim.experiment`.
         goals: The goals file; None for none.
-        world, arguments, answers, timeout_s: As of `tuisim.experiment`.
         options: Values by the names of options, or several of each.
 
     Raises:
@@ -153,7 +158,12 @@ class Study:
         self._variants = list_variants({**options, **constants})
 
     def build_plan(self, seeds: Iterable[int] | None, keep: str, *, returns_files: bool) -> Plan:
-        """Return all runs.
+        """Return the plan of all runs.
+
+        Args:
+            seeds: None for the default.
+            keep: Which runs to store.
+            returns_files: Whether workers return the recorded files.
 
         Raises:
             ConfigError: a seed, a parameter or `keep` is wrong.
@@ -176,7 +186,7 @@ class Study:
         return self._plan
 
     def _build_subject(self, source: ProgramSource, variant: Mapping[str, Any]) -> Subject:
-        """Return a program with its settings, and a combination of constants and options."""
+        """Return a program with its settings for one combination of constants and options."""
         options = {name: value for name, value in variant.items() if name not in self._constants}
         values = {name: plain(value) for name, value in variant.items() if name not in options}
         chosen = read_options(options)
@@ -203,12 +213,12 @@ class Study:
 def join_columns(
     table: pd.DataFrame, frames: Mapping[int, pd.DataFrame], names: Sequence[str]
 ) -> pd.DataFrame:
-    """Return the columns of all runs below each other, after what distinguishes each run, and some of its values.
+    """Return the columns over time of all runs, one run below the other, beside the values of each run.
 
     Args:
-        table: One row for each run.
-        frames: The columns over time by the index of their run, in its order.
-        names: The values.
+        table: One row for each run: up to `seed`, its columns stand before those over time.
+        frames: The columns over time by the index of their run, in the order of the result.
+        names: Other columns of the table that follow those up to `seed`.
     """
     import pandas as pd
 
@@ -221,7 +231,7 @@ def join_columns(
 
 
 def list_variants(options: Mapping[str, Any]) -> list[dict[str, Any]]:
-    """Return every combination of the options that are given several values, the last one varying fastest.
+    """Return every combination of the options that have several values, the last option varying fastest.
 
     Raises:
         ConfigError: an option has no values.
@@ -243,7 +253,11 @@ def _is_varied(name: str, value: object) -> bool:
 
 
 def _read_choice(name: str, values: Any) -> Choice:
-    """Return what a parameter takes; a text is read as after `--set`."""
+    """Return the values of a parameter; a text is read as after `--set`.
+
+    Raises:
+        ConfigError: there are none, or the text cannot be read.
+    """
     if isinstance(values, str):
         return parse_values(values, name)
     listed = list(values) if isinstance(values, Iterable) else [values]
@@ -253,6 +267,6 @@ def _read_choice(name: str, values: Any) -> Choice:
 
 
 def _name_value(value: object) -> object:
-    """Return a value as a cell of a table."""
+    """Return a value as a cell of a table: a number or a text."""
     cell = plain(value)
     return cell if isinstance(cell, bool | int | float | str) else str(cell)
