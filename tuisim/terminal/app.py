@@ -57,7 +57,7 @@ class Sanitize(LineFilter):
     """Removes control characters from everything that is drawn."""
 
     def apply(self, segments: list[Segment], background: Color) -> list[Segment]:
-        """Return the segments, with the same width as before."""
+        """Return the segments with blanks in place of control characters, so that their width stays."""
         if all(segment.text.isprintable() or segment.control for segment in segments):
             return segments
         return [
@@ -85,7 +85,7 @@ class BufferedApp(HookedApp):
     def __init__(self, picture_mode: PictureMode | None = None) -> None:
         super().__init__(driver_class=_choose_driver_class())
         self.line_filters = [*self.line_filters, Sanitize()]
-        # They take the code for italics for that of reverse video.
+        # Multiplexers take the code for italics for that of reverse video.
         self._has_italics = not is_multiplexer(os.environ.get("TERM", ""))
         self.frame_buffer = FrameBuffer()
         self.picture_mode = picture_mode or PictureMode()
@@ -98,7 +98,7 @@ class BufferedApp(HookedApp):
         self._input = input_order.InputOrder(self, self._give, self._waits)
 
     async def on_event(self, event: events.Event) -> None:
-        """Give out what the user does in the order of its arrival."""
+        """Handle what the user does in the order of its arrival, each event after the effects of the one before."""
         if isinstance(event, (events.InputEvent, events.Paste)):
             if not self._ignores(event):
                 await (self._input.take if SUPPORTED and not event.is_forwarded else self._give)(
@@ -108,12 +108,12 @@ class BufferedApp(HookedApp):
         await super().on_event(event)
 
     async def _give(self, event: events.Event) -> None:
-        """Handle what the user does; it may have had to wait for what came before."""
+        """Handle an event of the user, which may have waited for the events before it."""
         if not self._ignores(event):
             await super().on_event(event)
 
     def _waits(self, event: events.Event) -> bool:
-        """Return whether what an event of the user is meant for is not there yet."""
+        """Return whether an event of the user has to wait, because its target is not there yet."""
         return False
 
     def _ignores(self, event: events.Event) -> bool:
@@ -126,7 +126,7 @@ class BufferedApp(HookedApp):
         return self.focused is not None and input_order.takes_letters(self.focused)
 
     def show_update(self, screen: Screen[Any], update: object) -> None:
-        """Send what has changed; nothing is displayed where nothing has."""
+        """Send only the cells that have changed; if none has, send nothing."""
         codes: str | None = None
         if (
             isinstance(update, CompositorUpdate)
@@ -177,7 +177,7 @@ class BufferedApp(HookedApp):
         self.frame_buffer.forget()
         self._choose_graphics()
         if self.terminal_facts.attributes and self.own_driver is not None:
-            # Zoom changes the size of the terminal and of its cells.
+            # Zooming changes the size of the cells, too: ask for it again.
             AnswerParser.is_asked = True
             self.own_driver.write(CELL_SIZE_QUERY + ATTRIBUTES_QUERY)
 
@@ -212,7 +212,7 @@ class BufferedApp(HookedApp):
             if isinstance(self.own_driver, TerminalDriver)
             else None
         )
-        # Who has chosen glyphs wants to see them; pixels have colours.
+        # A user who has chosen glyphs wants to see them, and one without colours wants no pixels, which have colours.
         is_without = self.picture_mode.chosen != AUTO or self.no_color
         choice = NO_PIXELS if self.pixels == AUTO and is_without else self.pixels
         graphics = choose_graphics(self.terminal_facts, choice, size_px) if SUPPORTED else None
@@ -222,7 +222,7 @@ class BufferedApp(HookedApp):
             self.call_after_refresh(self.handle_situation_change)
 
     def handle_situation_change(self) -> None:
-        """Called when other keys are available."""
+        """Called when other keys may be available."""
 
     def redraw_pictures(self) -> None:
         """Draw all pictures again: with pixels or glyphs, as `picture_mode` says now."""
@@ -262,10 +262,10 @@ class BufferedApp(HookedApp):
         return True
 
     def tell_server(self, what: str, **details: object) -> None:
-        """Tell something to the server that shows the app in a browser, if one does."""
+        """Send a message to the server that shows the app in a browser; in a terminal, do nothing."""
         if not is_in_browser():
             return
-        # Most apps run in a terminal.
+        # Imported on demand: most apps run in a terminal.
         from tuisim.terminal.browser_driver import BrowserDriver
 
         if isinstance(self.own_driver, BrowserDriver):
@@ -277,8 +277,8 @@ class BufferedApp(HookedApp):
     def is_harmless(self, error: Exception) -> bool:
         """Return whether an error only comes from the shutdown.
 
-        Nothing can be mounted then, what was being mounted is removed before it is complete, and at its end there is no
-        screen.
+        During the shutdown nothing can be mounted, widgets are removed while they are being mounted, and at its end
+        there is no screen.
         """
         cause = error.error if isinstance(error, WorkerFailed) else error
         return is_leaving(self) and isinstance(cause, (WidgetError, NoMatches, ScreenStackError))
@@ -293,7 +293,7 @@ def _choose_driver_class() -> type[Driver] | None:
         return None
     if not is_in_browser():
         return TerminalDriver
-    # Most apps run in a terminal.
+    # Imported on demand: most apps run in a terminal.
     from tuisim.terminal.browser_driver import BrowserDriver
 
     return BrowserDriver

@@ -60,8 +60,7 @@ class BrowserDriver(WebDriver):
         super().write(kitty.wrap_page(data))
 
     def process_message(self, message: Message) -> None:
-        """Pass on what the page sends, but not a size in pixels, which is for the places of the mouse: the server tells
-        the size of the app."""
+        """Pass on what the page sends, but not a size in pixels, which is for the mouse: the server tells the size."""
         if not isinstance(message, events.Resize):
             super().process_message(message)
 

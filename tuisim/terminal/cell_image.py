@@ -137,7 +137,7 @@ def draw_cells(grid: CellGrid) -> Image:
 
 @lru_cache(maxsize=4096)
 def _draw_mask(text: str, bold: bool, italic: bool, underline: bool, strike: bool) -> Mask:
-    """Return the share of each pixel of a cell that a character covers; after a NUL, of the cell to its right."""
+    """Return the share of each pixel of a cell that a character covers; after a NUL, that of its right half."""
     width, height = CELL_PX
     right = text.startswith("\0")
     text = text.removeprefix("\0")

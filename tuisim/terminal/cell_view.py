@@ -45,7 +45,7 @@ from tuisim.terminal.text_runs import Run, cut_line
 from tuisim.terminal.textual_internals import MadeOnDemand
 
 _TEXT_GAP = 8
-"""This many unchanged characters cost less than a new cursor position and style."""
+"""Fewer unchanged characters than this cost less than a new cursor position and style."""
 
 
 class RowsView(Widget):
@@ -98,7 +98,7 @@ class PixelView(RowsView):
         self._sharpness = Sharpness(self, self._refine_cells)
         self._strips: list[Strip | None] = []
         self._signs: Mapping[tuple[int, int], int] = {}
-        """Cells above those of the image, by row and column."""
+        """Cells that are shown in place of those of the image, by row and column."""
 
     @property
     def color_mode(self) -> ColorMode:
@@ -126,7 +126,7 @@ class PixelView(RowsView):
     def set_fine_picture(
         self, picture: Pixels, graphics: Graphics | None = None, *, stands: bool = False
     ) -> None:
-        """Show an image with the points of `cell_for(graphics)`; only cells that differ are repainted.
+        """Show an image with the points of `choose_cell(graphics)`; only cells that differ are repainted.
 
         Args:
             picture: The image.
@@ -286,7 +286,7 @@ class PixelView(RowsView):
         return cells
 
     def set_signs(self, signs: Mapping[tuple[int, int], int]) -> None:
-        """Show other cells above those of the image, by row and column; not above pixels."""
+        """Show other cells in place of those of the image, by row and column; not in place of pixels."""
         rows, cols = self._cells.shape
         changed = {place for place, _ in self._signs.items() ^ signs.items()}
         self._signs = signs

@@ -48,7 +48,7 @@ def _view_words(picture: Pixels, word: type[np.unsignedinteger]) -> npt.NDArray[
 
 
 def find_changed_runs(old: Cells, new: Cells) -> list[CellRun]:
-    """Return the runs of cells that differ between two frames of the same shape; close ones are one.
+    """Return the runs of cells that differ between two frames of the same shape; close runs are joined.
 
     Args:
         old: The frame on the screen.
@@ -58,7 +58,7 @@ def find_changed_runs(old: Cells, new: Cells) -> list[CellRun]:
 
 
 def find_runs(changed: npt.NDArray[np.bool_], gap: int = 1) -> list[CellRun]:
-    """Return the runs of some cells, shape (rows, columns); those with fewer than `gap` cells between them are one."""
+    """Return the runs of some cells, shape (rows, columns), joining runs with fewer than `gap` cells between them."""
     rows, cols = np.nonzero(changed)
     if not len(rows):
         return []
@@ -278,13 +278,13 @@ def draw_mono_cells(
 
 
 def find_cell_points(cell_set: CellSet) -> CellPoints:
-    """Return the points of an image in a cell with some glyphs."""
+    """Return how many points of an image a cell has with a set of glyphs."""
     glyphs = build_glyph_set(cell_set)
     return CellPoints(glyphs.cols, glyphs.rows)
 
 
 def draw_mono_rows(picture: Pixels, cell_set: CellSet) -> list[str]:
-    """Return an image as rows of characters without colours; it has the points of these glyphs."""
+    """Return an image as rows of glyphs without colours; each cell of it has the points of these glyphs."""
     glyphs = build_glyph_set(cell_set)
     shape = len(picture) // glyphs.rows, picture.shape[1] // glyphs.cols
     cells = draw_mono_cells(picture, glyphs, list_cells(*shape), cell_set).reshape(shape)

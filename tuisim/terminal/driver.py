@@ -27,9 +27,9 @@ from tuisim.terminal.textual_internals import (
 )
 
 SIGNALLED = 128
-"""A shell adds the number of a signal to it, for the exit code of a program that the signal has ended."""
+"""The exit code of a program that a signal has ended is this plus the number of the signal, as in a shell."""
 _LOST = SIGNALLED + signal.SIGHUP
-"""The exit code of an app whose terminal is gone, as if the shell had told it."""
+"""The exit code of an app whose terminal is gone, as if the shell had sent SIGHUP."""
 
 
 class ResilientOutput:
@@ -100,7 +100,7 @@ def run_in_foreground(command: Sequence[str]) -> None:
         OSError: it cannot start.
     """
     program = subprocess.Popen(command)
-    # What is typed to interrupt the program also reaches this process.
+    # The keys that interrupt the program also send a signal to this process.
     handlers = {
         number: signal.signal(number, signal.SIG_IGN) for number in (signal.SIGINT, signal.SIGQUIT)
     }
@@ -127,7 +127,7 @@ class TerminalDriver(HookedLinuxDriver):
         self._is_lent = False
         """Whether the terminal belongs to the shell or another program."""
         self._was_continued = False
-        """Whether it has been continued since."""
+        """Whether the process has been continued since it was last stopped."""
 
     def run_input_thread(self) -> None:
         """Take in what is typed; end the app when the terminal is gone."""
@@ -136,7 +136,7 @@ class TerminalDriver(HookedLinuxDriver):
                 self.process_message(message)
             super().run_input_thread()
         except (EOFError, OSError):
-            # Not every shell tells its jobs.
+            # Not every shell sends a signal to its jobs when the terminal is gone.
             find_app(self).call_later(find_app(self).exit, return_code=_LOST)
 
     def start_application_mode(self) -> None:
@@ -147,7 +147,7 @@ class TerminalDriver(HookedLinuxDriver):
             self.flush()
 
     def stop_application_mode(self) -> None:
-        """Leave the terminal, and nothing in its memory."""
+        """Leave the terminal, and delete the images in its memory."""
         graphics = find_picture_mode(find_app(self)).graphics
         if graphics is not None and graphics.protocol is Protocol.KITTY:
             self.write(kitty.wrap_tmux(kitty.DELETE_ALL) if graphics.in_tmux else kitty.DELETE_ALL)
@@ -156,7 +156,7 @@ class TerminalDriver(HookedLinuxDriver):
     @contextmanager
     def lend(self) -> Iterator[None]:
         """Give the terminal back for a while: to the shell while the app is stopped, or to another program."""
-        # Were the terminal taken over again by a stop from outside that ends meanwhile, it would be taken from them.
+        # If this process is stopped and continued meanwhile, it must not take the terminal away from them.
         self._is_lent = True
         self.suspend_application_mode()
         handler = signal.signal(signal.SIGTSTP, signal.SIG_DFL)
@@ -186,7 +186,7 @@ class TerminalDriver(HookedLinuxDriver):
             return self._was_continued
 
     def handle_continuation(self) -> None:
-        """The process was stopped, and goes on; called from the handler of the signal."""
+        """Take the terminal over again after a stop, unless it is lent; called from the handler of the signal."""
         if self._is_lent:
             self._was_continued = True
         elif self.resumes:

@@ -19,7 +19,7 @@ _FLAT = 3
 _OTHER = 1e9
 """Added to the distance of a point of the other group; more than any distance."""
 _DARKER = 0.01
-"""Times the lightness of a point, added to its distance: decides between points that are equally far."""
+"""Factor of the lightness of a point, which is added to its distance to decide between points equally far away."""
 _AT_ONCE = 1024
 """Cells that are fitted in one step, to limit memory."""
 
@@ -99,7 +99,7 @@ def _fit_points(points: npt.NDArray[np.uint8], glyphs: GlyphSet) -> Cells:
 def _draw_half_blocks(points: npt.NDArray[np.uint8], glyphs: GlyphSet) -> Cells:
     """Return cells of the half block alone, in the mean colours of two of their rows of points.
 
-    Of a line in one of the two points of a row, either colour alone would lose the line, or the ground.
+    A thin line is in one of the two points of a row: the colour of one point would lose the line, or the ground.
     """
     of_rows = np.rint(points.reshape(3, glyphs.rows, glyphs.cols, -1).mean(axis=2)).astype(np.uint8)
     covered = np.repeat(glyphs.covered[0, :: glyphs.cols, None], of_rows.shape[2], axis=1)
@@ -113,10 +113,10 @@ def _draw_half_blocks(points: npt.NDArray[np.uint8], glyphs: GlyphSet) -> Cells:
 def _find_typical(
     lab: npt.NDArray[np.float32], covered: npt.NDArray[np.float32]
 ) -> list[npt.NDArray[np.intp]]:
-    """Return the point of each cell's two groups that is nearest to the mean of its group; of two, the darker one.
+    """Return for each of the two groups of each cell the point nearest to the group's mean; of two, the darker one.
 
-    It is a colour of the picture; the mean of three colours is often none, and looks blurred. Of the edge of a band
-    beside a robot's corner, the ground would be a notch in the band.
+    The point has a colour of the picture; the mean of three colours often is none of them, and looks blurred. With the
+    lighter one, the ground would be a notch in the edge of a band beside a robot's corner.
     """
     points: list[npt.NDArray[np.intp]] = []
     for share in (covered, 1 - covered):

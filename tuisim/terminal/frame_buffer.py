@@ -84,11 +84,11 @@ class FrameBuffer:
     def __init__(self) -> None:
         self._rows: dict[int, list[Cell | None]] = {}
         self._size = Size(0, 0)
-        """That of the last whole screen."""
+        """Size of the last whole screen."""
         self._pictures: WeakSet[TilePicture] = WeakSet()
-        """Those that have been drawn, and still are in use."""
+        """Pictures that have been drawn, and still are in use."""
         self._gone: list[Callable[[], str]] = []
-        """What returns the codes that delete pictures that are no longer in use."""
+        """Functions that return the codes to delete pictures that are no longer in use."""
 
     def forget(self) -> None:
         """Assume nothing about the terminal's content: the next update is sent completely."""
@@ -109,7 +109,7 @@ class FrameBuffer:
         pen = _Pen()
         if isinstance(update, LayoutUpdate):
             if update.region.size != self._size:
-                # What was drawn for another size since the terminal has got this one is wrapped or cut there.
+                # Rows drawn for the former size, after the terminal got this one, are wrapped or cut there.
                 self.forget()
                 self._size = update.region.size
             pieces = _split_layout(update)
@@ -283,7 +283,7 @@ def _build_color_codes(color: Color | None, depth: int) -> tuple[str, str]:
     if color is None:
         return "39", "49"
     if depth == PALETTE_8 and color.triplet is not None and sum(color.triplet) > _SEEN_ON_BLACK:
-        # The nearest of so few is black too often, and black on black is nothing.
+        # The nearest of eight colours is black too often, and black text on black is invisible.
         number = find_sgr_index(int.from_bytes(color.triplet, "big"), depth) or 7
         return str(30 + number), build_color_codes(int.from_bytes(color.triplet, "big"), depth)[1]
     if color.triplet is not None and depth in (PALETTE_8, PALETTE_256):
@@ -340,7 +340,7 @@ class _Pen:
         self._look = CellLook()
         self._x = self._y = -1
         self._first_row = 0
-        """Of the block of rows whose runs wait."""
+        """First row of the block whose runs wait."""
         self._runs: list[_LookRun] = []
         """They wait for the others of their block: those of one style are written together."""
 

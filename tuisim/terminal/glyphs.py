@@ -31,7 +31,7 @@ _BRAILLE_BITS = (0, 3, 1, 4, 2, 5, 6, 7)
 
 
 def _list_octants() -> list[str]:
-    """Return the glyphs of all 256 patterns; those of U+1CD00 are in the order of the patterns, without the others."""
+    """Return the glyphs of all 256 patterns: from U+1CD00 on in the order of the patterns, without `_ELSEWHERE`."""
     following = iter(range(0x1CD00, 0x1CDE6))
     return [_ELSEWHERE.get(pattern) or chr(next(following)) for pattern in range(256)]
 
@@ -124,7 +124,7 @@ class GlyphSet:
     covered: Covered
     """Shape (glyphs, cols × rows)."""
     numbers: npt.NDArray[np.int64]
-    """Of each glyph, in `GLYPHS`; ascending, but for ASCII, where several patterns have the same glyph."""
+    """Number of each glyph in `GLYPHS`; ascending, except for ASCII, where several patterns have the same glyph."""
 
 
 def _unpack_bits(patterns: list[int], points: int) -> Covered:
@@ -135,8 +135,8 @@ def _unpack_bits(patterns: list[int], points: int) -> Covered:
 def build_glyph_set(cells: CellSet) -> GlyphSet:
     """Return the glyphs of a set.
 
-    Of a pattern and its inverse a set of blocks has the one with the upper left point: two colours change places
-    instead. Dots leave most of their cell to the background: braille has the pattern with fewer of them.
+    Of a pattern and its inverse, a set of blocks has the one with the upper left point: exchanging the two colours
+    gives the other. Braille has the pattern with fewer dots, which leave most of their cell to the background.
     """
     if cells is CellSet.SEXTANT:
         patterns = list(range(1, 63, 2))

@@ -40,9 +40,9 @@ from tuisim.terminal.textual_internals import (
 _PATIENCE_S = 1.0
 """A turn in which nothing has happened for so long is over: what it still waits for may never come."""
 _ASK_AGAIN_S = 0.1
-"""Between two looks at whether what a key waits for is there, for what does not tell."""
+"""Seconds between two checks whether the target of a waiting key is there, for a target that does not say so."""
 _POINTER = (events.MouseMove, events.MouseScrollDown, events.MouseScrollUp)
-"""Comes in floods and has no turn of its own: it only keeps its place."""
+"""Events that come in floods: they keep their place in the order, but have no turn of their own."""
 _TURN = "_turn"
 """Attribute of a message that belongs to a turn."""
 
@@ -57,17 +57,17 @@ class Turn:
     def __init__(self, ended: Callable[[], None]) -> None:
         self._ended = ended
         self._left: Counter[MessagePump] = Counter()
-        """How much of it waits at whom, or is being handled there."""
+        """Number of messages and callbacks of the turn that a pump still has to handle."""
         self._thread_id = threading.get_ident()
         self.is_over = False
         self.steps = 0
-        """How much of it has been done."""
+        """Number of times that something of the turn was done."""
         _live.add(self)
         _follow_turns()
 
     @contextmanager
     def step(self, pump: MessagePump) -> Iterator[None]:
-        """Do something of the turn that has been added; what it causes is added, too."""
+        """Handle a message or callback that was added to the turn; whatever it causes is added, too."""
         token = _current.set(self)
         try:
             yield
@@ -76,11 +76,11 @@ class Turn:
             self.drop(pump, 1)
 
     def add(self, pump: MessagePump) -> None:
-        """Let the turn last until one thing more is done."""
+        """Add a message or callback that a pump has to handle before the turn ends."""
         self._left[pump] += 1
 
     def drop(self, pump: MessagePump, count: int | None = None) -> None:
-        """Count so many things as done; None for all at this place: it is gone, and they will never be."""
+        """Count messages and callbacks of a pump as handled; None for all: the pump is gone, and never handles them."""
         self.steps += 1
         self._left[pump] -= self._left[pump] if count is None else count
         if self._left[pump] <= 0:
@@ -89,7 +89,7 @@ class Turn:
             self.end()
 
     def end(self) -> None:
-        """Let the next key have its turn."""
+        """End the turn, so that the next key has its own."""
         if not self.is_over:
             self.is_over = True
             self._left.clear()
@@ -98,7 +98,7 @@ class Turn:
             self._ended()
 
     def delay(self, pump: MessagePump, callback: Callable[[], Any]) -> Callable[[], Awaitable[Any]]:
-        """Return a callback, the call of which belongs to the turn."""
+        """Add a callback to the turn, and return one that calls it within the turn."""
         self.add(pump)
 
         async def call() -> Any:
@@ -124,7 +124,7 @@ def _turn() -> Turn | None:
 
 
 def post_message(pump: MessagePump, message: Message) -> bool:
-    """Post a message. It belongs to the turn, unless a later one of its kind may replace it: that is about drawing."""
+    """Post a message. It belongs to the turn, unless a later one of its kind may replace it, as one about drawing."""
     turn = _turn()
     if turn is None or type(message).can_replace is not Message.can_replace:
         return POST(pump, message)
@@ -160,7 +160,7 @@ async def _dispatch_message(turn: Turn | None, pump: MessagePump, message: Messa
 
 
 async def end_messages(widget: Widget) -> None:
-    """Clean up after the last message; those that are left then belong to no turn any more."""
+    """Clean up after the last message of a widget; messages that are left belong to no turn any more."""
     try:
         await END(widget)
     finally:
@@ -214,7 +214,7 @@ class InputOrder:
     Args:
         app: The app.
         give: Handles an event.
-        waits: Whether an event has to wait because what is to hear it is still being opened.
+        waits: Returns whether an event has to wait because its target is still being opened.
     """
 
     def __init__(
@@ -229,7 +229,7 @@ class InputOrder:
         self._held: deque[events.Event] = deque()
         self._turn: Turn | None = None
         self._typed_into: Widget | None = None
-        """What took the last key as a letter."""
+        """The widget that took the last key as a letter."""
         self._timer: TimerHandle | None = None
         self._asks_again = False
 
@@ -250,7 +250,7 @@ class InputOrder:
         await self.release_inputs()
 
     async def release_inputs(self) -> None:
-        """Give out what may be given out now."""
+        """Give out the events that need not wait any longer."""
         while self._held and not self._waits(self._held[0]):
             into = self._find_field(self._held[0])
             if self._turn is not None and (into is None or into is not self._typed_into):

@@ -47,7 +47,7 @@ _PLACEHOLDERS = re.compile(f"(?:{PLACEHOLDER}..)+")
 def encode(
     picture: Pixels, image: int, cols: int, rows: int, *, answers_errors: bool = True
 ) -> str:
-    """Return the codes that make a picture known; it is seen at its placeholders.
+    """Return the codes that send a picture to the terminal, which shows it at its placeholders.
 
     Args:
         picture: Shape (height, width, 3).

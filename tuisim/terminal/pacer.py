@@ -113,7 +113,7 @@ class Pacer:
         self._slow_s = SLOW_S
         """For how long the link counts as slow after that."""
         self._begun_s = 0.0
-        """When what shows the app now has first answered; what was sent before waited for it to begin."""
+        """When the terminal or page that shows the app now first answered; earlier queries waited for it to begin."""
         self.answers = False
         """Whether the terminal has ever answered."""
 

@@ -36,7 +36,7 @@ class Graphics:
 
     @property
     def scale(self) -> int:
-        """How many pixels of the terminal, across and down, are one point of a picture: more would take too long."""
+        """How many pixels of the terminal, across and down, are one point of a picture; finer ones take too long."""
         return max(1, -(-self.cell_px[0] // self.most_points))
 
     @property
@@ -44,7 +44,7 @@ class Graphics:
         """How many points of a picture a cell has across and from top to bottom."""
         width_px, height_px = self.cell_px
         if self.protocol is Protocol.SIXEL and (width_px % self.scale or height_px % self.scale):
-            # It cannot be scaled by the terminal.
+            # The terminal cannot scale such a picture.
             return width_px, height_px
         return max(width_px // self.scale, 1), max(height_px // self.scale, 1)
 
@@ -166,12 +166,12 @@ class TilePicture:
         return cells
 
     def forget(self) -> None:
-        """Assume that the terminal has nothing of it, but perhaps images under the numbers of its tiles."""
+        """Assume that the terminal shows nothing of the picture; it may still have images under the tiles' numbers."""
         for tile, (_, image) in self._tiles.items():
             self._tiles[tile] = _NEVER, image
 
     def build_deletion(self) -> Callable[[], str]:
-        """Return what returns the codes that delete everything of it that the terminal has, also after its end."""
+        """Return a function that returns the codes to delete all tiles in the terminal, even after this object."""
         return partial(_delete_tiles, self.graphics, self._tiles)
 
     def row(self, row: int) -> list[PictureCell]:
@@ -319,7 +319,7 @@ def _delete_tiles(graphics: Graphics, tiles: Mapping[tuple[int, int], tuple[int,
 
 
 _COMPRESSION = 1
-"""Of PNG: a tenth of the time of the default, for a few per cent more bytes."""
+"""Level of compression of PNG: a tenth of the time of the default, for a few per cent more bytes."""
 
 
 def _encode_inline(picture: Pixels, cols: int, rows: int) -> str:
@@ -353,7 +353,7 @@ _JOIN_CELLS = 6
 
 
 def _fill_tiles(changed: Mask) -> Mask:
-    """Return all cells of the tiles in which a cell has changed: another image has another number."""
+    """Return all cells of the tiles in which a cell has changed: each gets the number of a new image."""
     rows, cols = changed.shape
     filled = np.pad(changed, ((0, -rows % _TILE_ROWS), (0, -cols % _TILE_COLS)))
     tiles = filled.reshape(filled.shape[0] // _TILE_ROWS, _TILE_ROWS, -1, _TILE_COLS).any(

@@ -62,7 +62,7 @@ class PictureMode:
     graphics: Graphics | None = None
     """How pixels are drawn; None to draw cells."""
     most_colors: int = TRUECOLOR
-    """The user's limit."""
+    """The user's limit of the number of colours."""
     theme: Recoloring | None = None
     """The colours in place of the app's own ones; None for those."""
     is_slow: Callable[[], bool] = lambda: False
@@ -105,7 +105,7 @@ def choose_picture_mode(argument: str | None, stored: str) -> PictureMode:
     else:
         best = choose_cells(ask=chosen == AUTO, has_colors=has_colors)
     if argument is None and (best is CellSet.ASCII or (not has_colors and chosen in BLOCKS)):
-        # Chosen on another terminal.
+        # The stored set was chosen on another terminal.
         chosen = AUTO
     return PictureMode(best if chosen == AUTO else CellSet(chosen), chosen, best)
 
@@ -163,7 +163,7 @@ def choose_graphics(
         return None
     protocol = _find_protocol(facts) if choice == AUTO else Protocol(choice)
     if protocol is Protocol.KITTY and facts.has_kitty_graphics is False:
-        # Its answer counts for more than a wish: the world would be black.
+        # The terminal's answer counts for more than the user's wish: pictures would be black.
         return None
     # A terminal that scales its window, as on many laptops, draws in its own pixels, not the kernel's.
     known_px = facts.cell_px or cell_px
@@ -182,9 +182,9 @@ class TerminalReport:
     colors: str
     """One of `COLOR_DEPTHS` other than `auto`."""
     has_colors: bool
-    """Whether TERM and NO_COLOR leave it any."""
+    """Whether TERM and NO_COLOR leave it any colours."""
     has_fixed_colors: bool
-    """Whether these decide on them, whatever else is set."""
+    """Whether TERM or NO_COLOR decides on its colours, whatever else is set."""
     cells: CellSet
     """The finest set that it is known to show."""
     is_limited: bool
@@ -199,11 +199,11 @@ class TerminalReport:
 
 
 def describe_terminal(fd: int, environment: Mapping[str, str]) -> TerminalReport | None:
-    """Ask a terminal everything that the app asks; None if it is gone.
+    """Return what a terminal shows, after it was asked all that the app asks; None if it is gone.
 
     Args:
         fd: The terminal, open for reading and writing.
-        environment: That of the app.
+        environment: The environment of the app.
     """
     term = environment.get("TERM", "")
     first = read_first_environment()
@@ -241,7 +241,7 @@ def _find_textual_colors(environment: Mapping[str, str]) -> str:
 def _find_protocol(facts: TerminalFacts) -> Protocol | None:
     name = facts.program
     if name == TMUX:
-        # Built with sixel, it says so whatever its own terminal can; elsewhere it shows frames with a text.
+        # tmux built with sixel says so whatever its own terminal can; where that cannot, it shows a frame with a text.
         return None
     if name in kitty.TERMINALS and facts.has_kitty_graphics:
         return Protocol.KITTY

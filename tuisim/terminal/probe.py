@@ -146,7 +146,7 @@ _ALL_COLORS = "RGB"
 def is_multiplexer(terminal: str) -> bool:
     """Return whether a kind of terminal, as in TERM, is GNU screen, or tmux under that name.
 
-    It takes the code for italics for that of reverse video.
+    Such a program takes the code for italics for that of reverse video.
     """
     return terminal == _MULTIPLEXER or terminal.startswith((f"{_MULTIPLEXER}-", f"{_MULTIPLEXER}."))
 
@@ -162,9 +162,9 @@ def has_all_colors(environment: Mapping[str, str]) -> bool:
 
 
 def name_around(name: str, environment: Mapping[str, str]) -> str:
-    """Return the name of a terminal that answered with one; of tmux, that of the terminal around it, if it tells.
+    """Return the name that a terminal answered; for tmux, if it tells, the name of the terminal around it.
 
-    tmux passes glyphs on, so that terminal draws them.
+    tmux passes glyphs on, and the terminal around it draws them.
     """
     return (name.startswith("tmux") and _ask_tmux("client_termtype", environment)) or name
 
@@ -269,7 +269,7 @@ def ask_everything(fd: int) -> Answers:
             parse_facts(text.decode("latin-1")), octant_cols, latency_s, read_cell_size_px(fd)
         )
     finally:
-        # Answers that come late are not typed into the shell.
+        # Drop late answers, which the shell would take for typed text.
         termios.tcsetattr(fd, termios.TCSAFLUSH, before)
 
 
@@ -303,7 +303,7 @@ def _has_attributes(answer: bytes) -> bool:
 
 
 def _ask_terminal() -> CellSet:
-    """Ask the terminal of the standard input and output.
+    """Return the finest set that the terminal of the standard input and output is known to show; ask it.
 
     The name is asked for only once an octant has moved the cursor: an answer that comes too late would be taken for
     keys, so a terminal that answers nothing is asked for as little as possible.
@@ -328,7 +328,7 @@ def _ask_terminal() -> CellSet:
 
 
 _typed: list[bytes] = []
-"""What was read with the answers, and is none."""
+"""Input that was read among the answers, and is no answer."""
 
 
 def take_typed() -> str:
@@ -372,7 +372,7 @@ RESTORING = f"\x1b[<u{_OFF}\x1b[?1049l\x1b[?7h\x1b[?25h\x1b[0m\x1b(B\x0f\r"
 
 
 def restore_terminal(fd: int, term: str) -> None:
-    """Undo what the app, or another program that was killed, has set.
+    """Undo the settings that the app, or another program that was killed, has left in a terminal.
 
     Args:
         fd: The terminal, open for reading and writing.
@@ -381,7 +381,7 @@ def restore_terminal(fd: int, term: str) -> None:
     Raises:
         OSError: the terminal is gone.
     """
-    # Only where they are not shown as text: most terminals ignore what they do not know.
+    # Images are deleted only where the codes are not shown as text: most terminals ignore codes that they do not know.
     os.write(fd, (RESTORING if term in SILENT else RESTORING + kitty.DELETE_ALL).encode())
     with suppress(termios.error):
         attributes = termios.tcgetattr(fd)

@@ -1,7 +1,7 @@
 """What an app asks the terminal, and its answers among the keys: taken out, and told to the app.
 
 Reference: https://invisible-island.net/xterm/ctlseqs/ctlseqs.html (XTVERSION, primary device attributes, window
-operations); for the query of kitty see `graphics.kitty`.
+operations); for the query of kitty see `kitty.py`.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ class TerminalFacts:
     has_kitty_graphics: bool | None = None
     """Whether it draws pictures at placeholders; None if it has not been asked, False once it has reported an error."""
     kitty_error: str = ""
-    """What it has last reported, such as `ENOSPC:No space left`."""
+    """The error that it has last reported, such as `ENOSPC:No space left`."""
     cell_px: tuple[int, int] | None = None
     """Width and height of a cell in pixels."""
 
@@ -85,14 +85,15 @@ class TerminalFacts:
         """Return the facts with an answer of the terminal."""
         groups = match.groupdict()
         if groups["name"] is not None:
-            # All questions are asked anew, perhaps by another page, before those for kitty's protocol were answered.
+            # A name means that all questions are asked again, perhaps by another page: one for kitty's protocol that is
+            # still open counts as not asked.
             return replace(self.without_refusal, name=groups["name"], attributes=frozenset())
         if groups["kitty"] is not None:
-            # It may come late, as attributes are asked for when the size changes, too; an error counts for good.
+            # The answer may come late, as attributes are asked for when the size changes; an error counts for good.
             error = self.kitty_error if groups["kitty"] == "OK" else groups["kitty"]
             return replace(self, has_kitty_graphics=not error, kitty_error=error)
         if groups["attributes"] is not None:
-            # The second time they come after the question for kitty's protocol.
+            # Attributes that come a second time follow the question for kitty's protocol, which was not answered then.
             answered = False if self.attributes and self.asks_for_kitty else self.has_kitty_graphics
             attributes = frozenset(groups["attributes"].split(";"))
             return replace(self, attributes=attributes, has_kitty_graphics=answered)
@@ -130,7 +131,7 @@ def read_cell_size_px(fd: int) -> tuple[int, int] | None:
 _BEGUN = re.compile(r"\x1b(?:P>[^\x1b]*|_G[^\x1b]*|\[6;[\d;]*|\[\?[\d;]*)\x1b?\Z")
 """The beginning of an answer whose rest has not arrived."""
 _MAYBE_BEGUN = re.compile(r"\x1b(?:[P_\[]|\[6)?\Z")
-"""What may be one, but also a key."""
+"""What may be the beginning of an answer, but also a key."""
 _KEY_S = 0.1
 """What may be a key waits this long for the rest of an answer."""
 _REST_S = 3.0

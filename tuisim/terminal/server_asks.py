@@ -21,4 +21,4 @@ class ServerAsks(Message):
     def __init__(self, request: Mapping[str, object]) -> None:
         super().__init__()
         self.asked = request
-        """What it is, under `what`, with its details; from JSON."""
+        """The request, from JSON: its name under `what`, and its details."""

@@ -18,7 +18,7 @@ PERCENT = 100
 """Largest value of a colour channel."""
 _BEGIN = "\x1bP0;1q"
 _END = "\x1b\\"
-"""Pixels that are not drawn keep their colour."""
+"""The beginning says that pixels that are not drawn keep their colour."""
 _FIRST_CHARACTER = 63
 _SHORT_RUN = 3
 """A run of more equal characters than this is shorter as a number."""

@@ -60,5 +60,5 @@ def cut_line(line: Sequence[Run], width: int) -> Sequence[Run]:
 
 
 def find_first_row(chosen: int, count: int, room: int) -> int:
-    """Return the first row shown, so that the selected one is near the middle."""
+    """Return the first row to show of a list, so that the selected row is near the middle."""
     return min(max(chosen - room // 2, 0), max(count - room, 0))

@@ -113,7 +113,7 @@ _GLOBALS: Sequence[tuple[ModuleType, str]] = (
     (linux_driver, "getincrementaldecoder"),
     (textual_keys, "_character_to_key"),
 )
-"""Names in modules."""
+"""Private names in Textual's modules."""
 
 
 def list_missing_names() -> list[str]:
@@ -281,7 +281,7 @@ class HookedLinuxDriver(LinuxDriver):
     """Textual's driver of a terminal, which asks what to do when the process was stopped and is continued."""
 
     def handle_continuation(self) -> None:
-        """The process was stopped, and goes on; called from the handler of the signal."""
+        """Handle that the process was stopped and is continued; called from the handler of the signal."""
         super()._sigcont_application()
 
     def _sigcont_application(self, *_: object) -> None:
@@ -444,7 +444,7 @@ def set_input_parser(parser: type[XTermParser], decoder: Callable[[], Any]) -> N
 
 def set_page_parser(parser: type[XTermParser]) -> None:
     """Let Textual's driver for browsers, which makes its parser itself, make this one."""
-    # Most apps run in a terminal.
+    # Imported on demand: most apps run in a terminal.
     from textual.drivers import web_driver
 
     web_driver.XTermParser = parser  # type: ignore[attr-defined]
@@ -479,5 +479,5 @@ def repair_textual(end_messages: Callable[[Widget], Awaitable[None]]) -> None:
     OptionList._move_page = _move_seen_page  # type: ignore[method-assign, assignment]
     Widget.text_selection = property(find_selection)  # type: ignore[assignment]
     Widget._message_loop_exit = end_messages  # type: ignore[method-assign, assignment]
-    # Otherwise the cache of this method keeps what it is a method of: the rows of a thousand widgets that are gone.
+    # Otherwise the cache of this method keeps its object, and thereby the rows of a thousand widgets that are gone.
     StylesCache.get_inner_outer = classmethod(StylesCache.get_inner_outer)  # type: ignore[method-assign, arg-type, assignment]
