@@ -96,7 +96,7 @@ def check_fit(fit: str) -> None:
 
 
 def fits_as_it_is(content: bytes) -> bool:
-    """Return whether an image is known to have the size of the field, so that every fit gives the same result.
+    """Return whether an image certainly has the size of the field, so that every fit gives the same result.
 
     Reads only the header of a PNG file: cheap enough to be called before every run.
     """

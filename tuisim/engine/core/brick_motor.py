@@ -26,7 +26,7 @@ from tuisim.engine.core.motors import (
 
 
 def ramp_speed(speed: float, target: float, step: float) -> float:
-    """Return the speed one tick later; it changes at most by `step`, or at once if that is 0."""
+    """Return the speed one tick later: closer to `target` by at most `step`, or equal to it if `step` is 0."""
     if step == 0.0:
         speed = target
     elif speed < target:
@@ -41,7 +41,7 @@ def ramp_speed(speed: float, target: float, step: float) -> float:
 
 
 class BrickMotor:
-    """One motor with its encoder.
+    """One motor of a brick with its encoder.
 
     Args:
         tick_hz: Ticks per second.

@@ -25,7 +25,7 @@ from tuisim.engine.core.motors import (
 
 
 class BrowserMotor:
-    """One motor with its encoder.
+    """One motor of the browser simulator with its encoder.
 
     Args:
         tick_hz: Ticks per second.

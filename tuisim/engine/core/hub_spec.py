@@ -12,7 +12,7 @@ class HubKind(NamedTuple):
     """One kind of hub."""
 
     ports: str
-    """Its ports, for motors and sensors alike."""
+    """The hub's ports, for motors and sensors alike."""
     motor: str
     """The kind of motor that is usual there, one of `HUB_MOTORS`."""
 
@@ -29,7 +29,7 @@ HUBS: Mapping[str, HubKind] = {
 }
 """By the name of the class in `pybricks.hubs`."""
 HUBS_WITH_MATRIX = frozenset({"PrimeHub", "InventorHub"})
-"""Those with a matrix of lights, a speaker, and more than one button."""
+"""Hubs with a matrix of lights, a speaker, and more than one button."""
 HUB_BUTTONS = ("enter", "left", "right", "up")
 """What can be pressed by hand on a hub: the centre button, and where there is a matrix three more."""
 WAYS = ("up", "down", "left", "right")

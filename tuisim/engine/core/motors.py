@@ -90,4 +90,10 @@ class Motor(Protocol):
     def state(self) -> MotorState: ...
 
     def hold_back(self, before: MotorState, turned_deg: float, part: float) -> None:
-        """Undo the rest of a tick in which an obstacle stopped the wheel: only a part of it, below 1, was possible."""
+        """Undo the rest of a tick in which an obstacle stopped the wheel.
+
+        Args:
+            before: The motor's `state` before the tick.
+            turned_deg: How far the wheel would have turned in the tick.
+            part: The part of the tick that was possible, below 1.
+        """

@@ -157,7 +157,7 @@ def _generate_reading_block(seed: int, block: int, channel: str) -> bytes:
 
 
 def draw_numbers(seed: int, tick: int, channel: str, count: int) -> list[float]:
-    """Return numbers from 0 up to 1, evenly distributed, for one seed, tick and channel."""
+    """Return `count` numbers from 0 up to 1, evenly distributed, for one seed, tick and channel."""
     numbers = Struct(f"<{count}I").unpack(generate_bytes(seed, tick, channel, 4 * count))
     return [number / _NUMBERS for number in numbers]
 

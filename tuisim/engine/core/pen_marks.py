@@ -100,7 +100,7 @@ class PenMarks:
         self._last_actions = 0
 
     def field_of_first(self, count: int) -> MarkedField:
-        """Return the mat with only the first `count` marks, as it was at that time."""
+        """Return the mat with only its first `count` marks, as it was when there were no more."""
         return MarkedField.on(self.field, dict(islice(self.field.marks.items(), count)))
 
     def add_records(self, records: Iterable[tuple[float, ...]]) -> None:
@@ -118,7 +118,7 @@ class PenMarks:
             self._last, self._last_actions = point, int(actions)
 
     def _list_pixels(self, start: float, end: float) -> range:
-        """Return the columns or rows of the pixels that a stroke may reach."""
+        """Return the columns or rows of the pixels that a stroke between two coordinates may reach."""
         radius = self._pen.width_mm / 2
         return range(floor(min(start, end) - radius), int(max(start, end) + radius) + 1)
 

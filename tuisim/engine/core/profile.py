@@ -200,7 +200,7 @@ class ProfileSpec(Spec):
         source="measured on a brick (pybricks/support, issue 14): ev3: old values up to 18 ms after the change, "
         "new ones from 22 ms on; the course, the old simulator: none",
     )
-    """So long after a change of mode a colour sensor gives what it measured last in that mode."""
+    """For so long after a change of mode, a colour sensor returns its last reading in that mode."""
     white_percent: float = number(
         50,
         100,

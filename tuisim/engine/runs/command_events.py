@@ -33,7 +33,7 @@ _REPEAT_NS = NS_PER_S // 4
 _MAX_EVENTS = 1 << 17
 """Events of a run; further commands are left out. At four events a second, this is enough for nine hours."""
 _PIECE = 1 << 15
-"""So many commands are read at a time."""
+"""Number of commands that are read at a time."""
 _FINEST = 500
 """Events closer than the elapsed time divided by this have one mark, so that marks stay few."""
 _STILL_DPS = 0.5

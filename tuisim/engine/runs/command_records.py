@@ -73,7 +73,7 @@ class CommandsWriter(MappedWriter):
         return True
 
     def close(self) -> None:
-        """Truncate the file to its true size."""
+        """Close the file, truncated to its true size."""
         self._close(HEADER_BYTES + min(self._count, self._room) * COMMAND_RECORD.size)
 
 

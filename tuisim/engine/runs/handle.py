@@ -529,7 +529,7 @@ class RunHandle:
                 self.pump()
 
     def _repeat_stop(self) -> None:
-        """Repeat a stop that has had no effect, and kill what is stuck."""
+        """Repeat a stop that has had no effect, and kill a child that is stuck."""
         if self._announced is not None:
             return
         if self._stop_at is None and not self.folder.is_dir():

@@ -77,7 +77,7 @@ class MotorsWriter(MappedWriter):
         os.replace(new, path)
 
     def close(self, ticks: int) -> None:
-        """Truncate the file to its true size."""
+        """Close the file, truncated to its true size: that of the records of `ticks` ticks."""
         self._length[0] = ticks
         self._close(HEADER_BYTES + ticks * self._size)
 

@@ -120,7 +120,7 @@ class Recording:
         return find_noise(self.spec, actions, record) if actions else self.spec.world.noise
 
     def pressed_at(self, tick: int) -> frozenset[str]:
-        """Return the brick's buttons that were pressed when a tick was complete."""
+        """Return the brick's buttons that were pressed at the end of a tick."""
         for action in reversed(self.actions()):
             if isinstance(action.command, SetButtons) and action.tick < tick:
                 return frozenset(action.command.pressed)

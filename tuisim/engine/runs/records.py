@@ -221,7 +221,7 @@ class TelemetryWriter(MappedWriter):
         self.count = self._length[0] = count
 
     def close(self) -> None:
-        """Truncate the file to its true size."""
+        """Close the file, truncated to its true size."""
         self._close(HEADER_BYTES + self.count * TICK_RECORD.size)
 
 
@@ -262,7 +262,7 @@ class OutputWriter(MappedWriter):
         self.length = self._length[0] = end - HEADER_BYTES
 
     def close(self) -> None:
-        """Truncate the file to its true size."""
+        """Close the file, truncated to its true size."""
         self._close(HEADER_BYTES + self.length)
 
 

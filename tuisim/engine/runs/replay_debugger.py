@@ -95,7 +95,7 @@ class ReplayDebugger:
     def go_to_line(
         self, recording: Recording, tick: int, line: int, look: protocol.Inspect
     ) -> None:
-        """Pause where a line began for the last time in a tick; at the end of the tick if it did not."""
+        """Pause where a line began for the last time in a tick; if it did not begin in it, at the end of the tick."""
         self._request = look
         self._back = 0
         self._next_command = None

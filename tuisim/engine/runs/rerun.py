@@ -92,7 +92,7 @@ def list_changed_files(run: StoredRun) -> tuple[str, ...]:
 
 
 def _has_obeyed_stop(run: StoredRun) -> bool:
-    """Return whether the program obeyed a stop that can be repeated at the same position."""
+    """Return whether the program ended by a stop of the user that a re-run can repeat at the same position."""
     # A run that had to be killed has a longer summary.
     return (
         run.end is not None

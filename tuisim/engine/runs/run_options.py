@@ -21,7 +21,7 @@ class RunOptions:
     """How a run is executed; apart from limits and answers, nothing here changes what it records."""
 
     live: bool = False
-    """Whether it is paced by the wall clock, can be paused and accepts user actions; otherwise it is headless."""
+    """Whether the run is paced by the wall clock, can be paused and accepts user actions; otherwise it is headless."""
     speed: float = 1.0
     """1.0 is real time, 0 as fast as possible."""
     start_paused: bool = False

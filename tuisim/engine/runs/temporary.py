@@ -198,7 +198,7 @@ class TemporaryRun:
         return read_run(folder, self._document, self._spec)
 
     def write_end(self, end: Ended) -> None:
-        """Write the end of the run to its folder, which then is as that of a stored run.
+        """Write the end of the run to its folder, which is then as complete as that of a stored run.
 
         Raises:
             LogError: it cannot be written.

@@ -294,8 +294,7 @@ class _View(ABC):
 
 
 def _are_few_sound(part: memoryview, begin: int, end: int) -> bool:
-    """Return whether tick records have these ticks, and all their numbers are finite, and not beyond what a run can
-    reach."""
+    """Return whether records are those of ticks `begin` to before `end`, with finite numbers that a run can reach."""
     doubles = part.cast("d")
     floats = part.cast("f")
     columns = [doubles[index :: TICK_RECORD.size // 8] for index in range(1, 6)]

@@ -62,7 +62,7 @@ BEHIND_S = 0.25
 STOP_GRACE_S = 0.2
 """Real time for the program's cleanup after a stop of a live run."""
 STOP_GRACE_CPU_S = 2.0
-"""Its own computing time for that in a headless run."""
+"""CPU time of the process for the program's cleanup after a stop of a headless run."""
 FAST_SLICE_TICKS = 64
 """Ticks between two checks for commands in a run without pacing."""
 
@@ -115,7 +115,7 @@ class ControlledRun(Protocol):
 
     @property
     def stop_reason(self) -> BaseException | None:
-        """Why the run stops; None while it does not."""
+        """Why the run stops; None if it goes on."""
 
     def debug(self) -> DebugHooks:
         """Return the debugger; it is created on first use."""

@@ -62,7 +62,7 @@ def _walk_frames(frame: types.FrameType | None) -> Iterator[types.FrameType]:
 
 
 def finish_traceback(module: types.ModuleType) -> None:
-    """Restrict `traceback` to the frames that a program may see."""
+    """Make `traceback` show only the frames that a program may see."""
     changed: Any = module
 
     def walk_stack(f: types.FrameType | None) -> Iterator[tuple[types.FrameType, int]]:
@@ -83,7 +83,7 @@ def finish_traceback(module: types.ModuleType) -> None:
 
 
 def finish_inspect(module: types.ModuleType) -> None:
-    """Restrict `inspect` to the frames that a program may see."""
+    """Make `inspect` show only the frames that a program may see."""
     changed: Any = module
     for name in ("getouterframes", "getinnerframes"):
         setattr(

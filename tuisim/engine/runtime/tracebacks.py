@@ -21,7 +21,7 @@ _OUR_NAMES = ("tuisim.base.errors.", "tuisim.engine.runtime.session.")
 MAX_LINKED = 10
 """Of a longer chain of causes, this many are shown at either end."""
 _MAX_CHARACTERS = 500_000
-"""Of a traceback: the host takes a longer message for one that no program sends."""
+"""Longest traceback that is sent: the host takes a longer message for a falsified one."""
 _HEADING = "Traceback (most recent call last):\n"
 _show = sys.excepthook
 _SYNTAX_ERRORS: tuple[type[SyntaxError], ...] = (SyntaxError, IndentationError, TabError)

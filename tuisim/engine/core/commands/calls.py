@@ -12,7 +12,7 @@ MAX_NUMBER = float(2**53)
 
 
 class Call(IntEnum):
-    """What a program can do. Recorded commands have these numbers."""
+    """What a program can do to the simulation. Recorded commands contain these numbers."""
 
     RESET_GYRO = 0
     MOVE_PEN = 1

@@ -70,7 +70,7 @@ def hold_milli(sim: Simulation, time_ns: int, part: int, values: tuple[float, ..
 def run_control(sim: Simulation, time_ns: int, part: int, values: tuple[float, ...]) -> None:
     """Let the motor's controller run. Values: the rate, the acceleration, the time in microseconds (NaN: no end).
 
-    The fourth value is an ending, with which the motor follows its controller. NaN: it follows what it did before.
+    The fourth value is an ending, with which the motor follows its controller from now on; NaN leaves it as it is.
     """
     rate, acceleration, time_us, ending = values
     motor = _find_motor(sim, part)

@@ -32,7 +32,7 @@ RAMP_LEAD_JIFFIES = 5
 
 
 class Command(StrEnum):
-    """What a program writes to `command`."""
+    """The commands that a program can write to `command`."""
 
     RUN_FOREVER = "run-forever"
     RUN_TO_ABS_POS = "run-to-abs-pos"

@@ -77,7 +77,7 @@ class Circuit:
 
 
 def build_circuit(plant: PlantSpec, battery_v: float | None) -> Circuit:
-    """Return the circuit of a motor on a battery; without a battery it coasts."""
+    """Return the circuit of a motor on a battery; without a battery the motor coasts."""
     damping = plant.damping_nm_s
     torque_per_percent = 0.0
     if battery_v is not None:

@@ -150,7 +150,7 @@ class MountedSensor(NamedTuple):
 
     kind: SensorKind
     sensor: Any
-    """Its spec."""
+    """The sensor's spec."""
     columns: tuple[Column, ...]
     names: tuple[str, ...]
     """Names of the measured columns."""

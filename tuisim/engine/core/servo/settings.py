@@ -78,7 +78,7 @@ def _multiply(number: int, factor: int) -> int:
 
 @dataclass(frozen=True, slots=True)
 class MotorModel:
-    """The limits of a motor under control, by the data that the firmware's authors measured."""
+    """The constants that limit a motor under control, by the data that the firmware's authors measured."""
 
     resistance_ohm: float
     back_emf_v_s: float
@@ -93,7 +93,7 @@ class MotorModel:
 
     @property
     def friction_dps(self) -> float:
-        """The speed that the voltage lost by friction would lead to."""
+        """The speed that corresponds to the voltage that friction costs."""
         return (
             self.resistance_ohm
             * self.friction_nm

@@ -31,7 +31,7 @@ from tuisim.engine.runs.run_options import RunOptions
 MAX_EVENT_BYTES = 8 << 20
 """More than any event has."""
 MAX_BURST_BYTES = 1 << 20
-"""As much as a pipe of Linux can hold; of a flood of events the rest follows with the next read."""
+"""Bytes that one read takes at most, as many as a pipe of Linux can hold; the rest follows with the next read."""
 _CHUNK_BYTES = 1 << 16
 _MAX_SHOWN = 60
 _MAX_NUMBER = 1 << 53

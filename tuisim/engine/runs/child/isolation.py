@@ -115,11 +115,11 @@ class IsolatedChild:
         self.returncode: int | None = None
 
     def poll(self) -> int | None:
-        """Return the exit status, negative for a signal; None while it runs."""
+        """Return the child's exit status, negative for a signal; None while it runs."""
         return self._handle_end(self._process.poll())
 
     def wait(self, timeout: float | None = None) -> int:
-        """Block until it has ended.
+        """Block until the child has ended; return its exit status.
 
         Raises:
             subprocess.TimeoutExpired: it is still running after `timeout` seconds.
@@ -129,7 +129,7 @@ class IsolatedChild:
         return status
 
     def send_signal(self, number: int, /) -> None:
-        """Send a signal, unless it has ended."""
+        """Send a signal to the child, unless it has ended."""
         if self.poll() is None:
             with suppress(ProcessLookupError):
                 os.kill(self.pid, number)

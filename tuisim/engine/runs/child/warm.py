@@ -34,13 +34,13 @@ class ChildProcess(Protocol):
     returncode: int | None
 
     def poll(self) -> int | None:
-        """Return the exit status, negative for a signal; None while it runs."""
+        """Return the child's exit status, negative for a signal; None while it runs."""
 
     def wait(self, timeout: float | None = None) -> int:
-        """Block until it has ended; raises subprocess.TimeoutExpired."""
+        """Block until the child has ended; return its exit status. Raises subprocess.TimeoutExpired."""
 
     def send_signal(self, number: int, /) -> None:
-        """Send a signal, unless it has ended."""
+        """Send a signal to the child, unless it has ended."""
 
 
 class ForkedChild:
@@ -59,7 +59,7 @@ class ForkedChild:
         self._lock = threading.Lock()
 
     def poll(self) -> int | None:
-        """Return the exit status, negative for a signal; None while it runs."""
+        """Return the child's exit status, negative for a signal; None while it runs."""
         with self._lock:
             if self.returncode is None and is_readable(self._status_fd, 0):
                 data = os.read(self._status_fd, _NUMBER_BYTES)
@@ -77,7 +77,7 @@ class ForkedChild:
         return self.returncode
 
     def wait(self, timeout: float | None = None) -> int:
-        """Block until it has ended.
+        """Block until the child has ended; return its exit status.
 
         Raises:
             subprocess.TimeoutExpired: it is still running after `timeout` seconds.
@@ -93,7 +93,7 @@ class ForkedChild:
         return self.returncode
 
     def send_signal(self, number: int, /) -> None:
-        """Send a signal, unless it has ended."""
+        """Send a signal to the child, unless it has ended."""
         if self.poll() is None:
             with suppress(ProcessLookupError):
                 os.kill(self.pid, number)
@@ -127,7 +127,7 @@ class ForkClient:
 
     @property
     def is_usable(self) -> bool:
-        """Whether it belongs to this process, not to one that has forked this one."""
+        """Whether this process has started the server, and not a process that has forked this one."""
         return self._pid == os.getpid()
 
     def fork(
@@ -270,7 +270,7 @@ class WarmProcess(ForkClient):
 
     @property
     def is_usable(self) -> bool:
-        """Whether it runs, and belongs to this process, not to one that has forked this one."""
+        """Whether the warm process runs, and this process has started it, not one that has forked this one."""
         return super().is_usable and self._process.poll() is None
 
     def fork_template(self, folder: str, run: Mapping[str, Any]) -> Template:

@@ -274,7 +274,7 @@ def _convert_to_ns(timeout: Any, per_unit: int) -> int | None:
 
 
 class _Polling:
-    """Wraps an object that polls files; only the waiting is replaced.
+    """Wraps an object that polls files: it polls as that does, but waits in simulated time.
 
     Args:
         waits: How to wait.
