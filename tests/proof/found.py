@@ -32,5 +32,6 @@ FOUND: Sequence[tuple[str, str]] = (
     ("damage", "run:2445617949:edge"),
     ("damage", "run:3138339898"),
     ("damage", "run:4217672325:value"),
+    ("damage", "run:896353295:value"),
 )
 """Kind, and name of the case."""

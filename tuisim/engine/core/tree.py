@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 
 from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.core.spec_fields import Spec
-from tuisim.engine.core.values import Choice, NamedPart, Part, Parts, Value, list_values
+from tuisim.engine.core.values import Choice, NamedPart, Part, Parts, Value, WrongValue, list_values
 
 _Node = TypeVar("_Node")
 
@@ -148,13 +148,14 @@ def _load_value(name: str, value: Value | None, data: Any, is_checked: bool) -> 
     if isinstance(value, Part):
         return _load_part(value, data, is_checked)
     is_flag = value.stored_as is bool
-    is_nested = isinstance(data, list) and any(isinstance(item, list | dict) for item in data)
-    if (
-        not isinstance(data, value.stored_as)
-        or (isinstance(data, bool) and not is_flag)
-        or is_nested
-    ):
+    if not isinstance(data, value.stored_as) or (isinstance(data, bool) and not is_flag):
         raise TypeError(f"{name} is {data!r:.60}")
     if isinstance(data, list):
+        try:
+            # The type of a list does not tell those of its items.
+            value.check(data)
+        except WrongValue:
+            if not is_checked:
+                raise TypeError(f"{name} is {data!r:.60}") from None
         return tuple(data)
     return value.restore(data) if isinstance(value, Choice) else data
