@@ -297,6 +297,17 @@ def test_several_at_once_make_the_same_files(home: Path, tmp_path: Path) -> None
     assert mat_cache.open_field(files).sum_disc(20, 500, 500) == (0, 0, 305 * 128)
 
 
+def test_a_copied_field_outlives_what_is_cut_off_its_files(home: Path, tmp_path: Path) -> None:
+    files = mat_cache.prepare(picture(tmp_path, fill="white"), [10])
+    field = mat_cache.open_field(files, is_copied=True)
+    pixels = mat_cache.mat_pixels(files)
+    for path in (files.pixels, *dict(files.sums).values()):
+        path.chmod(0o600)
+        os.truncate(path, 0)
+    assert field.sum_disc(10, 50, 50) == (69 * 255,) * 3
+    assert pixels[50, 50].tolist() == [255, 255, 255]
+
+
 @pytest.mark.parametrize("diameter", [0, -5, 129])
 def test_impossible_diameters(diameter: int, home: Path, tmp_path: Path) -> None:
     with pytest.raises(BackgroundError, match="from 1 to 128"):

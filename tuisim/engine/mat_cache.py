@@ -277,7 +277,7 @@ def _trim(folder: Path, keep: set[Path]) -> None:
                 _note_of(path).unlink()
 
 
-def _mapped(path: Path, size: int) -> memoryview:
+def _open_data(path: Path, size: int, is_copied: bool) -> memoryview:
     try:
         with open_regular(path) as stream:
             status = os.fstat(stream.fileno())
@@ -290,31 +290,40 @@ def _mapped(path: Path, size: int) -> memoryview:
                 noted[1] != _identity(status) and noted[0] != _checksum(stream.fileno())
             ):
                 raise BackgroundError("is damaged", "the next run makes it again", file=str(path))
+            if is_copied:
+                return memoryview(os.pread(stream.fileno(), size, 0))
             return memoryview(mmap.mmap(stream.fileno(), size, access=mmap.ACCESS_READ))
     except OSError as error:
         message = f"the prepared mat cannot be opened: {error.strerror or error}"
         raise BackgroundError(message, file=str(path)) from error
 
 
-def open_field(files: FieldFiles, *, has_floor: bool = False) -> Field:
+def open_field(files: FieldFiles, *, has_floor: bool = False, is_copied: bool = False) -> Field:
     """Memory-map a prepared mat, in any process.
 
     Args:
         has_floor: Whether it lies on a floor of the colour of its edges: `WorldSpec.is_open`.
+        is_copied: Whether it is read into memory instead, for a process that outlives programs: the system ends a
+            process that reads a mapped file of which a program has cut something off.
 
     Raises:
         BackgroundError: a file is missing, for example because the cache evicted it, or incomplete.
     """
     width, height = files.width_px, files.height_px
-    pixels = _mapped(files.pixels, 3 * width * height)
-    sums = {d: _mapped(path, 12 * (width + d) * (height + d)).cast("I") for d, path in files.sums}
+    pixels = _open_data(files.pixels, 3 * width * height, is_copied)
+    sums = {
+        diameter: _open_data(path, 12 * (width + diameter) * (height + diameter), is_copied).cast(
+            "I"
+        )
+        for diameter, path in files.sums
+    }
     return Field(
         width, height, pixels, sums, find_floor_rgb(width, height, pixels) if has_floor else None
     )
 
 
 def mat_pixels(files: FieldFiles) -> NDArray[np.uint8]:
-    """Return a prepared mat for drawing: shape (height, width, 3), rows from the top, read-only.
+    """Return a copy of a prepared mat for drawing: shape (height, width, 3), rows from the top, read-only.
 
     Raises:
         BackgroundError: the file is missing or incomplete.
@@ -322,4 +331,5 @@ def mat_pixels(files: FieldFiles) -> NDArray[np.uint8]:
     import numpy as np
 
     shape = (files.height_px, files.width_px, 3)
-    return np.frombuffer(_mapped(files.pixels, shape[0] * shape[1] * 3), np.uint8).reshape(shape)
+    data = _open_data(files.pixels, shape[0] * shape[1] * 3, is_copied=True)
+    return np.frombuffer(data, np.uint8).reshape(shape)

@@ -74,4 +74,8 @@ def make_blank_mat(spec: RunSpec) -> Mat:
 
 
 def _open_mat(key: MatKey, files: FieldFiles) -> Mat:
-    return Mat(key, mat_cache.open_field(files, has_floor=key[3]), mat_cache.mat_pixels(files))
+    return Mat(
+        key,
+        mat_cache.open_field(files, has_floor=key[3], is_copied=True),
+        mat_cache.mat_pixels(files),
+    )
