@@ -68,7 +68,7 @@ def split_message(message: str, columns: int) -> list[str]:
 class NoticeRow(Static):
     """The row of a notice. A long one has more rows, at the top, where they cover neither keys nor a chart's axis.
 
-    A long one that stays has its rows at the bottom, where they cover no title of a panel.
+    One that stays is read beside the panels, which make room for it above the footer.
 
     Args:
         notice: What it shows.
@@ -89,7 +89,7 @@ class NoticeRow(Static):
         border-left: outer $success;
     }}
     NoticeRow.-long {{ dock: top; height: auto; margin: 0; }}
-    NoticeRow.-long.-stays {{ dock: bottom; margin-bottom: 1; }}
+    NoticeRow.-long.-stays {{ layer: default; dock: bottom; margin-bottom: 1; }}
     NoticeRow.-warning {{ border-left: outer $warning; }}
     NoticeRow.-error {{ border-left: outer $error; }}
     """
