@@ -233,6 +233,11 @@ def test_lesson_in_the_telling_for_a_library(here: Command, home: Path) -> None:
     assert here("learn", "1", "--library", "ev3dev2", "--text").stdout.startswith("The first run\n")
 
 
+def test_a_lesson_that_is_for_a_library_itself_is_its_version(here: Command, home: Path) -> None:
+    told = here("learn", "prime-hub", "--library", "pybricks", "--text").stdout
+    assert told.startswith("Drive, turn and follow a line, with a SPIKE Prime hub\n")
+
+
 def test_program_of_a_telling_runs_by_the_rules_of_its_library(
     here: Command, home: Path, started: list[AppSettings]
 ) -> None:

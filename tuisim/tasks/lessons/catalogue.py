@@ -10,6 +10,7 @@ from tuisim.base.errors import ConfigError, nearest
 from tuisim.base.folders import user_path
 from tuisim.engine.core.profile import Library
 from tuisim.engine.files import FILE_SUFFIXES
+from tuisim.settings.profiles import DEFAULT_PROFILE, load_profile
 from tuisim.tasks.lessons.files import SUFFIX, build_telling_name, get_lesson_name, load_lesson
 from tuisim.tasks.lessons.spec import Lesson
 
@@ -97,6 +98,9 @@ def find_telling(lesson: Path, library: Library, folder: Path | str | None = Non
     if library is Library.EV3DEV2 or name.endswith(build_telling_name("", library)):
         return lesson
     if build_telling_name(name, library) not in paths:
+        profile = load_lesson(lesson).settings.get("profile", DEFAULT_PROFILE)
+        if load_profile(profile).motor_law.library is library:
+            return lesson
         libraries = [
             telling.removesuffix(build_telling_name("", library))
             for telling in paths
