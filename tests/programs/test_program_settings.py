@@ -205,6 +205,11 @@ MISFITS: Mapping[str, tuple[str, dict[str, Any], str]] = {
         {"profile": "pybricks4"},
         "profile: p.py uses ev3dev2, and the profile pybricks4 is for pybricks",
     ),
+    "a profile of the EV3 for a hub": (
+        "from pybricks.hubs import PrimeHub\n",
+        {"profile": "lego-micropython"},
+        "profile: p.py uses the PrimeHub, and the profile lego-micropython is for an EV3",
+    ),
     "names of a prelude": (
         "tank_drive.on(5, 5)\n",
         {"profile": "lego-micropython"},
@@ -299,8 +304,9 @@ def test_a_program_with_a_profile_for_the_other_library_can_be_opened() -> None:
         (PYBRICKS, "pybricks4", "ev3"),
         (USUAL, "robolab", "pybricks4"),
         ("tank_drive.on(5, 5)\n", "ev3", "pybricks4"),
+        ("from pybricks.hubs import PrimeHub\n", "pybricks4", "lego-micropython"),
     ],
-    ids=["pybricks", "ev3dev2", "a prelude"],
+    ids=["pybricks", "ev3dev2", "a prelude", "a hub"],
 )
 def test_a_profile_is_required_to_be_for_the_library_of_the_program(
     text: str, fitting: str, other: str

@@ -196,14 +196,16 @@ def _find_library(program: Program, modules: dict[str, Module]) -> Library | Non
 
 
 def require_library(program: Program, profile: ProfileSpec) -> None:
-    """Check that a profile is for the library that a program uses, if it uses one.
+    """Check that a profile is for the library and the hub that a program uses, if it uses one.
 
     Raises:
-        ProfileError: it is for another library.
+        ProfileError: it is for another one.
     """
     for_course = program.prelude != _NO_PRELUDE
-    library = Library.EV3DEV2 if for_course else _find_library(program, read_modules(program))
-    if library is not None and profile.motor_law.library is not library:
+    modules = read_modules(program)
+    library = Library.EV3DEV2 if for_course else _find_library(program, modules)
+    is_for_hub = not for_course and bool(find_hub(modules))
+    if library is not None and not _can_move(profile.motor_law, library, is_for_hub):
         raise _build_misfit_error(program, library, profile)
 
 
@@ -263,7 +265,7 @@ def decide(
     by_brick_rules = not for_course and _has_brick_rules(source, facts)
     if facts.library and by_brick_rules and "profile" in free:
         layer["profile"] = facts.brick_profile
-    elif facts.library and not _is_fitting(settings, facts.library):
+    elif facts.library and not _is_fitting(settings, facts):
         if insists and settings.given.get("profile") is not None:
             raise _build_misfit_error(
                 source.program, facts.library, _load_profile(settings["profile"])
@@ -324,10 +326,17 @@ def _find_law(named: str | ProfileSpec) -> MotorLaw | None:
         return None
 
 
-def _is_fitting(settings: Settings, library: Library) -> bool:
-    """Return whether the chosen profile is for a library; True if there is no such profile."""
+def _is_fitting(settings: Settings, facts: SourceFacts) -> bool:
+    """Return whether the chosen profile is for a program; True if there is no such profile, which is told later."""
     law = _find_law(settings["profile"])
-    return law is None or law.library is library
+    if law is None:
+        return True
+    return facts.library is not None and _can_move(law, facts.library, facts.version_4_name in HUBS)
+
+
+def _can_move(law: MotorLaw, library: Library, is_for_hub: bool) -> bool:
+    """Return whether a motor law is for a library, and for the hub if a program is for one."""
+    return law.library is library and (law is MotorLaw.PYBRICKS_4 or not is_for_hub)
 
 
 def _load_profile(named: str | ProfileSpec) -> ProfileSpec:
@@ -337,6 +346,12 @@ def _load_profile(named: str | ProfileSpec) -> ProfileSpec:
 def _build_misfit_error(program: Program, library: Library, profile: ProfileSpec) -> ProfileError:
     if is_for_other_hub(read_modules(program)):
         return ProfileError(f"it is {FOR_SPIKE}", file=program.name)
+    if profile.motor_law.library is library and (hub := find_hub(read_modules(program))):
+        return ProfileError(
+            f"{program.name} uses the {hub}, and the profile {profile.name} is for an EV3",
+            f"choose {PYBRICKS_4.name}, or none",
+            key="profile",
+        )
     fitting = [known for known, profile in PROFILES.items() if profile.motor_law.library is library]
     return ProfileError(
         f"{program.name} uses {library}, and the profile {profile.name} is for {profile.motor_law.library}",
