@@ -142,7 +142,7 @@ class AppSettings:
     colors: str = "auto"
     """One of `COLOR_DEPTHS`; must be set before the terminal is opened."""
     cells: str | None = None
-    """One of `CELLS`; None: what was chosen before, else auto."""
+    """One of `CELLS`; None for the user's earlier choice, else auto."""
     pixels: str = AUTO
     """One of `PIXELS`."""
     from_config: tuple[str, ...] = ()
@@ -386,7 +386,7 @@ class LabApp(PanelMessages):
             if drew or news or self.debugger.busy:
                 self._wake()
         except TuisimError as error:
-            # What cannot be read now cannot be read at the next frame either.
+            # A run that cannot be read now cannot be read at the next frame either.
             self.run_controller.close()
             self.complain(error)
             self.handle_situation_change()
@@ -480,7 +480,7 @@ class LabApp(PanelMessages):
         notice, last = end_words(ended, stood)
         self._last_words = last if good else f"{last}: {self.fill_keys(find_remedy(ended.summary))}"
         self.document.mark_failure(ended.error_line, "" if good else notice)
-        # The output ends with the same words.
+        # The output, if it is shown, ends with the same words.
         if not self.panel_area.is_shown("output"):
             self.notify(notice, severity="information" if good else "error", markup=False)
         self.debugger.handle_end()
@@ -644,7 +644,7 @@ class LabApp(PanelMessages):
         self.action_leave_field()
 
     def on_server_asks(self, message: ServerAsks) -> None:
-        """Do what the page of a browser asks for."""
+        """Do what the server of the page asks for, see `do_asked`."""
         do_asked(self.context, message.asked)
 
 

@@ -112,7 +112,7 @@ def start(work: Callable[[], object]) -> None:
 
 
 def enter() -> None:
-    """Let the garbage collector leave out what exists by now, such as modules, and run seldom: an app begins."""
+    """Begin an app: objects that exist by now, such as modules, are left out of garbage collections, which are rare."""
     gc.freeze()
     gc.set_threshold(COLLECT_EVERY)
 

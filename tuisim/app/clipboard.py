@@ -1,4 +1,4 @@
-"""What `ctrl+c` copies: the text of what has the focus, in the form in which it is read elsewhere."""
+"""The text that `ctrl+c` copies from the panel with the focus, in the form in which it is read elsewhere."""
 
 from __future__ import annotations
 

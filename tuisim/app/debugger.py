@@ -407,7 +407,7 @@ class DebugController:
             self._wanted = None
             return
         elif here.ordinal != protocol.BEFORE_NEXT_TICK:
-            # At the chosen line.
+            # The replay has arrived at the chosen line.
             self.position = here
         chosen = self._run_controller.chosen_line
         if chosen and chosen[0] == paused.tick:

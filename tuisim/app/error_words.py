@@ -1,4 +1,4 @@
-"""What matters of an error of a program, in the room that there is."""
+"""Errors of programs in as many words as there is room for, the most useful ones first."""
 
 from __future__ import annotations
 

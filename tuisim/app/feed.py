@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from tuisim.engine.runs.recorded_run import Recording
 
 Series = dict[str, tuple[list[float], list[float]]]
-"""By trace name: times in s, values."""
+"""Times in s and values, by the name of the trace."""
 
 Points = tuple[list[float], list[float]]
 """x and y in mm, NaN where the pen was lifted."""

@@ -13,12 +13,12 @@ _Stamp = tuple[int, int, int]
 
 
 def _stamp(path: Path) -> _Stamp | None:
-    """Return what tells two versions of a file apart, or None if there is no file."""
+    """Return values of a file that tell two versions of it apart; None if there is no file."""
     try:
         status = os.stat(path)
     except (OSError, ValueError):
         return None
-    # Editors write a new file and rename it: that one has another inode, whatever its time and size.
+    # Editors write a new file and rename it: the new file has another inode, whatever its time and size.
     return status.st_mtime_ns, status.st_size, status.st_ino
 
 

@@ -225,7 +225,7 @@ class Loader:
         return decided
 
     def tell(self, decided: Decided) -> None:
-        """Tell what the source of a program has decided, and what of it the brick would refuse, if anything."""
+        """Say in notices what the source of a program has decided, and what the brick would refuse in it."""
         if decided.said:
             self._app.say(f"{decided.said}. {{robot}} and {{profile}} choose others")
         if decided.refusal:

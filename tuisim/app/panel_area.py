@@ -101,7 +101,7 @@ class PanelArea(Container):
         self._asked = dict(self._given)
         """Panels that were asked for, the latest last."""
         self._chosen: dict[str, bool] = {}
-        """Those of them that the user has shown or hidden by their keys, which are kept with the preset."""
+        """Panels that the user has shown or hidden by their keys, which are kept with the preset."""
         self.preset = self._kept_preset = Preset.STANDARD
         self.alone = ""
         """Id of the maximized panel, empty for none."""
@@ -110,7 +110,7 @@ class PanelArea(Container):
         self.front = "world"
         """The panel shown last or with the focus, which is shown where there is room for one only."""
         self._is_loaded = False
-        """Whether what was kept has been taken up."""
+        """Whether the stored arrangement has been loaded."""
         self.is_stacked = False
         """Whether a roomy panel stands above the lesson, and nothing else is shown."""
         self.is_beside = False
@@ -268,7 +268,7 @@ class PanelArea(Container):
         return classify_size(self.size.width, self.size.height + 1)
 
     def _load(self) -> None:
-        """Take up what was kept for this size."""
+        """Load the arrangement that was stored for this size of the terminal."""
         self._is_loaded = True
         layout = load_layout(self._find_size())
         self.preset = self._kept_preset = layout.preset
@@ -328,7 +328,7 @@ class PanelArea(Container):
                 self.is_beside = True
                 return [panel, *asked_for], []
             if chosen == [panel] and keeps_lesson:
-                # Its lines need the whole width, but not all rows.
+                # The lines of the panel need the whole width, but not all rows.
                 self.alone = ""
                 self.is_stacked = True
                 return [panel, "lesson"], []

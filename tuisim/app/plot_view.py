@@ -38,7 +38,7 @@ class PlotStrip(JoinedStrip):
 
     Args:
         parts: Text and parts of one picture, from left to right.
-        spare: Returns the row with characters only, for what cannot show pixels.
+        spare: Returns the row with characters only, for use where pixels cannot be shown.
     """
 
     __slots__ = ["_spare"]

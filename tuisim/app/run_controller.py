@@ -142,7 +142,7 @@ class RunController:
         self.paused_line: tuple[int, int] | None = None
         """Tick and line at which the program is paused: more exact than the record of that tick."""
         self.chosen_line: tuple[int, int] | None = None
-        """Tick and line of what was gone to: a sample that was clicked in the chart, or a reason."""
+        """Tick and line that the user has gone to: of a sample that was clicked in the chart, or of a reason."""
 
     @property
     def spec(self) -> RunSpec:
@@ -297,7 +297,7 @@ class RunController:
         return (not self.in_past and self.pressed) or recording.pressed_at(record.tick)
 
     def _field(self, record: TickRecord | None) -> Field | None:
-        """Return the mat as the sensors saw it then, None until it is prepared for them."""
+        """Return the mat as the sensors saw it at a record; None until the mat is prepared for them."""
         mat = self.find_mat(self.spec)
         recording = self.timeline.recording
         return (

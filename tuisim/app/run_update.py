@@ -24,7 +24,7 @@ class RunUpdate:
     ended: protocol.Ended | None = None
     """Set once, in the poll that receives the end."""
     stood: str = ""
-    """Then also: where the robot stood in the way of something solid, in words."""
+    """Set in the same poll: where something solid stopped the robot, in words; may be empty."""
     spoken: tuple[protocol.Spoke, ...] = ()
     """Texts and sounds from the program."""
     prompt: str | None = None
@@ -34,7 +34,7 @@ class RunUpdate:
     pauses: tuple[protocol.Message, ...] = ()
     """Reports that the program has paused or resumed, and its frames and variables."""
     remarks: tuple[str, ...] = ()
-    """What the output says besides: of a loop without a wait, of what the program waits for; with ids in braces."""
+    """Lines for the output, such as about a loop without a wait; ids of actions are in braces."""
 
     def __bool__(self) -> bool:
         """Return whether anything has arrived; a prompt that is still open does not count."""
@@ -46,7 +46,7 @@ class RunUpdate:
 def describe_remarks(
     event: protocol.BusyLoop | protocol.Plugged, recording: Recording
 ) -> Iterator[str]:
-    """Yield what the output says of an event."""
+    """Yield the lines for the output about an event."""
     if isinstance(event, protocol.BusyLoop):
         yield describe_busy_loop(event)
     elif words := describe_newest(recording.plugged, recording.spec):

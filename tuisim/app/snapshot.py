@@ -242,7 +242,8 @@ def end_words(ended: Ended, stood: str) -> tuple[str, str]:
     """Return two texts about the end of a run: for the notice, and for the end of the output.
 
     Args:
-        stood: Where the robot stood in the way of something solid, in words; may be empty.
+        ended: How the run ended.
+        stood: Where something solid stopped the robot, in words; may be empty.
     """
     words = ended.summary or end_label(ended.end)
     if caught := ended.end is End.FINISHED and not ended.exit_code and bool(ended.summary):

@@ -25,7 +25,7 @@ from tuisim.terminal.text_runs import convert_color
 OWN_THEME = "textual-dark"
 """Under it the app's colours are as they are."""
 UNUSED_THEMES = ("ansi-dark", "ansi-light")
-"""They have no colours of their own to compute with."""
+"""Themes that have no colours of their own to compute with."""
 
 HIGH_CONTRAST = Theme(
     "high-contrast",
@@ -75,7 +75,7 @@ _ROLES = {
 _DARKEST = 0.086
 """Lightness of the dark design's background."""
 _LEAST_CONTRAST, _HIGH_CONTRAST = 4.5, 7.0
-"""Of text, as WCAG 2.2 asks for: https://www.w3.org/TR/WCAG22/#contrast-minimum and #contrast-enhanced."""
+"""Minimum for text, by WCAG 2.2: https://www.w3.org/TR/WCAG22/#contrast-minimum and #contrast-enhanced."""
 _GREYISH = 60
 """Colours whose channels differ by less belong to the design's greys."""
 

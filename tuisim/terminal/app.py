@@ -288,7 +288,7 @@ repair_textual(input_order.end_messages)
 
 
 def _choose_driver_class() -> type[Driver] | None:
-    """Return the driver for what shows the app: a browser or a terminal; None for Textual's own."""
+    """Return the driver for a browser or a terminal, whichever shows the app; None for Textual's own."""
     if not SUPPORTED:
         return None
     if not is_in_browser():

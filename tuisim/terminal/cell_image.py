@@ -249,7 +249,7 @@ def _draw_svg_area(area: GlyphArea, x: float, y: float) -> str:
 
 
 def _draw_svg_shapes(grid: CellGrid) -> Iterator[str]:
-    """Yield a path for each colour and opacity, and elements for what is no rectangle."""
+    """Yield a path for each colour and opacity, and an element for each dot and line."""
     paths: dict[tuple[Rgb, float], list[str]] = {}
     for y, row in enumerate(grid):
         for x, (text, look) in enumerate(row):

@@ -179,7 +179,7 @@ panel, gets no dots."""
 def _mix_pale_8(
     pixels: Pixels, thresholds: npt.NDArray[np.float64], paleness: npt.NDArray[np.float32]
 ) -> Pixels:
-    """Return pale pixels as black and white, each in a share that tells it from other greys; others as the nearest."""
+    """Return pale pixels as black and white, with another share of white for each grey; others as the nearest."""
     white = np.interp(pixels @ _LUMA, *_SHARES_8) > thresholds
     dithered = np.where(white[:, None], _STANDARD[7], _STANDARD[0])
     return np.where((paleness > 0.75)[:, None], dithered, _find_nearest(pixels, PALETTE_8)).astype(

@@ -168,7 +168,7 @@ class TerminalDriver(HookedLinuxDriver):
             if os.isatty(self.fileno):
                 self.resume()
             else:
-                # The terminal was lost meanwhile, and nobody reads from it who would notice.
+                # The terminal was lost meanwhile, and no thread reads from it that would notice.
                 find_app(self).exit(return_code=_LOST)
 
     def stop_as_job(self) -> bool:

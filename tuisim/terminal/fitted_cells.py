@@ -153,9 +153,9 @@ def _build_linear() -> npt.NDArray[np.float32]:
 _XYZ = np.array(
     [[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]], np.float32
 ) / np.array([[0.9505], [1.0], [1.089]], np.float32)
-"""From linear sRGB to XYZ, relative to white (D65)."""
+"""Matrix from linear sRGB to XYZ, relative to white (D65)."""
 _FROM_ROOTS = np.array([[0, 116, 0], [500, -500, 0], [0, 200, -200]], np.float32)
-"""From the cube roots of XYZ to L*a*b*, but for the 16 that is subtracted from every L*."""
+"""Matrix from the cube roots of XYZ to L*a*b*, but for the 16 that is subtracted from every L*."""
 
 
 def _convert_lab(points: npt.NDArray[np.uint8]) -> npt.NDArray[np.float32]:

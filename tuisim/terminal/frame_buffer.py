@@ -54,7 +54,7 @@ class TextMode(NamedTuple):
     """What a terminal supports."""
 
     depth: int = TRUECOLOR
-    """How many colours."""
+    """Number of colours."""
     is_ascii: bool = False
     """Whether it shows ASCII only."""
     has_italics: bool = True
@@ -79,7 +79,7 @@ _Row = Sequence[Cell | None]
 
 
 class FrameBuffer:
-    """The screen as it was sent."""
+    """The screen, cell by cell, as it was sent to the terminal."""
 
     def __init__(self) -> None:
         self._rows: dict[int, list[Cell | None]] = {}
@@ -342,7 +342,7 @@ class _Pen:
         self._first_row = 0
         """First row of the block whose runs wait."""
         self._runs: list[_LookRun] = []
-        """They wait for the others of their block: those of one style are written together."""
+        """Runs that wait for the others of their block: those of one style are written together."""
 
     def take(self, x: int, y: int, text: str, look: CellLook, row: Sequence[Cell | None]) -> None:
         """Take a cell of a row, to be written when the other cells of the row are final."""
@@ -361,7 +361,7 @@ class _Pen:
             last.look = joined
 
     def _write_runs(self) -> None:
-        """Write what waits, with as few changes of the style as there are styles."""
+        """Write the waiting runs, with as few changes of the style as there are styles."""
         grounds: dict[tuple[str, str], dict[CellLook, list[_LookRun]]] = {}
         for run in self._runs:
             of_ground = grounds.setdefault((run.look.background, run.look.link), {})

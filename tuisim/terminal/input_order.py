@@ -209,7 +209,7 @@ def _find_module(callback: Callable[..., Any]) -> str:
 
 
 class InputOrder:
-    """Gives out keys, and what else the user does, one after another.
+    """Handles keys, and other input of the user, one after another.
 
     Args:
         app: The app.

@@ -140,7 +140,7 @@ class TilePicture:
         return find_runs(differs)
 
     def refine(self, cells: int) -> list[CellRun]:
-        """Draw the pixels of about so many of the cells that are drawn as half blocks.
+        """Draw the pixels of about `cells` cells that are half blocks now.
 
         Returns:
             Runs of changed cells: row, first column, number of cells.
@@ -154,7 +154,7 @@ class TilePicture:
         return find_runs(some)
 
     def draw_half_blocks(self, row: int) -> list[int]:
-        """Return the cells of a row as half blocks (see `terminal.fitted_cells.Cells`), for what cannot show pixels."""
+        """Return the cells of a row as half blocks (see `fitted_cells.Cells`), for use where pixels cannot be shown."""
         width, height = self.graphics.cell_points
         points = self._points[row * height : (row + 1) * height].astype(np.float32)
         upper, lower = (
@@ -290,7 +290,7 @@ class TilePicture:
         self._tiles[tile] = version, image
         cols = some.right - some.left
         rows = some.bottom - some.top
-        # What comes back through tmux would be taken for keys.
+        # Answers that come back through tmux would be taken for keys.
         codes = kitty.encode(
             self._cut_part(some), image, cols, rows, answers_errors=not self.graphics.in_tmux
         )

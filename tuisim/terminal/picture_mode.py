@@ -96,7 +96,7 @@ def choose_picture_mode(argument: str | None, stored: str) -> PictureMode:
         stored: What the user has asked for before, perhaps on another terminal.
     """
     chosen = argument or stored
-    # As Textual decides it.
+    # Textual decides in the same way whether there are colours.
     has_colors = "NO_COLOR" not in os.environ
     if is_in_browser():
         best = CellSet.QUADRANT if has_colors else CellSet.BRAILLE
@@ -155,7 +155,7 @@ def choose_graphics(
     """Return how a terminal is drawn with pixels; None if it cannot, does not tell, or should not.
 
     Args:
-        facts: What it has answered.
+        facts: What the terminal has answered.
         choice: One of `PIXELS`.
         cell_px: Width and height of a cell as the kernel knows them.
     """
@@ -195,7 +195,7 @@ class TerminalReport:
     latency_s: float | None
     """The shortest time that an answer took; None if there was none."""
     environment: Mapping[str, str]
-    """As it was when this process started."""
+    """The environment as it was when this process started."""
 
 
 def describe_terminal(fd: int, environment: Mapping[str, str]) -> TerminalReport | None:
@@ -293,7 +293,7 @@ class Sharpness:
         if self._is_coarse:
             self._is_coarse = False
             has_more = self._refine()
-            # What it has drawn may be coarse again.
+            # The refined picture may be coarse again.
             self._is_coarse = self._is_coarse or has_more
         if not self._is_coarse and self._timer is not None:
             self._timer.stop()

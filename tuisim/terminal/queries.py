@@ -26,7 +26,7 @@ ATTRIBUTES_QUERY = "\x1b[c"
 """Every terminal answers it, so it comes last: what has not been answered by then will not be."""
 QUESTIONS = f"{NAME_QUERY}{CELL_SIZE_QUERY}{ATTRIBUTES_QUERY}"
 KITTY_QUESTIONS = f"{kitty.QUERY}{ATTRIBUTES_QUERY}"
-"""For a terminal that has answered the others, and `asks_for_kitty`."""
+"""Questions for a terminal that has answered the others, if `asks_for_kitty` is true then."""
 
 ANSWER = re.compile(
     r"\x1bP>\|(?P<name>[^\x1b\x07]*)(?:\x1b\\|\x07)"

@@ -76,13 +76,13 @@ def _encode_band(numbers: npt.NDArray[np.intp]) -> str:
     columns = (
         np.bincount(positions, bits, len(colors) * cols).astype(np.intp).reshape(len(colors), cols)
     )
-    # Where a run begins, and in the first column.
+    # A run begins at each change, and in the first column.
     begins = np.diff(columns, axis=1, prepend=-1) != 0
     owners, starts = np.nonzero(begins)
     values = columns[begins]
     lengths = np.diff(starts, append=cols)
     last = np.flatnonzero(np.diff(owners, append=len(colors)))
-    # What draws nothing at the end of a colour is left out.
+    # A run at the end of a colour is left out if it draws nothing.
     lengths[last] = np.where(values[last] == 0, 0, cols - starts[last])
     lines: list[list[str]] = [[f"#{color}"] for color in colors.tolist()]
     characters = map(chr, (values + _FIRST_CHARACTER).tolist())

@@ -190,7 +190,7 @@ class HookedApp(App[None]):
 
     @property
     def own_driver(self) -> Driver | None:
-        """What draws the app, once it has started."""
+        """The driver that draws the app; None before the app has started."""
         return self._driver
 
     @property

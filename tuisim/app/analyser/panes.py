@@ -53,7 +53,7 @@ SEARCHED_AT_ONCE = 20_000
 """Up to this many rows, the search for bands takes a few hundredths of a second."""
 
 _MIN_ROWS = 10
-"""A pane may always have so many rows; lines that it does not need beyond them are left to the chart."""
+"""Rows that a pane may always have; lines that it does not need beyond them are left to the chart."""
 
 EMPTY = ("This log is empty. T shows the telemetry of a run.",)
 

@@ -75,7 +75,7 @@ def _is_number(text: str) -> bool:
 def _fit_columns(
     model: AnalysisModel, shown_rows: list[int], width: int
 ) -> tuple[list[str], list[int]]:
-    """Return the columns shown and their widths: the frozen ones, then those up to the selected one."""
+    """Return the columns shown and their widths: the frozen ones, then as many as fit with the selected one."""
     rows = model.rows
     seen = shown_rows[:_SAMPLED]
 

@@ -99,7 +99,7 @@ class CellsCard(ListDialog):
     """The dialog with the test card; it returns the name of the chosen set.
 
     Args:
-        current: What is set now.
+        current: The name of the set that is chosen now, or `AUTO`.
         best: The set that `auto` stands for.
     """
 

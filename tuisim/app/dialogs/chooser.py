@@ -158,7 +158,7 @@ class Chooser(ListDialog):
         current: The current value, selected at first.
         path_hint: What the field takes beside words to search for; without it there is no field.
         read: Reads what a name or a path stands for; raises a TuisimError.
-        suffixes: Those of the files that a path may name, with their dots.
+        suffixes: Suffixes of the files that a path may name, with their dots.
     """
 
     HINT: str = "Enter selects · Escape closes"
@@ -281,7 +281,7 @@ class Chooser(ListDialog):
         field.focus()
 
     def choose(self, value: str) -> None:
-        """Look into a folder, or return what was chosen."""
+        """Show the content of a folder that was chosen, or return another value."""
         if is_path(value) and value.endswith("/"):
             self._type(value)
         else:

@@ -50,7 +50,7 @@ class _TextList(_List[None], Generic[Entry]):
 
     Args:
         entries: The current ones.
-        run: Its columns can be used in entries.
+        run: The run whose columns can be used in entries.
         changed: Called with the new entries after each change.
     """
 

@@ -48,7 +48,7 @@ class SkeletonSensor(NamedTuple):
     goes_on: str
     """Condition under which the robot drives on."""
     speeds: tuple[int, int] = (50, 50)
-    """Of the left and the right wheel in percent."""
+    """Speeds of the left and the right wheel in percent."""
 
 
 _LIGHT = "reflected_light_intensity_pc"
@@ -124,7 +124,7 @@ def build_program_text(mat: str, sensor: str, skeleton: Skeleton) -> str:
         case Skeleton.EMPTY:
             return begins + "\n"
         case Skeleton.LIBRARY:
-            # The course's own name for it is not in the library.
+            # The library does not have the course's own name of the attribute.
             words |= {"drive": "tank", "value": reading.value.removesuffix("_pc")}
             magic = replace_mat("# %%{} {}\n".format(*BRICK_MAGIC), "", mat) + _EXPLAINS_BRICK
             return head + magic + "\nimport time\n\n" + (_LIBRARY + _LOG).format(**words)

@@ -135,7 +135,7 @@ class SearchList(Dialog[str]):
 
 
 def _build_line(entry: Entry, cells: int) -> Text:
-    """Return a line of so many cells, with the key at its right."""
+    """Return the line of an entry, as wide as `cells`, with the key at its right."""
     right = f"{entry.group}  {entry.key:>7}" if entry.key else entry.group
     title = cut(entry.title, cells - len(right) - 1)
     line = Text(no_wrap=True, overflow="ellipsis")

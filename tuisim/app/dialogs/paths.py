@@ -21,7 +21,7 @@ def list_completions(typed: str, suffixes: Collection[str]) -> list[tuple[str, s
 
     Args:
         typed: A path; what stands after its last `/` is the beginning of a name, in which case does not count.
-        suffixes: Those of the files, with their dots. The value of a folder ends with `/`.
+        suffixes: Suffixes of the files, with their dots. The value of a folder ends with `/`.
     """
     if typed in ("~", ".", ".."):
         return [(f"{typed}/", f"{typed}/", "")]

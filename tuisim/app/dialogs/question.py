@@ -79,7 +79,7 @@ class BranchQuestion(Dialog[str]):
 
     Args:
         branch: The proposed branch.
-        change: What differs there, in words, or empty.
+        change: What the branch changes there, in words, or empty.
         in_run: Whether the former run is still live, and ends with this.
         restart: Whether to offer a run from the start.
     """
@@ -122,7 +122,7 @@ class BranchQuestion(Dialog[str]):
 
     @property
     def keys(self) -> tuple[KeyWord, ...]:
-        """Those of the answers that are offered, then Escape."""
+        """The keys of the answers that are offered, then Escape."""
         return tuple(word for word in super().keys if self._restart or word[0] != "r")
 
     def action_branch(self) -> None:

@@ -86,7 +86,7 @@ _MIN_NOTE_COLUMNS = 100
 
 
 def _arrange(texts: Mapping[str, str], columns: int) -> dict[str, str]:
-    """Return the cells of a line of the list for which a terminal of so many columns has room."""
+    """Return the cells of a line of the list for which a terminal of that width has room."""
     left_out = next(names for from_columns, names in _LEFT_OUT.items() if columns >= from_columns)
     return {
         name: f"{cut(texts[name], cells):{'>' if name in _NUMBERS else '<'}{cells}}"
@@ -96,7 +96,7 @@ def _arrange(texts: Mapping[str, str], columns: int) -> dict[str, str]:
 
 
 def build_header(columns: int) -> str:
-    """Return the heads of the list in a terminal of so many columns."""
+    """Return the heads of the list in a terminal of that width."""
     names = " ".join(_arrange({name: name for name in _COLUMNS}, columns).values())
     return f"{names}  note" if columns >= _MIN_NOTE_COLUMNS else names
 
@@ -172,7 +172,7 @@ class RunChooser(ListDialog):
         self._left_out = compared.run_id if compared else ""
         self._runs: list[RunInfo] = []
         self._looked_at = ""
-        """Id of the run whose way is shown."""
+        """Id of the run whose path is shown."""
 
     def compose_content(self) -> ComposeResult:
         yield Input(
@@ -218,7 +218,7 @@ class RunChooser(ListDialog):
 
     @on(OptionList.OptionHighlighted)
     def _look(self, event: OptionList.OptionHighlighted) -> None:
-        """Show the way of the selected run, as soon as it is drawn."""
+        """Show the path of the selected run, as soon as it is drawn."""
         self._looked_at, view = event.option.id or "", self.query_one(PixelView)
         if not view.size:
             self.call_after_refresh(self._look, event)

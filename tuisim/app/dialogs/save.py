@@ -209,7 +209,7 @@ class ExportDialog(FileDialog):
         self._telemetry = False
 
     def compose_extras(self) -> ComposeResult:
-        """Return the choice of what to write."""
+        """Return the choice between samples and telemetry."""
         yield Static(self._describe_kind(), id="kind")
 
     def action_switch(self) -> None:

@@ -49,7 +49,7 @@ def describe_setting(setting: Setting) -> str:
 
 
 def parse_value(setting: Setting, text: str) -> Scalar:
-    """Return what was typed as a value of the file: a number where the setting takes one."""
+    """Return a typed text as a value for the file: as a number if the setting takes one."""
     if not isinstance(setting.default, int | float):
         return text.strip()
     for kind in (int, float):
@@ -64,7 +64,7 @@ class SettingsScreen(Dialog[None]):
     """The settings; a change is written at once.
 
     Args:
-        change: What writes and applies a setting.
+        change: Writes and applies a setting.
         themes: Makes the dialog of the themes.
     """
 

@@ -1,4 +1,4 @@
-"""The welcome: ways to begin, and what one may go on with."""
+"""The welcome: ways to begin, and recent work to continue."""
 
 from __future__ import annotations
 

@@ -145,7 +145,7 @@ class CandidateList(Widget):
             candidates: All of them.
             begin: Row and column of the word that is completed.
             word: What has been typed of it.
-            place: Where it begins on the screen.
+            place: Where that word begins on the screen.
         """
         self._candidates = candidates
         self.begin = begin

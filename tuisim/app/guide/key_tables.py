@@ -24,7 +24,7 @@ EVERYWHERE = (("tab", "Next panel or field"), ("Escape", "Leave a field"))
 
 
 _FEW = 3
-"""Of more keys that do the same, the first and the last are named."""
+"""Maximum number of keys with the same effect that are all named; of more, the first and the last are."""
 
 
 def own_keys(widgets: Iterable[DOMNode]) -> list[KeyWord]:

@@ -136,7 +136,7 @@ _PLANS: Mapping[Preset, _Plan] = {
 
 
 def find_core_panels(preset: Preset, width: int, height: int) -> tuple[str, ...]:
-    """Return the panels that a preset is made for, in an area of that size; none for the standard of a large one."""
+    """Return the panels that a preset is made for in an area of that size; none for the standard one if not low."""
     plan = _PLANS[preset]
     return plan.low if is_low(preset, width, height) else plan.core
 
@@ -360,7 +360,7 @@ def make_room(
     size: tuple[int, int],
     preset: Preset = Preset.STANDARD,
 ) -> list[str]:
-    """Return the panels to show so that one has room: as they are, else without those beside it, else it alone.
+    """Return the panels to show so that one has room: all of them, else without those beside it, else it alone.
 
     Args:
         panel: The one that needs room.

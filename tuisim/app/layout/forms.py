@@ -73,7 +73,7 @@ def is_single(width: int, height: int) -> bool:
 
 
 def is_tall(width: int, height: int) -> bool:
-    """Return whether an area is higher than wide, as it looks."""
+    """Return whether an area looks higher than wide; a row counts as 1.6 columns."""
     return height * 1.6 >= width
 
 
@@ -290,7 +290,7 @@ def count_tight_rows(panels: Sequence[str], width: int) -> list[int]:
 
 
 def _build_column(panels: Sequence[str], width: int, height: int) -> Node:
-    """Return panels one above the other, each with the rows in which it is read if there are so many."""
+    """Return panels one above the other, each with the rows that it takes to be read, if there are so many."""
     tight = count_tight_rows(panels, width)
     if len(panels) == 1 or sum(tight) > height:
         return join_nodes(Axis.ROWS, panels)

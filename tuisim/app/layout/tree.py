@@ -55,10 +55,10 @@ class PanelBox:
 
 @dataclass
 class PanelLayout:
-    """Where everything is, and what did not fit."""
+    """The boxes of the panels that fit, and the panels that do not."""
 
     boxes: dict[str, PanelBox] = field(default_factory=dict)
-    """By panel."""
+    """The boxes by panel."""
     left_out: tuple[str, ...] = ()
     wanted: Sequence[str] = ()
     """Panels that get rows first, the most wanted first; the world is before them."""

@@ -87,7 +87,7 @@ class Chart(LinesPanel, can_focus=True):
         Args:
             name: A logged NAME, or the name of a column of telemetry, which is off at first.
             times_s: Simulated times.
-            values: As many values.
+            values: The values at these times.
             logged: Whether the program has printed them.
         """
         self._traces.append(name, times_s, values, logged)

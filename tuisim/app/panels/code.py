@@ -106,7 +106,7 @@ class Code(Vertical):
         self._break_words = ""
         self._pause: PauseView | None = None
         self._tick = 0
-        """Of the instant in view."""
+        """Tick of the instant in view."""
 
     def compose(self) -> ComposeResult:
         yield self._area

@@ -21,7 +21,7 @@ _FRAME = 4
 
 
 def build_title(app: App[Any], panel: str, name: str = "") -> str:
-    """Return a panel's key in an app and its title, with the name of what it shows unless that is empty, as markup."""
+    """Return the title of a panel as markup: its key in an app, its title, and the name of its content unless empty."""
     info = PANELS[panel]
     actions = app.ACTIONS if isinstance(app, ActionHost) else {}
     action = actions.get(f"panel-{panel}")

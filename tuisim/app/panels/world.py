@@ -271,7 +271,7 @@ class WorldView(PixelView):
         previous = self._port
         zoom = self.zoom
         if on_floor and self._grip is not None:
-            # It stays where it is below the mouse.
+            # The view stays where it is while the mouse drags the robot.
             pose = self._grip.pose
         elif on_floor and zoom == 1 and not now.instant.tick:
             previous = None
@@ -298,7 +298,7 @@ class WorldView(PixelView):
         if self._painter is None:
             self._painter = self._make_painter(self._mat, in_cells=graphics is None)
         trace = self.trace if self.past_trace is None else self.past_trace
-        # What stands still is drawn finely at once, and not a moment later by itself.
+        # A run that stands still is drawn finely at once, and not a moment later by itself.
         stands = self._snapshot.state in AT_REST and not self._snapshot.past and self._held is None
         is_drawn = scene == self._scene and port == self._port and self._trace_drawn == trace.count
         if is_drawn and not (stands and self.is_coarse):

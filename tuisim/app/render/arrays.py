@@ -96,7 +96,7 @@ def build_face_lines(face: DiscFace, width: int, rows: int, *, has_limits: bool)
     """Return the lines of a sensor, the most useful ones if there are few rows.
 
     Args:
-        face: What is shown of it.
+        face: What is shown of the sensor.
         width: Columns.
         rows: Most lines.
         has_limits: Whether there is a line for thresholds, those of any sensor.

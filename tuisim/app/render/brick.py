@@ -45,7 +45,7 @@ _LINE_PX = 0.5
 the greater part of a thin line leaves in one of two dots."""
 
 _SYMBOLS = {"backspace": "⌫", "up": "▲", "left": "◀", "enter": "●", "right": "▶", "down": "▼"}
-"""In the order of the single-row layout."""
+"""Signs of the buttons, in the order of the single-row layout."""
 
 _BUMPER = "□"
 

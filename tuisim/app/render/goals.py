@@ -142,7 +142,7 @@ def draw_goals(
 def _select_rows(
     listed: list[tuple[Line, int]], chosen: int, max_rows: int
 ) -> list[tuple[Line, int]]:
-    """Return at most so many lines of a list, with those of the chosen goal."""
+    """Return at most `max_rows` lines of a list, with those of the chosen goal."""
     begins = next(row for row, (_, index) in enumerate(listed) if index == chosen)
     first = max(0, min(begins - max_rows // 2, len(listed) - max_rows))
     return listed[first : first + max_rows]
@@ -150,7 +150,7 @@ def _select_rows(
 
 def _build_header(goal: Goal, state: GoalState, width: int) -> Iterator[Line]:
     """Yield sign, word, name and points; a long name goes on in further lines."""
-    # What takes points off is at its best if it is missed.
+    # A goal that takes points off is best missed.
     good = (
         {GoalState.MET: GoalState.MISSED, GoalState.MISSED: GoalState.MET}
         if goal.points < 0

@@ -57,7 +57,7 @@ def draw_hub(
     """Return the hub for a panel of that inner size.
 
     Args:
-        face: What it shows.
+        face: What the hub shows.
         pressed: Buttons that are held down.
         width, height: Columns and rows, at least 1; the buttons have priority, then those of a connected remote control
             or game controller, the matrix, bumpers and sound.

@@ -67,13 +67,13 @@ class LessonView:
     lesson: Lesson | None = None
     """None: no lesson is open."""
     states: tuple[StepState, ...] = ()
-    """Of each step."""
+    """The state of each step."""
     at: int | None = None
     """Index of the step to do; None when none is open."""
     hints: int = 0
     """How many hints of that step are shown."""
     judgements: tuple[Judgement, ...] = ()
-    """Of the last run since the step began; empty while there is none."""
+    """Judgements of the last run since the step began; empty while there is none."""
     good_runs: int = 0
     """How many runs have passed the step so far, if it needs several."""
     elsewhere: str = ""
@@ -239,7 +239,7 @@ def _build_result(view: LessonView, step: LessonStep, width: int, away: Away) ->
         step.check.goals, key=lambda name: by_name[name].state is not GoalState.MISSED
     ):
         judgement = by_name[name]
-        # After an error, what is missing says nothing: the error is what there is to mend.
+        # After an error, missed goals tell nothing: the error has to be mended first.
         is_told = judgement.state is not GoalState.MISSED or not view.error
         mark, style = _GOAL_MARKS[judgement.state if is_told else GoalState.OPEN]
         for index, row in enumerate(textwrap.wrap(judgement.goal.say or name, max(1, width - 2))):

@@ -49,7 +49,7 @@ class FormField:
 
     id: str
     label: str
-    """With its unit, at most `MAX_LABEL` characters."""
+    """The label with its unit, at most `MAX_LABEL` characters."""
     read: Callable[[NextRun], str]
     """Returns the value as text."""
     write: Callable[[NextRun, str], NextRun]
@@ -93,7 +93,7 @@ def build_sections(plan: NextRun) -> list[FieldGroup]:
 
 
 def _parse_value(value: Value, text: str) -> Any:
-    """Return what was typed or chosen as a value; a comma may stand for the point of a number."""
+    """Return a typed or chosen text as a value; a number may have a comma in place of the point."""
     one_number = isinstance(value, Number) and not isinstance(value, Numbers)
     try:
         return value.parse_text(text.strip().replace(",", ".") if one_number else text.strip())

@@ -64,7 +64,7 @@ class NextRun:
     """The choices. Robot, obstacles and profile are objects, so that no later change depends on a file."""
     spec: RunSpec
     words: Mapping[str, str]
-    """By path: the name or file that robot, obstacles and profile came from, if known."""
+    """The name or file that robot, obstacles and profile came from, if known; by path."""
     robot: RobotChoice
     """The robot as it was chosen, before any edit."""
     from_program: Mapping[str, Any] = field(default_factory=dict)
@@ -122,9 +122,9 @@ def build_first_plan(
 
     Args:
         spec: The specification of the run.
-        settings: What it was built from; None if that is not known, as for a stored run.
-        decided: What the source of the program has decided of them.
-        program: Its program.
+        settings: The settings that it was built from; None if they are not known, as for a stored run.
+        decided: The settings among them that the source of the program has decided.
+        program: The program of the run.
     """
     if settings is None:
         return plan_rerun(spec, program)
@@ -192,7 +192,7 @@ def apply_choices(plan: NextRun, choices: Mapping[str, Any]) -> NextRun:
 
     Args:
         plan: The current plan.
-        choices: By path; fields that do not concern the world are ignored.
+        choices: Settings by path; those that do not concern the world are ignored.
 
     Raises:
         ConfigError: they name something that does not exist, or an invalid file.

@@ -1,4 +1,4 @@
-"""What the user may go on with: unsaved texts, programs that have run, and runs."""
+"""Recent work to continue: unsaved texts, programs that have run, and runs."""
 
 from __future__ import annotations
 
