@@ -58,7 +58,7 @@ AUTO = "auto"
 
 @dataclass(frozen=True, slots=True)
 class PortKind:
-    """Common properties of the input or the output ports."""
+    """What all input ports, or all output ports, have in common."""
 
     driver_name: str
     modes: tuple[str, ...]
@@ -86,7 +86,7 @@ OUTPUT = PortKind("ev3-output-port", (AUTO, "tacho-motor", "dc-motor", "led", "r
 
 @dataclass(frozen=True, slots=True)
 class Connection:
-    """The device that is connected to a port."""
+    """What the driver of a port needs to know of the device that is connected to it."""
 
     driver_name: str
     mode: str
@@ -169,7 +169,7 @@ def all_ports(session: DeviceSession) -> list[SimDevice]:
 
 
 def ports_hint(session: DeviceSession, class_name: str) -> str:
-    """Return which devices are on which ports, as a hint for a failed look-up; empty for other classes."""
+    """Return a hint for a motor or sensor that was not found: the robot's devices; empty for other classes."""
     if class_name not in (MOTOR_CLASS, SENSOR_CLASS):
         return ""
     robot = session.sim.spec.robot
@@ -183,7 +183,7 @@ def ports_hint(session: DeviceSession, class_name: str) -> str:
 
 @dataclass(slots=True)
 class BuiltBrick:
-    """The brick of a robot, and what is connected to it."""
+    """The simulated brick of a robot with the devices that are connected to it."""
 
     session: DeviceSession
     files: DeviceFiles
@@ -223,7 +223,7 @@ class BuiltBrick:
         return path
 
     def disconnect(self, port: str) -> None:
-        """Take away what is connected to a port."""
+        """Remove the device on a port."""
         path = self.paths.pop(port)
         del self.files.by_path[path]
         self.colors.pop(path, None)
@@ -233,7 +233,7 @@ class BuiltBrick:
             self._heard.remove(sensor)
 
     def take_wheels(self) -> None:
-        """Let the session read the registers of the motors that are the wheels' now."""
+        """Let the session read the registers of the motors that are now the wheels."""
         session = self.session
         wheels = zip(
             session.sim.spec.robot.wheel_motors, (session.sim.left, session.sim.right), strict=True
@@ -268,7 +268,7 @@ def build_brick(session: DeviceSession) -> BuiltBrick:
 
 
 def board(session: DeviceSession) -> SimDevice:
-    """Return the device that tells what kind of brick this is; asking it costs nothing."""
+    """Return the device whose attributes name the kind of brick; reading them takes no time."""
     told = dict(BOARD_INFO)
     told["uevent"] = "\n".join(
         f"BOARD_INFO_{name.upper()}={value}" for name, value in BOARD_INFO.items()
@@ -282,7 +282,17 @@ def board(session: DeviceSession) -> SimDevice:
 
 
 def tacho_of(session: DeviceSession, motor: Motor, port: str, kind: str) -> Tacho:
-    """Return the driver of a motor, by its motor law."""
+    """Return the driver for the class of a simulated motor.
+
+    Args:
+        session: The run.
+        motor: The simulated motor.
+        port: Such as `outA`.
+        kind: One of `KINDS`.
+
+    Raises:
+        TypeError: there is no driver for this class.
+    """
     match motor:
         case BrickMotor():
             return TachoMotor(session, motor, port, kind)

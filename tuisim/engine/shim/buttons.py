@@ -54,7 +54,13 @@ class InputEvent:
 
 
 def changes(before: frozenset[str], now: frozenset[str], at_ns: int) -> list[InputEvent]:
-    """Return the events of the buttons that were pressed or released between two looks."""
+    """Return the events between two looks at the buttons.
+
+    Args:
+        before: The buttons that were pressed at the first look.
+        now: The buttons that were pressed at the second look.
+        at_ns: The time of the events.
+    """
     at, within = divmod(at_ns, NS_PER_S)
     return [
         InputEvent(at, within // 1000, EV_KEY, KEY_CODES[name], int(name in now))
@@ -76,7 +82,7 @@ class ButtonsFile(DeviceFile):
         self._session = session
 
     def begin(self, opened: OpenFile) -> None:
-        """Tell of changes from here on."""
+        """Remember the pressed buttons: events are what changes from here on."""
         opened.seen = self._session.pressed
 
     def read(self, opened: OpenFile, size: int) -> bytes:
@@ -101,7 +107,7 @@ class ButtonsFile(DeviceFile):
             self._session.spend(POLL_NS)
 
     def ready(self, opened: OpenFile) -> int:
-        """Return whether there are events."""
+        """Return the flags that `poll` reports: readable if there are events."""
         now = self._session.pressed
         before = opened.seen
         if now is not before:

@@ -149,7 +149,7 @@ class Terminal:
 
     def print(self, text: str, end: str = "\n") -> None:
         """Write on the screen; replaces the library's `print`."""
-        # Counted even if it costs nothing.
+        # Counted even if it costs nothing, so that no loop of it runs forever.
         self._session.command()
         self._session.charge(self._session.sim.spec.profile.attribute_read_ns)
         self._grid.write(text + end)

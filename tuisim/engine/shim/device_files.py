@@ -22,7 +22,7 @@ NumberWriter = Callable[[int], None]
 
 
 class _Writers(dict[str, Writer]):
-    """Writers by attribute; a missing one raises the driver's error."""
+    """Functions that write attributes, by name; another name raises EACCES if it can be read, else ENOENT."""
 
     def __init__(self, writers: Mapping[str, Writer], readable: Collection[str]) -> None:
         super().__init__(writers)
@@ -33,7 +33,7 @@ class _Writers(dict[str, Writer]):
 
 
 class _NumberWriters(dict[str, NumberWriter]):
-    """The same for integers; an attribute that accepts only text gets the number as text."""
+    """Functions that write whole numbers to attributes, by name; without one, the number is written as text."""
 
     def __init__(
         self, number_writers: Mapping[str, NumberWriter], writers: Mapping[str, Writer]
@@ -55,7 +55,8 @@ class SimDevice:
         writers: Functions that accept the written text, by attribute.
         costs: Cost of a read in ns, by attribute, if it differs from the default.
         number_writers: Functions that accept a written integer, by attribute.
-        notifying: Attributes that wake up who polls their files, with functions whose values differ after a change.
+        notifying: Attributes whose change ends a `poll` on their files, with functions that return what differs after
+            it.
         temporary: Attributes whose files exist only while their readers raise no ENOENT.
         codes: What is recorded of a read, by attribute; see `DeviceSession.note_reading`.
     """
@@ -98,7 +99,7 @@ class SimDevice:
         """Value, cost in ns, and code of each attribute; -1 if it is not recorded."""
 
     def _charge(self, write: Callable[[Any], None]) -> Callable[[Any], None]:
-        """Return a function that lets the time of a write pass first."""
+        """Return a function that first charges the time of a write, then calls `write`."""
         session = self.session
         cost_ns = self.session.sim.spec.profile.attribute_write_ns
 
@@ -203,7 +204,7 @@ def refuse(text: str) -> OSError:
 
 
 def free_of_charge(session: DeviceSession, function: Callable[..., Any]) -> Callable[..., Any]:
-    """Return `function` with the library's own look-ups inside it free of charge."""
+    """Return `function` with no charge for what the library reads and writes inside it."""
 
     @wraps(function)
     def wrapper(*args: Any, **kwargs: Any) -> Any:

@@ -50,15 +50,14 @@ class Screen:
         self._shown: tuple[str, Stream] | None = None
 
     def show(self, row: str, stream: Stream) -> None:
-        """Show an image or a text, in the format of `engine.runs.brick_state`; unchanged contents are not recorded
-        again."""
+        """Record an image or a text, in the format of `engine.runs.brick_state`, if it differs from the last one."""
         if (row, stream) != self._shown:
             self._shown = (row, stream)
             self._session.show(row, stream)
 
 
 class DisplayBuffer(mmap.mmap):
-    """The memory of the display: bytes written there are displayed.
+    """The memory of the display: bytes that are written to it are displayed.
 
     Each pixel has four bytes: unused, red, green, blue.
     """
@@ -90,11 +89,11 @@ class DisplayBuffer(mmap.mmap):
         self._update()
 
     def close(self) -> None:
-        """Do nothing: every mapping of the display is this one, and another may be in use."""
+        """Do nothing: a program's other mappings of the display are this same object, which may still be in use."""
 
     def _update(self) -> None:
         """Display the memory. Charges the time of an update on the brick."""
-        # Counted even if it costs nothing.
+        # Counted even if it costs nothing, so that no loop of it runs forever.
         self.session.command()
         self.session.charge(self.session.sim.spec.profile.display_update_ns)
         pixels = self[:]
@@ -168,10 +167,10 @@ def dark_pixels(grey: Picture) -> bytes:
 
 
 def draw_with_the_bricks_font(screen_class: Any) -> None:
-    """Draw text without a named font in the default font of the brick's Pillow.
+    """Let objects of a class draw text without a named font in the default font of the brick's Pillow.
 
     Args:
-        screen_class: A class of the library, with the Pillow object that draws in `draw`.
+        screen_class: A class of the library; its objects have an `ImageDraw` in `draw`.
     """
     make = screen_class.__init__
 

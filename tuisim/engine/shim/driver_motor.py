@@ -78,7 +78,7 @@ class DriverTacho(Tacho):
         return self._device(readers, {}, numbers)
 
     def _now(self) -> SimulatedMotor:
-        """Return the motor as it is now."""
+        """Return the motor after simulating it up to the present time."""
         motor = self._motor
         if not motor.is_at_rest:
             motor.run_until(self._session.now)

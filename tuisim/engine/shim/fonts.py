@@ -70,7 +70,7 @@ _CAPITAL = 0.7
 
 @dataclass(frozen=True, slots=True)
 class Face:
-    """Properties of a font that its name contains."""
+    """The properties of a font, which its name contains."""
 
     size_px: int
     bold: bool
@@ -102,7 +102,7 @@ def plain_font() -> ImageFont:
 
 
 def quiet_pillow(_module: types.ModuleType) -> None:
-    """Hide warnings about what later versions of Pillow remove: the brick's own version never will."""
+    """Hide Pillow's warnings of what later versions remove: the Pillow of the brick stays as it is."""
     warnings.filterwarnings("ignore", r".* will be removed in Pillow ", DeprecationWarning)
 
 
@@ -135,7 +135,7 @@ def patch_fonts_module(module: types.ModuleType) -> None:
 
 
 def sized(size_px: int, bold: bool, monospace: bool) -> ImageFont:
-    """Return an upright font of any size."""
+    """Return an upright font of any height in pixels."""
     cell_px = _CELLS["lut"].get(size_px, max(1, round(_CELL * size_px))) if monospace else None
     return drawn(Face(size_px, bold, slanted=False, cell_px=cell_px))
 
@@ -153,7 +153,7 @@ def drawn(face: Face) -> ImageFont:
         picture, left_px, width_px = _letter(large, letter, face)
         box = picture.getbbox() or (0, 0, 1, 1)
         ink = picture.crop(box)
-        # Ink to the left of the pen would be cut off.
+        # Pillow cuts off what is to the left of the pen: move such letters to the right.
         x = max(0, min(box[0] + left_px, width_px - ink.width))
         # Coordinates are relative to the pen on the baseline, y down.
         place = (x, box[1] - face.size_px, x + ink.width, box[3] - face.size_px)
@@ -224,7 +224,7 @@ def _letter(large: FreeTypeFont, letter: str, face: Face) -> tuple[Picture, int,
 
 
 def _plain_letter(letter: str, times: float) -> Picture:
-    """Return an enlarged letter of the plain font: the other font has no accented letters."""
+    """Return a letter of the plain font, enlarged, for accented letters, which the other font lacks."""
     from PIL import Image, ImageDraw
 
     image = Image.new("L", _PLAIN_CELL_PX)

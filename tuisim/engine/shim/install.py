@@ -78,7 +78,7 @@ def finish_imports(
     is_own: Callable[[str], bool],
     around: Mapping[str, Around] = MappingProxyType({}),
 ) -> None:
-    """Call functions on modules, by name, right after their import; at once if already imported.
+    """Call a function on each module right after its import, or at once if it is imported already.
 
     Args:
         finishers, is_own, around: As for `FinishingFinder`.
@@ -96,7 +96,7 @@ def install(
     replace: Replace,
     is_own: Callable[[str], bool],
 ) -> None:
-    """Prepare the import of the program's library, and show it the brick's files.
+    """Let the program import its library, and make the brick's files visible to it.
 
     Args:
         session: Clock and simulation.

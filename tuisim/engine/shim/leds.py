@@ -165,7 +165,7 @@ class Light:
 
 
 def patch_led_module(session: DeviceSession, module: types.ModuleType) -> None:
-    """Patch `ev3dev2.led` after its import: its threads, and waiting for their end."""
+    """Patch the threads of `ev3dev2.led` after its import, and how it waits for their end."""
     led: Any = module
     numbers = count(1)
     running: dict[int, int] = {}
@@ -193,7 +193,7 @@ def patch_led_module(session: DeviceSession, module: types.ModuleType) -> None:
         self.animate_thread_stop = True
         while number in running:
             session.spend(STOP_POLL_NS)
-        # An animation that ended with an error has not reset these.
+        # The animation resets these at its end, but not if an error ended it.
         self.animate_thread_id, self.animate_thread_stop = None, False
 
     rebind(led.Leds, _thread=types.SimpleNamespace(start_new_thread=start_new_thread))
@@ -203,7 +203,7 @@ def patch_led_module(session: DeviceSession, module: types.ModuleType) -> None:
 
 
 def mend_trigger(led_class: Any) -> None:
-    """Fix reading an LED's trigger: the library takes the one match that it found for two."""
+    """Fix reading an LED's trigger: the library unpacks the one value that it reads into two."""
 
     @wraps(led_class.trigger.fget)
     def get_trigger(self: Any) -> str:

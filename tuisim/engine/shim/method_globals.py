@@ -12,7 +12,12 @@ from typing import Any
 
 
 def rebind(changed: type[Any], **names: object) -> None:
-    """Replace global names for all methods and properties of a class."""
+    """Let all methods and properties of a class see other values under global names.
+
+    Args:
+        changed: The class.
+        names: The values by name.
+    """
     for name, part in list(vars(changed).items()):
         match part:
             case types.FunctionType():

@@ -79,7 +79,7 @@ class Tacho(ABC):
         """Return what the program has written to the motor, and its speed."""
 
     def _tell(self, call: Call, *values: float) -> None:
-        """Change the motor."""
+        """Pass a call with its values to the simulated motor, at the present time."""
         sim = self._session.sim
         obey(sim, self._session.now, sim.find_number(self._motor), call, *values)
 
@@ -93,7 +93,13 @@ class Tacho(ABC):
         writers: dict[str, Writer],
         numbers: dict[str, NumberWriter],
     ) -> SimDevice:
-        """Return the device with these attributes and those that all motors have."""
+        """Return a device with these attributes and those that all motors have.
+
+        Args:
+            readers: Functions that return the value of an attribute, by name.
+            writers: Functions that accept the text written to an attribute, by name.
+            numbers: Functions that accept a number written to an attribute, by name.
+        """
         common: dict[str, Reader] = {
             "address": lambda: f"ev3-ports:{self._port}",
             "driver_name": lambda: self._kind.driver_name,
@@ -283,7 +289,7 @@ class TachoMotor(Tacho):
         self._begun()
 
     def _begun(self) -> None:
-        """Handle the rare cases of a move: ramps, which a duty cycle does not have, and target speed 0."""
+        """Handle rare cases after the start of a move: a ramp, unless it is by duty cycle, and a target speed of 0."""
         if self._ramps and not self._direct:
             self._ramp()
         motor = self._motor
@@ -301,7 +307,7 @@ class TachoMotor(Tacho):
             self._tell(STOP)
             return
         if motor.mode == TIMED and motor.target_dps == 0.0:
-            # It is decelerating already.
+            # The motor is decelerating already.
             return
         self._tell(Call.LIMIT_RAMPS, down, motor.approach_dps2)
         self._standstill_tick = sim.tick + math.ceil(abs(motor.speed_dps) / motor.ramp_step)
@@ -330,12 +336,12 @@ class TachoMotor(Tacho):
         self._tell(RUN_TO, goal_deg, speed_dps, float(goal_deg < self._motor.position_deg))
 
     def _ramp_dps2(self, name: str) -> float:
-        """Return the acceleration that a ramp set point allows, 0 for no ramp."""
+        """Return the acceleration in °/s² that a ramp set point allows, 0 for no ramp."""
         ramp_ms = self._numbers[name]
         return self._kind.max_speed_dps / ramp_ms * 1000 if ramp_ms else 0.0
 
     def _ramp(self) -> None:
-        """Pass the ramp set points to the motor."""
+        """Limit the acceleration of the motor as the ramp set points say."""
         motor = self._motor
         faster = abs(motor.target_dps) > abs(motor.speed_dps)
         slowest_dps2 = self._ramp_dps2("ramp_up_sp" if faster else "ramp_down_sp")
@@ -456,7 +462,7 @@ class BrowserTacho(Tacho):
 
 
 class ServoTacho(Tacho):
-    """One motor that the Pybricks firmware moves: the driver shows it, and takes no commands."""
+    """One motor that the Pybricks firmware moves: its driver only shows the state, and takes no commands."""
 
     _motor: ServoMotor
 

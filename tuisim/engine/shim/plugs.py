@@ -46,13 +46,13 @@ _PORT = re.compile(r"(?:ev3-ports:)?(out[A-D]|in[1-4])")
 
 
 def find_port(address: object) -> str:
-    """Return the port, such as `in1`, that a program gives; empty for none."""
+    """Return the port, such as `in1`, of an address in a program; empty if it names none."""
     match = _PORT.fullmatch(address) if isinstance(address, str) else None
     return match[1] if match else ""
 
 
 class Plugs:
-    """What is plugged into the brick of one run.
+    """Plugs missing parts into the brick of a run while its program looks for them.
 
     Args:
         built: The brick.
@@ -67,11 +67,11 @@ class Plugs:
         """The ports of motors that are asked for as wheels, when it is too late for that."""
 
     def add_device(self, class_name: str, wanted: Mapping[str, Any]) -> bool:
-        """Plug in what a library for device files looks for, and return whether it is there now.
+        """Plug in the device that a library searches for; return whether it is there now.
 
         Args:
             class_name: Kernel name of the class that was searched.
-            wanted: What the device was to match, by attribute.
+            wanted: The values that the device must have, by attribute.
         """
         if wanted.keys() - {"driver_name", "address"} or class_name not in (
             MOTOR_CLASS,
@@ -81,7 +81,7 @@ class Plugs:
         drivers = wanted.get("driver_name", [])
         names = [drivers] if isinstance(drivers, str) else drivers
         known = [PART_OF_DRIVER[name] for name in names if name in PART_OF_DRIVER]
-        # A motor of any kind is a large one.
+        # A program that names no kind of motor gets a large one.
         known += [PART_OF_KIND["large"]] if class_name == MOTOR_CLASS and not names else []
         if not known:
             return False
@@ -90,25 +90,25 @@ class Plugs:
         return bool(port) and self.add(known[0], port)
 
     def _choose_port(self, part: str) -> str:
-        """Return a port for a part of which the program does not say it; empty if all are used."""
+        """Return a port for a part if the program names none: a free one or one to give way; empty for neither."""
         ports = OUTPUT_PORTS if part in MOTOR_PARTS else INPUT_PORTS
         free = [port for port in ports if not self.find_path(port)]
         return next((port for port in (*free, *ports) if self._can_give_way(port)), "")
 
     def take_hold(self, path: str) -> None:
-        """Note that the program uses the device with a path."""
+        """Note that the program uses the device at a path, so that no other takes its place."""
         if (device := self._built.files.by_path.get(path)) is not None:
             device.is_opened = True
 
     def refuse_value(self, path: str, number: int) -> NotSimulated | None:
-        """Return the error about a value that the sensor with a path has in no mode; None if it has."""
+        """Return the error for reading a value of the sensor at a path that the sensor has in no mode, else None."""
         found = (
             sensor for port, sensor in self._built.sensors.items() if self.find_path(port) == path
         )
         return next((sensor.refuse_value(number) for sensor in found), None)
 
     def find_path(self, port: str) -> str:
-        """Return the path of what is on a port; empty for nothing."""
+        """Return the path of the device on a port; empty if there is none."""
         return self._built.paths.get(port, "")
 
     def add(self, part: str, port: str) -> bool:
@@ -125,19 +125,19 @@ class Plugs:
         if port in wheels and self._session.sim.has_driven:
             return False
         if part == "GyroSensor" and robot.gyro and not self._can_give_way(robot.gyro.port):
-            # A robot has one.
+            # A robot has at most one gyro, and the program uses that.
             return False
         if self._session.is_tried(self.missing):
             return False
         parts = [self._session.describe_part(port, part, LATE if port in self._late else "")]
         if port in wheels:
-            # Without this wheel, the other motor is one like any other.
+            # The robot loses this wheel: the motor of the other one stays, as a motor that is no wheel.
             parts += self._keep_wheels((port,))
         self._plug(parts)
         return True
 
     def make_wheels(self, left: str, right: str, part: str) -> None:
-        """Plug in two motors as the wheels, unless a wheel has turned: then they are plugged in as other motors.
+        """Plug in two motors as the wheels; if a wheel has turned already, as motors that are no wheels.
 
         Args:
             left, right: Their ports.
@@ -163,7 +163,7 @@ class Plugs:
             self._late |= {*ports}
 
     def _can_change_wheels(self, ports: Sequence[str]) -> bool:
-        """Return whether motors can become the wheels: nothing that would get another number has turned."""
+        """Return whether motors on ports can become the wheels: none that would get another number has turned."""
         sim = self._session.sim
         others = [motor.port for motor in sim.spec.robot.extra_motors]
         first = min((others.index(port) for port in ports if port in others), default=len(others))
@@ -186,7 +186,11 @@ class Plugs:
         return port not in shown and not self._built.files.by_path[path].is_opened
 
     def _keep_wheels(self, without: Sequence[str]) -> list[PluggedPart]:
-        """Return the wheels' motors that the program uses, except on some ports, as parts that are no wheels'."""
+        """Return the wheels' motors that the program uses, but for some ports, as parts that are no wheels.
+
+        Args:
+            without: These ports.
+        """
         return [
             self._session.describe_part(motor.port, PART_OF_KIND[motor.kind])
             for motor in self._session.sim.spec.robot.wheel_motors
@@ -194,7 +198,7 @@ class Plugs:
         ]
 
     def _plug(self, parts: Sequence[PluggedPart]) -> None:
-        """Change the robot, and what is connected to the brick."""
+        """Change the parts of the robot, and connect and disconnect devices of the brick accordingly."""
         built = self._built
         sim = self._session.sim
         before = sim.spec.robot

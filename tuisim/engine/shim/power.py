@@ -56,7 +56,7 @@ class Battery:
         )
 
     def current_a(self) -> float:
-        """Return the present current."""
+        """Return the present current in amperes."""
         return BRICK_A + sum(map(self._motor_a, self._session.sim.motors))
 
     def _motor_a(self, motor: Motor) -> float:
@@ -70,7 +70,7 @@ class Battery:
         return RUNNING_A + SPEED_A * abs(speed_dps) / self._max_dps
 
     def voltage_v(self) -> float:
-        """Return the present voltage."""
+        """Return the present voltage in volts."""
         used = self._charge_used_as() / S_PER_H / CAPACITY_AH
         full_v = self._full_v
         open_v = full_v - max(full_v - EMPTY_V, 0.0) * used

@@ -134,7 +134,7 @@ class LegoSensor:
         return chosen.measure()
 
     def measure_switched(self, mode: str) -> tuple[int, ...]:
-        """Take the first measurement after a change of mode, which has charged its cost."""
+        """Return the first measurement after a change of mode, free of charge: the change has charged its time."""
         session = self._session
         if not session.free:
             session.note_reading(self._codes[mode])
@@ -154,7 +154,10 @@ class LegoSensor:
         return self._values[n]
 
     def refuse_value(self, number: int) -> NotSimulated | None:
-        """Return the error about a value that it has in no mode: the program is for another sensor. None if it has."""
+        """Return the error for reading `value{number}` if the sensor has that value in no mode, else None.
+
+        A program that reads it is for a sensor that is not simulated.
+        """
         count = max(len(mode.measure()) for mode in self.modes.values())
         if number < count:
             return None
@@ -211,7 +214,7 @@ class ColorDevice(LegoSensor):
         }
 
     def channels(self) -> tuple[int, int, int]:
-        """Return the channels as integers, free of charge; measured once per tick."""
+        """Return red, green and blue as integers, free of charge; they are measured once per tick."""
         sim = self._session.sim
         if sim.tick != self._seen_tick or sim.actions != self._seen_actions:
             self._seen_tick, self._seen_actions = sim.tick, sim.actions
@@ -238,7 +241,7 @@ class ColorDevice(LegoSensor):
         )
 
     def read(self, mode: str) -> tuple[int, int, int]:
-        """Switch to a mode and return the channels as integers. Charges the cost of a reading."""
+        """Switch to a mode and return red, green and blue as integers. Charges the cost of a reading."""
         self.set_mode(mode)
         session = self._session
         if not session.free:
@@ -246,7 +249,7 @@ class ColorDevice(LegoSensor):
         return self.channels()
 
     def switch(self, mode: str) -> None:
-        """Switch to a mode. Its first message still says what it measured last, before it was left."""
+        """Switch to a mode. Its first message still has the values from when the sensor last left this mode."""
         if self._stale_ns and not self._session.free:
             self._left_values[self.mode] = self.modes[self.mode].measure()
             self._old_until_ns = self._session.now + self._stale_ns
@@ -259,7 +262,10 @@ def ultrasonic_sensor(
 ) -> LegoSensor:
     """Return an ultrasonic sensor.
 
-    It hears those of the robot's sensors that ping; they include this one, and more may be added later.
+    Args:
+        session: The run.
+        spec: The sensor.
+        others: All sensors of the robot, this one included, whose pings it may hear; more may be added later.
     """
     sim = session.sim
     read = sim.spec.profile.ultrasonic_read_ns
@@ -297,7 +303,7 @@ def ultrasonic_sensor(
 
 
 class GyroDevice(LegoSensor):
-    """A gyro; a calibration resets it to 0, and a change of mode where the profile says so."""
+    """A gyro; a calibration resets its angle to 0; a change of mode does so if the profile says so."""
 
     def __init__(self, session: DeviceSession, spec: GyroSpec) -> None:
         sim = session.sim
@@ -323,7 +329,7 @@ class GyroDevice(LegoSensor):
         self.restarts = sim.spec.profile.gyro_restarts and not spec.keeps_angle
 
     def writers(self) -> dict[str, Writer]:
-        """Return also the attribute that resets the sensor."""
+        """Return the functions of every sensor, and one for the attribute that resets the angle."""
         return super().writers() | {"direct": lambda _text: self._reset()}
 
     def switch(self, mode: str) -> None:

@@ -43,23 +43,28 @@ class DeviceSession(Protocol):
 
         Args:
             duration_ns: How long.
-            code: What the program has read then, see `note_reading`; -1 for nothing.
+            code: What the program reads in this time, see `note_reading`; -1 for nothing.
         """
 
     def note_reading(self, code: int) -> None:
-        """Record that the program has read something, by one of `engine.runs.readings.READING_CODES`.
+        """Record that the program has read a value: `code` is one of `engine.runs.readings.READING_CODES`.
 
-        Not where calls are free. The caller is not the program.
+        Not to be called where calls are free: there the library reads, not the program.
         """
 
     def charge(self, cost_ns: int) -> None:
         """Let the time of a call pass, unless calls are free."""
 
     def command(self) -> None:
-        """Count a call without a cost, so that no loop of such calls runs forever without time passing."""
+        """Count a call without a cost, so that no loop of such calls can run forever without time passing."""
 
     def wait_for_motor(self, timeout_ns: int, again: bool = False) -> None:
-        """Block until a motor ends a move or the timeout is over; `again`: the caller then just waits again."""
+        """Block until a motor ends a move or the timeout is over.
+
+        Args:
+            timeout_ns: The timeout.
+            again: Whether the caller does nothing afterwards but wait again.
+        """
 
     def speak(self, text: str, wait_ns: int, tones: str = "", file: str = "") -> None:
         """Record a sound and block for `wait_ns`. The other arguments are as in `engine.protocol.Spoke`."""
@@ -77,7 +82,7 @@ class DeviceSession(Protocol):
         """Return a part that is plugged in now; arguments as of `PluggedPart`."""
 
     def is_tried(self, error: type[Exception]) -> bool:
-        """Return whether the program would catch an error that is raised here, and so just tries what there is."""
+        """Return whether the program would catch an error that is raised now: then it only tries what there is."""
 
     def spawn_daemon(self, work: Callable[[], None]) -> None:
         """Run `work` in the background while the program continues."""

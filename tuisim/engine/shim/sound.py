@@ -25,7 +25,7 @@ _TERMINATED = -15
 
 
 class PlayedSound:
-    """Represents the process that plays a sound while the program continues."""
+    """Stands for the process that plays a sound while the program continues."""
 
     stdin = stdout = stderr = None
     pid = NO_PID
@@ -120,7 +120,7 @@ class Mixer:
 
 
 class Loudspeaker:
-    """Passes sounds to the session."""
+    """Passes sounds to the session, which records them."""
 
     def __init__(self, session: DeviceSession) -> None:
         self._session = session
@@ -163,7 +163,7 @@ def _patch_playing(session: DeviceSession, sound: Any, speaker: Loudspeaker) -> 
         if play_type not in sound.Sound.PLAY_TYPES:
             give_command(self, command, play_type)
         if not fixes_library:
-            # The library splits a command at each | before it handles quotes.
+            # The library splits a command at each |, also inside quotes: `shlex` then raises its error.
             for part in command.split("|"):
                 shlex.split(part)
         heard = heard_of(command)
@@ -183,7 +183,7 @@ def _patch_playing(session: DeviceSession, sound: Any, speaker: Loudspeaker) -> 
 
 
 def _patch_songs(sound_class: Any, speaker: Loudspeaker) -> None:
-    """Play a song as one sound; the library itself still parses its notes."""
+    """Let the library play a song as one sound; it still parses the notes itself."""
     read_song = sound_class.play_song
 
     @wraps(read_song)
@@ -197,7 +197,7 @@ def _patch_songs(sound_class: Any, speaker: Loudspeaker) -> None:
             tones = speaker.song
             speaker.song = None
             if tones:
-                # Also if a later note is invalid: those before it were played.
+                # Played also if a later note is invalid: the library plays the notes before it.
                 heard = song_of(tones)
                 speaker.play(heard, heard.length_ns)
 
@@ -205,7 +205,7 @@ def _patch_songs(sound_class: Any, speaker: Loudspeaker) -> None:
 
 
 def _mend(sound_class: Any, mixer: Mixer) -> None:
-    """Fix what course programs need: the volume can be read, and any text can be spoken."""
+    """Fix two faults of the library for the programs of courses: the volume can be read, and any text can be spoken."""
     say = sound_class.speak
 
     @wraps(sound_class.get_volume)

@@ -49,7 +49,7 @@ class Tone:
 
 @dataclass(frozen=True, slots=True)
 class Heard:
-    """One sound."""
+    """One sound as it is heard."""
 
     text: str
     """Description; in brackets unless it is speech."""
@@ -72,7 +72,7 @@ class Heard:
 
 
 def heard_of(command: str) -> Heard:
-    """Return the sound of a command.
+    """Return the sound of a shell command: `espeak`, `aplay`, or else `beep`.
 
     Raises:
         ValueError: a quote in it is not closed.
@@ -182,7 +182,7 @@ def file_heard(path: str, folder: str = "") -> Heard:
         with wave.open(place, "rb") as file:
             seconds = file.getnframes() / file.getframerate()
     except (wave.Error, EOFError, OSError, ZeroDivisionError) as error:
-        # As above: the error message of the real player is not visible.
+        # No error on a brick either: nobody sees the message of the real player.
         return Heard(
             f"[cannot play {path}: {str(error) or 'it is cut off'}]",
             0,
@@ -210,7 +210,7 @@ def _speech(text: str, words: list[str]) -> Heard:
     try:
         options = dict(getopt.gnu_getopt(words, "a:s:v:p:g:k:l:b:f:w:z", ["stdout"])[0])
     except getopt.GetoptError:
-        # The options are unknown then, but the text is spoken.
+        # Without its options, the text is spoken all the same.
         options = {}
     return speech_heard(text, options.get("-s", ""))
 

@@ -26,7 +26,7 @@ def round_half_up(number: float) -> int:
 
 
 def speak_as_browser(session: DeviceSession, motor: Any, brick: DeviceFiles) -> None:
-    """Patch `ev3dev2.motor` after its import."""
+    """Patch `ev3dev2.motor` after its import so that it works like the library of the browser simulator."""
     _patch_properties(motor.Motor, brick)
     motor.Motor.wait = _wait(session, motor.__name__)
     _patch_moves(motor)
@@ -36,7 +36,7 @@ def speak_as_browser(session: DeviceSession, motor: Any, brick: DeviceFiles) -> 
 
     def __init__(self: Any, *args: Any, **named: Any) -> None:  # noqa: N807
         make(self, *args, **named)
-        # As there: the integer quotient has no fraction.
+        # As in the browser simulator: an integer quotient, without a fraction.
         self.max_rps = float(self.max_speed // self.count_per_rot)
         self.max_rpm, self.max_dps = self.max_rps * 60, self.max_rps * 360
         self.max_dpm = self.max_rpm * 360
@@ -103,10 +103,10 @@ def _patch_moves(motor: Any) -> None:
     def on_for_degrees(
         self: Any, speed: Any, degrees: float, brake: bool = True, block: bool = True
     ) -> None:
-        """Rotate the motor at `speed` for `degrees`."""
+        """Rotate the motor at `speed` by `degrees`."""
         native = self._speed_native_units(speed)
         if isinstance(speed, motor.SpeedValue):
-            # Rounded including its sign.
+            # Halves are rounded up before the sign is removed, as in the browser simulator.
             native = round_half_up(native)
         self.position_sp = round_half_up(-degrees if native < 0 else degrees)
         self.speed_sp = round_half_up(abs(native))
@@ -115,7 +115,7 @@ def _patch_moves(motor: Any) -> None:
     def on_for_rotations(
         self: Any, speed: Any, rotations: float, brake: bool = True, block: bool = True
     ) -> None:
-        """Rotate the motor at `speed` for `rotations`."""
+        """Rotate the motor at `speed` by `rotations`."""
         self.on_for_degrees(speed, rotations * 360, brake, block)
 
     def on_for_seconds(
@@ -154,7 +154,7 @@ def _block(motor: Any, one: Any) -> None:
 
 def _patch_sets(motor: Any) -> None:
     def __init__(self: Any, motor_specs: Mapping[str, Any], desc: str | None = None) -> None:  # noqa: N807
-        # In the given order, which is the order of waiting.
+        # The order of the motors is the order in which their ends are waited for.
         self.motors = OrderedDict(
             (port, motor_class(port)) for port, motor_class in motor_specs.items()
         )
@@ -187,7 +187,7 @@ def _patch_pairs(motor: Any) -> None:
         brake: bool = True,
         block: bool = True,
     ) -> None:
-        """Rotate the motors for `degrees`; the slower one turns proportionally less."""
+        """Rotate the faster motor by `degrees`; the slower one turns proportionally less."""
         speeds = [
             round_half_up(speed)
             for speed in self._unpack_speeds_to_native_units(left_speed, right_speed)

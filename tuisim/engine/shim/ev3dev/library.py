@@ -23,14 +23,14 @@ from tuisim.engine.shim.waits import Wait, waits_for
 
 
 class Patience:
-    """What the library waits for, which its call of `poll` alone does not show."""
+    """Remembers what the library waits for when it calls `poll`, as the call itself does not show it."""
 
     def __init__(self) -> None:
         self.until_motors_stop = 0
         """Above 0 while it polls only to check again whether a motor moves."""
 
     def patient(self, function: Callable[..., bool]) -> Callable[..., bool]:
-        """Wrap `wait_until_not_moving` so that polls inside it are known to wait for nothing else."""
+        """Return `wait_until_not_moving` with a note for its polls that it waits only for motors to stop."""
 
         @wraps(function)
         def wait_until_not_moving(motor: Any, timeout: float | None = None) -> bool:
@@ -188,7 +188,7 @@ def _patch_device(device_class: Any, brick: DeviceFiles) -> None:
 
 
 def _charge_memory(device_class: Any, session: DeviceSession) -> None:
-    """Let what the library remembers of a device cost the time of its own code, where that is simulated."""
+    """Charge the time of the library's own code for attributes that it has stored, if the profile has such a time."""
     cost_ns = session.sim.spec.profile.cached_read_ns
     if not cost_ns:
         return
@@ -206,7 +206,7 @@ def _charge_memory(device_class: Any, session: DeviceSession) -> None:
 
 
 def _set_directly(motor_class: Any, brick: DeviceFiles) -> None:
-    """Shorten the path of the two attributes that a control loop sets in every iteration."""
+    """Replace the setters of speed and command, which control loops call most, by shorter ones."""
     devices = brick.by_path
 
     def set_speed(self: Any, value: Any) -> None:
@@ -247,7 +247,7 @@ def patch_motor_module(
 
 
 def _patch_tank(motor: Any, plugs: Plugs) -> None:
-    """Let the motors of a tank become the robot's wheels if they have to be plugged in."""
+    """Let the motors of a `MoveTank` become the robot's wheels if they have to be plugged in."""
     make = motor.MoveTank.__init__
     signature = inspect.signature(make)
 
@@ -266,7 +266,7 @@ def _patch_tank(motor: Any, plugs: Plugs) -> None:
 
 
 def refuse_values(sensor: Any, plugs: Plugs) -> None:
-    """Let a class of sensors refuse by name a value that only a sensor has which is not simulated."""
+    """Let `value` of a class of sensors raise NotSimulated for a number that the sensor has in no mode."""
     read = sensor.value
 
     @wraps(read)
@@ -284,7 +284,7 @@ def refuse_values(sensor: Any, plugs: Plugs) -> None:
 def patch_sensor_module(
     session: DeviceSession, module: types.ModuleType, brick: DeviceFiles, plugs: Plugs
 ) -> None:
-    """Patch `ev3dev2.sensor` after its import: reading or setting the mode costs nothing."""
+    """Patch `ev3dev2.sensor` after its import: its own checks of the mode cost nothing."""
     devices = brick.by_path
     sensor: Any = module
 

@@ -42,7 +42,7 @@ AROUND: Mapping[str, Callable[[], AbstractContextManager[None]]] = dict.fromkeys
 def finishers(
     session: DeviceSession, built: BuiltBrick, plugs: Plugs, terminal: Terminal, mixer: Mixer
 ) -> dict[str, Callable[[types.ModuleType], None]]:
-    """Return what to do with a module after its import, by name."""
+    """Return the functions to call on modules after their import, by the module's name."""
     brick = built.files
     colors = built.colors
     return {

@@ -24,7 +24,7 @@ INSTALL = "pip install 'tuisim[ev3dev]'"
 
 
 class MissingLibrary:
-    """Finds the library only to say how to get it; the last of the finders, so that it is not installed."""
+    """Says how to install `ev3dev` when a program imports it; the last finder, so an installed one comes first."""
 
     def find_spec(
         self,
@@ -32,7 +32,11 @@ class MissingLibrary:
         path: Sequence[str] | None = None,
         target: types.ModuleType | None = None,
     ) -> importlib.machinery.ModuleSpec | None:
-        """Raise for the library; None for other modules."""
+        """Return None for other modules than the library.
+
+        Raises:
+            ModuleNotFoundError: it is the library.
+        """
         if fullname == NAME:
             raise ModuleNotFoundError(f"No module named {NAME!r}: {INSTALL} installs it", name=NAME)
         return None
@@ -40,13 +44,13 @@ class MissingLibrary:
 
 @contextmanager
 def surroundings() -> Iterator[None]:
-    """While its modules are imported: what Python and its packages have changed since the library was written."""
+    """Give the library, while its modules are imported, what later versions of Python and setuptools no longer have."""
     missing = "pkg_resources" not in sys.modules
     if missing:
         sys.modules["pkg_resources"] = _resources()
     try:
         with warnings.catch_warnings():
-            # Of patterns that are no raw strings.
+            # Its patterns are no raw strings, of which later versions of Python warn.
             warnings.simplefilter("ignore")
             yield
     finally:
@@ -55,7 +59,7 @@ def surroundings() -> Iterator[None]:
 
 
 def _resources() -> types.ModuleType:
-    """Return what the library uses of `pkg_resources`, which later versions of setuptools do not have."""
+    """Return a module with what the library uses of `pkg_resources`, which later versions of setuptools lack."""
     module = types.ModuleType("pkg_resources")
 
     def folder(package: str) -> str:
@@ -71,12 +75,12 @@ def _resources() -> types.ModuleType:
 def finish_core(
     session: DeviceSession, module: types.ModuleType, plugs: Plugs, hint: Callable[[str], str]
 ) -> None:
-    """Patch `ev3dev.core` after its import: the screen's font, and what it says about a missing device.
+    """Patch `ev3dev.core` after its import: the screen's font, duty cycles, and errors about missing devices.
 
     Args:
         session: The run.
         module: The module.
-        plugs: Plugs in what is missing.
+        plugs: Plugs in missing devices.
         hint: Returns what to add to the error about a missing device of a class.
     """
     core: Any = module
@@ -113,7 +117,7 @@ def finish_core(
 
 
 def _look_up(look_up: Callable[..., None], plugs: Plugs) -> Callable[..., None]:
-    """Return the library's search for a device, which plugs in what is missing."""
+    """Return the library's constructor of a device, changed so that it plugs in a missing one."""
 
     @wraps(look_up)
     def __init__(self: Any, class_name: str, *args: Any, **kwargs: Any) -> None:  # noqa: N807

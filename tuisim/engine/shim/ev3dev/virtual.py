@@ -17,7 +17,7 @@ _MORE_PORTS = range(5, 13)
 
 
 class _Unsimulated:
-    """A part of Gears that is not simulated: it can be made, as in each program of Gears, but not used."""
+    """A part of the simulator Gears that is not simulated: programs can create it, as they all do, but not use it."""
 
     def __init__(self, *_given: object, **_named: object) -> None: ...
 
@@ -32,7 +32,7 @@ class _Unsimulated:
 
 
 def virtual_module(session: DeviceSession) -> types.ModuleType:
-    """Return the module."""
+    """Return the module of Gears with a pen and the true place of the robot."""
     module = types.ModuleType(
         NAME, "Parts of the simulator Gears: a pen, and the true place of the robot."
     )
@@ -47,7 +47,7 @@ def virtual_module(session: DeviceSession) -> types.ModuleType:
 
         @property
         def position(self) -> list[float]:
-            """x, y and altitude."""
+            """x, y and altitude in cm."""
             session.charge(cost_ns)
             return [sim.pose.x_mm / 10, sim.pose.y_mm / 10, 0.0]
 

@@ -54,7 +54,7 @@ NAMES: Mapping[str, str] = {
 
 
 def numbered(names: str) -> Iterator[tuple[str, int]]:
-    """Yield names with their numbers."""
+    """Yield names with their numbers: `NAME=5` gives its own, other names count on from the one before."""
     number = -1
     for word in names.split():
         name, _, given = word.partition("=")
@@ -63,7 +63,7 @@ def numbered(names: str) -> Iterator[tuple[str, int]]:
 
 
 def codes_module(name: str) -> types.ModuleType:
-    """Return the module with a number by each name, and the names by number in a table for each group."""
+    """Return the module that has the number of each name, and for each group a table of names by number."""
     module = types.ModuleType(name, "Types and codes of input events.")
     codes: dict[str, int] = {}
     tables: dict[str, dict[int, str | list[str]]] = {}

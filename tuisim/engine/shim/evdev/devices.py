@@ -37,7 +37,7 @@ ONLY_BUTTONS = (
 
 @dataclass(frozen=True, slots=True)
 class SynEvent:
-    """An event that separates others; its subclasses are those of keys and axes, as `categorize` returns them."""
+    """An event that separates others; base of the classes of events that `categorize` returns."""
 
     event: InputEvent
 
@@ -82,7 +82,7 @@ _KINDS = {
 
 
 def categorize(event: InputEvent) -> SynEvent | InputEvent:
-    """Return an event of the class for its type; itself if there is none."""
+    """Return an event as an object of the class for its type; itself if its type has no class."""
     kind = _KINDS.get(event.type)
     return event if kind is None else kind(event)
 
@@ -109,7 +109,7 @@ class InputDevice:
         self.version = 65537
 
     def capabilities(self, verbose: bool = False, absinfo: bool = True) -> dict[Any, list[Any]]:
-        """Return which codes of which types there are."""
+        """Return the codes that the device can send, by the type of event."""
         codes = sorted(KEY_CODES.values())
         if verbose:
             return {("EV_KEY", EV_KEY): [(_CODES.KEY[code], code) for code in codes]}
@@ -120,7 +120,7 @@ class InputDevice:
         return [KEY_CODES[name] for name in read_pressed(self._session)]
 
     def _changes(self) -> list[InputEvent]:
-        """Return what has happened since the last call."""
+        """Return the events since the last call."""
         now = self._session.pressed
         before = self._seen
         self._seen = now
@@ -207,7 +207,7 @@ class UInput:
 
 
 class _Looked:
-    """Whether the program has asked for the input devices."""
+    """Remembers whether the program has asked for a list of input devices."""
 
     def __init__(self) -> None:
         self.for_devices = False
@@ -217,7 +217,7 @@ _looked = _Looked()
 
 
 def point_at_gamepads(error: BaseException) -> None:
-    """Add a note to the error of a program that has looked for a gamepad and goes on as if it had one."""
+    """Note on an error that only the buttons exist, if the program has listed devices, perhaps for a gamepad."""
     if _looked.for_devices and isinstance(
         error, NameError | LookupError | AttributeError | StopIteration | TypeError
     ):
@@ -235,7 +235,7 @@ def evdev_modules(session: DeviceSession) -> dict[str, types.ModuleType]:
 
     def list_devices(input_device_dir: str = "/dev/input") -> list[str]:
         """Return the paths of the input devices."""
-        # The library looks for the buttons by it.
+        # A call from `ev3dev2.button` looks for the buttons, not for a gamepad.
         if sys._getframe(1).f_globals.get("__name__") != "ev3dev2.button":
             _looked.for_devices = True
             session.note_reading(READING_CODES[GAMEPAD_PORT, "list"])

@@ -26,7 +26,7 @@ ALWAYS_READY = select.POLLIN | select.POLLOUT
 
 @dataclass(slots=True)
 class OpenFile:
-    """One opened file of the tree."""
+    """One device file that the program has opened."""
 
     path: str
     file: DeviceFile
@@ -43,7 +43,7 @@ class OpenFile:
 
 @dataclass(frozen=True, slots=True)
 class Folder:
-    """A folder."""
+    """A folder of device files."""
 
     path: str
     names: tuple[str, ...]
@@ -64,7 +64,7 @@ class DeviceFile:
         self.size = size
 
     def begin(self, opened: OpenFile) -> None:
-        """Prepare a file that was just opened."""
+        """Prepare for reading and writing; called when the program opens the file."""
 
     def read(self, opened: OpenFile, size: int) -> bytes:
         """Read up to `size` bytes, all for a negative size.
@@ -75,7 +75,7 @@ class DeviceFile:
         raise OSError(errno.EINVAL, os.strerror(errno.EINVAL))
 
     def write(self, opened: OpenFile, data: bytes) -> int:
-        """Write; return the number of bytes.
+        """Write bytes to the device; return their number.
 
         Raises:
             OSError: the driver's error.
@@ -83,11 +83,11 @@ class DeviceFile:
         raise OSError(errno.EINVAL, os.strerror(errno.EINVAL))
 
     def ready(self, opened: OpenFile) -> int:
-        """Return what `poll` reports."""
+        """Return the flags of events that `poll` reports."""
         return ALWAYS_READY
 
     def ioctl(self, request: int) -> bytes:
-        """Return what a request reads into its buffer.
+        """Return the bytes that an `ioctl` request puts into its buffer.
 
         Raises:
             OSError: the driver's error.
@@ -99,7 +99,7 @@ class DeviceFile:
         """Return the memory of the device as `mmap.mmap` does.
 
         Raises:
-            OSError: it has none.
+            OSError: the device has no memory to map.
         """
         raise OSError(errno.ENODEV, os.strerror(errno.ENODEV))
 
@@ -107,8 +107,8 @@ class DeviceFile:
 class AttributeFile(DeviceFile):
     """An attribute of a device.
 
-    A read at the start of the file takes its value, and costs what the attribute costs; reads after it hand out
-    the rest of the same text.
+    A read at the start of the file reads the value and charges its cost; further reads return the rest of the same
+    text.
 
     Args:
         path: Its path.
@@ -125,7 +125,7 @@ class AttributeFile(DeviceFile):
         self._name = name
 
     def begin(self, opened: OpenFile) -> None:
-        """Take hold of the device."""
+        """Note that the program uses the device, unless the attribute only identifies it."""
         if self._name not in IDENTITY:
             self._device.is_opened = True
 
@@ -155,13 +155,16 @@ class AttributeFile(DeviceFile):
         return len(data)
 
     def ready(self, opened: OpenFile) -> int:
-        """Return POLLPRI and POLLERR, too, if the attribute tells of changes and has changed since it was read."""
+        """Return the flags that `poll` reports, with POLLPRI and POLLERR if the attribute has changed since a read.
+
+        Only attributes in `notifying` of their device report changes.
+        """
         if self._name in self._device.notifying and opened.seen != self._state():
             return ALWAYS_READY | select.POLLPRI | select.POLLERR
         return ALWAYS_READY
 
     def _state(self) -> object:
-        """Return what differs after a change; None if the attribute does not tell of changes."""
+        """Return a value that differs after a change; None if the attribute does not report changes."""
         look = self._device.notifying.get(self._name)
         return None if look is None else (self._device.commands, look())
 
@@ -181,12 +184,12 @@ class TextFile(DeviceFile):
 
 
 def refuse_ioctl(path: str, request: int, hint: str) -> NotSimulated:
-    """Return the error about a request of a device that is not simulated."""
+    """Return the error for an `ioctl` request that is not simulated."""
     return NotSimulated(f"ioctl {request:#x} of {path} is not part of the simulated brick", hint)
 
 
 def _as_the_kernel(error: OSError, path: str) -> OSError:
-    """Return a driver's error with the text that the kernel gives, and what the driver knows as a note."""
+    """Return a driver's error with the kernel's text for its number; what else the driver says becomes a note."""
     number = error.errno or errno.EIO
     told = OSError(number, os.strerror(number))
     if len(error.args) > 1 and str(error.args[1]) not in path:

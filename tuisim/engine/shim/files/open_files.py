@@ -26,7 +26,7 @@ class OpenFiles:
         self.by_fd: dict[int, OpenFile] = {}
 
     def opened(self, file: Any) -> OpenFile | None:
-        """Return the opened device file behind a descriptor or a file object; None for any other."""
+        """Return the opened device file behind a descriptor or a file object; None if it is no device file."""
         if not self.by_fd:
             return None
         if not isinstance(file, int):
@@ -37,10 +37,15 @@ class OpenFiles:
         return self.by_fd.get(file)
 
     def open(self, path: str, entry: DeviceFile | Folder, flags: int) -> OpenFile:
-        """Open a file of the tree.
+        """Open a device file.
+
+        Args:
+            path: As the program names it.
+            entry: What is at the path.
+            flags: As of `os.open`.
 
         Raises:
-            OSError: it is a folder, or must not be opened like this.
+            OSError: it is a folder, or its permissions or the flags forbid it.
         """
         if isinstance(entry, Folder):
             raise _error(errno.EISDIR, path)
@@ -60,7 +65,7 @@ class OpenFiles:
         return opened
 
     def forget(self, fd: int) -> None:
-        """Forget a descriptor that is closed."""
+        """Forget a descriptor that the program has closed."""
         self.by_fd.pop(fd, None)
 
 
@@ -88,14 +93,14 @@ def seek(opened: OpenFile, position: int, whence: int) -> int:
 
 
 class DeviceIO(_real_file):
-    """An opened device file as `io.FileIO` has it.
+    """An opened device file as an `io.FileIO`.
 
     Args:
         files: The opened files.
-        opened: This one.
+        opened: This file.
         mode: As of `open`.
-        name: What it was opened by: a path or a descriptor.
-        closefd: Whether closing this closes the descriptor.
+        name: The path or descriptor with which it was opened.
+        closefd: Whether closing this object closes the descriptor.
     """
 
     def __init__(
@@ -167,8 +172,8 @@ class DeviceIO(_real_file):
 def _in_turn(kind: Any) -> Any:
     """Return a buffered class whose calls take turns in simulated time.
 
-    Its own lock belongs to no thread of the program: a thread that waits for it, while the one inside lets time pass
-    in the driver, would wait for ever.
+    The class's own lock knows nothing of the program's simulated threads: a thread that waits for it would wait for
+    ever if the thread inside lets time pass in the driver.
     """
 
     def method(name: str) -> Any:
@@ -217,7 +222,7 @@ def file_object(
     errors: str | None,
     newline: str | None,
 ) -> Any:
-    """Return what `open` returns for a device file: it decodes and buffers as for any file."""
+    """Return the object that `open` returns for a device file; it decodes and buffers as for any file."""
     if "b" in mode and buffering == 0:
         return raw
     if buffering == 0:

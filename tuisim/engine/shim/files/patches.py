@@ -67,11 +67,11 @@ class DeviceEntry:
         return isinstance(self._found, Folder)
 
     def is_file(self, *, follow_symlinks: bool = True) -> bool:
-        """Return whether it is a file with text."""
+        """Return whether it is a regular file."""
         return isinstance(self._found, DeviceFile) and stat.S_ISREG(self._found.mode)
 
     def is_symlink(self) -> bool:
-        """Return False: what are links on a brick are folders here."""
+        """Return False: the links of a brick are folders here."""
         return False
 
     def is_junction(self) -> bool:
@@ -79,7 +79,7 @@ class DeviceEntry:
         return False
 
     def stat(self, *, follow_symlinks: bool = True) -> os.stat_result:
-        """Return what `os.stat` does."""
+        """Return the result of `os.stat`."""
         assert self._found is not None
         return _status(self._found)
 
@@ -117,11 +117,11 @@ def _inode(entry: Folder | DeviceFile) -> int:
 
 
 class FilePatches:
-    """The replacements.
+    """Replaces the functions of Python that open, read and list files, so that they also work on device files.
 
     Args:
         tree: The device files.
-        files: Those that the program has open.
+        files: The device files that the program has open.
         replace: Replaces a function of a module.
     """
 
@@ -131,7 +131,7 @@ class FilePatches:
         self._replace = replace
 
     def apply(self) -> None:
-        """Replace everything."""
+        """Replace all of the functions."""
         self._patch_open()
         self._patch_descriptors()
         self._patch_positions()
@@ -162,7 +162,7 @@ class FilePatches:
         ) -> Any:
             if file is _MISSING:
                 nothing: tuple[Any, ...] = ()
-                # Raises its own error.
+                # The real function raises the error for a missing argument.
                 return real_open(*nothing)
             if (
                 (file.__class__ is str and not file.startswith(MAYBE_OURS))
@@ -202,7 +202,7 @@ class FilePatches:
         return self._raw(file, mode, closefd)
 
     def _raw(self, file: Any, mode: str, closefd: bool) -> DeviceIO | None:
-        """Return the opened device file; None if it is another file, or the real function has to complain."""
+        """Return the opened device file; None if it is no device file, or Python's own function has to refuse it."""
         kinds = [kind for kind in mode if kind in _FLAGS]
         if len(kinds) != 1 or set(mode) - {*_FLAGS, "b", "+"}:
             return None
@@ -288,7 +288,7 @@ class FilePatches:
         replace(os, "ftruncate", ftruncate)
 
     def _refuse_others(self) -> None:
-        """Refuse the calls that would reach the descriptors of device files past all this."""
+        """Refuse the functions of `os` that are not replaced if they get the descriptor of a device file."""
         by_fd = self._files.by_fd
 
         def guarded(name: str, real: Callable[..., Any]) -> Callable[..., Any]:
@@ -340,7 +340,7 @@ class FilePatches:
             if entry is None:
                 return real_access(path, mode, **named)
             allowed = FOLDER_MODE & ~stat.S_IWUSR if isinstance(entry, Folder) else entry.mode
-            # As one of the group: the permissions of group and owner.
+            # A program has the permissions of the owner and of the group.
             return mode & ~(allowed >> 3 | allowed >> 6) & 0o7 == 0
 
         def chdir(path: Any) -> None:
@@ -377,7 +377,7 @@ class FilePatches:
         self._replace(os, "scandir", scandir)
 
     def finish_glob(self, module: Any) -> None:
-        """Patch `glob` after its import: in later versions of Python its classes hold functions of `os`."""
+        """Patch `glob` after its import: in later versions of Python its classes keep the original `os.scandir`."""
         for held in list(vars(module).values()):
             if isinstance(held, type) and "scandir" in vars(held):
                 held.scandir = staticmethod(os.scandir)  # type: ignore[attr-defined]
@@ -408,7 +408,7 @@ class FilePatches:
 
 @contextmanager
 def _moved_to(opened: OpenFile, offset: int) -> Iterator[OpenFile]:
-    """Work at another position of a file, and leave its own as it was."""
+    """Set the position of a file in the block, and restore it afterwards."""
     before = opened.at
     opened.at = offset
     try:
@@ -418,7 +418,12 @@ def _moved_to(opened: OpenFile, offset: int) -> Iterator[OpenFile]:
 
 
 def _or_refuse(tree: DeviceTree, path: Any, flags: int) -> Folder | DeviceFile | None:
-    """Return what `tree.find` does; a file that would have to be made cannot be made in these folders."""
+    """Return the result of `tree.find`; refuse to create a file in a folder of the tree.
+
+    Raises:
+        FileNotFoundError: there is no such file.
+        PermissionError: there is no such file, and `flags` ask to create it.
+    """
     try:
         return tree.find(path)
     except FileNotFoundError as error:
@@ -431,7 +436,7 @@ def _or_refuse(tree: DeviceTree, path: Any, flags: int) -> Folder | DeviceFile |
 
 
 def _parent(tree: DeviceTree, path: Any) -> Folder | DeviceFile | None:
-    """Return the folder that a path would be in; None if that is missing."""
+    """Return the entry for the folder of a path; None if it is this computer's or missing."""
     try:
         return tree.find(os.path.dirname(os.path.normpath(os.fsdecode(path))))
     except FileNotFoundError:
@@ -449,7 +454,7 @@ def _names(tree: DeviceTree, path: Any) -> tuple[str, ...] | None:
 
 
 def _branching(real: type, choose: Callable[..., Any]) -> type:
-    """Return a class in place of one of Python's: a call gives what `choose` returns, if anything, else a real one.
+    """Return a class in place of one of Python's: a call returns what `choose` returns, or a real object for None.
 
     Programs can test for it and derive from it as from the real class.
     """
@@ -461,7 +466,7 @@ def _branching(real: type, choose: Callable[..., Any]) -> type:
             try:
                 found = choose(*given, **named)
             except TypeError:
-                # The real class complains about its arguments.
+                # Wrong arguments: the real class raises the error.
                 found = None
             return real(*given, **named) if found is None else found
 

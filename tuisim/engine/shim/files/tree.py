@@ -33,10 +33,10 @@ class DeviceTree:
         self._attributes: dict[str, AttributeFile] = {}
 
     def find(self, path: Any) -> Entry | None:
-        """Return what is at a path; None if the path is this computer's, or no path.
+        """Return the file or folder of the brick at a path; None if the path is of this computer, or is no path.
 
         Raises:
-            FileNotFoundError: it is the brick's, and nothing is there.
+            FileNotFoundError: the path is of the brick, and nothing is there.
         """
         text = path if isinstance(path, str) else _text_of(path)
         if text is None or not text.startswith(MAYBE_OURS):
@@ -80,7 +80,7 @@ class DeviceTree:
         return Folder(path, tuple(names)) if names or path in paths else None
 
     def _missing(self, path: str) -> FileNotFoundError:
-        """Return the error about a missing file, with what is beside it as a note."""
+        """Return the error for a missing file, with a note on which files are in its folder."""
         error = FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), path)
         folder = path
         while (found := self._folder(folder)) is None:
@@ -90,7 +90,7 @@ class DeviceTree:
 
 
 def _text_of(path: Any) -> str | None:
-    """Return a path of any form as text; None for a descriptor and what is no path."""
+    """Return a path in bytes or an object with a path as text; None for anything else, such as a descriptor."""
     if isinstance(path, bytes | os.PathLike):
         return os.fsdecode(path)
     return None

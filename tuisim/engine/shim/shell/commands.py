@@ -40,7 +40,7 @@ SHELL_HINT = "join programs by ; or &&, use open for files and subprocess.Popen 
 
 @dataclass(slots=True)
 class Call:
-    """One call of a program in a line."""
+    """One program with its arguments in a line of the shell."""
 
     words: list[str]
     """The program and its arguments."""
@@ -51,7 +51,7 @@ class Call:
 
     @property
     def name(self) -> str:
-        """The program, without its folder."""
+        """The name of the program, without its folder."""
         return os.path.basename(self.words[0])
 
 
@@ -62,14 +62,14 @@ def own_output(data: bytes) -> None:
 
 
 def own_errors(data: bytes) -> None:
-    """Write to the program's real standard error."""
+    """Write to the program's real standard error, even if the program has replaced the stream."""
     assert sys.__stderr__ is not None
     sys.__stderr__.write(data.decode("utf-8", "replace"))
 
 
 @dataclass(slots=True)
 class Streams:
-    """Standard streams of one process, and where it runs."""
+    """The standard streams of one process, and the folder in which it runs."""
 
     output: Sink = own_output
     errors: Sink = own_errors
@@ -80,15 +80,15 @@ class Streams:
 
 
 def refuse(what: str, hint: str) -> Exception:
-    """Return the error about something that is not simulated; Python's own modules take it for a missing program."""
+    """Return the error for a thing that is not simulated; Python's modules take it for a missing program."""
     return refused_as(OSError, f"{what} is not part of the simulated brick", hint)
 
 
 def parse_line(text: str) -> list[Call]:
-    """Return the calls of a shell line.
+    """Return the calls in a line of the shell.
 
     Raises:
-        NotSimulated: the brick's shell does not have a part of it.
+        NotSimulated: a part of the line is not simulated.
     """
     if odd := re.search(r"[$`\n]|\d>", text.strip()):
         raise refuse(f"{odd[0]!r} in a shell line", SHELL_HINT)
@@ -191,7 +191,7 @@ class Running:
             session.spawn_daemon(self._finish)
 
     def go_on(self) -> None:
-        """Run what is due."""
+        """Run the steps of the commands that are due at the present time."""
         while self.status is None and not self._busy and self._session.now >= self._due:
             self._busy = True
             try:
@@ -205,7 +205,7 @@ class Running:
                 self._busy = False
 
     def wait(self, limit_ns: int | None = None) -> bool:
-        """Block until the end or the limit; return whether they have ended."""
+        """Block until the commands have ended or the limit is over; return whether they have ended."""
         until = None if limit_ns is None else self._session.now + limit_ns
         self.go_on()
         while self.status is None:
@@ -218,7 +218,7 @@ class Running:
         return True
 
     def end(self, status: int) -> None:
-        """End the commands; a sound that has started plays to its end."""
+        """End the commands with an exit status; a sound that has started plays to its end."""
         if self.status is None:
             self.status = status
 

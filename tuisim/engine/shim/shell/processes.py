@@ -49,7 +49,7 @@ class OutPipe(io.RawIOBase):
         return True
 
     def readinto(self, buffer: Any) -> int:
-        """Read into a buffer; 0 bytes is the end."""
+        """Read into a buffer; return the number of bytes, 0 at the end."""
         self.process.wait()
         if self.process.streams.speech is not None:
             raise refuse("reading from espeak --stdout", "use it as the standard input of aplay")
@@ -59,7 +59,7 @@ class OutPipe(io.RawIOBase):
         return size
 
     def take_speech(self) -> Heard | None:
-        """Return the speech that is on its way to a player, once."""
+        """Return what `espeak --stdout` has written to this pipe, for a player; None the second time."""
         speech = self.process.streams.speech
         self.process.streams.speech = None
         return speech
@@ -68,7 +68,7 @@ class OutPipe(io.RawIOBase):
 class Process:
     """Replaces `subprocess.Popen`, with the same arguments and methods.
 
-    A subclass that is made for the run has the `system`.
+    The class of a run is a subclass, with `system` set.
     """
 
     system: System
@@ -128,7 +128,12 @@ class Process:
         system.processes[self.pid] = self
 
     def _open_output(self, target: Any, own: Sink) -> tuple[Sink, IO[Any] | None]:
-        """Return where output goes, and the pipe from which the program reads it, as bytes or as text."""
+        """Return a function that takes output, and the pipe from which the program reads that, if any.
+
+        Args:
+            target: As of `stdout` in `subprocess.Popen`.
+            own: Takes the output if the target is None.
+        """
         if target != self.system.module.PIPE:
             return _sink(target, own), None
         outlet = OutPipe(self)
@@ -268,7 +273,7 @@ def finish_asyncio(module: types.ModuleType) -> None:
 
 
 def _calls(args: Any, in_shell: bool) -> list[Call]:
-    """Return what a process runs."""
+    """Return the calls that the arguments of a process stand for: of a line if `in_shell`, else of one program."""
     words = [
         os.fsdecode(word)
         for word in ([args] if isinstance(args, str | bytes | os.PathLike) else args)
@@ -277,13 +282,18 @@ def _calls(args: Any, in_shell: bool) -> list[Call]:
 
 
 def _take_speech(source: Any) -> Heard | None:
-    """Return the speech that comes from the output of another process."""
+    """Return the speech in the output of another process that is used as input; None if there is none."""
     raw = getattr(getattr(source, "buffer", source), "raw", source)
     return raw.take_speech() if isinstance(raw, OutPipe) else None
 
 
 def _sink(target: Any, own: Sink) -> Sink:
-    """Return a function that writes to the target of an output stream."""
+    """Return a function that writes to the target of an output stream.
+
+    Args:
+        target: As of `stdout` in `subprocess.Popen`, but no pipe.
+        own: The function for None.
+    """
     if target is None:
         return own
     if isinstance(target, int):
@@ -292,7 +302,7 @@ def _sink(target: Any, own: Sink) -> Sink:
         target.flush()
         number = target.fileno()
         return lambda data: _write_all(number, data)
-    # The program's own streams have no descriptor here.
+    # The program's own streams are objects without a descriptor.
     return own if own is own_errors or getattr(target, "name", "") != "<stderr>" else own_errors
 
 

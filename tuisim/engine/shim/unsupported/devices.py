@@ -121,31 +121,40 @@ FOREIGN_MODES: Mapping[str, str] = {
 
 
 def of_driver(name: str) -> Hardware | None:
-    """Return the kind of a driver; None if it is simulated, which part of a name suffices for, as in the library."""
+    """Return the kind of hardware of a driver that is not simulated; None if it is simulated.
+
+    As in the library, part of the name of a simulated driver is enough.
+    """
     if any(name in simulated for simulated in SIMULATED):
         return None
     return next((kind for pattern, kind in DRIVERS.items() if fnmatchcase(name, pattern)), _OTHER)
 
 
 def refusal(where: str, kind: Hardware, name: str = "") -> NotSimulated:
-    """Return the error about the use of a kind; arguments as of `_told`."""
+    """Return the error for the use of hardware that is not simulated; arguments as of `_told`."""
     return NotSimulated(*_told(where, kind, name))
 
 
 def _told(where: str, kind: Hardware, name: str) -> tuple[str, str]:
-    """Return the message and the hint of the error about the use of a kind.
+    """Return message and hint of the error for the use of hardware that is not simulated.
 
     Args:
-        where: What the program used.
-        kind: What it asks for.
-        name: Its driver, address or mode, as the program wrote it.
+        where: The name, port or mode that the program used.
+        kind: The hardware.
+        name: Its driver, address or mode, as the program wrote it; empty for none.
     """
     called = f" ({shortened(name, 80)})" if name else ""
     return f"{where}: {kind.title}{called} is not simulated", kind.instead
 
 
 def foreign_mode(mode: str, port: str, plugged: str) -> NotSimulated | None:
-    """Return the error for a mode that the sensor on a port does not have; None if it is known from no other one."""
+    """Return the error for a mode of a sensor that is not simulated; None if the mode belongs to none.
+
+    Args:
+        mode: The mode, which the sensor on the port does not have.
+        port: The port.
+        plugged: The sensor on it.
+    """
     driver = FOREIGN_MODES.get(mode, "")
     kind = of_driver(driver)
     return (
@@ -156,13 +165,13 @@ def foreign_mode(mode: str, port: str, plugged: str) -> NotSimulated | None:
 
 
 def refused_device(device: Any, class_name: str, missing: type[Exception]) -> Exception | None:
-    """Return the error for a device that was looked for in vain; None if another robot could have it.
+    """Return the error for a device that was not found and is not simulated; None if another robot could have it.
 
     Args:
-        device: Object of the library; its `kwargs` say what it was to match.
+        device: Object of the library; its `kwargs` are the values that the device must have.
         class_name: Kernel name of the class that was searched.
-        missing: The library's error for a device that is not connected, which the error is, too: a program may try
-            what there is.
+        missing: The library's error for a device that is not connected. The returned error is one, too, as a program
+            may try which devices there are.
     """
     wanted: Mapping[str, object] = device.kwargs
     refusal = _refused(class_name, _texts(wanted.get("driver_name")), _texts(wanted.get("address")))
@@ -188,7 +197,7 @@ def _refused(
 
 
 def _texts(value: object) -> list[str]:
-    """Return the texts that an attribute may match; none of what is no text."""
+    """Return the texts in a value, which is one or a list of them; leave out anything else."""
     return [
         one
         for one in (value if isinstance(value, list | tuple) else [value])
@@ -197,7 +206,7 @@ def _texts(value: object) -> list[str]:
 
 
 def _named(kind: type) -> str:
-    """Return the library's name of a class: a program's own is derived from one of them."""
+    """Return the full name of a class of the library, or of that from which a program's class is derived."""
     for one in kind.__mro__:
         if one.__module__.partition(".")[0] in ("ev3dev", "ev3dev2"):
             return f"{one.__module__}.{one.__qualname__}"
@@ -205,7 +214,7 @@ def _named(kind: type) -> str:
 
 
 def other_sensors_note(device: Any, class_name: str) -> str:
-    """Return what to add to the error about a sensor of no particular kind that is not there; otherwise empty."""
+    """Return a note for the error about a missing sensor for which no driver was named; empty for other devices."""
     if class_name != "lego-sensor" or "driver_name" in device.kwargs:
         return ""
     return "If it is none of the sensors of ev3dev2.sensor.lego, it is not simulated."

@@ -24,7 +24,7 @@ from tuisim.engine.core.profile import Library
 
 @dataclass(frozen=True, slots=True)
 class Instead:
-    """Names in the library of a program, for what it can do instead."""
+    """What a library calls the parts that a program can use instead of hardware that is not simulated."""
 
     library: str
     sensors: str
@@ -59,7 +59,7 @@ _MICROPHONE = (
 
 @dataclass(frozen=True, slots=True)
 class Hardware:
-    """What no robot here can have: what a module is for, or a kind of device."""
+    """Hardware that no simulated robot has, such as Bluetooth, and what a program can use instead."""
 
     title: str
     instead: str
@@ -68,7 +68,7 @@ class Hardware:
     """What `from … import *` gives."""
 
     def told_to(self, library: Library) -> Hardware:
-        """Return the same with the names of a library."""
+        """Return this hardware with the names of a library in its advice."""
         return replace(self, instead=self.instead.format_map(asdict(INSTEAD[library])))
 
 
@@ -157,19 +157,19 @@ _ERRORS = ("Error", "Exception", "Timeout")
 
 
 def _told(name: str, hardware: Hardware) -> tuple[str, str]:
-    """Return the words of the error about the use of a module: the message and the hint."""
+    """Return message and hint of the error for the use of a module, or of a name in it."""
     return f"{name}: {hardware.title} is not simulated", hardware.instead
 
 
 def refused_as(kind: type[Exception], message: str, hint: str) -> Exception:
-    """Return an error that is of another kind, too: a program may try what there is, and do without it."""
+    """Return NotSimulated that is also an error of another kind, so that a program which only tries can catch it."""
     both: Any = type("NotSimulated", (NotSimulated, kind), {"__module__": NotSimulated.__module__})
     error: Exception = both(message, hint)
     return error
 
 
 class _Part(type):
-    """A name of a module: a class, so that it can be derived from; any use raises NotSimulated."""
+    """A name in a module for hardware: a class from which a program can derive; any other use raises NotSimulated."""
 
     full_name: str
     hardware: Hardware
@@ -195,13 +195,13 @@ class _Part(type):
 
 
 def refused_part(path: str, name: str, hardware: Hardware) -> Any:
-    """Return a name of a module, or of a part of it, that can be imported but not used."""
+    """Return an object for a name in a module for hardware: it can be imported but not used."""
     words = {"full_name": f"{path}.{name}", "hardware": hardware, "__module__": path}
     return type(name, (OSError,), words) if name.endswith(_ERRORS) else _Part(name, (), words)
 
 
 def _kept_part(place: Any, path: str, name: str, hardware: Hardware) -> Any:
-    """Return such a name, and keep it at its place."""
+    """Return a `refused_part`, and store it as an attribute of `place`."""
     if name.startswith("__"):
         raise AttributeError(f"{path} has no attribute {name!r}")
     made = refused_part(path, name, hardware)
@@ -210,11 +210,11 @@ def _kept_part(place: Any, path: str, name: str, hardware: Hardware) -> Any:
 
 
 class HardwareModule(types.ModuleType):
-    """A module, or a module in it, that can be imported but not used.
+    """A module for hardware, or a module in it, that can be imported but not used.
 
     Args:
         name: Its full name.
-        hardware: What it is for.
+        hardware: The hardware.
     """
 
     def __init__(self, name: str, hardware: Hardware) -> None:
@@ -226,11 +226,11 @@ class HardwareModule(types.ModuleType):
 
 
 class OtherLibrary:
-    """Refuses to import the library that the rules of this run are not for; the first finder.
+    """Refuses to import a library that does not belong to the profile of this run; it is the first finder.
 
     Args:
         names: The packages of that library.
-        library: The one of this run.
+        library: The library of this run.
     """
 
     def __init__(self, names: Sequence[str], library: Library) -> None:
@@ -243,10 +243,10 @@ class OtherLibrary:
         path: Sequence[str] | None = None,
         target: types.ModuleType | None = None,
     ) -> None:
-        """Raise for a package of the library.
+        """Return None for other packages than those of the library.
 
         Raises:
-            NotSimulated: it is one; it is an ImportError, too.
+            NotSimulated: it is one of them; the error is also an ImportError.
         """
         if fullname in self._names:
             told = f"{fullname}: this program runs by the rules of {self._library}"
@@ -269,7 +269,7 @@ class HardwareFinder:
         path: Sequence[str] | None = None,
         target: types.ModuleType | None = None,
     ) -> ModuleSpec | None:
-        """Return how to load a module; None for others."""
+        """Return how to load a module for hardware; None for other modules."""
         top = fullname.partition(".")[0]
         if top == fullname:
             known = top in ON_THE_BRICK or top in ELSEWHERE
@@ -284,7 +284,7 @@ class HardwareFinder:
         """Return the module.
 
         Raises:
-            NotSimulated: it is for another computer.
+            NotSimulated: it is for another computer, such as another board; the error is also an ImportError.
         """
         if (top := spec.name.partition(".")[0]) in ELSEWHERE:
             raise refused_as(ImportError, *_told(spec.name, ELSEWHERE[top].told_to(self._library)))
@@ -294,7 +294,7 @@ class HardwareFinder:
         return module
 
     def exec_module(self, module: types.ModuleType) -> None:
-        """Do nothing: names are made when they are used."""
+        """Do nothing: the names in the module are created when they are used."""
 
 
 BLUETOOTH: Mapping[str, Any] = {
@@ -331,11 +331,11 @@ def refuse_bluetooth(module: types.ModuleType, library: Library) -> None:
 
 
 def point_at_package(error: BaseException, folder: str) -> None:
-    """Add a note to the error about a missing module: where it can come from.
+    """Add a note to the error about a missing module: from where to get the module.
 
     Args:
         error: Any error of the program.
-        folder: That of the program.
+        folder: The folder of the program.
     """
     if not isinstance(error, ModuleNotFoundError) or not isinstance(error.name, str):
         return

@@ -65,7 +65,7 @@ def refuse_contexts(module: Any) -> None:
 
 
 def keep_thread_pool(module: types.ModuleType) -> None:
-    """Let `ThreadPool` use what is refused for processes; called after the import of `multiprocessing.pool`."""
+    """Let `ThreadPool` work although processes are refused; called after the import of `multiprocessing.pool`."""
     contexts: Any = sys.modules["multiprocessing.context"]
     pool, context = module.Pool, contexts.ThreadContext()
 
@@ -120,7 +120,7 @@ OTHER_BOARDS = ("ev3dev.brickpi", "ev3dev.brickpi3", "ev3dev.pistorms")
 
 
 def refuse_board(module: types.ModuleType) -> NoReturn:
-    """Refuse a module for another board."""
+    """Raise the error for a module that is for another board."""
     raise NotSimulated(
         f"{module.__name__} is not part of the simulated brick: it is an EV3", "import ev3dev.ev3"
     )
