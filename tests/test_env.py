@@ -11,6 +11,8 @@ import pytest
 from gymnasium.utils.env_checker import check_env
 
 import tuisim
+from tests.cases import cases
+from tuisim.base.errors import ConfigError
 from tuisim.env import LabEnv
 
 GOALS = """\
@@ -104,3 +106,17 @@ def test_goals_reward_and_end(speed: float, points: float, tmp_path: Path) -> No
         steps = steps + 1
         assert not is_cut
     assert (total, steps > 50) == (points, not points)
+
+
+@cases(
+    "given, words",
+    {
+        "keyword": ({"backgroud": "Loop"}, "did you mean background"),
+        "two mats": ({"background": "Loop", "world": tuisim.World()}, "give one of them"),
+        "end": ({"is_over": lambda before, after: False}, r"called as is_over\(after\)"),
+        "reward": ({"reward": len}, r"called as reward\(before, after\), and len takes others"),
+    },
+)
+def test_a_wrong_task_is_refused_when_it_is_made(given: dict[str, Any], words: str) -> None:
+    with pytest.raises(ConfigError, match=words):
+        gymnasium.make("tuisim/Goals-v0", columns=("x_mm",), **given)

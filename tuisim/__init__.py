@@ -13,9 +13,9 @@ if TYPE_CHECKING:
 
     from tuisim.api.face import Robot, World, experiment, simulate
     from tuisim.api.lab import Lab
+    from tuisim.api.logs import read_log
     from tuisim.api.marks import mark
     from tuisim.api.run import load_run, runs
-    from tuisim.logs.frames import read_log
 
 __version__ = "1.0.0"
 __all__ = [
@@ -39,7 +39,7 @@ _HOMES = {
     "experiment": "tuisim.api.face",
     "load_run": "tuisim.api.run",
     "mark": "tuisim.api.marks",
-    "read_log": "tuisim.logs.frames",
+    "read_log": "tuisim.api.logs",
     "runs": "tuisim.api.run",
     "simulate": "tuisim.api.face",
 }

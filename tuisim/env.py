@@ -6,13 +6,16 @@ It needs the extra `gym`. Each task is registered when this module is imported, 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from inspect import signature
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from tuisim.api.face import Robot, World
+from tuisim.api.keywords import check_keywords
 from tuisim.api.lab import MOTION, Lab
+from tuisim.base.errors import ConfigError
 from tuisim.engine.core.values import MAX_SEED
 
 try:
@@ -43,13 +46,15 @@ class LabEnv(gymnasium.Env[Vector, Vector]):
         is_over: Takes the values after a step, and returns whether the task has ended.
         goals: A goals file. The points that a step gains or loses, if the run ended after it, are added to its reward,
             and the task has also ended when no goal can be met any more.
+        background: A mat, in place of a world.
         world, robot, profile: As for `Lab`.
         period_s: Simulated seconds of a step.
 
     Raises:
-        ConfigError: as for `Lab`.
+        ConfigError: as for `Lab`; there are a mat and a world; or a function takes other values.
     """
 
+    @check_keywords
     def __init__(
         self,
         columns: Sequence[str],
@@ -57,11 +62,18 @@ class LabEnv(gymnasium.Env[Vector, Vector]):
         is_over: Callable[[Values], bool] = lambda _: False,
         *,
         goals: str | Path | None = None,
+        background: str | Path | None = None,
         world: World | str | Path | None = None,
         robot: Robot | str | Path | None = None,
         profile: str | Path | None = None,
         period_s: float = 0.1,
     ) -> None:
+        check_call(reward, "reward", "before", "after")
+        check_call(is_over, "is_over", "after")
+        if background is not None:
+            if world is not None:
+                raise ConfigError("a world has a mat", "give one of them", key="background")
+            world = World(background=background)
         names = (columns,) if isinstance(columns, str) else tuple(columns)
         self.lab = Lab(world, robot, profile=profile, columns=(*names, *MOTION), goals=goals)
         self.columns = self.lab.columns[: len(names)]
@@ -70,11 +82,7 @@ class LabEnv(gymnasium.Env[Vector, Vector]):
         self._period_s = period_s
         self._before: Values = self.lab.read()
         self._points, _ = self.lab.judge()
-        bounds = [
-            _BOUNDS.get(name.rpartition("_")[2], (-_FARTHEST, _FARTHEST)) for name in self.columns
-        ]
-        low, high = zip(*bounds, strict=True)
-        self.observation_space = Box(np.array(low, np.float32), np.array(high, np.float32))
+        self.observation_space = _build_space(self.columns)
         self.action_space = Box(-1.0, 1.0, (2,), np.float32)
 
     def reset(
@@ -100,6 +108,29 @@ class LabEnv(gymnasium.Env[Vector, Vector]):
 
     def _observe(self, values: Values) -> Vector:
         return np.array([values[name] for name in self.columns], np.float32)
+
+
+def _build_space(columns: Sequence[str]) -> Box[Any]:
+    """Return the space of the values of columns, each between its bounds."""
+    bounds = [_BOUNDS.get(name.rpartition("_")[2], (-_FARTHEST, _FARTHEST)) for name in columns]
+    low, high = zip(*bounds, strict=True)
+    return Box(np.array(low, np.float32), np.array(high, np.float32))
+
+
+def check_call(function: Callable[..., object], call: str, *values: str) -> None:
+    """Check that a function can be called with so many values; `call` is its name for users.
+
+    Raises:
+        ConfigError: it cannot.
+    """
+    try:
+        signature(function).bind(*values)
+    except TypeError:
+        given = getattr(function, "__name__", repr(function))
+        message = f"is called as {call}({', '.join(values)}), and {given} takes others"
+        raise ConfigError(message, key=call) from None
+    except ValueError:  # A function of C may have no signature.
+        return
 
 
 def measure_progress(before: Values, after: Values) -> float:
@@ -149,15 +180,11 @@ def _build_task(
     reward: Callable[[Values, Values], float],
     mat: str,
     is_over: Callable[[Values], bool] = lambda _: False,
-    *,
-    background: str | Path | None = None,
-    world: World | None = None,
     **how: Any,
 ) -> LabEnv:
     """Return a task on its usual mat, on the mat of a name, or in a world."""
-    return LabEnv(
-        columns, reward, is_over, world=world or World(background=background or mat), **how
-    )
+    usual = {} if how.get("world") else {"background": mat}
+    return LabEnv(columns, reward, is_over, **{**usual, **how})
 
 
 gymnasium.register("tuisim/Goals-v0", entry_point="tuisim.env:LabEnv", max_episode_steps=600)

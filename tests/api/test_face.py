@@ -61,6 +61,11 @@ def test_an_error_of_the_program_is_in_the_run() -> None:
     "choices, expected",
     {
         "unknown argument": ({"backgrond": "Loop"}, "did you mean background"),
+        "boxes": (
+            {"obstacles": [{"x_mm": 4}]},
+            "obstacles: must be one value, .*a file has several",
+        ),
+        "array": ({"motornoise": np.arange(3)}, "motornoise: must be one value"),
         "unknown mat": ({"background": "Nope"}, "^background: no such mat"),
         "no number": ({"x": "far"}, "x: must be a number"),
         "several": ({"x": [0, 20]}, "x: must be one value, .*experiment takes several"),
@@ -339,6 +344,18 @@ def test_descriptions_are_one_line_and_compared_by_their_values() -> None:
         "no such robot": (lambda: tuisim.Robot("Nope"), "no such robot"),
         "wrong size": (lambda: tuisim.Robot(wheel_diameter_mm=-1), "wheel_diameter_mm"),
         "unknown part": (lambda: tuisim.Robot(parts={"arm": {}}), "arm"),
+        "option of a call": (
+            lambda: tuisim.World(profile="ev3"),  # type: ignore[call-arg]
+            r"tuisim\.simulate\(profile=…\) has it",
+        ),
+        "track": (
+            lambda: tuisim.Robot(track_mm=140),  # type: ignore[call-arg]
+            "did you mean wheel_spacing_mm",
+        ),
+        "separator": (
+            lambda: tuisim.read_log("log.csv", sep=";"),  # type: ignore[call-arg]
+            "did you mean separator",
+        ),
         "no file": (lambda: tuisim.World("nowhere.toml"), "no such file"),
         "wrong value": (lambda: tuisim.World(drift="wide"), "no such value"),
     },

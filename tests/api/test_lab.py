@@ -98,6 +98,14 @@ def test_wheels_turn_as_asked(profile: str) -> None:
     assert lab.time_s == pytest.approx(4)
 
 
+def test_a_hub_goes_by_the_rules_of_its_program() -> None:
+    lab = tuisim.Lab(robot=tuisim.Robot("Prime_Robot"))
+    run = tuisim.simulate("from pybricks.hubs import PrimeHub\nPrimeHub()\n")
+    assert lab.spec.profile == run.stored.spec.profile
+    assert lab.pose == run.stored.spec.world.start
+    assert tuisim.Lab(robot="Prime_Robot", profile="robolab").spec.profile.name == "robolab"
+
+
 def test_no_motor_is_faster_than_it_can() -> None:
     lab = tuisim.Lab(columns=["left_speed_dps"])
     assert lab.step(1e6, 0, period_s=3)["left_speed_dps"] == pytest.approx(lab.max_speed_dps)
@@ -147,6 +155,7 @@ def test_what_is_wrong_is_refused(given: dict[str, Any], words: str) -> None:
         "one speed": ({"left": 100}, "left, right: must be two numbers, got 100, None"),
         "no number": ({"left": np.nan, "right": 3}, "must be two numbers, got nan, 3"),
         "period": ({"period_s": -1}, "period_s: must not be negative"),
+        "keyword": ({"period": 1}, "did you mean period_s"),
     },
 )
 def test_a_wrong_step_is_refused(given: dict[str, Any], words: str) -> None:

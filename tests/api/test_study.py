@@ -26,7 +26,7 @@ def test_constants_vary_and_functions_measure_each_run() -> None:
     frame = tuisim.experiment(
         PROGRAM,
         seeds=range(2),
-        motornoise=[0, 20],
+        motornoise=np.linspace(0, 20, 2),
         constants={"GAIN": [0.5, np.float64(2)]},
         metrics={"end_mm": lambda run: run.pose.x_mm, "ticks": lambda run: len(run.telemetry)},
         jobs=2,
@@ -116,6 +116,10 @@ def test_a_mean_that_is_known_needs_no_further_seeds() -> None:
         "until": ({"until": "n ± 1"}, "until: there will be no column 'n'"),
         "seeds twice": ({"parameters": {"seed": [1]}}, "the seed varies by seeds="),
         "no values": ({"sensornoise": []}, "sensornoise: has no values"),
+        "no constants": (
+            {"program": "print(1)", "constants": {"K": 1}},
+            r"no constant K \(it uses none\)",
+        ),
         "constant": ({"constants": {"GAINS": 1}}, "has no constant GAINS"),
         "no seeds": ({"seeds": []}, "seeds: has no values"),
         "no function": ({"metrics": {"n": 3}}, "metrics: must be functions of a run"),

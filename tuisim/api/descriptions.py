@@ -97,7 +97,7 @@ def plain(value: Any) -> Any:
     """Return a value as a file would have it: a path as a text, a number of NumPy as one of Python."""
     if isinstance(value, os.PathLike):
         return os.fspath(value)
-    return value.item() if hasattr(value, "item") else value
+    return value.item() if getattr(value, "size", None) == 1 else value
 
 
 def read_columns(columns: Sequence[str], spec: RunSpec) -> tuple[str, ...]:
@@ -142,8 +142,13 @@ def read_options(options: Mapping[str, Any]) -> dict[str, Any]:
             settings |= value.settings
         elif value is not None:
             option = OPTIONS_BY_NAME[name]
-            if isinstance(value, list | tuple | range) and not option.repeats:
-                hint = "tuisim.experiment takes several"
+            several = isinstance(value, Iterable) and not isinstance(value, str | Mapping)
+            if several and not option.repeats:
+                hint = (
+                    "a file has several boxes: see `tuisim guide world-files`"
+                    if name == "obstacles"
+                    else "tuisim.experiment takes several"
+                )
                 raise ConfigError(f"must be one value, got {value!r}", hint, key=name)
             settings[option.path] = option.from_python(plain(value), name)
     return settings

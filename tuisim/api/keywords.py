@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import wraps
 from inspect import signature
 from typing import Any, TypeVar, cast
 
 from tuisim.api.descriptions import OPTIONS_BY_NAME
-from tuisim.base.errors import ConfigError, nearest
+from tuisim.base.errors import ConfigError, did_you_mean, nearest
 from tuisim.settings.options import WORLD
 
 _Function = TypeVar("_Function", bound=Callable[..., Any])
@@ -20,6 +20,29 @@ _NAMES = {
 """The arguments by their flags on the command line."""
 
 
+_OTHER_NAMES = {
+    "axle_track": "wheel_spacing_mm",
+    "track_mm": "wheel_spacing_mm",
+    "delimiter": "separator",
+    "sep": "separator",
+}
+"""What other libraries call an argument."""
+
+
+def build_keyword_error(name: str, known: Sequence[str]) -> ConfigError:
+    """Return the error for an argument that a function does not have: what was meant, or what has it."""
+    option = OPTIONS_BY_NAME.get(name)
+    if _OTHER_NAMES.get(name) in known:
+        hint = did_you_mean([_OTHER_NAMES[name]])
+    elif option is None or f"{name}s" in known:
+        hint = nearest(name, known)
+    elif option.group == WORLD and name != "robot":
+        hint = f"tuisim.World({name}=…) has it"
+    else:
+        hint = f"tuisim.simulate({name}=…) has it"
+    return ConfigError(f"no such argument {name!r}", hint)
+
+
 def check_keywords(function: _Function) -> _Function:
     """Return a function that raises ConfigError for a keyword argument that it does not have."""
     known = [name for name in signature(function).parameters if name != "self"]
@@ -28,9 +51,7 @@ def check_keywords(function: _Function) -> _Function:
     def call(*values: Any, **named: Any) -> Any:
         for name in named:
             if name not in known:
-                is_of_world = name in OPTIONS_BY_NAME and OPTIONS_BY_NAME[name].group == WORLD
-                hint = f"tuisim.World({name}=…) has it" if is_of_world else nearest(name, known)
-                raise ConfigError(f"no such argument {name!r}", hint)
+                raise build_keyword_error(name, known)
         try:
             return function(*values, **named)
         except ConfigError as error:

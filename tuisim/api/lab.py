@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from math import nan
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Never
 
 from tuisim.api.descriptions import (
     RobotDescription,
@@ -16,13 +16,13 @@ from tuisim.api.descriptions import (
     read_options,
     read_world,
 )
-from tuisim.api.keywords import check_keywords
+from tuisim.api.keywords import build_keyword_error, check_keywords
 from tuisim.base.errors import ConfigError
 from tuisim.engine.core.commands.calls import Call, SimulationCommand
 from tuisim.engine.core.commands.table import DRIVEN_LAWS, obey
 from tuisim.engine.core.motors import find_top_speed_dps
 from tuisim.engine.core.pen_marks import PenMarks
-from tuisim.engine.core.profile import NS_PER_S, MotorLaw
+from tuisim.engine.core.profile import NS_PER_S, PYBRICKS_4, MotorLaw
 from tuisim.engine.core.sensors import build_reader
 from tuisim.engine.core.servo.control import Ending
 from tuisim.engine.core.servo.motor import ServoMotor
@@ -43,6 +43,8 @@ if TYPE_CHECKING:
     from tuisim.tasks.goals.spec import Goal
 
 MOTION = ("x_mm", "y_mm", "heading_deg")
+_OF_HUB = {"profile": PYBRICKS_4.name, "for_brick": True}
+"""The settings of a robot with a hub, as a program for one decides them."""
 
 
 class Lab:
@@ -55,8 +57,10 @@ class Lab:
         world: A world, or its file; by default an empty mat.
         robot: A robot, its name, or its file.
         seed: Seed of noise and drift.
-        profile: A profile from `tuisim profiles`, or a file; by default that of the world, or `robolab`.
-        columns: What `step` returns: names of columns as in `Run.telemetry`, such as `left_red_pc`.
+        profile: A profile from `tuisim profiles`, or a file; by default that of the world, or `robolab`, or
+            `pybricks4` for a robot with a hub.
+        columns: What `step` returns: names of columns as in `Run.telemetry`; of a colour sensor also its light in
+            percent, such as `left_red_pc` for `left_red`.
         goals: A goals file for `judge`; its world is used without a `world`.
 
     Raises:
@@ -83,7 +87,11 @@ class Lab:
             check_goals(task.goals)
             self._goals = task.goals
             in_world = task.settings if world is None else in_world
-        self._open(build_run_spec(merge_settings(in_world, chosen)), columns)
+        settings = merge_settings(in_world, chosen)
+        spec = build_run_spec(settings)
+        if spec.robot.hub and settings.given.get("profile") is None:
+            spec = build_run_spec(merge_settings(_OF_HUB, in_world, chosen))
+        self._open(spec, columns)
 
     @classmethod
     def of_run(cls, run: Run, columns: Sequence[str] = MOTION) -> Lab:
@@ -151,6 +159,7 @@ class Lab:
         *,
         period_s: float = 0.0,
         commands: Iterable[SimulationCommand] = (),
+        **unknown: Never,
     ) -> dict[str, float]:
         """Move the robot on by one tick or longer, and return the columns at the end. Does not block.
 
@@ -162,8 +171,12 @@ class Lab:
                 takes effect at its own time.
 
         Raises:
-            ConfigError: only one speed is given, one is no number, or the period is negative.
+            ConfigError: only one speed is given, one is no number, the period is negative, or an argument is misspelt.
         """
+        if unknown:
+            raise build_keyword_error(
+                next(iter(unknown)), ("left", "right", "period_s", "commands")
+            )
         sim = self._sim
         end = sim.tick + (round(period_s * self._hz) or 1 if period_s else 1)
         if end <= sim.tick:

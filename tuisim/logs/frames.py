@@ -61,7 +61,8 @@ def read_log(
         return frame
     log = open_log(source, choices)
     for note in log.notes:
-        warnings.warn(f"{log.title}: {note}", stacklevel=2)
+        # The caller of `tuisim.read_log`, which checks the names of its arguments in between.
+        warnings.warn(f"{log.title}: {note}", stacklevel=3)
     layout = log.layout
     rows = log.table
     if choices.value:

@@ -36,7 +36,8 @@ def set_constants(source: ProgramSource, values: Mapping[str, object]) -> Progra
         if not count:
             names = sorted({other for _, other in nodes})
             message = f"{source.program.name} has no constant {name}"
-            raise ConfigError(message, nearest(name, names), key="constants")
+            hint = nearest(name, names) if names else "it uses none"
+            raise ConfigError(message, hint, key="constants")
         if count > 1:
             message = f"{source.program.name} assigns {count} values to {name}"
             raise ConfigError(message, "a constant has one", key="constants")

@@ -174,6 +174,8 @@ class Option:
         Raises:
             ConfigError: it is wrong; `key` is to blame.
         """
+        if isinstance(value, float) and value.is_integer() and isinstance(self.value, Whole):
+            value = int(value)  # NumPy computes with floats.
         try:
             return self.value.parse_data(value)
         except WrongValue as error:
