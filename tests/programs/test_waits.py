@@ -103,6 +103,7 @@ def test_a_loop_that_only_computes_is_silent_and_inner_loops_come_first() -> Non
     {
         "rotations": ("tank.on_for_rotations(SpeedPercent(5), 30, 360)", (360, "rotations")),
         "degrees by name": ("m.on_for_degrees(30, degrees=-90, brake=True)", (-90, "degrees")),
+        "an angle of pybricks": ("m.run_angle(300, 720, wait=False)", (720, "degrees")),
         "a variable": ("m.on_for_degrees(SpeedPercent(5), far)", None),
         "seconds": ("m.on_for_seconds(30, 5)", None),
     },

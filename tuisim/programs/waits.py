@@ -115,6 +115,8 @@ def find_turns(
                 numbers = [each for each in values if isinstance(each, int | float)]
                 if numbers and attr in ("on_for_rotations", "on_for_degrees"):
                     return numbers[-1], attr.removeprefix("on_for_")
+                if len(numbers) > 1 and attr == "run_angle":
+                    return numbers[1], "degrees"
     return None
 
 

@@ -51,6 +51,16 @@ for i in range(20):
     {more}
 tank_drive.off()
 """
+BOTH_WHEELS = """\
+# %%sim_magic --profile lego-micropython
+from pybricks.ev3devices import Motor
+from pybricks.parameters import Port
+left = Motor(Port.B)
+right = Motor(Port.C)
+for side in range(4):
+    left.run_angle(300, 90, wait=False)
+    right.run_angle(300, -90)
+"""
 CASES = {
     "raised": (MISTAKE, ReasonKind.RAISED, "1.00 s, line 2: NameError: name 'colour' is not"),
     "in a thread": (IN_A_THREAD, ReasonKind.RAISED, "1.00 s, line 4: ZeroDivisionError: division"),
@@ -88,6 +98,11 @@ CASES = {
         "tank_turn.on_for_rotations(-100, SpeedPercent(20), 0.25)\n",
         ReasonKind.MISTAKEN,
         "wheels; 0.80 turn the robot by 90°",
+    ),
+    "degrees of the wheels, one motor at a time": (
+        BOTH_WHEELS,
+        ReasonKind.MISTAKEN,
+        "line 7: this line turned the robot by 28°: run_angle counts degrees of the wheels; ",
     ),
     "each reading": (
         COUNTS.format(step="count += 1", more="pass"),
