@@ -40,7 +40,7 @@ Waiting = Generator[int, None, Result]
 
 
 class Awaited(Generic[Result]):
-    """What a task awaits in place of a blocking call."""
+    """The object that a call returns in a task, to be awaited, where it would block elsewhere."""
 
     def __init__(self, waiting: Waiting[Result]) -> None:
         self._waiting = waiting
@@ -51,7 +51,7 @@ class Awaited(Generic[Result]):
 
 @dataclass(slots=True)
 class Brick:
-    """The brick of one run."""
+    """The brick of one run, as the classes of the library use it."""
 
     session: DeviceSession
     built: BuiltBrick
@@ -73,16 +73,16 @@ class Brick:
 
     @property
     def lights(self) -> Lights:
-        """The lights of its buttons."""
+        """The lights of the brick's buttons."""
         return self.built.lights
 
     @property
     def battery(self) -> Battery:
-        """Its battery."""
+        """The battery of the brick."""
         return self.built.battery
 
     def find_motor(self, port: str) -> ServoMotor | None:
-        """Return the motor on a port such as `outA`, which may be plugged in now; None for none."""
+        """Return the motor on a port such as `outA`, after plugging one in if possible; None if there is none."""
         if port not in self.built.motors:
             hub = self.session.sim.spec.robot.hub
             self.plugs.add(PART_OF_KIND[HUBS[hub].motor if hub else "large"], port)
@@ -91,7 +91,7 @@ class Brick:
         return motor if isinstance(motor, ServoMotor) else None
 
     def find_sensor(self, port: str, kind: str) -> LegoSensor | None:
-        """Return the sensor on a port, which may be plugged in now; None for none.
+        """Return the sensor on a port, after plugging one in if possible; None if there is none.
 
         Args:
             port: The port, such as `in1`.
@@ -107,14 +107,14 @@ class Brick:
 
     @property
     def now_us(self) -> int:
-        """The simulated time."""
+        """The simulated time in microseconds."""
         return self.session.now // 1000
 
     def read(self, mode: str = "", *ports: str) -> int:
-        """Let the time of a reading pass, and return the simulated time.
+        """Let the time of a reading pass, and return the simulated time in microseconds.
 
         Args:
-            mode, ports: What is recorded of it, as in `engine.runs.readings.READING_CODES`.
+            mode, ports: What is recorded of the reading, as in `engine.runs.readings.READING_CODES`.
         """
         session = self.session
         self.check_buttons()
@@ -126,20 +126,22 @@ class Brick:
         return session.now // 1000
 
     def check_buttons(self) -> None:
-        """End the program if a button is pressed that stops it.
+        """End the program if one of the buttons that stop it is pressed.
 
         Raises:
-            SystemExit: it is.
+            SystemExit: one is pressed.
         """
         if self.stop_buttons and self.stop_buttons & self.session.pressed:
             raise SystemExit
 
     def tell(self, part: int, call: Call, *values: float | None) -> None:
-        """Change a motor or a drive base.
+        """Pass a call with its values to a simulated motor or drive base, at the present time.
 
         Args:
             part: Its number.
-            call, values: What changes; None is what is not given. Numbers beyond any that counts are cut off.
+            call: What to do.
+            values: NaN is passed for None, which stands for a value that the program does not give; numbers beyond
+                `LARGEST` are cut off.
         """
         numbers = (
             nan if value is None else float(max(-LARGEST, min(LARGEST, value))) for value in values
@@ -160,8 +162,8 @@ class Brick:
         """Wait until a move is done.
 
         Args:
-            done: Whether it is, at a time.
-            end_us: When its trajectory ends.
+            done: Whether the move is done at a time in microseconds.
+            end_us: When the trajectory of the move ends.
             stop: Ends the move if the task that awaits it is closed.
         """
         begin = now = self.now_us
@@ -177,13 +179,13 @@ class Brick:
             now = self.now_us
 
     def finish(self, waiting: Waiting[Result]) -> Result:
-        """Do what waits: block until it is over, or, in a task of version 4, return what a task awaits."""
+        """Block until a wait is over and return its result; in a task of version 4, return an object to await."""
         awaited: Any = Awaited(waiting)
         return awaited if self.in_task else self.block(waiting)
 
     @waits_for(Wait.MOTOR)
     def block(self, waiting: Waiting[Result]) -> Result:
-        """Block until what waits is over, and return its result."""
+        """Block until a wait is over, and return its result."""
         while True:
             self.check_buttons()
             try:
@@ -195,24 +197,25 @@ class Brick:
             self.session.wait_for_motor((until_us - self.now_us) * 1000)
 
     def say_stalled(self, what: str, call: str) -> None:
-        """Say once that a call waits because something blocks a motor.
+        """Tell the user once that a call waits because something blocks a motor.
 
         Args:
             what: What is blocked, with its verb, such as `the wheels are`.
+            call: The call that waits.
         """
         told = f"{what} stalled: {call} waits until the way is free, as on the brick"
         self.session.held_up = told
         self.say_once(what, told)
 
     def say_once(self, subject: str, text: str) -> None:
-        """Say something to the user, in the program's error output, unless something was said of the subject."""
+        """Print a message to the user in the program's error output, unless one on this subject was printed before."""
         if subject not in self.said:
             self.said.add(subject)
             print(f"tuisim: {text}", file=sys.__stderr__)
 
 
 class Connected:
-    """A class of the library: its objects are parts of the brick."""
+    """Base of the library's classes whose objects are parts of the brick."""
 
     brick: ClassVar[Brick]
 
@@ -229,7 +232,7 @@ class Connected:
         )
 
     def __dir__(self) -> list[str]:
-        # What errors and editors propose is public.
+        # Python's "Did you mean" and editors propose names from here: only public ones.
         return [name for name in super().__dir__() if not name.startswith("_")]
 
 
@@ -239,7 +242,7 @@ def invalid_argument() -> ValueError:
 
 
 def refused(text: str) -> RuntimeError:
-    """Return the error that MicroPython raises for what the firmware does not have."""
+    """Return the error that MicroPython raises for a feature that the firmware does not have."""
     return NotImplementedError(text)  # as on the brick
 
 
@@ -248,7 +251,7 @@ FirmwareError: Any = type("OSError", (OSError,), {"__module__": "builtins"})
 
 
 def not_permitted() -> Any:
-    """Return the firmware's error about a command that must not be given now."""
+    """Return the firmware's error for a command that must not be given now."""
     return FirmwareError(
         errno.EPERM,
         "EPERM:\n\nThis operation is not permitted now: the motor is in use by a drive base, or a move is under way."
@@ -257,7 +260,7 @@ def not_permitted() -> Any:
 
 
 def build_busy_error() -> Any:
-    """Return the firmware's error about motors that another drive base has."""
+    """Return the firmware's error for motors that another drive base uses."""
     return FirmwareError(
         errno.EBUSY,
         "EBUSY:\n\nAnother DriveBase has these motors.\n--> Make one DriveBase, and use it everywhere.",
@@ -265,10 +268,10 @@ def build_busy_error() -> Any:
 
 
 def no_device(hint: str) -> Any:
-    """Return the firmware's error about a port without the device.
+    """Return the firmware's error for a port on which the needed device is not.
 
     Args:
-        hint: What is on the ports.
+        hint: Names the devices on the ports.
     """
     return FirmwareError(
         errno.ENODEV,
@@ -278,7 +281,7 @@ def no_device(hint: str) -> Any:
 
 
 def whole(value: Any) -> int:
-    """Return a number as the firmware takes it: without its fraction.
+    """Return a number as the firmware takes it, without its fraction.
 
     Raises:
         TypeError: it is no number.
@@ -289,12 +292,12 @@ def whole(value: Any) -> int:
 
 
 def round_number(value: float) -> float:
-    """Return a number with as many digits as the floats of a hub have."""
+    """Return a number rounded to as many digits as the floats of a hub have."""
     return float(f"{round(value, 4):.7g}") + 0.0
 
 
 def text_of(value: Any) -> str:
-    """Return a text where the firmware takes nothing else.
+    """Return a text unchanged: the firmware does not convert other values.
 
     Raises:
         TypeError: it is no text.

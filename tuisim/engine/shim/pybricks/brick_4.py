@@ -22,13 +22,13 @@ HUES: Mapping[int, str] = {15: "RED", 45: "ORANGE", 90: "YELLOW", 180: "GREEN", 
 
 
 class Animation:
-    """Frames that are shown one after another in the background, until the next ones."""
+    """Shows frames one after another in the background until it is stopped or other frames are shown."""
 
     def __init__(self) -> None:
         self._number = 0
 
     def stop(self) -> None:
-        """Show no further frame."""
+        """End the animation; the frame that is shown stays."""
         self._number += 1
 
     def play(self, show: Callable[[Any], None], frames: Sequence[tuple[Any, int]]) -> None:
@@ -61,7 +61,7 @@ class Animation:
 
 
 class AnimatedLight:
-    """A light that can blink.
+    """A light that can blink and change its colour by itself.
 
     Args:
         show: Shows a colour; None for darkness.
@@ -71,17 +71,17 @@ class AnimatedLight:
         self._show, self._animation = show, Animation()
 
     def on(self, color: Any) -> None:
-        """Turn it on in a colour, or in the nearest that it has."""
+        """Turn the light on in a colour, or in the nearest one that it has."""
         self._animation.stop()
         self._show(color)
 
     def off(self) -> None:
-        """Turn it off."""
+        """Turn the light off."""
         self._animation.stop()
         self._show(None)
 
     def blink(self, color: Any, durations: Sequence[int]) -> None:
-        """Blink in a colour: durations in ms, on and off in turn."""
+        """Blink in a colour; durations in ms are of on and off in turn."""
         colors = [None if number % 2 else color for number in range(len(durations))]
         self._animation.play(self._show, [*zip(colors, durations, strict=True)])
 
@@ -129,11 +129,11 @@ class Speaker(Connected):
 
 
 class System(Connected):
-    """The hub's own settings.
+    """The settings of the hub itself: name, stop buttons, storage.
 
     Args:
         name: The name of the hub.
-        buttons: Its buttons by their names in the session.
+        buttons: The buttons of the hub by their names in the session.
     """
 
     umm_info = refused_part(
@@ -145,7 +145,7 @@ class System(Connected):
         self._session_names = {button: name for name, button in buttons.items()}
 
     def set_stop_button(self, button: Any) -> None:
-        """Let a button, or several at once, stop the program; None: none does."""
+        """Let a button, or several pressed together, stop the program; with None, no button stops it."""
         if button is None:
             buttons = []
         elif isinstance(button, Enum):
@@ -159,7 +159,7 @@ class System(Connected):
         return self._name
 
     def info(self) -> dict[str, Any]:
-        """Return what the hub tells of itself."""
+        """Return name, reset reason, connections and start of the program, by the firmware's names."""
         return {
             "name": self._name,
             "reset_reason": 0,
@@ -187,16 +187,16 @@ class System(Connected):
         raise SystemExit
 
     def reset_reason(self) -> int:
-        """Return why the hub was last turned off."""
+        """Return why the hub was last turned off: 0, as usual."""
         return 0
 
 
 class Buttons(Connected):
-    """Buttons that a hand presses.
+    """Buttons of a hub or a controller that a hand presses.
 
     Args:
-        buttons: They, by their names in the session.
-        port: Where they are, one of `READING_PORTS`.
+        buttons: The buttons by their names in the session.
+        port: The place of the buttons, one of `READING_PORTS`.
     """
 
     def __init__(self, buttons: Mapping[str, Enum], port: str = BUTTONS_PORT) -> None:
@@ -218,7 +218,7 @@ class Battery(hubs.Battery):
     )
 
     def type(self) -> str:
-        """Return its type."""
+        """Return the type of the battery."""
         return "Li-ion"
 
 

@@ -60,11 +60,11 @@ EARLIER_MEMBERS: Mapping[str, str] = {
 
 
 def refuse_earlier(module: str, name: str) -> NoReturn:
-    """Raise the error about a name that a module does not have under version 4.
+    """Raise the error for a name that a module does not have under version 4.
 
     Raises:
-        NotSimulated: version 2.0 has it; it is an ImportError, too.
-        AttributeError: that has not, either.
+        NotSimulated: version 2.0 has the name; the error is also an ImportError.
+        AttributeError: version 2.0 does not have it either.
     """
     hint = EARLIER_MODULES.get(module) or EARLIER.get(module, {}).get(name)
     if hint and not name.startswith("__"):
@@ -73,5 +73,5 @@ def refuse_earlier(module: str, name: str) -> NoReturn:
 
 
 def name_replacement(_owner: str, name: str) -> str:
-    """Return what an object of version 4 has in place of an attribute, after a colon; empty if that is not known."""
+    """Return, after a colon, what version 4 has in place of an attribute of an earlier version; empty if unknown."""
     return f": {EARLIER_MEMBERS[name]}" if name in EARLIER_MEMBERS else ""

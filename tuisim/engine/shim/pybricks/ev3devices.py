@@ -66,11 +66,11 @@ class Sensor(Connected):
         self._sensor = found
 
     def _read(self, mode: str) -> tuple[int, ...]:
-        """Return a measurement in a mode; the first one in another mode than before costs the time of the change."""
+        """Return a measurement in a mode; the first one after a change of mode also costs the time of the change."""
         return self._sensor.measure(mode) if self._sensor.mode == mode else self._switched(mode)
 
     def _switched(self, mode: str) -> tuple[int, ...]:
-        """Switch the mode, and return the first measurement in it."""
+        """Switch to a mode, and return the first measurement in it."""
         self._sensor.switch(mode)
         return self._sensor.measure_switched(mode)
 
@@ -91,7 +91,7 @@ class ColorSensor(Sensor):
     KIND = "color"
 
     def color(self) -> Color | None:
-        """Return the colour; None if there is none."""
+        """Return the colour; None if the sensor sees none."""
         code = self._read("COL-COLOR")[0]
         return CODES[code] if 0 <= code < len(CODES) else None
 
@@ -100,7 +100,7 @@ class ColorSensor(Sensor):
         return self._read("COL-REFLECT")[0]
 
     def ambient(self) -> int:
-        """Return the light around in percent."""
+        """Return the ambient light in percent."""
         return self._read("COL-AMBIENT")[0]
 
     def rgb(self) -> tuple[int, int, int]:
@@ -123,7 +123,7 @@ class UltrasonicSensor(Sensor):
         return self._read("US-DIST-CM")[0]
 
     def presence(self) -> bool:
-        """Return whether another ultrasonic sensor is heard."""
+        """Return whether the sensor hears another ultrasonic sensor."""
         return bool(self._read("US-LISTEN")[0])
 
 
@@ -133,7 +133,7 @@ class InfraredSensor(Sensor):
     KIND = "infrared"
 
     def distance(self) -> int:
-        """Return the distance to the next object, 0 to 100."""
+        """Return the distance to the next object, 0 for near to 100 for far."""
         return self._read("IR-PROX")[0]
 
     def _channel(self, channel: Any) -> int:
@@ -194,5 +194,5 @@ class GyroSensor(Sensor):
         return self._read("GYRO-RATE")[0] * self._sign
 
     def reset_angle(self, angle: float) -> None:
-        """Make the current angle another one."""
+        """Set the current angle to a value in degrees."""
         self._zero = self._angle() - whole(angle)

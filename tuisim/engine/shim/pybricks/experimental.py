@@ -10,10 +10,10 @@ def run_parallel(*functions: Callable[[], Any]) -> dict[Callable[[], Any], Any]:
     """Run functions in threads of their own, wait until all are done, and return their results, by function.
 
     Raises:
-        TypeError: there are not two of them, or something is no function.
+        TypeError: there are fewer than two functions, or an argument is no function.
         RuntimeError: an error has ended one of them; the others go on until the program ends.
     """
-    # Not earlier: its functions are patched first.
+    # Imported here and not earlier: its functions must be patched first.
     import threading
 
     if len(functions) < 2 or not all(map(callable, functions)):
@@ -25,7 +25,7 @@ def run_parallel(*functions: Callable[[], Any]) -> dict[Callable[[], Any], Any]:
     def run(function: Callable[[], Any]) -> None:
         try:
             results[function] = function()
-        except Exception as error:  # whatever ends it ends the others, too
+        except Exception as error:  # whatever it is, it ends the wait for all functions
             errors.append(error)
             raise
         finally:

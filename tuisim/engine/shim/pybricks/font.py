@@ -20,7 +20,7 @@ BLANK = " "
 
 
 class Font(Connected):
-    """A font of the screen: the shapes are those of another font, of that size and weight.
+    """A font of the screen, drawn with the letters of another font of this size and weight.
 
     Args:
         family: A name; all families look alike here.
@@ -88,6 +88,6 @@ Font.DEFAULT = Font()
 
 
 def drawable(text: str) -> str:
-    """Return a text of one line in which each character that no font has is replaced."""
+    """Return one line of text with a replacement for each character that fonts here lack."""
     latin = text.encode("latin-1", "replace").decode("latin-1")
     return "".join(letter if letter.isprintable() else BLANK for letter in latin)

@@ -14,7 +14,7 @@ def _limit(value: float, lowest: int) -> int:
 
 
 class _NamedColors(type):
-    """The class `Color`: its colours have names, and a program may name others."""
+    """Metaclass of `Color`, which has named colours as attributes; a program may add others."""
 
     def __getitem__(cls, name: str) -> Any:
         if name not in [*cls]:

@@ -44,13 +44,13 @@ class Light(Connected):
     """The light around the buttons."""
 
     def on(self, color: Enum | None, brightness: int = 100) -> None:
-        """Turn it on in a colour."""
+        """Turn the light on in a colour."""
         if brightness != 100:
             raise refused("the light of the EV3 has one brightness")
         self._shine(*LIGHTS.get(color.name, (0, 0)) if color is not None else (0, 0))
 
     def off(self) -> None:
-        """Turn it off."""
+        """Turn the light off."""
         self._shine(0, 0)
 
     def _shine(self, red: int, green: int) -> None:

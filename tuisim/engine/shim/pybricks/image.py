@@ -49,7 +49,7 @@ MOST_PIXELS = 4_000_000
 
 
 def paint_of(color: Any) -> Paint | None:
-    """Return the paint of a colour; None paints nothing.
+    """Return the paint for a colour; None, which paints nothing, for None.
 
     Raises:
         TypeError: it is no colour.
@@ -62,11 +62,11 @@ def paint_of(color: Any) -> Paint | None:
 
 
 class Canvas(Connected):
-    """Pixels that an image and its parts share.
+    """The pixels that an image shares with the images that are parts of it.
 
     Args:
         width, height: Size in pixels.
-        shown: Whether it is the screen.
+        shown: Whether the canvas is the screen.
     """
 
     def __init__(self, width: int, height: int, shown: bool = False) -> None:
@@ -83,7 +83,7 @@ class Canvas(Connected):
         return pillow.new(MODE, (self.width, self.height), WHITE)
 
     def changed(self) -> None:
-        """Show the screen; an image in memory is only counted as used."""
+        """Display the canvas if it is the screen; otherwise only count a command."""
         session = self.brick.session
         session.command()
         if not self._shown:
@@ -106,7 +106,7 @@ def canvas_of(picture: Picture) -> Canvas:
 
 
 def load(path: str) -> Canvas:
-    """Return what a source of the library names: the screen, one of the brick's images, or a PNG file.
+    """Return the canvas for a source: the screen, one of the brick's images, or a PNG file.
 
     Raises:
         OSError: there is no such file, or it is no image.
@@ -141,7 +141,7 @@ def placeholder(name: str) -> Canvas:
 
 
 def pen_on(picture: Picture) -> ImageDraw:
-    """Return what draws on a picture."""
+    """Return the Pillow object with which to draw on a picture."""
     from PIL import ImageDraw
 
     return ImageDraw.Draw(picture)
@@ -152,7 +152,7 @@ class Image(Connected):
 
     Args:
         source: The path of a PNG file, of which `.png` may be missing, or another image, which is copied.
-        sub: Whether to be a part of the source, with the same pixels.
+        sub: Whether to be a part of the source and share its pixels.
         x1, y1, x2, y2: The first and the last pixel of that part; by default those of the source.
 
     Raises:
@@ -186,7 +186,7 @@ class Image(Connected):
 
     @classmethod
     def _on(cls, canvas: Canvas) -> Image:
-        """Return the image that is a whole canvas."""
+        """Return an image that covers a whole canvas."""
         image: Image = cls.__new__(cls)
         image._set_up(canvas, (0, 0, canvas.width, canvas.height))
         return image
@@ -222,7 +222,7 @@ class Image(Connected):
         return self._box[3] - self._box[1]
 
     def _pixels(self) -> Picture:
-        """Return the pixels: those of the canvas, or a copy of a part."""
+        """Return the pixels: the canvas itself if the image covers it, else a copy of its part."""
         whole_picture = self._canvas.picture
         return (
             whole_picture
@@ -232,7 +232,7 @@ class Image(Connected):
 
     @contextmanager
     def _drawing(self) -> Iterator[tuple[Picture, ImageDraw]]:
-        """Change the pixels, and then show them."""
+        """Yield the pixels and a Pillow object to change them in the block; then show them."""
         picture = self._pixels()
         yield picture, pen_on(picture)
         if picture is not self._canvas.picture:
@@ -242,7 +242,7 @@ class Image(Connected):
     # Drawing
 
     def clear(self) -> None:
-        """Make it white; `print` begins at the top again."""
+        """Make the image white; `print` begins at the top again."""
         with self._drawing() as (picture, _):
             self._wipe(picture)
 
@@ -313,7 +313,7 @@ class Image(Connected):
             )
 
     def load_image(self, source: Image | str, /) -> None:
-        """Clear, and draw an image in the centre."""
+        """Clear this image, and draw another one in its centre."""
         centred = pixels_of(source)
         with self._drawing() as (picture, _):
             self._wipe(picture)
@@ -338,7 +338,7 @@ class Image(Connected):
         text_color: Color | None = Color.BLACK,
         background_color: Color | None = None,
     ) -> None:
-        """Draw a line of text with its top left corner at a point; what is no text is converted as `print` does."""
+        """Draw a line of text with its top left corner at a point; other values are converted as `print` does."""
         with self._drawing() as (_, pen):
             self._write(
                 pen,
@@ -356,7 +356,7 @@ class Image(Connected):
         paint: Paint | None,
         background: Paint | None,
     ) -> int:
-        """Write a line, and return its width in pixels."""
+        """Write a line of text, and return its width in pixels."""
         x, y = place
         width = self._font.text_width(text)
         line = drawable(text)
@@ -381,7 +381,7 @@ class Image(Connected):
                     )
 
     def _scroll(self, picture: Picture) -> None:
-        """Move everything up by what the next line lacks of room."""
+        """Move everything up until the next line has room."""
         missing = self._print_y + self._font.height - self.height
         if missing > 0:
             rest = picture.crop((0, missing, self.width, self.height + missing))
@@ -390,7 +390,7 @@ class Image(Connected):
             self._print_y -= missing
 
     def save(self, filename: str, /) -> None:
-        """Save it as a PNG file; `.png` is appended if it is missing."""
+        """Save the image as a PNG file; `.png` is appended if it is missing."""
         path = text_of(filename)
         self._pixels().save(path if path.endswith(EXTENSION) else f"{path}{EXTENSION}", "PNG")
 
@@ -401,7 +401,7 @@ def pixels_of(source: Image | str) -> Picture:
 
 
 def mask_without(picture: Picture, paint: Paint) -> Picture:
-    """Return a mask of the pixels that have another paint."""
+    """Return a mask of the pixels that do not have this paint."""
     from PIL import Image as pillow
     from PIL import ImageChops
 

@@ -21,7 +21,7 @@ class Ev3devSensor(Sensor):
         """The number of the port's device."""
 
     def read(self, mode: str) -> tuple[int, ...]:
-        """Return the values of a measurement in a mode such as `COL-REFLECT`. Another mode than before costs time.
+        """Return the values of a measurement in a mode such as `COL-REFLECT`. A change of mode costs time.
 
         Raises:
             OSError: the sensor has no such mode.

@@ -14,7 +14,7 @@ Rows = tuple[tuple[float, ...], ...]
 
 
 def _single(value: float) -> float:
-    """Return a number as the hub stores it: with 32 bits."""
+    """Return a number rounded to 32 bits, as the hub stores it."""
     number: float = struct.unpack("f", struct.pack("f", value))[0]
     return number
 

@@ -68,5 +68,5 @@ for _class, _files in ((SoundFile, SOUNDS), (ImageFile, IMAGES)):
 
 
 def name_of(path: str, files: Mapping[str, str]) -> str | None:
-    """Return the name of the constant for a path; None if there is none."""
+    """Return the name of the constant in `files` that has a path; None if there is none."""
     return next((name for name, known in files.items() if known == path), None)

@@ -56,7 +56,7 @@ class Mailbox(Connected):
         return value
 
     def decode(self, payload: Any) -> Any:
-        """Return the value of bytes."""
+        """Return the value that bytes stand for."""
         return payload
 
     def read(self) -> Any:
@@ -65,7 +65,7 @@ class Mailbox(Connected):
         return None if payload is None else self.decode(payload)
 
     def send(self, value: Any, destination: str | None = None) -> None:
-        """Send a value to a brick by its name; to every connected one if that is None."""
+        """Send a value to the brick of a name, or to every connected one for None."""
         self._connection.send_to_mailbox(destination, self.name, self.encode(value))
 
     def wait(self) -> None:
@@ -73,7 +73,7 @@ class Mailbox(Connected):
         self._connection.wait_for_mailbox_update(self.name)
 
     def wait_new(self) -> Any:
-        """Block until a value arrives that is another one than before, and return it."""
+        """Block until a value arrives that differs from the one before, and return it."""
         before = self.read()
         while (value := self._next()) == before:
             pass
@@ -122,7 +122,7 @@ class TextMailbox(Mailbox):
 
 
 class MailboxHandlerMixIn(Connected):
-    """One end of connections, with what has arrived for its mailboxes."""
+    """One end of a Bluetooth connection, with the newest bytes for each of its mailboxes."""
 
     def __init__(self) -> None:
         self._payloads: dict[str, Any] = {}
@@ -130,12 +130,12 @@ class MailboxHandlerMixIn(Connected):
         self._peers: list[tuple[str, MailboxHandlerMixIn]] = []
 
     def read_from_mailbox(self, mbox: str) -> Any:
-        """Return the newest bytes in a mailbox; None before the first."""
+        """Return the newest bytes in a mailbox; None if none have arrived."""
         self.brick.command()
         return self._payloads.get(mbox)
 
     def send_to_mailbox(self, brick: str | None, mbox: str, payload: Any) -> None:
-        """Send bytes to a mailbox of a brick; of every connected one if that is None.
+        """Send bytes to a mailbox of a brick, or of every connected brick for None.
 
         Raises:
             ValueError: no brick of that name is connected.
@@ -149,7 +149,7 @@ class MailboxHandlerMixIn(Connected):
             peer.receive(mbox, payload)
 
     def receive(self, mbox: str, payload: Any) -> None:
-        """Put bytes into a mailbox, and wake those that wait for them."""
+        """Put bytes into a mailbox, and wake the threads that wait for them."""
         self._payloads[mbox] = payload
         self._wake(mbox)
 
@@ -158,7 +158,7 @@ class MailboxHandlerMixIn(Connected):
         self._wait(mbox)
 
     def _wait(self, event: str) -> None:
-        # Not earlier: its functions are patched first.
+        # Imported here and not earlier: its functions must be patched first.
         import _thread
 
         lock = _thread.allocate_lock()
@@ -185,7 +185,7 @@ _CONNECTION = "\0connection"
 
 
 class BluetoothMailboxServer(MailboxHandlerMixIn):
-    """The end that waits for others."""
+    """The end that waits for clients."""
 
     newest: ClassVar[BluetoothMailboxServer | None] = None
     """The server of this program, if it has one."""
@@ -217,7 +217,7 @@ class BluetoothMailboxServer(MailboxHandlerMixIn):
                     _ALONE,
                 )
             else:
-                # Another thread of the program may be about to make the client.
+                # Another thread of the program may create the client soon.
                 session.spend(POLL_MS * MS)
 
     def server_close(self) -> None:
@@ -227,7 +227,7 @@ class BluetoothMailboxServer(MailboxHandlerMixIn):
 
 
 class BluetoothMailboxClient(MailboxHandlerMixIn):
-    """The end that connects to another."""
+    """The end that connects to a server."""
 
     exists: ClassVar[bool] = False
     """Whether the program has made one."""

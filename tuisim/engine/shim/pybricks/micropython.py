@@ -96,7 +96,7 @@ class MicroPythonFinder:
         path: Sequence[str] | None = None,
         target: types.ModuleType | None = None,
     ) -> ModuleSpec | None:
-        """Return how to load a module; None for others."""
+        """Return how to load a module of MicroPython; None for other modules."""
         loader: Any = self
         is_refused = fullname.partition(".")[0] in self._refused
         known = fullname in self._of_python or is_refused
@@ -114,7 +114,7 @@ class MicroPythonFinder:
         )
 
     def exec_module(self, module: types.ModuleType) -> None:
-        """Fill the module with the names of Python's own one."""
+        """Fill the module with the names of Python's own module."""
         if (source := self._of_python.get(module.__name__)) is not None:
             names = vars(import_module(source))
             vars(module).update(
@@ -125,7 +125,7 @@ class MicroPythonFinder:
 
 
 def install(session: DeviceSession) -> None:
-    """Let a program import MicroPython's modules, and add their names to those of Python's modules that it has."""
+    """Let a program import MicroPython's modules; add names that only MicroPython has to Python's modules."""
     for name, more in (
         ("time", clock_names(session)),
         ("gc", GARBAGE),
@@ -141,15 +141,15 @@ def install(session: DeviceSession) -> None:
         names[function] = _lenient(names[function], fitted)
     module = sys.modules["micropython"] = HardwareModule("micropython", _MEMORY)
     vars(module).update(LANGUAGE)
-    # The compiler knows them without an import.
+    # In MicroPython, these names are built in: no import is needed.
     vars(builtins).update(const=LANGUAGE["const"], micropython=module)
-    # What is built in comes before files of the same name.
+    # As on a brick, a built-in module comes before a file of the same name.
     sys.meta_path.insert(0, MicroPythonFinder(OF_PYTHON, BUILT_IN))
     sys.meta_path.append(MicroPythonFinder({}, INSTALLED))
 
 
 def clock_names(session: DeviceSession) -> dict[str, Callable[..., Any]]:
-    """Return the functions that `time` has in MicroPython only; they count simulated time from the start on."""
+    """Return the functions that only MicroPython's `time` has, by name; they count simulated time from the start on."""
     cost = session.sim.spec.profile.clock_read_ns
 
     def counter(tick_ns: int) -> Callable[[], int]:
@@ -183,12 +183,12 @@ def clock_names(session: DeviceSession) -> dict[str, Callable[..., Any]]:
 
 
 def ticks_add(ticks: int, delta: int) -> int:
-    """Return the count that a counter of ticks has later by `delta`."""
+    """Return the value of a counter of ticks when `delta` more ticks have passed."""
     return (operator.index(ticks) + operator.index(delta)) % TICKS_PERIOD
 
 
 def ticks_diff(end: int, start: int) -> int:
-    """Return the ticks from one count to another, at most half a period either way."""
+    """Return how many ticks `end` is after `start`, from minus half a period to half a period."""
     half = TICKS_PERIOD // 2
     return (operator.index(end) - operator.index(start) + half) % TICKS_PERIOD - half
 
@@ -198,7 +198,7 @@ def _unchanged(value: Any) -> Any:
 
 
 def _without_effect(*_given: object) -> None:
-    """Do nothing: what it sets has no effect on a simulated program."""
+    """Do nothing: the setting has no effect on a simulated program."""
 
 
 def _opt_level(level: int | None = None) -> int | None:
@@ -206,7 +206,7 @@ def _opt_level(level: int | None = None) -> int | None:
 
 
 def _lenient(real: Callable[..., Any], fitted: Callable[..., Any]) -> Callable[..., Any]:
-    """Return a function that also takes what only MicroPython's own takes: it is then fitted to Python's."""
+    """Return a function that calls `fitted` if `real`, Python's own function, raises ValueError for the arguments."""
 
     @wraps(real)
     def function(*given: Any, **named: Any) -> Any:
@@ -219,7 +219,7 @@ def _lenient(real: Callable[..., Any], fitted: Callable[..., Any]) -> Callable[.
 
 
 def _named_tuple(name: str, fields: Any, **named: Any) -> type:
-    """Return a named tuple whose names Python does not allow: they are changed."""
+    """Return a named tuple with changed names, in place of names that Python does not allow."""
     return namedtuple("_" + re.sub(r"\W", "_", name.strip()), fields, rename=True, **named)
 
 
@@ -266,14 +266,14 @@ def _print_exception(error: BaseException, file: Any = None) -> None:
 
 
 class _Implementation(types.SimpleNamespace):
-    """What `sys` tells of the interpreter, by name or by place."""
+    """The value of `sys.implementation`, whose fields also have numbers."""
 
     def __getitem__(self, index: int) -> Any:
         return (self.name, self.version)[index]
 
 
 SYSTEM: Mapping[str, Any] = {
-    # The rest stays: Python's import needs it.
+    # Attributes that MicroPython lacks stay, as Python's import needs them.
     "implementation": _Implementation(
         **{**vars(sys.implementation), "name": "pybricks-micropython", "version": (1, 11, 0)}
     ),

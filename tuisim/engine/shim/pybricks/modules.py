@@ -94,7 +94,7 @@ MODULES: Mapping[str, Mapping[str, Any]] = {
 
 
 def _version_4() -> Mapping[str, Mapping[str, Any]]:
-    """Return the names of each module of version 4."""
+    """Return the names in each module of version 4."""
     from tuisim.engine.shim.pybricks import brick_4, matrix, version_4
     from tuisim.engine.shim.pybricks.earlier import EARLIER, EARLIER_MODULES
 
@@ -130,16 +130,17 @@ def _version_4() -> Mapping[str, Mapping[str, Any]]:
 
 
 def _name_later(owner: str, name: str) -> str:
-    """Return that version 4 has an attribute of a class, after a colon; empty if it has not."""
+    """Return a hint, after a colon, that a class of version 4 has an attribute; empty if it has not."""
     later = next((names[owner] for names in _version_4().values() if owner in names), None)
     return ": Pybricks 4 has it, which --profile pybricks4 chooses" if hasattr(later, name) else ""
 
 
 def _choose_names(brick: Brick, law: MotorLaw, hub: str) -> Mapping[str, Mapping[str, Any]]:
-    """Return the names of each module for the robot of a run, and let the brick name those of other versions.
+    """Return the names in each module for a run; also let the brick explain names of other versions.
 
     Args:
-        law: Which version moves the motors.
+        brick: The brick.
+        law: How the motors move, which tells the version of the library.
         hub: The robot's hub; empty for the EV3.
     """
     if not hub:

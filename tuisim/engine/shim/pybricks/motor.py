@@ -30,7 +30,7 @@ PERCENT = FULL_ACTUATION // 100
 
 
 def gear_ratio(gears: Any) -> float:
-    """Return the turns of a motor per turn of what it drives.
+    """Return how often a motor turns for one turn of the part that it drives.
 
     Args:
         gears: None, the teeth of one gear train, or a list of trains.
@@ -56,10 +56,14 @@ def _port(port: Any) -> str:
 
 
 def ending_of(known: Mapping[Any, Ending], then: Any) -> Ending:
-    """Return what a motor does after a move, by the library's name for it.
+    """Return how a move ends, such as holding, for a member of the library's `Stop`.
+
+    Args:
+        known: The endings by member.
+        then: The member.
 
     Raises:
-        TypeError: it is no such name.
+        TypeError: it is no such member.
     """
     if not isinstance(then, Enum) or then not in known:
         raise TypeError(f"a Stop is needed, not {then!r}")
@@ -91,11 +95,11 @@ class DCMotor(Connected):
 
     @property
     def simulated(self) -> ServoMotor:
-        """The motor of the simulation."""
+        """The simulated motor."""
         return self._motor
 
     def tell(self, call: Call, *values: float | None) -> None:
-        """Change the motor or its controller; None is what is not given."""
+        """Pass a call with its values to the simulated motor; None stands for a value that is not given."""
         self.brick.tell(self.brick.session.sim.find_number(self._motor), call, *values)
 
     def _command(self) -> None:
@@ -114,7 +118,7 @@ class DCMotor(Connected):
         self.tell(Call.RUN_FREELY, actuation)
 
     def dc(self, duty: float) -> None:
-        """Run with a power in percent, without control of the speed."""
+        """Run at a power in percent, without control of the speed."""
         self._command()
         self.tell(Call.RUN_FREELY, max(-100, min(100, whole(duty))) * PERCENT)
 
@@ -153,7 +157,7 @@ class Motor(DCMotor):
         return self._motor.control.settings.units(self._motor.find_counts_per_s(now_us))
 
     def reset_angle(self, angle: float | None = None) -> None:
-        """Make the current angle another one; a motion ends there."""
+        """Set the current angle to a value in degrees; a motion ends there."""
         if angle is None:
             raise OSError(
                 errno.EOPNOTSUPP,
@@ -250,7 +254,7 @@ class Motor(DCMotor):
         return None
 
     def _done(self, now_us: int, call: str) -> bool:
-        """Return whether the motor's move is over; say it once if it cannot end."""
+        """Return whether the motor's move is over; tell the user once if something blocks it."""
         motor = self._motor
         if motor.guide is None:
             return True
@@ -259,7 +263,7 @@ class Motor(DCMotor):
         return self.move_done(now_us, motor.control)
 
     def has_let_go(self) -> bool:
-        """Return whether a move is over after which nothing holds the motor."""
+        """Return whether the move is over and nothing holds the motor any more."""
         return self._motor.lets_go and self.move_done(self.brick.now_us, self._motor.control)
 
     def move_done(self, now_us: int, control: Controller) -> bool:
@@ -298,7 +302,7 @@ class Control(Connected):
     """The settings of a controller.
 
     Args:
-        owner: The motor or drive base that it belongs to.
+        owner: The motor or drive base of the controller.
         control: The controller.
     """
 
@@ -307,19 +311,20 @@ class Control(Connected):
         self._control = control
 
     def _change(self, setting: int, value: int) -> None:
-        """Change one setting, by its number."""
+        """Change one setting of the simulated controller, by its number."""
         self._owner.tell(Call.SET_CONTROL, setting, value)
 
     @property
     def scale(self) -> float:
-        """Counts per unit."""
+        """How many counts of the controller are one unit of the program."""
         return self._control.settings.counts_per_unit
 
     def _set(self, *given: tuple[str, Any, int]) -> None:
-        """Change what is given.
+        """Change the settings that the program gives.
 
         Args:
-            given: The name of a setting, the value or None, and what to multiply it by; 0 for counts per unit.
+            given: Each with the name of a setting, its value or None, and a factor for the value; the factor 0 stands
+                for counts per unit.
 
         Raises:
             OSError: a move is under way, or the motor holds.
@@ -397,7 +402,7 @@ class Control(Connected):
     def target_tolerances(
         self, speed: float | None = None, position: float | None = None
     ) -> tuple[int, int] | None:
-        """Return how slow and how near a move must be to be done, or set it."""
+        """Return the tolerances of speed and position within which a move at its target is done, or set them."""
         settings = self._control.settings
         if speed is None and position is None:
             return settings.units(settings.speed_tolerance), settings.units(
@@ -409,7 +414,7 @@ class Control(Connected):
     def stall_tolerances(
         self, speed: float | None = None, time: float | None = None
     ) -> tuple[int, int] | None:
-        """Return how slow and for how long a stalled motor is, or set it."""
+        """Return the speed below which, and the time after which, a motor counts as stalled, or set them."""
         settings = self._control.settings
         if speed is None and time is None:
             return settings.units(settings.stall_speed), settings.stall_time_ms
@@ -437,6 +442,6 @@ class Control(Connected):
         )
 
     def stalled(self) -> bool:
-        """Return whether something keeps the motion from going on."""
+        """Return whether something blocks the motion."""
         self.brick.read("state", *self._owner.port_names)
         return self._control.stalled

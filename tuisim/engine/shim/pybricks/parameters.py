@@ -9,7 +9,7 @@ Members = TypeVar("Members", bound=type[Enum])
 
 
 def shown_by_name(members: Members) -> Members:
-    """Let the members of an enumeration be shown as the firmware shows them."""
+    """Let members of an enumeration be printed as the firmware does, such as `Port.A`; return the enumeration."""
 
     def shown(self: Enum) -> str:
         return f"{type(self).__name__}.{self.name}"

@@ -53,20 +53,20 @@ class DriveBase(Connected):
         self.reset()
 
     def _take_place(self, earlier: DriveBase) -> None:
-        """Take the place of an earlier drive base."""
+        """Take over the motors from an earlier drive base."""
         earlier.stop()
 
     def tell(self, call: Call, *values: float | None) -> None:
-        """Change the drive base or its controllers; None is what is not given."""
+        """Pass a call with its values to the simulated drive base; None stands for a value that is not given."""
         self.brick.tell(self._number, call, *values)
 
     def has_motor(self, motor: Any) -> bool:
-        """Return whether a motor is one of its two."""
+        """Return whether a motor is one of the two of this drive base."""
         return any(ours.simulated is motor.simulated for ours in (self.left, self.right))
 
     @property
     def holds_by_gyro(self) -> bool:
-        """Whether it drives or holds, and a gyro tells it the heading."""
+        """Whether the drive base drives or holds with its heading from the gyro."""
         return self._base.uses_gyro and self._base.active
 
     # Motions
@@ -128,14 +128,14 @@ class DriveBase(Connected):
         self._end(None)
 
     def _end(self, actuation: int | None) -> None:
-        """Stop with a power of the motors: None lets them coast, 0 brakes them."""
+        """End a motion with a power of the motors: None lets them coast, 0 brakes them."""
         self.brick.command()
         self.tell(Call.STOP_BASE, actuation)
 
     # Readings
 
     def _read(self) -> int:
-        """Let the time of a reading of both motors pass, and return the simulated time."""
+        """Let the time of a reading of both motors pass, and return the simulated time in microseconds."""
         return self.brick.read("position", *self.port_names)
 
     def distance(self) -> int:
@@ -154,7 +154,7 @@ class DriveBase(Connected):
         )
 
     def state(self) -> tuple[int, int, int, int]:
-        """Return distance, speed, angle and rate of turn."""
+        """Return distance in mm, speed in mm/s, angle in degrees and rate of turn in degrees per second."""
         now_us = self._read()
         base = self._base
         (distance, angle), (speed, turn_rate) = self._position(now_us), base.find_rates(now_us)
@@ -166,16 +166,16 @@ class DriveBase(Connected):
         )
 
     def reset(self) -> None:
-        """Make the current distance and angle 0."""
+        """Set the current distance and angle to 0."""
         total, difference = self._base.find_millis(self.brick.command())
         self._zeros = round(total / MILLI), round(difference / MILLI)
 
     def has_let_go(self) -> bool:
-        """Return whether a move is over after which nothing holds the motors: each of these holds them."""
+        """Return False: after every move of a drive base, its motors are held."""
         return False
 
     def move_done(self, now_us: int, control: Controller) -> bool:
-        """Return whether one of its controllers has no move under way."""
+        """Return whether a controller of the drive base has no move under way."""
         at = 0 if control is self._base.distance else 1
         return control.done(
             now_us, self._base.find_millis(now_us)[at], self._base.find_rates(now_us)[at]
@@ -190,7 +190,7 @@ class DriveBase(Connected):
         turn_rate: float | None = None,
         turn_acceleration: float | None = None,
     ) -> tuple[int, ...] | None:
-        """Return how it moves in `straight` and `turn`, or set it."""
+        """Return speeds and accelerations of `straight` and `turn`, or set them."""
         base = self._base
         given: tuple[Any, ...] = (
             straight_speed,
@@ -210,7 +210,12 @@ class DriveBase(Connected):
         return None
 
     def _check_setting(self, value: int, at: int) -> int:
-        """Return a setting as it counts, by its number: no more than the motors can do."""
+        """Return a setting limited to what the motors can do.
+
+        Args:
+            value: In units of the program.
+            at: The number of the setting: speed and acceleration of the distance, then of the heading.
+        """
         settings = (self._base.distance if at < 2 else self._base.heading).settings
         return min(value, settings.units(settings.acceleration if at % 2 else settings.speed))
 

@@ -73,7 +73,7 @@ def set_volumes(mixer: Mixer, volumes: Mapping[str, int]) -> None:
 
 
 class Speaker(Connected):
-    """The speaker of the brick. The volume is remembered, and changes nothing that is recorded."""
+    """The speaker of the brick. It stores the volume, which changes nothing that is recorded."""
 
     def __init__(self) -> None:
         self._words_a_minute = START_WORDS_A_MINUTE

@@ -34,18 +34,18 @@ def _until(end_us: int) -> Waiting[None]:
 
 
 def localtime(seconds: float | None = None) -> clock.struct_time:
-    """Return the simulated date and time, or those of a count of seconds."""
+    """Return the simulated date and time, or the date and time of a count of seconds."""
     return clock.localtime(seconds)
 
 
 def ticks_us() -> int:
-    """Return the simulated time in microseconds, from 0 to a period."""
+    """Return the simulated time in microseconds, which starts again from 0 after a period."""
     ticks: int = vars(clock)["ticks_us"]()
     return ticks
 
 
 class StopWatch(Connected):
-    """A stopwatch, which runs at once."""
+    """A stopwatch; it runs from its creation on."""
 
     def __init__(self) -> None:
         self._began_ns = self.brick.session.now
@@ -74,7 +74,7 @@ class StopWatch(Connected):
         )
 
     def reset(self) -> None:
-        """Count from 0, if it is running."""
+        """Set the time to 0; a stopwatch that runs goes on."""
         self._counted_ns, self._began_ns = 0, self.brick.session.now
 
 
@@ -100,7 +100,7 @@ class DataLog(Connected):
             self._write(headers)
 
     def log(self, *values: Any) -> None:
-        """Write one row. Its numbers are samples of the run, too, but for a time, which each sample has."""
+        """Write one row. Its numbers are also samples of the run, except those whose names begin with `time`."""
         self._write(values)
         for at, value in enumerate(values):
             name = self._names[at] if at < len(self._names) else f"value{at + 1}"

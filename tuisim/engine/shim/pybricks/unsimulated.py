@@ -77,7 +77,7 @@ VERSION_4: Mapping[str, tuple[str, ...]] = {
 
 
 class OtherHub:
-    """Refuses to import the modules for the motors and sensors of other hubs; the first finder."""
+    """Refuses, in a run with an EV3, to import the module for devices of hubs; it is the first finder."""
 
     def find_spec(
         self,
@@ -85,25 +85,25 @@ class OtherHub:
         path: Sequence[str] | None = None,
         target: types.ModuleType | None = None,
     ) -> None:
-        """Raise for such a module.
+        """Return None for other modules than that one.
 
         Raises:
-            NotSimulated: it is one; it is an ImportError, too.
+            NotSimulated: it is that module; the error is also an ImportError.
         """
         if fullname == HUB_DEVICES:
             raise _refusal(fullname)
 
 
 def refuse_hub(hub: str, name: str) -> NoReturn:
-    """Raise the error about a name that `pybricks.hubs` does not have here.
+    """Raise the error for a name that `pybricks.hubs` does not have in this run.
 
     Args:
         hub: The hub of the robot; empty for the EV3.
         name: The name.
 
     Raises:
-        NotSimulated: it is that of another hub; it is an ImportError, too.
-        AttributeError: it is none.
+        NotSimulated: it is the name of another hub; the error is also an ImportError.
+        AttributeError: no hub has this name.
     """
     if name in HUBS:
         raise _refusal(f"pybricks.hubs.{name}", hub)
@@ -111,7 +111,12 @@ def refuse_hub(hub: str, name: str) -> NoReturn:
 
 
 def _refusal(name: str, hub: str = "") -> Exception:
-    """Return the error about a name of another hub than that of the robot, which is empty for the EV3."""
+    """Return the error for a name that belongs to another hub than the robot's.
+
+    Args:
+        name: The full name.
+        hub: The robot's hub; empty for the EV3.
+    """
     if hub:
         hint = "a program gets the first hub that it imports, unless -r names a robot"
         return refused_as(ImportError, f"{name}: the hub of this run's robot is {hub}", hint)
@@ -120,11 +125,11 @@ def _refusal(name: str, hub: str = "") -> Exception:
 
 
 def refuse_all(classes: Mapping[str, Sequence[str]], instead: str) -> dict[str, dict[str, Any]]:
-    """Return names of modules that can be imported but not used, by module.
+    """Return classes that can be imported but not used, by module and name.
 
     Args:
-        classes: The names, by module.
-        instead: What a program can use.
+        classes: The names of the classes, by module.
+        instead: What a program can use instead.
     """
     return {
         module: {

@@ -64,11 +64,11 @@ class Display(_OfBrick):
     """The screen."""
 
     def clear(self) -> None:
-        """Make it white."""
+        """Make the screen white."""
         _brick.screen.clear()
 
     def text(self, text: Any, location: tuple[float, float] | None = None) -> None:
-        """Show a line of text at a place, or below the line before."""
+        """Show a line of text at a point, or below the line before."""
         if location is None:
             _brick.screen.print(text)
         else:
@@ -80,7 +80,7 @@ class Display(_OfBrick):
         location_or_alignment: tuple[float, float] | Align = Align.CENTER,
         clear: bool = True,
     ) -> None:
-        """Show an image at a place, after clearing the screen unless told otherwise."""
+        """Show an image at a point or an alignment; clear the screen first unless `clear` is False."""
         screen = _brick.screen
         source = Image(file_name)
         place = location_or_alignment

@@ -82,7 +82,7 @@ class Motor(motor.Motor):
         self.control = Control(self, self._motor.control)
 
     def _command(self) -> None:
-        """Count a command; a drive base that moves or holds the motor lets go of both of its motors."""
+        """Count a command; if a drive base moves or holds the motor, it lets both of its motors coast."""
         self.brick.command()
         guide = self._motor.guide
         if guide is not None and not self._motor.follows_itself and DriveBase.current is not None:
@@ -110,7 +110,10 @@ class Motor(motor.Motor):
     """The angle that the program has made of the mark on the shaft, at which the motor began."""
 
     def reset_angle(self, angle: float | None = None) -> None:
-        """Make the current angle another one; by default that from the mark on a hub motor's shaft."""
+        """Set the current angle to a value in degrees.
+
+        By default, it is the angle from the mark on the shaft, which the motor of a hub knows.
+        """
         if angle is None and self.brick.session.sim.spec.robot.hub:
             angle = (self.angle() - self._zero_deg + 180) % 360 - 180
         if angle is not None:
@@ -128,7 +131,7 @@ class Motor(motor.Motor):
         return self.move_done(self.brick.read("state", *self.port_names), self._motor.control)
 
     def stalled(self) -> bool:
-        """Return whether something keeps the motor from going on."""
+        """Return whether something blocks the motor."""
         self.brick.read("state", *self.port_names)
         return self._motor.control.stalled
 
@@ -148,7 +151,7 @@ class Motor(motor.Motor):
         return None
 
     def close(self) -> None:
-        """Let the motor coast, and a drive base do without it."""
+        """Let the motor coast, and free it for another drive base."""
         self.stop()
         if DriveBase.current is not None and DriveBase.current.has_motor(self):
             robotics.DriveBase.current = None
@@ -235,11 +238,11 @@ class DriveBase(robotics.DriveBase):
         return self._move(whole(distance), 0, "straight()", ending_of(ENDINGS, then), wait=wait)
 
     def move_by(self, dx: float, dy: float, then: Stop = Stop.HOLD) -> None:
-        """Turn to the direction of a place, and drive there.
+        """Turn to the direction of a point, and drive there.
 
         Args:
-            dx, dy: How far the place is in mm: where the heading is 0, and to the left of that.
-            then: How it ends.
+            dx, dy: How far the point is in mm, along heading 0 and to the left of that.
+            then: What the motors do at the end.
         """
         return self.brick.finish(self._move_by(whole(dx), whole(dy), then))
 
@@ -249,7 +252,7 @@ class DriveBase(robotics.DriveBase):
         yield from self._wait_for(lambda: self.straight(distance, then))
 
     def _wait_for(self, move: Callable[[], Any]) -> Waiting[None]:
-        """Begin a move, and wait for its end as a task does."""
+        """Begin a move as in a task, and wait for its end."""
         brick = self.brick
         in_task = self.brick.in_task
         brick.in_task = True
@@ -262,14 +265,14 @@ class DriveBase(robotics.DriveBase):
     def turn(
         self, angle: float, then: Stop = Stop.HOLD, wait: bool = True, absolute: bool = False
     ) -> None:
-        """Turn by an angle in degrees, clockwise; `absolute`: to an angle."""
+        """Turn by an angle in degrees, clockwise; with `absolute`, turn to that heading."""
         by: float = whole(angle)
         if absolute:
             by = (by - self.angle() + 180) % 360 - 180
         return self._move(0, by, "turn()", ending_of(ENDINGS, then), wait=wait)
 
     def curve(self, radius: float, angle: float, then: Stop = Stop.HOLD, wait: bool = True) -> None:
-        """Drive along an arc by an angle; a negative radius turns the other way."""
+        """Drive along an arc by an angle in degrees; a negative radius turns the other way."""
         turned = -whole(angle) if radius < 0 else whole(angle)
         return self._move(
             whole(radius) * radians(abs(whole(angle))),
@@ -287,7 +290,7 @@ class DriveBase(robotics.DriveBase):
         then: Stop = Stop.HOLD,
         wait: bool = True,
     ) -> None:
-        """Drive along an arc by an angle or a distance; a negative radius turns the other way."""
+        """Drive along an arc by an angle in degrees or a distance in mm; a negative radius turns the other way."""
         if (angle is None) == (distance is None):
             raise ValueError("Please specify distance or angle but not both.")
         if abs(whole(radius)) < MIN_RADIUS_MM:
@@ -303,7 +306,7 @@ class DriveBase(robotics.DriveBase):
         return round_number(counts / base.heading.settings.counts_per_unit)
 
     def use_gyro(self, use_gyro: bool) -> None:
-        """Let the gyro of the hub tell the heading, or the wheels; a change lets the motors coast."""
+        """Take the heading from the hub's gyro, or from the wheels for False; a change lets the motors coast."""
         if not self.brick.session.sim.spec.robot.hub:
             raise refused("the EV3 has no gyro inside")
         if bool(use_gyro) != self._base.uses_gyro:
@@ -318,7 +321,7 @@ class DriveBase(robotics.DriveBase):
         turn_rate: Any = None,
         turn_acceleration: Any = None,
     ) -> tuple[Any, ...] | None:
-        """Return how it moves, or set it; an acceleration may be a pair: that of the start and that of the stop."""
+        """Return speeds and accelerations, or set them; an acceleration may be a pair, for the start and the stop."""
         values = straight_speed, straight_acceleration, turn_rate, turn_acceleration
         pairs = [value if isinstance(value, tuple) else (value, value) for value in values]
         current = super().settings(*(first for first, _ in pairs))
@@ -366,7 +369,7 @@ class DriveBase(robotics.DriveBase):
         return self._base.stalled
 
     def reset(self, distance: float = 0, angle: float = 0) -> None:
-        """Make the current distance and angle other ones."""
+        """Set the current distance in mm and angle in degrees."""
         self.stop()
         super().reset()
         total, difference = self._zeros
@@ -378,7 +381,7 @@ class DriveBase(robotics.DriveBase):
 
 
 class GyroDriveBase(DriveBase):
-    """A drive base that the gyro tells the heading, as some beta versions named it."""
+    """A drive base that takes its heading from the gyro; some beta versions of the library have this name."""
 
     def __init__(self, *given: Any, **named: Any) -> None:
         super().__init__(*given, **named)
@@ -410,20 +413,20 @@ class GyroSensor(EarlierGyroSensor):
     """A gyro."""
 
     def calibrate(self) -> None:
-        """Calibrate it: the angle is 0 then."""
+        """Calibrate the gyro, which sets the angle to 0."""
         self.reset_angle(0)
 
 
 class StopWatch(EarlierStopWatch):
-    """A stopwatch, which runs at once."""
+    """A stopwatch; it runs from its creation on."""
 
     def running(self) -> bool:
-        """Return whether it counts."""
+        """Return whether the stopwatch counts."""
         return self._runs
 
 
 def read_input_byte(last: bool = False, chr: bool = False) -> int | str | None:  # noqa: A002
-    """Return a byte that a computer has sent: there is none."""
+    """Return None: no computer sends bytes to a simulated hub."""
     Connected.brick.command()
     return None
 
@@ -432,7 +435,11 @@ def read_input_byte(last: bool = False, chr: bool = False) -> int | str | None: 
 
 
 def _steps(task: Any) -> Waiting[Any]:
-    """Return what yields the times until which a task waits."""
+    """Return an iterator over the times until which a task waits.
+
+    Raises:
+        TypeError: it is no task.
+    """
     if hasattr(task, "send"):
         return task  # type: ignore[no-any-return]
     if hasattr(task, "__await__"):
@@ -441,7 +448,11 @@ def _steps(task: Any) -> Waiting[Any]:
 
 
 def run_task(task: Any = None) -> Any:
-    """Run a task to its end; without one, return whether a task runs."""
+    """Run a task to its end and return None; without a task, return whether one runs.
+
+    Raises:
+        RuntimeError: a task runs already.
+    """
     brick = Connected.brick
     if task is None:
         return brick.in_task
@@ -456,7 +467,7 @@ def run_task(task: Any = None) -> Any:
 
 
 class multitask:  # noqa: N801 - as the library names it
-    """Runs several tasks at once: what a task awaits."""
+    """Runs several tasks at once when a task awaits it."""
 
     def __init__(self, *tasks: Any, race: bool = False) -> None:
         self._tasks = [_steps(task) for task in tasks]

@@ -27,7 +27,7 @@ class Motor(motor.Motor):
                 raise _invalid_stop()
 
     def stalled(self) -> bool:
-        """Return whether something keeps the motion from going on."""
+        """Return whether something blocks the motion."""
         return self.control.stalled()
 
     def set_run_settings(self, max_speed: float, acceleration: float) -> None:
@@ -35,7 +35,7 @@ class Motor(motor.Motor):
         self.control.limits(max_speed, acceleration)
 
     def set_dc_settings(self, duty_limit: float, duty_offset: float) -> None:
-        """Set the highest power and the one that is added, in percent."""
+        """Set the highest power, and the power that the controller adds, in percent."""
         self.control.limits(actuation=duty_limit)
         self.control.pid(feed_forward=duty_offset)
 

@@ -12,7 +12,7 @@ MAX_DARK_VALUE = 1
 
 
 def measure_hsv(red: int, green: int, blue: int) -> tuple[int, int, int]:
-    """Return hue, saturation and value of channels from 0 to 1024, as the firmware computes them."""
+    """Return hue, saturation and value of red, green and blue from 0 to 1024, as the firmware computes them."""
     channels = [channel / 4 for channel in (red, green, blue)]
     brightest = max(channels)
     chroma = brightest - min(channels)
@@ -35,7 +35,7 @@ def measure_hsv(red: int, green: int, blue: int) -> tuple[int, int, int]:
 
 
 def find_nearest(measured: tuple[int, int, int], colors: Sequence[Any]) -> Any:
-    """Return the nearest of colours to a hue, a saturation and a value."""
+    """Return the colour that is nearest to a measured hue, saturation and value."""
     hue, saturation, value = measured
     if not all(_is_ideal(color) for color in colors):
         return min(colors, key=lambda color: _measure_distance(measured, (*color,)))

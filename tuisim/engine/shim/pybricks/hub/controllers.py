@@ -23,7 +23,7 @@ FULL = 100
 
 
 class Controller(Connected):
-    """What the hub is connected to by radio."""
+    """A remote control or game controller that is connected to the hub by radio."""
 
     PORT: ClassVar[str]
     LEDS: ClassVar[Sequence[str]]
@@ -48,7 +48,7 @@ class Controller(Connected):
         self._face.shine(self.COLOR if is_connected else None, self.LEDS)
 
     def check(self) -> None:
-        """Check that it is connected.
+        """Check that the controller is connected.
 
         Raises:
             OSError: it is not.
@@ -59,11 +59,11 @@ class Controller(Connected):
             )
 
     def connect(self) -> None:
-        """Connect it again."""
+        """Connect the controller again."""
         return self.brick.finish(self._change(True))
 
     def disconnect(self) -> None:
-        """Disconnect it."""
+        """Disconnect the controller."""
         return self.brick.finish(self._change(False))
 
     def _change(self, is_connected: bool) -> Waiting[None]:
@@ -92,12 +92,12 @@ class RemoteLight(Connected):
         self._face = face
 
     def on(self, color: Any) -> None:
-        """Turn it on in a colour."""
+        """Turn the light on in a colour."""
         self._remote.check()
         self._face.shine(color, REMOTE_LIGHT_NAMES)
 
     def off(self) -> None:
-        """Turn it off."""
+        """Turn the light off."""
         self.on(None)
 
 
@@ -114,7 +114,7 @@ class Remote(Controller):
         self.light = RemoteLight(self, self._face)
 
     def name(self, name: str | None = None) -> str | None:
-        """Return its name, or set it."""
+        """Return the name of the remote control, or set it."""
         return self.brick.finish(self._rename(name))
 
     def _rename(self, name: str | None) -> Waiting[str | None]:
@@ -173,12 +173,12 @@ class XboxController(Controller):
         return DPAD.index(self._find_direction("dpad"))
 
     def profile(self) -> int:
-        """Return the chosen profile: 0, that of a controller without any."""
+        """Return the chosen profile: 0, as a controller without profiles does."""
         self.check()
         return 0
 
     def name(self) -> str:
-        """Return its name."""
+        """Return the name of the controller."""
         return self._name
 
     def rumble(
@@ -188,7 +188,7 @@ class XboxController(Controller):
         count: int = 1,
         delay: int = 100,
     ) -> None:
-        """Shake, which nothing shows."""
+        """Let the controller vibrate, which nothing shows here."""
         self.check()
         for number in (duration, count, delay):
             whole(number)

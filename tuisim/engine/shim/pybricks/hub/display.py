@@ -27,20 +27,20 @@ PLACES: Mapping[Side, Callable[[int, int], tuple[int, int]]] = {
 
 
 def _spread_bits(rows: Iterable[int], columns: int = SIDE_PIXELS) -> list[list[int]]:
-    """Return 0 or 100 for each pixel of rows that are numbers, whose highest bit is on the left."""
+    """Return brightnesses, 0 or 100, for the bits of numbers: a row for each number, its highest bit on the left."""
     return [[100 * (row >> columns - 1 - column & 1) for column in range(columns)] for row in rows]
 
 
 def _read_picture(picture: str, columns: int = SIDE_PIXELS) -> list[list[int]]:
-    """Return the pixels of one of `pictures`, row by row."""
+    """Return the brightnesses, row by row, of one of `pictures`: a digit to the base 32 for each row."""
     return _spread_bits((int(digit, 32) for digit in picture), columns)
 
 
 class Icon:
-    """Pictures for the matrix; `Icon(bits)` makes one from 25 bits, that of the upper left corner first."""
+    """Pictures for the matrix; `Icon(bits)` makes one from 25 bits, of which the highest is the upper left pixel."""
 
     def __new__(cls, bits: int) -> Any:
-        """Return a picture."""
+        """Return a picture as a matrix of brightnesses."""
         return Matrix(
             _spread_bits(bits >> SIDE_PIXELS * (LAST - row) for row in range(SIDE_PIXELS))
         )
@@ -97,7 +97,7 @@ class Display(Connected):
         self._show(DARK)
 
     def pixel(self, row: int, column: int, brightness: float = 100) -> None:
-        """Turn one pixel on."""
+        """Set the brightness of one pixel, in percent."""
         if 0 <= whole(row) <= LAST and 0 <= whole(column) <= LAST:
             pixels = [*self._pixels]
             pixels[SIDE_PIXELS * whole(row) + whole(column)] = whole(brightness)
@@ -148,7 +148,7 @@ class Menu(Connected):
     """A menu on the matrix.
 
     Args:
-        display: Shows it.
+        display: Shows the menu.
     """
 
     current: Menu | None = None
@@ -188,10 +188,10 @@ class Menu(Connected):
 
 
 def hub_menu(*symbols: Any) -> Any:
-    """Let the user choose a symbol, a character or a number, by the left, right and centre buttons.
+    """Let the user choose a symbol, a character or a number, with the left, right and centre buttons, and return it.
 
     Raises:
-        ValueError: there are fewer than two.
+        ValueError: there are fewer than two symbols.
         RuntimeError: a task runs, or there is no hub yet.
     """
     if Connected.brick.in_task or Menu.current is None:

@@ -16,14 +16,19 @@ DARK: Pixels = (0,) * SIDE_PIXELS**2
 
 
 class Face(Connected):
-    """The LEDs of the hub, and of what is connected to it."""
+    """The LEDs of the hub and of the controllers that are connected to it."""
 
     def shine(self, color: Any, names: Sequence[str] = HUB_LIGHT_NAMES) -> None:
-        """Show a colour on the status light, or on the LEDs of another one; None for darkness."""
+        """Show a colour, or darkness for None.
+
+        Args:
+            color: The colour.
+            names: The LEDs: by default those of the status light.
+        """
         self._show(dict(zip(names, (0, 0, 0) if color is None else color.rgb, strict=True)))
 
     def draw(self, pixels: Pixels) -> None:
-        """Show a picture on the matrix."""
+        """Show a picture on the matrix of lights."""
         levels = (max(0, min(100, value)) * MAX_BRIGHTNESS // 100 for value in pixels)
         self._show(dict(zip(PIXEL_NAMES, levels, strict=True)))
 

@@ -29,20 +29,20 @@ class Charger(Connected):
     """The charger, which is not connected."""
 
     def connected(self) -> int:
-        """Return the kind of the USB port that it is connected to: none."""
+        """Return the kind of the USB port to which the charger is connected: none."""
         return 0
 
     def status(self) -> int:
-        """Return its state: it does not charge."""
+        """Return the state of the charger: it does not charge."""
         return 0
 
     def current(self) -> int:
-        """Return its current in mA."""
+        """Return the current of the charger in mA."""
         return 0
 
 
 class Hub(Connected):
-    """Any hub."""
+    """Base of the classes of all hubs."""
 
     BUTTONS: tuple[str, ...] = ("enter",)
     SENSES: ClassVar[type[Accelerometer]] = IMU
@@ -74,7 +74,7 @@ class PrimeHub(Hub):
 
     def __init__(self, *given: Any, **named: Any) -> None:
         super().__init__(*given, **named)
-        # Only a hub with a single button has it by this name, too.
+        # The attribute `button` is for hubs with a single button.
         del self.button
         self.speaker, self.charger = Speaker(), Charger()
         self.display = Display(self._face)

@@ -32,10 +32,10 @@ class Accelerometer(Connected):
     """The accelerometer of a hub.
 
     Args:
-        top, front: Along which axes of the robot the hub's top and its front point; they are perpendicular.
+        top, front: The axes of the robot along which the top and the front of the hub point; they are perpendicular.
 
     Raises:
-        ValueError: they are not.
+        ValueError: the axes are not perpendicular.
     """
 
     def __init__(self, top: Matrix, front: Matrix) -> None:
@@ -65,7 +65,7 @@ class Accelerometer(Connected):
         return 0.0, 0.0
 
     def acceleration(self, axis: Matrix | None = None, calibrated: bool = True) -> Any:
-        """Return the acceleration in mm/s² along an axis, or all three."""
+        """Return the acceleration in mm/s² along an axis; without an axis, along all three."""
         self._read("TILT-ANG")
         return _along(axis, vector(0, 0, GRAVITY_MM_S2))
 
@@ -84,16 +84,16 @@ class IMU(Accelerometer):
 
     @property
     def _rate_dps(self) -> float:
-        """Counter-clockwise."""
+        """Return the rate of turn in degrees per second, counter-clockwise."""
         return self.brick.session.sim.build_instant().turn_rate_dps
 
     def heading(self) -> float:
-        """Return the heading in degrees, clockwise, not wrapped."""
+        """Return the heading in degrees, clockwise; it goes on beyond 360."""
         self._read()
         return round_number(self._heading)
 
     def reset_heading(self, angle: float) -> None:
-        """Make the current heading another one.
+        """Set the current heading to a value in degrees.
 
         Raises:
             OSError: a drive base drives or holds by the gyro.
@@ -105,7 +105,7 @@ class IMU(Accelerometer):
         self.brick.tell(0, Call.SET_GYRO, angle)
 
     def ready(self) -> bool:
-        """Return whether the gyro is calibrated: it was, before the program began."""
+        """Return whether the gyro is calibrated: True, as it was calibrated before the program began."""
         self._read()
         return True
 
@@ -116,7 +116,7 @@ class IMU(Accelerometer):
         return abs(self._rate_dps) < STILL_DPS and not any(motor.speed_dps for motor in motors)
 
     def angular_velocity(self, axis: Matrix | None = None, calibrated: bool = True) -> Any:
-        """Return the rate of turn in degrees per second about an axis, or all three."""
+        """Return the rate of turn in degrees per second about an axis; without an axis, about all three."""
         self._read("GYRO-RATE")
         return _along(axis, vector(0, 0, self._rate_dps))
 
@@ -126,7 +126,7 @@ class IMU(Accelerometer):
         return _along(axis, vector(0, 0, -self._heading))  # type: ignore[no-any-return]
 
     def orientation(self) -> Matrix:
-        """Return how the robot is turned: the directions of its axes, as columns."""
+        """Return the rotation of the robot as a matrix whose columns are the directions of the robot's axes."""
         self._read()
         angle = -radians(self._heading)
         return Matrix([[cos(angle), -sin(angle), 0], [sin(angle), cos(angle), 0], [0, 0, 1]])
@@ -140,7 +140,7 @@ class IMU(Accelerometer):
         angular_velocity_scale: Any = None,
         acceleration_correction: Any = None,
     ) -> tuple[Any, ...] | None:
-        """Return the thresholds of rest and the corrections, or set them, which changes nothing else.
+        """Return the thresholds of rest and the corrections, or set them; setting them changes no measurement.
 
         Raises:
             ValueError: the correction of the heading is far from a whole turn.

@@ -23,7 +23,7 @@ REFUSED: Mapping[str, tuple[str, ...]] = {
 
 
 def find_names(hub: str) -> Mapping[str, Mapping[str, Any]]:
-    """Return the names of each module, for one of `engine.core.spec.HUBS`."""
+    """Return the names in each module of the library for a hub, which is one of `engine.core.spec.HUBS`."""
     hub_class = hubs.CLASSES[hub]
     own = {name: known for name, known in hubs.CLASSES.items() if known is hub_class}
     names: dict[str, dict[str, Any]] = {

@@ -42,7 +42,7 @@ class Sensor(Connected):
         self._sensor = sensor
 
     def _read(self, mode: str, convert: Callable[[], Result]) -> Result:
-        """Measure in a mode, and return what the measurement says; in a task, what the task awaits."""
+        """Measure in a mode and return the converted result; in a task, an object to await."""
         return self.brick.finish(self._measure(mode, convert))
 
     def _measure(self, mode: str, convert: Callable[[], Result]) -> Waiting[Result]:
@@ -60,11 +60,11 @@ class Lights(Connected):
     """The lights around the eye of a sensor, which nothing shows."""
 
     def on(self, brightness: Any = 100) -> None:
-        """Turn them on: one brightness in percent, or one for each."""
+        """Turn the lights on: one brightness in percent for all, or one for each."""
         return self.brick.finish(self._wait())
 
     def off(self) -> None:
-        """Turn them off."""
+        """Turn the lights off."""
         return self.brick.finish(self._wait())
 
     def _wait(self) -> Waiting[None]:
@@ -96,7 +96,7 @@ class ColorSensor(Sensor):
         return self._read("RGB-RAW", lambda: sum(self._raw()) * 100 // (3 * RAW_WHITE))
 
     def ambient(self) -> int:
-        """Return the light around in percent."""
+        """Return the ambient light in percent."""
         return self._read("COL-AMBIENT", lambda: self._sensor.modes["COL-AMBIENT"].measure()[0])
 
     def hsv(self, surface: bool = True) -> Any:
@@ -133,12 +133,12 @@ class UltrasonicSensor(Sensor):
         )
 
     def presence(self) -> bool:
-        """Return whether another such sensor is heard."""
+        """Return whether the sensor hears another ultrasonic sensor."""
         return self._read("US-LISTEN", lambda: bool(self._sensor.modes["US-LISTEN"].measure()[0]))
 
 
 class ForceSensor(Sensor):
-    """A force sensor: nothing or an obstacle presses it, with all its force."""
+    """A force sensor, which is pressed with its full force or not at all."""
 
     KIND = "touch"
 
@@ -156,9 +156,9 @@ class ForceSensor(Sensor):
         return self._push(MAX_PRESS_MM, 0.0)
 
     def pressed(self, force: float = 3) -> bool:
-        """Return whether it is pressed with a force in N, or more."""
+        """Return whether the sensor is pressed with at least this force in N."""
         return self._push(force <= MAX_FORCE_N, force <= 0)
 
     def touched(self) -> bool:
-        """Return whether it is touched."""
+        """Return whether the sensor is touched."""
         return self._push(True, False)
