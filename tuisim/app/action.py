@@ -314,7 +314,7 @@ _KEYS_OF_FIELDS = {"esc": "escape"}
 
 
 class KeyFooter(ActionWords):
-    """The bottom row of the screen."""
+    """The bottom row of the screen: the keys that work now, and the state of the run."""
 
     DEFAULT_CSS = "KeyFooter { dock: bottom; height: 1; }"
     COMPONENT_CLASSES: ClassVar[set[str]] = {"footer--key", "footer--status", "footer--failed"}

@@ -152,7 +152,7 @@ class AppSettings:
 
 
 class LabApp(PanelMessages):
-    """The robot lab.
+    """The app with the robot lab: panels, keys, and one run at a time.
 
     Args:
         settings: What the command line decided.

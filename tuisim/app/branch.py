@@ -69,7 +69,7 @@ class Branch:
 
     @property
     def tags(self) -> tuple[str, str]:
-        """The title as tags of the run."""
+        """The tags of the new run: from which run it branched off, and when."""
         return f"{BRANCH_TAG}{self.of.number or self.of.run_id}", f"at-{self.time_s:.2f}s"
 
     @property

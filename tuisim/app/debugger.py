@@ -201,7 +201,7 @@ class DebugController:
     # What comes from the run
 
     def run_changed(self) -> None:
-        """Reset the state for another run, or none."""
+        """Reset the state because there is another run, or none any more."""
         self._app.notices.release()
         self._paused = self.position = self.view = self._run_controller.paused_line = None
         self._run_controller.chosen_line = None

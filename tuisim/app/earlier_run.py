@@ -46,7 +46,7 @@ def find_similar_run(program: Program, spec: RunSpec) -> StoredRun | None:
 
 
 def _load_runs(program: Program, before: str) -> Iterator[StoredRun]:
-    """Yield the stored runs of a program file before one with an id, the newest first; empty means all."""
+    """Yield the stored runs of a program file, the newest first: those before the run `before`, all if it is empty."""
     from tuisim.engine.runs.store import RunStore
 
     store = RunStore()

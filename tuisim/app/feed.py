@@ -212,14 +212,14 @@ class PanelFeed:
             self.add_rows([*recording.rows.rows(0)])
 
     def add_rows(self, rows: list[OutputRow]) -> None:
-        """Pass on what the program has written."""
+        """Pass rows that the program has written on to the output, and to the chart if it is on the screen."""
         if output := self._panel_area.output:
             output.add(rows)
         self._uncharted += rows
         self._send_rows()
 
     def _send_rows(self) -> None:
-        """Pass on what has been written, if the chart is on the screen."""
+        """Pass the rows that have been written on to the chart, if it is on the screen."""
         if self._uncharted and self._panel_area.is_shown("chart"):
             self._append(sample_series(self._uncharted), logged=True)
             self._uncharted.clear()

@@ -71,7 +71,7 @@ def key_of(text: str, at: Location) -> str:
 def apply_keys(
     actions: Mapping[str, Action[Host, Now]], config: UserConfig
 ) -> dict[str, Action[Host, Now]]:
-    """Return a table of keys with the user's own.
+    """Return a table of keys in which the user's own replace the usual ones.
 
     Raises:
         ConfigError: an id or a key does not exist, or a key belongs to two actions.

@@ -380,7 +380,7 @@ class Loader:
                 self.reload(path)
 
     def reload(self, path: Path) -> None:
-        """Reload a file."""
+        """Read a file again that has changed on disk, and apply it; errors are shown."""
         try:
             known = self._read_again(path)
         except TuisimError as error:

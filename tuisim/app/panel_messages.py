@@ -49,7 +49,7 @@ def has_button_calls(program: str) -> bool:
 
 
 def _find_typing_room(area: PanelArea) -> tuple[int, int]:
-    """Return the columns and rows that are room enough in the code panel for typing."""
+    """Return the columns and rows that the code panel needs while the user types in it."""
     if area.is_shown("lesson"):
         return _LESSON_COLUMNS, ROOMY_ROWS
     is_wide = area.is_shown("world") and area.size.width >= EDITOR_COLS + DISCS_COLS

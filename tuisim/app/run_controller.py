@@ -97,7 +97,7 @@ def _build_key(record: TickRecord) -> tuple[int, int]:
 
 
 class RunController:
-    """The current run, or the robot before a run.
+    """Starts runs and sends them commands; has the current run, or the robot before a run.
 
     Args:
         program: The program that runs next; None for none yet.

@@ -239,7 +239,7 @@ def find(
     """Return the tick that an expression means, relative to the instant in view.
 
     Args:
-        text: One of `list_forms`.
+        text: An expression in one of the forms of `list_forms`.
         timeline: The run, and the instant in view.
         mat: The run's mat, which readings are taken from; None if there is none yet.
         first_at_end: Whether a search at the newest instant, after which there is nothing, begins at the start of the

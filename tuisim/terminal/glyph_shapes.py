@@ -175,7 +175,7 @@ def _draw_arms(arms: Mapping[str, str], width: int, height: int, thick: int) -> 
     }
 
     def find_edges(sides: tuple[str, str], axis: str) -> tuple[int, int]:
-        """Return where the lines of two opposite arms begin and end across."""
+        """Return the start and the end of the lines of two opposite arms, across these lines."""
         lines = [strip for side in sides if side in arms for strip in strips[arms[side]]] or [
             (0, thick)
         ]

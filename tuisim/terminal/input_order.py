@@ -239,7 +239,7 @@ class InputOrder:
         return not self._held and self._turn is None
 
     async def take(self, event: events.Event) -> None:
-        """Give out an event, or hold it until those before it have had their turn."""
+        """Handle an event, or hold it until the events before it have had their turn."""
         if (
             self._held
             and isinstance(event, events.MouseMove)

@@ -28,7 +28,7 @@ class Throttle:
         self._timer: Timer | None = None
 
     def ask(self, at_once: bool = False) -> None:
-        """Call the function now if the last call is at least a period ago, or `at_once`; else as soon as it is."""
+        """Call the function if the last call is at least a period ago, or `at_once`; else at the end of the period."""
         if at_once:
             self.call_now()
             return

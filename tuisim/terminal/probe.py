@@ -50,7 +50,7 @@ Version = tuple[int, ...]
 
 @dataclass(frozen=True, slots=True)
 class Drawn:
-    """Since which version a terminal draws glyphs itself."""
+    """The versions since which a terminal draws sextants and octants itself, without a font."""
 
     sextants: Version
     octants: Version | None
@@ -206,7 +206,7 @@ def _may_be_utf8(environment: Mapping[str, str]) -> bool:
 
 
 def read_first_environment() -> Mapping[str, str]:
-    """Return the environment that this process was started with, where the system tells."""
+    """Return the environment that this process was started with; the present one if the system does not tell."""
     try:
         entries = Path("/proc/self/environ").read_bytes().split(b"\0")
     except OSError:

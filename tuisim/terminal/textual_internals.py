@@ -368,7 +368,7 @@ def replace_write(driver: Driver, write: Callable[[bytes], int]) -> None:
 
 
 def find_bindings(node: DOMNode) -> BindingsMap:
-    """Return the keys of a node, to be changed."""
+    """Return the bindings of a node's keys, which may be changed."""
     return getattr(node, "_bindings", None) or BindingsMap()
 
 

@@ -25,7 +25,7 @@ MANY_TICKS = 10
 
 
 def go_to_tick(context: ActionContext, tick: int | None) -> None:
-    """Show a tick of the run, and pause a running program; None shows the newest instant.
+    """Show a tick of the run, and pause a running program; None, or a tick beyond the newest, shows the newest instant.
 
     If the mat was changed since the run, only a notice appears.
     """
@@ -237,7 +237,7 @@ def propose_branch(
 
     Args:
         context: The parts of the app.
-        then: The user's action there; None to change nothing but perhaps the program.
+        then: A change by the user at that instant, such as another pose; None for none but perhaps an edited program.
         restart: Whether the dialog also offers to run the program from its start.
     """
     from tuisim.app.dialogs.question import BRANCH, RESTART, BranchQuestion

@@ -83,7 +83,7 @@ Item = TypeVar("Item")
 
 
 class _LazyRows(Sequence[Cells], Generic[Item]):
-    """Rows that are created on access: a long log has a hundred thousand bands or events."""
+    """Rows that are created on access, as a long log has a hundred thousand bands or events."""
 
     def __init__(self, items: Sequence[Item], row: Callable[[Item], Cells]) -> None:
         self._items = items

@@ -151,7 +151,7 @@ class PreviewDialog(Dialog[ReadChoices]):
         return "\n".join(self._log.notes)
 
     def _list_offers(self, name: str) -> Offers:
-        """Return the options of a choice; the first one leaves it to the reader to find the value."""
+        """Return the options of a choice; the first one lets the app find the value in the file."""
         chosen = getattr(self._choices, name)
         offers = self._list_words(name)
         usual = getattr(NO_CHOICES, name)
@@ -176,7 +176,7 @@ class PreviewDialog(Dialog[ReadChoices]):
                 return [(_EXAMPLES.get(word, word), word) for word in WORDS[name]]
 
     def _find_word(self, name: str) -> str:
-        """Return the value that the reader found for a choice, as a label; empty if it found none."""
+        """Return the value that was found in the file for a choice, as a label; empty if none was found."""
         layout = self._log.layout
         form = self._log.form
         match name:

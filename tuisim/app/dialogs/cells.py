@@ -87,7 +87,7 @@ class _TestCard(PixelView):
         self.draw_picture()
 
     def draw_picture(self) -> None:
-        """Draw it for the current size."""
+        """Draw the test picture for the current size."""
         cell = self.choose_cell(None)
         if self.size.width and self.size.height:
             self.set_fine_picture(

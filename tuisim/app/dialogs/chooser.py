@@ -55,7 +55,7 @@ MAX_TRIED = 50
 
 @dataclass(frozen=True, slots=True)
 class ChoiceGroup:
-    """A part of the list."""
+    """A part of a list of choices, with a title."""
 
     title: str
     entries: Sequence[tuple[str, str, str]]

@@ -130,7 +130,7 @@ class RobotPicture(PixelView):
         self.draw_picture()
 
     def draw_picture(self) -> None:
-        """Draw it for the current size."""
+        """Draw the robot for the current size."""
         if self._find_robot is None:
             self.clear_picture()
         elif self.size:
@@ -159,7 +159,7 @@ class RobotParts(LinesPanel):
         self._lines: list[Line] = []
 
     def show(self, lines: list[Line]) -> None:
-        """Show some lines."""
+        """Show lines, one for each part."""
         self._lines = lines
         self.styles.height = self.rows
         self._redraw()

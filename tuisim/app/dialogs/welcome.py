@@ -20,7 +20,7 @@ from tuisim.terminal.textual_internals import find_bindings
 
 
 class Begin(StrEnum):
-    """What to begin with."""
+    """The ways to begin that the welcome offers."""
 
     NEW = "new"
     EXAMPLE = "example"

@@ -66,7 +66,7 @@ EDITOR_KEYS = (
 
 
 class EditorCommand(StrEnum):
-    """What the keys of the text ask the code panel for."""
+    """What keys in the text ask the code panel to do."""
 
     TYPE = "type"
     STOP_TYPING = "stop_typing"

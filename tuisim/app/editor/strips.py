@@ -8,7 +8,7 @@ from textual.strip import Strip
 
 
 def highlight_strip(strip: Strip, base: Style, lit: Style) -> Strip:
-    """Return a row with the highlight's background where the panel's own was: a cursor or a selection stays."""
+    """Return a row with the highlight's background in place of the panel's; that of a cursor or a selection stays."""
     background = Style(bgcolor=lit.bgcolor)
     pieces = ((piece.text, piece.style or base) for piece in strip)
     segments = [

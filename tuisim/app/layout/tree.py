@@ -64,7 +64,7 @@ class PanelLayout:
     """Panels that get rows first, the most wanted first; the world is before them."""
 
     def rank(self, node: Node) -> int:
-        """Return the place of a node in the order in which rows are given."""
+        """Return the rank of a node when rows are given out: the lower the earlier, -1 for the world."""
         panels = list_panels(node)
         ranks = [self.wanted.index(panel) for panel in panels if panel in self.wanted]
         return -1 if "world" in panels else min(ranks, default=len(self.wanted))

@@ -30,7 +30,7 @@ class _DiscPicture(PixelView):
         self.draw_picture()
 
     def draw_picture(self) -> None:
-        """Draw it for the current size."""
+        """Draw the disc for the current size."""
         if self._face is None:
             self.clear_picture()
         elif self.size:

@@ -105,7 +105,7 @@ class Brick(LinesPanel, can_focus=True):
 
     @property
     def _idle_words(self) -> str:
-        """What to say before the first run."""
+        """The words in the frame before the first run; empty after that."""
         is_idle = self._snapshot is not None and self._snapshot.state is RunPhase.IDLE
         return "R: a program draws here" if is_idle else ""
 

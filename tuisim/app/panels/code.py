@@ -42,7 +42,7 @@ _FRAME = 4
 
 
 class ProgramCommand(StrEnum):
-    """What the code panel asks the app for."""
+    """What the code panel asks the app to do."""
 
     SAVE = "save"
     RUN = "run"

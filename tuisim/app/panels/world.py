@@ -210,7 +210,7 @@ class World(Widget, can_focus=True):
 
 
 class WorldView(PixelView):
-    """The picture itself; posts the messages of `World`."""
+    """The picture in the world panel, and what the mouse does in it; posts the messages of `World`."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -242,7 +242,7 @@ class WorldView(PixelView):
         self.repaint_scene()
 
     def set_mat(self, pixels: Pixels) -> None:
-        """Set the mat."""
+        """Set the mat, as `World.set_mat` does, and draw it."""
         self._mat = pixels
         self._painter = None
         self.repaint_scene()
@@ -401,7 +401,7 @@ class WorldView(PixelView):
 
     @property
     def _cell_mm(self) -> float:
-        """The width of a cell."""
+        """The width of a cell in mm; 0 before the first drawing."""
         return self._port.mm_per_px * self._port.cell.cols if self._port else 0.0
 
     def _locate_mouse(self, event: events.MouseEvent) -> tuple[float, float]:

@@ -153,7 +153,7 @@ def _ring_lines(face: DiscFace, width: int) -> list[Line]:
 
 
 def list_border_names(names: Sequence[str], where: Arrangement, *, has_limits: bool) -> str:
-    """Return what the frame says where the lines do not name the sensors."""
+    """Return the names of the sensors for the frame if the lines do not show them; else which way is up."""
     if len(names) < 2 or where.text_rows > _MAX_LINES - 2 + has_limits:
         return UP_WORDS
     return (" │ " if where.across else " above ").join(names)

@@ -77,7 +77,7 @@ class ButtonBox:
 
 @dataclass(frozen=True, slots=True)
 class BrickPicture:
-    """The drawn brick."""
+    """The drawn brick as lines of text, with the areas of its buttons."""
 
     lines: list[list[Run]]
     buttons: tuple[ButtonBox, ...]

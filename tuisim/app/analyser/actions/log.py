@@ -39,7 +39,7 @@ _OTHER_RUNS = (("last", "the newest run"), ("12", "run 12"))
 
 
 def switch_telemetry(screen: LogScreen) -> None:
-    """Switch between telemetry and samples."""
+    """Open the telemetry instead of the printed samples, or the reverse."""
     if screen.request.file:
         screen.say("A file has no telemetry: R opens stored runs")
         return
