@@ -83,7 +83,7 @@ def ask_axes(screen: LogScreen) -> None:
         else:
             if len(names) > 2:
                 raise LogError(
-                    f"cannot draw {text!r}", "a name, or two with `ask_axes` between them"
+                    f"cannot draw {text!r}", "a name, or two with `against` between them"
                 )
             y, x = names if len(names) == 2 else (model.selected, names[0])
             for name in (x, y):
