@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 _Value = TypeVar("_Value")
 Vary: TypeAlias = _Value | Iterable[_Value] | None
-"""One value for all runs, or those that the runs take."""
+"""One value for all runs, or several values, which vary from run to run."""
 File: TypeAlias = str | Path
 """The name of something built in, or a file."""
 Program: TypeAlias = str | Path | Callable[[], object]

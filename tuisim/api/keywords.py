@@ -26,7 +26,7 @@ _OTHER_NAMES = {
     "delimiter": "separator",
     "sep": "separator",
 }
-"""What other libraries call an argument."""
+"""The names that other libraries have for an argument, with the name here."""
 
 
 def build_keyword_error(name: str, known: Sequence[str]) -> ConfigError:

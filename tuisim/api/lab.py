@@ -102,7 +102,7 @@ class Lab:
 
     def _open(self, spec: RunSpec, columns: Sequence[str]) -> None:
         self.columns = read_columns(columns, spec)
-        """What `step` returns."""
+        """The names of the columns that `step` returns."""
         self._readers = {
             name: read for name in self.columns if (read := build_reader(name, spec)) is not None
         }

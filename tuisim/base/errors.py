@@ -28,9 +28,9 @@ MOST_REASON = 500
 """Characters of a reason in a message."""
 MOST_LINE = 1500
 LINE_START = 1000
-"""Characters of a line of a message, and how many of them are before what is left out of a longer one."""
+"""The most characters of a line of a message, and how many of them stand before the gap in a longer one."""
 MOST_NAME = 80
-"""Characters of a listed name; a longer one is no name, but comes from a damaged file."""
+"""The most characters of a listed name; a longer one comes from a damaged file."""
 
 
 def shortened(text: str, most: int = MOST_REASON) -> str:

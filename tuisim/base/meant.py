@@ -12,12 +12,12 @@ from tuisim.base.source import PRELUDE_TEXTS
 
 _MAX_NAMES = 3
 _MIN_LETTERS = 3
-"""A shorter word is a part of too many names."""
+"""The fewest letters of a word that is looked for inside names: a shorter one is in too many."""
 _LIKENESS = 0.65
 _ON = frozenset({"backward", "drive", "forward", "forwards", "go", "move", "straight"})
-"""What a motor does while it is `on`."""
+"""Wrong names of a method for which `on` may be meant: what a motor does while it is on."""
 _WELL_KNOWN = ("time", "random", "math", "statistics", "threading", "datetime")
-"""Modules of the standard library that programs for robots use, those first that a name is looked for in first."""
+"""Modules of the standard library that programs for robots use, in the order in which a name is looked for."""
 
 
 def find_meant_names(wrong: str, names: Set[str]) -> list[str]:

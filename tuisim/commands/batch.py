@@ -48,11 +48,11 @@ _SHARED = [
 MAX_LINES = 100
 """A summary has at most this many lines."""
 _MAX_REASONS = 5
-"""Reasons of failures in a summary, the most frequent ones."""
+"""The most reasons of failures in a summary; the most frequent ones are listed."""
 _MAX_OVERLAID = 4
-"""Stored runs that an example names."""
+"""The most stored runs that the example of a command names."""
 _ROUNDING = 1e-10
-"""Poses, times and readings smaller than this are 0 but for rounding."""
+"""A smaller pose, time or reading differs from 0 only by rounding."""
 
 
 @command(

@@ -151,7 +151,7 @@ class FigureCell(float):
     """The format spec, such as `.2f`."""
 
     def __new__(cls, value: float, how: str) -> Self:
-        """Return the number with its format spec."""
+        """Return a number with a format spec, such as `.2f`."""
         figure = super().__new__(cls, value)
         figure.how = how
         return figure
@@ -161,7 +161,7 @@ class FigureCell(float):
 
 
 _GOOD_CELLS, _MIN_CELLS = 20, 8
-"""Texts are broken into lines of so many characters at least, or, if there is no room, of so many."""
+"""Least width of a column whose texts are broken into lines: the usual one, and one if there is no room for that."""
 
 
 def draw_table(heads: Sequence[str], rows: Sequence[Sequence[object]]) -> str:

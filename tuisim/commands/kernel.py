@@ -38,7 +38,7 @@ class InstalledKernel:
     name: str
     display_name: str
     python: str
-    """The path of its interpreter."""
+    """The path of the Python interpreter that runs the kernel."""
     folder: str
 
 

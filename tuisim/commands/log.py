@@ -273,7 +273,7 @@ _OTHER_WORDS = {
     **dict.fromkeys(("smooth", "filter"), "average"),
     **dict.fromkeys(("crossings", "threshold"), "events"),
 }
-"""What else subcommands are called."""
+"""Other words for subcommands, for which a message names the right one."""
 
 log = Group(
     "log",

@@ -224,7 +224,7 @@ class BreakpointReporter:
         """Whether a breakpoint has ended the run."""
 
     def handle(self, event: Message) -> None:
-        """Handle an event of the run: inspect it when it pauses, then report and resume or stop it."""
+        """Handle an event of the run: ask a paused run for its values; report these, and resume or stop the run."""
         match event:
             case Paused():
                 self._paused = event

@@ -15,21 +15,21 @@ from tuisim.terminal.text_runs import Line
 _CLEAR_COLUMNS = 2
 """Rows of a table with so many columns need no heads."""
 _CODE_BELOW = re.compile(r"(?<=:)\n\s*\n|\n\s*\n(?=    )")
-"""Before the code that belongs to a passage."""
+"""Matches the gap before the code that belongs to a passage."""
 _MARK = re.compile(r"\A(?:- |\d+\. )")
 _ELLIPSIS = " …"
 _BULLET = "• "
 _NOTE = re.compile(r" {2,}#")
-"""Before a comment beside code, in a column with others."""
+"""Matches the gap before a comment beside code."""
 _SENTENCE_END = re.compile(r"(?<=[.:!?]) (?=[\w`*])")
 _PREFIX_LETTERS = 4
-"""Letters that tell one word of a question from another."""
+"""Matches that have these first letters in common count as one word."""
 _SCRIPT_COLUMNS = ("group", "id")
-"""Columns of the keys that say nothing to a reader of one of them."""
+"""Columns of the table of keys that tell a reader of one row nothing."""
 _CACHED_TEXTS = 256
-"""Texts that are kept as lines: those of several questions."""
+"""The most texts whose lines are stored, enough for several questions."""
 _MIN_LINES = 3
-"""Lines that make sense by themselves, of a text as of code."""
+"""The fewest lines, of text or of code, that make sense by themselves."""
 
 
 def draw_excerpt(

@@ -26,9 +26,9 @@ from tuisim.guide.tables import build_markdown
 from tuisim.guide.words import find_stems, split_words
 
 _MIN_LETTERS, _ENDING_LETTERS = 4, 2
-"""Letters that tell a word, and those at its end that may be others in another form of it."""
+"""The fewest letters of a word that must match, and how many letters at its end need not."""
 _PLAIN = ("not", "one")
-"""Words of a question that say too little to stand out."""
+"""Words of a question that `compile_pattern` leaves out, as they say too little."""
 
 
 @cache
@@ -50,7 +50,7 @@ _ITEM = re.compile(r"- |\| |\d+\. ")
 SET_IN = "    "
 """Begins each line of a text that is set in, such as code."""
 _RULE = re.compile(r"[-| ]+")
-"""The line below the head of a table."""
+"""Matches the line below the head of a table."""
 _NO_ANSWER = re.compile(r"# .*|")
 """The title of a page."""
 _MIN_PREFIX_LETTERS = 3
@@ -76,14 +76,16 @@ for the questions of the file, each of which must find its passage among the fir
 _MIN_STEM_WEIGHT = 0.05
 """The least weight of a word, however common it is."""
 _MAX_RESULTS = 12
-"""So many passages are found; further ones share common words only."""
+"""The most passages that are found; further ones only share common words with the question."""
 _SURE_RESULTS = 2
 _MIN_SHARE = 0.5
-"""So many are found however well they answer; each further one answers at least this much as well as the best one."""
+"""The fewest passages that are found, however well they answer; a further one needs this share of the best one's
+score.
+"""
 _PART_BREAK = re.compile(r"[?!.;,]+\s+|\b(?:and|or|but|then)\b")
-"""Between two questions in one."""
+"""Matches the gap between two parts of a question."""
 _MIN_PART_WORDS = 2
-"""So many words say what a part of a question asks for."""
+"""The fewest words of a part of a question."""
 
 _Stems: TypeAlias = frozenset[str]
 
@@ -93,15 +95,15 @@ class SearchResult:
     """A passage that answers a question."""
 
     name: str
-    """Of its page."""
+    """The name of its page."""
     heading: str
-    """The section that it is in; empty for the beginning of the page."""
+    """The heading of its section; empty for the beginning of the page."""
     passage: str
     """In Markdown: a paragraph, an item of a list or a row of a table."""
     head: str = ""
-    """The head of the table of which it is a row, in Markdown."""
+    """In Markdown, the head of the table of which the passage is a row; empty for no row."""
     below: tuple[str, ...] = ()
-    """The items of the list, or the rows of the table, that it introduces, which are passages, too."""
+    """The passages that this one introduces: items of a list, or rows of a table."""
 
 
 class _Postings:

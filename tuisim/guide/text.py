@@ -17,7 +17,7 @@ from tuisim.terminal.text_runs import Line
 _HEADING = re.compile(r"^## (.+)$", re.MULTILINE)
 _LETTERS = re.compile(r"[\W_]+")
 _LONG_PREFIXES, _SHORT_PREFIXES = (40, 20), (10, 5)
-"""How many letters tell where a passage begins, those that tell it best first."""
+"""Numbers of first letters by which the beginning of a passage is looked for, the most reliable number first."""
 _PASSAGE_LINES = 2
 """How much of a passage is shown among results."""
 NO_WORDS = "No page has these words"

@@ -15,7 +15,7 @@ _DENIES = re.compile(
 )
 """`doesn't`, also typed as `doesnt`."""
 _CONTRACTED = re.compile(r"['’](s|m|d|re|ve|ll)\b")
-"""The ends of `it's`, `I'm`."""
+"""Matches the ends of contracted words, such as `it's` and `I'm`."""
 _COLOR = re.compile(r"\bcolor(?!_)")
 _WORD = re.compile(r"\w+(?:→\w+)*")
 """A word; words joined by an arrow, as `in→out`, are looked for together."""

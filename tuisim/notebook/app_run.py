@@ -33,7 +33,7 @@ class AppRun:
 
     waiting_for_reply = False
     waiting_for_input: str | None = None
-    """The app asks its user."""
+    """None, as the app itself asks its user for input."""
 
     def __init__(self, view: AppView, is_interrupted: Callable[[], bool]) -> None:
         self._view = view

@@ -67,13 +67,13 @@ class Lab:
         self._persistent: Mapping[str, Any] = {}
         self._program: Program | None = None
         self._presses: tuple[str, ...] = ()
-        """What a hand presses while it runs, as its cell says."""
+        """What a hand presses while the program runs, as the cell of the program says."""
         self._runs: list[StoredRun] = []
         self._last: StoredRun | None = None
         self._spec: RunSpec | None = None
         self._live = LiveRobot(self.find_state)
         self._said: Mapping[str, Any] = {}
-        """What the cells have set, as the app gets it."""
+        """The settings of the cells, by path, that the app takes over."""
         self._followed: list[str] = []
         """The ids of runs in the app that had not ended when the log was last asked for."""
         self._traces: tuple[Piece, ...] = ()

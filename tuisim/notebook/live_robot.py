@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 REQUEST = "tuisim_app_request"
 REPLY = "tuisim_app_reply"
-"""The messages by which a page asks for the address of the app, and gets it."""
+"""The messages by which a page asks for the address of the app, and by which the kernel answers."""
 SENTENCE = (
     "This is a picture. JupyterLab on this machine shows the live robot here, to drag it; elsewhere, "
     "%sim_app --origin ADDRESS does."
@@ -61,7 +61,7 @@ class LiveRobot:
     def __init__(self, find_state: Callable[[], CellState]) -> None:
         self._find_state = find_state
         self.is_wanted = True
-        """Whether pictures offer it."""
+        """Whether pictures offer the app."""
         self.view: AppView | None = None
         """The app, once a page has asked for it."""
         self._is_taken = self._was_shown = False
@@ -69,7 +69,7 @@ class LiveRobot:
         self._offer = ""
         """The name of the newest offer, which a page has to know; empty for none yet."""
         self._cell = ""
-        """The cell that has it."""
+        """The cell with the newest offer."""
         self._words: list[str] = []
         self._origins: tuple[str, ...] = ()
 

@@ -12,11 +12,11 @@ from typing import Any
 from aiohttp import web
 
 STRANGER_S = 5.0
-"""Time for a connection to ask for something with the link."""
+"""Time for a new connection to send a request that has the token."""
 MAX_STRANGERS = 64
-"""The most connections that have not done so; the oldest one goes first."""
+"""The most connections without such a request; if there are more, the oldest one is closed."""
 _NOT_YET_S = 0.1
-"""After this time a connection that has been accepted has come in."""
+"""After this time, an accepted connection has its transport."""
 _TOLD_EVERY_S = 60.0
 _NO_ROOM = (errno.EMFILE, errno.ENFILE, errno.ENOBUFS, errno.ENOMEM)
 

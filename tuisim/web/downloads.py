@@ -14,7 +14,9 @@ if TYPE_CHECKING:
 ANSWER_WITHIN_S = 4.0
 """Time for an app to send the piece of a file that it is asked for."""
 MAX_OFFERED, MAX_KEY = 20, 100
-"""The most files that an app can offer at a time, and the most characters of a key; the oldest one goes first."""
+"""The most files that an app can offer at a time, of which the oldest is withdrawn for a new one, and the most
+characters of a key.
+"""
 _MAX_PIECE_BYTES = 4 * DOWNLOAD_CHUNK_SIZE
 """A text has up to 4 bytes for each character that is asked for."""
 

@@ -12,7 +12,7 @@ TAKEN_OVER = 4001
 _MAX_WAITING = 20
 """The most messages that wait for a browser."""
 _MAX_REASON_BYTES = 123
-"""The most that fits into the last message of a socket."""
+"""The most bytes that the closing message of a socket can have."""
 _Data = TypeVar("_Data")
 
 

@@ -30,11 +30,11 @@ from tuisim.web.uploads import Uploads
 from tuisim.web.visit import Visit, VisitLimits
 
 _HEARTBEAT_S = 15.0
-"""A browser that does not answer for about this time has gone."""
+"""A browser that has not answered for about this time counts as gone."""
 _CLOSE_WITHIN_S = 2.0
 """Time for a browser to confirm that its socket is closed."""
 _PIECE = 1 << 18
-"""Bytes of a file that is brought that are written at a time."""
+"""Bytes of an uploaded file that are written at a time."""
 PAGE = Path(__file__).parent / "page"
 _FOLDERS = {
     "static": Path(textual_serve.__file__).parent / "static",

@@ -40,7 +40,7 @@ _TERMINAL_VARIABLES = (
     "WT_SESSION",
     "TERMINAL_EMULATOR",
 )
-"""Variables that tell what the terminal shows that the server was started in; the app is not in that one."""
+"""Variables about the terminal in which the server was started: the app, which is in a browser, must not get them."""
 _BROWSER_ENVIRONMENT = {
     "TERM": "xterm-256color",
     "COLORTERM": "truecolor",

@@ -13,7 +13,7 @@ from typing import IO
 from tuisim.base.errors import ConfigError
 
 MAX_FILE_BYTES = 64 << 20
-"""The largest file that can be brought."""
+"""The largest file that a visitor can bring."""
 MAX_BYTES = 1 << 30
 """All files together, while a server runs."""
 _MAX_NAME_BYTES = 200

@@ -20,16 +20,18 @@ from tuisim.web.link import Link, close
 from tuisim.web.session import WebSession
 
 _LONGEST_S = 86400.0
-"""The longest that a timer waits at once."""
+"""The longest time for which a timer is set."""
 _LARGEST_SIZE = 1000
 _MAX_PANELS, _MAX_NAME, _MAX_PROGRAM = 50, 50, 80
-"""What an app tells of its panels and its program, in characters but for the first, is not trusted."""
+"""The most panels, and the most characters of a panel's and of the program's name, that are taken from an app, which is
+not trusted.
+"""
 _ANSWER = re.compile(
     r"\x1b(\[[\d;]*[cnRt]|\[[?>=][\d;:]*\$?[A-Za-z]|[P_\]^][^\x07\x1b]*(\x07|\x1b\\))"
 )
-"""What a terminal sends by itself: reports of its cursor, size, modes, colours and name."""
+"""Matches what a terminal sends by itself: reports of cursor, size, modes, colours and name."""
 _MOVE = re.compile(r"\x1b\[<(3[59]|4[37]|5[159]|63);\d+;\d+M")
-"""A mouse that moves with no button pressed."""
+"""Matches a move of the mouse with no button pressed."""
 
 
 def is_done_by_a_person(text: str) -> bool:
@@ -68,11 +70,11 @@ class VisitLimits:
     """How long a visit lasts."""
 
     idle_s: float = float("inf")
-    """It ends when the visitor does nothing for this time."""
+    """The visit ends when the visitor does nothing for this time."""
     keep_s: float = 3600.0
-    """It ends when no browser shows it for this time."""
+    """The visit ends when no browser shows the app for this time."""
     keep_unused_s: float = 60.0
-    """The same, if nobody has used it and it has run no program."""
+    """The same, if nobody has used the app and it has run no program."""
 
 
 class Visit:
@@ -99,11 +101,11 @@ class Visit:
         self._session.told = self._handle_news
         self._program = ""
         self._runs = False
-        """The program that the app has open, and whether it runs, as far as it has told."""
+        """The name of the program in the app, and whether the program runs, as the app has told last."""
         self._is_used = False
         """Whether somebody has used the app, or it has run a program."""
         self._panels: list[str] = []
-        """The panels that the app shows, as far as it has told."""
+        """The panels that the app shows, as it has told last."""
         self._telling: asyncio.Task[None] | None = None
         self._size = 0, 0
         self._begun_s = time.monotonic()

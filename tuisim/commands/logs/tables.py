@@ -127,7 +127,7 @@ def _iterate_reports(arguments: Arguments) -> Iterator[tuple[str, BandReport]]:
 
 
 def _join_columns(columns: Sequence[Column]) -> Column:
-    """Return columns one after the other."""
+    """Return one column with the values of several, one column after the other."""
     if isinstance(columns[0], np.ndarray):
         return np.concatenate(columns)
     return [item for column in columns for item in column]

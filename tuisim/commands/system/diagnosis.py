@@ -13,9 +13,9 @@ from tuisim.terminal.picture_options import CellSet
 
 SMALLEST = (60, 18)
 COMFORTABLE = (80, 24)
-"""Columns and rows that the app needs, and those that it is designed for."""
+"""Columns and rows that the app needs, and the columns and rows for which it is designed."""
 SLOW_S = 0.15
-"""An answer of the terminal that takes longer is felt."""
+"""A user notices if the terminal takes longer to answer."""
 LARGE_STORE_MB = 2000
 OLDEST_PYTHON = (3, 11)
 
@@ -27,7 +27,7 @@ class FindingState(StrEnum):
     ADVICE = "advice"
     """Usable; something could be better."""
     PROBLEM = "problem"
-    """It prevents the use."""
+    """tuisim cannot be used until it is solved."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -40,7 +40,7 @@ PORT_CLASS, MOTOR_CLASS, SENSOR_CLASS = "lego-port", "tacho-motor", "lego-sensor
 BOARD_CLASS = "board-info"
 BOARD = "board0"
 BOARD_INFO = {"model": "LEGO MINDSTORMS EV3", "type": "main", "hw_rev": "7", "rom_rev": "6"}
-"""What the brick's board tells of itself."""
+"""The attributes of the brick's board, with their values."""
 CLASSES = (
     BOARD_CLASS,
     "dc-motor",
@@ -51,7 +51,7 @@ CLASSES = (
     "servo-motor",
     MOTOR_CLASS,
 )
-"""All classes of devices; of some the simulated brick never has one."""
+"""All classes of devices, some of them always without a device on the simulated brick."""
 AUTO = "auto"
 """The mode in which a port detects the connected device by itself."""
 
@@ -90,7 +90,7 @@ class Connection:
 
     driver_name: str
     mode: str
-    """The port mode it needs."""
+    """The mode of the port that the device needs."""
 
 
 def find_connections(robot: RobotSpec) -> dict[str, Connection]:
@@ -200,7 +200,7 @@ class BuiltBrick:
     paths: dict[str, str] = field(default_factory=dict)
     """Of the devices on ports, by port."""
     _heard: list[LegoSensor] = field(default_factory=list)
-    """All sensors: an ultrasonic one hears the others."""
+    """All sensors: an ultrasonic sensor hears the other ones."""
 
     def connect_motor(self, motor: MotorSpec) -> None:
         """Connect a motor of the robot."""

@@ -76,9 +76,9 @@ class SimDevice:
         self.notifying = dict(notifying or {})
         self._temporary = temporary
         self.is_opened = False
-        """Whether the program has taken hold of it."""
+        """Whether the program uses the device."""
         self.commands = 0
-        """Number of commands that were written to its file: who polls it sees each."""
+        """How many commands were written to the device: a `poll` of its file sees each as a change."""
         self.readers = dict(readers)
         self.writers = _Writers(writers, self.readers)
         """Setters from text, by attribute; one that cannot be set raises the driver's OSError."""

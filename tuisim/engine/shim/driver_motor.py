@@ -31,7 +31,7 @@ SIGNED = ("speed_sp", "position_sp", "duty_cycle_sp")
 COMMANDS: dict[str, Call] = {command.value: call for command, call in COMMAND_CALLS.items()}
 STOP_NUMBERS = {action.value: float(number) for number, action in enumerate(STOP_ACTIONS)}
 FIRST_SET_POINTS = (*map(float, SetPoints()[:STOP_ACTION]), 0.0)
-"""Those of a fresh motor, as its commands take them."""
+"""The set points of a motor after a reset, in the order in which its commands take them."""
 RESET_DRIVER = Call.RESET_DRIVER
 STATE_TEXTS = tuple(map(" ".join, STATES))
 

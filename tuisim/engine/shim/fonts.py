@@ -63,7 +63,7 @@ _BOLD_DARKER = 24
 _PLAIN_CELL_PX = (6, 11)
 """Size of a character of Pillow's plain font."""
 _PLAIN_BASE_PX, _PLAIN_CAPITAL_PX = 9, 6
-"""Its baseline from the top, and the height of its capitals."""
+"""Distance of the plain font's baseline from the top, and height of its capitals."""
 _CAPITAL = 0.7
 """Height of capitals relative to the size."""
 

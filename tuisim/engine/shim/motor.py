@@ -72,7 +72,7 @@ class Tacho(ABC):
         self._polarity = "normal"
         self._last_command = ""
         self._look: Reader | None = None
-        """What differs after a change of the state that the driver tells of, if not the state itself."""
+        """Returns a value that differs after each change of state that the driver reports; None: the state."""
 
     @abstractmethod
     def registers(self) -> MotorRegisters:

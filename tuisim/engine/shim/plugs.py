@@ -62,9 +62,9 @@ class Plugs:
         self._built = built
         self._session = built.session
         self.missing: type[Exception] = Exception
-        """The library's error about a device that is not there."""
+        """The library's error for a device that is not connected."""
         self._late: frozenset[str] = frozenset()
-        """The ports of motors that are asked for as wheels, when it is too late for that."""
+        """The ports of motors that a program wants as wheels after a wheel has turned, which is too late."""
 
     def add_device(self, class_name: str, wanted: Mapping[str, Any]) -> bool:
         """Plug in the device that a library searches for; return whether it is there now.

@@ -80,7 +80,7 @@ class LegoSensor:
         self._next_free = (-1, -1)
         self._old_values: tuple[int, ...] = ()
         self._old_until_ns = 0
-        """So long it still tells these values after a change of mode, if there are any."""
+        """Up to this time, a sensor whose mode was changed still returns `_old_values`, if there are any."""
         mode_switch_ns = session.sim.spec.profile.mode_switch_ns
         self._switch_ns = mode_switch_ns if switch_ns is None else switch_ns
 

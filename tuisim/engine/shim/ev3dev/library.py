@@ -27,7 +27,7 @@ class Patience:
 
     def __init__(self) -> None:
         self.until_motors_stop = 0
-        """Above 0 while it polls only to check again whether a motor moves."""
+        """Above 0 while the library polls only to check again whether a motor moves."""
 
     def patient(self, function: Callable[..., bool]) -> Callable[..., bool]:
         """Return `wait_until_not_moving` with a note for its polls that it waits only for motors to stop."""

@@ -13,7 +13,7 @@ from tuisim.engine.shim.session import DeviceSession
 NAME = "ev3dev2.sensor.virtual"
 _UNSIMULATED = ("CameraSensor", "LaserRangeSensor", "LidarSensor", "ObjectTracker", "Radio")
 _MORE_PORTS = range(5, 13)
-"""Gears has more inputs than a brick; what is made there is one of its virtual parts."""
+"""Inputs of Gears that a brick does not have: devices on them are its virtual parts."""
 
 
 class _Unsimulated:

@@ -20,7 +20,7 @@ READ_MODE, WRITE_MODE = 0o444, 0o220
 ATTRIBUTE_BYTES = 4096
 """Size of every attribute's file, as the kernel reports it."""
 IDENTITY = ("address", "driver_name")
-"""Attributes by which a library looks for a device: to read them is not to use it."""
+"""Attributes by which a library looks for a device: a program that only reads these does not use the device."""
 ALWAYS_READY = select.POLLIN | select.POLLOUT
 
 
@@ -36,7 +36,7 @@ class OpenFile:
     at: int = 0
     """Position of the next read or write."""
     data: bytes = b""
-    """What was read from the device, and is handed out in parts."""
+    """The text that was read from the device, of which further reads return parts."""
     seen: object = None
     """The device's state when it was last read; None until then."""
 

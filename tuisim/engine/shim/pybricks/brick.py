@@ -31,7 +31,7 @@ POLL_US = 5000
 """A blocking call looks for the end of its move this often, as the firmware's does."""
 
 BLOCKED_POLL_US = 100_000
-"""Likewise while something blocks a motor, to say it when the motor is stalled."""
+"""A blocking call looks this often while something blocks a motor, to tell the user when the motor is stalled."""
 
 
 Result = TypeVar("Result")
@@ -59,11 +59,11 @@ class Brick:
     screen: Screen
     mixer: Mixer
     hint: Callable[[str], str]
-    """Returns what is on the ports of a class of devices."""
+    """Returns a hint with the devices of a class, such as motors, and their ports."""
     name_replacement: Callable[[str, str], str] = lambda *_: ""
-    """Returns where an attribute is that a class does not have, after a colon; empty if that is not known."""
+    """Returns, after a colon, what to use in place of an attribute that a class does not have; empty if unknown."""
     said: set[str] = field(default_factory=set)
-    """What was said that is said once, by subject."""
+    """The subjects of messages that have been printed, see `say_once`."""
     stop_buttons: frozenset[str] = frozenset()
     """The buttons that stop the program, by their names in the session: those of a hub."""
     led_levels: Mapping[str, int] = field(default_factory=dict)
@@ -220,7 +220,7 @@ class Connected:
     brick: ClassVar[Brick]
 
     port: Any = None
-    """Where it is connected."""
+    """The port to which the device is connected."""
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({self.port or ''})"

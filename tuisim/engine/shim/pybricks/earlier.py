@@ -36,7 +36,7 @@ EARLIER: Mapping[str, Mapping[str, str]] = {
     ),
     "pybricks.iodevices": {"Ev3devSensor": "use the sensors of pybricks.ev3devices"},
 }
-"""By module and name."""
+"""Hints for names that version 4 no longer has, by module and name."""
 EARLIER_MODULES: Mapping[str, str] = {
     "pybricks.display": _BRICK,
     "pybricks.ev3brick": _BRICK,
@@ -45,7 +45,7 @@ EARLIER_MODULES: Mapping[str, str] = {
     "pybricks.media.ev3dev": _FILES,
     "pybricks.speaker": _BRICK,
 }
-"""Those of which it has no name."""
+"""Hints for modules that version 4 no longer has."""
 EARLIER_MEMBERS: Mapping[str, str] = {
     "drive_time": "drive(), wait() and stop() do it",
     "orientation": "display.orientation() turns what the matrix shows",
@@ -56,7 +56,7 @@ EARLIER_MEMBERS: Mapping[str, str] = {
     "set_run_settings": "control.limits() sets them",
     "set_volume": "volume(percent) sets it",
 }
-"""Attributes of objects, by their names."""
+"""Hints for attributes of objects that version 4 no longer has, by name."""
 
 
 def refuse_earlier(module: str, name: str) -> NoReturn:

@@ -37,7 +37,9 @@ PAINTS: Mapping[str, Paint] = {
     "WHITE": (255, 255, 255),
     "YELLOW": (255, 255, 0),
 }
-"""By the name of the colour, as in CSS; on the screen those are dark whose grey is. Others paint nothing."""
+"""By the name of the colour, with the values of CSS; the screen shows those with a dark grey as black. Other colours
+paint nothing.
+"""
 BLACK = PAINTS["BLACK"]
 WHITE = PAINTS["WHITE"]
 MODE = "RGB"

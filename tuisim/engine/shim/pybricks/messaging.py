@@ -25,9 +25,9 @@ _ALONE = "there is one brick; a server and a client in the threads of one progra
 
 CLIENT_WITHIN_MS = 5000
 POLL_MS = 10
-"""A server gives up if no thread of the program makes a client within this time; it looks this often."""
+"""A server gives up if no thread of the program creates a client within this time; it looks this often."""
 CONNECT_MS, SEND_MS = 500, 10
-"""What a connection and a message take, estimates: the library says nothing of it."""
+"""Estimated times of a connection and of a message, of which the library says nothing."""
 
 
 class Mailbox(Connected):
@@ -230,7 +230,7 @@ class BluetoothMailboxClient(MailboxHandlerMixIn):
     """The end that connects to a server."""
 
     exists: ClassVar[bool] = False
-    """Whether the program has made one."""
+    """Whether the program has created a client."""
 
     def __init__(self) -> None:
         super().__init__()

@@ -24,7 +24,7 @@ TICKS_PERIOD = 1 << 30
 US = MS // 1000
 FOLDER = 0x4000
 FILE = 0x8000
-"""What `ilistdir` says of an entry."""
+"""The kinds of entries that `ilistdir` yields."""
 
 OF_PYTHON: Mapping[str, str] = {
     f"u{name}": name

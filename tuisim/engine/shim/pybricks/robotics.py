@@ -20,7 +20,7 @@ class DriveBase(Connected):
     SETTINGS_WHILE_ACTIVE: ClassVar[bool] = False
 
     current: ClassVar[DriveBase | None] = None
-    """The newest one: it stops the one before."""
+    """The newest drive base: it stops the one before."""
     log = refused_part("DriveBase", "log", LOGGER)
 
     def __init__(

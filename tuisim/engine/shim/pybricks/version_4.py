@@ -36,11 +36,11 @@ from tuisim.engine.shim.unsupported.modules import refused_part
 
 NOMINAL_VOLTAGE_MV = 9000
 MAX_SPEED_DPS = 2000
-"""A setting of a drive base may ask no more of a motor, even if that cannot do it."""
+"""The highest speed of a motor that a setting of a drive base may ask for, even if no motor is so fast."""
 MIN_RADIUS_MM = 10
 """An arc is at least so wide."""
 MIN_ACCELERATION_DPS2, MAX_ACCELERATION_DPS2 = 50, 20_000
-"""Nor less, or more, than these."""
+"""The limits of the acceleration of a motor that a setting may ask for."""
 
 
 @shown_by_name
@@ -59,7 +59,7 @@ ENDINGS: Mapping[Any, Ending] = {
     Stop.HOLD: Ending.HOLD,
     Stop.NONE: Ending.NONE,
 }
-"""The simulated motor is always where it is wanted to be: a smart ending is like a plain one."""
+"""How moves end. A smart ending is like a plain one, as a simulated motor is always where it should be."""
 
 
 class Motor(motor.Motor):
@@ -107,7 +107,7 @@ class Motor(motor.Motor):
         return self.brick.finish(self.brick.until_done(passed, lambda: None, self.stop))
 
     _zero_deg = 0
-    """The angle that the program has made of the mark on the shaft, at which the motor began."""
+    """The angle, as the program counts it, of the mark on the shaft, where the motor began."""
 
     def reset_angle(self, angle: float | None = None) -> None:
         """Set the current angle to a value in degrees.
@@ -199,7 +199,7 @@ class DriveBase(robotics.DriveBase):
     SETTINGS_WHILE_ACTIVE = True
 
     _stops: tuple[int, ...] = ()
-    """How it stops, if it was told how."""
+    """The decelerations of `straight` and `turn`, if `settings` has set any."""
 
     def _take_place(self, earlier: robotics.DriveBase) -> None:
         if earlier.has_motor(self.left) or earlier.has_motor(self.right):

@@ -76,7 +76,7 @@ DRIVERS: Mapping[str, Hardware] = {
     "rcx-motor": Hardware("a motor without a rotation sensor", _MOTOR),
     "rcx-led": Hardware("a lamp on a motor port", "use Leds, the lights of the brick"),
 }
-"""Kinds of devices, by patterns of driver names; the first that matches tells."""
+"""Kinds of devices, by patterns of driver names; the first pattern that matches counts."""
 
 _OTHER = Hardware(
     "a device that tuisim does not know",
@@ -89,7 +89,7 @@ CLASSES: Mapping[str, Hardware] = {
         "a servo motor", "use a MediumMotor: on_to_position() turns it to an angle"
     ),
 }
-"""Classes of devices without any that a robot can have, by their kernel names."""
+"""Kinds of devices that no robot can have, by the kernel's name of their class."""
 
 PORT_MODES: Mapping[str, Hardware] = {"dc-motor": DRIVERS["rcx-motor"], "led": DRIVERS["rcx-led"]}
 """Port modes that are for a single kind of device."""

@@ -150,7 +150,7 @@ PACKAGES: Mapping[str, str] = {
     "yaml": "PyYAML",
     "zmq": "pyzmq",
 }
-"""Packages that have another name than their module, by that."""
+"""Names of packages that differ from the name of their module, by module."""
 
 _ERRORS = ("Error", "Exception", "Timeout")
 """Ends of the names of exceptions, which a program names in its handlers."""

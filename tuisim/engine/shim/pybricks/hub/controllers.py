@@ -28,7 +28,7 @@ class Controller(Connected):
     PORT: ClassVar[str]
     LEDS: ClassVar[Sequence[str]]
     COLOR = Color.WHITE
-    """The LEDs show that it is connected."""
+    """The colour of the LEDs while the controller is connected."""
 
     def __init__(self, name: str | None, connect: bool) -> None:
         if self.brick.in_task:
