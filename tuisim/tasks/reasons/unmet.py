@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ConfigError, LogError
 from tuisim.engine.core.conditions import COMPARE
+from tuisim.engine.core.hub_spec import HUB_PORTS
 from tuisim.engine.core.profile import Library
 from tuisim.engine.core.spec import (
     ColorSensorSpec,
@@ -443,6 +444,9 @@ class _Search:
         spec, (column, factor, unit) = self._run.spec, read
         if spec.world.noise.light or spec.world.pen_marks:
             return None
+        if loop.attribute == "reflection" and sensor.port in HUB_PORTS:
+            # On a hub it is of all colours.
+            column = "mean_pc"
         name = f"{sensor.name}_{column}"
         run = self._run
         mat = self._field

@@ -60,6 +60,19 @@ def test_white_and_black_are_as_far_apart_as_on_a_brick(grey: int, percent: int)
     assert len(set(seen.rgb)) == 1
 
 
+def test_the_reflection_of_a_hub_is_of_all_colours() -> None:
+    on_hub = read(128, sensor=replace(LEFT, port="C"))
+    assert (read(128).is_hubs, on_hub.is_hubs) == (False, True)
+    for seen, percent in (
+        (ColorReading(255.0, 0.0, 0.0), 100),
+        (ColorReading(255.0, 0.0, 0.0, is_hubs=True), 33),
+        (ColorReading(0.0, 255.0, 255.0, is_hubs=True), 66),
+        # A fifth of each channel's range is no whole number there.
+        (ColorReading(51.0, 51.0, 51.0, is_hubs=True), 19),
+    ):
+        assert LightRead.REFLECTION.compute_value(seen, 100) == percent
+
+
 @pytest.mark.parametrize("profile", PROFILES.values(), ids=PROFILES)
 def test_only_the_courses_sensors_read_the_mat_as_it_is(profile: ProfileSpec) -> None:
     assert (find_response(LEFT, profile) == EVEN) == (profile.name in ("robolab", "nbev3devsim"))

@@ -20,6 +20,7 @@ from tuisim.engine.core.field import (
     weighted_mean,
 )
 from tuisim.engine.core.geometry import Pose, world_point
+from tuisim.engine.core.hub_spec import HUB_PORTS
 from tuisim.engine.core.noise import (
     add_noise_to_channel,
     add_noise_to_sums,
@@ -35,6 +36,8 @@ if TYPE_CHECKING:
 
 WHITE = 255
 """Maximum of a channel."""
+HUB_WHITE = 1024
+"""That of a channel of a hub's sensor."""
 
 
 def percent(value: int, whole: int) -> float:
@@ -52,6 +55,8 @@ class ColorReading:
     blue: float
     is_bricks: bool = False
     """Whether the colour is the brick's."""
+    is_hubs: bool = False
+    """Whether a hub reads it, for which reflection is of all colours."""
 
     @property
     def rgb(self) -> tuple[int, int, int]:
@@ -69,6 +74,13 @@ class ColorReading:
         return percent(sum(self.rgb), 3 * WHITE)
 
     @property
+    def reflection(self) -> int:
+        """`reflection()` of Pybricks: the red light or, on a hub, that of all channels, in whole percent."""
+        if not self.is_hubs:
+            return int(self.red) * 100 // WHITE
+        return sum(measure_hub_channels(self.rgb)) * 100 // (3 * HUB_WHITE)
+
+    @property
     def code(self) -> int:
         """Colour code, see `find_color_code` and `find_brick_color_code`."""
         return find_brick_color_code(*self.rgb) if self.is_bricks else find_color_code(*self.rgb)
@@ -77,6 +89,12 @@ class ColorReading:
     def name(self) -> str:
         """Colour name, such as `Blue`."""
         return COLOR_NAMES[self.code]
+
+
+def measure_hub_channels(rgb: Sequence[int]) -> tuple[int, int, int]:
+    """Return the channels as the sensor of a hub measures them, 0 … `HUB_WHITE`."""
+    red, green, blue = (HUB_WHITE * channel // WHITE for channel in rgb)
+    return red, green, blue
 
 
 def hsv(red: int, green: int, blue: int) -> tuple[int, int, int]:
@@ -153,7 +171,7 @@ class LightRead(StrEnum):
             case LightRead.REFLECTED:
                 return int(seen.red) * self.find_white(reflected_max) // WHITE
             case LightRead.REFLECTION:
-                return int(seen.red) * 100 // WHITE
+                return seen.reflection
             case LightRead.PERCENT:
                 return seen.red_percent
             case LightRead.MEAN:
@@ -356,7 +374,11 @@ def measure_color(spec: ColorSensorSpec, instant: Instant, field: Field) -> Colo
     mean = _mean_of_mat(spec, instant, field)
     tell = _build_channel_reader(spec, instant, field)
     return ColorReading(
-        tell(mean.red), tell(mean.green), tell(mean.blue), instant.profile.brick_colors
+        tell(mean.red),
+        tell(mean.green),
+        tell(mean.blue),
+        instant.profile.brick_colors,
+        spec.port in HUB_PORTS,
     )
 
 

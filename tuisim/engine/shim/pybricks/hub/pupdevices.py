@@ -13,8 +13,6 @@ from tuisim.engine.shim.pybricks.hub.parameters import Port
 from tuisim.engine.shim.pybricks.version_4 import Color
 from tuisim.engine.shim.sensors import ColorDevice
 
-RAW_WHITE = 1024
-"""Of a channel of the colour sensor."""
 FARTHEST_MM = 2000
 """What the distance sensor tells if it hears no echo, or a later one."""
 MAX_FORCE_N = 10.0
@@ -86,14 +84,11 @@ class ColorSensor(Sensor):
 
     def _raw(self) -> tuple[int, int, int]:
         assert isinstance(self._sensor, ColorDevice)
-        red, green, blue = (
-            RAW_WHITE * channel // color.WHITE for channel in self._sensor.channels()
-        )
-        return red, green, blue
+        return color.measure_hub_channels(self._sensor.channels())
 
     def reflection(self) -> int:
         """Return the reflected light in percent."""
-        return self._read("RGB-RAW", lambda: sum(self._raw()) * 100 // (3 * RAW_WHITE))
+        return self._read("RGB-RAW", lambda: sum(self._raw()) * 100 // (3 * color.HUB_WHITE))
 
     def ambient(self) -> int:
         """Return the ambient light in percent."""
