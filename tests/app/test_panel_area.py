@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import pytest
 from textual.content import Content
@@ -30,12 +30,11 @@ in_each_size = pytest.mark.parametrize(
 
 def cut(app: LabApp) -> Iterator[str]:
     """Yield each text on the screen that is not shown in full."""
+    screen = screen_text(app).split("\n")
     for name, box in app.panel_area.arrangement.boxes.items():
         panel = app.panel_area.panels[name]
-        if name not in USERS and CUT.search(text_of(app, panel)):
-            yield f"{name}: " + next(
-                line for line in text_of(app, panel).split("\n") if CUT.search(line)
-            )
+        if name not in USERS:
+            yield from (f"{name}: {line}" for line in lines_of(panel, screen) if CUT.search(line))
         for title in (panel.border_title, panel.border_subtitle):
             shown = Content.from_markup(str(title or "")).cell_length
             if name not in USERS and shown > box.width - 6:
@@ -45,9 +44,9 @@ def cut(app: LabApp) -> Iterator[str]:
                 yield f"{name}: {text.render()}"
 
 
-def text_of(app: LabApp, panel: Widget) -> str:
+def lines_of(panel: Widget, screen: Sequence[str]) -> list[str]:
     x, y, width, height = panel.region
-    return "\n".join(line[x : x + width] for line in screen_text(app).split("\n")[y : y + height])
+    return [line[x : x + width] for line in screen[y : y + height]]
 
 
 def fits(text: Static) -> bool:
