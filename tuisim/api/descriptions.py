@@ -1,4 +1,4 @@
-"""Descriptions of worlds and robots: what a script has chosen, checked at once, with one line for a representation."""
+"""Descriptions of worlds and robots: values that a script has chosen, checked at once, with a `repr` of one line."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What an experiment takes of each run: metrics, and columns over time."""
+"""The values that an experiment takes from each run: metrics, and columns over time."""
 
 from __future__ import annotations
 

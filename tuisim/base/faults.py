@@ -1,4 +1,4 @@
-"""What goes wrong while one of many programs is handled: told in a line, so that the others go on."""
+"""Errors while one of many programs is handled: each becomes one line of text, so that the others go on."""
 
 from __future__ import annotations
 

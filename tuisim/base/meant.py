@@ -1,4 +1,4 @@
-"""Which name was meant by one that does not exist: one like it, or one that is not imported."""
+"""Finds the name that was meant by a name that does not exist: a similar one, or one that is not imported."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Reading files in whose place there may be something else: a pipe, a device, a link, or more than memory holds."""
+"""Safe reading of files that may turn out to be a pipe, a device or a link, or to be larger than the memory."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where a module of a program lies that Python does not find: elsewhere in the repository of the program."""
+"""Finds a module that Python does not find, elsewhere in the repository of the program."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`tuisim open` and `tuisim analyse`: the commands that start the app; what `tuisim serve` opens, too."""
+"""`tuisim open` and `tuisim analyse`: the commands that start the app. `tuisim serve` also reads here what to open."""
 
 from __future__ import annotations
 

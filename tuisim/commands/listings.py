@@ -1,4 +1,4 @@
-"""`tuisim backgrounds`, `robots`, `obstacles`, `list_programs` and `profiles`: list what there is by name.
+"""`tuisim backgrounds`, `robots`, `obstacles`, `programs` and `profiles`: list what there is by name.
 
 Each imports only what it lists: reading mats or robots takes longer than the rest of the command.
 """

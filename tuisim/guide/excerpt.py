@@ -1,4 +1,4 @@
-"""What is shown of a passage among the answers to a question."""
+"""Draws excerpts: the part of a passage that is shown among the answers to a question."""
 
 from __future__ import annotations
 

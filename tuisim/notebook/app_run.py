@@ -1,4 +1,4 @@
-"""A run that the app in a cell has started, with what a cell asks of a run."""
+"""A run that the app in a cell has started, with the methods of a run that a cell calls."""
 
 from __future__ import annotations
 

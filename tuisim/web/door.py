@@ -1,4 +1,4 @@
-"""Where connections come in: those without the link are closed after a while, and take few descriptors."""
+"""Accepts connections: those that do not send the token are closed after a while, and are few at a time."""
 
 from __future__ import annotations
 

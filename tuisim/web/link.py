@@ -1,4 +1,4 @@
-"""The way from an app to the browser that shows it now, if one does; it may have gone."""
+"""Sends what an app tells and draws to the browser, if any, that shows the app now; the browser may have gone."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the surroundings of tuisim mean for its use: for each of them, whether it is all right, and else what to do.
+"""Judgements of the terminal and the machine: whether each property is good for tuisim, and if not, what to do.
 
 Pure: `doctor` looks at the machine, and these functions judge what it found.
 """

@@ -1,4 +1,4 @@
-"""Prepares what a program finds when it runs: the brick's files, and its library."""
+"""Prepares the brick's files and the library for a program before it runs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Plugs in what a program asks for, where its robot has nothing else that counts.
+"""Plugs in the devices that a program asks for, on ports where the robot has nothing that the program uses.
 
 A part of the default robot that the program has not taken hold of gives way; what the program's text shows stays. A
 program that catches the library's error about a missing device just tries what there is: it gets nothing.
