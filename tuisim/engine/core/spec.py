@@ -114,14 +114,17 @@ def _build_direction() -> Any:
     return number(-360, 360, default=0.0, unit="°", label="Angle °", help=about)
 
 
+_INPUT_HELP = "in1 … in4; of a hub A … F"
+
+
 def _build_input_port(default: str) -> Any:
     ports = (*INPUT_PORTS, *HUB_PORTS)
-    return choice(ports, what="port", default=default, label="Port", help="in1 … in4")
+    return choice(ports, what="port", default=default, label="Port", help=_INPUT_HELP)
 
 
 def _build_output_port(default: str, label: str) -> Any:
     ports = (*OUTPUT_PORTS, NO_PORT, *HUB_PORTS)
-    about = "outA … outD"
+    about = "outA … outD; of a hub A … F"
     return choice(ports, what="port", default=default, label=label, help=about)
 
 
@@ -234,7 +237,7 @@ class ColorSensorSpec(SensorSpec):
     """A downward colour sensor: the mean of a disc of mat pixels."""
 
     name: str = text(what="sensor name", pattern=SENSOR_NAME)
-    port: str = choice((*INPUT_PORTS, *HUB_PORTS), what="port", label="Port", help="in1 … in4")
+    port: str = choice((*INPUT_PORTS, *HUB_PORTS), what="port", label="Port", help=_INPUT_HELP)
     x_mm: float = _build_x()
     y_mm: float = _build_y()
     # A disc of 1 pixel has no pixel strictly inside it.
@@ -314,7 +317,7 @@ class GyroSpec(SensorSpec):
         what="port",
         default="in4",
         label="Port",
-        help="in1 … in4",
+        help=f"{_INPUT_HELP}, or inside",
     )
     keeps_angle: bool = flag(
         default=False,
