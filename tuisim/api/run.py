@@ -35,7 +35,7 @@ class Run:
     """What the source of the program has decided about robot and profile, in words; empty for nothing."""
 
     def __repr__(self) -> str:
-        number = f" {self.stored.number}" if self.stored.number else ""
+        number = f" {self.number}" if self.number else ""
         what = f"{self.stored.program.name} under {self.stored.spec.profile.name}"
         return f"<run{number} of {what}: {self.state} after {self.time_s:.2f} s>"
 
@@ -48,6 +48,11 @@ class Run:
         samples = self.samples
         table = samples.to_html(max_rows=10, index=False) if len(samples) else ""
         return f"{picture}<p>{escape(repr(self))}</p>{error}{table}"
+
+    @property
+    def number(self) -> int:
+        """Its number in the run store, which `load_run` takes; 0 in the metrics of an experiment."""
+        return self.stored.number
 
     @property
     def state(self) -> str:
