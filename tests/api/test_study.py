@@ -148,6 +148,18 @@ def test_runs_that_raise_are_told_and_make_no_mean_known() -> None:
     assert len(frame) == 10
 
 
+def test_a_metric_has_no_value_where_the_program_has_raised_before() -> None:
+    program = "N = 1\nprint('A: 1') if N > 1 else slep(1)\n"
+    metrics: dict[str, Any] = {"a": lambda run: run.samples["value"].iloc[-1]}
+    how: dict[str, Any] = {"constants": {"N": [1, 2]}, "metrics": metrics, "jobs": 1}
+    with pytest.warns(UserWarning, match="2 of 4 runs raised"):
+        frame = tuisim.experiment(program, seeds=range(2), **how)
+    assert frame["a"].isna().tolist() == [True, True, False, False]
+    with pytest.warns(UserWarning) as warnings:
+        tuisim.experiment(program, seeds=range(12), until="a ± 1", **how)
+    assert "1 mean known not at all" in str(warnings[0].message)
+
+
 def test_what_a_metric_raises_ends_the_experiment() -> None:
     def fail(run: object) -> None:
         raise LookupError("nothing there")

@@ -265,7 +265,7 @@ def experiment(
         parameters: Values by key of a world or robot file: `{"robot.wheel_diameter_mm": [54, 56]}`; a text is read as
             after `--set`, such as `"latin(54, 58, 20)"`.
         metrics: Further columns by name, as functions of a run: `{"end_x_mm": lambda run: run.pose.x_mm}`. What one
-            raises ends the experiment.
+            raises ends the experiment; where the program has raised too, the metric has no value.
         columns: Columns of the telemetry, such as `x_mm`: the table then has one row for each tick of each run, and of
             the values of a run only metrics and expressions.
         expressions: Further columns by name, such as `{"error_mm": "hypot(x_mm - 750, y_mm - 850)"}`.

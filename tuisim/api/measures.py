@@ -14,6 +14,7 @@ from tuisim.api.run import Run
 from tuisim.base.errors import ConfigError
 from tuisim.batch.plan import Plan
 from tuisim.batch.table import Row, list_usual_columns
+from tuisim.engine.protocol import End
 from tuisim.engine.runs.frames import build_telemetry_columns
 from tuisim.engine.runs.run_folder import read_run
 from tuisim.engine.runs.temporary import create_temporary_home
@@ -88,9 +89,9 @@ class Measures:
 
 
 def compute_cell(name: str, metric: Metric, run: Run, index: int) -> Any:
-    """Return the value of a metric as a cell.
+    """Return the value of a metric as a cell; None if the metric raises an exception after the program has.
 
-    An exception of the metric gets a note with the names of the metric and the run.
+    Any other exception of the metric gets a note with the names of the metric and the run.
 
     Raises:
         ConfigError: the value is no number and no text.
@@ -98,6 +99,8 @@ def compute_cell(name: str, metric: Metric, run: Run, index: int) -> Any:
     try:
         value = metric(run)
     except Exception as error:  # Whatever it is, it is raised again.
+        if run.state == End.RAISED:
+            return None
         error.add_note(f"in the metric {name!r} of run {index + 1}")
         raise
     cell = value if getattr(value, "size", 1) != 1 else plain(value)

@@ -115,7 +115,7 @@ class Rounds(Iterator[int]):
         frame = self._sweep.build_frame(indices)
         frame = frame[frame["end"] != End.RAISED]
         column = frame.get(self._precision.column)
-        if column is None:
+        if column is None or column.empty:
             return math.inf
         if column.dtype.kind not in "bif":
             raise ConfigError(f"{self._precision.column!r} is not a number", key="until")
