@@ -121,7 +121,7 @@ BAD = {
     "unknown action": ("runs shwo 1", "no such command 'shwo' (did you mean show?)"),
     "export names its files": (
         "runs export 1 a.csv",
-        "export: a.csv is not a run (--out a.csv writes it)",
+        "export: a.csv is a file, not a run (to write this file, use --out a.csv)",
     ),
     "export needs a file": ("runs export 1", "needs a run and a file"),
     "too many words": ("backgrounds Loop", "Loop"),

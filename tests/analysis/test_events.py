@@ -36,7 +36,7 @@ def test_where_variables_cross_a_value(
 
 
 @pytest.mark.parametrize(
-    "text, said", [("Colour", "no threshold"), ("Color < 5", "no variable 'Color'")]
+    "text, said", [("Colour", "'Colour' is not a threshold"), ("Color < 5", "no variable 'Color'")]
 )
 def test_what_is_no_threshold(text: str, said: str) -> None:
     with pytest.raises(LogError, match=said):

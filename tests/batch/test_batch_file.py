@@ -112,5 +112,7 @@ def test_wrong_files_are_explained(write: Any, text: str, words: str) -> None:
 
 
 def test_a_batch_file_is_no_world(write: Any) -> None:
-    with pytest.raises(ConfigError, match=r"spec.toml: is a batch \(tuisim batch .*spec.toml\)"):
+    with pytest.raises(
+        ConfigError, match=r"spec.toml: is a batch file, not a world \(start it with: tuisim batch "
+    ):
         load_world(write("[batch]"))

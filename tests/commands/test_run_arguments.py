@@ -79,7 +79,11 @@ def test_the_program_finds_its_arguments(
             "tuisim: --: cells.ipynb is a notebook; its cells take no arguments",
         ),
         ("open --run last -- A", "tuisim: --: a stored run has its own arguments (leave them out)"),
-        ("none.toml -- A", "tuisim: --: none.toml names no program to pass arguments to"),
+        (
+            "none.toml -- A",
+            "tuisim: --: none.toml has no program that the arguments could go to"
+            " (tuisim PROGRAM none.toml -- ARGUMENTS)",
+        ),
     ],
 )
 def test_arguments_of_nobody_are_refused(

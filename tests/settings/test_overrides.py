@@ -104,7 +104,10 @@ def test_arguments_are_split_as_in_a_shell(value: object, expected: tuple[str, .
             r"^set: drift.gyro: no such key .did you mean gyro_dps",
         ),
         "a value and a table": ({"noise": 1, "noise.motor": 2}, r"noise.motor: is inside noise"),
-        "a table and a value": ({"noise.motor": 2, "noise": 1}, r"^set: noise: cannot be combined"),
+        "a table and a value": (
+            {"noise.motor": 2, "noise": 1},
+            r"^set: noise: is given as a whole",
+        ),
         "an open quote": ({"arguments": "'a"}, r"^set: arguments: cannot be split"),
     },
 )

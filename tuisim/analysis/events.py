@@ -225,7 +225,7 @@ def parse_events(text: str, log: Log) -> tuple[EventChoice, ...]:
             choices.append(CommandChoice(words))
             continue
         if threshold is None:
-            raise LogError(f"no threshold: {part.strip()!r}", FORM)
+            raise LogError(f"{part.strip()!r} is not a threshold", FORM)
         names = dict.fromkeys(name.partition(" #")[0] for name in log.names)
         if threshold.name not in log.names and threshold.name not in names:
             raise LogError(

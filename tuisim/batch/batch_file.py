@@ -89,7 +89,7 @@ def load_batch(path: Path, mats: str | None = None) -> BatchFile:
     if table.world is not UNSET:
         if data:
             raise location.at("world").wrong(
-                f"cannot be combined with {', '.join(data)}", "a world file, or its keys"
+                f"cannot be combined with {', '.join(data)}", "give a world file, or its keys"
             )
         with files.errors_at(location.file, location.at("world").key):
             world = load_world(folder / table.world, mats)
@@ -144,7 +144,7 @@ def _parse_choices(table: _BatchTable, location: Location) -> dict[str, Choice]:
     if table.seeds is not UNSET:
         place = location.at("seeds")
         if SEED in choices:
-            raise place.wrong(f"cannot be combined with set.{SEED}", "give only one of them")
+            raise place.wrong(f"cannot be combined with set.{SEED}", f"give seeds or set.{SEED}")
         listed = table.seeds if isinstance(table.seeds, list) else [table.seeds]
         try:
             choices[SEED] = (

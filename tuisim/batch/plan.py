@@ -94,7 +94,9 @@ class Plan:
         for name in self.choices:
             if name in subject.given:
                 message = f"{name} varies what an option sets"
-                raise ConfigError(message, "give one of them", key=str(self.path))
+                raise ConfigError(
+                    message, f"give the option, or the values of {name}", key=str(self.path)
+                )
         for values in Grid(tuple(own)):
             spec = self.build_spec(subject, values)
             if "profile" in values:

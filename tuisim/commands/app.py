@@ -270,7 +270,7 @@ def _read_terminal_keys() -> None:
         terminal = os.open("/dev/tty", os.O_RDWR)
     except OSError as error:
         raise ConfigError(
-            "there is no terminal to read keys from", "name a file instead of -"
+            "there is no terminal to read keys from", "give a file instead of -"
         ) from error
     sys.stdin = os.fdopen(os.dup(0))
     os.dup2(terminal, 0)

@@ -151,7 +151,8 @@ def _choose_workers(arguments: Arguments, file: BatchFile) -> Workers:
     }
     named = [name for name, value in options.items() if value]
     if len(named) > 1:
-        raise ConfigError(f"cannot be combined with {named[0]}", "give one of them", key=named[1])
+        hint = f"give {named[0]} or {named[1]}"
+        raise ConfigError(f"cannot be combined with {named[0]}", hint, key=named[1])
     jobs = arguments.jobs or (0 if named else file.jobs or 0)
     return Workers(jobs, arguments.scheduler or "", arguments.workers)
 
@@ -176,7 +177,7 @@ def _take_batch_file(arguments: Arguments) -> BatchFile:
     """
     named = [word for word in arguments.programs if is_batch_file(word)]
     if len(named) > 1:
-        raise ConfigError(f"two batches: {named[0]} and {named[1]}", "name one")
+        raise ConfigError(f"two batches: {named[0]} and {named[1]}", "give only one batch file")
     if not named:
         return BatchFile(Path())
     arguments.programs = tuple(word for word in arguments.programs if word not in named)
@@ -232,7 +233,7 @@ def _parse_choices(arguments: Arguments) -> dict[str, Choice]:
     if arguments.seeds is not None:
         if SEED in choices:
             raise ConfigError(
-                "cannot be combined with --set seed", "give one of them", key="--seeds"
+                "cannot be combined with --set seed", "give --seeds or --set seed", key="--seeds"
             )
         choices[SEED] = parse_seeds(arguments.seeds)
     return choices

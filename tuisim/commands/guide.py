@@ -47,7 +47,9 @@ def guide(topic: str | None, words: str | None) -> int:
     from tuisim.guide.text import draw_contents, draw_page
 
     if topic is not None and words is not None:
-        raise ConfigError("TOPIC and --search cannot be combined", "give one of them", key="guide")
+        raise ConfigError(
+            "TOPIC and --search cannot be combined", "give TOPIC or --search", key="guide"
+        )
     if words is not None:
         return _search(words)
     width = _measure_width()

@@ -179,7 +179,9 @@ def robots(robot: str | None, program: str | None, out: str | None, as_json: boo
 
     if program is not None:
         if robot is not None:
-            raise ConfigError(f"cannot be combined with {robot}", "name one", key="--from")
+            raise ConfigError(
+                f"cannot be combined with {robot}", f"give --from or {robot}", key="--from"
+            )
         return _print_program_robot(program, out, as_json=as_json)
     if out is not None:
         raise ConfigError("needs a program", "tuisim robots --from PROGRAM --out FILE", key="--out")

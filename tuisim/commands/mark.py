@@ -315,7 +315,9 @@ def _check(arguments: Arguments, task: GoalsFile) -> None:
     if not arguments.folders:
         raise ConfigError("no folder of programs is named", "tuisim mark GOALS FOLDER…")
     if arguments.input and any(world.answers for world in task.worlds):
-        raise ConfigError(f"{task.path} has answers", "give only one of them", key="--input")
+        raise ConfigError(
+            f"{task.path} has answers", "give --input, or a file with answers", key="--input"
+        )
     targets = [Path(target) for target in arguments.export]
     for target in targets:
         if target.suffix.lower() in PAGE_SUFFIXES:
@@ -346,7 +348,7 @@ def _check(arguments: Arguments, task: GoalsFile) -> None:
         and not os.path.isdir(arguments.feedback)
     ):
         raise ConfigError(
-            f"{arguments.feedback} is not a folder", "name a folder", key="--feedback"
+            f"{arguments.feedback} is not a folder", "give the name of a folder", key="--feedback"
         )
 
 
@@ -402,7 +404,9 @@ def _should_isolate(arguments: Arguments) -> bool:
     """
     if arguments.isolate and arguments.no_isolate:
         raise ConfigError(
-            "cannot be combined with --no-isolate", "give only one of them", key="--isolate"
+            "cannot be combined with --no-isolate",
+            "give --isolate or --no-isolate",
+            key="--isolate",
         )
     if arguments.no_isolate:
         return False

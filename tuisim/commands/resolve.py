@@ -89,7 +89,9 @@ def _load_named_world(words: Sequence[str], arguments: Arguments) -> WorldFile |
     named = [word for word in words if is_world_name(word)]
     named += [] if arguments.world is None else [arguments.world]
     if len(named) > 1:
-        raise ConfigError(f"two worlds: {named[0]} and {named[1]}", "name one", key="--world")
+        raise ConfigError(
+            f"two worlds: {named[0]} and {named[1]}", "give only one world", key="--world"
+        )
     return load_world(find_program(named[0]), arguments.settings.get("mats")) if named else None
 
 
@@ -101,7 +103,9 @@ def _prepare_word(
         if "arguments" in arguments.settings:
             named = world.path if world else arguments.world
             raise ConfigError(
-                f"{named} names no program to pass arguments to", key=ARGUMENTS_FOLLOW
+                f"{named} has no program that the arguments could go to",
+                f"tuisim PROGRAM {named} -- ARGUMENTS",
+                key=ARGUMENTS_FOLLOW,
             )
         settings = merge_settings(_select_defaults(world, config), in_world, arguments.settings)
         spec = _build_spec(settings)
@@ -228,7 +232,7 @@ def prepare_replay(
     if words or arguments.world or (wrong := sorted(chosen.keys() - APP_PATHS)):
         what = words[0] if words else arguments.world or wrong[0].replace("_", " ")
         raise ConfigError(
-            f"a stored run has its own program and world: remove {what}", "name one", key="--run"
+            "a stored run has its own program and world", f"remove {what}", key="--run"
         )
     stored = RunStore().load_run(run)
     opened = replace(stored.program, python_path=(), working_directory="")

@@ -379,7 +379,8 @@ def export(words: Sequence[str], files: Sequence[str], telemetry: str | None) ->
     """Export samples or telemetry of runs."""
     for word in words:
         if Path(word).suffix.lower() in EXPORTERS:
-            raise ConfigError(f"{word} is not a run", f"--out {word} writes it", key="export")
+            hint = f"to write this file, use --out {word}"
+            raise ConfigError(f"{word} is a file, not a run", hint, key="export")
     if not words or not (files or telemetry is not None):
         hint = f"tuisim runs export RUN… --out FILE, FILE ends in {', '.join(EXPORTERS)}"
         raise ConfigError("needs a run and a file", hint, key="export")

@@ -292,7 +292,7 @@ def _named(folder: str) -> Path:
     path = Path(os.path.abspath(user_path(folder)))
     if not os.path.exists(path):
         raise BackgroundError(
-            "there is no such folder", "name a folder of mat images", file=str(path), key="--mats"
+            "there is no such folder", "give a folder of mat images", file=str(path), key="--mats"
         )
     return path
 
@@ -307,7 +307,7 @@ def _pictures(folder: Path) -> list[Path]:
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or error
         raise BackgroundError(
-            f"cannot be read: {reason}", "name a folder of mat images", file=str(folder)
+            f"cannot be read: {reason}", "give a folder of mat images", file=str(folder)
         ) from error
 
 

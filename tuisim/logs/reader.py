@@ -250,7 +250,7 @@ def read_parts(
             return
         # The standard input is None if the shell closed it.
         if cast("Any", sys.stdin) is None:
-            raise LogError("is closed", "name a file instead of -")
+            raise LogError("is closed", "give a file instead of -")
         yield from read_text_parts(sys.stdin.buffer, 0, "", notes, choices)
 
 
@@ -366,7 +366,8 @@ def _refuse_binary(data: bytes) -> None:
         raise LogError(arrow.OLD_STREAM, arrow.OLD_STREAM_HINT)
     if data.startswith((*arrow.FORMATS, *MAGICS)):
         raise LogError(
-            "only text can be read from a pipe or inside a compressed file", "name the file itself"
+            "only text can be read from a pipe or inside a compressed file",
+            "for another format, give the name of the uncompressed file",
         )
 
 

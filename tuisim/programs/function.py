@@ -33,7 +33,7 @@ def read_function(function: Callable[[], object]) -> ProgramSource:
     """
     if not isinstance(function, FunctionType) or function.__name__ == "<lambda>":
         raise ConfigError(
-            f"{function!r} is not a program", "name a file, or a function made by def"
+            f"{function!r} is not a program", "give the name of a file, or a function made by def"
         )
     needed = [
         parameter.name

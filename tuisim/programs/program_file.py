@@ -239,7 +239,7 @@ def has_library_import(text: str) -> bool:
     """Return whether a program imports a library for a brick."""
     try:
         tree = parse_module(text)
-    # The program cannot be parsed: a search must do.
+    # The program cannot be parsed, so a search has to suffice.
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         return _IMPORT.search(text) is not None
     for node in ast.walk(tree):
@@ -305,7 +305,7 @@ def read_program(path: Path, *, as_python: bool = False, alone: bool = False) ->
         ConfigError: it is missing, a directory, not Python text, too large, or its magic line is wrong.
     """
     file_name = str(path)
-    hint = "name a Python file"
+    hint = "give a Python file"
     missing = "there is no such program"
     folder = "is a directory, not a program"
     data = read_bytes(
@@ -358,7 +358,7 @@ def _decode(data: bytes, file_name: str, as_python: bool) -> str:
         if "\0" in text:
             raise ConfigError(
                 "is not Python text: it contains null characters",
-                "name a Python file",
+                "give a Python file",
                 file=file_name,
             )
     except ConfigError:

@@ -90,7 +90,8 @@ def _nest(values: Mapping[str, Any], location: Location) -> dict[str, Any]:
                 raise location.at(key).wrong(f"is inside {part}, which has a value")
         if last in inside:
             raise location.at(key).wrong(
-                "cannot be combined with keys inside it", "give only one of them"
+                "is given as a whole, and so are keys inside it",
+                "give the whole or the keys, not both",
             )
         inside[last] = value
     return table

@@ -57,7 +57,7 @@ def parse_profile(
         if key in in_ms:
             if in_ms[key] in entries:
                 raise location.at(key).wrong(
-                    f"cannot be combined with {in_ms[key]}", "give only one of them"
+                    f"cannot be combined with {in_ms[key]}", f"give {key} or {in_ms[key]}"
                 )
             changes[in_ms[key]] = round(read_value(value, _COST_MS, location.at(key)) * MS)
         elif key in values:

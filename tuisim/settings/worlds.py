@@ -128,7 +128,9 @@ def _load_world(path: Path, mats: str | None, above: tuple[Path, ...]) -> WorldF
         raise ConfigError(f"is not a {WORLD_SUFFIX} file", "a world file is TOML", file=str(path))
     data = files.read_file(path, ConfigError)
     if BATCH_KEY in data:
-        raise ConfigError("is a batch", f"tuisim batch {path}", file=str(path))
+        raise ConfigError(
+            "is a batch file, not a world", f"start it with: tuisim batch {path}", file=str(path)
+        )
     return parse_world(data, path, mats, above)
 
 
@@ -171,7 +173,7 @@ def parse_world(
     if "obstacle" in world:
         if "obstacles" in world:
             raise location.at("obstacle").wrong(
-                "cannot be combined with obstacles", "give only one of them"
+                "cannot be combined with obstacles", "give obstacle or obstacles"
             )
         values["obstacles"] = obstacles_from_list(
             world["obstacle"], location.at("obstacle", ObstacleError)
@@ -300,7 +302,7 @@ def _parse_mat(
             except ConfigError as error:
                 if not error.file:
                     raise
-                # What is wrong is an image that this file names.
+                # The error is about an image that this file names.
                 raise location.at("background", type(error)).wrong(f"{error}") from error.__cause__
     return settings
 

@@ -209,6 +209,6 @@ def test_what_is_no_number_is_named(place: str) -> None:
 
 @pytest.mark.parametrize("condition", ["Colour <= 50", "Colour != 50", "Colour >= 50"])
 def test_an_event_has_no_other_operators(condition: str) -> None:
-    with pytest.raises(LogError, match="no threshold") as refused:
+    with pytest.raises(LogError, match="is not a threshold") as refused:
         by_event(condition)
     assert refused.value.hint == FORM

@@ -37,7 +37,7 @@ def also(worlds: str) -> str:
 
 BAD = {
     "no front": ("# Text\n", ", line 1: does not begin with +++ (TOML between two lines +++)"),
-    "front without end": ("+++\ntitle = 'T'\n", ", line 3: there is no second line +++"),
+    "front without end": ("+++\ntitle = 'T'\n", ", line 3: the second line +++ is missing"),
     "no TOML": ("+++\ntitle = \n+++\n", "is not TOML: "),
     "no title": (lesson("why = 'W'\n" + ASK), ", line 1: title: is missing"),
     "no why": (lesson("title = 'T'\n" + ASK), "why: is missing"),

@@ -207,7 +207,7 @@ def _parse_threshold_option(arguments: Arguments) -> EventChoice:
     if threshold is None and (words := parse_command_search(arguments.when)) is not None:
         return CommandChoice(words)
     if threshold is None:
-        raise ConfigError(f"no threshold: {arguments.when!r}", THRESHOLD_FORM, key="--when")
+        raise ConfigError(f"{arguments.when!r} is not a threshold", THRESHOLD_FORM, key="--when")
     return replace(threshold, hysteresis=threshold.hysteresis or arguments.hysteresis)
 
 

@@ -32,7 +32,7 @@ def config(as_json: bool, init: bool) -> int:
     if init:
         if as_json:
             raise ConfigError(
-                "--init and --json cannot be combined", "give one of them", key="config"
+                "--init and --json cannot be combined", "give --init or --json", key="config"
             )
         echo(f"written: {write_template()}")
         return 0

@@ -83,7 +83,7 @@ class PluggedPart:
 
     def __post_init__(self) -> None:
         if (self.role, self.port, self.part) not in PART_CODES:
-            raise ValueError(f"no part: {self.part!r} on {self.port!r} as {self.role!r}")
+            raise ValueError(f"there is no part {self.part!r} on {self.port!r} as {self.role!r}")
 
     def to_plain(self) -> dict[str, Any]:
         """Return the form that is stored with a run."""

@@ -175,10 +175,14 @@ class Spec:
         return f"{self.KEY}.{name}" if self.KEY else name
 
     def __setattr__(self, name: str, value: object) -> NoReturn:
-        raise AttributeError(f"{type(self).__name__} is frozen")
+        raise AttributeError(
+            f"{type(self).__name__} cannot be changed; make another with other values"
+        )
 
     def __delattr__(self, name: str) -> NoReturn:
-        raise AttributeError(f"{type(self).__name__} is frozen")
+        raise AttributeError(
+            f"{type(self).__name__} cannot be changed; make another with other values"
+        )
 
     def _list_contents(self) -> tuple[Any, ...]:
         return tuple(getattr(self, name) for name in self.__dataclass_fields__)

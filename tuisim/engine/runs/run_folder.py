@@ -217,7 +217,7 @@ def _restore_spec(plain: Mapping[str, Any]) -> RunSpec:
     """
     spec = restore(plain)
     if not 1 <= spec.profile.tick_hz <= NS_PER_S:
-        raise ValueError(f"a tick rate of {spec.profile.tick_hz}")
+        raise ValueError(f"the tick rate cannot be {spec.profile.tick_hz}")
     # A seed may be any whole number.
     parts = [plain[name] for name in ("robot", "world", "profile")]
     while parts:

@@ -109,9 +109,7 @@ class ReachCondition(Condition):
         if self.x_mm is None and self.y_mm is None and self.heading_deg is None:
             raise ConfigError("names no place and no heading", "give x_mm, y_mm or heading_deg")
         if self.at_end and self.for_s:
-            raise ConfigError(
-                "cannot be combined with at_end", "give only one of them", key="for_s"
-            )
+            raise ConfigError("cannot be combined with at_end", "give for_s or at_end", key="for_s")
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,7 +128,9 @@ class AreaCondition(Condition):
     def __post_init__(self) -> None:
         if self.radius_mm is not None and (self.width_mm is not None or self.height_mm is not None):
             raise ConfigError(
-                "cannot be combined with width_mm or height_mm", "give only one", key="radius_mm"
+                "cannot be combined with width_mm or height_mm",
+                "give width_mm and height_mm, or radius_mm",
+                key="radius_mm",
             )
         if self.radius_mm is None and (self.width_mm is None or self.height_mm is None):
             raise ConfigError("has no size", "give width_mm and height_mm, or radius_mm")

@@ -40,7 +40,7 @@ def find_lesson_paths(folder: Path | str | None = None) -> dict[str, Path]:
     own = user_path(word)
     key = VARIABLE if folder is None else "--folder"
     if not os.path.isdir(own):
-        raise ConfigError(f"there is no folder {own}", "name a folder of lessons", key=key)
+        raise ConfigError(f"there is no folder {own}", "give a folder of lessons", key=key)
     lessons = _find_folder_paths(own)
     if not lessons:
         raise ConfigError(

@@ -167,8 +167,8 @@ def _end_of_front(lines: Sequence[str], path: Path) -> int:
         if line.strip() == FENCE:
             return index
     raise ConfigError(
-        f"there is no second line {FENCE}",
-        "this line ends the TOML",
+        f"the second line {FENCE} is missing",
+        f"write {FENCE} on a line of its own, below the TOML",
         file=f"{path}, line {len(lines)}",
     )
 

@@ -72,7 +72,7 @@ def read_roster(path: Path) -> Roster:
     """
     file_name = str(path)
     data = read_bytes(
-        path, MAX_BYTES, ConfigError, "there is no such file", "is a folder", "name a CSV file"
+        path, MAX_BYTES, ConfigError, "there is no such file", "is a folder", "give a CSV file"
     )
     try:
         text = data.decode("utf-8-sig")
@@ -149,7 +149,7 @@ def write_gradebook(
         heads.append(feedback)
     for row, source in zip(sheet.rows, sources, strict=True):
         points = [row.points, *(row.cells[index].points for index in indices)]
-        # What could not be judged stays empty.
+        # A cell stays empty if its points could not be judged.
         words = ["" if math.isnan(number) else format_points(number) for number in points]
         cells = [*_identify(row, identity, kind, roster), *words]
         table.append(

@@ -149,7 +149,7 @@ def find_students(
             students.append((_resolve_links(path).parent, _own_name(path), student))
         else:
             raise ConfigError(
-                "there is no such file or folder", "name a folder of students' programs", file=word
+                "there is no such file or folder", "give a folder of students' programs", file=word
             )
     if not students:
         hint = f"a file NAME.py or a folder for each student; {see_page('marking')}"

@@ -49,7 +49,9 @@ def switch_facets(screen: LogScreen) -> None:
     switch(screen, "facets")
     if screen.chart.options.facets:
         if len(screen.model.traces.list_ticked()) < 2:
-            screen.say("Only one variable is shown: v selects another, space shows it")
+            screen.say(
+                "Only one variable is shown. Press v to select another, then space to show it."
+            )
         elif screen.chart.display and screen.chart.size.height < FACETS_ROWS:
             screen.say("Too little height for several charts: + enlarges the chart")
 

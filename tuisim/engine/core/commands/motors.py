@@ -77,5 +77,5 @@ def set_roll(sim: Simulation, _time_ns: int, part: int, values: tuple[float, ...
     motor = _find_motor(sim, part)
     assert isinstance(motor, BrowserMotor)
     if abs(values[0]) != 1.0:
-        raise ValueError(f"no direction: {values[0]!r}")
+        raise ValueError(f"{values[0]!r} is not a direction")
     motor.roll_sign = values[0]

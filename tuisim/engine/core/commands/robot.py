@@ -52,6 +52,6 @@ def decode_parts(values: Iterable[float], tick: int) -> list[PluggedPart]:
     """
     codes = [int(code) for code in values if code == code]
     if not _PLACES.keys() >= {*codes}:
-        raise ValueError(f"no parts: {codes!r}")
+        raise ValueError(f"{codes!r} are not all codes of parts")
     places = map(_PLACES.__getitem__, codes)
     return [PluggedPart(port, part, tick, 0, role) for role, port, part in places]

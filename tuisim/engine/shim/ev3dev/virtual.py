@@ -26,8 +26,8 @@ class _Unsimulated:
             raise AttributeError(name)
         used = f"{NAME}.{type(self).__name__}.{name}"
         raise NotSimulated(
-            f"{used} is a part of the simulator Gears, and is not simulated",
-            "GPSSensor and Pen of this module are",
+            f"tuisim does not simulate {used}, a part of the simulator Gears",
+            "of this module, it simulates GPSSensor and Pen",
         )
 
 
