@@ -199,7 +199,9 @@ def parse_set(text: str) -> tuple[str, Choice]:
 
 
 def parse_values(text: str, key: str) -> Choice:
-    """Parse the values of a parameter.
+    """Parse the values of a parameter, such as `0,20,50`, `54:58:0.5`, `0..199` or `random(0, 50, 20)`.
+
+    The values of `random` and the like are drawn later, from the SampleValues returned.
 
     Raises:
         ConfigError: they are wrong; errors blame `key`.

@@ -69,7 +69,7 @@ def parse_definition(text: str) -> Definition:
     """
     match = _NAMED.fullmatch(text)
     expression = (match["expression"] if match else text).strip()
-    # In names of variables ` #` is followed by the number of the run.
+    # A name with ` #2` means run 2, so a name made from the expression has `#` without the blank.
     name = match["name"] if match else expression.replace("`", "").replace(" #", "#")
     if not name:
         raise LogError("nothing to compute", "such as speed = slope(distance)")

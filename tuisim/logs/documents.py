@@ -116,7 +116,7 @@ def _build_table(value: Any, notes: Notes) -> pa.Table | None:
             f"is a single JSON value, {shortened(json.dumps(value), 40)}, not a table", _ALLOWED
         )
     if isinstance(value.get("columns"), list) and isinstance(value.get("data"), list):
-        # As pandas writes a frame that is split.
+        # pandas writes a frame like this with `orient="split"`.
         return _build_table_from_rows(
             value["data"], notes, [str(name) for name in value["columns"]]
         )
@@ -127,7 +127,7 @@ def _build_table(value: Any, notes: Notes) -> pa.Table | None:
         notes.say(f"only the table {inner[0]!r} is read")
         return _build_table(value[inner[0]], notes)
     if value and all(isinstance(cells, dict) for cells in value.values()):
-        # As pandas writes a frame: an object of cells for each column.
+        # pandas writes a frame like this: an object of cells for each column.
         labels = dict.fromkeys(label for cells in value.values() for label in cells)
         return _build_table_from_rows(
             [{name: cells.get(label) for name, cells in value.items()} for label in labels], notes

@@ -91,7 +91,7 @@ def check_place(place: Path) -> None:
         with tempfile.TemporaryFile(dir=place.parent):
             pass
     except OSError as error:
-        # Also raised if the name is too long for the file system.
+        # This is also the error if the name is too long for the file system.
         raise ExportError(f"cannot write {place}: {error.strerror or error}") from error
 
 

@@ -382,7 +382,7 @@ def _find_comment_names(text: str, table: Sequence[_Line], separator: str) -> li
     if len(names) != width:
         names = text.split()
         if parse_time_name(names[0] if names else "").base not in NAMES:
-            # It may be a sentence.
+            # Without the name of a time first, the line may be a sentence.
             return None
     alike = len(table) < 2 or table[0].kinds == table[1].kinds
     is_heading = len(names) == width and alike and parse_kinds(names).strip("n") != ""

@@ -52,7 +52,7 @@ def list_members(table: pa.Table, layout: Layout) -> list[Member]:
         return [
             _build_member(name, run, rows, False) for name, rows in zip(names, rows_of, strict=True)
         ]
-    # Only few of all pairs of variable and run may exist.
+    # Often most pairs of variable and run do not occur: number only those that do.
     pairs, pair_codes = _encode_column(wrap_int64(codes.astype(np.int64) * len(runs) + run_codes))
     rows_of = _group_rows(pair_codes, len(pairs))
     keys = [(names[pair // len(runs)], runs[pair % len(runs)]) for pair in pairs]

@@ -89,7 +89,7 @@ def _split_time(line: str) -> tuple[str | None, str, bool]:
         return None, line, False
     between = match["between"].strip()
     is_certain = match["open"] is not None or ":" in between
-    # With nothing but blanks between them, these are the cells of a row.
+    # If only blanks separate two numbers, they can be cells of a row, and the first need not be a time.
     return (
         match["stamp"],
         match["rest"],

@@ -161,7 +161,12 @@ def _find_restarts(seconds: FloatArray, back: IntArray) -> IntArray:
 
 
 def _is_one_clock(table: pa.Table, layout: Layout, back: IntArray) -> bool:
-    """Return whether all rows are in the order of one clock; not if one variable is listed after the other."""
+    """Return whether the rows were written in order of time, not one variable after another.
+
+    Args:
+        back: The rows at which time is less than in the row before. If no variable is on both sides of such a row,
+            another variable begins there.
+    """
     if not layout.variable:
         return True
     names = table.column(layout.variable)

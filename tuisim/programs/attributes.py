@@ -69,7 +69,7 @@ class AttributeCheck:
 
 
 def _find_end(lines: Sequence[str], node: ast.expr) -> tuple[int, int]:
-    """Return row and column of the end of a piece of code."""
+    """Return the row, from 0, and the column in characters just after the end of a node."""
     row = (node.end_lineno or 1) - 1
     return row, count_column(lines[row], node.end_col_offset)
 

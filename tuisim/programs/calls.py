@@ -125,7 +125,7 @@ def list_calls(tree: ast.Module, prelude: str, wanted: str) -> list[int]:
     }:
         if own.partition(".")[0] == PYBRICKS:
             whole |= {f"{own}.{rest}", f"{own}().{rest}"}
-    # A name that `import *` may bring can be of any of these modules.
+    # After `from ev3dev2.motor import *` a program writes `MoveTank` alone: accept it without the module, too.
     starred = [f"{module}." for scope in scopes for module in scope.stars]
     whole |= {
         meaning.removeprefix(module)

@@ -100,7 +100,14 @@ def _split_line(line: str, breaks: _Breaks, width: int) -> Iterator[str]:
 
 
 def _end(line: str, start: int, room: int, inside: Mapping[int, bool]) -> int:
-    """Return the column at which to break a line: in brackets if possible, before a dot only if nothing else fits."""
+    """Return the column at which to break a line: in brackets if possible, before a dot only if nothing else fits.
+
+    If nothing fits, this is the next possible break, or the end of the line.
+
+    Args:
+        room: How many characters fit.
+        inside: The columns of possible breaks, and whether each is in brackets.
+    """
     later = [column for column in inside if column > start]
     fits = [
         column

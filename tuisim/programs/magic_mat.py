@@ -27,7 +27,7 @@ class WrongMat(NamedTuple):
 
 
 def find_wrong_mat(text: str, name: str, folder: str | None) -> WrongMat | None:
-    """Return what is wrong with the mat in a magic line; None if it is right, or an image beside the program.
+    """Return what is wrong with the mat in a magic line; None if nothing is wrong, or if the mat is not judged here.
 
     Args:
         text: The program.

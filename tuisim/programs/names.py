@@ -83,7 +83,7 @@ def find_unknown_names(text: str, name: str) -> tuple[UnknownName, ...] | None:
         return None
     seen = _SeenNames()
     with warnings.catch_warnings():
-        # They are shown when the program runs.
+        # Python shows the warnings when the program runs.
         warnings.simplefilter("ignore")
         try:
             _search(compile(tree, name, "exec", dont_inherit=True), seen)

@@ -175,7 +175,7 @@ def choose_programs(word: str) -> list[NotebookProgram]:
     """Return the programs that `FILE` or `FILE#number` names.
 
     Raises:
-        ConfigError: there is no such notebook or program.
+        ConfigError: there is no such notebook or program, or the program uses a value that only the notebook defines.
     """
     name, sharp, cell = word.partition("#")
     programs = read_notebook_programs(Path(name))

@@ -157,7 +157,7 @@ def read_source_facts(program: Program) -> SourceFacts:
         # Most programs are the course's, and need no reading of their own.
         return _collect_facts(program, modules, facts)
     except (RecursionError, SyntaxError):
-        # What is wrong with the program is said when it runs.
+        # When the program runs, Python reports what is wrong with it.
         return SourceFacts()
     except RobotError as error:
         why = f"its source describes an impossible robot ({error.message})"

@@ -84,7 +84,7 @@ class Name(Value):
 
 
 class RunValue(NamedTuple):
-    """A value of a run with a path of its own in settings: of the world, the pen or the seed."""
+    """A value of a run that settings can set by its own path: a value of the world or the pen, or the seed."""
 
     spec_path: str
     """Its path in the specification."""
@@ -410,7 +410,10 @@ class Settings:
         return _DEFAULTS.get(path) if value is None else value
 
     def changed(self, values: Mapping[str, Any]) -> Settings:
-        """Return the settings with other values; None lets mat, robot, profile or program decide."""
+        """Return a copy in which `values`, by path, replace or add to those given.
+
+        A value of None lets mat, robot, profile or program decide.
+        """
         return Settings({**self.given, **values})
 
 

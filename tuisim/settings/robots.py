@@ -459,7 +459,10 @@ def _is_no_presser(sensor: SensorSpec, key: str) -> bool:
 
 
 def _format_motors(spec: RobotSpec, table: str) -> list[str]:
-    """Return TOML lines for motors other than a large one on each wheel: by kind, or as tables with their end stops."""
+    """Return TOML lines for the wheel motors that are not large, and for all extra motors.
+
+    Motors before the first one with an end stop are lines `PORT = KIND`; that one and all after it are tables.
+    """
     motors = (*(motor for motor in spec.wheel_motors if motor.kind != "large"), *spec.extra_motors)
     # In a file all tables follow the keys, and the order of the motors counts.
     plain = list(takewhile(lambda motor: motor.low_deg is motor.high_deg is None, motors))

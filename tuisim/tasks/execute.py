@@ -44,7 +44,7 @@ def execute(task: Task, folder: Path) -> Result:
     """
     try:
         return _run_task(task, folder)
-    except Exception as error:  # Also a mistake of tuisim's: the other runs go on.
+    except Exception as error:  # Also a bug of tuisim: one run must not end the others.
         return build_unjudged(task, describe_fault(error))
 
 

@@ -174,7 +174,7 @@ def _draw_braille(
     down = (np.rint(down) - 1 if is_thick else np.floor(down)) + DOTS_Y
     width, height = (columns + 2) * DOTS_X, (rows + 2) * DOTS_Y
     if curve.joined:
-        # What lies outside is at the edge of the margin: lines lead there.
+        # Points outside move to the edge of the margin, so that lines lead there.
         across = across.clip(0, width - 1)
         down = down.clip(0, height - 1)
     else:

@@ -358,7 +358,9 @@ class Scales:
 
     @classmethod
     def group(cls, variables: Sequence[Variable], zoomed: bool) -> Scales:
-        """Return the scales of variables; that of light and of unknown units is on the left, else the first.
+        """Return the scales of variables.
+
+        On the left is the scale of light and of variables without a known unit, else that of the first variable.
 
         Args:
             zoomed: Whether the scales fit the visible data.

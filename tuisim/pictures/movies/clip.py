@@ -125,7 +125,7 @@ class ClipRun:
         low = 0.0 if start_s is None else start_s
         high = self.end_s if stop_s is None else min(stop_s, self.end_s)
         known = f"run {self.run.number} lasts from 0 s to {self.end_s:g} s"
-        # Also true for NaN.
+        # With NaN, this condition is true, too.
         if not 0 <= low <= high or (low == high and (start_s, stop_s) != (None, None)):
             requested = low, self.end_s if stop_s is None else stop_s
             raise ConfigError(

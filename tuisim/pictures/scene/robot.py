@@ -217,7 +217,7 @@ def _classify_samples(
     beside = np.abs(across - outline.half_width_mm + wheel_mm / 2) <= wheel_mm / 2
     if outline.has_wheels:
         parts[beside & (np.abs(ahead) <= outline.wheel_radius_mm)] = _WHEEL
-    # In few pixels the nose sticks out by one, and it is never thinner than that, so that the heading can be seen.
+    # On a small robot the marker sticks out by `_NOSE_PX` and has a least width, so that the heading can be seen.
     is_small = 2 * outline.half_width_mm < _MIN_PX[cell_cols] * px_mm
     nose_mm = _NOSE_PX[cell_cols] * px_mm if is_small else 0.0
     tip = front_mm + nose_mm

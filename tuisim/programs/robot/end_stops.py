@@ -18,7 +18,7 @@ _MAX_REACH_DEG = 20_000.0
 
 @dataclass(frozen=True, slots=True)
 class EndStop:
-    """A motor that drives against an end stop."""
+    """An end stop that a program drives a motor against, to find the motor's position."""
 
     where: Where
     forwards: bool | None

@@ -64,7 +64,7 @@ class _MechanicsReader:
             # A program that turns the polarity both ways only tries it out.
             self.found.reversed.pop(port, None)
         for port, where in self.backwards.items():
-            # With the polarity turned as well, the motor is mounted the usual way.
+            # Negative speed to drive forwards, and inversed polarity too: the two cancel, so it is mounted as usual.
             if self.found.reversed.pop(port, None) is None:
                 self.found.reversed[port] = where
         for port in {**self.targets, **self.found.turns}:

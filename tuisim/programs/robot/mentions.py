@@ -308,7 +308,7 @@ class _Reader:
                 for part in parts:
                     self._note_hint(part, name)
             case ast.Call(args=args):
-                # As in `elbow = Joint(LargeMotor(OUTPUT_B))`: the thing is named after its only part.
+                # In `elbow = Joint(LargeMotor(OUTPUT_B))`, the motor gets the name of the object that it is a part of.
                 parts = [part for part in args if part in self.parts]
                 if len(parts) == 1 and value not in self.parts:
                     self._note_hint(parts[0], name)
@@ -511,10 +511,11 @@ class _Reader:
                 self._find_driven(call, known.right, 1, devices),
             )
             if len(left) == 2 and right in ([], left):
-                # As `motors[0]` and `motors[1]` of `motors = [Motor(port) for port in ports]`.
+                # With `motors = [Motor(port) for port in ports]`, `motors[0]` and `motors[1]` can each be both ports:
+                # take the ports in order.
                 left, right = left[:1], left[1:]
         else:
-            # The ports of a balancing robot come last.
+            # `GyroBalancer` alone has usual ports; its motor ports are the arguments 10 and 11, counted from 0.
             places = (10, 11) if known.usual[0] else (0, 1)
             left = [port for port, _ in self._find_ports(call, known.left, places[0], names)]
             right = [port for port, _ in self._find_ports(call, known.right, places[1], names)]

@@ -48,7 +48,7 @@ def _list_names(scope: Scope) -> Iterator[str]:
             case ast.Name(id=name, ctx=ast.Load()) | ast.Attribute(attr=name):
                 yield name
             case ast.Constant(value=str(name)) if name.isidentifier():
-                # As in `getattr(robot, "lift")`.
+                # The name is that of an attribute, as in `getattr(robot, "lift")`.
                 yield name
 
 

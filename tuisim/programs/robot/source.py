@@ -80,10 +80,10 @@ def parse(text: str) -> ast.Module | None:
     """Return the syntax tree of a text, which callers must not change; None if the text is not Python."""
     try:
         with warnings.catch_warnings():
-            # They are shown when the program runs.
+            # Python shows the warnings when the program runs.
             warnings.simplefilter("ignore")
             return parse_module(text)
-    # What is wrong with the program is said when it runs.
+    # When the program runs, Python reports what is wrong with it.
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         return None
 

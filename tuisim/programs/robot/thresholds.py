@@ -158,7 +158,11 @@ def _parse_color(node: ast.expr) -> str | None:
 def _find_reads(
     mentions: Mentions, scope: Scope, node: ast.expr, steps: int
 ) -> Iterator[tuple[str, LightRead]]:
-    """Yield port and kind of reading, for each reading of a colour sensor that an expression can be."""
+    """Yield port and kind of each reading of a colour sensor that an expression can be, directly or through variables.
+
+    Args:
+        steps: How many variables were followed to the expression; after `_MAX_STEPS` no more are followed.
+    """
     match node:
         case (
             ast.Attribute(value=base, attr=name)

@@ -58,7 +58,9 @@ def find_wheels(
     usual: RobotSpec,
     tools: Collection[str] = (),
 ) -> WheelMotors:
-    """Return the motors that drive the wheels; without any if every port is taken by a motor that does something else.
+    """Return the motors that drive the wheels.
+
+    Their ports are `NO_PORT` if every port is taken by a motor that does something else.
 
     Args:
         kinds: The motors that the program names, by port.
@@ -204,7 +206,10 @@ def add_others(kinds: Mapping[str, DeviceKind], mentions: Mentions) -> dict[str,
 def _add_medium(
     kinds: Mapping[str, DeviceKind], mentions: Mentions, others: list[str]
 ) -> dict[str, DeviceKind]:
-    """Return the kinds of motors; one or two unknown ones of `others` are medium in Pybricks, as in LEGO's EV3 sets."""
+    """Return the kinds of motors, with medium for those of `others` of unknown kind whose names do not say large.
+
+    Nothing changes outside Pybricks on an EV3, or if `others` are more ports than LEGO's EV3 sets have medium motors.
+    """
     if mentions.library is not Library.PYBRICKS or mentions.hub or len(others) > _MAX_MEDIUM:
         return dict(kinds)
     unsaid = [

@@ -98,7 +98,7 @@ class Evidence:
         else:
             self.end = run.ended
             self.ended = run.ended is not None
-            # Only answers given beforehand: those that the user typed are in the rows.
+            # These are only the answers given beforehand; the rows have those that the user typed.
             self.answers = run.answers
         self.records: Array = run.telemetry.array()
         self.memo: dict[str, Any] = {}

@@ -130,7 +130,7 @@ def load_task(path: Path | str, mats: str | None = None) -> tuple[WorldFile, Goa
 
 @contextmanager
 def add_line_to_errors(path: Path, text: str | None = None) -> Iterator[None]:
-    """Add the number of the line to errors in the block that name the file and a key.
+    """In a `with` block, add the number of the line to each ConfigError that names this file and a key.
 
     Args:
         path: The file, as errors name it.
@@ -306,7 +306,7 @@ def _parse_condition(
     elif not isinstance(data, dict) and kind.SHORT:
         data = {kind.SHORT: data}
     if isinstance(data, dict) and isinstance(data.get(kind.SHORT), str):
-        # A single one needs no list.
+        # A single text may stand without a list: `lines = "done"` means `["done"]`.
         data = {**data, kind.SHORT: [data[kind.SHORT]]}
     _check_lists(kind, data, location)
     if kind is UseCondition and isinstance(data, dict) and "reading" in data:
@@ -455,7 +455,7 @@ def find_key_line(text: str, key: str) -> int:
     while path and not _has(_parse_lines(lines), path):
         path.pop()
 
-    # Only where statements begin: a value on thousands of lines would be parsed as often.
+    # Cut only where statements begin: otherwise a value on thousands of lines would be parsed thousands of times.
     starts = [index for index, line in enumerate(lines) if _STATEMENT.match(line)]
     ends = [*starts, len(lines)]
 

@@ -102,7 +102,7 @@ class LiveGoals:
     def __init__(
         self, goals: Sequence[Goal], sim: Simulation, recording: MemoryRecording, field: Field
     ) -> None:
-        # It has what is asked of one.
+        # `judge` asks a run only for what LiveRun has, too.
         run = cast("RunHandle", LiveRun(sim, recording))
         self._judge = partial(judge, goals, run, field)
         self._sim = sim

@@ -41,7 +41,10 @@ _MAX_TRIED = 1000
 
 
 def _describe_pattern(pattern: str) -> str:
-    """Return words for a line that must match a pattern: `matches “done”`, or that it says what the goal needs."""
+    """Return a verb phrase for a line that must match a pattern, such as `matches 'done'`.
+
+    It is `says what the goal needs` if the pattern has a lookaround.
+    """
     words = re.sub(r"\(\?i\)|\\b|[\^$]", "", pattern)
     if words == re.escape(words).replace("\\ ", " "):
         return f"matches {_quote(words)}"

@@ -85,7 +85,9 @@ def find_motion_line(records: Array, index: int) -> int:
 
 
 def _find_arrivals(there: Array) -> Array:
-    """Return for each tick the index since which the robot has been there without a break.
+    """Return for each tick at which the robot is there the index at which it arrived; 0 if it was there from the start.
+
+    At the other ticks the values mean nothing.
 
     Args:
         there: Whether the robot is there, shape (n,).

@@ -124,7 +124,7 @@ def parse_other_worlds(
                 {key: table[key] for key in _WORLD_KEYS if key in table}, path, changes=True
             )
         except ConfigError as error:
-            # It names the key in the table, or another file.
+            # The error names the key inside this table, or it is about another file.
             if error.file != place.file:
                 raise
             raise files.with_location(error, place.file, f"{place.key}.{error.key}") from None

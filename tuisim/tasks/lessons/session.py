@@ -206,7 +206,7 @@ class LessonSession:
 
     @property
     def step_before(self) -> LessonStep | None:
-        """The step before the one to do, or the last one at the end of the lesson."""
+        """The step before the one to do, or the last one at the end of the lesson; None at the first step."""
         index = len(self.lesson.steps) if self.at is None else self.at
         return self.lesson.steps[index - 1] if index else None
 

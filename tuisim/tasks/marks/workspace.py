@@ -58,7 +58,7 @@ def compute_digest(student: Student) -> str:
         relative = os.path.relpath(path, student.path.parent)
         digest.update(os.fsencode(relative) + b"\0")
         try:
-            # Only the target's path: the target itself may not be the student's file.
+            # Read only the path of the target: the target itself may not be the student's file.
             if path.is_symlink():
                 digest.update(hashlib.sha256(os.fsencode(os.readlink(path))).digest())
             else:

@@ -134,9 +134,9 @@ def find_unmet(run: StoredRun, mat: Field | None = None) -> Unmet | None:
 
 
 def find_near_miss(run: StoredRun, mat: Field | None = None) -> Unmet | None:
-    """Return where light just missed what a loop waited for, or came between two reads, if the loop is over.
+    """Return where a loop that is over missed the light that it waited for; None if none did, or if that is not known.
 
-    None if that happened nowhere, or is not known.
+    No reading quite reached the light, or it was there only between two readings.
 
     Args:
         run: The run.
@@ -351,7 +351,10 @@ class _Search:
         return f"it went from {_round(values[0])} to {_round(values[-1])}"
 
     def _find_miss(self, loop: LoopEnd, series: _Series) -> Unmet | None:
-        """Return where light came near the limit of a loop, and went away again; None if nowhere."""
+        """Return where the light came within `_NEAR` % of a loop's limit, but never met its condition; None if nowhere.
+
+        Before and after, the light was at least `_AWAY` % away from the limit.
+        """
         import numpy as np
 
         if isinstance(loop.limit, str):
