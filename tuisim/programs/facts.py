@@ -14,7 +14,7 @@ from tuisim.programs.calls import list_calls
 from tuisim.programs.mistakes import find_fault
 from tuisim.programs.questions import Question, QuestionReader, Word
 from tuisim.programs.robot.source import parse
-from tuisim.programs.robot.thresholds import ProgramThreshold, find_light_read, find_thresholds
+from tuisim.programs.robot.thresholds import ProgramThreshold, find_light_reads, find_thresholds
 from tuisim.programs.slips import find_idle_definition, list_slips
 from tuisim.programs.structure import STRUCTURES
 from tuisim.programs.waits import (
@@ -136,10 +136,9 @@ class ProgramFacts:
         """The last function or class of a program that only defines, and why nothing happens; otherwise None."""
         return find_idle_definition(self._short_tree)
 
-    @cached_property
-    def light_read(self) -> LightRead:
-        """The number of a colour sensor that the program reads first; percent if it reads none."""
-        return find_light_read(self._program.text)
+    def find_light_reads(self, robot: RobotSpec) -> Mapping[str, LightRead]:
+        """Return which number of each colour sensor the program reads first, by name of the sensor."""
+        return find_light_reads(self._program, robot)
 
     def find_thresholds(self, robot: RobotSpec) -> Mapping[str, tuple[ProgramThreshold, ...]]:
         """Return what the program compares its colour sensors with, in order of its lines, by name of the sensor."""

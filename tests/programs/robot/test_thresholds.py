@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from tests.cases import cases
 from tuisim.base.source import Program
 from tuisim.engine.core.sensors.color import LightRead
 from tuisim.engine.core.spec import RobotSpec
-from tuisim.programs.robot.thresholds import find_light_read, find_thresholds
+from tuisim.programs.robot.thresholds import (
+    find_light_read,
+    find_light_reads,
+    find_thresholds,
+)
 
 EV3DEV2 = (
     "from ev3dev2.sensor.lego import ColorSensor\nfrom ev3dev2.sensor import INPUT_2, INPUT_3\n"
@@ -95,3 +101,16 @@ def test_of_pybricks() -> None:
 )
 def test_what_a_program_reads(text: str, read: LightRead) -> None:
     assert find_light_read(text) is read
+
+
+def test_each_sensor_has_the_number_that_the_program_reads_of_it() -> None:
+    text = (
+        "def look():\n    return colorRight.reflected_light_intensity\n"
+        "print(colorLeft.color, colorLeft.reflected_light_intensity_pc, look())\n"
+        "print(colorLeft.full_reflected_light_intensity)\n"
+    )
+    program = Program("p.py", text, "preloaded")
+    reads = find_light_reads(program, RobotSpec())
+    assert reads == {"left": LightRead.PERCENT, "right": LightRead.REFLECTED}
+    unread = find_light_reads(replace(program, text="print(eye.reflection())"), RobotSpec())
+    assert set(unread.values()) == {LightRead.REFLECTION}

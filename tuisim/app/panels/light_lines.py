@@ -39,13 +39,15 @@ class LightSeen:
 
 def list_seen(now: Snapshot, word: str) -> list[tuple[str, LightSeen | None]]:
     """Return a name for each colour sensor, a word with its number, and what it sees; None before the mat is known."""
-    read = read_facts(now.program).light_read if now.program else LightRead.PERCENT
-    reflected_max = now.spec.profile.reflected_max
-    seen = [now.colors.get(sensor.name) for sensor in now.spec.robot.color_sensors]
-    return [
-        (f"{word}{number}", LightSeen(color, read, reflected_max) if color else None)
-        for number, color in enumerate(seen, 1)
-    ]
+    robot = now.spec.robot
+    reads = read_facts(now.program).find_light_reads(robot) if now.program else {}
+    lines: list[tuple[str, LightSeen | None]] = []
+    for number, sensor in enumerate(robot.color_sensors, 1):
+        color = now.colors.get(sensor.name)
+        read = reads.get(sensor.name, LightRead.PERCENT)
+        seen = LightSeen(color, read, now.spec.profile.reflected_max) if color else None
+        lines.append((f"{word}{number}", seen))
+    return lines
 
 
 def build_color_cell(name: str, seen: LightSeen | None, with_name: bool) -> Line:

@@ -135,10 +135,11 @@ def list_disc_faces(
     """
     facts = read_facts(program) if program else None
     thresholds = facts.find_thresholds(spec.robot) if facts else {}
-    first = facts.light_read if facts else LightRead.PERCENT
+    reads = facts.find_light_reads(spec.robot) if facts else {}
     faces = []
     for sensor in spec.robot.color_sensors:
         limits = thresholds.get(sensor.name, ())
+        first = reads.get(sensor.name, LightRead.PERCENT)
         read = next((threshold.read for threshold in limits if not threshold.read.is_color), first)
         box = read_pixel_array(sensor, instant, field)
         seen = measure_color(sensor, instant, field)

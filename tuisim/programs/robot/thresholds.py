@@ -68,6 +68,23 @@ def find_light_read(text: str) -> LightRead:
 
 
 @lru_cache(maxsize=4)
+def find_light_reads(program: Program, robot: RobotSpec) -> Mapping[str, LightRead]:
+    """Return which number of each colour sensor a program reads first, by name of the sensor.
+
+    Of a sensor of which its text shows none it is `find_light_read`.
+    """
+    usual = find_light_read(program.text)
+    reads: dict[str, tuple[int, LightRead]] = {}
+    try:
+        mentions = _read_mentions(program)
+        for line, port, read in _list_reads(mentions) if mentions else ():
+            reads[port] = min(reads.get(port, (line, read)), (line, read))
+    except RecursionError:
+        reads = {}
+    return {sensor.name: reads.get(sensor.port, (0, usual))[1] for sensor in robot.color_sensors}
+
+
+@lru_cache(maxsize=4)
 def find_thresholds(
     program: Program, robot: RobotSpec
 ) -> Mapping[str, tuple[ProgramThreshold, ...]]:
@@ -85,24 +102,43 @@ def find_thresholds(
 def _find_thresholds(
     program: Program, robot: RobotSpec
 ) -> Mapping[str, tuple[ProgramThreshold, ...]]:
-    modules = read_modules(program)
-    if not modules:
+    mentions = _read_mentions(program)
+    if mentions is None:
         return {}
-    if prelude := parse(PRELUDE_TEXTS[program.prelude]):
-        modules[_PRELUDE] = Module(_PRELUDE, _PRELUDE, prelude)
-        star = ast.ImportFrom(_PRELUDE, [ast.alias("*")], 0)
-        tree = modules[""].tree
-        modules[""] = replace(modules[""], tree=ast.Module([star, *tree.body], tree.type_ignores))
     thresholds: dict[str, list[ProgramThreshold]] = {
         sensor.name: [] for sensor in robot.color_sensors
     }
-    for port, threshold in _find_comparisons(read_mentions(modules)):
+    for port, threshold in _find_comparisons(mentions):
         for sensor in robot.color_sensors:
             if port in ("", sensor.port) and threshold not in thresholds[sensor.name]:
                 thresholds[sensor.name].append(threshold)
     return {
         name: tuple(sorted(some, key=lambda one: one.line)) for name, some in thresholds.items()
     }
+
+
+def _list_reads(mentions: Mentions) -> Iterator[tuple[int, str, LightRead]]:
+    """Yield each place that reads a number of a colour sensor: its line, the sensor's port, and which number."""
+    for scope in mentions.scopes:
+        for node in scope.body if not scope.module.name else ():
+            if isinstance(node, ast.Attribute) and node.attr in _READS:
+                for port, read in _find_reads(mentions, scope, node, 0):
+                    if not read.is_color:
+                        yield node.lineno, port, read
+
+
+@lru_cache(maxsize=1)
+def _read_mentions(program: Program) -> Mentions | None:
+    """Return what a program and its prelude mention; None if it is not Python."""
+    modules = read_modules(program)
+    if not modules:
+        return None
+    if prelude := parse(PRELUDE_TEXTS[program.prelude]):
+        modules[_PRELUDE] = Module(_PRELUDE, _PRELUDE, prelude)
+        star = ast.ImportFrom(_PRELUDE, [ast.alias("*")], 0)
+        tree = modules[""].tree
+        modules[""] = replace(modules[""], tree=ast.Module([star, *tree.body], tree.type_ignores))
+    return read_mentions(modules)
 
 
 def _find_comparisons(mentions: Mentions) -> Iterator[tuple[str, ProgramThreshold]]:
