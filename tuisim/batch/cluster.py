@@ -71,7 +71,7 @@ def run_on_cluster(
                 threads_per_worker=1,
                 processes=True,
                 dashboard_address=None,
-                # Otherwise the scheduler's web server takes a fixed port, even without a dashboard, or warns.
+                # Without this, the scheduler's web server takes a fixed port, even without a dashboard, or warns.
                 scheduler_kwargs={"dashboard_address": "127.0.0.1:0"},
             )
             client = distributed.Client(cluster, set_as_default=False)

@@ -178,7 +178,7 @@ class Plan:
         if "arguments" in values:
             program = replace(program, arguments=self._merge_settings(subject, values)["arguments"])
         if any(name.partition(".")[0] == "robot" for name in values):
-            # As if the user had named the robot: its parts do not depend on the ports that the program shows.
+            # Treat the robot as named by the user: its parts do not depend on the ports that the program shows.
             program = replace(program, shown_ports=None)
         return Task(
             index,

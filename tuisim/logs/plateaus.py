@@ -253,7 +253,7 @@ def _choose_places(scaled: FloatArray) -> IntArray:
             / width
         )
         step *= np.sqrt(width / 2.0)
-        # Only the highest within its own width, so that one edge does not give many positions.
+        # Keep only the highest step within its own width, so that one edge does not give many positions.
         peak = np.ones(len(step), bool)
         for shift in range(1, width + 1):
             peak[shift:] &= step[shift:] >= step[:-shift]

@@ -60,10 +60,10 @@ def _load_plotext() -> Any:
     manual = ModuleType("plotext._doc.doc")
     vars(manual)["docs"] = None
     sys.modules.setdefault(manual.__name__, manual)
-    # Costs more than the rest of the app's start: imported when the first curve is drawn.
+    # This import costs more than the rest of the app's start, so it waits for the first curve.
     import plotext
 
-    # Otherwise plotext crops a chart to what it detects as the size of the terminal.
+    # Without this, plotext crops a chart to what it detects as the size of the terminal.
     plotext.terminal.limit(False, False)
     return plotext
 

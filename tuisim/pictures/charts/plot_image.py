@@ -55,7 +55,7 @@ class Plot:
 
     def measure_across(self, times_s: FloatArray, width: int) -> _Points:
         """Return how many points right of the left edge times are, for cells of a width in points."""
-        # As `axes.find_column`, so that a label is below its tick.
+        # Place times as `axes.find_column` does, so that a label is below its tick.
         low, high = self.x_limits
         return (times_s - low) / (high - low) * (self.columns - 0.5) * width + 1
 

@@ -192,7 +192,7 @@ def merge_worlds(
 
 def _merge(seed: int, parts: Sequence[Outcome]) -> Outcome:
     """Return one outcome of the runs with a seed in all worlds; `parts` begins with the one in the first world."""
-    # What a student may be told comes before what is hidden.
+    # Put the worlds that a student may know of before the hidden ones.
     parts = sorted(parts, key=lambda part: part.hidden)
     goals: dict[str, GoalOutcome] = {}
     # Of a run of which nothing is recorded, no goal is known to be met.
