@@ -92,7 +92,20 @@ async def test_each_pixel_of_a_picture_is_one_of_the_screen(
         assert await page.js(TERMINAL_SHARE) == pytest.approx(1, abs=0.002)
 
 
-async def test_fingers_drag_the_robot_and_press_buttons(serve: Serve, tmp_path: Path) -> None:
+NOTES_COLUMNS = """
+window.columns = [];
+const send = Socket.prototype.send;
+Socket.prototype.send = function (said) {
+  const [kind, size] = JSON.parse(said);
+  if (kind === "resize") columns.push(size.width);
+  send.call(this, said);
+};
+"""
+
+
+async def test_fingers_drag_the_robot_press_buttons_and_change_the_size_of_the_text(
+    serve: Serve, tmp_path: Path
+) -> None:
     scale = 2
     async with opened(serve, tmp_path, (390, 844), scale, fingers=True) as page:
         before = robot_at(await until_seen(page, lambda seen: is_whole(seen) and robot_at(seen)[0]))
@@ -115,6 +128,19 @@ async def test_fingers_drag_the_robot_and_press_buttons(serve: Serve, tmp_path: 
             )
         )
         assert driven[1] == pytest.approx(dragged[1], abs=3)
+        await _change_the_size_of_the_text(page)
+
+
+async def _change_the_size_of_the_text(page: Chromium) -> None:
+    await page.js(NOTES_COLUMNS)
+    await page.finger("touchStart", (200, 340), (200, 360))
+    for step in range(1, 6):
+        await page.finger("touchMove", (200, 340 - 10 * step), (200, 360 + 10 * step))
+    await page.finger("touchEnd")
+    # Never fewer than the app shows.
+    await page.until("columns.at(-1) >= 40 && columns.at(-1) < 45")
+    await page.js("document.querySelector('[data-text=\"-1\"]').click()")
+    await page.until("columns.at(-1) >= 42")
 
 
 LAYER = "document.querySelector('.xterm-text-layer')"
@@ -161,35 +187,6 @@ async def test_buttons_press_the_keys_that_go_back_and_forth(serve: Serve, tmp_p
         assert await page.js("document.getElementById('bar').scrollWidth") <= 390
 
 
-async def test_ctrl_c_puts_the_picture_on_the_clipboard(serve: Serve, tmp_path: Path) -> None:
-    async with opened(serve, tmp_path, (1000, 700), 1) as page:
-        assert (await page.copy_by_key()).startswith("Grey_bands, 0.00 s\n")
-
-
-NOTES_COLUMNS = """
-window.columns = [];
-const send = Socket.prototype.send;
-Socket.prototype.send = function (said) {
-  const [kind, size] = JSON.parse(said);
-  if (kind === "resize") columns.push(size.width);
-  send.call(this, said);
-};
-"""
-
-
-async def test_two_fingers_change_the_size_of_the_text(serve: Serve, tmp_path: Path) -> None:
-    async with opened(serve, tmp_path, (390, 844), 2, fingers=True) as page:
-        await page.js(NOTES_COLUMNS)
-        await page.finger("touchStart", (200, 340), (200, 360))
-        for step in range(1, 6):
-            await page.finger("touchMove", (200, 340 - 10 * step), (200, 360 + 10 * step))
-        await page.finger("touchEnd")
-        # Never fewer than the app shows.
-        await page.until("columns.at(-1) >= 40 && columns.at(-1) < 45")
-        await page.js("document.querySelector('[data-text=\"-1\"]').click()")
-        await page.until("columns.at(-1) >= 42")
-
-
 WITHOUT_STORAGE = """
 Object.defineProperty(window, "sessionStorage", {
   get() {
@@ -199,7 +196,7 @@ Object.defineProperty(window, "sessionStorage", {
 """
 
 
-async def test_the_page_shows_the_app_where_it_may_keep_nothing(
+async def test_the_page_shows_and_copies_the_app_where_it_may_keep_nothing(
     serve: Serve, tmp_path: Path
 ) -> None:
     serving = await serve(DRIVES)
@@ -207,4 +204,5 @@ async def test_the_page_shows_the_app_where_it_may_keep_nothing(
         await page.do("Page.addScriptToEvaluateOnNewDocument", source=WITHOUT_STORAGE)
         await page.do("Page.navigate", url=serving.address)
         await until_seen(page, is_whole)
+        assert (await page.copy_by_key()).startswith("Grey_bands, 0.00 s\n")
         assert page.complaints == []
