@@ -119,6 +119,15 @@ async def test_a_run_is_searched_for_and_chosen() -> None:
         assert app.run_controller.build_snapshot().past
 
 
+async def test_keys_count_where_the_list_of_runs_is_too_low_for_a_path() -> None:
+    stored("print('A: 1')\n")
+    async with open_lab(size=(80, 16)) as (pilot, _):
+        await pilot.press("h")
+        await until_shown(pilot, "1 of 1 runs")
+        await pilot.press("x")
+        await until_shown(pilot, "0 of 1 runs")
+
+
 @pytest.mark.slow
 @pytest.mark.usefixtures("real_mats")
 async def test_mat_and_program_may_be_gone(tmp_path: Path) -> None:

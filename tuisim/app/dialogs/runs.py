@@ -218,10 +218,17 @@ class RunChooser(ListDialog):
 
     @on(OptionList.OptionHighlighted)
     def _look(self, event: OptionList.OptionHighlighted) -> None:
+        self._looked_at = event.option.id or ""
+        self._draw_way()
+
+    def on_resize(self) -> None:
+        """Draw the path again once its view has its size; a low dialog shows none."""
+        self.call_after_refresh(self._draw_way)
+
+    def _draw_way(self) -> None:
         """Show the path of the selected run, as soon as it is drawn."""
-        self._looked_at, view = event.option.id or "", self.query_one(PixelView)
-        if not view.size:
-            self.call_after_refresh(self._look, event)
+        view = self.query_one(PixelView)
+        if not view.size or not self._looked_at:
             return
         work = partial(_draw_path, self._looked_at, find_field_view(view), view.ground_rgb)
         show = partial(self._show_way, self._looked_at)
