@@ -88,6 +88,14 @@ STOPS: Mapping[str, tuple[str, tuple[float | None, float | None]]] = {
         "m = Motor(Port.A)\nm.dc(-50)\nwhile abs(m.speed()) > 20:\n    pass",
         (-45, 225),
     ),
+    "it is only printed": (
+        "m = Motor(Port.A)\nm.run(300)\nprint(m.stalled(), f'{m.control.stalled()}')\nm.run_angle(90, 360)",
+        (None, None),
+    ),
+    "what a homing returns is printed": (
+        "m = Motor(Port.A)\nprint(m.run_until_stalled(-100))",
+        (-45, 225),
+    ),
     "no homing": ("m = Motor(Port.A)\nm.run_time(200, 500)\nm.run(100)", (None, None)),
 }
 

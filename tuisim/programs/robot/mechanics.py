@@ -192,18 +192,20 @@ class _MechanicsReader:
                 self.normal.add(port)
 
     def _stall(
-        self, base: ast.expr, scope: Scope, node: ast.AST, ways: Sequence[bool] = ()
+        self, base: ast.expr, scope: Scope, node: ast.AST, ways: Sequence[bool] | None = None
     ) -> None:
-        """Note an end stop of a motor.
+        """Note an end stop of a motor, unless the program only prints whether the motor is stalled.
 
         Args:
-            ways: Whether the motor turns forwards to it, for each time; empty to find that out from its movements.
+            ways: Whether a call moves it forwards there, for each time; without one its movements tell that.
         """
+        if ways is None and scope.prints(node):
+            return
         for port in self._find_motors(base, scope):
             forwards = next(iter(ways or self._find_ways(scope.body, [port], scope)), None)
             stop = EndStop(_find_where(node, scope), self._convert_way(port, forwards), scope)
             known = self.found.stops.setdefault(port, stop)
-            if any(self._convert_way(port, way) != known.forwards for way in ways):
+            if any(self._convert_way(port, way) != known.forwards for way in ways or ()):
                 self.found.closed.add(port)
 
     def _convert_way(self, port: str, forwards: bool | None) -> bool | None:
@@ -285,18 +287,18 @@ class _MechanicsReader:
         """Note a motor that runs until a touch sensor is pressed, if no other motor moves before."""
         last = statements[-1]
         match last:
-            case ast.While(
-                test=ast.UnaryOp(op=ast.Not(), operand=ast.Attribute(value=base, attr="is_pressed"))
-            ):
-                pass
-            case ast.While(
-                test=ast.UnaryOp(
-                    op=ast.Not(),
-                    operand=ast.Call(func=ast.Attribute(value=base, attr="value" | "pressed")),
+            case (
+                ast.While(
+                    test=ast.UnaryOp(
+                        op=ast.Not(),
+                        operand=(
+                            ast.Attribute(value=base, attr="is_pressed")
+                            | ast.Call(func=ast.Attribute(value=base, attr="value" | "pressed"))
+                        ),
+                    )
                 )
+                | ast.Expr(value=ast.Call(func=ast.Attribute(value=base, attr="wait_for_pressed")))
             ):
-                pass
-            case ast.Expr(value=ast.Call(func=ast.Attribute(value=base, attr="wait_for_pressed"))):
                 pass
             case _:
                 return

@@ -91,6 +91,16 @@ class Scope:
             scope = scope.outer
         return []
 
+    def prints(self, node: ast.AST) -> bool:
+        """Return whether a node is in what a `print` or an f-string of the scope shows."""
+        return any(
+            node is inner
+            for shown in self.body
+            if isinstance(shown, ast.JoinedStr)
+            or (isinstance(shown, ast.Call) and ast.unparse(shown.func) == "print")
+            for inner in ast.walk(shown)
+        )
+
     @property
     def top(self) -> Scope:
         """The scope of the module."""
