@@ -117,7 +117,8 @@ def _is_own(path: str) -> bool:
 
 def _name_folder(path: str) -> str:
     """Return in words in which folder a program is, empty for one without a file."""
-    folder, home = str(Path(path).parent), str(Path.home())
+    folder = str(Path(path).parent)
+    home = str(Path.home())
     short = f"~{folder.removeprefix(home)}" if folder.startswith(home) else folder
     return f", in {short}" if path else ""
 

@@ -180,7 +180,8 @@ class Controller:
     def match_pace(self, other: Controller) -> None:
         """Make the new trajectory as long in time as another controller's, and proportional to it at every time."""
         if self.trajectory is not None and other.trajectory is not None:
-            ours, theirs = self.trajectory, other.trajectory
+            ours = self.trajectory
+            theirs = other.trajectory
             ways = (move.end.milli - move.first.milli for move in (ours, theirs))
             self.trajectory = scale_move(theirs, ours.first.milli, *ways)
 

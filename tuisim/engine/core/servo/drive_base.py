@@ -257,7 +257,8 @@ class DriveBase:
         """Begin to drive a distance and to turn by an angle, and on at the same speed."""
         self._begin(now_us)
         speed, acceleration, rate, turn_acceleration = self._pace
-        distance, heading = self.distance, self.heading
+        distance = self.distance
+        heading = self.heading
         if distance_mm:
             forwards = speed if distance_mm > 0 else -speed
             distance.run(now_us, self._measure_total, forwards, acceleration)
