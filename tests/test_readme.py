@@ -101,7 +101,7 @@ def test_logs_and_runs_are_read_as_documented(tmp_path: Path, here: Command) -> 
         here("run", "log_greys", "--export", "greys.csv", "--export", "greys.jsonl").returncode == 0
     )
     names: dict[str, Any] = {}
-    exec(block("python", "read_log("), names)
+    exec(block("python", 'read_log("greys'), names)
     assert names["df"]["variable"].unique().tolist() == ["Colour"]
     ends = [line for line in block("python", "load_run(").splitlines() if "load_run(" in line]
     for expression in re.findall(r"run(?:\.\w+)+", ends[0].partition("#")[2]):

@@ -153,7 +153,7 @@ BLIND: Mapping[str, Case] = {
     "color_sorter": Case(
         "1 touch, A medium motor, D large motor",
         "",
-        {"outA": (-225.0, 45.0), "outD": (-45.0, 575.0), "in1": "outD low"},
+        {"outA": (-585.0, 45.0), "outD": (-45.0, 575.0), "in1": "outD low"},
         "--press enter@20-21",
         0,
         MIDDLE,

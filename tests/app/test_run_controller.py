@@ -176,11 +176,11 @@ async def test_a_mat_that_failed_is_prepared_again_for_a_run(
     open_field = mat_cache.open_field
     tries = []
 
-    def opened(files: mat_cache.FieldFiles, has_floor: bool) -> Field:
+    def opened(files: mat_cache.FieldFiles, **choices: bool) -> Field:
         tries.append(files)
         if len(tries) == 1:
             raise BackgroundError("the prepared mat cannot be opened")
-        return open_field(files, has_floor=has_floor)
+        return open_field(files, **choices)
 
     monkeypatch.setattr(mat_cache, "open_field", opened)
     async with LabApp(settings("print(1)\n")).run_test(size=(80, 24)) as pilot:

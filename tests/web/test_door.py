@@ -63,8 +63,8 @@ async def test_that_there_is_no_room_is_told_once_a_minute() -> None:
 def test_the_guide_names_what_visitors_may_use() -> None:
     page = (ROOT / "tuisim" / "guide" / "pages" / "security.md").read_text(encoding="utf-8")
     for text in (
-        f"the address after {door.STRANGER_S:g} s",
-        f"more than {door.MAX_STRANGERS}.",
-        f"may have {uploads.MAX_FILE_BYTES >> 20} MB, all together {uploads.MAX_BYTES >> 30} GB",
+        f"has not sent the address within {door.STRANGER_S:g} s",
+        f"more than {door.MAX_STRANGERS} such connections",
+        f"may have {uploads.MAX_FILE_BYTES >> 20} MB, and all files together {uploads.MAX_BYTES >> 30} GB",
     ):
         assert text in " ".join(page.split())

@@ -43,8 +43,8 @@ class Robot(RobotDescription):
         wheel_width_mm: Wheel width, in mm.
         back_mm: How far the body reaches behind the axle, as a negative y, in mm.
         weight: Weightless, light, medium, heavy, or a number.
-        left_port: OutA … outD.
-        right_port: OutA … outD.
+        left_port: OutA … outD; of a hub A … F.
+        right_port: OutA … outD; of a hub A … F.
         left_reversed: Mounted the other way round: positive speeds turn the wheel backwards.
         right_reversed: Mounted the other way round: positive speeds turn the wheel backwards.
         gear_ratio: Motor turns per wheel turn.

@@ -33,5 +33,7 @@ def test_the_pen_draws_and_the_place_is_true(run: Run) -> None:
 def test_what_is_not_simulated_can_be_made_and_is_named_when_it_is_used(run: Run, use: str) -> None:
     name = use.split("(")[0]
     done = run(f"{_HEAD}part = {name}(INPUT_7)\n{use}\n", profile="ev3", prelude="none")
-    assert done.errors[-1].startswith(f"NotSimulated: ev3dev2.sensor.virtual.{name}.")
+    assert done.errors[-1].startswith(
+        f"NotSimulated: tuisim does not simulate ev3dev2.sensor.virtual.{name}."
+    )
     assert done.ended.error_line == 5
