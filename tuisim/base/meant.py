@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import types
 from collections.abc import Mapping, Sequence, Set
+from contextlib import suppress
 from functools import cache
 from importlib import import_module
 
@@ -55,7 +56,11 @@ def map_modules() -> Mapping[str, str]:
 @cache
 def map_functions() -> Mapping[str, str]:
     """Return the module of each function of the standard library that programs for robots use."""
-    modules = {name: import_module(name) for name in reversed(_WELL_KNOWN)}
+    modules = {}
+    for name in reversed(_WELL_KNOWN):
+        # A program may have changed how modules are found.
+        with suppress(ImportError):
+            modules[name] = import_module(name)
     return {
         name: module
         for module, loaded in modules.items()

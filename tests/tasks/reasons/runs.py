@@ -6,6 +6,7 @@ from pathlib import Path
 
 from tests.running import PATIENCE_S
 from tuisim.engine.runs.handle import RunOptions, start_run
+from tuisim.engine.runs.presses import press_actions
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.engine.runs.store import RunStore
 from tuisim.programs.program_file import parse_program
@@ -13,15 +14,18 @@ from tuisim.programs.program_settings import build_program_settings
 from tuisim.settings.build import build_run_spec
 
 PROGRAMS = Path(__file__).parents[3] / "programs"
-LIMIT_S = 30.0
+LIMIT_S = 70.0
 """Simulated seconds after which a run ends."""
 
 
 def run_text(text: str, name: str = "task.py", answers: tuple[str, ...] = ()) -> StoredRun:
     """Run a program to its end, or to the time limit."""
     source = parse_program(text, name)
-    spec = build_run_spec(build_program_settings(source, {}, {}).settings)
-    run = start_run(source.program, spec, RunOptions(time_limit_s=LIMIT_S, answers=answers))
+    settings = build_program_settings(source, {}, {}).settings
+    spec = build_run_spec(settings)
+    actions = press_actions(settings["press"], spec.profile.tick_hz)
+    options = RunOptions(time_limit_s=LIMIT_S, answers=answers, actions=actions)
+    run = start_run(source.program, spec, options)
     assert run.wait(PATIENCE_S)
     return RunStore().load_run(run.run_id)
 

@@ -185,8 +185,11 @@ def write_stop_tick(folder: Path, tick: int) -> None:
     Raises:
         OSError: it cannot be written.
     """
-    with open(folder / STOP_FILE, "w", encoding="utf-8", opener=private) as file:
+    # The process may be killed while it writes: the file is whole, or not there.
+    part = folder / f"{STOP_FILE}.part"
+    with open(part, "w", encoding="utf-8", opener=private) as file:
         file.write(json.dumps({"tick": tick}))
+    os.replace(part, folder / STOP_FILE)
 
 
 def read_stop_tick(folder: Path) -> int | None:
