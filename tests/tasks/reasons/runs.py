@@ -14,17 +14,19 @@ from tuisim.programs.program_settings import build_program_settings
 from tuisim.settings.build import build_run_spec
 
 PROGRAMS = Path(__file__).parents[3] / "programs"
-LIMIT_S = 70.0
+LIMIT_S = 30.0
 """Simulated seconds after which a run ends."""
 
 
-def run_text(text: str, name: str = "task.py", answers: tuple[str, ...] = ()) -> StoredRun:
+def run_text(
+    text: str, name: str = "task.py", answers: tuple[str, ...] = (), limit_s: float = LIMIT_S
+) -> StoredRun:
     """Run a program to its end, or to the time limit."""
     source = parse_program(text, name)
     settings = build_program_settings(source, {}, {}).settings
     spec = build_run_spec(settings)
     actions = press_actions(settings["press"], spec.profile.tick_hz)
-    options = RunOptions(time_limit_s=LIMIT_S, answers=answers, actions=actions)
+    options = RunOptions(time_limit_s=limit_s, answers=answers, actions=actions)
     run = start_run(source.program, spec, options)
     assert run.wait(PATIENCE_S)
     return RunStore().load_run(run.run_id)
@@ -32,7 +34,7 @@ def run_text(text: str, name: str = "task.py", answers: tuple[str, ...] = ()) ->
 
 def run_example(path: Path) -> StoredRun:
     """Run one of the example programs."""
-    return run_text(path.read_text(encoding="utf-8"), path.name)
+    return run_text(path.read_text(encoding="utf-8"), path.name, limit_s=70.0)
 
 
 # Two light sensors beside the line, and the wrong sign: the robot steers away from what it sees.
