@@ -188,7 +188,7 @@ class Code(Vertical):
         helped = Text() if words else self._assistant.describe_cursor(self.size.width - _FRAME)
         if self._area.is_completing:
             helped = Text("looking up …")
-        elif not helped and (word := self._area.unknown_word) is not None:
+        elif (word := self._area.unknown_word) is not None:
             helped = Text(
                 f"no name begins with {word}" if word else "nothing known follows the dot"
             )
