@@ -74,8 +74,6 @@ def make_blank_mat(spec: RunSpec) -> Mat:
 
 
 def _open_mat(key: MatKey, files: FieldFiles) -> Mat:
-    return Mat(
-        key,
-        mat_cache.open_field(files, has_floor=key[3], is_copied=True),
-        mat_cache.mat_pixels(files),
-    )
+    field = mat_cache.open_field(files, has_floor=key[3], is_copied=True)
+    pixels = np.frombuffer(field.pixels, np.uint8)
+    return Mat(key, field, pixels.reshape(field.height_px, field.width_px, 3))
