@@ -72,6 +72,9 @@ def test_read_log_takes_the_choices_of_the_commands(
         "unit": ({"unit": "hours"}, "no unit 'hours'"),
         "table": ({"table": 2}, "has 1 table"),
         "encoding": ({"encoding": "none"}, "no encoding 'none'"),
+        "encoding of no text": ({"encoding": "hex"}, "no encoding 'hex'"),
+        "encoding of text only": ({"encoding": "rot13"}, "no encoding 'rot13'"),
+        "encoding that is no text": ({"encoding": "\udcff"}, "no encoding"),
         "time": ({"time": "zeit"}, "no column 'zeit'"),
     },
 )

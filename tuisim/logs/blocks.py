@@ -76,8 +76,10 @@ class LineCutter:
         self._decoder: codecs.IncrementalDecoder | None = None
         if encoding:
             try:
+                # Python knows more codecs than those of text: hex, rot13, undefined.
+                b"0".decode(encoding, "replace")
                 self._decoder = codecs.getincrementaldecoder(encoding)("replace")
-            except LookupError as error:
+            except (LookupError, ValueError) as error:
                 hint = "one of Python's, such as utf-8, cp1252, gbk, shift_jis"
                 raise LogError(f"no encoding {encoding!r}", hint) from error
         self._started = False
