@@ -86,7 +86,7 @@ async def test_without_a_terminal_of_its_own_there_is_none_to_lend() -> None:
 
 def test_controls_are_left_out_and_nothing_moves() -> None:
     bold = Style(bold=True)
-    before = [Segment("Größe 😀", bold), Segment("a\x1b[31m\x9bb\x07\n")]
+    before = [Segment("Größe 😀", bold), Segment("a\x1b[31m\x9bb\u202e\x07\n")]
     after = Sanitize().apply(before, Color(0, 0, 0))
     assert [(segment.text, segment.style) for segment in after] == [
         ("Größe 😀", bold),

@@ -50,14 +50,15 @@ from tuisim.terminal.textual_internals import (
     repair_textual,
 )
 
-_CONTROLS = re.compile("[\x00-\x1f\x7f-\x9f]")
+_CONTROLS = re.compile("[\x00-\x1f\x7f-\x9f\u061c\u200e\u200f\u202a-\u202e\u2066-\u2069]")
+"""Control characters, and those that change the direction of writing."""
 
 
 class Sanitize(LineFilter):
-    """Removes control characters from everything that is drawn."""
+    """Removes control characters and changes of direction from everything that is drawn."""
 
     def apply(self, segments: list[Segment], background: Color) -> list[Segment]:
-        """Return the segments with blanks in place of control characters, so that their width stays."""
+        """Return the segments with blanks in place of these characters, so that their width stays."""
         if all(segment.text.isprintable() or segment.control for segment in segments):
             return segments
         return [
