@@ -13,7 +13,7 @@ from tuisim.analysis.source import read_notes
 from tuisim.app import kept_breaks
 from tuisim.app.editor import text_file
 from tuisim.base.errors import LogError
-from tuisim.batch.partial import _decode_line
+from tuisim.batch.sweep import _decode_line
 from tuisim.engine.runs.side_files import (
     MODULES_FILE,
     READS_FILE,

@@ -11,8 +11,8 @@ import pytest
 from tests.cases import cases
 from tuisim import __version__
 from tuisim.base.errors import HostError
-from tuisim.batch import cluster_watch
-from tuisim.batch.cluster_watch import ClusterWatch, call_within_s
+from tuisim.batch import cluster
+from tuisim.batch.cluster import ClusterWatch, call_within_s
 
 NOBODY = ModuleNotFoundError("No module named 'tuisim'")
 
@@ -117,7 +117,7 @@ def test_workers_that_do_not_answer_are_told(monkeypatch: pytest.MonkeyPatch) ->
             raise TimeoutError
         return call()
 
-    monkeypatch.setattr(cluster_watch, "call_within_s", hangs)
+    monkeypatch.setattr(cluster, "call_within_s", hangs)
     with pytest.raises(HostError, match="workers do not answer: 2 of 2"):
         Cluster({"a": __version__, "b": __version__}).watch().wait_for_workers()
 

@@ -10,8 +10,7 @@ from tests.batch.stand_in import run_backwards
 from tests.batch.test_plan import plan, subject
 from tuisim.base.errors import ConfigError
 from tuisim.batch import sweep
-from tuisim.batch.partial import PartialTable, find_partial
-from tuisim.batch.sweep import Sweep, Workers
+from tuisim.batch.sweep import PartialTable, Sweep, Workers, find_partial
 from tuisim.batch.table import RUN, Row
 
 

@@ -21,7 +21,7 @@ from tuisim.app.screenshot import collect_cells
 from tuisim.app.snapshot import RunPhase
 from tuisim.app.terminal_app import picture_mode_at_start
 from tuisim.base.source import Program
-from tuisim.pictures.movies.image_files import PALETTE_FRAMES, encode_gif
+from tuisim.pictures.movies.files import PALETTE_FRAMES, encode_gif
 from tuisim.settings.build import build_run_spec
 from tuisim.settings.options import Settings
 from tuisim.terminal.cell_image import CellGrid, draw_cells

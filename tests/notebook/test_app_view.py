@@ -22,8 +22,8 @@ from tuisim.app.layout.arrangement import KeptLayout, save_layout
 from tuisim.app.panels import TerminalSize
 from tuisim.base.errors import HostError
 from tuisim.notebook import lab
-from tuisim.notebook.app_run import AppRun
 from tuisim.notebook.app_view import AppView
+from tuisim.notebook.cell_run import AppRun
 
 MAT = ["-b", "Grey_bands"]
 _ESCAPES = re.compile(r"\x1b\[[^A-Za-z]*[A-Za-z]")

@@ -288,7 +288,7 @@ PLANTED: tuple[Planted, ...] = (
     ),
     Planted(
         "a connection that asks for nothing stays",
-        "web/door.py",
+        "web/gate.py",
         "loop.call_later(STRANGER_S,",
         "loop.call_later(1e6,",
         "security",
@@ -297,7 +297,7 @@ PLANTED: tuple[Planted, ...] = (
     ),
     Planted(
         "connections that ask for nothing keep visitors out",
-        "web/door.py",
+        "web/gate.py",
         "if len(self._strangers) > MAX_STRANGERS:",
         "if False:",
         "security",
@@ -306,7 +306,7 @@ PLANTED: tuple[Planted, ...] = (
     ),
     Planted(
         "a lack of descriptors is told each time",
-        "web/door.py",
+        "web/gate.py",
         "elif self._clock() >= self._told_s + _TOLD_EVERY_S:",
         "else:",
         "security",
@@ -342,7 +342,7 @@ PLANTED: tuple[Planted, ...] = (
     ),
     Planted(
         "pieces of files that nobody has asked for are held",
-        "web/downloads.py",
+        "web/server.py",
         "if answer is not None and not answer.done() and len(chunk) <= _MAX_PIECE_BYTES:",
         "if not self._asked.setdefault(f'{len(self._asked)}', chunk):",
         "security",

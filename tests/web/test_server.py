@@ -23,7 +23,7 @@ from textual_serve.app_service import AppService
 from tests.cases import cases
 from tests.running import PATIENCE_S
 from tests.web.stand_in import stand_in
-from tuisim.web import downloads, session
+from tuisim.web import server, session
 from tuisim.web.gate import Gate
 from tuisim.web.server import _REFUSAL, Server, ServerLimits, run_server
 from tuisim.web.visit import VisitLimits
@@ -237,7 +237,7 @@ async def test_what_an_app_offers_can_be_downloaded_once(visited: Visited) -> No
 async def test_a_download_that_breaks_off_is_no_file(
     visited: Visited, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(downloads, "ANSWER_WITHIN_S", 0.05)
+    monkeypatch.setattr(server, "ANSWER_WITHIN_S", 0.05)
     visitor = await visited(stand_in("slow"))
     socket, _ = await visitor.started()
     await socket.send_json(["stdin", "offer"])

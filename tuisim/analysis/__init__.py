@@ -5,7 +5,6 @@ __all__ = [
     "events",
     "model",
     "pins",
-    "remembered",
     "report",
     "source",
     "traces",

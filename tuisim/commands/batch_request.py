@@ -14,12 +14,17 @@ from tuisim.batch.batch_file import BatchFile, is_batch_file, load_batch
 from tuisim.batch.parameters import SEED, Choice, parse_seeds, parse_set
 from tuisim.batch.plan import Plan, Subject
 from tuisim.batch.sweep import Workers
-from tuisim.commands.batch_options import build_jobs_option, build_workers_option, keep_option
 from tuisim.commands.echo import echo_error
 from tuisim.commands.listings import WORLD, list_names
 from tuisim.commands.notebooks import NotRun
 from tuisim.commands.resolve import check_arguments, prepare_runs
-from tuisim.commands.run_options import build_input_option, build_timeout_option
+from tuisim.commands.run_options import (
+    build_input_option,
+    build_jobs_option,
+    build_timeout_option,
+    build_workers_option,
+    keep_option,
+)
 from tuisim.engine.files import read_file
 from tuisim.engine.runs.handle import RunOptions
 from tuisim.logs.export import LISTED, check_target

@@ -11,7 +11,6 @@ from typing import Any
 
 from tuisim.base.errors import ConfigError, counted, nearest
 from tuisim.batch.parameters import parse_seeds
-from tuisim.commands.batch_options import build_jobs_option
 from tuisim.commands.echo import (
     Progress,
     draw_table,
@@ -22,7 +21,7 @@ from tuisim.commands.echo import (
     echo_wrapped,
     tell,
 )
-from tuisim.commands.run_options import build_timeout_option
+from tuisim.commands.run_options import build_jobs_option, build_timeout_option
 from tuisim.engine.core.values import MAX_SEED
 from tuisim.engine.runs.presses import press_actions
 from tuisim.engine.runs.run_folder import StoredRun

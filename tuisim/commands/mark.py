@@ -22,7 +22,6 @@ from tuisim.base.errors import (
 from tuisim.base.faults import UNJUDGED, describe_fault, report_file
 from tuisim.base.source import source_lines
 from tuisim.batch.parameters import parse_seeds
-from tuisim.commands.batch_options import build_jobs_option, keep_option
 from tuisim.commands.echo import (
     Progress,
     draw_table,
@@ -35,7 +34,12 @@ from tuisim.commands.echo import (
 )
 from tuisim.commands.exit_status import Interrupted, raise_signals
 from tuisim.commands.listings import list_names
-from tuisim.commands.run_options import build_input_option, build_timeout_option
+from tuisim.commands.run_options import (
+    build_input_option,
+    build_jobs_option,
+    build_timeout_option,
+    keep_option,
+)
 from tuisim.engine.core.values import Whole
 from tuisim.engine.runs.child.isolation import MOST_BYTES, check_isolation
 from tuisim.logs.export import ALLOWED, EXPORTERS, check_place, check_target

@@ -1,11 +1,14 @@
-"""Options of the commands that run programs: limits and answers."""
+"""Options of the commands that run programs: limits, answers, worker processes, and which runs are stored."""
 
 from __future__ import annotations
 
-from tuisim.engine.core.values import Number
+from typing import Any
+
+from tuisim.engine.core.values import Number, Whole
 from tuisim.engine.runs.handle import DEFAULT_TIME_LIMIT_S
-from tuisim.settings.command_line import GroupedOption, WordType, option
+from tuisim.settings.command_line import GroupedOption, WordType, choice, option
 from tuisim.settings.options import parse
+from tuisim.tasks.task import MAX_JOBS, Keep
 
 MAX_TIME_LIMIT_S = 1e6
 
@@ -32,4 +35,36 @@ def build_input_option(group: str) -> GroupedOption:
         metavar="TEXT",
         group=group,
         help="Answer an input() of each program; may be repeated.",
+    )
+
+
+_WORKERS = Whole(1, MAX_JOBS)
+
+
+def build_workers_option(flag: str, text: str, **how: Any) -> GroupedOption:
+    """Return an option for a number of workers, whose value is 0 if the user does not give it."""
+    return option(
+        flag,
+        default=0,
+        metavar="N",
+        type=WordType(lambda word: parse(_WORKERS, word, flag)),
+        help=text,
+        **how,
+    )
+
+
+def build_jobs_option(**how: Any) -> GroupedOption:
+    """Return `--jobs N`."""
+    return build_workers_option(
+        "--jobs", "Number of worker processes (one for each processor).", **how
+    )
+
+
+def keep_option(usual: Keep, group: str) -> GroupedOption:
+    """Return `--keep all|failed|none`, None if the user does not give it; its help names `usual` as the default."""
+    return choice(
+        "--keep",
+        [kept_runs.value for kept_runs in Keep],
+        group=group,
+        help=f"Which runs to store ({usual.value}).",
     )

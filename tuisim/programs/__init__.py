@@ -14,5 +14,4 @@ __all__ = [
     "plugged_words",
     "program_file",
     "program_settings",
-    "tokens",
 ]

@@ -12,7 +12,7 @@ from textual.widgets import Select, Static
 
 from tests.app.app_help import until
 from tests.cases import cases
-from tuisim.analysis.remembered import find_choices, request_file
+from tuisim.analysis.source import find_choices, request_file
 from tuisim.app.analyser.app import Analyser, AnalyserApp
 from tuisim.app.analyser.preview import PreviewDialog
 from tuisim.logs.choices import NO_CHOICES, ReadChoices

@@ -15,7 +15,7 @@ import pytest
 
 from tests.conftest import ROOT, Command
 from tests.running import PATIENCE_S
-from tuisim.analysis.remembered import remember_choices
+from tuisim.analysis.source import remember_choices
 from tuisim.logs.choices import ReadChoices
 
 

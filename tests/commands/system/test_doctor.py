@@ -15,7 +15,7 @@ import pytest
 
 from tests.cases import cases
 from tests.conftest import ROOT, Command
-from tuisim.commands.system import diagnosis
+from tuisim.commands.system import doctor
 
 
 def test_advice_names_commands_that_exist(tuisim: Command) -> None:
@@ -38,7 +38,7 @@ def test_works_without_a_terminal(tmp_path: Path) -> None:
         "name": "terminal",
         "value": "none",
         "state": "advice",
-        "advice": diagnosis.judge_no_terminal().advice,
+        "advice": doctor.judge_no_terminal().advice,
     }
     assert not (tmp_path / "new").exists()
 

@@ -336,7 +336,7 @@ def open_analyser(context: ActionContext) -> None:
 
 def open_log(context: ActionContext, file: str) -> None:
     """Open a log in a file in the analyser."""
-    from tuisim.analysis.remembered import request_file
+    from tuisim.analysis.source import request_file
 
     _push_analyser(context, request_file(file))
 

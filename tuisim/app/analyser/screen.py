@@ -17,8 +17,13 @@ from textual.widget import Widget
 
 from tuisim.analysis.events import CommandRow
 from tuisim.analysis.model import RECKONING, AnalysisModel
-from tuisim.analysis.remembered import is_readable_again, read_doubtful, remember_choices
-from tuisim.analysis.source import LogRequest, open_pieces
+from tuisim.analysis.source import (
+    LogRequest,
+    is_readable_again,
+    open_pieces,
+    read_doubtful,
+    remember_choices,
+)
 from tuisim.app import background
 from tuisim.app.action import ActionHost, KeyFooter
 from tuisim.app.analyser.chart import LogChart

@@ -8,8 +8,7 @@ from contextlib import suppress
 from dataclasses import fields
 from pathlib import Path
 
-from tuisim.analysis.remembered import request_file
-from tuisim.analysis.source import LogRequest
+from tuisim.analysis.source import LogRequest, request_file
 from tuisim.base.errors import ConfigError, LogError, among, listed
 from tuisim.commands.echo import echo_error, tell
 from tuisim.engine.core.columns import find_column_name

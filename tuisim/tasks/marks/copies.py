@@ -8,13 +8,59 @@ left out, as are programs too short to be told apart.
 
 from __future__ import annotations
 
+import io
+import keyword
+import tokenize
 import zlib
 from collections import Counter, defaultdict
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from itertools import chain, combinations, islice
 
 from tuisim.base.data_class import dataclass
-from tuisim.programs.tokens import Token, list_tokens
+
+_SKIPPED = frozenset(
+    {
+        tokenize.COMMENT,
+        tokenize.NL,
+        tokenize.ENCODING,
+        tokenize.ENDMARKER,
+        tokenize.TYPE_COMMENT,
+    }
+)
+_ONE_TOKEN: Mapping[int, str] = {
+    tokenize.NUMBER: "0",
+    tokenize.STRING: '""',
+    tokenize.NEWLINE: "\n",
+    tokenize.INDENT: ">",
+    tokenize.DEDENT: "<",
+}
+_BLANK = frozenset({tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT})
+
+
+@dataclass(frozen=True, slots=True)
+class Token:
+    """One token of a program."""
+
+    kind: str
+    """The same for all names, all numbers and all texts."""
+    text: str
+    line: int
+
+
+def list_tokens(text: str) -> Iterator[Token]:
+    """Yield the tokens of a program, up to where Python cannot read it."""
+    try:
+        for token in tokenize.generate_tokens(io.StringIO(text).readline):
+            if token.type in _SKIPPED:
+                continue
+            kind = _ONE_TOKEN.get(token.type, token.string)
+            if token.type == tokenize.NAME and not keyword.iskeyword(kind):
+                kind = "x"
+            word = kind if token.type in _BLANK else token.string
+            yield Token(kind, word, token.start[0])
+    except (tokenize.TokenError, SyntaxError):
+        pass
+
 
 TOKENS = 10
 """Length of the passages that are compared: shorter ones are found in any two programs."""

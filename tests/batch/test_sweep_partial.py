@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from tuisim.base.errors import ConfigError, ExportError
-from tuisim.batch.partial import PartialTable, find_partial
+from tuisim.batch.sweep import PartialTable, find_partial
 
 ROWS = {
     0: {"run": 1, "x_mm": 0.1 + 0.2, "end": "finished"},

@@ -8,8 +8,7 @@ import pytest
 from tuisim.engine.core.css_colors import Rgb
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, RobotSpec
-from tuisim.pictures.scene.floor import draw_grid, find_grid_rgb
-from tuisim.pictures.scene.painter import ScenePainter, SceneState
+from tuisim.pictures.scene.painter import ScenePainter, SceneState, draw_grid, find_grid_rgb
 from tuisim.pictures.scene.pen import PenTrace
 from tuisim.pictures.scene.view import Viewport
 from tuisim.terminal.pixels import Pixels

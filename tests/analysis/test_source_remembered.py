@@ -8,14 +8,15 @@ from pathlib import Path
 import pytest
 
 from tests.cases import cases
-from tuisim.analysis import remembered
-from tuisim.analysis.remembered import (
+from tuisim.analysis import source
+from tuisim.analysis.source import (
+    LogRequest,
     find_choices,
+    open_pieces,
     read_doubtful,
     remember_choices,
     request_file,
 )
-from tuisim.analysis.source import LogRequest, open_pieces
 from tuisim.logs.choices import NO_CHOICES, ReadChoices
 from tuisim.settings.preferences import find_preferences_file, keep
 
@@ -59,7 +60,7 @@ def test_a_changed_file_is_another_one(file: Path) -> None:
 def test_the_oldest_files_are_forgotten(
     file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(remembered, "MAX_FILES", 2)
+    monkeypatch.setattr(source, "MAX_FILES", 2)
     files = [str(file.rename(tmp_path / "0"))] + [str(tmp_path / str(n)) for n in (1, 2)]
     for name in files:
         Path(name).write_text("a\n1\n")

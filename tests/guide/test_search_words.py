@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tuisim.guide.words import find_stems, split_words
+from tuisim.guide.search import find_stems, split_words
 
 
 def test_what_is_denied_is_another_question() -> None:

@@ -13,9 +13,8 @@ from tests.conftest import ROOT
 from tests.running import PATIENCE_S
 from tests.web.stand_in import stand_in
 from tests.web.test_server import TOKEN, Visited, visited
-from tuisim.web import door, uploads
-from tuisim.web.door import Door
-from tuisim.web.gate import Gate
+from tuisim.web import gate, uploads
+from tuisim.web.gate import Door, Gate
 from tuisim.web.server import Server, ServerLimits, run_server
 
 assert visited
@@ -24,7 +23,7 @@ assert visited
 async def test_who_asks_for_nothing_is_sent_away_and_who_has_the_link_stays(
     visited: Visited, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(door, "STRANGER_S", 0.05)
+    monkeypatch.setattr(gate, "STRANGER_S", 0.05)
     visitor = await visited()
     socket, _ = await visitor.started()
     port = int(visitor.origin.rpartition(":")[2])
@@ -36,7 +35,7 @@ async def test_who_asks_for_nothing_is_sent_away_and_who_has_the_link_stays(
 
 
 async def test_of_many_who_ask_for_nothing_the_first_go(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(door, "MAX_STRANGERS", 3)
+    monkeypatch.setattr(gate, "MAX_STRANGERS", 3)
     async with AsyncExitStack() as stack:
         server = Server(stand_in(), Gate("127.0.0.1", TOKEN), ServerLimits(1))
         port = await stack.enter_async_context(run_server(server, "127.0.0.1", 0))
@@ -63,8 +62,8 @@ async def test_that_there_is_no_room_is_told_once_a_minute() -> None:
 def test_the_guide_names_what_visitors_may_use() -> None:
     page = (ROOT / "tuisim" / "guide" / "pages" / "security.md").read_text(encoding="utf-8")
     for text in (
-        f"has not sent the address within {door.STRANGER_S:g} s",
-        f"more than {door.MAX_STRANGERS} such connections",
+        f"has not sent the address within {gate.STRANGER_S:g} s",
+        f"more than {gate.MAX_STRANGERS} such connections",
         f"may have {uploads.MAX_FILE_BYTES >> 20} MB, and all files together {uploads.MAX_BYTES >> 30} GB",
     ):
         assert text in " ".join(page.split())

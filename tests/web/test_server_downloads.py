@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
-from tuisim.web import downloads
-from tuisim.web.downloads import MAX_KEY, MAX_OFFERED, Downloads
+from tuisim.web import server
+from tuisim.web.server import MAX_KEY, MAX_OFFERED, Downloads
 
 
 class _App:
@@ -30,7 +30,7 @@ async def _offer(files: Downloads, app: Any, key: str) -> None:
 
 
 async def test_only_what_was_asked_for_is_taken(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(downloads, "ANSWER_WITHIN_S", 0.05)
+    monkeypatch.setattr(server, "ANSWER_WITHIN_S", 0.05)
     files = Downloads()
     await _offer(files, _App(files, "a", (b"one", b"unasked"), ("2",), (b"",)), "key")
     await files.chunk_received("key", b"before")
