@@ -38,7 +38,7 @@ _MIN_STAY_S = 3.0
 """A program that has been in a loop for less time does not wait in it in vain."""
 _CUT_OFF = (End.TIME_LIMIT, End.STOPPED, End.OUTPUT_LIMIT)
 _MIN_RUN_S = 0.5
-_MIN_WAY_MM = 10.0
+_MIN_WAY_MM = 5.0
 _MIN_TURN_DEG = 5.0
 """A program that is over earlier, with its robot nearer to the start, gave its motors no time."""
 _NEAR = 1.0
