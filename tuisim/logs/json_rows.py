@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import json
+from contextlib import suppress
 from typing import Any, TypeGuard
 
 import pyarrow as pa
@@ -31,18 +32,11 @@ class JsonReader:
         numbered_rows: list[tuple[int, dict[str, Any]]] = []
         broken: list[int] = []
         for row, line in block.lines():
-            text = line.strip()
-            if text in ("[", "]", "[]"):
+            if line.strip() in ("[", "]", "[]"):
                 continue
-            try:
-                value = parse_value(text.removesuffix(","))
-            except (ValueError, RecursionError):
-                broken.append(row)
-                continue
-            objects = value if isinstance(value, list) else [value]
-            if objects and all(isinstance(cells, dict) for cells in objects):
-                numbered_rows += [(row, cells) for cells in objects]
-            else:
+            objects = _parse_rows(line)
+            numbered_rows += [(row, cells) for cells in objects]
+            if not objects:
                 broken.append(row)
         skipped = (
             "line is not a JSON object and was skipped",
@@ -113,19 +107,24 @@ def _escape_surrogates(text: str) -> str:
     return text if text.isascii() else text.encode("utf-8", "backslashreplace").decode("utf-8")
 
 
-def parse_value(text: str) -> Any:
-    """Return the value of a line in JSON, or as Python prints dictionaries and lists.
-
-    Raises:
-        ValueError: it is neither.
-        RecursionError: it is nested too deeply.
-    """
-    try:
+def parse_value(line: str) -> Any:
+    """Return the value of a line in JSON, or as Python prints dictionaries and lists; None if it is neither."""
+    text = line.strip().removesuffix(",")
+    # Values that are nested too deeply for a parser raise RecursionError or MemoryError.
+    with suppress(ValueError, RecursionError):
         return json.loads(text)
-    except ValueError:
-        if "'" not in text and "None" not in text and "True" not in text and "False" not in text:
-            raise
-    try:
+    with suppress(SyntaxError, ValueError, MemoryError, TypeError, RecursionError):
         return ast.literal_eval(text)
-    except (SyntaxError, MemoryError, TypeError) as error:
-        raise ValueError("neither JSON nor Python") from error
+    return None
+
+
+def is_row(line: str) -> bool:
+    """Return whether a line is an object, or a list of objects."""
+    return bool(_parse_rows(line))
+
+
+def _parse_rows(line: str) -> list[dict[str, Any]]:
+    """Return the object, or the objects in the list, of a line; none if it is anything else."""
+    value = parse_value(line)
+    rows = value if isinstance(value, list) else [value]
+    return rows if all(isinstance(row, dict) for row in rows) else []

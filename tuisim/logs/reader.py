@@ -379,7 +379,7 @@ def _choose_reader(
     if lines and has_tuples(lines):
         return RowReader(strip_brackets, notes, choices)
     if suffix in (".jsonl", ".ndjson", ".json") or (not is_table and is_json_start(lines)):
-        return DocumentReader(notes) if lines and is_document(lines) else JsonReader(notes)
+        return DocumentReader(notes, choices) if lines and is_document(lines) else JsonReader(notes)
     if not is_table and has_objects(lines):
         return JsonReader(notes)
     return choose_reader(lines, is_table, notes, choices) or CsvReader(notes, choices)
