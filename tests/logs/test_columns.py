@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import bz2
-import gzip
 import io
 import lzma
 import zipfile
@@ -41,12 +40,10 @@ def savetxt() -> bytes:
     return sink.getvalue()
 
 
-def arrow_stream(is_old: bool = False) -> bytes:
+def arrow_stream() -> bytes:
     sink = io.BytesIO()
     table = pa.table({"time": [0.0, 1.0], "red": [1.0, 2.0]})
-    with pa.ipc.new_stream(
-        sink, table.schema, options=pa.ipc.IpcWriteOptions(use_legacy_format=is_old)
-    ) as writer:
+    with pa.ipc.new_stream(sink, table.schema) as writer:
         writer.write_table(table)
     return sink.getvalue()
 
@@ -99,7 +96,7 @@ CASES: dict[str, Case] = {
     "the heading is a comment": ("a.csv", b"# a log\n# time,red\n0,1\n1,2\n", TWO),
     "the heading begins with the sign": ("a.csv", b"#" + CSV, TWO),
     "as numpy saves it": ("a.txt", savetxt, TWO),
-    "as Zeek writes it": ("conn.log", ZEEK.encode(), "is a Zeek log with a heading of its own"),
+    "as Zeek writes it": ("conn.log", ZEEK.encode(), "is a Zeek log, which"),
     "a heading that is called fields": (
         "a.csv",
         b"# log\n#fields,red\n0,1\n1,2\n",
@@ -110,16 +107,11 @@ CASES: dict[str, Case] = {
         b"time,colour,red\n0,#ff0000,1\n1,#00ff00,2\n",
         Read(2, check=TWO.check),
     ),
-    "a heading of years": (
-        "a.csv",
-        b"Day,2019,2020\n1,5,6\n2,7,8\n",
-        Read(2, ("Day", "2019", "2020"), check=lambda log: values(log, "2019") == [5, 7]),
-    ),
     "rows of names and numbers": ("a.csv", b"a,9,2\nb,1,3\n", Read(2, ("column 2", "column 3"))),
     "quoted carriage returns": (
         "a.csv",
         b'time,said,red\r0,"a\rb",1\r1,c,2\r',
-        Read(2, check=lambda log: log.table.column("said").to_pylist() == ["a\rb", "c"]),
+        Read(2, check=lambda log: log.table.column("said").to_pylist() == ["a\nb", "c"]),
     ),
     "bars around text with commas": (
         "a.log",
@@ -129,16 +121,6 @@ CASES: dict[str, Case] = {
     ),
     "an Arrow stream": ("a.arrows", arrow_stream, TWO),
     "an Arrow stream that was cut off": ("a.arrows", lambda: arrow_stream()[:-60], "no rows"),
-    "an Arrow stream of before 0.15": (
-        "a.arrows",
-        lambda: arrow_stream(True),
-        "is an Arrow stream of before version 0.15",
-    ),
-    "a compressed Arrow stream of before 0.15": (
-        "a.csv.gz",
-        lambda: gzip.compress(arrow_stream(True)),
-        "Arrow stream of before",
-    ),
     "dates of 64 bits": ("a.arrow", arrow_date64, "column 'date' is of Arrow's type date64"),
     "bzip2": ("a.csv.bz2", bz2.compress(CSV), TWO),
     "two bzip2 files in one": ("a.csv.bz2", bz2.compress(CSV[:15]) + bz2.compress(CSV[15:]), TWO),
@@ -154,7 +136,7 @@ CASES: dict[str, Case] = {
         pa.compress(CSV, "zstd", asbytes=True)[:-4],
         "no rows: the compressed file is truncated",
     ),
-    "lz4": ("a.csv.lz4", pa.compress(CSV, "lz4", asbytes=True), TWO),
+    "lz4": ("a.csv.lz4", pa.compress(CSV, "lz4", asbytes=True), "is an lz4 file"),
     "a ZIP archive": ("a.zip", zipped, "is a ZIP archive"),
     "an HDF5 file": ("a.h5", b"\x89HDF\r\n\x1a\n" + bytes(100), "is an HDF5 file"),
 }

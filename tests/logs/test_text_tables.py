@@ -1,4 +1,4 @@
-"""Tables of one row, and numbers on one line."""
+"""Tables of one row."""
 
 from __future__ import annotations
 
@@ -19,15 +19,6 @@ def row(*cells: float) -> Read:
         BOTH,
         note="no header",
         check=lambda log: tuple(values(log, name)[0] for name in BOTH) == cells,
-    )
-
-
-def column(*cells: float) -> Read:
-    return Read(
-        len(cells),
-        BOTH[:1],
-        note=f"the only line has {len(cells)} numbers: they are read as one column",
-        check=lambda log: values(log, BOTH[0]) == list(cells),
     )
 
 
@@ -54,12 +45,6 @@ CASES: dict[str, Case] = {
     "one number": ("a.txt", b"5\n", Read(1, BOTH[:1])),
     "one sample": ("a.txt", b"Colour: 5\n", Read(1, ("Colour",))),
     "only a heading": ("a.txt", b"time red\n", "no rows"),
-    "a sentence": ("a.txt", b"the robot drove 5 m\n", "no rows"),
-    "numbers on one line": ("a.txt", b"5, 6, 7.5, 8\n", column(5, 6, 7.5, 8)),
-    "numbers with a comma at the end": ("a.csv", b"5,6,7.5,", column(5, 6, 7.5)),
-    "numbers between blanks": ("a.txt", b"5 -6  7e1\n", column(5, -6, 70)),
-    "numbers with decimal commas": ("a.csv", b"5;6,5;7\n", column(5, 6.5, 7)),
-    "numbers below a comment": ("a.txt", b"# calibration\n5, 6, 7\n", column(5, 6, 7)),
     "two lines of numbers": ("a.csv", b"0,5,6\n1,7,8\n", Read(2, ("column 2", "column 3"))),
 }
 

@@ -181,24 +181,6 @@ _FILE_MAGIC = b"ARROW1"
 _CUT_OFF = "the file is truncated: only the readable part was read"
 
 
-OLD_STREAM = "is an Arrow stream of before version 0.15, which cannot be read"
-OLD_STREAM_HINT = "write it again with Arrow 0.15 or later"
-_LONGEST_OLD_SCHEMA = 1 << 16
-"""Its length in bytes; the third and fourth byte of such a stream are null."""
-
-
-def is_old_stream(data: bytes) -> bool:
-    """Return whether the first bytes of a file are those of an Arrow stream without the mark before its schema."""
-    length = int.from_bytes(data[:4], "little")
-    if not 0 < length < _LONGEST_OLD_SCHEMA or len(data) < 4 + length or length % 4:
-        return False
-    try:
-        with pa.ipc.open_stream(data[: 4 + length]):
-            return True
-    except (pa.ArrowException, OSError, ValueError):
-        return False
-
-
 def read_metadata(schema: pa.Schema) -> Mapping[str, Any]:
     """Return the metadata of our own exports; empty for other files."""
     try:

@@ -1,12 +1,12 @@
-"""Text input, plain or compressed, cut into blocks of whole lines in UTF-8."""
+"""Text input, plain or compressed, cut into blocks of whole lines."""
 
 from __future__ import annotations
 
 import bz2
 import codecs
+import io
 import zlib
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import replace
 from gzip import GzipFile
 from typing import Any, Protocol
 
@@ -20,9 +20,8 @@ BLOCK_BYTES = 4 << 20
 """Bytes that are read and parsed at a time."""
 
 MAX_LINE_BYTES = 1 << 20
-"""Longer lines are left out."""
 MAX_DOCUMENT_BYTES = 64 << 20
-"""Larger JSON documents, which may be a single line, are not read as a whole."""
+"""Larger JSON documents, which may be a single line, are not read."""
 
 _BOMS = (
     (codecs.BOM_UTF8, "utf-8"),
@@ -40,27 +39,21 @@ class Block:
 
     first_row: int
     """Row of the first line in the file, from 1."""
-    text: bytes
-    """UTF-8, each line with its newline."""
-    newline: str = "\n"
-    """Line ending of the file, if it is a single character; `text` always has line feeds."""
+    text: str
+    """Each line with its newline."""
 
     def lines(self) -> Iterator[tuple[int, str]]:
         """Yield each line that is not blank, with its row."""
-        for row, line in enumerate(self.text.decode("utf-8").split("\n"), self.first_row):
+        for row, line in enumerate(self.text.split("\n"), self.first_row):
             if line and not line.isspace():
-                yield row, line.rstrip("\r")
-
-    def join_next(self, block: Block | None) -> Block:
-        """Return this block with the lines of the next one."""
-        return self if block is None else replace(self, text=self.text + block.text)
+                yield row, line
 
 
 class LineCutter:
-    """Cuts bytes into blocks of whole lines.
+    """Decodes bytes, and cuts their text into blocks of whole lines.
 
     Args:
-        longest: Bytes of the longest line; longer ones are left out.
+        longest: Characters of the longest line that is allowed.
         encoding: Name of the text's encoding as Python knows it; empty to find it.
 
     Raises:
@@ -70,124 +63,94 @@ class LineCutter:
     def __init__(self, notes: Notes, longest: int = MAX_LINE_BYTES, encoding: str = "") -> None:
         self._notes = notes
         self._longest = longest
-        self._encoding = encoding
-        self._rest = b""
+        self._rest = ""
         self._row = 1
-        self._decoder: codecs.IncrementalDecoder | None = None
-        if encoding:
-            try:
-                # Python knows more codecs than those of text: hex, rot13, undefined.
-                b"0".decode(encoding, "replace")
-                self._decoder = codecs.getincrementaldecoder(encoding)("replace")
-            except (LookupError, ValueError) as error:
-                hint = "one of Python's, such as utf-8, cp1252, gbk, shift_jis"
-                raise LogError(f"no encoding {encoding!r}", hint) from error
-        self._started = False
-        self._newline = "\n"
-        self._dropping = False
-        """Whether the current line is too long, so that the rest of it is skipped."""
+        self._newlines = io.IncrementalNewlineDecoder(None, translate=True)
+        self._is_known = encoding != ""
+        """Whether the encoding was chosen, so that bytes which do not fit are replaced."""
+        encoding = encoding or "utf-8"
+        try:
+            # Python knows more codecs than those of text: hex, rot13, undefined.
+            b"0".decode(encoding, "replace")
+            self._choose(encoding)
+        except (LookupError, ValueError) as error:
+            hint = "one of Python's, such as utf-8, cp1252, gbk, shift_jis"
+            raise LogError(f"no encoding {encoding!r}", hint) from error
 
     def feed(self, data: bytes) -> Block | None:
-        """Add bytes; return the lines that are complete now, if any."""
-        if not self._started and data:
-            self._started = True
-            data = self._begin(data)
-            self._newline = "\r" if b"\r" in data and b"\n" not in data else "\n"
-        if self._decoder is not None:
-            data = self._decoder.decode(data).encode()
-        if b"\0" in data:
+        """Add bytes, none at the end; return the lines that are complete now, if any.
+
+        The first block has two lines if the text has them: a single one may be a heading or a row.
+
+        Raises:
+            LogError: a line is too long.
+        """
+        text = self._newlines.decode(self._decode(data), final=not data)
+        if "\0" in text:
             self._notes.say("null bytes were skipped")
-            data = data.replace(b"\0", b"")
-        if b"\r" in data:
-            # A carriage return alone ends a line, too; the line feed of one at the very end may still follow.
-            carried_cr = data.endswith(b"\r")
-            data = data.replace(b"\r\n", b"\n")
-            data = (
-                data[:-1].replace(b"\r", b"\n") + b"\r"
-                if carried_cr and data
-                else data.replace(b"\r", b"\n")
+            text = text.replace("\0", "")
+        text = self._rest + text
+        end = text.rfind("\n") + 1
+        if not data:
+            text = text and text.removesuffix("\n") + "\n"
+            end = len(text)
+        elif self._row == 1 and "\n" not in text[:end].strip():
+            end = 0
+        self._rest = text[end:]
+        if len(self._rest) > self._longest:
+            row = self._row + text.count("\n", 0, end)
+            raise LogError(
+                f"line {row} is longer than {self._longest >> 20} MiB",
+                "a log has a row in each line",
             )
-        if self._rest.endswith(b"\r") and data:
-            self._rest = self._rest[:-1] + (b"" if data.startswith(b"\n") else b"\n")
-        end = data.rfind(b"\n") + 1
         if not end:
-            self._keep(data)
             return None
-        # Blocks are large: each is copied only once.
-        text = b"".join((self._rest, memoryview(data)[:end]))
-        self._rest = b""
-        rest = data[end:]
-        if self._dropping:
-            text = text.partition(b"\n")[2]
-            self._dropping = False
-            self._row += 1
-        self._keep(rest)
-        return self._block(text) if text else None
+        block = Block(self._row, text[:end])
+        self._row += block.text.count("\n")
+        return block
 
-    def finish(self) -> Block | None:
-        """Return the last line, if it has no newline."""
-        text = self._rest.rstrip(b"\r")
-        self._rest = b""
-        if self._dropping or not text:
-            return None
-        return self._block(text + b"\n")
+    def _decode(self, data: bytes) -> str:
+        if not self._is_known and self._row == 1 and not self._rest:
+            data = self._find_mark(data)
+        try:
+            return self._decoder.decode(data, final=not data)
+        except UnicodeDecodeError:
+            return self._guess(self._decoder.getstate()[0] + data)
 
-    def _begin(self, data: bytes) -> bytes:
-        if self._encoding:
-            return data
+    def _find_mark(self, data: bytes) -> bytes:
+        """Choose UTF-16 if the first bytes of a text are in it; return them without a byte order mark."""
         for mark, encoding in _BOMS:
             if data.startswith(mark):
-                if encoding != "utf-8":
-                    self._decoder = codecs.getincrementaldecoder(encoding)("replace")
+                self._choose(encoding)
                 return data[len(mark) :]
         head = data[:2000]
         for odd, encoding in ((1, "utf-16-le"), (0, "utf-16-be")):
             # UTF-16 without a byte order mark: every second byte is null.
-            if (
-                len(head) > 3
-                and head[odd::2].count(0) > 0.4 * len(head[odd::2]) > 0
-                and not head[1 - odd :: 2].count(0)
-            ):
+            nulls = head[odd::2].count(0)
+            if nulls > 0.4 * len(head[odd::2]) and len(head) > 3 and 0 not in head[1 - odd :: 2]:
                 self._notes.say(f"read as {encoding.upper()}")
-                self._decoder = codecs.getincrementaldecoder(encoding)("replace")
+                self._choose(encoding)
         return data
 
-    def _keep(self, rest: bytes) -> None:
-        if self._dropping:
-            return
-        self._rest += rest
-        if len(self._rest) > self._longest:
-            limit = f"longer than {self._longest >> 20} MiB"
-            self._notes.add(f"line {limit} was skipped", f"lines {limit} were skipped", [self._row])
-            self._rest = b""
-            self._dropping = True
+    def _choose(self, encoding: str) -> None:
+        self._is_known |= encoding != "utf-8"
+        self._decoder = codecs.getincrementaldecoder(encoding)(
+            "replace" if self._is_known else "strict"
+        )
 
-    def _block(self, text: bytes) -> Block:
-        first = self._row
-        self._row += text.count(b"\n")
-        try:
-            if not text.isascii():
-                text.decode("utf-8")
-        except UnicodeDecodeError:
-            text = self._guess_text(text).encode()
-        return Block(first, text, self._newline)
-
-    def _guess_text(self, text: bytes) -> str:
-        """Return a text that is not UTF-8, decoded; the rest of the file is read in the encoding found first."""
-        guesses = {self._encoding: ""} if self._encoding else _GUESSES
-        for encoding in guesses:
+    def _guess(self, data: bytes) -> str:
+        """Return bytes that are not UTF-8, decoded; the rest of the file is read in the same encoding."""
+        for encoding in _GUESSES:
             try:
-                decoded = text.decode(encoding)
+                codecs.getincrementaldecoder(encoding)().decode(data)
             except UnicodeDecodeError:
                 continue
             break
         else:
-            encoding = next(iter(guesses))
-            decoded = text.decode(encoding, "replace")
-        if not self._encoding:
-            self._encoding = encoding
-            self._notes.say(f"not UTF-8: read as {_GUESSES[encoding]} (--encoding selects another)")
-        return decoded
+            encoding = next(iter(_GUESSES))
+        self._notes.say(f"not UTF-8: read as {_GUESSES[encoding]} (--encoding selects another)")
+        self._choose(encoding)
+        return self._decoder.decode(data)
 
 
 class Readable(Protocol):
@@ -209,17 +172,18 @@ _FORMATS: Mapping[bytes, Callable[[Any], Any]] = {
     b"\x28\xb5\x2f\xfd": lambda handle: pa.CompressedInputStream(
         pa.PythonFile(handle, "r"), "zstd"
     ),
-    b"\x04\x22\x4d\x18": lambda handle: pa.CompressedInputStream(pa.PythonFile(handle, "r"), "lz4"),
 }
 """Functions that open compressed files, by the first bytes of their formats."""
 _REFUSED = {
     b"PK\x03\x04": "a ZIP archive or a spreadsheet",
     b"7z\xbc\xaf\x27\x1c": "a 7-Zip archive",
     b"\xfd7zXZ\0": "an xz file",
+    b"\x04\x22\x4d\x18": "an lz4 file",
     b"\xd0\xcf\x11\xe0": "an old Excel workbook",
     b"\x89HDF": "an HDF5 file",
     b"SQLite format 3": "an SQLite database",
     b"\x1f\x9d": "a compress (.Z) file",
+    b"#separator \\x": "a Zeek log",
 }
 """Formats that cannot be read, by their first bytes."""
 

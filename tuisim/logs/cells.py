@@ -1,4 +1,4 @@
-"""Cells of a text: numbers in the forms that people and programs write them in, and truth values."""
+"""Cells of a text: numbers in the forms that people and programs write them in; truth values are 1 and 0."""
 
 from __future__ import annotations
 
@@ -60,6 +60,7 @@ _GAPS = NumberForm(
     "have gaps between thousands",
 )
 _HEXADECIMAL = NumberForm(r"^0[xX][0-9a-fA-F]{1,15}$", (), "are hexadecimal", True)
+_TRUTHS = NumberForm(r"^(?i:true|false)$", ((r"(?i)true", "1"), (r"(?i)false", "0")))
 
 
 def parse_numbers(cells: pa.Array, form: NumberForm) -> tuple[pa.Array, pa.Array]:
@@ -69,37 +70,23 @@ def parse_numbers(cells: pa.Array, form: NumberForm) -> tuple[pa.Array, pa.Array
         Numbers, and a mask of the cells that are neither a number nor empty.
     """
     texts, empty = _trim(cells)
-    nothing = pa.nulls(len(texts), pa.string())
-    if form is PLAIN:
-        try:
-            return _drop_infinite(pc.cast(texts, pa.float64()), texts, pc.is_valid(nothing))
-        except pa.ArrowInvalid:
-            pass
-    # For empty cells, false and null give false.
-    good = pc.and_kleene(pc.is_valid(texts), pc.match_substring_regex(texts, form.pattern))
-    wrong = pc.and_(pc.invert(good), pc.invert(empty))
-    texts = pc.if_else(good, texts, nothing)
+    good = pc.fill_null(pc.match_substring_regex(texts, form.pattern), False)
+    wrong = pc.invert(pc.or_(good, empty))
+    texts = pc.if_else(good, texts, pa.scalar(None, pa.string()))
     for pattern, new in form.changes:
         texts = pc.replace_substring_regex(texts, pattern, new)
-    numbers = pc.cast(texts, pa.int64()) if form.is_hexadecimal else texts
-    return _drop_infinite(pc.cast(numbers, pa.float64()), texts, wrong)
-
-
-def _drop_infinite(numbers: pa.Array, texts: Any, wrong: Any) -> tuple[pa.Array, pa.Array]:
-    """Return numbers with null where the text is too large for a float, and the mask `wrong` with these cells added."""
-    infinite = pc.fill_null(pc.is_inf(numbers), False)
-    if not pc.any(infinite).as_py():
-        return numbers, wrong
-    large = pc.and_(infinite, pc.invert(pc.match_substring_regex(texts, _SPECIAL)))
-    large = pc.fill_null(large, False)
-    return pc.if_else(large, pa.scalar(None, pa.float64()), numbers), pc.or_(wrong, large)
+    whole = pc.cast(texts, pa.int64()) if form.is_hexadecimal else texts
+    numbers = pc.cast(whole, pa.float64())
+    is_special = pc.match_substring_regex(texts, _SPECIAL)
+    too_large = pc.fill_null(pc.and_(pc.is_inf(numbers), pc.invert(is_special)), False)
+    return pc.if_else(too_large, pa.scalar(None, pa.float64()), numbers), pc.or_(wrong, too_large)
 
 
 def _trim(cells: pa.Array) -> tuple[Any, Any]:
     """Return texts without blanks around them, with null for the empty ones, and a mask of the empty ones."""
     texts: Any = pc.utf8_trim_whitespace(cells)
     empty = pc.or_(pc.is_null(texts), pc.is_in(texts, value_set=build_text_array(EMPTY_CELLS)))
-    return pc.if_else(empty, pa.nulls(len(texts), pa.string()), texts), empty
+    return pc.if_else(empty, pa.scalar(None, pa.string()), texts), empty
 
 
 def find_form(cells: pa.Array, separator: str, decimal: str) -> NumberForm | None:
@@ -115,13 +102,14 @@ def find_form(cells: pa.Array, separator: str, decimal: str) -> NumberForm | Non
     if not pc.all(special).as_py():
         texts = texts.filter(pc.invert(special))
     if decimal == ",":
-        forms: Sequence[NumberForm] = (DECIMAL_COMMA, _POINTS)
+        forms: tuple[NumberForm, ...] = (DECIMAL_COMMA, _POINTS)
     elif decimal:
         forms = (PLAIN, _COMMAS, _GAPS, _HEXADECIMAL)
     elif separator == ",":
         forms = (PLAIN, _COMMAS, DECIMAL_COMMA, _POINTS, _GAPS, _HEXADECIMAL)
     else:
         forms = (PLAIN, DECIMAL_COMMA, _COMMAS, _POINTS, _GAPS, _HEXADECIMAL)
+    forms += (_TRUTHS,)
     return _choose_form(texts, forms) or _find_unit_form(texts, forms)
 
 
@@ -157,16 +145,6 @@ def _choose_form(texts: pa.Array, forms: Sequence[NumberForm]) -> NumberForm | N
     return forms[counts.index(largest)] if 2 * largest > len(texts) else None
 
 
-def parse_truths(cells: pa.Array) -> tuple[pa.Array, pa.Array]:
-    """Parse cells such as `true` or `False`, with nulls for others; also return a mask of the invalid cells."""
-    texts, empty = _trim(cells)
-    texts = pc.utf8_lower(texts)
-    known = pc.is_in(texts, value_set=build_text_array(("true", "false")))
-    values = pc.if_else(known, pc.equal(texts, "true"), pa.nulls(len(texts), pa.bool_()))
-    return values, pc.invert(pc.or_(known, empty))
-
-
-def has_only_truths(cells: pa.Array) -> bool:
-    """Return whether all cells that are not empty are true or false, and there is at least one."""
-    values, wrong = parse_truths(cells)
-    return values.null_count < len(values) and not pc.any(wrong).as_py()
+def is_empty(cells: pa.Array) -> bool:
+    """Return whether all cells of a column are empty."""
+    return bool(pc.all(_trim(cells)[1]).as_py())

@@ -35,7 +35,9 @@ def has_objects(lines: Sequence[str]) -> bool:
 
 def is_document(lines: Sequence[str]) -> bool:
     """Return whether JSON with these first lines is one document, not a row on each line."""
-    return len(lines) == 1 or not (is_row(lines[0]) or lines[0].strip() == "[" and is_row(lines[1]))
+    return len(lines) == 1 or not (
+        is_row(lines[0]) or (lines[0].strip() == "[" and is_row(lines[1]))
+    )
 
 
 class DocumentReader:
@@ -44,7 +46,7 @@ class DocumentReader:
     def __init__(self, notes: Notes, choices: ReadChoices) -> None:
         self._notes = notes
         self._choices = choices
-        self._text = b""
+        self._text = ""
 
     def read(self, block: Block) -> None:
         """Keep a block.
@@ -96,7 +98,7 @@ class DocumentReader:
         csv.writer(text, lineterminator="\n").writerows(
             row if isinstance(row, list) else [row] for row in rows
         )
-        return CsvReader(self._notes, self._choices).read(Block(1, text.getvalue().encode()))
+        return CsvReader(self._notes, self._choices).read(Block(1, text.getvalue()))
 
     def _list_rows(self, value: Mapping[str, Any]) -> list[Any]:
         """Return the rows in an object: of its only table, of its columns, or the object itself."""
@@ -110,9 +112,7 @@ class DocumentReader:
         if value and all(isinstance(cells, dict) for cells in value.values()):
             # pandas writes a frame like this: an object of cells for each column.
             labels = dict.fromkeys(label for cells in value.values() for label in cells)
-            return [
-                {name: cells.get(label) for name, cells in value.items()} for label in labels
-            ]
+            return [{name: cells.get(label) for name, cells in value.items()} for label in labels]
         columns = {name: cells for name, cells in value.items() if isinstance(cells, list)}
         if not columns:
             return [value] if value else []

@@ -97,9 +97,9 @@ def _read_exported(source: Path, notes: Notes) -> pa.Table:
     """Return the table in an exported file; `notes` receives what is wrong with it."""
     suffix = source.suffix.lower()
     if suffix == ".csv":
-        return read_exported_csv(source.read_bytes())
+        return read_exported_csv(source.read_bytes().decode())
     if suffix == ".jsonl":
-        table = JsonReader(notes, exact=True).read(Block(1, source.read_bytes()))
+        table = JsonReader(notes, exact=True).read(Block(1, source.read_text("utf-8")))
         # Without a row, only the companion file names the columns.
         names = () if table is not None else read_companion(source).get("columns", ())
         kinds = {

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import re
 from collections.abc import Iterator, Sequence
-from itertools import pairwise, starmap, takewhile
+from itertools import starmap, takewhile
 from typing import NamedTuple
 
 from tuisim.base.data_class import dataclass
@@ -25,13 +25,10 @@ SNIFFED_LINES = 400
 """Lines from the beginning of a text in which its table is looked for."""
 
 _COMMENT_SIGNS = ("#", "%", "//", ";")
-_ZEEK = re.compile(r"#separator \\x[0-9a-fA-F]{2}")
-"""The first line of a Zeek log."""
 _EXCEL = re.compile(r"sep=(.)", re.IGNORECASE)
 """The first line of a CSV file for Excel."""
 _OWN_UNIT = re.compile(r"(?:^|[_. ])(?:[mun]|nano|micro|milli)?(?:s|secs?|seconds)$", re.IGNORECASE)
 """The end of the name of a time that says its unit."""
-_YEARS = range(1900, 2101)
 _WORD = re.compile(r'(?<!\S)"[^"]*"(?!\S)|\S+')
 """A cell between blanks."""
 _NUMBER = re.compile(
@@ -54,8 +51,8 @@ class Heading:
     """Names of the columns; empty if there were only comments."""
     separator: str = ","
     """One of `SEPARATORS`, or `BLANKS`."""
-    comment: str = ""
-    """Lines that begin with it are skipped."""
+    has_comments: bool = False
+    """Whether lines that begin with `#` are skipped."""
     rows_follow: int = 1
     """Line of the file where the table's first row may be."""
     kinds: str = ""
@@ -138,11 +135,13 @@ def find_heading(
     separator, lines = _read_excel_line(lines, separator)
     sign = _find_comment_sign([text for _, text in lines])
     comments = list(takewhile(lambda line: sign and line[1].startswith(sign), lines))
-    # A row of units may begin with a percent sign.
-    inner = sign if sign == "#" else ""
-    body = [line for line in lines[len(comments) :] if line[1][0] != inner]
+    # Other signs may also begin a row below: percent signs, a row of units.
+    has_comments = sign == "#"
+    body = [
+        line for line in lines[len(comments) :] if not (has_comments and line[1].startswith(sign))
+    ]
     if not body:
-        return Heading(comment=inner)
+        return Heading(has_comments=has_comments)
     separator = separator or sniff_separator([text for _, text in body])
     table = list(_split_lines(body, separator))
     run = _find_table(table)
@@ -160,7 +159,7 @@ def find_heading(
         row = 0
     _tell_unread(above, "above the table", notes)
     follow = table[start].row if start < len(table) else table[-1].next_row
-    return Heading(_clean_names(names, notes), separator, inner, follow, run.kinds, row)
+    return Heading(_clean_names(names, notes), separator, has_comments, follow, run.kinds, row)
 
 
 def _read_excel_line(
@@ -176,14 +175,6 @@ def _tell_unread(lines: Sequence[_Line], where: str, notes: Notes) -> None:
     notes.say_rows(unread, [line.row for line in lines])
 
 
-def refuse_zeek(line: str) -> None:
-    """Raise a LogError if a line is the first of a Zeek log."""
-    if _ZEEK.match(line):
-        raise LogError(
-            "is a Zeek log with a heading of its own, which cannot be read", "let Zeek write JSON"
-        )
-
-
 def _read_heading(
     lines: Sequence[tuple[int, str]], notes: Notes, separator: str, header_row: int
 ) -> Heading:
@@ -195,10 +186,10 @@ def _read_heading(
     first, *rest = _split_lines(lines, separator)
     kinds = _find_table(rest or [first]).kinds
     below = takewhile(lambda line: is_words(line.kinds) and "-" not in line.kinds, rest)
-    unread = list(below) if set(kinds) & set("nt") else []
+    unread = list(below) if has_numbers(kinds) else []
     _tell_unread(unread, "below the heading", notes)
     follow = unread[-1].next_row if unread else first.next_row
-    return Heading(_clean_names(first.cells, notes), separator, "", follow, kinds, header_row)
+    return Heading(_clean_names(first.cells, notes), separator, False, follow, kinds, header_row)
 
 
 def _clean_names(names: Sequence[str], notes: Notes) -> tuple[str, ...]:
@@ -218,56 +209,45 @@ def split_cells(line: str, separator: str) -> list[str]:
     """Return the cells of a line; an unclosed quote is an ordinary character."""
     if separator == BLANKS:
         return [word.strip('"') for word in _WORD.findall(line)]
-    if '"' in line:
-        line = close_quotes(line.encode(), separator).decode()
     try:
-        return next(csv.reader([line], delimiter=separator, strict=True))
+        return next(csv.reader([close_quotes(line, separator)], delimiter=separator, strict=True))
     except (csv.Error, StopIteration):
         return line.split(separator)
 
 
-def close_quotes(text: bytes, separator: str) -> bytes:
+def close_quotes(text: str, separator: str) -> str:
     """Return a text without blanks between separators and the quotes of cells."""
-    sign = re.escape(separator.encode())
-    return re.sub(rb'(?m)(?:^|(?<=%b))[ \t]+(?=")|(?<=")[ \t]+(?=%b)' % (sign, sign), b"", text)
+    if f'{separator} "' not in text and f'" {separator}' not in text:
+        return text
+    sign = re.escape(separator)
+    return re.sub(rf'(?m)(?:^|(?<={sign}))[ \t]+(?=")|(?<=")[ \t]+(?={sign})', "", text)
 
 
 def _split_lines(lines: Sequence[tuple[int, str]], separator: str) -> Iterator[_Line]:
     """Yield the lines, split into cells; a heading with line breaks in quoted names is a single line."""
-    after = 0
-    is_first = True
-    for index, (row, text) in enumerate(lines):
-        if index < after:
-            continue
-        end = index + 1
+    texts = [text for _, text in lines]
+    joined, end = join_lines(texts[:_MAX_LINES], separator) if texts[0].count('"') % 2 else ([], 0)
+    is_heading = end < len(lines) and 1 < len(joined) == len(split_cells(texts[end], separator))
+    if is_heading:
+        yield _Line(lines[0][0], joined, parse_kinds(joined), lines[end][0])
+    for index in range(end if is_heading else 0, len(lines)):
+        row, text = lines[index]
         cells = split_cells(text, separator)
-        if is_first and text.count('"') % 2 and (joined := _join_heading(lines[index:], separator)):
-            cells, count = joined
-            end = after = index + count
-        is_first = is_first and not any(kind in "nt" for kind in parse_kinds(cells))
-        next_row = lines[end][0] if end < len(lines) else lines[end - 1][0] + 1
+        next_row = lines[index + 1][0] if index + 1 < len(lines) else row + 1
         yield _Line(row, cells, parse_kinds(cells), next_row)
 
 
-def _join_heading(lines: Sequence[tuple[int, str]], separator: str) -> tuple[list[str], int] | None:
-    """Return the cells of a heading with line breaks in quotes, and its number of lines; None if there is none."""
-    texts = [text + "\n" for _, text in lines[:_MAX_LINES]]
-    if separator == BLANKS:
-        return None
-    reader = csv.reader(texts, delimiter=separator, strict=True)
+def join_lines(lines: Sequence[str], separator: str) -> tuple[list[str], int]:
+    """Return the cells of a row that goes on in further lines between quotes, none if it does not; and its lines."""
+    reader = csv.reader([line + "\n" for line in lines], delimiter=separator, strict=True)
     try:
-        cells = next(reader)
+        return next(reader), reader.line_num
     except csv.Error:
-        return None
-    following = lines[reader.line_num : reader.line_num + 1]
-    fits = following and len(split_cells(following[0][1], separator)) == len(cells)
-    return (cells, reader.line_num) if fits and len(cells) > 1 else None
+        return [], 0
 
 
 def sniff_separator(lines: Sequence[str]) -> str:
     """Return the separator with which lines are most certainly rows of a table, one of `SEPARATORS` or `BLANKS`."""
-    if len(lines) == 1:
-        return _sniff_line(lines[0])
     ranks = {sign: _rank_separator(lines, sign) for sign in (*SEPARATORS, BLANKS)}
     best = max(SEPARATORS, key=ranks.__getitem__)
     signs = ranks[best]
@@ -310,20 +290,6 @@ def count_rows(lines: Sequence[str]) -> int:
         return 0
     run = _find_table(list(_split_lines(list(enumerate(lines)), sniff_separator(lines))))
     return run.length if run.rank.is_table else 0
-
-
-def _sniff_line(line: str) -> str:
-    """Return the separator of a text of one line, which may be a sentence."""
-    counts = {separator: line.count(separator) for separator in SEPARATORS}
-    if counts[";"] and "w" not in parse_kinds(line.split(";")):
-        return ";"
-    best = max(counts, key=counts.__getitem__)
-    kinds = set(parse_kinds(line.split()[1:]))
-    if counts[best]:
-        return best
-    if kinds and kinds <= set("nt-"):
-        return BLANKS
-    return ","
 
 
 def _find_table(table: Sequence[_Line]) -> _Run:
@@ -370,6 +336,11 @@ def _is_row(kinds: str, usual: str) -> bool:
     return any(a == b and a in "nt" for a, b in zip(kinds, usual, strict=True))
 
 
+def has_numbers(kinds: str) -> bool:
+    """Return whether one of cells of these kinds is a number or a time."""
+    return not {"n", "t"}.isdisjoint(kinds)
+
+
 def is_words(kinds: str) -> bool:
     """Return whether cells of these kinds may be names: there are words, and no numbers."""
     return "w" in kinds and "n" not in kinds
@@ -396,8 +367,7 @@ def _find_names(
     width = len(run.kinds)
     if above:
         *before, last = above
-        are_names = is_words(last.kinds) or _has_numbers_as_names([last, *table[start:]])
-        if len(last.kinds) == width and are_names:
+        if len(last.kinds) == width and is_words(last.kinds):
             if before and len(before[-1].kinds) == width and _has_units(last.cells, before[-1]):
                 pairs = zip(before[-1].cells, last.cells, strict=True)
                 return list(starmap(_join_unit, pairs)), before[:-1], start
@@ -434,24 +404,10 @@ def _has_names(rows: Sequence[_Line]) -> bool:
     first = rows[0]
     if first.kinds[0] == "t" and (len(rows) < 2 or rows[1].kinds[0] == "t"):
         return False
-    if _has_numbers_as_names(rows):
-        return True
     # One line with a number is a row: below a heading, nothing would be left.
     return (
         "n" not in first.kinds if len(rows) < 2 else 2 * first.kinds.count("n") < len(first.kinds)
     )
-
-
-def _has_numbers_as_names(rows: Sequence[_Line]) -> bool:
-    """Return whether the first row has names that are increasing numbers or years."""
-    first = rows[0]
-    numbers = [int(cell) for cell in first.cells[1:] if re.fullmatch(r"\s*\d+\s*", cell)]
-    if first.kinds[0] != "w" or not len(numbers) == len(first.kinds) - 1 > 0:
-        return False
-    below = {row.kinds[0] for row in rows[1:]}
-    rises = all(a < b for a, b in pairwise(numbers))
-    are_years = all(number in _YEARS for number in numbers)
-    return rises and (("n" in below and "w" not in below and len(numbers) > 1) or are_years)
 
 
 def _number_columns(cells: Sequence[str], notes: Notes) -> list[str]:

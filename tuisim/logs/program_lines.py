@@ -240,8 +240,7 @@ class RowReader:
 
     def read(self, block: Block) -> pa.Table | None:
         """Return the rows of a block; None if it has none."""
-        lines = block.text.decode("utf-8").split("\n")
-        text = "\n".join(map(self._rewrite, lines)).encode()
+        text = "\n".join(map(self._rewrite, block.text.split("\n")))
         return self._table.read(replace(block, text=text))
 
 

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-import errno
 import json
 import os
 import stat
 import sys
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from dataclasses import replace
 from itertools import islice
 from pathlib import Path
 from time import monotonic
-from typing import TYPE_CHECKING, Any, BinaryIO, cast
+from typing import Any, cast
 
 import pyarrow as pa
 import pyarrow.compute as pc
@@ -29,6 +28,7 @@ from tuisim.logs.blocks import (
     MAGIC_BYTES,
     MAGICS,
     MAX_DOCUMENT_BYTES,
+    MAX_LINE_BYTES,
     Block,
     LineCutter,
     Readable,
@@ -58,10 +58,6 @@ from tuisim.logs.program_lines import (
 from tuisim.logs.text_tables import CsvReader
 from tuisim.logs.time_order import guess_unit_s, join_times, order_times
 from tuisim.logs.warnings import Notes
-
-if TYPE_CHECKING:
-    pass
-
 
 STDIN = "-"
 FIRST_BYTES = 1 << 18
@@ -218,7 +214,7 @@ def read_first_lines(path: str, encoding: str) -> list[tuple[int, str]]:
             return []
         text = unpack(head, handle, notes) or handle
         cutter = LineCutter(notes, encoding=encoding)
-        block = cutter.feed(text.read(FIRST_BYTES) or b"") or cutter.finish()
+        block = cutter.feed(text.read(FIRST_BYTES) or b"") or cutter.feed(b"")
     return [] if block is None else list(islice(block.lines(), _SHOWN_LINES))
 
 
@@ -308,30 +304,15 @@ def read_text_parts(
         size: Their number, 0 if unknown.
         suffix: Suffix of the file name in lower case, such as `.csv`.
     """
-    cutter = LineCutter(notes, encoding=choices.encoding)
+    data = handle.read(FIRST_BYTES) or b""
+    _refuse_binary(data)
+    is_json = data.lstrip().startswith((b"{", b"["))
+    longest = MAX_DOCUMENT_BYTES if is_json else MAX_LINE_BYTES
+    cutter = LineCutter(notes, longest, choices.encoding)
     reader = None
-    held = None
-    read = 0
+    read = len(data)
     while True:
-        data = handle.read(FIRST_BYTES if not read else BLOCK_BYTES) or b""
-        if not read:
-            _refuse_binary(data)
-            if data.lstrip().startswith((b"{", b"[")):
-                cutter = LineCutter(notes, MAX_DOCUMENT_BYTES, choices.encoding)
-        read += len(data)
-        if size and len(data) == BLOCK_BYTES and not data.strip(b"\0"):
-            read = _skip_hole(cast("BinaryIO", handle), read)
-        block = cutter.feed(data) if data else cutter.finish()
-        block = block if held is None else held.join_next(block)
-        held = None
-        if (
-            reader is None
-            and block is not None
-            and data
-            and len(list(islice(block.lines(), 2))) < 2
-        ):
-            # A single line is held back: it may be a heading or a row, depending on whether another one follows.
-            block, held = None, block
+        block = cutter.feed(data)
         part = min(1.0, read / size) if size else float("nan")
         if block is not None:
             reader = reader or _choose_reader(block, suffix, choices, notes)
@@ -339,31 +320,15 @@ def read_text_parts(
         elif data:
             yield part, None
         if not data:
-            if isinstance(reader, DocumentReader):
+            if isinstance(reader, DocumentReader | CsvReader):
                 yield part, reader.finish()
-            if isinstance(reader, CsvReader):
-                reader.finish()
             return
-
-
-def _skip_hole(handle: BinaryIO, position: int) -> int:
-    """Skip a hole in a sparse file, which may be of any length; return the position after it."""
-    # Not every file system can tell.
-    with suppress(OSError, AttributeError):
-        try:
-            position = os.lseek(handle.fileno(), position, os.SEEK_DATA)
-        except OSError as error:
-            if error.errno != errno.ENXIO:
-                raise
-            position = handle.seek(0, os.SEEK_END)
-        handle.seek(position)
-    return position
+        data = handle.read(BLOCK_BYTES) or b""
+        read += len(data)
 
 
 def _refuse_binary(data: bytes) -> None:
     """Raise a LogError if the first bytes of a text are those of another format."""
-    if arrow.is_old_stream(data):
-        raise LogError(arrow.OLD_STREAM, arrow.OLD_STREAM_HINT)
     if data.startswith((*arrow.FORMATS, *MAGICS)):
         raise LogError(
             "only text can be read from a pipe or inside a compressed file",

@@ -10,9 +10,11 @@ from dataclasses import replace
 from itertools import islice, takewhile
 from typing import Any
 
+import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 import pyarrow.csv as pa_csv
+from pyarrow.types import is_floating
 
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import LogError, counted, listed
@@ -24,23 +26,21 @@ from tuisim.logs.cells import (
     PLAIN,
     NumberForm,
     find_form,
-    has_only_truths,
+    is_empty,
     parse_numbers,
-    parse_truths,
 )
 from tuisim.logs.choices import NAMES_OF_SIGNS, ReadChoices
 from tuisim.logs.csv_cells import WRITTEN, restore_formula
 from tuisim.logs.heading import (
     BLANKS,
-    SEPARATORS,
     SNIFFED_LINES,
     Heading,
     close_quotes,
     find_heading,
+    has_numbers,
     is_words,
+    join_lines,
     parse_kinds,
-    refuse_zeek,
-    sniff_separator,
     split_cells,
 )
 from tuisim.logs.units import TEXT, TIMEDELTA
@@ -53,13 +53,14 @@ _MIN_REPEATED = 4
 """Texts are dictionary-encoded if each occurs at least this often, on average."""
 _MIN_CELLS = 100
 """With fewer cells, texts are not dictionary-encoded."""
-_MIN_VALUES = 3
-"""Numbers on the only line of a file that are the values of one column; fewer are a row."""
-_BLANKS = re.compile(rb'(?<!\S)("[^"\n]*")(?!\S)|[ \t]+')
-_MARGINS = re.compile(rb"(?m)^[ \t]+|[ \t]+$")
+_BLANKS = re.compile(r'(?<!\S)("[^"\n]*")(?!\S)|[ \t]+')
+_MARGINS = re.compile(r"(?m)^[ \t]+|[ \t]+$")
+_COMMENTS = re.compile(r"(?m)^#.*")
 _MAX_LINES, _MAX_JOINS = 100, 100
 """Maximum lines of a quoted row, and maximum failed attempts to join lines."""
-_MAY_BE_NAMES = re.compile(rb"(?m)^[ \t]*[\"']?[A-Za-z_\x80-\xff]")
+_MAY_BE_NAMES = re.compile(r"(?m)^[ \t]*[\"']?[^\W\d]")
+_LOOK_AHEAD = 10
+"""Lines in which a heading and rows below it are looked for."""
 _MIN_ROWS = 2
 """Rows below a heading that make another table."""
 
@@ -106,11 +107,11 @@ class CsvReader:
                 block = self._begin(block)
                 if not self._heading.names:
                     return None
-            plain = self._clean_block(block)
+            block = Block(block.first_row, self._clean(block.text))
             # The usual case is fast: every cell is of the known type of its column.
-            columns = self._parse_block(plain, self._choose_kinds()) if self._columns else None
+            columns = self._parse_block(block.text, self._choose_kinds()) if self._columns else None
             if columns is None or any(map(_has_infinite, columns)):
-                plain, rest = self._cut_table(plain)
+                block, rest = self._cut_table(block)
                 if rest is not None and self._tables_left:
                     self._tables_left -= 1
                     block = rest
@@ -118,8 +119,8 @@ class CsvReader:
                     self._columns = {}
                     continue
                 self._is_over = rest is not None
-                columns = self._parse_block(plain, {})
-            return None if self._tables_left else self._build_rows(plain, columns)
+                columns = self._parse_block(block.text, {})
+            return None if self._tables_left else self._build_rows(block, columns)
         return None
 
     def finish(self) -> None:
@@ -129,10 +130,8 @@ class CsvReader:
             LogError: the table that was asked for does not exist.
         """
         if self._tables_left:
-            raise LogError(
-                f"has {counted(self._choices.table - self._tables_left, 'table')}",
-                f"--table takes 1 to {self._choices.table - self._tables_left}",
-            )
+            count = self._choices.table - self._tables_left
+            raise LogError(f"has {counted(count, 'table')}", f"--table takes 1 to {count}")
 
     def _build_rows(self, block: Block, columns: list[pa.Array] | None) -> pa.Table | None:
         rows = None
@@ -159,36 +158,24 @@ class CsvReader:
         )
         if not lines:
             return block
-        if one_column := _split_only_line(lines, self._notes):
-            block = Block(lines[0][0], one_column, block.newline)
-            lines = [(lines[0][0], "0")]
-        refuse_zeek(lines[0][1])
         self._heading = find_heading(lines, self._notes, self._choices.sign, self._choices.header)
         self._notes.form = replace(
             self._choices,
             header=self._heading.row,
             separator=NAMES_OF_SIGNS.get(self._heading.separator, ""),
         )
-        follow = self._heading.rows_follow
-        head = "\n".join(line for row, line in lines if follow - 2 < row <= follow).encode()
-        self._has_gaps = len(self._heading.names) == 1 or head != close_quotes(
-            head, self._heading.separator
-        )
-        skipped = block.text.split(b"\n", self._heading.rows_follow - block.first_row)
-        return Block(self._heading.rows_follow, skipped[-1], block.newline)
+        rows_follow = self._heading.rows_follow
+        head = "\n".join(line for row, line in lines if rows_follow - 2 < row <= rows_follow)
+        self._has_gaps = head != close_quotes(head, self._separator)
+        return Block(rows_follow, block.text.split("\n", rows_follow - block.first_row)[-1])
 
-    def _clean_block(self, block: Block) -> Block:
-        """Return the block without comments, and with tabs instead of separating blanks."""
-        text = block.text
-        sign = self._heading.comment.encode()
-        if sign and (text.startswith(sign) or b"\n" + sign in text):
-            text = re.sub(rb"(?m)^" + re.escape(sign) + rb".*$", b"", text)
+    def _clean(self, text: str) -> str:
+        """Return rows without comments, and with tabs instead of separating blanks."""
+        if self._heading.has_comments:
+            text = _COMMENTS.sub("", text)
         if self._heading.separator == BLANKS:
-            text = _MARGINS.sub(b"", text)
-            text = _BLANKS.sub(lambda match: match[1] or b"\t", text)
-        elif self._has_gaps:
-            text = close_quotes(text, self._heading.separator)
-        return Block(block.first_row, text, block.newline)
+            return _BLANKS.sub(lambda match: match[1] or "\t", _MARGINS.sub("", text))
+        return close_quotes(text, self._separator) if self._has_gaps else text
 
     # Where the table ends
 
@@ -197,94 +184,74 @@ class CsvReader:
 
         A repeated heading does not end the table.
         """
-        if not set(self._heading.kinds) & set("nt") or not _MAY_BE_NAMES.search(block.text):
+        if not has_numbers(self._heading.kinds) or not _MAY_BE_NAMES.search(block.text):
             return block, None
-        lines = block.text.decode("utf-8").split("\n")
+        lines = block.text.split("\n")
         repeated = []
-        for index, line in enumerate(lines):
-            if not (cells := self._find_names(line)) or not self._has_rows(
-                cells, lines[index + 1 :][:9]
-            ):
-                continue
-            if cells == list(self._heading.names):
+        for index in range(len(lines)):
+            names = self._find_names(lines[index : index + _LOOK_AHEAD])
+            if names == list(self._heading.names):
                 repeated.append(block.first_row + index)
                 lines[index] = ""
-                continue
-            if not self._tables_left:
-                self._notes.say(
-                    f"another table begins in row {block.first_row + index}, with"
-                    f" {listed(map(repr, cells))}: --table {self._choices.table + 1} reads it"
-                )
-            return self._join_block(block, lines[:index], 0), self._join_block(block, lines, index)
+            elif names:
+                row = block.first_row + index
+                if not self._tables_left:
+                    self._notes.say(
+                        f"another table begins in row {row}, with {listed(map(repr, names))}:"
+                        f" --table {self._choices.table + 1} reads it"
+                    )
+                rest = Block(row, "\n".join(lines[index:]))
+                return Block(block.first_row, "\n".join(lines[:index])), rest
         self._notes.say_rows("the heading is repeated", repeated)
-        return (self._join_block(block, lines, 0) if repeated else block), None
+        return Block(block.first_row, "\n".join(lines)), None
 
-    def _join_block(self, block: Block, lines: Sequence[str], start: int) -> Block:
-        text = "\n".join(lines[start:]).encode()
-        return Block(block.first_row + start, text, block.newline)
-
-    def _find_names(self, line: str) -> list[str]:
-        """Return the cells of a line that may be the heading of a table; none if the line cannot be one."""
-        if not line or line.isspace():
+    def _find_names(self, lines: Sequence[str]) -> list[str]:
+        """Return the cells of the first line if it is the heading of a table whose rows follow; else none."""
+        if not _MAY_BE_NAMES.match(lines[0]):
             return []
-        cells = [cell.strip() for cell in split_cells(line, self._separator)]
+        names = [cell.strip() for cell in split_cells(lines[0], self._separator)]
+        kinds = parse_kinds(names)
+        if len(names) < 2 or not is_words(kinds) or "-" in kinds:
+            return []
         usual = self._heading.kinds
-        kinds = parse_kinds(cells)
-        alike = len(kinds) == len(usual) and any(
-            kind == was for kind, was in zip(kinds, usual, strict=True) if was in "nt"
-        )
-        is_heading = len(cells) > 1 and is_words(kinds) and "-" not in kinds
-        return cells if is_heading and not alike else []
-
-    def _has_rows(self, names: Sequence[str], below: Sequence[str]) -> bool:
-        """Return whether the lines below a heading are rows with as many cells, some of them numbers."""
-        rows = [text for text in below if text and not text.isspace()][:_MIN_ROWS]
-        kinds = [parse_kinds(split_cells(text, self._separator)) for text in rows]
-        return len(kinds) == _MIN_ROWS and all(
-            len(row) == len(names) and bool(set(row) & set("nt")) for row in kinds
-        )
+        if len(kinds) == len(usual) and any(map(_are_both_numbers, kinds, usual)):
+            return []
+        below = [line for line in lines[1:] if line.strip()][:_MIN_ROWS]
+        rows = [parse_kinds(split_cells(line, self._separator)) for line in below]
+        are_rows = all(len(row) == len(names) and has_numbers(row) for row in rows)
+        return names if are_rows and len(rows) == _MIN_ROWS else []
 
     # Cells
 
     def _choose_kinds(self) -> dict[str, pa.DataType]:
         """Return the columns that pyarrow can parse, with their types; the others are read as texts."""
-        commas = self._has_decimal_commas
-        forms = (PLAIN, DECIMAL_COMMA) if commas else (PLAIN,)
-        return {
-            name: column.kind
-            for name, column in self._columns.items()
-            if column.kind != pa.float64() or column.form in forms
-        }
+        forms = (PLAIN, DECIMAL_COMMA) if self._has_decimal_commas else (PLAIN,)
+        return {name: column.kind for name, column in self._columns.items() if column.form in forms}
 
     @property
     def _has_decimal_commas(self) -> bool:
         return any(column.form is DECIMAL_COMMA for column in self._columns.values())
 
-    def _parse_block(self, block: Block, kinds: Mapping[str, pa.DataType]) -> list[pa.Array] | None:
-        """Parse the block with pyarrow; None if a row has another number of cells, or a cell another type."""
-        if block.text.isspace() or not block.text:
+    def _parse_block(self, text: str, kinds: Mapping[str, pa.DataType]) -> list[pa.Array] | None:
+        """Parse rows with pyarrow; None if a row has another number of cells, or a cell another type."""
+        if text.isspace() or not text:
             return [pa.nulls(0, pa.string()) for _ in self._heading.names]
         types = {name: kinds.get(name, pa.string()) for name in self._heading.names}
-        options = {
-            "null_values": EMPTY_CELLS,
-            "decimal_point": "," if self._has_decimal_commas else ".",
-        }
+        decimal_point = "," if self._has_decimal_commas else "."
+        parse = pa_csv.ParseOptions(delimiter=self._separator)
         try:
             table = _parse_csv(
-                block.text, types, pa_csv.ParseOptions(delimiter=self._separator), **options
+                text, types, parse, null_values=EMPTY_CELLS, decimal_point=decimal_point
             )
         except pa.ArrowInvalid:
             return None
-        if b'"' in block.text and table.num_rows != sum(
-            1 for line in block.text.split(b"\n") if line.strip()
-        ):
+        if '"' in text and table.num_rows != len(list(Block(1, text).lines())):
             return None
         return [c.chunk(0) if c.num_chunks == 1 else c.combine_chunks() for c in table.columns]
 
     def _parse_lines(self, block: Block) -> tuple[list[pa.Array], list[int]]:
         """Parse line by line; short rows are filled, long ones cut, and both are noted."""
         width = len(self._heading.names)
-        usual = set(self._heading.kinds)
         rows = []
         numbers = []
         short = []
@@ -292,12 +259,12 @@ class CsvReader:
         others = []
         for row, cells in self._split_rows(block):
             if len(cells) < width:
-                if usual & set("nt") and not set(parse_kinds(cells)) & set("nt"):
+                if has_numbers(self._heading.kinds) and not has_numbers(parse_kinds(cells)):
                     others.append(row)
                     continue
                 short.append(row)
                 cells += [""] * (width - len(cells))
-            elif len(cells) > width and any(cell.strip() for cell in cells[width:]):
+            elif any(cell.strip() for cell in cells[width:]):
                 long.append(row)
             rows.append(cells[:width])
             numbers.append(row)
@@ -312,38 +279,26 @@ class CsvReader:
 
     def _split_rows(self, block: Block) -> Iterator[tuple[int, list[str]]]:
         """Yield each non-blank row with its cells; a quoted cell may span lines."""
-        lines = block.text.decode("utf-8").split("\n")
-        after = 0
-        for row, line in enumerate(lines):
-            if row < after or not line or line.isspace():
+        lines = block.text.split("\n")
+        next_index = 0
+        for index, line in enumerate(lines):
+            if index < next_index or not line.strip():
                 continue
-            cells, after = self._join(lines, row, block.newline) if '"' in line else (None, row + 1)
-            yield (
-                block.first_row + row,
-                split_cells(line.rstrip("\r"), self._separator) if cells is None else cells,
-            )
+            cells, count = self._join(lines[index : index + _MAX_LINES])
+            next_index = index + count
+            yield block.first_row + index, cells or split_cells(line, self._separator)
 
-    def _join(self, lines: Sequence[str], row: int, newline: str) -> tuple[list[str] | None, int]:
-        """Return the cells of a row, None if it is on a single line, and the index of the next row."""
-        ahead = [line + newline for line in lines[row : row + _MAX_LINES]]
-        reader = csv.reader(
-            ahead if self._joins_left else ahead[:1], delimiter=self._separator, strict=True
-        )
-        try:
-            cells = next(reader)
-        except csv.Error:
-            cells = []
-        further = lines[row + 1 : row + reader.line_num]
-        if (
-            further
-            and len(cells) == len(self._heading.names)
-            and not any(map(self._is_row, further))
-        ):
-            return cells, row + reader.line_num
-        if further:
+    def _join(self, lines: Sequence[str]) -> tuple[list[str], int]:
+        """Return the cells of a row with line breaks in quotes, none if it has none, and its number of lines."""
+        if lines[0].count('"') % 2 and self._joins_left:
+            cells, count = join_lines(lines, self._separator)
+            if len(cells) == len(self._heading.names) and not any(
+                map(self._is_row, lines[1:count])
+            ):
+                return cells, count
             # An unclosed quote is an ordinary character; searching for its end from every line would be too slow.
             self._joins_left -= 1
-        return None, row + 1
+        return [], 1
 
     def _is_row(self, line: str) -> bool:
         """Return whether a line seems to be a row of its own, not text between quotes."""
@@ -354,32 +309,30 @@ class CsvReader:
 
     def _find_columns(self, columns: Sequence[pa.Array]) -> None:
         """Find type and number format of each column that has cells for the first time."""
-        forms: dict[str, NumberForm | None] = {}
         texts = {
             name: cells
             for name, cells in zip(self._heading.names, columns, strict=True)
-            if name not in self._columns and not _is_empty(cells)
+            if name not in self._columns and not is_empty(cells)
         }
         separator = self._separator
         decimal = self._choices.decimal
-        for name, cells in texts.items():
-            forms[name] = find_form(cells, separator, decimal)
-        if comma := DECIMAL_COMMA in forms.values():
+        forms = {name: find_form(cells, separator, decimal) for name, cells in texts.items()}
+        if DECIMAL_COMMA in forms.values():
             # Where one column has decimal commas, points are between thousands.
             forms = {
                 name: find_form(texts[name], separator, ",") or form for name, form in forms.items()
             }
-        self._notes.form = replace(self._notes.form, decimal="," if comma else ".")
         names_by_words: dict[str, list[str]] = {}
         for name, form in forms.items():
             if form is None:
-                cells = texts[name]
-                kind = pa.bool_() if has_only_truths(cells) else choose_text_kind(cells)
-                self._columns[name] = _Column(kind)
+                self._columns[name] = _Column(choose_text_kind(texts[name]))
                 continue
             self._columns[name] = _Column(pa.float64(), form)
             if form.words and not (form is DECIMAL_COMMA and separator == ";"):
                 names_by_words.setdefault(form.words, []).append(repr(name))
+        self._notes.form = replace(
+            self._notes.form, decimal="," if self._has_decimal_commas else "."
+        )
         for words, names in names_by_words.items():
             self._notes.say(f"the numbers of {listed(names)} {words}")
 
@@ -393,82 +346,64 @@ class CsvReader:
             return cells
         if column.kind == CODED:
             return cells.dictionary_encode()
-        truths = column.kind == pa.bool_()
-        numbers, wrong = parse_truths(cells) if truths else parse_numbers(cells, column.form)
-        if (count := wrong.true_count) > 0:
-            positions = [index for index, bad in enumerate(wrong.to_pylist()) if bad][:5]
-            odd = [rows[index] for index in positions] if rows else _find_rows(block, positions)
-            noun, nouns = ("true or false",) * 2 if truths else ("a number", "numbers")
-            self._notes.add(
-                f"cell of {name!r} is not {noun}", f"cells of {name!r} are not {nouns}", odd, count
-            )
+        numbers, wrong = parse_numbers(cells, column.form)
+        positions = np.flatnonzero(wrong)
+        # pyarrow counts a line of blanks as a row.
+        if len(positions) and rows is None:
+            lines = enumerate(block.text.split("\n"), block.first_row)
+            rows = [row for row, line in lines if line]
+        odd = [rows[position] for position in positions[:5]] if rows else []
+        self._notes.add(
+            f"cell of {name!r} is not a number",
+            f"cells of {name!r} are not numbers",
+            odd,
+            len(positions),
+        )
         return numbers
+
+
+def _are_both_numbers(kind: str, other: str) -> bool:
+    return kind == other and has_numbers(kind)
+
+
+def _has_infinite(cells: pa.Array) -> bool:
+    return is_floating(cells.type) and bool(pc.any(pc.is_inf(cells)).as_py())
 
 
 def _count_words(texts: Sequence[pa.Array], typed: Sequence[pa.Array]) -> int:
     """Return how many rows at the end have words where the numbers should be: they are sentences below the table."""
-    numbers = [index for index, column in enumerate(typed) if pa.types.is_floating(column.type)]
-    numbers = [index for index in numbers if pa.types.is_string(texts[index].type)]
+    numbers = [
+        cells for cells, column in zip(texts, typed, strict=True) if is_floating(column.type)
+    ]
     count = 0
     for row in range(len(typed[0]) - 1, -1, -1):
-        kinds = parse_kinds([texts[index][row].as_py() or "" for index in numbers])
-        if "w" not in kinds or set(kinds) & set("nt"):
+        kinds = parse_kinds([str(cells[row].as_py()) for cells in numbers])
+        if "w" not in kinds or has_numbers(kinds):
             break
         count += 1
     return count
 
 
-def _has_infinite(cells: pa.Array) -> bool:
-    return pa.types.is_floating(cells.type) and bool(pc.any(pc.is_inf(cells)).as_py())
-
-
-def _is_empty(cells: pa.Array) -> bool:
-    texts: Any = pc.utf8_trim_whitespace(cells) if pa.types.is_string(cells.type) else cells
-    empty = pc.is_in(texts, value_set=build_text_array(EMPTY_CELLS))
-    return bool(pc.all(pc.or_(pc.is_null(texts), empty)).as_py())
-
-
-def _split_only_line(lines: Sequence[tuple[int, str]], notes: Notes) -> bytes:
-    """Return the numbers on the only line of a file, each on a line of its own; nothing if it has anything else."""
-    body = [text for _, text in lines if not text.startswith("#")]
-    if len(body) != 1:
-        return b""
-    text = body[0].strip().rstrip("".join(SEPARATORS) + " ")
-    separator = sniff_separator([text])
-    cells = [cell.strip() for cell in split_cells(text, separator)]
-    form = DECIMAL_COMMA if separator == ";" else PLAIN
-    numbers, _ = parse_numbers(build_text_array(cells), form)
-    if len(cells) < _MIN_VALUES or numbers.null_count:
-        return b""
-    notes.say(f"the only line has {len(cells)} numbers: they are read as one column")
-    return "".join(f"{number}\n" for number in numbers.to_pylist()).encode()
-
-
-def _find_rows(block: Block, positions: Sequence[int]) -> list[int]:
-    # pyarrow counts a line of blanks as a row.
-    rows = [row for row, line in enumerate(block.text.split(b"\n"), block.first_row) if line]
-    return [rows[position] for position in positions]
-
-
 def _parse_csv(
-    text: bytes, kinds: Mapping[str, pa.DataType], parse: pa_csv.ParseOptions, **convert: Any
+    text: str, kinds: Mapping[str, pa.DataType], parse: pa_csv.ParseOptions, **convert: Any
 ) -> pa.Table:
     """Parse rows without a header; the columns are the keys of `kinds`. Raises ArrowInvalid if a cell does not fit."""
+    data = text.encode()
     return pa_csv.read_csv(
-        pa.BufferReader(text),
-        pa_csv.ReadOptions(column_names=list(kinds), use_threads=False, block_size=len(text) + 1),
+        pa.BufferReader(data),
+        pa_csv.ReadOptions(column_names=list(kinds), use_threads=False, block_size=len(data) + 1),
         parse,
         pa_csv.ConvertOptions(column_types=dict(kinds), strings_can_be_null=False, **convert),
     )
 
 
-def read_exported_csv(text: bytes) -> pa.Table:
+def read_exported_csv(text: str) -> pa.Table:
     """Return the table in a CSV export, each column with the type that all its cells have.
 
     Raises:
-        ValueError: the text is not UTF-8, or its rows do not fit its header.
+        ValueError: its rows do not fit its header.
     """
-    names = next(csv.reader(io.StringIO(text.decode("utf-8"), newline="")), [])
+    names = next(csv.reader(io.StringIO(text, newline="")), [])
     texts = _parse_csv(
         text, dict.fromkeys(names, pa.string()), pa_csv.ParseOptions(newlines_in_values=True)
     ).slice(1)
