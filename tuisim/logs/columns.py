@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import pyarrow as pa
@@ -16,8 +16,11 @@ from tuisim.base.errors import LogError, among
 from tuisim.engine.runs.arrays import FloatArray, IntArray
 from tuisim.logs.arrow import PER_S, convert_to_floats
 from tuisim.logs.choices import ReadChoices
-from tuisim.logs.dates import is_moment, normalize_dates, order_is_guessed
+from tuisim.logs.dates import SPAN, is_moment, normalize_dates, order_is_guessed
 from tuisim.logs.units import SECONDS
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 NAMES = (
     "time",
@@ -134,10 +137,6 @@ _DAY_S = 86400.0
 _COUNTER = 2.0**32
 """After as many milliseconds or microseconds the counter of a microcontroller begins again."""
 _NO_ROWS: IntArray = np.empty(0, np.int64)
-_SPAN = r"^(?P<sign>-?)(?:(?P<days>\d+) days? )?(?P<h>\d+):(?P<m>\d{2}):(?P<s>\d{2}(?:\.\d+)?)$"
-"""A time span as pandas prints it, or hours, minutes and seconds."""
-_REST = r":\d{2}(?P<part>\.\d+)? ?(?:(?P<sign>[+-])(?P<h>\d{2}):?(?P<m>\d{2})|Z|UTC)?$"
-"""Fraction of a second, and offset from UTC."""
 
 
 class Times(NamedTuple):
@@ -219,53 +218,20 @@ def _read_floats(column: pa.ChunkedArray) -> FloatArray:
 
 def parse_times(column: pa.ChunkedArray) -> Times:
     """Return texts as times: spans and times of day as they are, dates since the first; NaN for other texts."""
+    import pandas as pd
+
     texts = normalize_dates(column.cast(pa.string()))
-    spans: Any = pc.extract_regex(texts, _SPAN)
-    if spans.null_count == len(spans):
-        return Times(_parse_dates(texts))
-    days, hours, minutes, seconds = (
-        _parse_numbers(pc.struct_field(spans, name)) for name in ("days", "h", "m", "s")
-    )
-    total = _apply_signs(_DAY_S * days + 3600.0 * hours + 60.0 * minutes + seconds, spans)
-    total = np.where(spans.is_valid().to_numpy(), total, np.nan)
-    return Times(total) if days.any() else _unwrap(total, _DAY_S, "a day")
+    spans = texts.filter(pc.match_substring_regex(texts, SPAN)).to_pandas()
+    if not len(spans):
+        dates = pd.to_datetime(texts.to_pandas(), format="ISO8601", utc=True, errors="coerce")
+        return Times(_count_seconds(dates - dates.bfill().iloc[0]))
+    cells = texts.to_pandas()
+    seconds = _count_seconds(pd.to_timedelta(cells.where(cells.isin(spans)), errors="coerce"))
+    return Times(seconds) if spans.str.contains("day").any() else _unwrap(seconds, _DAY_S, "a day")
 
 
-def _parse_dates(texts: Any) -> FloatArray:
-    texts = pc.replace_substring_regex(texts, r"^(\d{4}-\d{2}-\d{2})$", r"\1 00:00")
-    texts = pc.replace_substring_regex(
-        texts, r"^(\d{4}-\d{2}-\d{2}[T ]\d{2}:\d{2})($|[^:\d])", r"\1:00\2"
-    )
-    dates = pc.strptime(
-        pc.utf8_slice_codeunits(pc.replace_substring(texts, "T", " "), 0, 19),
-        format="%Y-%m-%d %H:%M:%S",
-        unit="s",
-        error_is_null=True,
-    )
-    if dates.null_count == len(dates):
-        return np.full(len(texts), np.nan)
-    # The text after the seconds, such as .250+02:00.
-    rest: Any = pc.extract_regex(texts, _REST)
-    part, hours, minutes = (
-        _parse_numbers(pc.struct_field(rest, name)) for name in ("part", "h", "m")
-    )
-    ahead_s = _apply_signs(3600.0 * hours + 60.0 * minutes, rest)
-    whole: Any = dates.cast(pa.int64())
-    whole_s = _read_floats(pc.subtract(whole, pc.first(whole)))
-    return _subtract_first(whole_s + (part - ahead_s))
-
-
-def _apply_signs(seconds: FloatArray, parts: Any) -> FloatArray:
-    """Return seconds, negative where the part `sign` of the text is a minus."""
-    minus = pc.fill_null(pc.equal(pc.struct_field(parts, "sign"), "-"), False)
-    return np.where(minus.to_numpy(), -seconds, seconds)
-
-
-def _parse_numbers(texts: Any) -> FloatArray:
-    """Return texts as numbers, 0 for empty ones."""
-    return np.array(
-        pc.cast(pc.if_else(pc.equal(texts, ""), "0", texts).fill_null("0"), pa.float64()).to_numpy()
-    )
+def _count_seconds(spans: pd.Series) -> FloatArray:
+    return np.asarray(spans.dt.total_seconds(), np.float64)
 
 
 _MAX_TIMES = 500

@@ -31,7 +31,9 @@ _MOMENT_CELL = re.compile(rf"\s*[\[(<]?\s*{MOMENT}\s*[\])>]?\s*")
 _DATE_CELL = re.compile(rf"\s*{_DATE}\s*")
 _CLOCK_CELL = re.compile(rf"\s*\d{{1,2}}:\d{{2}}:\d{{2}}{_PART}?\s*")
 
-_USUAL = r"^-?(?:\d+ days? )?\d+:\d{2}:\d{2}(?:\.\d+)?$|^\d{4}-\d{2}-\d{2}(?:$|[T ]\d{2}:\d{2}(?:$|[^,]*$))"
+SPAN = r"^-?(?:\d+ days? )?\d+:\d{2}:\d{2}(?:\.\d+)?$"
+"""A time span as pandas prints it, or hours, minutes and seconds."""
+_USUAL = rf"{SPAN}|^\d{{4}}-\d{{2}}-\d{{2}}(?:$|[T ]\d{{2}}:\d{{2}}(?:$|[^,U]*$))"
 """Texts that need no change."""
 _C_TIME_CHANGES = (
     (r"^[A-Z][a-z]{2} ([A-Z][a-z]{2}) +(\d{1,2}) (\d{2}:\d{2}:\d{2}) (\d{4})$", r"\4-\1-\2 \3"),
@@ -39,6 +41,7 @@ _C_TIME_CHANGES = (
 )
 _REWRITTEN = (
     (r"^[\[(<] *| *[\])>]$", ""),
+    (r" ?UTC$", "Z"),
     (r"(:\d{2}),(\d+)", r"\1.\2"),
     (rf"^({_DATE}){_GAP}(\d{{1,2}}:)", r"\1 \2"),
     (r"^(\d{4})[/.](\d{1,2})[/.](\d{1,2})", r"\1-\2-\3"),
