@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import sys
-import tempfile
-from pathlib import Path
 from types import ModuleType
 
 import numpy as np
@@ -22,12 +20,6 @@ def test_finds_the_same_as_here() -> None:
     values = np.repeat(rng.uniform(0.0, 100.0, 30), 40) + rng.normal(0.0, 0.3, 1200)
     values[[3, 700]] = np.nan, 500.0
     assert find_plateaus_in_subprocess(values, lambda: False) == find_plateaus(values) != []
-
-
-def test_says_that_there_is_no_room(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "missing"))
-    with pytest.raises(LogError, match="No such file"):
-        find_plateaus_in_subprocess(np.zeros(9), lambda: False)
 
 
 def test_says_that_the_process_has_died(monkeypatch: pytest.MonkeyPatch) -> None:

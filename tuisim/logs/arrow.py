@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 PER_S = {"s": 1.0, "ms": 1e3, "us": 1e6, "ns": 1e9}
 """Arrow's units of time, by their number per second."""
 
-_PANDAS_KEY = b"pandas"
 METADATA_KEY = b"tuisim"
 """Key of the metadata in the schema of Parquet and Arrow files."""
 
@@ -302,20 +301,6 @@ def _choose_type(kind: pa.DataType) -> pa.DataType:
     if kind == pa.time64("ns"):
         return pa.time64("us")
     return pa.string() if pa.types.is_string_view(kind) else kind
-
-
-def convert_to_frame(table: pa.Table) -> pd.DataFrame:
-    """Return a table as a frame; the types that pandas has stored in its metadata are ignored if they are damaged."""
-    try:
-        frame = table.to_pandas()
-        # The names of columns may have become anything; pandas needs them to be hashable.
-        hash(tuple(frame.columns))
-        return frame
-    except (pa.ArrowException, ValueError, KeyError, TypeError, AttributeError, RecursionError):
-        metadata = {
-            key: text for key, text in (table.schema.metadata or {}).items() if key != _PANDAS_KEY
-        }
-        return table.replace_schema_metadata(metadata).to_pandas()
 
 
 def _shorten_error(error: Exception) -> str:

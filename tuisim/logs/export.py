@@ -175,9 +175,8 @@ def build_typed_frame(table: LogTable) -> pd.DataFrame:
     import numpy as np
     import pandas as pd
 
-    from tuisim.logs.arrow import convert_to_frame
-
-    frame = convert_to_frame(table)
+    # What pandas has stored about its types may be damaged.
+    frame = table.replace_schema_metadata().to_pandas()
     for name in frame.columns:
         column = frame[name]
         if isinstance(column.dtype, pd.CategoricalDtype):

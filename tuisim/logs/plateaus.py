@@ -20,10 +20,9 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-import tempfile
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import IO, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
@@ -448,48 +447,34 @@ def find_plateaus_in_subprocess(values: FloatArray, stopped: Callable[[], bool])
         stopped: Returns whether to give up; called repeatedly.
 
     Raises:
-        LogError: the search was stopped, its process has ended without an answer, or there
-            is no room for temporary files.
+        LogError: the search was stopped, or its process has ended without an answer.
     """
-    try:
-        with tempfile.TemporaryFile() as samples, tempfile.TemporaryFile() as answer:
-            np.asarray(values, np.float64).tofile(samples)
-            samples.seek(0)
-            code = _run_search(samples, answer, stopped)
-            if code:
-                raise LogError(f"the search for bands failed (exit code {code})")
-            answer.seek(0)
-            rows = np.fromfile(answer, FIELDS).tolist()
-    except OSError as error:
-        raise LogError(
-            f"cannot search for bands: {error.strerror or error}",
-            "it needs space for temporary files",
-        ) from error
-    return list(map(Plateau._make, rows))
-
-
-def _run_search(samples: IO[bytes], answer: IO[bytes], stopped: Callable[[], bool]) -> int:
-    """Run the search in a process of its own, and return its exit code."""
+    unsent: bytes | None = np.asarray(values, np.float64).tobytes()
     with subprocess.Popen(
         [sys.executable, "-s", "-P", "-m", __name__],
-        stdin=samples,
-        stdout=answer,
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
         stderr=subprocess.DEVNULL,
         env={**os.environ, "PYTHONPATH": str(_PACKAGE_FOLDER)},
     ) as process:
-        while True:
+        answer = None
+        while answer is None:
             try:
-                return process.wait(_LOOK_S)
+                answer, _ = process.communicate(unsent, _LOOK_S)
             except subprocess.TimeoutExpired:
+                unsent = None
                 if stopped():
                     process.kill()
                     raise LogError("the search for bands was stopped") from None
+    if process.returncode:
+        raise LogError(f"the search for bands failed (exit code {process.returncode})")
+    return list(map(Plateau._make, np.frombuffer(answer, FIELDS).tolist()))
 
 
 def _answer() -> None:
-    """Read values from the standard input and write their plateaus to the standard output, both files."""
-    plateaus = find_plateaus(np.fromfile(sys.stdin.buffer))
-    np.array(plateaus, FIELDS).tofile(sys.stdout.buffer)
+    """Read values from the standard input and write their plateaus to the standard output."""
+    plateaus = find_plateaus(np.frombuffer(sys.stdin.buffer.read()))
+    sys.stdout.buffer.write(np.array(plateaus, FIELDS).tobytes())
 
 
 if __name__ == "__main__":

@@ -97,31 +97,12 @@ def compute_moving_average(values: FloatArray, width: int) -> FloatArray:
         raise LogError(
             f"a moving average needs an odd number of samples, got {width}", "such as 3, 5 or 7"
         )
-    known = np.isfinite(values)
+    import pandas as pd
+
+    known = pd.Series(np.where(np.isfinite(values), values, np.nan), dtype=np.float64)
     # Wider windows give the same result.
     width = min(width, 2 * len(values) + 1)
-    with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-        sums = _sum_windows(np.where(known, values, 0.0), width)
-        means: FloatArray = sums / _sum_windows(known.astype(np.float64), width)
-    return means
-
-
-def _sum_windows(values: FloatArray, width: int) -> FloatArray:
-    """Return the centred rolling sum of `width` values.
-
-    A window is the end of one block of that width and the beginning of the next. The difference of two
-    cumulative sums would lose the digits of small values.
-    """
-    count = len(values)
-    half = width // 2
-    blocks = np.zeros((-(-(count + width - 1) // width), width))
-    blocks.ravel()[half : half + count] = values
-    from_start = np.cumsum(blocks, axis=1).ravel()
-    to_end = np.cumsum(blocks[:, ::-1], axis=1)[:, ::-1].ravel()
-    sums = to_end[:count].copy()
-    across = np.arange(count) % width > 0
-    sums[across] += from_start[width - 1 : width - 1 + count][across]
-    return sums
+    return known.rolling(width, min_periods=1, center=True).mean().to_numpy()
 
 
 def resample(
