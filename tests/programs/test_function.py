@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Callable
-from importlib import import_module
+from collections.abc import Callable, Iterator
+from importlib import import_module, invalidate_caches
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import pytest
@@ -76,20 +77,111 @@ def test_functions_are_programs_of_an_experiment() -> None:
     ]
 
 
-def test_a_function_of_another_file_goes_along(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    (tmp_path / "own_helpers.py").write_text("def count():\n    return 4\n")
-    (tmp_path / "own_main.py").write_text(
-        "from own_helpers import count\ndef go():\n    print('A:', count())\n"
-    )
+Import = Callable[..., ModuleType]
+
+
+@pytest.fixture
+def load(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Import]:
+    """Yield a function that writes modules, given by their names, and imports the last one."""
     monkeypatch.syspath_prepend(tmp_path)
-    own_main = import_module("own_main")
-    try:
-        assert tuisim.simulate(own_main.go).output == "A: 4\n"
-    finally:
-        for name in ("own_main", "own_helpers"):
-            del sys.modules[name]
+    monkeypatch.setattr(sys, "dont_write_bytecode", True)
+    names: list[str] = []
+
+    def write(**texts: str) -> ModuleType:
+        for name, text in texts.items():
+            (tmp_path / f"{name}.py").write_text(text)
+            names.append(name)
+        invalidate_caches()
+        return import_module(names[-1])
+
+    yield write
+    for name in names:
+        sys.modules.pop(name, None)
+
+
+def test_functions_of_another_file_go_along_by_whatever_name(load: Import) -> None:
+    main = load(
+        own_helpers="STEP = 2\nTWICE = STEP * 2\ndef count(): return TWICE\n",
+        own_main="from own_helpers import count as c, STEP as S, TWICE\ndef go():\n    print('A:', c() + S + TWICE)\n",
+    )
+    assert tuisim.simulate(main.go).output == "A: 10\n"
+
+
+def test_constants_of_one_name_in_two_files_are_not_mixed(load: Import) -> None:
+    main = load(
+        own_helpers="SPEED = 20\ndef get_speed(): return SPEED\n",
+        own_main="from own_helpers import get_speed\nSPEED = 50\ndef go(): print(SPEED, get_speed())\n",
+    )
+    with pytest.raises(ConfigError, match="another SPEED"):
+        read_function(main.go)
+
+
+DERIVED = """\
+import math
+KP = 2.0
+KD = KP / 10
+KI = round(math.sqrt(KD), 1)
+"""
+
+
+def test_a_constant_that_another_one_is_computed_from_changes_both(load: Import) -> None:
+    shown = "print('D:', KD)\nprint('I:', KI)\n"
+    main = load(own_main=f"{DERIVED}def go():\n    {shown.replace(chr(10), '; ')}\n")
+    how: dict[str, Any] = {"constants": {"KP": [1, 10]}, "jobs": 1}
+    for program in (main.go, DERIVED + shown):
+        frame = tuisim.experiment(program, **how)
+        assert frame[["D_last", "I_last"]].to_numpy().tolist() == [[0.1, 0.3], [1, 1]]
+
+
+def test_a_constant_that_another_one_has_been_measured_with_does_not_change(load: Import) -> None:
+    text = "KP = 2.0\ndef half(x): return x / 2\nKD = half(KP)\ndef go(): print('D:', KP * KD)\n"
+    main = load(own_main=text)
+    assert tuisim.simulate(main.go).output == "D: 2.0\n"
+    with pytest.raises(ConfigError, match="KD has been computed from KP"):
+        tuisim.experiment(main.go, constants={"KP": [1, 4]})
+
+
+def test_a_constant_has_the_value_that_it_has_now(load: Import) -> None:
+    main = load(own_main="KP = 2\nKD = KP * 2\ndef go(): print(KP, KD)\n")
+    vars(main)["KP"] = 3
+    assert tuisim.simulate(main.go).output == "3 4\n"
+
+
+def test_a_function_whose_file_has_changed_is_refused(load: Import, tmp_path: Path) -> None:
+    main = load(own_main="GAIN = 1\ndef go(): print(GAIN)\n")
+    (tmp_path / "own_main.py").write_text("GAIN = 1\ndef go(): print(GAIN + 100)\n")
+    with pytest.raises(ConfigError, match="the file of go has changed since it was imported"):
+        read_function(main.go)
+
+
+CONTROLLER = """\
+from __future__ import annotations
+import numpy as np
+GAIN = np.float64(2.5)
+FAR = float("inf")
+COUNT = 0
+class Base:
+    far: np.ndarray = FAR
+    def act(self, error: np.ndarray) -> np.ndarray:
+        return GAIN * error
+"""
+STUDY = """\
+from controller import Base
+import numpy as np
+COUNT = 0
+class Controller(Base):
+    def act(self, error: np.ndarray | None = None) -> np.ndarray:
+        global COUNT
+        COUNT += 1
+        return super().act(error)
+def go(start: np.ndarray = None):
+    controller = Controller()
+    print(controller.far, controller.act(4), COUNT)
+"""
+
+
+def test_own_classes_go_along_with_what_they_use(load: Import) -> None:
+    assert tuisim.simulate(load(controller=CONTROLLER, study=STUDY).go).output == "inf 10.0 1\n"
 
 
 def _without_source() -> Any:

@@ -1,10 +1,13 @@
-"""The constants of a program: what it assigns to a name outside its functions."""
+"""The constants of a program: what it assigns to a name outside its functions, and values as it has them."""
 
 from __future__ import annotations
 
 import ast
+import builtins
+import math
 from collections.abc import Mapping
 from dataclasses import replace
+from typing import Any
 
 from tuisim.base.errors import ConfigError, nearest
 from tuisim.base.syntax_tree import parse_module
@@ -15,10 +18,15 @@ def set_constants(source: ProgramSource, values: Mapping[str, object]) -> Progra
     """Return a program with other values of some constants; its lines keep their numbers.
 
     Raises:
-        ConfigError: the program has no such constant, assigns several values to it, or is not Python.
+        ConfigError: the program has no such constant, assigns several values to it, has computed another constant from
+            it before, or is not Python; or it cannot have such a value.
     """
     if not values:
         return source
+    for name in values.keys() & source.fixed.keys():
+        message = f"{source.fixed[name]} has been computed from {name}, and would keep its value"
+        hint = f"compute {source.fixed[name]} in the function, or by operators, `math` and `round`"
+        raise ConfigError(message, hint, key="constants")
     text = source.program.text
     try:
         nodes = _list_values(parse_module(text))
@@ -30,7 +38,7 @@ def set_constants(source: ProgramSource, values: Mapping[str, object]) -> Progra
     # From the end, so that what is before stays where it is.
     for node, name in sorted(nodes, key=lambda pair: (pair[0].lineno, pair[0].col_offset))[::-1]:
         if name in values:
-            _replace(lines, node, repr(values[name]))
+            replace_node(lines, node, write_literal(values[name]))
     counts = {name: sum(name == other for _, other in nodes) for name in values}
     for name, count in counts.items():
         if not count:
@@ -57,7 +65,49 @@ def _list_values(module: ast.Module) -> list[tuple[ast.expr, str]]:
     return pairs
 
 
-def _replace(lines: list[bytes], node: ast.expr, text: str) -> None:
+def write_literal(value: Any) -> str:
+    """Return the expression that has a value: number, text, truth value, None, or a list, tuple, set or dict of these.
+
+    A number of NumPy becomes one of Python.
+
+    Raises:
+        ConfigError: it is something else.
+    """
+    if getattr(value, "shape", None) == ():
+        value = value.item()
+    kind = type(value)
+    if kind is float and not math.isfinite(value):
+        return f"float('{value}')"
+    if kind in (bool, int, float, complex, str, bytes, type(None)):
+        return repr(value)
+    if kind is dict:
+        pairs = (f"{write_literal(key)}: {write_literal(each)}" for key, each in value.items())
+        return f"{{{', '.join(pairs)}}}"
+    if kind not in (list, tuple, set):
+        text = repr(value).partition("\n")[0]
+        hint = "such as a number, text or list"
+        raise ConfigError(f"{text} cannot go along", hint, key="constants")
+    items = [write_literal(each) for each in value]
+    if kind is tuple:
+        return f"({', '.join(items)}{',' * (len(items) == 1)})"
+    return f"[{', '.join(items)}]" if kind is list else f"set([{', '.join(sorted(items))}])"
+
+
+def quote_annotations(text: str) -> str:
+    """Return a text in which annotations that use more than Python's own types are texts, which nothing evaluates."""
+    lines = [line.encode() for line in text.split("\n")]
+    nodes: list[ast.expr] = []
+    for node in ast.walk(parse_module(text)):
+        names = ("annotation", "returns")
+        nodes += filter(None, (getattr(node, name, None) for name in names))
+    for node in sorted(nodes, key=lambda each: (each.lineno, each.col_offset), reverse=True):
+        used = {each.id for each in ast.walk(node) if isinstance(each, ast.Name)}
+        if not used <= vars(builtins).keys():
+            replace_node(lines, node, repr(ast.unparse(node)))
+    return b"\n".join(lines).decode()
+
+
+def replace_node(lines: list[bytes], node: ast.expr, text: str) -> None:
     """Put a text in place of a value, and empty lines in place of its further lines."""
     first, last = node.lineno - 1, (node.end_lineno or node.lineno) - 1
     after = lines[last][node.end_col_offset or 0 :]

@@ -6,30 +6,31 @@ import ast
 import inspect
 import os
 import sys
-from collections.abc import Callable, Sequence
-from contextlib import suppress
+from collections.abc import Callable
 from dataclasses import replace
 from textwrap import dedent
-from types import FunctionType, ModuleType
-from typing import Any
+from types import FunctionType
+from typing import NamedTuple
 
 from tuisim.base.errors import ConfigError
-from tuisim.base.source import LIBRARIES, PRELUDE_TEXTS
+from tuisim.base.source import PRELUDE_TEXTS, source_lines
+from tuisim.base.syntax_tree import parse_module
+from tuisim.programs.constants import quote_annotations, write_literal
 from tuisim.programs.program_file import ProgramSource, parse_program
 from tuisim.programs.robot.course import list_global_names
-
-_IMPORTED = {*LIBRARIES, *sys.stdlib_module_names}
-"""Packages that a program imports, as the function's own file does."""
+from tuisim.programs.surroundings import Surroundings, compute, is_plain, write_import
 
 
 def read_function(function: Callable[[], object]) -> ProgramSource:
     """Return a program that calls a function.
 
     Each line has the number that it has in the file of the function. Imports of libraries for a brick and of Python's
-    own, plain constants, and functions that it uses are copied; names without a definition are those of the prelude.
+    own, plain constants, functions and classes that it uses are copied as they are written; names without a definition
+    are those of the prelude.
 
     Raises:
-        ConfigError: it is no function with a name and a source, takes arguments, or uses something else.
+        ConfigError: it is no function with a name and a source, takes arguments, uses something else, or its file has
+            changed since.
     """
     if not isinstance(function, FunctionType) or function.__name__ == "<lambda>":
         raise ConfigError(
@@ -45,99 +46,173 @@ def read_function(function: Callable[[], object]) -> ProgramSource:
         message = f"{function.__name__} as a program takes no arguments: {', '.join(needed)}"
         raise ConfigError(message, "give them defaults")
     reader = _Reader()
-    reader.add_function(function)
+    reader.add_function(function.__name__, function, "the script")
     file = inspect.getsourcefile(function) or ""
     path = file if os.path.isfile(file) else ""
     name = ":".join(filter(None, (os.path.basename(path), function.__name__)))
-    source = parse_program(reader.write(function.__name__), name, path)
+    source = replace(parse_program(reader.write(function.__name__), name, path), fixed=reader.fixed)
     if reader.unknown.isdisjoint(list_global_names(PRELUDE_TEXTS["preloaded"])[1]):
         return source
     return replace(source, program=replace(source.program, prelude="preloaded"))
 
 
+class _Block(NamedTuple):
+    """The lines of a function or a class."""
+
+    file: str
+    first: int
+    """The number of the first line, from 1."""
+    lines: list[str]
+
+    @property
+    def is_evaluated(self) -> bool:
+        """Whether it needs what it uses not only when it is called."""
+        node = parse_module("\n".join(self.lines)).body[0]
+        return not isinstance(node, ast.FunctionDef) or bool(
+            node.decorator_list or node.args.defaults or node.args.kw_defaults
+        )
+
+    @property
+    def numbered(self) -> dict[int, str]:
+        """The lines by their number."""
+        return dict(enumerate(self.lines, self.first))
+
+
 class _Reader:
-    """Collects the functions of a program, and the statements that define the other names."""
+    """Collects functions and classes, and the statements that define the other names."""
 
     def __init__(self) -> None:
-        self._functions: dict[str, FunctionType] = {}
-        self._statements: dict[str, str] = {}
-        self._lines: dict[int, str] = {}
-        """By their numbers, from 1."""
+        self._owners: dict[str, object] = {}
+        """What each name stands for."""
+        self._statements: list[str] = []
+        self._blocks: list[_Block] = []
+        """Each after those that it uses."""
+        self._aliases: list[str] = []
         self.unknown: set[str] = set()
-        """Names that the functions know from nowhere."""
+        """Names that are known from nowhere."""
+        self.fixed: dict[str, str] = {}
+        """Constants of which another one has been computed outside the program, with the name of that one."""
 
-    def add_function(self, function: FunctionType) -> None:
-        """Add a function, and what it uses.
+    def add_function(self, name: str, function: FunctionType, user: str) -> None:
+        """Add a function that is used by a name, and what it uses.
 
         Raises:
             ConfigError: it has no source, or uses what cannot go along.
         """
-        name = function.__name__
-        self._functions[name] = function
+        if not self._claim(name, id(function), user):
+            return
+        own = function.__name__
         try:
             lines, first = inspect.getsourcelines(function)
+            text = "".join(inspect.findsource(function)[0])
         except (OSError, TypeError):
             hint = "define it in a file or a notebook: this prompt keeps no source"
-            raise ConfigError(f"the function {name} has no source", hint) from None
-        text = dedent("".join(lines))
-        self._place(text.rstrip().split("\n"), first)
+            raise ConfigError(f"the function {own} has no source", hint) from None
+        around = Surroundings.read_function(function, text)
+        around.check_source([function], own)
+        self._add_block(_Block(function.__code__.co_filename, first, lines), around, own)
+        self._add_alias(name, own, user)
+
+    def _add_class(self, name: str, kind: type, around: Surroundings, user: str) -> None:
+        """Add a class that is used by a name, and what it uses."""
+        own = kind.__name__
+        if kind.__module__ != around.values.get("__name__"):
+            around = Surroundings.read_module(sys.modules[kind.__module__])
+        node, text = around.find(own)
+        if not isinstance(node, ast.ClassDef):
+            raise build_refusal(name, kind, user)
+        if not self._claim(name, id(kind), user):
+            return
+        methods = [each for each in vars(kind).values() if isinstance(each, FunctionType)]
+        around.check_source(methods, own)
+        first = min([node.lineno, *(each.lineno for each in node.decorator_list)])
+        lines = [f"{line}\n" for line in source_lines(text)[first - 1 : node.end_lineno]]
+        self._add_block(_Block(around.file, first, lines), around, own)
+        self._add_alias(name, own, user)
+
+    def _add_block(self, block: _Block, around: Surroundings, user: str) -> None:
+        text = quote_annotations(dedent("".join(block.lines)).rstrip())
         used, defined = list_global_names(text)
-        values = {**function.__globals__, **_read_closure(function)}
-        self.unknown |= used - defined - values.keys()
-        for other in sorted((used - defined) & values.keys()):
-            self._add(other, values[other], name)
+        self.unknown |= used - defined - around.values.keys()
+        for name in sorted(used & around.values.keys()):
+            self._add(name, around, user)
+        self._blocks.append(block._replace(lines=text.split("\n")))
 
-    def _place(self, lines: Sequence[str], first: int) -> None:
-        """Give lines the numbers that they have in their file, or others if they are from another file."""
-        if not self._lines.keys().isdisjoint(range(first, first + len(lines))):
-            first = max(self._lines) + 1
-        self._lines |= dict(enumerate(lines, first))
+    def _add_alias(self, name: str, own: str, user: str) -> None:
+        if name != own and self._claim(own, self._owners[name], user):
+            self._aliases.append(f"{name} = {own}")
 
-    def _add(self, name: str, value: Any, user: str) -> None:
-        """Add the object that a function uses by a name: a statement that defines it, or another function."""
-        if statement := _write_statement(name, value):
-            self._statements[name] = statement
-        elif not isinstance(value, FunctionType) or value.__name__ != name:
-            message = f"{user} uses {name}, a {type(value).__name__}, which cannot go along"
-            raise ConfigError(message, "make it inside the function")
-        elif name not in self._functions:
-            self.add_function(value)
-        elif self._functions[name] is not value:
-            raise ConfigError(f"{user} uses another function {name}", "give it another name")
+    def _claim(self, name: str, owner: object, user: str) -> bool:
+        """Return whether a name is new.
+
+        Raises:
+            ConfigError: it stands for something else already.
+        """
+        is_new = name not in self._owners
+        if self._owners.setdefault(name, owner) != owner:
+            raise ConfigError(f"{user} uses another {name}", "give one of them another name")
+        return is_new
+
+    def _add(self, name: str, around: Surroundings, user: str) -> None:
+        """Add the object that a function or a class uses by a name."""
+        value = around.values[name]
+        if statement := around.find_import(name) or write_import(name, value):
+            if self._claim(name, statement, user):
+                self._statements.append(statement)
+        elif is_plain(value):
+            self._add_constant(name, around, user)
+        elif isinstance(value, type):
+            self._add_class(name, value, around, user)
+        elif isinstance(function := inspect.unwrap(value), FunctionType):
+            self.add_function(name, function, user)
+        else:
+            raise build_refusal(name, value, user)
+
+    def _add_constant(self, name: str, around: Surroundings, user: str) -> None:
+        """Add a constant as it is written, if this gives the value that it has, else its value."""
+        origin, source = around.find_origin(name)
+        if origin != name:
+            self._add_constant(origin, source, user)
+            if self._claim(name, around.get_owner(name), user):
+                self._statements.append(f"{name} = {origin}")
+            return
+        if not self._claim(name, source.get_owner(name), user):
+            return
+        value = source.values[name]
+        expression = source.find_expression(name)
+        if expression is not None and compute(expression, source.values) == write_literal(value):
+            for other in sorted(source.list_used(expression)):
+                self._add(other, source, user)
+            self._statements.append(f"{name} = {ast.unparse(expression)}")
+        else:
+            self._statements.append(f"{name} = {write_literal(value)}")
+            self.fixed |= dict.fromkeys(source.list_sources(name), name)
 
     def write(self, name: str) -> str:
         """Return the program that calls a function."""
-        numbered = {**self._lines}
-        last = max(self._lines)
+        own = self._blocks[-1].file
+        reserved = {
+            number for block in self._blocks if block.file == own for number in block.numbered
+        }
         # All on one line, so that the functions keep theirs; on the first if it is free, since defaults need them.
-        place = last + 1 if 1 in numbered else 1
-        numbered[place] = "; ".join(self._statements.values())
-        numbered[last + 2] = f"{name}()"
-        return "\n".join(numbered.get(number, "") for number in range(1, last + 3)) + "\n"
+        place = max(reserved) + 1 if 1 in reserved else 1
+        lines = {place: "; ".join(self._statements)}
+        for block in self._blocks:
+            numbered = block.numbered
+            is_early = block.is_evaluated and block.first <= place
+            if block.file != own or is_early or not lines.keys().isdisjoint(numbered):
+                first = place + 1
+                while not reserved.isdisjoint(range(first, first + len(numbered))):
+                    first += 1
+                place = first + len(numbered) - 1
+                numbered = dict(enumerate(block.lines, first))
+            lines |= numbered
+        last = max(lines)
+        lines[last + 2] = "; ".join([*self._aliases, f"{name}()"])
+        return "\n".join(lines.get(number, "") for number in range(1, last + 3)) + "\n"
 
 
-def _read_closure(function: FunctionType) -> dict[str, Any]:
-    """Return the variables that a function uses of the functions around it, by name."""
-    values = {}
-    for name, cell in zip(function.__code__.co_freevars, function.__closure__ or (), strict=True):
-        with suppress(ValueError):  # not assigned yet
-            values[name] = cell.cell_contents
-    return values
-
-
-def _write_statement(name: str, value: Any) -> str:
-    """Return a statement that defines a name with a value; empty if no statement can."""
-    if isinstance(value, ModuleType):
-        return f"import {value.__name__} as {name}" if _is_imported(value.__name__) else ""
-    with suppress(SyntaxError, ValueError, TypeError):
-        if ast.literal_eval(repr(value)) == value:
-            return f"{name} = {value!r}"
-    module = getattr(value, "__module__", None) or ""
-    own = getattr(value, "__qualname__", "")
-    if _is_imported(module) and own.isidentifier():
-        return f"from {module} import {own} as {name}"
-    return ""
-
-
-def _is_imported(module: str) -> bool:
-    return module != "__main__" and module.partition(".")[0] in _IMPORTED
+def build_refusal(name: str, value: object, user: str) -> ConfigError:
+    """Return the error for an object that cannot go along with its user."""
+    message = f"{user} uses {name}, a {type(value).__name__}, which cannot go along"
+    return ConfigError(message, "make it inside the function")

@@ -68,6 +68,8 @@ class ProgramSource:
     """Options of the magic line, by path; file names are resolved from the program's folder."""
     has_magic: bool = False
     """Whether it has a magic line, or is the cell of a notebook."""
+    fixed: Mapping[str, str] = field(default_factory=dict)
+    """Constants that cannot change, each with the constant that has been computed from it outside the program."""
 
 
 class ProgramFile(NamedTuple):

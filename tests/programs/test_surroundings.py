@@ -1,0 +1,47 @@
+"""What is around a function."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from IPython.core.interactiveshell import InteractiveShell
+
+import tuisim
+from tests.cases import cases
+from tuisim.base.syntax_tree import parse_expression
+from tuisim.programs.function import read_function
+from tuisim.programs.surroundings import compute
+
+
+def test_the_classes_and_constants_of_other_cells_of_a_notebook_go_along() -> None:
+    shell = InteractiveShell()
+    for cell in (
+        "KP = 4\nKD = KP / 2",
+        "class Half:\n    value = KD",
+        "def go(): print(Half.value)",
+    ):
+        shell.run_cell(cell, store_history=True)
+    source = read_function(shell.user_ns["go"])
+    assert "KD = KP / 2" in source.program.text
+    assert tuisim.simulate(shell.user_ns["go"]).output == "2.0\n"
+
+
+VALUES: dict[str, Any] = {"KP": 4.0, "m": math, "sqrt": math.sqrt, "ask": input, "call": lambda: 1}
+
+
+@cases(
+    "text, value",
+    {
+        "operators": ("KP / 8", "0.5"),
+        "functions of math": ("sqrt(KP) + m.floor(m.pi)", "5.0"),
+        "functions of Python": ("max(round(KP), 5)", "5"),
+        "what asks": ("ask(KP)", None),
+        "what the script defines": ("call()", None),
+        "an attribute": ("KP.real", None),
+        "what fails": ("KP / 0", None),
+        "no constant": ("m", None),
+    },
+)
+def test_only_constants_and_mathematics_are_computed_again(text: str, value: str | None) -> None:
+    assert compute(parse_expression(text).body, VALUES) == value

@@ -1,0 +1,248 @@
+"""What is around a function: the values that it finds by name, and the statements that have made them."""
+
+from __future__ import annotations
+import __future__
+
+import ast
+import builtins
+import inspect
+import math
+import sys
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
+from importlib.util import resolve_name
+from types import CellType, CodeType, FunctionType, ModuleType
+from typing import Any, Self
+
+from tuisim.base.errors import ConfigError
+from tuisim.base.source import LIBRARIES
+from tuisim.base.syntax_tree import parse_module
+from tuisim.programs.constants import write_literal
+
+_IMPORTED = {*LIBRARIES, *sys.stdlib_module_names}
+"""Packages that a program imports, as the function's own file does."""
+_PURE = (abs, bool, dict, float, int, len, list, max, min, pow, round, set, sorted, str, sum, tuple)
+"""Functions that give the same value each time, and do nothing else."""
+_UNKNOWN = ast.Pass()
+
+
+class Surroundings:
+    """The names around a function or a class.
+
+    Args:
+        values: Its global names.
+        file: Its file; in a notebook the name of its cell.
+        text: The text of the file.
+        cells: The variables of the functions around it, by name.
+    """
+
+    def __init__(
+        self, values: Mapping[str, Any], file: str, text: str, cells: Mapping[str, CellType]
+    ) -> None:
+        self._globals = values
+        self._cells = cells
+        self.file = file
+        self._text = text
+        self.values = {**values}
+        for name, cell in cells.items():
+            with suppress(ValueError):  # not assigned yet
+                self.values[name] = cell.cell_contents
+        # A notebook keeps the text of its cells, the last one that has run at the end.
+        inputs = values.get("In")
+        texts = inputs[::-1] if isinstance(inputs, list) else [text]
+        self._texts = [(_parse(each), each) for each in texts if isinstance(each, str)]
+
+    @classmethod
+    def read_function(cls, function: FunctionType, text: str) -> Self:
+        """Return what is around a function in a file with this text."""
+        code = function.__code__
+        cells = dict(zip(code.co_freevars, function.__closure__ or (), strict=True))
+        return cls(function.__globals__, code.co_filename, text, cells)
+
+    @classmethod
+    def read_module(cls, module: ModuleType) -> Self:
+        """Return the names of a module."""
+        try:
+            text = inspect.getsource(module)
+        except (OSError, TypeError):
+            text = ""
+        return cls(vars(module), getattr(module, "__file__", None) or "", text, {})
+
+    def check_source(self, functions: Iterable[FunctionType], name: str) -> None:
+        """Check that functions are as the file now has them.
+
+        Raises:
+            ConfigError: they are not; the error names `name`.
+        """
+        codes = [function.__code__ for function in functions]
+        own = [code for code in codes if code.co_filename == self.file]
+        # pytest rewrites what it imports.
+        if not own or "@pytest_ar" in self._globals:
+            return
+        flags = own[0].co_flags & __future__.annotations.compiler_flag
+        try:
+            codes = [*_list_codes(compile(self._text, "", "exec", flags, dont_inherit=True))]
+        except (SyntaxError, ValueError):
+            codes = []
+        if any(code not in codes for code in own):
+            message = f"the file of {name} has changed since it was imported"
+            raise ConfigError(message, "import it again", file=self.file)
+
+    def get_owner(self, name: str) -> int:
+        """Return a number for the variable of a name: equal only for the same one."""
+        return id(self._cells.get(name, self._globals))
+
+    def find(self, name: str) -> tuple[ast.stmt, str]:
+        """Return the last statement that gives a name its value, and the text that has it; `pass` for none."""
+        if name not in self._cells:
+            for statements, text in self._texts:
+                for statement in reversed(statements):
+                    if name in _list_bound(statement):
+                        return statement, text
+        return _UNKNOWN, ""
+
+    def find_expression(self, name: str) -> ast.expr | None:
+        """Return what a statement assigns to a name alone."""
+        match self.find(name)[0]:
+            case ast.Assign(targets=[ast.Name()], value=value):
+                return value
+            case ast.AnnAssign(value=value):
+                return value
+        return None
+
+    def find_import(self, name: str) -> str:
+        """Return a statement that imports a name from a library for a brick or from Python's own; empty for none."""
+        module, original = self._find_module(name)
+        return f"from {module} import {original} as {name}" if _is_imported(module) else ""
+
+    def find_origin(self, name: str) -> tuple[str, Surroundings]:
+        """Return the name of a value where it has been made, and what is around it there."""
+        module, original = self._find_module(name)
+        if not module:
+            return name, self
+        return Surroundings.read_module(sys.modules[module]).find_origin(original)
+
+    def _find_module(self, name: str) -> tuple[str, str]:
+        """Return the module from which a name has its value by an import, and its name there; empty for none."""
+        statement, _ = self.find(name)
+        if isinstance(statement, ast.ImportFrom):
+            names = {alias.asname or alias.name: alias.name for alias in statement.names}
+            original = names.get(name, name)
+            package = self._globals.get("__package__") or ""
+            with suppress(ImportError):
+                module = resolve_name("." * statement.level + (statement.module or ""), package)
+                if getattr(sys.modules.get(module), original, None) is self.values[name]:
+                    return module, original
+        return "", ""
+
+    def list_used(self, expression: ast.AST) -> set[str]:
+        """Return the names around it that an expression uses."""
+        names = {node.id for node in ast.walk(expression) if isinstance(node, ast.Name)}
+        return names & self.values.keys()
+
+    def list_sources(self, name: str) -> set[str]:
+        """Return the names from which the value of a name has been computed, in any number of steps."""
+        sources: set[str] = set()
+        names = [name]
+        while names:
+            statement, _ = self.find(names.pop())
+            value = getattr(statement, "value", None) or getattr(statement, "iter", None)
+            if value is not None:
+                new = self.list_used(value) - sources
+                sources |= new
+                names += new
+        return sources - {name}
+
+
+def compute(expression: ast.expr, values: Mapping[str, Any]) -> str | None:
+    """Return the value of an expression as `write_literal` has it; None if it uses more than constants and `math`."""
+    for node in ast.walk(expression):
+        match node:
+            case ast.Name(id=name):
+                is_pure = name not in values or _is_pure(values[name])
+            case ast.Attribute(value=ast.Name(id=name)):
+                is_pure = values.get(name) is math
+            case ast.Call(func=ast.Name(id=name)):
+                is_pure = name in values or getattr(builtins, name, None) in _PURE
+            case ast.Call(func=func):
+                is_pure = isinstance(func, ast.Attribute)
+            case _:
+                is_pure = not isinstance(node, ast.Attribute | ast.NamedExpr | ast.Lambda)
+        if not is_pure:
+            return None
+    code = compile(ast.Expression(expression), "", "eval")
+    try:
+        return write_literal(eval(code, {**values}))
+    except Exception:  # Whatever it is, the value has come about in another way.
+        return None
+
+
+def _is_pure(value: object) -> bool:
+    return value is math or getattr(value, "__module__", None) == "math" or is_plain(value)
+
+
+def is_plain(value: object) -> bool:
+    """Return whether a value can be written in a program."""
+    try:
+        write_literal(value)
+    except ConfigError:
+        return False
+    return True
+
+
+def write_import(name: str, value: Any) -> str:
+    """Return a statement that imports a module, or what a library defines; empty if the program cannot import it."""
+    if isinstance(value, ModuleType):
+        return f"import {value.__name__} as {name}" if _is_imported(value.__name__) else ""
+    module = getattr(value, "__module__", None) or ""
+    own = getattr(value, "__qualname__", None) or ""
+    if isinstance(module, str) and _is_imported(module) and own.isidentifier():
+        return f"from {module} import {own} as {name}"
+    return ""
+
+
+def _is_imported(module: str) -> bool:
+    return module != "__main__" and module.partition(".")[0] in _IMPORTED
+
+
+def _parse(text: str) -> list[ast.stmt]:
+    """Return the statements of a text outside functions and classes, those of blocks after the block."""
+    try:
+        return [*_list_statements(parse_module(text).body)]
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return []
+
+
+def _list_statements(nodes: Sequence[Any]) -> Iterator[ast.stmt]:
+    for node in nodes:
+        yield node
+        if not isinstance(node, ast.FunctionDef | ast.ClassDef | ast.AsyncFunctionDef):
+            for block in ("body", "handlers", "cases", "orelse", "finalbody"):
+                yield from _list_statements(getattr(node, block, ()))
+
+
+def _list_bound(statement: ast.stmt) -> Iterator[str]:
+    """Yield the names to which a statement gives a value."""
+    match statement:
+        case ast.FunctionDef(name=name) | ast.ClassDef(name=name):
+            yield name
+        case ast.Import(names=aliases):
+            yield from (alias.asname or alias.name.partition(".")[0] for alias in aliases)
+        case ast.ImportFrom(module=str(module), names=[ast.alias(name="*")]):
+            names = vars(sys.modules[module]) if module in sys.modules else ()
+            yield from (name for name in names if not name.startswith("_"))
+        case ast.ImportFrom(names=aliases):
+            yield from (alias.asname or alias.name for alias in aliases)
+        case ast.Assign() | ast.AnnAssign() | ast.AugAssign() | ast.For() | ast.With():
+            targets = getattr(statement, "targets", None) or [statement]
+            for node in (each for target in targets for each in ast.walk(target)):
+                if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store):
+                    yield node.id
+
+
+def _list_codes(code: CodeType) -> Iterator[CodeType]:
+    """Yield a code, and those in it."""
+    yield code
+    for constant in code.co_consts:
+        if isinstance(constant, CodeType):
+            yield from _list_codes(constant)
