@@ -14,11 +14,13 @@ from tuisim.base.errors import ConfigError
 from tuisim.settings.user_config import (
     SETTINGS,
     Section,
+    build_template,
     find_config_file,
     load_config,
     parse_config,
+    save_setting,
+    write_template,
 )
-from tuisim.settings.user_config_file import build_template, save_setting, write_template
 
 PATH = Path("config.toml")
 

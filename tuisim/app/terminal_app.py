@@ -253,7 +253,7 @@ class TerminalApp(BufferedApp):
 
     def keep_setting(self, path: str, value: Scalar | None) -> None:
         """Write a setting that applies already to `config.toml`; None for the usual one."""
-        from tuisim.settings.user_config_file import save_setting
+        from tuisim.settings.user_config import save_setting
 
         try:
             save_setting(SETTINGS[path], value)

@@ -1,13 +1,11 @@
 """What the text of a program says: its first line, its robot, what it calls and asks, names that it lacks."""
 
 __all__ = [
-    "attributes",
     "code_rows",
     "constants",
     "facts",
     "function",
     "line_values",
-    "magic_mat",
     "mistakes",
     "names",
     "notebook_file",

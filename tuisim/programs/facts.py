@@ -3,20 +3,23 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Mapping
-from functools import cached_property, lru_cache
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import field
+from functools import cached_property, lru_cache, partial
+from itertools import pairwise
+from math import copysign
+from typing import TypeGuard
 
-from tuisim.base.source import Program
+from tuisim.base.data_class import dataclass
+from tuisim.base.source import PRELUDE_TEXTS, PYBRICKS, Program
 from tuisim.base.syntax_tree import parse_module
 from tuisim.engine.core.sensors.color import LightRead
 from tuisim.engine.core.spec import RobotSpec
-from tuisim.programs.calls import list_calls
-from tuisim.programs.mistakes import find_fault
+from tuisim.programs.mistakes import find_fault, find_idle_definition, list_slips
 from tuisim.programs.questions import Question, QuestionReader, Word
-from tuisim.programs.robot.source import parse
+from tuisim.programs.robot.scopes import Binding, Bound, Imported, Scope, build_scope
+from tuisim.programs.robot.source import Module, parse
 from tuisim.programs.robot.thresholds import ProgramThreshold, find_light_reads, find_thresholds
-from tuisim.programs.slips import find_idle_definition, list_slips
-from tuisim.programs.structure import STRUCTURES
 from tuisim.programs.waits import (
     LoopEnd,
     find_first_drive,
@@ -25,7 +28,180 @@ from tuisim.programs.waits import (
     list_counts,
     list_loop_ends,
 )
-from tuisim.programs.wheel_turns import WheelTurn, list_wheel_turns
+
+_TURNS_DEG = (45.0, 90.0, 180.0, 360.0)
+_ANGLES = {
+    "on_for_degrees": _TURNS_DEG,
+    "on_for_rotations": (0.25,),
+    "run_angle": _TURNS_DEG,
+}
+"""Angles by which robots are turned; a whole rotation in `on_for_rotations` is mostly meant for a wheel."""
+_SPOT_STEERING = 100.0
+"""The steering that turns the wheels against each other."""
+_DEGREES = {"on_for_degrees": 1.0, "on_for_rotations": 360.0}
+"""The degrees of a unit that a method counts in."""
+
+
+@dataclass(frozen=True, slots=True)
+class WheelTurn:
+    """A call that turns both wheels by an angle, in opposite directions."""
+
+    first_line: int
+    last_line: int
+    method: str
+    angle_deg: float
+    """The angle of the wheels."""
+
+
+def list_wheel_turns(tree: ast.Module) -> Iterator[WheelTurn]:
+    """Yield the calls of a program that turn the wheels in opposite directions by an angle such as robots turn by.
+
+    Two calls one after the other, each for one motor, are one turn.
+    """
+    for first_call, second_call in _list_pairs(tree):
+        if (angle_deg := _find_pair_angle(first_call, second_call)) in _ANGLES["run_angle"]:
+            end_line = second_call.end_lineno or second_call.lineno
+            yield WheelTurn(first_call.lineno, end_line, "run_angle", angle_deg)
+    for node in ast.walk(tree):
+        match node:
+            case ast.Call(
+                func=ast.Attribute(attr=method), args=[first, second, amount, *_], keywords=[]
+            ) if method in _DEGREES:
+                numbers = [_find_number(each) for each in (first, second, amount)]
+                if not _is_known(numbers):
+                    continue
+                left, right, count = numbers
+                is_turn = abs(left) == _SPOT_STEERING or left == -right
+                if is_turn and abs(count) in _ANGLES[method]:
+                    last_line = node.end_lineno
+                    angle_deg = abs(count) * _DEGREES[method]
+                    yield WheelTurn(node.lineno, last_line or node.lineno, method, angle_deg)
+
+
+def _list_pairs(tree: ast.Module) -> Iterator[tuple[ast.Call, ast.Call]]:
+    """Yield two calls that are statements of a block one after the other."""
+    for node in ast.walk(tree):
+        for block in (getattr(node, name, None) for name in ("body", "orelse")):
+            for pair in pairwise(block if isinstance(block, list) else ()):
+                match pair:
+                    case ast.Expr(value=ast.Call() as first), ast.Expr(value=ast.Call() as second):
+                        yield first, second
+
+
+def _find_pair_angle(*calls: ast.Call) -> float:
+    """Return the angle by which two calls of `run_angle` turn two motors against each other; 0 if they do not."""
+    motors = set[str]()
+    turns_deg: list[float] = []
+    for call in calls:
+        match call:
+            case ast.Call(
+                func=ast.Attribute(value=ast.Name(id=motor), attr="run_angle"),
+                args=[speed, angle, *_],
+            ):
+                numbers = [_find_number(speed), _find_number(angle)]
+                if _is_known(numbers):
+                    motors.add(motor)
+                    turns_deg.append(copysign(numbers[1], numbers[0] * numbers[1]))
+    is_turn = len(motors) == len(turns_deg) == len(calls) and sum(turns_deg) == 0
+    return abs(turns_deg[0]) if is_turn else 0.0
+
+
+def _is_known(numbers: list[float | None]) -> TypeGuard[list[float]]:
+    return None not in numbers
+
+
+def _find_number(node: ast.expr) -> float | None:
+    """Return a number, also that in a speed such as `SpeedPercent(30)`; None for other expressions."""
+    match node:
+        case ast.Constant(value=int() | float() as value):
+            return float(value)
+        case ast.UnaryOp(op=ast.USub(), operand=operand):
+            number = _find_number(operand)
+            return None if number is None else -number
+        case ast.Call(func=ast.Name(id=name), args=[speed]) if name.startswith("Speed"):
+            return _find_number(speed)
+    return None
+
+
+_Function = ast.FunctionDef | ast.AsyncFunctionDef
+_BLOCKS = (ast.For, ast.While, ast.If, ast.With, ast.Try, _Function, ast.ClassDef)
+
+
+def _list_nodes(tree: ast.Module, *kinds: type[ast.AST]) -> list[ast.AST]:
+    return [node for node in ast.walk(tree) if isinstance(node, kinds) and not _is_dead(node)]
+
+
+def _is_dead(node: ast.AST) -> bool:
+    """Return whether a loop or a branch does nothing: its body is empty, or its condition is never true."""
+    if (
+        isinstance(node, ast.While | ast.If)
+        and isinstance(node.test, ast.Constant)
+        and not node.test.value
+    ):
+        return True
+    # A `while` with an empty body is not dead: it waits.
+    return isinstance(node, ast.For | ast.If | _Function) and all(
+        _is_idle(statement) for statement in node.body
+    )
+
+
+def _is_idle(statement: ast.stmt) -> bool:
+    is_text = isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Constant)
+    return is_text or isinstance(statement, ast.Pass | ast.Continue | ast.Break)
+
+
+def _count(*kinds: type[ast.AST]) -> Callable[[ast.Module], int]:
+    return partial(lambda tree, wanted: len(_list_nodes(tree, *wanted)), wanted=kinds)
+
+
+def _count_functions(tree: ast.Module) -> int:
+    """Return how many functions the program defines and also uses."""
+    defined = _list_nodes(tree, _Function)  # type: ignore[arg-type]
+    named = [
+        node.id if isinstance(node, ast.Name) else node.attr
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Name | ast.Attribute)
+    ]
+    return len(
+        {node.name for node in defined if isinstance(node, _Function) and node.name in named}
+    )
+
+
+def _count_lines(tree: ast.Module) -> int:
+    """Return how many lines have code; comments and docstrings do not count."""
+    statements = (
+        node for node in ast.walk(tree) if isinstance(node, ast.stmt) and not _is_idle(node)
+    )
+    return len({line for node in statements for line in _list_span(node)})
+
+
+def _list_span(statement: ast.stmt) -> Iterator[int]:
+    """Yield the lines of a statement; of a block only the first."""
+    is_block = isinstance(statement, _BLOCKS)
+    yield from range(
+        statement.lineno, statement.lineno + 1 if is_block else (statement.end_lineno or 0) + 1
+    )
+
+
+def _measure_depth(node: ast.AST) -> int:
+    """Return how deep blocks are nested."""
+    inner = max(map(_measure_depth, ast.iter_child_nodes(node)), default=0)
+    return inner + isinstance(node, _BLOCKS)
+
+
+STRUCTURES: Mapping[str, Callable[[ast.Module], int]] = {
+    "loops": _count(ast.For, ast.While),
+    "for": _count(ast.For),
+    "while": _count(ast.While),
+    "if": _count(ast.If),
+    "functions": _count_functions,
+    "classes": _count(ast.ClassDef),
+    "try": _count(ast.Try),
+    "lines": _count_lines,
+    "depth": _measure_depth,
+}
+"""What can be counted in a program's text, by name."""
+
 
 __all__ = [
     "STRUCTURES",
@@ -149,3 +325,125 @@ class ProgramFacts:
 def read_facts(program: Program) -> ProgramFacts:
     """Return the facts that the text of a program shows."""
     return ProgramFacts(program)
+
+
+# Names are followed as far as they are clear from the text: imports under other names, a variable that is assigned
+# another name or a new object of a class, and the names that a prelude defines. Nothing is executed.
+
+_MAX_MEANING = 200
+"""Longer meanings of names, in characters, are not followed."""
+_MAX_MEANINGS = 24
+"""More meanings of one expression are not followed."""
+_DEFAULT_PRELUDE = "preloaded"
+"""Its names mean the same in a goals file, whichever prelude a program has."""
+
+
+@dataclass(slots=True)
+class _Names:
+    """Finds out what the names of a program stand for.
+
+    Args:
+        prelude: The scope of its prelude.
+    """
+
+    prelude: Scope
+    _known: dict[tuple[ast.expr, Scope], tuple[str, ...]] = field(default_factory=dict)
+
+    def list_meanings(self, node: ast.expr, scope: Scope) -> tuple[str, ...]:
+        """Return what an expression can stand for, such as `ev3dev2.motor.MoveTank().on`."""
+        key = (node, scope)
+        if key not in self._known:
+            # Where a name refers to itself, nothing is known.
+            self._known[key] = ()
+            meanings = (
+                meaning for meaning in self._follow(node, scope) if len(meaning) <= _MAX_MEANING
+            )
+            self._known[key] = tuple(dict.fromkeys(meanings))[:_MAX_MEANINGS]
+        return self._known[key]
+
+    def _follow(self, node: ast.expr, scope: Scope) -> Iterator[str]:
+        match node:
+            case ast.Name(id=name):
+                bindings = scope.find_bindings(name) or self.prelude.find_bindings(name)
+                yield from self._follow_bindings(name, bindings)
+            case ast.Attribute(value=value, attr=attr):
+                if isinstance(value, ast.Name) and value.id == "self" and scope.owner:
+                    for binding in scope.owner.attributes.get(attr, ()):
+                        yield from self._follow_bindings("", [binding])
+                yield from (f"{inner}.{attr}" for inner in self.list_meanings(value, scope))
+            case ast.Call(func=func):
+                yield from (f"{inner}()" for inner in self.list_meanings(func, scope))
+
+    def _follow_bindings(self, name: str, bindings: list[Binding]) -> Iterator[str]:
+        meanings: list[str] = []
+        for binding in bindings:
+            match binding:
+                case Imported(module=module, name=imported):
+                    meanings.append(f"{module}.{imported}" if imported else module)
+                case Bound(node=node, scope=scope, path=(), is_item=False):
+                    meanings += self.list_meanings(node, scope)
+        yield from meanings or ([name] if name else [])
+
+
+@lru_cache
+def _build_prelude_scope(prelude: str) -> Scope:
+    return build_scope(Module("", "", parse_module(PRELUDE_TEXTS.get(prelude, ""))))
+
+
+def _name_prelude(name: str, prelude: str) -> str:
+    """Return what a name stands for in a prelude, or the name itself if the prelude does not define it."""
+    names = _Names(_build_prelude_scope(prelude))
+    return next(iter(names.list_meanings(ast.Name(name), names.prelude)))
+
+
+def _list_scopes(scope: Scope) -> list[Scope]:
+    return [scope, *(each for inner in scope.inner.values() for each in _list_scopes(inner))]
+
+
+def list_calls(tree: ast.Module, prelude: str, wanted: str) -> list[int]:
+    """Return the lines of a program with a call, in ascending order.
+
+    Args:
+        tree: The program.
+        prelude: Its prelude, a key of `PRELUDE_TEXTS`.
+        wanted: The call: a name such as `time.sleep`, a method of an object that the prelude defines such as
+            `tank_drive.on`, or the name of a function or method alone. Objects of the same class count as well.
+    """
+    scopes = _list_scopes(build_scope(Module("", "", tree)))
+    names = _Names(_build_prelude_scope(prelude))
+    calls = [
+        ({ast.unparse(call.func), *names.list_meanings(call.func, scope)}, call.lineno)
+        for scope in scopes
+        for call in scope.body
+        if isinstance(call, ast.Call)
+    ]
+    wanted = wanted.removesuffix("()")
+    head, _, rest = wanted.partition(".")
+    # `sleep` alone is any function or method of that name.
+    if not rest:
+        return sorted(
+            {
+                line
+                for meanings, line in calls
+                if any(wanted == meaning.rpartition(".")[2] for meaning in meanings)
+            }
+        )
+    meant = _name_prelude(head, _DEFAULT_PRELUDE)
+    # `MoveTank.on` is also a method of an object of the class.
+    owner, _, method = f"{meant}.{rest}".rpartition(".")
+    whole = {wanted, f"{meant}.{rest}", f"{owner}().{method}"}
+    # `DriveBase.straight` is one of the class that the program imports from Pybricks.
+    for own in {
+        meaning for scope in scopes for meaning in names.list_meanings(ast.Name(head), scope)
+    }:
+        if own.partition(".")[0] == PYBRICKS:
+            whole |= {f"{own}.{rest}", f"{own}().{rest}"}
+    # After `from ev3dev2.motor import *` a program writes `MoveTank` alone: accept it without the module, too.
+    starred = [f"{module}." for scope in scopes for module in scope.stars]
+    whole |= {
+        meaning.removeprefix(module)
+        for module in starred
+        for meaning in whole
+        if meaning.startswith(module)
+    }
+    return sorted({line for meanings, line in calls if meanings & whole})

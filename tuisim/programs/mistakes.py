@@ -1,15 +1,74 @@
-"""Why a program cannot run: it does not compile, or its magic line is wrong."""
+"""What is wrong with a program: why it cannot run, and lines that do nothing although they look as if they did more."""
 
 from __future__ import annotations
 
+import ast
 import io
 import tokenize
 import warnings
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from itertools import pairwise
+from typing import NamedTuple
 
 from tuisim.base.data_class import dataclass
-from tuisim.base.errors import TuisimError
-from tuisim.programs.magic_mat import find_wrong_mat
-from tuisim.programs.program_file import parse_program
+from tuisim.base.errors import BackgroundError, ConfigError, TuisimError
+from tuisim.engine.mats import find_mat
+from tuisim.programs.program_file import ProgramSource, find_magic, is_file_name, parse_program
+
+
+class WrongMat(NamedTuple):
+    """A magic line with a mat that cannot be laid out."""
+
+    line: int
+    """From 1."""
+    error: BackgroundError
+    """Names the program and the line."""
+
+    @property
+    def words(self) -> str:
+        """What is wrong, with the mat that may be meant, in one line."""
+        guess, question, _ = self.error.hint.partition("?")
+        return f"{self.error.message.partition(': ')[2]}{f', {guess}?' if question else ''}"
+
+
+def find_wrong_mat(text: str, name: str, folder: str | None) -> WrongMat | None:
+    """Return what is wrong with the mat in a magic line; None if nothing is wrong, or if the mat is not judged here.
+
+    Args:
+        text: The program.
+        name: The name of its file.
+        folder: The user's own mats.
+    """
+    try:
+        magic = find_magic(text, name)
+        options: Mapping[str, str] = magic.options if magic else {}
+        if (
+            magic
+            and "background" in options
+            and "mats" not in options
+            and not is_file_name(options["background"])
+        ):
+            find_mat(options["background"], folder)
+    except BackgroundError as error:
+        assert magic is not None
+        return WrongMat(
+            magic.line,
+            BackgroundError(error.message, error.hint, file=f"{name}, line {magic.line}"),
+        )
+    except ConfigError:
+        pass
+    return None
+
+
+def drop_wrong_mat(source: ProgramSource, folder: str | None) -> ProgramSource:
+    """Return a program without the mat of its magic line if the mat is wrong, so that it can be opened and mended."""
+    if find_wrong_mat(source.program.text, source.program.name, folder) is None:
+        return source
+    return replace(
+        source,
+        options={path: value for path, value in source.options.items() if path != "background"},
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,3 +113,114 @@ def find_mistake(text: str, name: str, mats: str | None = None) -> Mistake | Non
         return Mistake(line, f"line {line}: {message}" if line else message)
     wrong = find_wrong_mat(text, name, mats)
     return Mistake(wrong.line, f"line {wrong.line}: {wrong.words}") if wrong else None
+
+
+def list_slips(tree: ast.Module) -> Iterator[tuple[int, str]]:
+    """Yield the first line with each kind of slip, such as a stop without `()`, and what is wrong with it, in words."""
+    for find_slip in _find_uncalled_stop, _find_equal_branches, _find_idle_comparison:
+        if slip := find_slip(tree):
+            yield slip
+
+
+def find_idle_definition(tree: ast.Module) -> tuple[int, str] | None:
+    """Return the last function or class of a program that only defines, and why nothing happens; else None."""
+    last: ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef | None = None
+    for node in tree.body:
+        match node:
+            case ast.FunctionDef() | ast.AsyncFunctionDef() | ast.ClassDef():
+                last = node
+            case ast.Import() | ast.ImportFrom() | ast.Expr(value=ast.Constant()):
+                pass
+            case ast.Assign() | ast.AnnAssign() if _only_makes(node):
+                pass
+            case _:
+                return None
+    if last is None:
+        return None
+    return last.lineno, f"the program only defines, and calls nothing: {last.name}() is missing"
+
+
+def _only_makes(node: ast.AST) -> bool:
+    """Return whether all calls in a node have the name of a class: they only make objects."""
+    calls = (part.func for part in ast.walk(node) if isinstance(part, ast.Call))
+    return all(ast.unparse(name).rpartition(".")[2][:1].isupper() for name in calls)
+
+
+def _find_uncalled_stop(tree: ast.Module) -> tuple[int, str] | None:
+    """Return the first line that names a method to stop motors without calling it."""
+    for node in ast.walk(tree):
+        match node:
+            case ast.Expr(value=ast.Attribute(attr="off" | "stop" | "brake" | "hold") as name):
+                words = ast.unparse(name)
+                return node.lineno, f"{words} without () does nothing: {words}() stops"
+    return None
+
+
+def _find_equal_branches(tree: ast.Module) -> tuple[int, str] | None:
+    """Return the first line with an `if` whose `else`, or the next `if` with the opposite question, does the same."""
+    pairs: list[tuple[int, str]] = []
+    for node in ast.walk(tree):
+        if isinstance(node, ast.If) and node.orelse and _dump(node.body) == _dump(node.orelse):
+            pairs.append((node.lineno, "if and else do the same"))
+        block = getattr(node, "body", [])
+        for first, second in pairwise(block if isinstance(block, list) else []):
+            if _is_opposite(first, second):
+                text = f"line {second.lineno} asks the opposite, and does the same"
+                pairs.append((first.lineno, text))
+    return min(pairs, default=None)
+
+
+def _is_opposite(first: ast.stmt, second: ast.stmt) -> bool:
+    """Return whether two `if` do the same, one below a limit and the other above."""
+    match first, second:
+        case (
+            ast.If(test=ast.Compare(ops=[way]) as test, orelse=[]),
+            ast.If(test=ast.Compare(ops=[other]) as opposite, orelse=[]),
+        ):
+            is_below = [isinstance(each, ast.Lt | ast.LtE) for each in (way, other)]
+            is_above = [isinstance(each, ast.Gt | ast.GtE) for each in (way, other)]
+            parts = [_dump([each.left, *each.comparators]) for each in (test, opposite)]
+            are_opposite = (is_below[0] and is_above[1]) or (is_above[0] and is_below[1])
+            return are_opposite and parts[0] == parts[1] and _dump(first.body) == _dump(second.body)
+    return False
+
+
+def _dump(nodes: Sequence[ast.AST]) -> list[str]:
+    return [ast.dump(each) for each in nodes]
+
+
+def _find_idle_comparison(tree: ast.Module) -> tuple[int, str] | None:
+    """Return the first line that compares and does nothing with the result.
+
+    A comparison in a `try` is left out: whether it raises is a result, too.
+    """
+    nodes = [*ast.walk(tree)]
+    tried = {part for node in nodes if isinstance(node, ast.Try) for part in ast.walk(node)}
+    functions = {
+        node.body[-1]: node.name
+        for node in nodes
+        if isinstance(node, ast.FunctionDef)
+        and not any(isinstance(part, ast.Return | ast.Yield) for part in ast.walk(node))
+    }
+    idle = [
+        (node.lineno, _describe_idle(node.value, functions.get(node, "")))
+        for node in nodes
+        if isinstance(node, ast.Expr) and isinstance(node.value, ast.Compare) and node not in tried
+    ]
+    return min(idle, default=None)
+
+
+def _describe_idle(test: ast.Compare, function: str) -> str:
+    """Return what is wrong with a comparison whose result is not used.
+
+    Args:
+        function: The name of the function whose last line it is; empty for none.
+    """
+    words = ast.unparse(test)
+    match test:
+        case ast.Compare() if function:
+            return f"{function}() returns nothing: return is missing before {words}"
+        case ast.Compare(left=ast.Name(id=name), ops=[ast.Eq()], comparators=[value]):
+            return f"{words} only compares: {name} = {ast.unparse(value)} sets it"
+        case _:
+            return f"{words} alone does nothing: the answer is not used"

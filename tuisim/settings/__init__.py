@@ -11,6 +11,5 @@ __all__ = [
     "robots",
     "shared_options",
     "user_config",
-    "user_config_file",
     "worlds",
 ]

@@ -172,7 +172,7 @@ def change_setting(context: ActionContext, setting: Setting, value: Scalar | Non
     Raises:
         ConfigError: the value is wrong, or the file cannot be written.
     """
-    from tuisim.settings.user_config_file import save_setting
+    from tuisim.settings.user_config import save_setting
 
     save_setting(setting, value)
     if apply := _APPLY.get(setting.path):

@@ -12,8 +12,7 @@ from tuisim.app import background
 from tuisim.app.editor import completion
 from tuisim.app.editor.area import CodeArea
 from tuisim.app.editor.candidate_list import format_signature
-from tuisim.programs.attributes import AttributeCheck
-from tuisim.programs.names import UnknownName, find_unknown_names
+from tuisim.programs.names import AttributeCheck, UnknownName, find_unknown_names
 from tuisim.terminal.text_runs import cut
 
 CHECK_DELAY_S = 0.5

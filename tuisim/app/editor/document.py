@@ -20,7 +20,7 @@ from tuisim.app.editor.text_file import (
 from tuisim.app.editor.text_lines import LineMap, count_differing_lines
 from tuisim.base.errors import ConfigError, TuisimError, counted
 from tuisim.base.source import source_lines
-from tuisim.programs.magic_mat import find_wrong_mat
+from tuisim.programs.mistakes import find_wrong_mat
 from tuisim.settings.options import Settings
 
 if TYPE_CHECKING:

@@ -5,8 +5,7 @@ from __future__ import annotations
 from tuisim.base.errors import ConfigError
 from tuisim.commands.echo import draw_table, echo, echo_json, echo_lines
 from tuisim.settings.command_line import AS_JSON, command, option
-from tuisim.settings.user_config import FILE, SETTINGS, UserConfig, load_config
-from tuisim.settings.user_config_file import write_template
+from tuisim.settings.user_config import FILE, SETTINGS, UserConfig, load_config, write_template
 
 
 @command(

@@ -6,7 +6,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import field
 
 from tuisim.base.data_class import dataclass
-from tuisim.programs.robot.call_order import CallOrder
+from tuisim.programs.robot.calls import CallOrder
 from tuisim.programs.robot.mentions import Where
 from tuisim.programs.robot.scopes import Scope
 

@@ -8,7 +8,7 @@ from dataclasses import field
 
 from tuisim.base.data_class import dataclass
 from tuisim.programs.robot import library
-from tuisim.programs.robot.call_order import CallOrder
+from tuisim.programs.robot.calls import CallOrder
 from tuisim.programs.robot.end_stops import EndStop, Mechanics, StopPress, Target
 from tuisim.programs.robot.evaluation import Evaluation
 from tuisim.programs.robot.library import INVERSED, NORMAL, DeviceKind, Moves

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from tuisim.app.editor.completion import find_members
-from tuisim.programs.attributes import AttributeCheck
+from tuisim.programs.names import AttributeCheck
 
 
 @pytest.mark.parametrize(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tuisim.programs.magic_mat import drop_wrong_mat, find_wrong_mat
+from tuisim.programs.mistakes import drop_wrong_mat, find_wrong_mat
 from tuisim.programs.program_file import parse_program
 
 WRONG = '"""A program."""\n# %%sim_magic_preloaded -b Grey_bandz -x 300\n'

@@ -6,7 +6,7 @@ import ast
 
 from tests.cases import cases
 from tuisim.base.source import Program
-from tuisim.programs.robot.call_order import CallOrder
+from tuisim.programs.robot.calls import CallOrder
 from tuisim.programs.robot.mentions import read_mentions
 from tuisim.programs.robot.source import read_modules
 
