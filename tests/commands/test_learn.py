@@ -11,13 +11,13 @@ from tests.cases import cases
 from tests.conftest import Command
 from tuisim.app.app import AppSettings
 from tuisim.engine.core.geometry import Pose
+from tuisim.tasks.lessons.catalogue import SKELETON
 from tuisim.tasks.lessons.progress import (
     LessonProgress,
     StepState,
     build_program_path,
     save_progress,
 )
-from tuisim.tasks.lessons.skeleton import SKELETON
 
 FAULTY = {
     "model answer": (

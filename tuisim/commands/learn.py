@@ -266,7 +266,7 @@ def _count_ways(lesson: Lesson) -> str:
 @command(argument("path", "FILE"))
 def new(path: str) -> int:
     """Write a lesson to start from: a file FILE that ends in .md."""
-    from tuisim.tasks.lessons.skeleton import write_skeleton
+    from tuisim.tasks.lessons.catalogue import write_skeleton
 
     target = user_path(path)
     write_skeleton(target)

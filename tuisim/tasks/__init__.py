@@ -14,7 +14,6 @@ __all__ = [
     "lessons.markdown",
     "lessons.progress",
     "lessons.session",
-    "lessons.skeleton",
     "lessons.spec",
     "lessons.trial",
     "marks.marking",

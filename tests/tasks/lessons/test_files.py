@@ -8,8 +8,8 @@ import pytest
 
 from tests.cases import cases
 from tuisim.base.errors import ConfigError
+from tuisim.tasks.lessons.catalogue import SKELETON
 from tuisim.tasks.lessons.files import get_lesson_name, load_lesson
-from tuisim.tasks.lessons.skeleton import SKELETON
 from tuisim.tasks.lessons.spec import CHECKS, QuestionCheck, RunCheck, Way
 
 HEAD = "title = 'T'\nwhy = 'W'\n"

@@ -23,8 +23,8 @@ from tuisim.tasks.goals.spec import FinishCondition, Goal
 from tuisim.tasks.marks.feedback import build_feedback, build_file_stems, write_feedback
 from tuisim.tasks.marks.gradebook import Roster, write_gradebook
 from tuisim.tasks.marks.hand_ins import GradebookKind
+from tuisim.tasks.marks.marking import Override, apply_overrides
 from tuisim.tasks.marks.outcome import GoalOutcome, Outcome
-from tuisim.tasks.marks.overrides import Override, apply_overrides
 from tuisim.tasks.marks.page import build_page, compute_distribution, compute_goal_statistics
 from tuisim.tasks.marks.sheet import (
     Sheet,

@@ -12,6 +12,8 @@ from pathlib import Path
 from typing import Any
 
 from tuisim.base.data_class import dataclass
+from tuisim.base.errors import ConfigError
+from tuisim.engine import files
 from tuisim.engine.runs.child.isolation import MOST_BYTES
 from tuisim.engine.runs.child.supervisor import keep_running
 from tuisim.engine.runs.handle import RunOptions
@@ -19,18 +21,102 @@ from tuisim.engine.runs.temporary import create_temporary_home
 from tuisim.logs.export import EXPORTERS
 from tuisim.settings.options import merge_settings
 from tuisim.tasks.goals.files import GoalsFile
+from tuisim.tasks.goals.judgement import sum_points
+from tuisim.tasks.goals.spec import Goal
 from tuisim.tasks.marks.entries import build_entries
 from tuisim.tasks.marks.feedback import write_feedback
 from tuisim.tasks.marks.gradebook import Roster, read_roster, write_gradebook
 from tuisim.tasks.marks.hand_ins import GradebookKind
 from tuisim.tasks.marks.journal import Journal, build_journal_path
 from tuisim.tasks.marks.outcome import Outcome, find_unknown_goals
-from tuisim.tasks.marks.overrides import apply_overrides, read_overrides
 from tuisim.tasks.marks.page import build_reports_folder
 from tuisim.tasks.marks.runs import STALL_LIMIT_S, MarkPlan, RunEntry, count_runs, run_entries
-from tuisim.tasks.marks.sheet import Sheet, build_sheet, export_marks, list_columns
+from tuisim.tasks.marks.sheet import (
+    Sheet,
+    SheetRow,
+    build_sheet,
+    export_marks,
+    list_columns,
+    round_points,
+)
 from tuisim.tasks.marks.students import Student, find_students
 from tuisim.tasks.task import TIME_LIMIT_S, Keep
+
+# ```toml
+# [ada]
+# comment = "The path is right; the robot was set down a centimetre too far."
+# points = 9          # of the whole task; or, goal by goal:
+#
+# [ben.goals]
+# heading = 1
+# ```
+
+TUTOR_REASON = "given by the tutor"
+
+
+@dataclass(frozen=True, slots=True)
+class Override:
+    """A tutor's changes to the marks of one student."""
+
+    points: float | None = None
+    """Points of the whole task; None if they follow from the goals."""
+    comment: str = ""
+    goals: Mapping[str, float] = field(default_factory=dict)
+    """Points by the name of the goal."""
+
+
+def read_overrides(
+    path: Path, goals: Sequence[Goal], students: Sequence[str]
+) -> Mapping[str, Override]:
+    """Read the overrides of a class, by student.
+
+    Args:
+        goals: The goals that have a column.
+        students: The names of the students.
+
+    Raises:
+        ConfigError: the file cannot be read, or names a student, a goal or a key that does not exist.
+    """
+    location = files.Location(str(path))
+    overrides: dict[str, Override] = {}
+    for student, entry in files.table(
+        files.read_file(path, ConfigError), location, students
+    ).items():
+        overrides[student] = files.convert(entry, Override, location.at(student))
+        files.table(
+            dict(overrides[student].goals),
+            location.at(student).at("goals"),
+            [goal.name for goal in goals],
+        )
+    return overrides
+
+
+def apply_overrides(sheet: Sheet, overrides: Mapping[str, Override]) -> Sheet:
+    """Return the sheet with a tutor's overrides; what the runs have earned is kept in `earned`."""
+    rows = tuple(
+        _override_row(row, sheet.columns, overrides[row.name]) if row.name in overrides else row
+        for row in sheet.rows
+    )
+    return replace(sheet, rows=rows)
+
+
+def _override_row(row: SheetRow, columns: Sequence[Goal], override: Override) -> SheetRow:
+    cells = tuple(
+        replace(cell, points=override.goals[column.name], reason=TUTOR_REASON)
+        if column.name in override.goals
+        else cell
+        for column, cell in zip(columns, row.cells, strict=True)
+    )
+    points = override.points
+    if points is None:
+        points = (
+            round_points(sum_points(cell.points for cell in cells))
+            if override.goals
+            else row.points
+        )
+    earned = row.points if points != row.points or cells != row.cells else None
+    return replace(row, cells=cells, points=points, earned=earned, comment=override.comment)
+
 
 Tell = Callable[[str, float, float], None]
 """Receives the progress: words, how much is done, and how much there is."""
@@ -240,7 +326,7 @@ class Marking:
 
     def _write_page(self, sheet: Sheet, target: Path, tell: Tell) -> None:
         # Its charts are slow to import, and a table needs none.
-        from tuisim.tasks.marks.class_page import write_class_page
+        from tuisim.tasks.marks.reports import write_class_page
 
         worlds = self._plan.worlds
         movies = self._request.movies

@@ -6,7 +6,7 @@ import hashlib
 import math
 import os
 import shutil
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -14,7 +14,7 @@ from tuisim.analysis.pins import Pin
 from tuisim.analysis.report import build_report
 from tuisim.analysis.source import LogRequest, open_pieces
 from tuisim.base.data_class import dataclass
-from tuisim.base.errors import ExportError, LogError
+from tuisim.base.errors import ExportError, LogError, counted
 from tuisim.base.faults import describe_fault
 from tuisim.engine.protocol import End
 from tuisim.engine.runs.run_folder import StoredRun
@@ -25,11 +25,14 @@ from tuisim.tasks.goals.condition import ConditionKind
 from tuisim.tasks.goals.judgement import Change, format_points
 from tuisim.tasks.goals.spec import Goal
 from tuisim.tasks.goals.trial_world import TrialWorld
-from tuisim.tasks.marks.class_map import Miss, MissesOfRun
+from tuisim.tasks.marks.class_map import Miss, MissesOfRun, build_class_maps
+from tuisim.tasks.marks.copies import find_similar
 from tuisim.tasks.marks.feedback import build_file_stems
 from tuisim.tasks.marks.outcome import GoalOutcome, Outcome, make_portable
-from tuisim.tasks.marks.page import build_reports_folder
+from tuisim.tasks.marks.page import build_page, build_reports_folder
 from tuisim.tasks.marks.sheet import Sheet
+from tuisim.tasks.marks.students import Student
+from tuisim.tasks.marks.workspace import read_modules
 
 MAX_OUTPUT_BYTES = 4 << 20
 """Runs that printed more get no report: a browser could hardly show it."""
@@ -246,3 +249,44 @@ def _judge_goals(goals: Sequence[Goal], outcome: Outcome, run: StoredRun) -> dic
 
 def _is_of_the_text(goal: Goal) -> bool:
     return all(part.KIND is ConditionKind.FIXED for part in goal.parts)
+
+
+def write_class_page(
+    sheet: Sheet,
+    worlds: Sequence[TrialWorld],
+    students: Sequence[Student],
+    ignored: Sequence[str],
+    target: Path,
+    tell: Callable[[str, float, float], None],
+    *,
+    movies: bool,
+) -> None:
+    """Write the page of a class, and the reports of its runs into a folder beside it.
+
+    Args:
+        sheet: The marks.
+        worlds: The worlds of the task.
+        students: Those whose programs are compared.
+        ignored: Names of files that are no programs.
+        target: The page.
+        tell: Receives the progress: words, the number of reports that are written, and of all.
+        movies: Whether reports of runs that missed a goal have movies.
+
+    Raises:
+        ExportError: the page cannot be written, or is without some of the reports.
+    """
+    run_count = sum(bool(outcome.run_id) for row in sheet.rows for outcome in row.outcomes)
+    links = {}
+    misses = []
+    faults = []
+    for report in write_reports(sheet, worlds, target, movies=movies):
+        if report.fault:
+            faults.append(f"{report.student}: {report.fault}")
+            continue
+        links[report.student, report.world, report.seed] = report.path
+        misses.append(report.misses)
+        tell(f"report {len(links)} of {run_count}", len(links), run_count)
+    alike = find_similar({student.name: read_modules(student) for student in students})
+    write_whole(target, build_page(sheet, links, ignored, alike, build_class_maps(misses)).encode())
+    if faults:
+        raise ExportError(f"{target} is without {counted(len(faults), 'report')}: {faults[0]}")

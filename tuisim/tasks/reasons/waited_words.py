@@ -4,15 +4,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING, assert_never
 
 from tuisim.base.data_class import dataclass
+from tuisim.engine.core.collision import TOUCH_MM, Solids
+from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.hub_spec import CONTROLLERS, HUB_PORTS, find_touch_keys
-from tuisim.engine.core.spec import EMPTY_MAT, InfraredSpec, RunSpec, UltrasonicSpec
+from tuisim.engine.core.outline import build_outline
+from tuisim.engine.core.sensors.infrared import PROXIMITY_RANGE_MM, proximity
+from tuisim.engine.core.sensors.ultrasonic import measure_distance_mm
+from tuisim.engine.core.spec import EMPTY_MAT, InfraredSpec, RunSpec, UltrasonicSpec, WorldSpec
+from tuisim.engine.obstacles import OBSTACLES
 from tuisim.engine.runs.readings import BUTTONS_PORT, HUB_BUTTONS_PORT, KEYS_BY_PORT
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.tasks.reasons.hand_presses import find_hits
-from tuisim.tasks.reasons.obstacle_advice import find_nearest, find_obstacle
 from tuisim.tasks.reasons.unmet import Unmet, find_unmet
 from tuisim.tasks.reasons.waited import SEEN, Awaited, Subject, find_awaited
 
@@ -253,3 +259,60 @@ def name_remedy_with_keys(awaited: Awaited, spec: RunSpec) -> str:
             return f"{{panel-brick}} opens the {brick}, where {digits.get(awaited.port, 'the mouse')} presses it"
         case _:
             return name_remedy(awaited, spec, is_live=True)
+
+
+_SHARE = 0.7
+"""Distance of the proposed obstacle, as a share of the one that the program asks for."""
+_NEAREST_MM = 40.0
+"""Ultrasonic sensors measure nothing that is nearer than 30 mm."""
+
+
+def find_nearest(sensor: UltrasonicSpec, spec: RunSpec) -> float:
+    """Return the least distance in mm that an ultrasonic sensor can read of a wall: that with the robot at the wall."""
+    front_mm = build_outline(spec.robot).front_mm if spec.profile.solid or spec.world.solid else 0.0
+    return max(float(spec.profile.min_echo_mm), front_mm - sensor.y_mm)
+
+
+def find_obstacle(
+    sensor: UltrasonicSpec | InfraredSpec, spec: RunSpec, pose: Pose, limit: float | None
+) -> str:
+    """Return options that put an obstacle of `OBSTACLES` before a sensor; empty if none of them does.
+
+    Args:
+        sensor: The sensor.
+        spec: The run.
+        pose: Where the robot looks for the obstacle.
+        limit: How near it has to be, in mm or in % for an infrared sensor; None for anywhere.
+    """
+    sets = {name: replace(spec.world, obstacles=boxes) for name, boxes in OBSTACLES.items()}
+    distances = {name: _measure(sensor, spec, world, pose) for name, world in sets.items()}
+    nearest = min(distances, key=distances.__getitem__)
+    if distances[nearest] < (math.inf if limit is None else limit):
+        return f"-o {nearest}"
+    start = spec.world.start
+    if limit is None or (pose.x_mm, pose.y_mm) != (start.x_mm, start.y_mm):
+        return ""
+    per_unit = 1.0 if isinstance(sensor, UltrasonicSpec) else PROXIMITY_RANGE_MM / 100
+    way_mm = max(_NEAREST_MM, limit * per_unit * _SHARE, build_outline(spec.robot).front_mm + 1.0)
+    for name, world in sets.items():
+        for box in world.obstacles:
+            x_mm = math.floor(box.x_mm - sensor.y_mm - way_mm)
+            if _measure(sensor, spec, world, replace(pose, x_mm=float(x_mm))) < limit:
+                return f"-o {name} -x {x_mm}"
+    return ""
+
+
+def _measure(
+    sensor: UltrasonicSpec | InfraredSpec, spec: RunSpec, world: WorldSpec, pose: Pose
+) -> float:
+    """Return how far a sensor sees an obstacle of a world; infinite if it sees none or the robot would touch one."""
+    bare = replace(world, obstacles=())
+    if isinstance(sensor, UltrasonicSpec):
+        distance = measure_distance_mm(pose, sensor, world)
+        free = measure_distance_mm(pose, sensor, bare)
+        is_seen = spec.profile.min_echo_mm <= distance < free
+    else:
+        distance = proximity(pose, sensor, world)
+        is_seen = distance < proximity(pose, sensor, bare)
+    gaps = Solids(world, spec.robot).measure_gaps_mm((pose.x_mm, pose.y_mm, pose.heading_deg))
+    return distance if is_seen and min(gaps, default=0.0) >= -TOUCH_MM else math.inf

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from tests.tasks.goals.recorded import goals_of
-from tuisim.tasks.goals.answers import ASK, answer_lines, build_matching_line
+from tuisim.tasks.marks.trial import ASK, answer_lines, build_matching_line
 
 PATTERNS = [
     *(

@@ -10,7 +10,7 @@ import pytest
 from tests.tasks.marks.test_sheet import COLUMNS, SHEET
 from tuisim.base.errors import ConfigError
 from tuisim.tasks.marks.feedback import build_feedback
-from tuisim.tasks.marks.overrides import apply_overrides, read_overrides
+from tuisim.tasks.marks.marking import apply_overrides, read_overrides
 from tuisim.tasks.marks.page import build_page
 from tuisim.tasks.marks.sheet import Sheet, build_frame
 

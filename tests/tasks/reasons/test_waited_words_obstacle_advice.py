@@ -9,7 +9,7 @@ import pytest
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.profile import PROFILES
 from tuisim.engine.core.spec import InfraredSpec, RobotSpec, RunSpec, UltrasonicSpec, WorldSpec
-from tuisim.tasks.reasons.obstacle_advice import find_obstacle
+from tuisim.tasks.reasons.waited_words import find_obstacle
 
 MIDDLE = Pose(1181.0, 571.5, 0.0)
 SPEC = RunSpec(RobotSpec(), WorldSpec(start=MIDDLE), PROFILES["ev3"])
