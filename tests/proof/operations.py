@@ -108,8 +108,7 @@ OPERATIONS: Mapping[str, Operation] = {
     ),
     "setting": Operation(
         _call(
-            "from tuisim.settings import user_config as c, user_config_file as f; "
-            "f.save_setting(c.SETTINGS['app.fps'], 9)"
+            "from tuisim.settings import user_config as c; c.save_setting(c.SETTINGS['app.fps'], 9)"
         ),
         ("home/config.toml",),
     ),

@@ -234,7 +234,7 @@ PLANTED: tuple[Planted, ...] = (
     ),
     Planted(
         "an isolated program may have semaphores",
-        "engine/runs/child/seccomp.py",
+        "engine/runs/child/isolation.py",
         "29, 68, 64, 248",
         "29, 68, 248",
         "limits",
@@ -243,7 +243,7 @@ PLANTED: tuple[Planted, ...] = (
     ),
     Planted(
         "an isolated program may send descriptors",
-        "engine/runs/child/seccomp.py",
+        "engine/runs/child/isolation.py",
         "250, 46, 307, 319",
         "250, 307, 319",
         "limits",
@@ -252,7 +252,7 @@ PLANTED: tuple[Planted, ...] = (
     ),
     Planted(
         "an isolated program may have files in memory",
-        "engine/runs/child/seccomp.py",
+        "engine/runs/child/isolation.py",
         "307, 319, 278",
         "307, 278",
         "limits",
@@ -261,7 +261,7 @@ PLANTED: tuple[Planted, ...] = (
     ),
     Planted(
         "an isolated program may give pages to a pipe",
-        "engine/runs/child/seccomp.py",
+        "engine/runs/child/isolation.py",
         "319, 278)",
         "319)",
         "limits",
@@ -279,7 +279,7 @@ PLANTED: tuple[Planted, ...] = (
     ),
     Planted(
         "an isolated program may enlarge the buffers of sockets",
-        "engine/runs/child/seccomp.py",
+        "engine/runs/child/isolation.py",
         "_pack_instruction(_EQUAL, machine.setsockopt, 0, 7)",
         "_pack_instruction(_EQUAL, _X32, 0, 7)",
         "limits",

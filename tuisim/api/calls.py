@@ -11,8 +11,8 @@ from tuisim.api.descriptions import plain, read_options, read_world
 from tuisim.api.run import Run
 from tuisim.base.errors import ConfigError
 from tuisim.base.source import Program
+from tuisim.engine.presses import press_actions
 from tuisim.engine.runs.handle import RunOptions, start_run
-from tuisim.engine.runs.presses import press_actions
 from tuisim.engine.runs.store import RunStore
 from tuisim.programs.function import read_function
 from tuisim.programs.plugged_words import describe_plugged

@@ -23,7 +23,7 @@ from tuisim.commands.echo import (
 )
 from tuisim.commands.run_options import build_jobs_option, build_timeout_option
 from tuisim.engine.core.values import MAX_SEED
-from tuisim.engine.runs.presses import press_actions
+from tuisim.engine.presses import press_actions
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.engine.runs.store import RunStore
 from tuisim.settings.build import build_run_spec, extract_settings

@@ -27,9 +27,9 @@ from tuisim.commands.run_options import build_input_option, build_timeout_option
 from tuisim.engine.breakpoints import check_line, parse_breakpoints, parse_watch
 from tuisim.engine.core.geometry import pose_in_words
 from tuisim.engine.core.profile import NS_PER_S
+from tuisim.engine.presses import press_actions
 from tuisim.engine.protocol import Answer, InputWanted, Inspect, Inspected, Message, Paused, Resume
 from tuisim.engine.runs.handle import RunHandle, RunOptions, start_run
-from tuisim.engine.runs.presses import press_actions
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.engine.runs.store import RunStore
 from tuisim.logs.export import EXPORTERS, check_targets, export_samples, export_telemetry

@@ -21,9 +21,9 @@ from tuisim.base.errors import ConfigError, HostError, counted
 from tuisim.base.source import Program
 from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.mat_cache import FieldFiles
+from tuisim.engine.presses import press_actions
 from tuisim.engine.protocol import Answer, Ended, Message, Reply, Wheels, describe_state
 from tuisim.engine.runs.handle import RunHandle, RunOptions, start_run
-from tuisim.engine.runs.presses import press_actions
 from tuisim.engine.runs.records import OutputRow, Stream
 from tuisim.engine.runs.run_folder import StoredRun, field_files
 from tuisim.engine.runs.samples import Sample, list_samples

@@ -125,7 +125,7 @@ def _replay_run(task: Task, run: StoredRun, ended: Ended) -> tuple[StoredRun, En
     if not task.is_replayed or ended.end in (End.FALSIFIED, End.DISK_FULL):
         return run, ended
     # Imported on demand: most batches need it not.
-    from tuisim.engine.runs.replayed_run import replay_run
+    from tuisim.engine.runs.replay import replay_run
 
     run, parted = replay_run(run, task.options.actions, task.real_time_limit_s or math.inf)
     if not parted:

@@ -18,7 +18,7 @@ from tuisim.engine.protocol import (
     StepTicks,
 )
 from tuisim.engine.runs import handle
-from tuisim.engine.runs.child import fair_clock
+from tuisim.engine.runs.child import process
 
 GOES_ON = "import time\nwhile True:\n    try: time.sleep(0.01)\n    except: pass"
 
@@ -56,8 +56,8 @@ def test_a_program_whose_turn_does_not_come_is_not_taken_for_stuck(
     until(run, lambda: run.output.length > 0)
     # So busy a machine that the program does nothing but wait, far longer at each look; any time at all is too long.
     waits_s, killed = count(1e6, 1e3), list[int]()
-    monkeypatch.setattr(fair_clock, "measure_waited_s", lambda pid: next(waits_s))
-    monkeypatch.setattr(fair_clock, "measure_computed_s", lambda pid: 0.0)
+    monkeypatch.setattr(process, "measure_waited_s", lambda pid: next(waits_s))
+    monkeypatch.setattr(process, "measure_computed_s", lambda pid: 0.0)
     monkeypatch.setattr(handle, "STUCK_AFTER_S", 0.0)
     monkeypatch.setattr(handle, "end_group", killed.append)
     run.stop()

@@ -24,8 +24,8 @@ from tuisim.engine.core.spec import (
     UltrasonicSpec,
     WorldSpec,
 )
+from tuisim.engine.presses import press_actions
 from tuisim.engine.runs.handle import RunHandle, RunOptions, start_run
-from tuisim.engine.runs.presses import press_actions
 
 START = Pose(500.0, 571.5, 0.0)
 SQUARE = RobotSpec(wheel_spacing_mm=168.0)

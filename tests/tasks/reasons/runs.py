@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from tests.running import PATIENCE_S
+from tuisim.engine.presses import press_actions
 from tuisim.engine.runs.handle import RunOptions, start_run
-from tuisim.engine.runs.presses import press_actions
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.engine.runs.store import RunStore
 from tuisim.programs.program_file import parse_program

@@ -18,8 +18,8 @@ from tuisim.engine.core import tree
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.spec import EMPTY_MAT, NoiseSpec, Obstacle, RobotSpec, RunSpec
 from tuisim.engine.obstacles import load_obstacles
+from tuisim.engine.presses import press_actions
 from tuisim.engine.protocol import UserAction
-from tuisim.engine.runs.presses import press_actions
 from tuisim.programs.program_file import ProgramSource, build_program
 from tuisim.programs.program_settings import (
     GROUND_PATHS,

@@ -43,9 +43,9 @@ from tuisim.engine.protocol import (
     Wheels,
 )
 from tuisim.engine.runs.child.events import DEBUGGED, EventStream, build_part, list_allowed_events
-from tuisim.engine.runs.child.fair_clock import FairClock
-from tuisim.engine.runs.child.isolation import Quota
+from tuisim.engine.runs.child.isolation import Quota, is_readable
 from tuisim.engine.runs.child.process import (
+    FairClock,
     await_stack,
     describe_end,
     end_descendants,
@@ -56,7 +56,6 @@ from tuisim.engine.runs.child.process import (
     start_child,
     write_command,
 )
-from tuisim.engine.runs.child.readable import is_readable
 from tuisim.engine.runs.run_folder import RUN_FILE, StoredRun, add_plugged, field_files
 from tuisim.engine.runs.run_options import DEFAULT_TIME_LIMIT_S as DEFAULT_TIME_LIMIT_S
 from tuisim.engine.runs.run_options import RunOptions as RunOptions

@@ -4,17 +4,25 @@ from __future__ import annotations
 
 from tuisim.engine.runtime import wallclock  # isort: skip - must come first: it saves the real clock
 
+import faulthandler
+import fcntl
 import os
+import signal
 import sys
+import types
+import warnings
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
+from tuisim.base.atomic import private
+from tuisim.base.source import Program
 from tuisim.engine import protocol
 from tuisim.engine.core.profile import NS_PER_S
 from tuisim.engine.core.simulation import Turn, build_simulation
 from tuisim.engine.core.tick_record import NoRecording
 from tuisim.engine.mat_cache import open_field
+from tuisim.engine.protocol import COMMAND_SIGNAL, STACK_SIGNAL, End
 from tuisim.engine.runs.brick_state import build_motors_row
 from tuisim.engine.runs.command_records import CommandsWriter
 from tuisim.engine.runs.motor_records import MotorsWriter
@@ -28,12 +36,10 @@ from tuisim.engine.runs.records import (
     TelemetryWriter,
     is_full,
 )
-from tuisim.engine.runs.side_files import COMMANDS_FILE, MOTORS_FILE, READINGS_FILE
+from tuisim.engine.runs.side_files import COMMANDS_FILE, MOTORS_FILE, READINGS_FILE, STACK_FILE
 from tuisim.engine.runtime.channel import Channel
 from tuisim.engine.runtime.control import ATTENTION, STOPPING, RunControl
-from tuisim.engine.runtime.interrupts import Interrupts, die_with_host
-from tuisim.engine.runtime.known_programs import KnownPrograms
-from tuisim.engine.runtime.limits import STACK_BYTES, limit_memory, refuse_processes
+from tuisim.engine.runtime.loader import compile_program
 from tuisim.engine.runtime.modules import remember_source
 from tuisim.engine.runtime.output import OutputRecorder
 from tuisim.engine.runtime.patches.clock import (
@@ -49,8 +55,9 @@ from tuisim.engine.runtime.patches.file_waits import FileWaits
 from tuisim.engine.runtime.patches.randomness import finish_random, finish_uuid, patch_urandom
 from tuisim.engine.runtime.patches.replacement import PatchedModules, replace
 from tuisim.engine.runtime.run_config import RunConfig, derive_config, read_config
+from tuisim.engine.runtime.scheduler import STACK_BYTES, limit_memory, refuse_processes
 from tuisim.engine.runtime.session import RunLimits, Session
-from tuisim.engine.runtime.stack import finish_inspect, finish_traceback
+from tuisim.engine.runtime.stack import PACKAGE_FOLDER, finish_inspect, finish_traceback
 from tuisim.engine.runtime.tracebacks import own_files
 
 if TYPE_CHECKING:
@@ -58,6 +65,189 @@ if TYPE_CHECKING:
     from tuisim.engine.runtime.debugger.debugger import Debugger
     from tuisim.engine.runtime.program import ProgramRunner
     from tuisim.engine.runtime.scheduler import Scheduler
+
+MAX_KNOWN = 8
+MAX_CHARACTERS = 1 << 16
+MAX_CPU_S = 1.0
+"""A program that takes longer to compile ends this process; its runs are then started by themselves."""
+SPARE_FRAMES = 100
+"""A program is compiled with this many frames less, so that the process of a run can compile it, too."""
+
+
+class KnownPrograms:
+    """Compiles a program when it is run for the second time.
+
+    The first time, the process of the run compiles it; so it does whenever there is an error or a warning to report.
+    """
+
+    def __init__(self) -> None:
+        self._seen: set[tuple[str, str, bool]] = set()
+        self._codes: dict[tuple[str, str, bool], types.CodeType | None] = {}
+
+    def code(self, program: Program, drops_annotations: bool) -> types.CodeType | None:
+        """Return the code of a program that is about to be run; None if the process of the run has to compile it."""
+        key = program.text, program.file, drops_annotations
+        if len(program.text) > MAX_CHARACTERS:
+            return None
+        if key not in self._seen:
+            if len(self._seen) >= MAX_KNOWN:
+                self._seen.clear()
+                self._codes.clear()
+            self._seen.add(key)
+            return None
+        if key not in self._codes:
+            self._codes[key] = _compile(*key)
+        return self._codes[key]
+
+
+def _compile(text: str, file: str, drops_annotations: bool) -> types.CodeType | None:
+    before = sys.getrecursionlimit()
+    sys.setrecursionlimit(before - SPARE_FRAMES)
+    wallclock.set_timer(signal.ITIMER_VIRTUAL, MAX_CPU_S)
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            return compile_program(text, file, drops_annotations)
+    except Exception:  # whatever it is, it is told by the program's own process
+        return None
+    finally:
+        wallclock.set_timer(signal.ITIMER_VIRTUAL, 0.0)
+        sys.setrecursionlimit(before)
+
+
+# A handler may raise only in the program's own code. Inside the runtime it only sets a
+# bit, so that core code is never unwound halfway; the frames show whose code is running.
+
+RAISE_AGAIN_AFTER_S, RAISE_AGAIN_EVERY_S = 0.2, 0.02
+LEFT_TO_OTHERS_S = 0.1
+"""Real time that a thread has to take a command before the main thread, which waits for its turn, does."""
+STALL_LOOK_S = 1.0
+
+# Saved: the program's `faulthandler` gets other functions.
+_enable = faulthandler.enable
+_register = faulthandler.register
+
+
+def die_with_host(lifeline_fd: int) -> None:
+    """Make the kernel kill this process and its group when the host ends, even inside a long C call.
+
+    Args:
+        lifeline_fd: Read end of a pipe that nothing is ever written to. When the host
+            ends, the pipe closes and the kernel sends SIGIO, whose default action is to kill.
+    """
+    fcntl.fcntl(lifeline_fd, fcntl.F_SETOWN, -os.getpgrp())
+    fcntl.fcntl(lifeline_fd, fcntl.F_SETFL, fcntl.fcntl(lifeline_fd, fcntl.F_GETFL) | os.O_ASYNC)
+    if wallclock.select_files([lifeline_fd], [], [], 0)[0]:
+        # The host ended before the signal was requested.
+        wallclock.exit_process(1)
+
+
+class Interrupts:
+    """Signal handlers of one run.
+
+    Args:
+        session: The run.
+        soft_codes: Code objects of the runtime in which a handler may raise, unlike in the rest of the runtime.
+    """
+
+    def __init__(self, session: Session, soft_codes: frozenset[types.CodeType]) -> None:
+        self._session = session
+        self._soft_codes = soft_codes
+        self._timer_on = False
+        self._removed = False
+        self.main_is_parked = False
+        """Whether the main thread waits for its turn, where raising is harmless."""
+        self._stall_now, self._stall_s = -1, 0.0
+
+    def install(self, folder: Path) -> None:
+        """Install the handlers.
+
+        Args:
+            folder: Run folder; a signal writes the stack there, even inside a long C call.
+        """
+        stack_fd = private(f"{folder}{os.sep}{STACK_FILE}", os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
+        # Crashes such as SIGSEGV are written there, too.
+        _enable(stack_fd, all_threads=False)
+        _register(STACK_SIGNAL, file=stack_fd, all_threads=False)
+        signal.signal(COMMAND_SIGNAL, self._on_command)
+        wallclock.set_signal(signal.SIGALRM, self._on_alarm)
+        # The interrupt of the terminal is for the host; the program's own is simulated.
+        wallclock.set_signal(signal.SIGINT, int(signal.SIG_IGN))
+        if self._session.limits.stall_s:
+            signal.signal(signal.SIGVTALRM, self._on_stall)
+            wallclock.set_timer(signal.ITIMER_VIRTUAL, STALL_LOOK_S, STALL_LOOK_S)
+
+    def remove(self) -> None:
+        """Disarm the handlers when the program is over. Any thread may do so; only the main one could remove them."""
+        self._removed = True
+        wallclock.set_timer(signal.ITIMER_REAL, 0.0)
+        wallclock.set_timer(signal.ITIMER_VIRTUAL, 0.0)
+
+    def _on_command(self, _number: int, frame: types.FrameType | None) -> None:
+        session = self._session
+        if self._removed:
+            return
+        session.flags |= ATTENTION
+        if session.steering.holding:
+            # The run waits for commands, maybe in another thread, which reads them from the pipe itself.
+            return
+        if self.main_is_parked:
+            # The thread whose turn it is takes the command in its turn, unless it computes without end.
+            if not self._timer_on:
+                wallclock.set_timer(signal.ITIMER_REAL, LEFT_TO_OTHERS_S)
+        elif self._can_raise(frame):
+            self._check_stop()
+
+    def _on_alarm(self, _number: int, frame: types.FrameType | None) -> None:
+        session = self._session
+        if self._removed or session.steering.holding:
+            return
+        session.flags |= ATTENTION
+        if self._can_raise(frame):
+            self._check_stop()
+
+    def _check_stop(self) -> None:
+        try:
+            self._session.check_stop()
+        finally:
+            self._raise_again_later()
+
+    def _raise_again_later(self) -> None:
+        # A program that catches the stop gets it again and again, until the host kills it.
+        if self._session.stop_reason is not None and not self._timer_on:
+            self._timer_on = True
+            wallclock.set_timer(signal.ITIMER_REAL, RAISE_AGAIN_AFTER_S, RAISE_AGAIN_EVERY_S)
+
+    def _on_stall(self, _number: int, frame: types.FrameType | None) -> None:
+        session = self._session
+        if self._removed:
+            return
+        if session.now != self._stall_now:
+            self._stall_now, self._stall_s = session.now, 0.0
+            return
+        self._stall_s += STALL_LOOK_S
+        if self._stall_s < session.limits.stall_s:
+            return
+        line = session.program_line()
+        summary = f"no simulated time passed in {self._stall_s:g} s of computing, in line {line}"
+        session.ask_stop(End.STALLED, summary, line)
+        if self._can_raise(frame):
+            self._raise_again_later()
+            session.check_stop()
+
+    def _can_raise(self, frame: types.FrameType | None) -> bool:
+        """Return whether a handler may raise: in code of the program or of a library that it called, or in a wait."""
+        if self.main_is_parked or (frame is not None and frame.f_code in self._soft_codes):
+            return True
+        while frame is not None:
+            file = frame.f_code.co_filename
+            if file == self._session.program_file:
+                return True
+            if file.startswith(PACKAGE_FOLDER):
+                return False
+            frame = frame.f_back
+        return False
+
 
 LOOP_TURNS = 500
 LOOP_COST_NS = 5_000_000

@@ -11,13 +11,15 @@ import os
 import signal
 import sys
 import types
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from contextlib import suppress
 from dataclasses import replace as replace_fields
-from typing import NoReturn
+from typing import Any, NoReturn
 
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import LogError, NotSimulated
+from tuisim.engine.brick_home import HOME, find_beside, parts_in_home, place_folder
+from tuisim.engine.core.driver.simulated import SimulatedMotor
 from tuisim.engine.core.profile import NS_PER_S
 from tuisim.engine.protocol import NO_ANSWER, Answer, End, InputWanted
 from tuisim.engine.runs.records import Stream
@@ -26,7 +28,6 @@ from tuisim.engine.runtime.hooks import ErrorHooks, flush_streams, format_safely
 from tuisim.engine.runtime.loader import LOOP_HOOK, MissingPart, compile_prelude, compile_program
 from tuisim.engine.runtime.modules import install_finder
 from tuisim.engine.runtime.output import LineStream, OutputRecorder
-from tuisim.engine.runtime.patches.home_folder import HomeFolder
 from tuisim.engine.runtime.patches.replacement import replace
 from tuisim.engine.runtime.raw_output import RawOutput
 from tuisim.engine.runtime.run_config import RunConfig
@@ -34,8 +35,109 @@ from tuisim.engine.runtime.scheduler import Scheduler
 from tuisim.engine.runtime.session import Deadlock, Session, StopProgram
 from tuisim.engine.runtime.stack import patch_faulthandler
 from tuisim.engine.runtime.tracebacks import find_line
-from tuisim.engine.runtime.unended_moves import finish_moves
 from tuisim.engine.shim.waits import Wait, waits_for
+
+_FILE_CALLS = ("open", "stat", "lstat", "access")
+_FOLDER_CALLS = ("listdir", "scandir", "chdir")
+"""Functions of `os` that take the path of a folder: one that is not there is that of the program."""
+
+
+class HomeFolder:
+    """Makes functions that take paths find files of the brick's home folder beside the program.
+
+    Args:
+        own_folder: Returns the folder of the program.
+    """
+
+    def __init__(self, own_folder: Callable[[], str]) -> None:
+        self._own_folder = own_folder
+
+    def patch(self) -> None:
+        """Replace the functions."""
+        self._wrap(builtins, "open", self._find_file)
+        vars(io)["open"] = builtins.open
+        for name in _FILE_CALLS:
+            self._wrap(os, name, self._find_file)
+        for name in _FOLDER_CALLS:
+            self._wrap(os, name, self._find_folder)
+
+    @staticmethod
+    def _wrap(module: Any, name: str, moved: Callable[[Any], Any]) -> None:
+        real = getattr(module, name)
+
+        def call(*given: Any, **named: Any) -> Any:
+            return real(moved(given[0]), *given[1:], **named) if given else real(**named)
+
+        replace(module, name, call)
+
+    def _find_file(self, path: Any) -> Any:
+        """Return the real path of a file; a missing file of the home folder will be created in the program's folder."""
+        if not (text := _parse_home_path(path)):
+            return path
+        own_folder = self._own_folder()
+        if (parts := parts_in_home(text, own_folder)) is None:
+            return path
+        if known := find_beside(parts, own_folder):
+            return known
+        for first in range(len(parts) - 1):
+            if os.path.isdir(folder := os.path.join(own_folder, *parts[first:-1])):
+                return os.path.join(folder, parts[-1])
+        return os.path.join(own_folder, parts[-1])
+
+    def _find_folder(self, path: Any) -> Any:
+        """Return the real path of a folder; a missing folder of the home folder is the program's folder."""
+        return place_folder(text, self._own_folder()) if (text := _parse_home_path(path)) else path
+
+
+def _parse_home_path(path: Any) -> str:
+    """Return a path in the brick's home folder as text; empty for any other path, and for a descriptor."""
+    text = os.fspath(path) if isinstance(path, os.PathLike) else path
+    return text if isinstance(text, str) and text.startswith(HOME) else ""
+
+
+# A brick's driver ends their moves, and lets their wheels come to rest; what has no end is stopped.
+
+MAX_REST_NS = NS_PER_S // 2
+"""How long wheels may take to come to rest."""
+
+
+def finish_moves(session: Session) -> str:
+    """Let all moves end that are for a time or to a position; then let the wheels come to rest, unless a motor runs on.
+
+    Returns:
+        Which motors would turn on for ever, in words; empty for none, and for motors without a driver.
+
+    Raises:
+        StopProgram: the time limit is reached, or the user stops the run.
+    """
+    sim = session.sim
+    motors = {
+        port: motor
+        for port, motor in sim.motors_by_port.items()
+        if isinstance(motor, SimulatedMotor)
+    }
+    if any(motor.ends_alone for motor in motors.values()):
+        sim.line = 0
+    while any(motor.ends_alone for motor in motors.values()):
+        # `advance`, not a wait of the scheduler: the program's threads are over.
+        session.advance(session.now + NS_PER_S, True)
+    turning = sorted(port for port, motor in motors.items() if motor.mode and motor.aim_dps)
+    if not turning:
+        _let_rest(session, motors.values())
+        return ""
+    *others, last = turning
+    ports = f"{', '.join(others)} and {last}" if others else last
+    return f"ended while {ports} {'were' if others else 'was'} still set to turn"
+
+
+def _let_rest(session: Session, motors: Collection[SimulatedMotor]) -> None:
+    """Let wheels roll out, or swing back to the position that they hold, within the time limit."""
+    if all(motor.axle.stands for motor in motors):
+        return
+    end_ns = min(session.now + MAX_REST_NS, session.limits.time_ns or 1 << 62)
+    while session.now < end_ns and not all(motor.resting for motor in motors):
+        session.sim.line = 0
+        session.advance(min(session.sim.compute_due_ns(session.sim.tick + 1), end_ns), True)
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,8 +12,7 @@ from tuisim.engine.core.conditions import Operator, ValueCondition, ValueSource
 from tuisim.engine.core.spec import WorldSpec
 from tuisim.tasks.goals.brick import resolve_column
 from tuisim.tasks.goals.comparisons import CountCondition, KeepCondition, WhenCondition
-from tuisim.tasks.goals.evidence import Evidence, EvidencePoint, EvidenceSpan
-from tuisim.tasks.goals.found import Finding, share_words
+from tuisim.tasks.goals.evidence import Evidence, EvidencePoint, EvidenceSpan, Finding, share_words
 from tuisim.tasks.goals.places import find_motion_line
 
 if TYPE_CHECKING:

@@ -11,8 +11,7 @@ from tuisim.engine.core.profile import NS_PER_S
 from tuisim.engine.protocol import End
 from tuisim.engine.runs.records import OutputRow, Stream
 from tuisim.engine.runs.samples import Sample
-from tuisim.tasks.goals.evidence import Evidence, EvidencePoint, EvidenceSpan
-from tuisim.tasks.goals.found import Finding
+from tuisim.tasks.goals.evidence import Evidence, EvidencePoint, EvidenceSpan, Finding
 from tuisim.tasks.goals.patterns import build_search
 from tuisim.tasks.goals.readings import (
     NOUNS,

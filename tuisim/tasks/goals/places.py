@@ -7,8 +7,13 @@ from typing import TYPE_CHECKING, Any
 from tuisim.engine.core.collision import Solids
 from tuisim.engine.core.outline import build_outline
 from tuisim.engine.core.spec import Obstacle, RobotSpec, WorldSpec
-from tuisim.tasks.goals.evidence import Evidence, EvidencePoint, EvidenceSpan
-from tuisim.tasks.goals.found import Finding, format_distance
+from tuisim.tasks.goals.evidence import (
+    Evidence,
+    EvidencePoint,
+    EvidenceSpan,
+    Finding,
+    format_distance,
+)
 from tuisim.tasks.goals.spec import (
     AreaCondition,
     BodyPart,

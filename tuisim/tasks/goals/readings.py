@@ -9,8 +9,7 @@ from tuisim.base.errors import counted
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, ColorSensorSpec
 from tuisim.engine.runs.readings import MODES_BY_KIND, find_ticks
 from tuisim.tasks.goals.condition import UnjudgedError
-from tuisim.tasks.goals.evidence import Evidence, EvidencePoint, EvidenceSpan
-from tuisim.tasks.goals.found import Finding, share_words
+from tuisim.tasks.goals.evidence import Evidence, EvidencePoint, EvidenceSpan, Finding, share_words
 from tuisim.tasks.goals.places import find_motion_line
 from tuisim.tasks.goals.spec import FollowCondition, Range, ReadCondition, Reading, select_place
 

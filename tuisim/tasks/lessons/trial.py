@@ -6,8 +6,8 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from tuisim.base.data_class import dataclass
 from tuisim.base.source import source_lines
+from tuisim.engine.presses import press_actions
 from tuisim.engine.runs.handle import RunOptions, start_run
-from tuisim.engine.runs.presses import press_actions
 from tuisim.engine.runs.recorded_run import Recording
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.engine.runs.store import RunStore

@@ -221,7 +221,7 @@ def _find_mistaken(run: StoredRun, mat: Field | None, has_left_mat: bool) -> Ite
 
     It turned the wheels by an angle meant for the robot, which may be why it left the mat, or counted a band twice.
     """
-    from tuisim.tasks.reasons.wheel_turn import find_mistaken_turn
+    from tuisim.tasks.reasons.unwatched import find_mistaken_turn
 
     if turn := find_mistaken_turn(run):
         kind = ReasonKind.LOST if has_left_mat else ReasonKind.MISTAKEN

@@ -15,7 +15,7 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from typing import Any, Protocol
 
-from tuisim.engine.runs.child.readable import is_readable
+from tuisim.engine.runs.child.isolation import is_readable
 
 ANSWER_S = 10.0
 """Longest wait for a server: a program may have stopped it. Then it is continued once, and given up after that."""

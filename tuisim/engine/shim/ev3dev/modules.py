@@ -7,21 +7,26 @@ import types
 from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager
 from functools import partial
+from typing import Any, NoReturn
 
+from tuisim.base.errors import NotSimulated
 from tuisim.base.source import PYBRICKS
-from tuisim.engine.core.profile import Library
+from tuisim.engine.core.commands.calls import Call
+from tuisim.engine.core.commands.table import obey
+from tuisim.engine.core.profile import Library, MotorLaw
+from tuisim.engine.core.sensors.color import WHITE, percent
 from tuisim.engine.shim.brick import BuiltBrick, ports_hint
 from tuisim.engine.shim.buttons import patch_button_module
 from tuisim.engine.shim.console import Terminal, patch_console_module
+from tuisim.engine.shim.device_files import DeviceFiles, free_of_charge, plain
 from tuisim.engine.shim.display import draw_with_the_bricks_font
-from tuisim.engine.shim.ev3dev import virtual
 from tuisim.engine.shim.ev3dev.library import connect, patch_motor_module, patch_sensor_module
 from tuisim.engine.shim.ev3dev.older_library import MissingLibrary, finish_core, surroundings
-from tuisim.engine.shim.ev3dev.robolab import glue_module, patch_lego_module
 from tuisim.engine.shim.evdev.devices import evdev_modules
 from tuisim.engine.shim.fonts import patch_fonts_module
 from tuisim.engine.shim.leds import patch_led_module
 from tuisim.engine.shim.plugs import Plugs
+from tuisim.engine.shim.sensors import ColorDevice
 from tuisim.engine.shim.session import DeviceSession
 from tuisim.engine.shim.sound import Mixer, patch_sound_module
 from tuisim.engine.shim.unsupported.modules import HardwareFinder, OtherLibrary
@@ -32,6 +37,82 @@ from tuisim.engine.shim.unsupported.parts import (
     refuse_board,
     refuse_classes,
 )
+
+NAME = "ev3dev2.sensor.virtual"
+_UNSIMULATED = ("CameraSensor", "LaserRangeSensor", "LidarSensor", "ObjectTracker", "Radio")
+_MORE_PORTS = range(5, 13)
+"""Inputs of Gears that a brick does not have: devices on them are its virtual parts."""
+
+
+class _Unsimulated:
+    """A part of the simulator Gears that is not simulated: programs can create it, as they all do, but not use it."""
+
+    def __init__(self, *_given: object, **_named: object) -> None: ...
+
+    def __getattr__(self, name: str) -> NoReturn:
+        if name.startswith("__"):
+            raise AttributeError(name)
+        used = f"{NAME}.{type(self).__name__}.{name}"
+        raise NotSimulated(
+            f"tuisim does not simulate {used}, a part of the simulator Gears",
+            "of this module, it simulates GPSSensor and Pen",
+        )
+
+
+def virtual_module(session: DeviceSession) -> types.ModuleType:
+    """Return the module of Gears with a pen and the true place of the robot."""
+    module = types.ModuleType(
+        NAME, "Parts of the simulator Gears: a pen, and the true place of the robot."
+    )
+    sim = session.sim
+    cost_ns = session.sim.spec.profile.attribute_read_ns
+
+    class GPSSensor:
+        """The true place of the robot, in cm from the lower left corner of the mat."""
+
+        def __init__(self, address: object = None) -> None:
+            self.address = address
+
+        @property
+        def position(self) -> list[float]:
+            """x, y and altitude in cm."""
+            session.charge(cost_ns)
+            return [sim.pose.x_mm / 10, sim.pose.y_mm / 10, 0.0]
+
+        x = property(lambda self: self.position[0])
+        y = property(lambda self: self.position[1])
+        altitude = property(lambda self: self.position[2])
+
+    class Pen:
+        """The pen of the robot."""
+
+        def __init__(self, address: object = None) -> None:
+            self.address = address
+
+        def down(self) -> None:
+            """Draw from now on."""
+            session.charge(cost_ns)
+            obey(sim, session.now, 0, Call.MOVE_PEN, 1.0)
+
+        def up(self) -> None:
+            """Draw no longer."""
+            session.charge(cost_ns)
+            obey(sim, session.now, 0, Call.MOVE_PEN, 0.0)
+
+        def setColor(self, *_given: object, **_named: object) -> None:  # noqa: N802
+            """Do nothing: the robot has one colour, see the option --pen-color."""
+
+        def setWidth(self, *_given: object, **_named: object) -> None:  # noqa: N802
+            """Do nothing: the robot has one width, see the option --pen-width."""
+
+    kinds: list[Any] = [GPSSensor, Pen, *(type(name, (_Unsimulated,), {}) for name in _UNSIMULATED)]
+    names = {kind.__name__: kind for kind in kinds}
+    for kind in kinds:
+        kind.__module__ = NAME
+    names |= {f"INPUT_{number}": f"virtual:in{number}" for number in _MORE_PORTS}
+    vars(module).update(names, __all__=list(names))
+    return module
+
 
 AROUND: Mapping[str, Callable[[], AbstractContextManager[None]]] = dict.fromkeys(
     ("ev3dev.core", "ev3dev.fonts"), surroundings
@@ -72,5 +153,69 @@ def install(session: DeviceSession, built: BuiltBrick, plugs: Plugs) -> None:
     sys.meta_path.append(HardwareFinder(Library.EV3DEV2))
     connect(session, built.files, plugs, partial(ports_hint, session))
     sys.modules["ev3dev2_glue"] = glue_module(session)
-    sys.modules[virtual.NAME] = virtual.virtual_module(session)
+    sys.modules[NAME] = virtual_module(session)
     sys.modules.update(evdev_modules(session))
+
+
+# | in ColorSensor | value |
+# | --- | --- |
+# | reflected_light_intensity | int(red), 0 … 255, if the profile says so (the library: 0 … 100) |
+# | reflected_light_intensity_pc | 100 · int(red) / 255 |
+# | full_reflected_light_intensity | 100 · (int(red) + int(green) + int(blue)) / 765 |
+# | red, green, blue | channels as integers, 0 … 255, if the profile says so (the library: 0 … 1020, 300 on white) |
+
+
+def patch_lego_module(
+    session: DeviceSession,
+    module: types.ModuleType,
+    brick: DeviceFiles,
+    colors: dict[str, ColorDevice],
+) -> None:
+    """Add the course's properties to `ev3dev2.sensor.lego`; the colour sensors are given by device path."""
+    lego: Any = module
+    color_sensor = lego.ColorSensor
+
+    def channel(index: int) -> property:
+        return property(lambda self: colors[self._path].read("RGB-RAW")[index])
+
+    def reflected(self: Any) -> int:
+        return colors[self._path].read("COL-REFLECT")[0]
+
+    if session.sim.spec.profile.reflected_max == WHITE:
+        color_sensor.reflected_light_intensity = property(reflected)
+        color_sensor.red, color_sensor.green, color_sensor.blue = channel(0), channel(1), channel(2)
+
+    def red_percent(self: Any) -> float:
+        return percent(colors[self._path].read("COL-REFLECT")[0], WHITE)
+
+    def mean_percent(self: Any) -> float:
+        return percent(sum(colors[self._path].read("RGB-RAW")), 3 * WHITE)
+
+    color_sensor.reflected_light_intensity_pc = property(red_percent)
+    color_sensor.full_reflected_light_intensity = property(mean_percent)
+    # The library's constructor reads the initial angle.
+    lego.GyroSensor.__init__ = free_of_charge(session, lego.GyroSensor.__init__)
+
+
+def glue_module(session: DeviceSession) -> types.ModuleType:
+    """Return the module `ev3dev2_glue` that course programs import."""
+    glue = types.ModuleType("ev3dev2_glue", "Simulated time and messages, as the course has them.")
+
+    def get_clock() -> float:
+        """Return the simulated seconds since the program started."""
+        seconds = session.sim.tick / session.sim.spec.profile.tick_hz
+        return (
+            plain(seconds)
+            if session.sim.spec.profile.motor_law == MotorLaw.NBEV3DEVSIM
+            else seconds
+        )
+
+    def pyState() -> dict[str, list[Any]]:
+        """Return all answers of a notebook's responder, oldest first; empty without a responder.
+
+        The responder has answered every printed line by then. No simulated time passes.
+        """
+        return {"messages": session.messages()}
+
+    vars(glue).update(get_clock=get_clock, pyState=pyState)
+    return glue

@@ -8,7 +8,7 @@ import sys
 import time
 
 from tests.running import PATIENCE_S
-from tuisim.engine.runs.child.fair_clock import measure_computed_s, measure_waited_s
+from tuisim.engine.runs.child.process import measure_computed_s, measure_waited_s
 
 
 def test_the_time_that_a_process_waits_for_a_processor_is_known() -> None:

@@ -9,8 +9,8 @@ import warnings
 import pytest
 
 from tuisim.base.source import Program
-from tuisim.engine.runtime import known_programs
-from tuisim.engine.runtime.known_programs import MAX_CHARACTERS, MAX_KNOWN, KnownPrograms
+from tuisim.engine.runtime import child
+from tuisim.engine.runtime.child import MAX_CHARACTERS, MAX_KNOWN, KnownPrograms
 from tuisim.engine.runtime.loader import LOOP_HOOK, compile_program
 
 
@@ -42,7 +42,7 @@ def test_a_program_is_compiled_when_it_is_run_again(monkeypatch: pytest.MonkeyPa
         compiled.append(file)
         return compile_program(text, file, drops_annotations)
 
-    monkeypatch.setattr(known_programs, "compile_program", compile_noted)
+    monkeypatch.setattr(child, "compile_program", compile_noted)
     first, *others = [known.code(program, False) for _ in range(3)]
     assert (first, compiled) == (None, [program.file])
     assert others[0] is not None

@@ -12,7 +12,7 @@ from tuisim.engine.runs.child.isolation import check_isolation
 from tuisim.engine.runs.handle import RunHandle, RunOptions
 from tuisim.engine.runs.run_folder import field_files
 from tuisim.engine.runs.store import RunStore
-from tuisim.engine.runtime.addresses import Addresses
+from tuisim.engine.runtime.output import Addresses
 from tuisim.settings.build import build_run_spec
 from tuisim.settings.options import Settings
 

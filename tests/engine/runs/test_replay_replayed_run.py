@@ -13,7 +13,7 @@ from tests.cases import cases
 from tests.running import Run
 from tuisim.base.errors import LogError
 from tuisim.engine.protocol import SetButtons, UserAction
-from tuisim.engine.runs.replayed_run import replay_run
+from tuisim.engine.runs.replay import replay_run
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.engine.runs.side_files import COMMANDS_FILE
 from tuisim.engine.runs.store import RunStore
