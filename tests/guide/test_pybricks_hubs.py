@@ -9,7 +9,7 @@ import pytest
 
 from tests.conftest import Command
 from tuisim.engine.core.hub_spec import HUBS
-from tuisim.engine.shim.pybricks.hub.modules import REFUSED
+from tuisim.engine.shim.pybricks.unsimulated import HUB_CLASSES as REFUSED
 from tuisim.guide.catalogue import load_pages
 
 LINES = load_pages()["pybricks"].source.splitlines()

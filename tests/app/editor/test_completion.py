@@ -25,6 +25,12 @@ from pybricks.parameters import Port, Color
 ev3 = EV3Brick()
 motor = Motor(Port.A)
 """
+HUB = """\
+from pybricks.hubs import PrimeHub
+from pybricks.pupdevices import Motor
+from pybricks.robotics import DriveBase
+robot = DriveBase(Motor(), Motor(), 56, 112)
+"""
 
 
 def at_end(text: str, path: str = "prog.py") -> tuple[Candidate, ...]:
@@ -81,6 +87,8 @@ def test_what_programs_use_comes_first_and_what_is_inherited_or_internal_last(
         (EV3DEV2 + "tank_d", []),
         (PYBRICKS + "ev3.s", ["screen", "speaker"]),
         (PYBRICKS + "ColorSensor(Port.S1).", ["ambient", "color", "reflection", "rgb"]),
+        (HUB + "robot.use", ["use_gyro"]),
+        (HUB + "from pybricks.iodevices import X", ["XboxController"]),
         ("from pybricks.rob", ["robotics"]),
         ("from pybricks.tools import w", ["wait"]),
         ("def speed_of(wheel):\n    return wheel\n\nspee", ["speed_of", "SpeedPercent"]),
@@ -98,6 +106,8 @@ def test_what_programs_use_comes_first_and_what_is_inherited_or_internal_last(
         "no prelude",
         "Pybricks",
         "no inner names",
+        "Pybricks of hubs",
+        "module of hubs",
         "module",
         "from a module",
         "own function",

@@ -18,7 +18,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from tuisim.app.editor.syntax import find_spans
 from tuisim.base.data_class import dataclass
 from tuisim.base.folders import cache_folder
-from tuisim.base.source import PRELUDE_TEXTS
+from tuisim.base.source import HUB_DEVICES, PRELUDE_TEXTS, PYBRICKS_4_NAMES
+from tuisim.engine.core.hub_spec import HUBS
 from tuisim.programs.program_file import parse_unfinished
 
 if TYPE_CHECKING:
@@ -33,6 +34,7 @@ MAX_CALL_LINES = 20
 """Number of lines, from the cursor upwards, in which the beginning of a call is looked for."""
 
 _PACKAGE = Path(__file__).resolve().parents[2]
+_NAMES = _PACKAGE / "engine" / "shim" / "names"
 _WORD_END = re.compile(r"[^\W\d]\w*$")
 _SENTENCE_END = re.compile(r"\.(?= [A-Z])")
 _COURSE = "from tuisim.engine.shim.names.course import ColorSensor\n"
@@ -239,7 +241,8 @@ def _build_script(text: str, path: str) -> tuple[Script, int]:
         prelude = imports + _COURSE + prelude.removeprefix(imports)
     folder = Path(path).parent
     own = [
-        str(_PACKAGE / "engine" / "shim" / "names"),
+        str(_NAMES),
+        str(_NAMES / _find_pybricks(text)),
         str(_PACKAGE.parent),
         *([str(folder.resolve())] if path else []),
     ]
@@ -253,6 +256,14 @@ def _build_script(text: str, path: str) -> tuple[Script, int]:
     return jedi.Script(
         prelude + program.text, environment=environment, project=project
     ), prelude.count("\n")
+
+
+def _find_pybricks(text: str) -> str:
+    """Return the folder with the names of Pybricks in the version that a program is for."""
+    words = {*re.findall(r"\w+", text)}
+    if words & {HUB_DEVICES.rpartition(".")[2], *HUBS}:
+        return "hub"
+    return "version_4" if words & PYBRICKS_4_NAMES else "version_2"
 
 
 def _is_likely(completion: Completion, word: str) -> bool:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterable, Iterator, Mapping
 
-from tuisim.base.source import PYBRICKS
+from tuisim.base.source import PYBRICKS, PYBRICKS_4_NAMES
 from tuisim.programs.robot.course import find_definitions
 from tuisim.programs.robot.source import Module
 
@@ -18,8 +18,6 @@ IMPORTS: Mapping[str, frozenset[str]] = {
     | {"read_input_byte", "vector"},
 }
 """Names of version 4, by the module that a program imports them from."""
-OWN_NAMES = frozenset({"ThisHub", "hub_menu", "multitask", "run_task"})
-"""Those of them that nothing else is called, however a program gets them."""
 MEMBERS: Mapping[str, frozenset[str]] = {
     "Stop": frozenset({"BRAKE_SMART", "COAST_SMART", "NONE"}),
     "Color": frozenset({"CYAN", "GRAY", "MAGENTA", "NONE", "VIOLET"}),
@@ -55,7 +53,7 @@ def _list_names(node: ast.AST, own: set[str]) -> Iterator[str]:
     match node:
         case ast.ImportFrom(module=str(module), level=0, names=names):
             yield from (alias.name for alias in names if alias.name in IMPORTS.get(module, ()))
-        case ast.Name(id=name) | ast.Attribute(attr=name) if name in OWN_NAMES - own:
+        case ast.Name(id=name) | ast.Attribute(attr=name) if name in PYBRICKS_4_NAMES - own:
             yield name
         case ast.Attribute(value=ast.Name(id=part) | ast.Attribute(attr=part), attr=name):
             if name in MEMBERS.get(part, ()) and not own & {part, name}:

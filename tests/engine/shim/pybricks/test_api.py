@@ -15,8 +15,9 @@ import pytest
 
 from tests.engine.shim.conftest import RunOn
 from tuisim.engine.shim.pybricks import parameters
-from tuisim.engine.shim.pybricks.modules import MODULES
+from tuisim.engine.shim.pybricks.modules import read_version_2
 
+MODULES = read_version_2()
 API: Mapping[str, Any] = json.loads(Path(__file__).with_name("api.json").read_text())
 CALLS: Mapping[str, list[str]] = API["calls"]
 DOCUMENTED: Mapping[str, list[str]] = API["documented"]

@@ -1,35 +1,54 @@
-"""The names of each module: those that a program imports are those that an editor sees."""
+"""What Pybricks has on a hub is there, or is refused by name.
+
+`api.json` has the members with the names of their parameters, as the firmware takes them.
+"""
 
 from __future__ import annotations
 
-import ast
+import inspect
+import json
+from pathlib import Path
+from typing import Any
 
 import pytest
 
-from tests.conftest import ROOT
-from tuisim.engine.core.hub_spec import HUBS
-from tuisim.engine.shim.pybricks.modules import MODULES
-from tuisim.engine.shim.pybricks.unsimulated import IO_DEVICES, NXT_DEVICES
+from tests.engine.shim.pybricks.lab import Lab
+from tuisim.base.errors import NotSimulated
+from tuisim.engine.core.profile import MotorLaw
+from tuisim.engine.shim.pybricks.hub.hubs import PrimeHub
+from tuisim.engine.shim.pybricks.hub.pupdevices import Lights
+from tuisim.engine.shim.pybricks.modules import read_version_4
+from tuisim.engine.shim.pybricks.unsimulated import HUB_CLASSES
+from tuisim.engine.shim.pybricks.version_4 import Control
 
-SEEN = ROOT / "tuisim/engine/shim/names"
-REFUSED = {"pybricks.iodevices": set(IO_DEVICES), "pybricks.nxtdevices": set(NXT_DEVICES)}
-BUILTINS = {"pybricks.tools": {"print"}}
-VERSION_4 = {
-    "pybricks.hubs": set(HUBS) - {"InventorHub"},
-    "pybricks.parameters": {"Axis", "Font", "Image", "Side"},
-    "pybricks.tools": {
-        *("Axis", "Matrix", "cross", "multitask", "read_input_byte", "run_task", "vector")
-    },
+API = json.loads(Path(__file__).with_name("hub").joinpath("api.json").read_text())
+PARTS: dict[str, Any] = {"Motor.control": Control, "ColorSensor.lights": Lights}
+"""Classes of what an object has."""
+NAMES = {
+    name: value for names in read_version_4("PrimeHub").values() for name, value in names.items()
 }
 
 
-@pytest.mark.parametrize("module", MODULES)
-def test_an_editor_sees_what_a_program_can_use(module: str) -> None:
-    path = SEEN / module.replace(".", "/")
-    file = path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
-    nodes = ast.parse(file.read_text()).body
-    seen = {
-        name.asname for node in nodes if isinstance(node, ast.ImportFrom) for name in node.names
-    }
-    usable = MODULES[module].keys() - REFUSED.get(module, set()) - BUILTINS.get(module, set())
-    assert seen == usable | VERSION_4.get(module, set())
+@pytest.fixture
+def hub() -> Any:
+    Lab(MotorLaw.PYBRICKS_4, {}, hub="PrimeHub")
+    return PrimeHub()
+
+
+@pytest.mark.parametrize("member", API)
+def test_a_member_cannot_be_called_by_the_names_of_its_parameters(hub: Any, member: str) -> None:
+    owner, _, name = member.rpartition(".")
+    place = (
+        getattr(hub, owner.removeprefix("hub."))
+        if owner.startswith("hub.")
+        else PARTS.get(owner) or NAMES[owner or name]
+    )
+    called = inspect.signature(getattr(place, name) if owner else place)
+    if "named" not in called.parameters:
+        assert {*API[member]} <= {*called.parameters}
+
+
+@pytest.mark.parametrize("name", [name for names in HUB_CLASSES.values() for name in names])
+def test_a_class_that_is_not_simulated_can_be_used(name: str) -> None:
+    with pytest.raises(NotSimulated, match=name):
+        NAMES[name]()

@@ -1,4 +1,4 @@
-"""Libraries as an editor is to see them: modules under the names by which programs import them.
+"""Libraries as programs import them: modules under the names that programs use, in folders for versions of Pybricks.
 
-They are read, never run: the app looks names up in them, see `tuisim.app.editor.completion`.
+Runs read the names of Pybricks from here, and the editor all of them: see `tuisim.app.editor.completion`.
 """

@@ -10,16 +10,6 @@ from tuisim.base.errors import NotSimulated
 from tuisim.engine.core.profile import MS
 from tuisim.engine.shim.pybricks.brick import Connected
 
-__all__ = [
-    "BluetoothMailboxClient",
-    "BluetoothMailboxServer",
-    "LogicMailbox",
-    "Mailbox",
-    "MailboxHandlerMixIn",
-    "NumericMailbox",
-    "TextMailbox",
-]
-
 _ALONE = "there is one brick; a server and a client in the threads of one program can talk"
 
 

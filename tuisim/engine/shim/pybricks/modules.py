@@ -4,34 +4,20 @@ from __future__ import annotations
 
 import sys
 import types
-from collections.abc import Mapping
 from functools import partial
+from importlib import import_module
+from pkgutil import walk_packages
 from typing import Any
 
+from tuisim.engine.core.hub_spec import HUBS_WITH_MATRIX
 from tuisim.engine.core.profile import Library, MotorLaw
 from tuisim.engine.shim.brick import BuiltBrick, ports_hint
 from tuisim.engine.shim.display import Screen
 from tuisim.engine.shim.plugs import Plugs
-from tuisim.engine.shim.pybricks import (
-    ev3devices,
-    experimental,
-    font,
-    hubs,
-    image,
-    iodevices,
-    media,
-    messaging,
-    micropython,
-    motor,
-    parameters,
-    robotics,
-    speaker,
-    tools,
-    version_1,
-    wrappers,
-)
+from tuisim.engine.shim.pybricks import micropython, speaker
 from tuisim.engine.shim.pybricks.brick import Brick, Connected
 from tuisim.engine.shim.pybricks.unsimulated import (
+    HUB_CLASSES,
     IO_DEVICES,
     NXT_DEVICES,
     VERSION_4,
@@ -52,90 +38,64 @@ from tuisim.engine.shim.unsupported.modules import (
     OtherLibrary,
 )
 
-
-def _public(module: types.ModuleType, *names: str) -> dict[str, Any]:
-    return {name: getattr(module, name) for name in names}
-
-
-FILES = _public(media, "SoundFile", "ImageFile")
-SENSORS = ("TouchSensor", "ColorSensor", "InfraredSensor", "UltrasonicSensor", "GyroSensor")
-MODULES: Mapping[str, Mapping[str, Any]] = {
-    "pybricks": {},
-    "pybricks.hubs": _public(hubs, "EV3Brick"),
-    "pybricks.display": _public(version_1, "Display", "Align") | _public(media, "ImageFile"),
-    "pybricks.ev3devices": _public(wrappers, "Motor", "Stop")
-    | {"CompatMotor": motor.Motor}
-    | _public(ev3devices, *SENSORS),
-    "pybricks.ev3brick": _public(version_1, "sound", "display", "light", "buttons", "battery")
-    | _public(version_1, "Display", "Speaker")
-    | _public(hubs, "EV3Brick"),
-    "pybricks.experimental": _public(experimental, "run_parallel"),
-    "pybricks.iodevices": _public(motor, "DCMotor")
-    | _public(iodevices, "Ev3devSensor")
-    | refused_classes("pybricks.iodevices", IO_DEVICES),
-    "pybricks.messaging": _public(messaging, *messaging.__all__),
-    "pybricks.nxtdevices": _public(motor, "Motor")
-    | refused_classes("pybricks.nxtdevices", NXT_DEVICES),
-    "pybricks.parameters": _public(
-        parameters, "Port", "Stop", "Direction", "Button", "Color", "Align"
-    )
-    | FILES,
-    "pybricks.robotics": _public(wrappers, "DriveBase", "Stop", "wait")
-    | {"CompatDriveBase": robotics.DriveBase},
-    "pybricks.speaker": _public(version_1, "Speaker", "wait")
-    | _public(media, "SoundFile")
-    | {"Ev3devSpeaker": speaker.Speaker},
-    "pybricks.tools": _public(tools, "wait", "StopWatch", "DataLog", "localtime", "ticks_us")
-    | {"print": print},
-    "pybricks.media": {},
-    "pybricks.media.ev3dev": _public(image, "Image") | _public(font, "Font") | FILES,
-}
-"""Names of each module of version 2.0."""
+Names = dict[str, dict[str, Any]]
+"""Names of modules of the library, by module."""
 
 
-def _version_4() -> Mapping[str, Mapping[str, Any]]:
-    """Return the names in each module of version 4."""
-    from tuisim.engine.shim.pybricks import brick_4, matrix, version_4
-    from tuisim.engine.shim.pybricks.earlier import EARLIER, EARLIER_MODULES
-
-    changed: dict[str, Mapping[str, Any]] = {
-        "pybricks": {"version": ("ev3", "4.0.0", "tuisim")},
-        "pybricks.hubs": {"EV3Brick": brick_4.EV3Brick, "ThisHub": brick_4.EV3Brick},
-        "pybricks.ev3devices": _public(
-            version_4, "Motor", "ColorSensor", "GyroSensor", "InfraredSensor"
-        ),
-        "pybricks.parameters": _public(version_4, "Stop", "Color")
-        | _public(matrix, "Axis", "Side")
-        | _public(image, "Image")
-        | _public(font, "Font"),
-        "pybricks.robotics": _public(version_4, "DriveBase"),
-        "pybricks.tools": _public(
-            version_4, "StopWatch", "multitask", "read_input_byte", "run_task"
-        )
-        | _public(matrix, "Axis", "Matrix", "cross", "vector"),
-    }
-    refused = refuse_all(VERSION_4, "use the classes of pybricks.ev3devices")
-    names = {
-        module: {
-            name: value for name, value in earlier.items() if name not in EARLIER.get(module, {})
-        }
-        for module, earlier in MODULES.items()
-    }
+def _read_names(version: str) -> Names:
+    """Return the names that the modules in a folder of `engine/shim/names` have."""
+    package = import_module(f"tuisim.engine.shim.names.{version}")
+    prefix = f"{package.__name__}."
     return {
-        module: {}
-        if module in EARLIER_MODULES
-        else {**refused.get(module, {}), **names[module], **changed.get(module, {})}
-        for module in names
+        name.removeprefix(prefix): {
+            key: value
+            for key, value in vars(import_module(name)).items()
+            if not key.startswith("__")
+        }
+        for _, name, _ in walk_packages(package.__path__, prefix)
     }
+
+
+def read_version_2() -> Names:
+    """Return the names in each module of version 2.0."""
+    names = _read_names("version_2")
+    names["pybricks.iodevices"] |= refused_classes("pybricks.iodevices", IO_DEVICES)
+    names["pybricks.nxtdevices"] |= refused_classes("pybricks.nxtdevices", NXT_DEVICES)
+    return names
+
+
+def read_version_4(hub: str = "") -> Names:
+    """Return the names in each module of version 4.
+
+    Args:
+        hub: The robot's hub, one of `HUBS`; empty for the EV3.
+    """
+    names = _read_names("hub" if hub else "version_4")
+    names["pybricks"]["version"] = (hub.lower() or "ev3", "4.0.0", "tuisim")
+    if not hub:
+        refused = refuse_all(VERSION_4, "use the classes of pybricks.ev3devices")
+    else:
+        refused = refuse_all(
+            HUB_CLASSES, "use Motor, ColorSensor, UltrasonicSensor and ForceSensor"
+        )
+        classes = names["pybricks.hubs"]
+        own = classes[hub]
+        names["pybricks.hubs"] = {name: known for name, known in classes.items() if known is own}
+        names["pybricks.hubs"]["ThisHub"] = own
+        if hub not in HUBS_WITH_MATRIX:
+            del names["pybricks.parameters"]["Icon"], names["pybricks.tools"]["hub_menu"]
+    for module, classes in refused.items():
+        names[module] |= classes
+    return names
 
 
 def _name_later(owner: str, name: str) -> str:
     """Return a hint, after a colon, that a class of version 4 has an attribute; empty if it has not."""
-    later = next((names[owner] for names in _version_4().values() if owner in names), None)
+    later = next((names[owner] for names in read_version_4().values() if owner in names), None)
     return ": Pybricks 4 has it, which --profile pybricks4 chooses" if hasattr(later, name) else ""
 
 
-def _choose_names(brick: Brick, law: MotorLaw, hub: str) -> Mapping[str, Mapping[str, Any]]:
+def _choose_names(brick: Brick, law: MotorLaw, hub: str) -> Names:
     """Return the names in each module for a run; also let the brick explain names of other versions.
 
     Args:
@@ -146,16 +106,18 @@ def _choose_names(brick: Brick, law: MotorLaw, hub: str) -> Mapping[str, Mapping
     if not hub:
         sys.meta_path.insert(0, OtherHub())
         if law != MotorLaw.PYBRICKS_4:
-            return MODULES
-    from tuisim.engine.shim.pybricks.earlier import name_replacement, refuse_earlier
+            brick.name_replacement = _name_later
+            return read_version_2()
+    from tuisim.engine.shim.pybricks.earlier import (
+        EARLIER_MODULES,
+        name_replacement,
+        refuse_earlier,
+    )
 
     brick.name_replacement = name_replacement
-    if hub:
-        from tuisim.engine.shim.pybricks.hub.modules import find_names
-
-        names = find_names(hub)
-    else:
-        names = _version_4()
+    names = read_version_4(hub)
+    if not hub:
+        names |= {name: {} for name in EARLIER_MODULES}
     return {name: {"__getattr__": partial(refuse_earlier, name), **names[name]} for name in names}
 
 
@@ -171,7 +133,6 @@ def install(
     law = session.sim.spec.profile.motor_law
     hub = session.sim.spec.robot.hub
     Connected.brick = brick
-    brick.name_replacement = _name_later
     names = _choose_names(brick, law, hub)
     speaker.set_volumes(brick.mixer, speaker.START_VOLUMES)
     made = {name: types.ModuleType(name) for name in names}

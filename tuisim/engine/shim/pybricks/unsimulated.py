@@ -73,7 +73,15 @@ VERSION_4: Mapping[str, tuple[str, ...]] = {
     "pybricks.tools": ("AppData",),
     "pybricks.robotics": ("Car", "SpikeBase"),
 }
-"""Classes of version 4, by module, on the EV3 and on hubs alike."""
+"""Classes of version 4 that can be imported but not used, by module, on the EV3 and on hubs alike."""
+HUB_CLASSES: Mapping[str, tuple[str, ...]] = {
+    "pybricks.pupdevices": (
+        *("ColorDistanceSensor", "ColorLightMatrix", "DuploTrain", "InfraredSensor", "Light"),
+        *("MarioHub", "PFMotor", "TechnicMoveHub", "TiltSensor"),
+    ),
+    **VERSION_4,
+}
+"""Likewise, on hubs."""
 
 
 class OtherHub:

@@ -1,0 +1,1 @@
+"""Pybricks 4 for SPIKE Prime and other hubs."""

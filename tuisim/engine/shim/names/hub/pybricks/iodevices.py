@@ -1,0 +1,3 @@
+"""A game controller."""
+
+from tuisim.engine.shim.pybricks.hub.controllers import XboxController

@@ -1,4 +1,0 @@
-"""Generic devices on the ports."""
-
-from tuisim.engine.shim.pybricks.iodevices import Ev3devSensor as Ev3devSensor
-from tuisim.engine.shim.pybricks.motor import DCMotor as DCMotor

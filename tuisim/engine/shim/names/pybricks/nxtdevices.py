@@ -1,3 +1,0 @@
-"""Motors of the NXT."""
-
-from tuisim.engine.shim.pybricks.motor import Motor as Motor

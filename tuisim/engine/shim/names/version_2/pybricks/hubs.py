@@ -1,0 +1,3 @@
+"""The brick."""
+
+from tuisim.engine.shim.pybricks.hubs import EV3Brick

@@ -1,0 +1,1 @@
+"""Pybricks 4 for the EV3."""

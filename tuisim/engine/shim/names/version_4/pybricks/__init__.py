@@ -1,0 +1,1 @@
+"""The Pybricks library for the EV3."""

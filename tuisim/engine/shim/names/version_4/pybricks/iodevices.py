@@ -1,0 +1,3 @@
+"""Generic devices on the ports."""
+
+from tuisim.engine.shim.pybricks.motor import DCMotor

@@ -1,0 +1,3 @@
+"""Motors of the NXT."""
+
+from tuisim.engine.shim.pybricks.motor import Motor

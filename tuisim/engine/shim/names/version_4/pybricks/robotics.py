@@ -1,0 +1,3 @@
+"""A robot on two wheels."""
+
+from tuisim.engine.shim.pybricks.version_4 import DriveBase
