@@ -95,7 +95,7 @@ def move(sim: Simulation, time_ns: int, part: int, values: tuple[float, ...]) ->
     )
 
 
-def follow(sim: Simulation, _time_ns: int, part: int, values: tuple[float, ...]) -> None:
+def follow(sim: Simulation, time_ns: int, part: int, values: tuple[float, ...]) -> None:
     """Let a motor follow its own controller, which has just got its trajectory; the value is the ending.
 
     Raises:
@@ -104,7 +104,10 @@ def follow(sim: Simulation, _time_ns: int, part: int, values: tuple[float, ...])
     motor = _find_motor(sim, part)
     if motor.control.trajectory is None:
         raise ValueError("there is no trajectory to follow")
-    motor.follow(ending=_find_ending(values, 0))
+    if (ending := _find_ending(values, 0)) is Ending.NONE:
+        motor.control.run_on(time_ns // 1000, motor.measure_start)
+        ending = Ending.HOLD
+    motor.follow(ending=ending)
 
 
 def limit_duty(sim: Simulation, _time_ns: int, part: int, values: tuple[float, ...]) -> None:

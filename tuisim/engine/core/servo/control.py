@@ -45,6 +45,7 @@ class Controller:
 
     __slots__ = (
         "_behind_milli",
+        "_goal",
         "_paused_us",
         "_released",
         "_slips",
@@ -67,6 +68,8 @@ class Controller:
         """Whether a motion for a time is done only when the motor has come to rest."""
         self.duty_limit: int | None = None
         """Highest power of the current move, in hundredths of a percent; None for that of the settings."""
+        self._goal: Segment | None = None
+        """Where a move would have ended after which the motion goes on, with its rate."""
         self._paused_us = 0
         """How long the trajectory has paused."""
         self._behind_milli = 0
@@ -242,6 +245,14 @@ class Controller:
         self._begin(trajectory, timed=True)
         self._behind_milli = behind_milli
 
+    def run_on(self, now_us: int, measured: Measure) -> None:
+        """Let the move that has just begun go on at its speed; it is done where it would have ended."""
+        assert self.trajectory is not None
+        first, even, _, end, _ = self.trajectory
+        acceleration = abs(first.acceleration) or self.settings.acceleration
+        self.run(now_us, measured, even.rate, acceleration)
+        self._goal = end._replace(rate=even.rate)
+
     def _limit(self, acceleration: int) -> int:
         """Return an acceleration without its sign, limited to that of the settings where the firmware does so."""
         if self.settings.speed_window_ms:
@@ -290,7 +301,7 @@ class Controller:
     def _begin(self, trajectory: Trajectory, *, timed: bool) -> None:
         self.trajectory = trajectory
         self.timed = timed
-        self.duty_limit = None
+        self.duty_limit = self._goal = None
         self._paused_us = self._behind_milli = self._stalled_us = 0
 
     # Following
@@ -343,7 +354,9 @@ class Controller:
         """
         end_us = self.end_us
         if end_us is None:
-            return self.trajectory is None
+            goal = self._goal
+            has_passed = goal is not None and (milli - goal.milli) * goal.rate >= 0
+            return self.trajectory is None or has_passed
         if now_us < end_us:
             return False
         window_us = self.settings.speed_window_ms * MS_US

@@ -98,6 +98,7 @@ class DriveBase:
         "_behind_us",
         "_ending",
         "_find_heading",
+        "_goal",
         "_millis",
         "_offset",
         "_pace",
@@ -128,6 +129,8 @@ class DriveBase:
         self._slowing: tuple[int | None, int | None] = None, None
         """How straight moves and turns stop, in counts; None: as they speed up."""
         self._ending = Ending.HOLD
+        self._goal: tuple[int, int, float] | None = None
+        """Of a move that goes on at its end: 0 for a distance or 1 for a turn, where it began, and how far it goes."""
         self._find_heading: Callable[[], float] | None = None
         """Returns the heading that a gyro shows, in degrees, clockwise; None while the wheels tell the heading."""
         self._offset = 0
@@ -156,6 +159,9 @@ class DriveBase:
 
     def done(self, now_us: int) -> bool:
         """Return whether no move is under way."""
+        if self._goal is not None:
+            place, begin, way = self._goal
+            return abs(self.find_millis(now_us)[place] - begin) >= way
         if self._ends_at_once and (end_us := self.end_us) is not None:
             return now_us >= end_us
         (total, difference), rates = self.find_millis(now_us), self.find_rates(now_us)
@@ -256,6 +262,10 @@ class DriveBase:
     def _run_endlessly(self, now_us: int, distance_mm: float, turn_deg: float) -> None:
         """Begin to drive a distance and to turn by an angle, and on at the same speed."""
         self._begin(now_us)
+        place = 0 if distance_mm else 1
+        control = (self.distance, self.heading)[place]
+        length = abs(distance_mm or turn_deg) * control.settings.counts_per_unit * MILLI
+        self._goal = place, self.find_millis(now_us)[place], length
         speed, acceleration, rate, turn_acceleration = self._pace
         distance = self.distance
         heading = self.heading
@@ -310,6 +320,7 @@ class DriveBase:
 
     def _begin(self, now_us: int) -> None:
         """Make the controllers passive unless they move both motors; let a motor coast that follows this base alone."""
+        self._goal = None
         if not self.active:
             for motor in self.motors:
                 if motor.guide is self:

@@ -27,6 +27,11 @@ from tuisim.engine.shim.pybricks.unsimulated import LOGGER
 from tuisim.engine.shim.unsupported.modules import refused_part
 
 PERCENT = FULL_ACTUATION // 100
+FACTORS: Mapping[str, int] = {
+    **dict.fromkeys(("kp", "ki", "kd", "stall_time_ms"), 1),
+    **dict.fromkeys(("actuation", "feed_forward"), PERCENT),
+}
+"""How many of a controller's numbers are one of the program's, for each setting that is not in counts."""
 
 
 def gear_ratio(gears: Any) -> float:
@@ -319,54 +324,44 @@ class Control(Connected):
         """How many counts of the controller are one unit of the program."""
         return self._control.settings.counts_per_unit
 
-    def _set(self, *given: tuple[str, Any, int]) -> None:
-        """Change the settings that the program gives.
-
-        Args:
-            given: Each with the name of a setting, its value or None, and a factor for the value; the factor 0 stands
-                for counts per unit.
+    def _access(self, **values: float | None) -> tuple[int, ...] | None:
+        """Return settings, by their names, in the program's units; or set those that are not None.
 
         Raises:
             OSError: a move is under way, or the motor holds.
         """
+        settings = self._control.settings
+        given = {name: whole(value) for name, value in values.items() if value is not None}
+        if not given:
+            return tuple(
+                getattr(settings, name) // FACTORS[name]
+                if name in FACTORS
+                else settings.units(getattr(settings, name))
+                for name in values
+            )
         if self._control.trajectory is not None and not self._owner.has_let_go():
             raise not_permitted()
-        settings = self._control.settings
-        changes = {
-            setting: settings.counts(whole(value)) if times == 0 else whole(value) * times
-            for setting, value, times in given
-            if value is not None
-        }
-        if any(value < 0 for value in changes.values()):
+        if any(value < 0 for value in given.values()):
             raise invalid_argument()
-        for setting, value in changes.items():
-            self._change(SETTINGS.index(setting), value)
+        for name, value in given.items():
+            self._change(
+                SETTINGS.index(name),
+                value * FACTORS[name] if name in FACTORS else settings.counts(value),
+            )
+        return None
 
     def limits(
         self,
         speed: float | None = None,
         acceleration: float | None = None,
         actuation: float | None = None,
-    ) -> tuple[int, int, int] | None:
+    ) -> tuple[int, ...] | None:
         """Return the highest speed, acceleration and power, or set them."""
-        settings = self._control.settings
-        if speed is None and acceleration is None and actuation is None:
-            units = settings.units
-            return (
-                units(settings.speed),
-                units(settings.acceleration),
-                settings.actuation // PERCENT,
-            )
         if any(
             value is not None and whole(value) < 1 for value in (speed, acceleration, actuation)
         ):
             raise invalid_argument()
-        self._set(
-            ("speed", speed, 0),
-            ("acceleration", acceleration, 0),
-            ("actuation", actuation, PERCENT),
-        )
-        return None
+        return self._access(speed=speed, acceleration=acceleration, actuation=actuation)
 
     def pid(
         self,
@@ -378,48 +373,26 @@ class Control(Connected):
         feed_forward: float | None = None,
     ) -> tuple[int, ...] | None:
         """Return the gains of the controller, or set them. Of these, only `kp` changes a simulated motion."""
-        settings = self._control.settings
-        if all(one is None for one in (kp, ki, kd, integral_range, integral_rate, feed_forward)):
-            units = settings.units
-            return (
-                settings.kp,
-                settings.ki,
-                settings.kd,
-                units(settings.integral_range),
-                units(settings.integral_rate),
-                settings.feed_forward // PERCENT,
-            )
-        self._set(
-            ("kp", kp, 1),
-            ("ki", ki, 1),
-            ("kd", kd, 1),
-            ("integral_range", integral_range, 0),
-            ("integral_rate", integral_rate, 0),
-            ("feed_forward", feed_forward, PERCENT),
+        return self._access(
+            kp=kp,
+            ki=ki,
+            kd=kd,
+            integral_range=integral_range,
+            integral_rate=integral_rate,
+            feed_forward=feed_forward,
         )
-        return None
 
     def target_tolerances(
         self, speed: float | None = None, position: float | None = None
-    ) -> tuple[int, int] | None:
+    ) -> tuple[int, ...] | None:
         """Return the tolerances of speed and position within which a move at its target is done, or set them."""
-        settings = self._control.settings
-        if speed is None and position is None:
-            return settings.units(settings.speed_tolerance), settings.units(
-                settings.position_tolerance
-            )
-        self._set(("speed_tolerance", speed, 0), ("position_tolerance", position, 0))
-        return None
+        return self._access(speed_tolerance=speed, position_tolerance=position)
 
     def stall_tolerances(
         self, speed: float | None = None, time: float | None = None
-    ) -> tuple[int, int] | None:
+    ) -> tuple[int, ...] | None:
         """Return the speed below which, and the time after which, a motor counts as stalled, or set them."""
-        settings = self._control.settings
-        if speed is None and time is None:
-            return settings.units(settings.stall_speed), settings.stall_time_ms
-        self._set(("stall_speed", speed, 0), ("stall_time_ms", time, 1))
-        return None
+        return self._access(stall_speed=speed, stall_time_ms=time)
 
     def trajectory(self) -> tuple[int, ...] | None:
         """Return the running trajectory: four times in ms, four positions, the speed and the two accelerations."""

@@ -88,24 +88,6 @@ class Motor(motor.Motor):
         if guide is not None and not self._motor.follows_itself and DriveBase.current is not None:
             DriveBase.current.stop()
 
-    def _begin(self, then: Any, wait: bool, call: str) -> None:
-        control = self._motor.control
-        motor = self._motor
-        trajectory = control.trajectory
-        if ending_of(ENDINGS, then) is not Ending.NONE or trajectory is None:
-            return super()._begin(then, wait, call)
-        target = trajectory.end.milli
-        rate = trajectory.even.rate
-        acceleration = abs(trajectory.first.acceleration) or control.settings.acceleration
-        self._run_endlessly(rate, acceleration)
-        if not wait:
-            return None
-
-        def passed(now_us: int) -> bool:
-            return motor.guide is None or (motor.find_milli(now_us) - target) * rate >= 0
-
-        return self.brick.finish(self.brick.until_done(passed, lambda: None, self.stop))
-
     _zero_deg = 0
     """The angle, as the program counts it, of the mark on the shaft, where the motor began."""
 
@@ -166,7 +148,7 @@ class Control(motor.Control):
         acceleration: Any = None,
         torque: float | None = None,
         actuation: float | None = None,
-    ) -> tuple[int, int, int] | None:
+    ) -> tuple[int, ...] | None:
         """Return the highest speed, acceleration and power, or set them; a torque, in mNm, limits nothing."""
         if isinstance(acceleration, tuple):
             acceleration = acceleration[0]
@@ -205,33 +187,6 @@ class DriveBase(robotics.DriveBase):
         if earlier.has_motor(self.left) or earlier.has_motor(self.right):
             raise build_busy_error()
         super()._take_place(earlier)
-
-    def _move(
-        self,
-        distance_mm: float,
-        angle_deg: float,
-        call: str,
-        ending: Ending = Ending.HOLD,
-        *,
-        wait: bool = True,
-    ) -> None:
-        if ending is not Ending.NONE:
-            return super()._move(distance_mm, angle_deg, call, ending, wait=wait)
-        base, by_way = self._base, bool(distance_mm)
-        begin = base.find_millis(self.brick.command())[0 if by_way else 1]
-        control, way = (base.distance, distance_mm) if by_way else (base.heading, angle_deg)
-        target = abs(way) * control.settings.counts_per_unit * MILLI
-        self.tell(Call.MOVE_BASE, distance_mm, angle_deg, ending)
-        if not wait:
-            return None
-
-        def passed(now_us: int) -> bool:
-            return (
-                not base.active
-                or abs(base.find_millis(now_us)[0 if by_way else 1] - begin) >= target
-            )
-
-        return self.brick.finish(self.brick.until_done(passed, lambda: None, self.stop))
 
     def straight(self, distance: float, then: Stop = Stop.HOLD, wait: bool = True) -> None:
         """Drive a distance in mm."""
