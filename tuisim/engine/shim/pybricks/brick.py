@@ -196,6 +196,15 @@ class Brick:
                 return result
             self.session.wait_for_motor((until_us - self.now_us) * 1000)
 
+    def require_no_task(self) -> None:
+        """Check that no task runs.
+
+        Raises:
+            RuntimeError: one runs.
+        """
+        if self.in_task:
+            raise RuntimeError("This can only be called before multitasking starts.")
+
     def say_stalled(self, what: str, call: str) -> None:
         """Tell the user once that a call waits because something blocks a motor.
 

@@ -7,7 +7,14 @@ from typing import Any, ClassVar
 from tuisim.engine.core.sensors import color
 from tuisim.engine.shim.brick import SENSOR_CLASS
 from tuisim.engine.shim.pybricks.brick import Connected, invalid_argument, no_device, whole
-from tuisim.engine.shim.pybricks.parameters import Button, Color, Direction, Port
+from tuisim.engine.shim.pybricks.parameters import (
+    AnyPort,
+    Button,
+    Color,
+    Direction,
+    Port,
+    find_port,
+)
 from tuisim.engine.shim.sensors import ColorDevice, GyroDevice
 
 CODES = (
@@ -54,16 +61,16 @@ class Sensor(Connected):
     KIND: ClassVar[str] = ""
     """One of `engine.core.sensors.SENSORS`; empty for any of them."""
 
-    def __init__(self, port: Port) -> None:
-        if not isinstance(port, Port):
-            raise TypeError(f"a Port is needed, not {type(port).__name__}")
-        if not port.device_port.startswith("in"):
+    def __init__(self, port: AnyPort) -> None:
+        self.brick.require_no_task()
+        name = find_port(port)
+        if name not in self.brick.session.sim.spec.robot.input_ports:
             raise ValueError("Invalid port")
-        found = self.brick.find_sensor(port.device_port, self.KIND)
-        if found is None:
+        sensor = self.brick.find_sensor(name, self.KIND)
+        if sensor is None:
             raise no_device(self.brick.hint(SENSOR_CLASS))
         self.port = port
-        self._sensor = found
+        self._sensor = sensor
 
     def _read(self, mode: str) -> tuple[int, ...]:
         """Return a measurement in a mode; the first one after a change of mode also costs the time of the change."""

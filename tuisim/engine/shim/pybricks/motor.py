@@ -22,7 +22,7 @@ from tuisim.engine.shim.pybricks.brick import (
     not_permitted,
     whole,
 )
-from tuisim.engine.shim.pybricks.parameters import AnyPort, Direction, Port, Stop
+from tuisim.engine.shim.pybricks.parameters import Direction, Port, Stop, find_port
 from tuisim.engine.shim.pybricks.unsimulated import LOGGER
 from tuisim.engine.shim.unsupported.modules import refused_part
 
@@ -52,12 +52,6 @@ def gear_ratio(gears: Any) -> float:
             raise invalid_argument()
         ratio *= whole(train[-1]) / whole(train[0])
     return ratio
-
-
-def _port(port: Any) -> str:
-    if not isinstance(port, AnyPort):
-        raise TypeError(f"a Port is needed, not {type(port).__name__}")
-    return port.device_port
 
 
 def ending_of(known: Mapping[Any, Ending], then: Any) -> Ending:
@@ -91,7 +85,7 @@ class DCMotor(Connected):
         self.tell(Call.SET_UP, float(direction.sign), ratio, float(keeps_angle))
 
     def _port_name(self, port: Port) -> str:
-        name = _port(port)
+        name = find_port(port)
         if name not in self.brick.session.sim.spec.robot.output_ports:
             raise ValueError("Invalid port")
         self.port_names = (name,)

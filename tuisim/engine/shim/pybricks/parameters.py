@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from enum import Enum
-from typing import TypeVar
+from typing import Any, TypeVar
 
 Members = TypeVar("Members", bound=type[Enum])
 
@@ -25,6 +25,17 @@ class AnyPort(Enum):
     def device_port(self) -> str:
         """The name of the port in a robot."""
         return self.name
+
+
+def find_port(port: Any) -> str:
+    """Return the name of a port in a robot.
+
+    Raises:
+        TypeError: it is no port.
+    """
+    if not isinstance(port, AnyPort):
+        raise TypeError(f"a Port is needed, not {type(port).__name__}")
+    return port.device_port
 
 
 @shown_by_name

@@ -11,7 +11,7 @@ from tuisim.engine.runs.brick_state import REMOTE_LIGHT_NAMES, XBOX_LIGHT_NAMES
 from tuisim.engine.shim.pybricks.brick import Connected, FirmwareError, Waiting, text_of, whole
 from tuisim.engine.shim.pybricks.brick_4 import Buttons
 from tuisim.engine.shim.pybricks.hsv_color import Color
-from tuisim.engine.shim.pybricks.hub.face import Face
+from tuisim.engine.shim.pybricks.hub.face import shine
 from tuisim.engine.shim.pybricks.hub.parameters import Button
 from tuisim.engine.shim.unsupported.modules import Hardware, refused_part
 
@@ -27,25 +27,17 @@ class Controller(Connected):
 
     PORT: ClassVar[str]
     LEDS: ClassVar[Sequence[str]]
-    COLOR = Color.WHITE
-    """The colour of the LEDs while the controller is connected."""
 
     def __init__(self, name: str | None, connect: bool) -> None:
-        if self.brick.in_task:
-            raise RuntimeError("This can only be called before multitasking starts.")
-        self._face, self._name, self._is_connected = Face(), name or type(self).__name__, False
-        names = (key.removeprefix(f"{self.PORT}.") for key in CONTROLLERS[self.PORT])
-        known = Button.__members__
-        self.buttons = Keys(
-            self,
-            {f"{self.PORT}.{name}": known[name.upper()] for name in names if name.upper() in known},
-        )
+        self.brick.require_no_task()
+        self._name, self._is_connected = name or type(self).__name__, False
+        self.buttons = Keys(self)
         if connect:
             self._set_connected(True)
 
     def _set_connected(self, is_connected: bool) -> None:
         self._is_connected = is_connected
-        self._face.shine(self.COLOR if is_connected else None, self.LEDS)
+        shine(Color.WHITE if is_connected else None, self.LEDS)
 
     def check(self) -> None:
         """Check that the controller is connected.
@@ -74,8 +66,11 @@ class Controller(Connected):
 class Keys(Buttons):
     """The buttons of a controller."""
 
-    def __init__(self, controller: Controller, buttons: dict[str, Button]) -> None:
-        super().__init__(buttons, controller.PORT)
+    def __init__(self, controller: Controller) -> None:
+        port = controller.PORT
+        members = ((key, key.removeprefix(f"{port}.").upper()) for key in CONTROLLERS[port])
+        known = Button.__members__
+        super().__init__({key: known[name] for key, name in members if name in known}, port)
         self._controller = controller
 
     def pressed(self) -> set[Button]:
@@ -87,14 +82,13 @@ class Keys(Buttons):
 class RemoteLight(Connected):
     """The light of a remote control."""
 
-    def __init__(self, remote: Controller, face: Face) -> None:
+    def __init__(self, remote: Controller) -> None:
         self._remote = remote
-        self._face = face
 
     def on(self, color: Any) -> None:
         """Turn the light on in a colour."""
         self._remote.check()
-        self._face.shine(color, REMOTE_LIGHT_NAMES)
+        shine(color, REMOTE_LIGHT_NAMES)
 
     def off(self) -> None:
         """Turn the light off."""
@@ -111,7 +105,7 @@ class Remote(Controller):
         self, name: str | None = None, timeout: int | None = 10_000, connect: bool = True
     ) -> None:
         super().__init__(name, connect)
-        self.light = RemoteLight(self, self._face)
+        self.light = RemoteLight(self)
 
     def name(self, name: str | None = None) -> str | None:
         """Return the name of the remote control, or set it."""
@@ -149,19 +143,18 @@ class XboxController(Controller):
         self.brick.read("pressed", self.PORT)
         return [f"{self.PORT}.{name}" in self.brick.session.pressed for name in names]
 
-    def _find_direction(self, part: str) -> tuple[int, int]:
+    def _find_direction(self, part: str, scale: int = FULL) -> tuple[int, int]:
+        """Return how far a part is pressed to the right, and up."""
         up, down, left, right = self._read(*(f"{part}_{way}" for way in WAYS))
-        return right - left, up - down
+        return scale * (right - left), scale * (up - down)
 
     def joystick_left(self) -> tuple[int, int]:
         """Return how far the left stick is to the right, and up, in percent."""
-        right, up = self._find_direction("joystick_left")
-        return FULL * right, FULL * up
+        return self._find_direction("joystick_left")
 
     def joystick_right(self) -> tuple[int, int]:
         """Return how far the right stick is to the right, and up, in percent."""
-        right, up = self._find_direction("joystick_right")
-        return FULL * right, FULL * up
+        return self._find_direction("joystick_right")
 
     def triggers(self) -> tuple[int, int]:
         """Return how far the left and the right trigger are pressed, in percent."""
@@ -170,7 +163,7 @@ class XboxController(Controller):
 
     def dpad(self) -> int:
         """Return the direction of the pad: 0 for none, then 1 to 8 clockwise from the top."""
-        return DPAD.index(self._find_direction("dpad"))
+        return DPAD.index(self._find_direction("dpad", 1))
 
     def profile(self) -> int:
         """Return the chosen profile: 0, as a controller without profiles does."""

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import Any
+from typing import Any, ClassVar
 
 from tuisim.engine.runs.brick_state import SIDE_PIXELS
 from tuisim.engine.runs.readings import HUB_BUTTONS_PORT
 from tuisim.engine.shim.pybricks.brick import Connected, Waiting, invalid_argument, text_of, whole
 from tuisim.engine.shim.pybricks.brick_4 import Animation
-from tuisim.engine.shim.pybricks.hub.face import DARK, Face, Pixels
+from tuisim.engine.shim.pybricks.hub.face import DARK, Pixels, show_pixels
 from tuisim.engine.shim.pybricks.hub.pictures import CHARACTERS, DIGITS, ICONS
 from tuisim.engine.shim.pybricks.matrix import Matrix, Side
 from tuisim.engine.shim.pybricks.tools import wait
@@ -64,8 +64,12 @@ def _read_icon(icon: Any) -> Pixels:
 class Display(Connected):
     """The matrix of lights."""
 
-    def __init__(self, face: Face) -> None:
-        self._face, self._animation = face, Animation()
+    current: ClassVar[Display | None] = None
+    """That of the newest hub, on which `hub_menu` shows."""
+
+    def __init__(self) -> None:
+        Display.current = self
+        self._animation = Animation()
         self._pixels = DARK
         self._up = Side.TOP
 
@@ -79,7 +83,7 @@ class Display(Connected):
         for number, value in enumerate(pixels):
             row, column = PLACES[self._up](*divmod(number, SIDE_PIXELS))
             turned[SIDE_PIXELS * row + column] = value
-        self._face.draw(tuple(turned))
+        show_pixels(turned)
 
     def orientation(self, up: Side) -> None:
         """Say which side of the matrix is up."""
@@ -143,48 +147,33 @@ class Display(Connected):
             self.off()
             yield self.brick.now_us + 1000 * off_ms
 
+    # The menu
 
-class Menu(Connected):
-    """A menu on the matrix.
-
-    Args:
-        display: Shows the menu.
-    """
-
-    current: Menu | None = None
-
-    def __init__(self, display: Display) -> None:
-        self._display = display
-        Menu.current = self
-
-    def _pressed(self) -> frozenset[str]:
+    def _read_buttons(self) -> frozenset[str]:
         self.brick.read("pressed", HUB_BUTTONS_PORT)
         return self.brick.session.pressed & {"left", "right", "enter"}
 
-    def choose(self, symbols: Sequence[Any]) -> Any:
+    def _show_symbol(self, symbol: Any) -> None:
+        show = self.char if isinstance(symbol, str) else self.number
+        show(symbol)
+
+    def _choose(self, symbols: Sequence[Any]) -> Any:
         """Let the user choose a symbol by the buttons, and return it."""
         before = self.brick.stop_buttons
         self.brick.stop_buttons = frozenset()
         place = 0
-        held = self._pressed()
-        self._show(symbols[place])
-        while True:
-            pressed = self._pressed()
-            if "enter" in held - pressed:
-                break
+        held = self._read_buttons()
+        self._show_symbol(symbols[place])
+        while "enter" not in held - (pressed := self._read_buttons()):
             begun = pressed - held
             if step := ("right" in begun) - ("left" in begun):
                 place = (place + step) % len(symbols)
-                self._show(symbols[place])
+                self._show_symbol(symbols[place])
             held = pressed
             wait(POLL_MS)
-        self._display.off()
+        self.off()
         self.brick.stop_buttons = before
         return symbols[place]
-
-    def _show(self, symbol: Any) -> None:
-        show = self._display.char if isinstance(symbol, str) else self._display.number
-        show(symbol)
 
 
 def hub_menu(*symbols: Any) -> Any:
@@ -192,10 +181,9 @@ def hub_menu(*symbols: Any) -> Any:
 
     Raises:
         ValueError: there are fewer than two symbols.
-        RuntimeError: a task runs, or there is no hub yet.
+        RuntimeError: a task runs.
     """
-    if Connected.brick.in_task or Menu.current is None:
-        raise RuntimeError("This can only be called before multitasking starts.")
+    Connected.brick.require_no_task()
     if len(symbols) < 2:
         raise invalid_argument()
-    return Menu.current.choose(symbols)
+    return (Display.current or Display())._choose(symbols)

@@ -8,8 +8,8 @@ from typing import Any, ClassVar
 from tuisim.engine.runs.readings import HUB_BUTTONS_PORT
 from tuisim.engine.shim.pybricks.brick import Connected
 from tuisim.engine.shim.pybricks.brick_4 import AnimatedLight, Battery, Buttons, Speaker, System
-from tuisim.engine.shim.pybricks.hub.display import Display, Menu
-from tuisim.engine.shim.pybricks.hub.face import Face
+from tuisim.engine.shim.pybricks.hub.display import Display
+from tuisim.engine.shim.pybricks.hub.face import shine
 from tuisim.engine.shim.pybricks.hub.imu import IMU, Accelerometer
 from tuisim.engine.shim.pybricks.hub.parameters import Button
 from tuisim.engine.shim.pybricks.matrix import Axis
@@ -59,9 +59,8 @@ class Hub(Connected):
         self.imu = self.SENSES(
             Axis.Z if top_side is None else top_side, Axis.X if front_side is None else front_side
         )
-        self._face = Face()
         self.brick.stop_buttons = frozenset({"enter"})
-        self.light = AnimatedLight(self._face.shine)
+        self.light = AnimatedLight(shine)
         self.battery, self.system = Battery(), System(type(self).__name__, BUTTON_NAMES)
         buttons = {name: BUTTON_NAMES[name] for name in self.BUTTONS}
         self.buttons = self.button = Buttons(buttons, HUB_BUTTONS_PORT)
@@ -77,8 +76,7 @@ class PrimeHub(Hub):
         # The attribute `button` is for hubs with a single button.
         del self.button
         self.speaker, self.charger = Speaker(), Charger()
-        self.display = Display(self._face)
-        Menu(self.display)
+        self.display = Display()
 
 
 class EssentialHub(Hub):
@@ -105,14 +103,3 @@ class MoveHub(Hub):
     """The hub of BOOST, which has no gyro."""
 
     SENSES = Accelerometer
-
-
-CLASSES: Mapping[str, type[Hub]] = {
-    "PrimeHub": PrimeHub,
-    "InventorHub": PrimeHub,
-    "EssentialHub": EssentialHub,
-    "TechnicHub": TechnicHub,
-    "CityHub": CityHub,
-    "MoveHub": MoveHub,
-}
-"""By the name of `RobotSpec.hub`."""

@@ -6,8 +6,8 @@ from collections.abc import Callable
 from typing import Any, ClassVar, TypeVar
 
 from tuisim.engine.core.sensors import color
-from tuisim.engine.shim.brick import SENSOR_CLASS
-from tuisim.engine.shim.pybricks.brick import Connected, Waiting, no_device
+from tuisim.engine.shim.pybricks import ev3devices
+from tuisim.engine.shim.pybricks.brick import Connected, Waiting
 from tuisim.engine.shim.pybricks.hub.colors import find_nearest, measure_hsv
 from tuisim.engine.shim.pybricks.hub.parameters import Port
 from tuisim.engine.shim.pybricks.version_4 import Color
@@ -21,25 +21,13 @@ MAX_PRESS_MM = 6.67
 Result = TypeVar("Result")
 
 
-class Sensor(Connected):
+class Sensor(ev3devices.Sensor):
     """A sensor on a port."""
 
-    KIND: ClassVar[str] = ""
     SWITCH_US: ClassVar[int] = 0
     """How long the first reading in another mode takes."""
 
-    def __init__(self, port: Port) -> None:
-        if self.brick.in_task:
-            raise RuntimeError("This can only be called before multitasking starts.")
-        if not isinstance(port, Port):
-            raise TypeError(f"a Port is needed, not {type(port).__name__}")
-        sensor = self.brick.find_sensor(port.device_port, self.KIND)
-        if sensor is None:
-            raise no_device(self.brick.hint(SENSOR_CLASS))
-        self.port = port
-        self._sensor = sensor
-
-    def _read(self, mode: str, convert: Callable[[], Result]) -> Result:
+    def _read_as(self, mode: str, convert: Callable[[], Result]) -> Result:
         """Measure in a mode and return the converted result; in a task, an object to await."""
         return self.brick.finish(self._measure(mode, convert))
 
@@ -88,19 +76,21 @@ class ColorSensor(Sensor):
 
     def reflection(self) -> int:
         """Return the reflected light in percent."""
-        return self._read("RGB-RAW", lambda: sum(self._raw()) * 100 // (3 * color.HUB_WHITE))
+        return self._read_as("RGB-RAW", lambda: sum(self._raw()) * 100 // (3 * color.HUB_WHITE))
 
     def ambient(self) -> int:
         """Return the ambient light in percent."""
-        return self._read("COL-AMBIENT", lambda: self._sensor.modes["COL-AMBIENT"].measure()[0])
+        return self._read_as("COL-AMBIENT", lambda: self._sensor.modes["COL-AMBIENT"].measure()[0])
 
     def hsv(self, surface: bool = True) -> Any:
         """Return hue, saturation and value."""
-        return self._read("RGB-RAW", lambda: Color(*measure_hsv(*self._raw())))
+        return self._read_as("RGB-RAW", lambda: Color(*measure_hsv(*self._raw())))
 
     def color(self, surface: bool = True) -> Any:
         """Return the nearest of the detectable colours."""
-        return self._read("RGB-RAW", lambda: find_nearest(measure_hsv(*self._raw()), self._colors))
+        return self._read_as(
+            "RGB-RAW", lambda: find_nearest(measure_hsv(*self._raw()), self._colors)
+        )
 
     def detectable_colors(self, colors: Any = None) -> tuple[Any, ...] | None:
         """Return the colours that `color` tells apart, or set them."""
@@ -122,14 +112,16 @@ class UltrasonicSensor(Sensor):
 
     def distance(self) -> int:
         """Return the distance to the next object in mm, 2000 for none."""
-        return self._read(
+        return self._read_as(
             "US-DIST-CM",
             lambda: min(FARTHEST_MM, self._sensor.modes["US-DIST-CM"].measure()[0]),
         )
 
     def presence(self) -> bool:
         """Return whether the sensor hears another ultrasonic sensor."""
-        return self._read("US-LISTEN", lambda: bool(self._sensor.modes["US-LISTEN"].measure()[0]))
+        return self._read_as(
+            "US-LISTEN", lambda: bool(self._sensor.modes["US-LISTEN"].measure()[0])
+        )
 
 
 class ForceSensor(Sensor):
@@ -138,7 +130,7 @@ class ForceSensor(Sensor):
     KIND = "touch"
 
     def _push(self, pressed: Result, released: Result) -> Result:
-        return self._read(
+        return self._read_as(
             "TOUCH", lambda: pressed if self._sensor.modes["TOUCH"].measure()[0] else released
         )
 
