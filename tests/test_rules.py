@@ -63,7 +63,6 @@ TESTED_BESIDE = {
     "app/analyser/actions/keys.py": "app/analyser/test_screen.py",
     "app/setup/fields.py": "app/setup/test_next_run.py",
     "programs/robot/scopes.py": "programs/robot/test_evaluation.py",
-    "engine/core/commands/servo.py": "engine/shim/pybricks/test_reference.py",
     "engine/core/commands/table.py": "engine/shim/pybricks/test_reference.py",
     "engine/core/servo/drive_base.py": "engine/shim/pybricks/test_reference.py",
     "tasks/goals/evidence.py": "tasks/goals/test_judge_conditions.py",

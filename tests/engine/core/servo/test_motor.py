@@ -32,7 +32,7 @@ class Robot:
         left, right = self.sim.left, self.sim.right
         assert isinstance(left, ServoMotor) and isinstance(right, ServoMotor)
         self.motors = left, right
-        self.base = DriveBase(left, right, 56, 120)
+        self.base = DriveBase(left, right, 56, 120, lambda: 0.0)
 
     @property
     def now_us(self) -> int:

@@ -5,6 +5,9 @@ from __future__ import annotations
 from enum import IntEnum
 from typing import NamedTuple
 
+Values = tuple[float, ...]
+"""The values of a call; NaN stands for one that is not given."""
+
 MAX_VALUES = 7
 """No command has more values."""
 MAX_NUMBER = float(2**53)
@@ -68,11 +71,11 @@ class SimulationCommand(NamedTuple):
     part: int
     """The number of a motor among `Simulation.motors`, or of a drive base among `Simulation.bases`; else 0."""
     call: Call
-    values: tuple[float, ...]
-    """As many as the call takes; NaN stands for a value that is not given."""
+    values: Values
+    """As many as the call takes."""
 
 
-def find_index(numbers: tuple[float, ...], place: int, count: int) -> int:
+def find_index(numbers: Values, place: int, count: int) -> int:
     """Return `numbers[place]` as an index from 0 to below `count`.
 
     Raises:

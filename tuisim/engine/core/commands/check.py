@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from tuisim.engine.core.commands.calls import Call, SimulationCommand
-from tuisim.engine.core.commands.table import CALLS, Range, Target
+from tuisim.engine.core.commands.table import CALLS, Range, list_parts
 from tuisim.engine.core.driver.regulator import MODELS
 from tuisim.engine.core.profile import MotorLaw
 
@@ -55,24 +55,13 @@ class CommandCheck:
         if ranges is None:
             if self._sim.spec.profile.motor_law not in CALLS[call].laws:
                 return "no motor of this profile takes"
-            if part >= _count_parts(call, self._sim):
+            if part >= len(list_parts(self._sim, CALLS[call].target)):
                 return "is for a part that the robot does not have"
             ranges = self._ranges[call, part] = _narrow_ranges(call, part, self._sim)
         for value, (low, high) in zip(values, ranges, strict=False):
             if not low <= value <= high and (value == value or not CALLS[call].may_be_missing):
                 return "has a value that is not allowed"
         return ""
-
-
-def _count_parts(call: Call, sim: Simulation) -> int:
-    """Return the number of parts of the kind that a call is for: robot, motors or drive bases."""
-    match CALLS[call].target:
-        case Target.ROBOT:
-            return 1
-        case Target.MOTOR:
-            return len(sim.motors)
-        case Target.BASE:
-            return len(sim.bases)
 
 
 def _narrow_ranges(call: Call, part: int, sim: Simulation) -> tuple[Range, ...]:

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import lru_cache
-from typing import TYPE_CHECKING
 
-from tuisim.engine.core.commands.calls import Call, find_index
+from tuisim.engine.core.commands.calls import Call, Values, find_index
 from tuisim.engine.core.driver.motor import (
     Command,
     Constant,
@@ -15,11 +14,6 @@ from tuisim.engine.core.driver.motor import (
 )
 from tuisim.engine.core.driver.regulator import StopAction
 from tuisim.engine.core.driver.simulated import SimulatedMotor
-
-if TYPE_CHECKING:
-    from tuisim.engine.core.simulation import Simulation
-
-    Effect = Callable[[Simulation, int, int, tuple[float, ...]], None]
 
 COMMAND_CALLS: dict[Command, Call] = {
     command: Call(Call.RUN_FOREVER + number) for number, command in enumerate(Command)
@@ -33,41 +27,35 @@ CONTROLS = ("speed", "hold")
 CONSTANTS = ("kp", "ki", "kd")
 
 
-def _find_motor(sim: Simulation, part: int) -> SimulatedMotor:
-    motor = sim.motors[part]
-    assert isinstance(motor, SimulatedMotor)
-    return motor
-
-
 @lru_cache(MAX_SET_POINTS)
-def _build_set_points(values: tuple[float, ...]) -> SetPoints:
+def _build_set_points(values: Values) -> SetPoints:
     speed_dps, position, duty, time_ms, ramp_up_ms, ramp_down_ms, _ = map(int, values)
     action = STOP_ACTIONS[find_index(values, 6, len(STOP_ACTIONS))]
     return SetPoints(speed_dps, position, duty, time_ms, ramp_up_ms, ramp_down_ms, action)
 
 
-def build_effect(command: Command) -> Effect:
+def build_effect(command: Command) -> Callable[[SimulatedMotor, int, Values], None]:
     """Return the function that gives a command of the driver to a motor, with all set points."""
 
-    def obey(sim: Simulation, time_ns: int, part: int, values: tuple[float, ...]) -> None:
-        _find_motor(sim, part).obey(time_ns, command, _build_set_points(values))
+    def obey(motor: SimulatedMotor, time_ns: int, values: Values) -> None:
+        motor.obey(time_ns, command, _build_set_points(values))
 
     return obey
 
 
-def set_duty(sim: Simulation, time_ns: int, part: int, values: tuple[float, ...]) -> None:
+def set_duty(motor: SimulatedMotor, time_ns: int, values: Values) -> None:
     """Set the duty; it takes effect at once if `run-direct` was the last command, else it is ignored."""
-    _find_motor(sim, part).obey(time_ns, Setting.DUTY, int(values[0]))
+    motor.obey(time_ns, Setting.DUTY, int(values[0]))
 
 
-def set_position(sim: Simulation, time_ns: int, part: int, values: tuple[float, ...]) -> None:
+def set_position(motor: SimulatedMotor, time_ns: int, values: Values) -> None:
     """Set the number that the motor shows as its present position."""
-    _find_motor(sim, part).obey(time_ns, Setting.POSITION, int(values[0]))
+    motor.obey(time_ns, Setting.POSITION, int(values[0]))
 
 
-def set_constant(sim: Simulation, time_ns: int, part: int, values: tuple[float, ...]) -> None:
+def set_constant(motor: SimulatedMotor, time_ns: int, values: Values) -> None:
     """Set a constant of a controller. Values: the number of the controller, that of the constant, and the new value."""
     control = CONTROLS[find_index(values, 0, len(CONTROLS))]
     name = CONSTANTS[find_index(values, 1, len(CONSTANTS))]
     constant = Constant(control, name, int(values[2]))
-    _find_motor(sim, part).obey(time_ns, Setting.CONSTANT, constant)
+    motor.obey(time_ns, Setting.CONSTANT, constant)

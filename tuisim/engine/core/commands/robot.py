@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
+from tuisim.engine.core.commands.calls import Values
 from tuisim.engine.core.plugged import PART_CODES, PluggedPart, plug_parts
 
 if TYPE_CHECKING:
@@ -14,27 +15,27 @@ _PLACES = {code: place for place, code in PART_CODES.items()}
 """The role, the port and the class of a part, by their code."""
 
 
-def encode_parts(parts: Iterable[PluggedPart]) -> tuple[float, ...]:
+def encode_parts(parts: Iterable[PluggedPart]) -> Values:
     """Return the values of a `PLUG` command: a number for each part."""
     return tuple(float(PART_CODES[part.role, part.port, part.part]) for part in parts)
 
 
-def reset_gyro(sim: Simulation, _time_ns: int, _part: int, _values: tuple[float, ...]) -> None:
+def reset_gyro(sim: Simulation, _time_ns: int, _values: Values) -> None:
     """Let the gyro show 0 at the current heading."""
     sim.reset_gyro()
 
 
-def set_gyro(sim: Simulation, _time_ns: int, _part: int, values: tuple[float, ...]) -> None:
+def set_gyro(sim: Simulation, _time_ns: int, values: Values) -> None:
     """Let the gyro show an angle at the current heading, in degrees, clockwise."""
     sim.reset_gyro(values[0])
 
 
-def move_pen(sim: Simulation, _time_ns: int, _part: int, values: tuple[float, ...]) -> None:
+def move_pen(sim: Simulation, _time_ns: int, values: Values) -> None:
     """Lower the pen, or lift it."""
     sim.pen_down = bool(values[0])
 
 
-def plug_in(sim: Simulation, _time_ns: int, _part: int, values: tuple[float, ...]) -> None:
+def plug_in(sim: Simulation, _time_ns: int, values: Values) -> None:
     """Plug in parts, all at once.
 
     Raises:

@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from enum import Enum, auto
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from tuisim.base.data_class import dataclass
 from tuisim.engine.core.commands import driver, motors, robot, servo
-from tuisim.engine.core.commands.calls import MAX_NUMBER, MAX_VALUES, Call
+from tuisim.engine.core.commands.calls import MAX_NUMBER, MAX_VALUES, Call, Values
 from tuisim.engine.core.motors import MEDIUM_MAX_SPEED_DPS
 from tuisim.engine.core.plugged import PART_CODES
 from tuisim.engine.core.profile import MotorLaw
 from tuisim.engine.core.servo.settings import FULL_ACTUATION
 
 if TYPE_CHECKING:
+    from tuisim.engine.core.servo.bases import DriveBases
     from tuisim.engine.core.simulation import Simulation
 
 Range = tuple[float, float]
@@ -47,8 +48,8 @@ class Target(Enum):
 class CallSpec:
     """What a call does, and which motors and values it takes."""
 
-    apply: Callable[[Simulation, int, int, tuple[float, ...]], None]
-    """Obeys the call; takes the simulation, the time in ns, the part's number and the values."""
+    apply: Callable[[Any, int, Values], None]
+    """Obeys the call; takes the part that the call is for, the time in ns and the values."""
     ranges: tuple[Range, ...] = ()
     """The lowest and the highest allowed number for each value."""
     laws: frozenset[MotorLaw] = ALL_LAWS
@@ -130,8 +131,13 @@ CALLS: Mapping[Call, CallSpec] = {
     ),
     Call.USE_GYRO: CallSpec(servo.use_gyro, (_FLAG,), PYBRICKS_4, target=Target.BASE),
 }
-EFFECTS = {call: spec.apply for call, spec in CALLS.items()}
-"""What each call does, for a quick look-up."""
+
+
+def list_parts(sim: Simulation, target: Target) -> Sequence[Any] | DriveBases:
+    """Return the parts of a kind that a simulation has, in the order of their numbers."""
+    if target is Target.MOTOR:
+        return sim.motors
+    return sim.bases if target is Target.BASE else (sim,)
 
 
 def obey(sim: Simulation, time_ns: int, part: int, call: Call, *values: float) -> None:
@@ -142,4 +148,5 @@ def obey(sim: Simulation, time_ns: int, part: int, call: Call, *values: float) -
         RobotError: the parts that are plugged in do not fit.
     """
     sim.on_command(time_ns, part, call, values)
-    EFFECTS[call](sim, time_ns, part, values)
+    spec = CALLS[call]
+    spec.apply(list_parts(sim, spec.target)[part], time_ns, values)

@@ -245,7 +245,7 @@ class Controller:
         self._begin(trajectory, timed=True)
         self._behind_milli = behind_milli
 
-    def run_on(self, now_us: int, measured: Measure) -> None:
+    def keep_running(self, now_us: int, measured: Measure) -> None:
         """Let the move that has just begun go on at its speed; it is done where it would have ended."""
         assert self.trajectory is not None
         first, even, _, end, _ = self.trajectory

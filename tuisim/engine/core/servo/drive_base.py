@@ -91,13 +91,14 @@ class DriveBase:
     Args:
         left, right: The motors.
         wheel_diameter_mm, axle_track_mm: The robot's sizes.
+        find_gyro_deg: Returns the heading that the robot's gyro shows, clockwise.
     """
 
     __slots__ = (
         "_at_us",
         "_behind_us",
         "_ending",
-        "_find_heading",
+        "_find_gyro_deg",
         "_goal",
         "_millis",
         "_offset",
@@ -108,12 +109,19 @@ class DriveBase:
         "left",
         "motors",
         "right",
+        "uses_gyro",
         "usual",
     )
 
     def __init__(
-        self, left: ServoMotor, right: ServoMotor, wheel_diameter_mm: float, axle_track_mm: float
+        self,
+        left: ServoMotor,
+        right: ServoMotor,
+        wheel_diameter_mm: float,
+        axle_track_mm: float,
+        find_gyro_deg: Callable[[], float],
     ) -> None:
+        self._find_gyro_deg = find_gyro_deg
         self.left = left
         self.right = right
         self.motors = (left, right)
@@ -131,8 +139,8 @@ class DriveBase:
         self._ending = Ending.HOLD
         self._goal: tuple[int, int, float] | None = None
         """Of a move that goes on at its end: 0 for a distance or 1 for a turn, where it began, and how far it goes."""
-        self._find_heading: Callable[[], float] | None = None
-        """Returns the heading that a gyro shows, in degrees, clockwise; None while the wheels tell the heading."""
+        self.uses_gyro = False
+        """Whether a gyro tells the heading, not the wheels."""
         self._offset = 0
         """How far the difference of the motors is ahead of the gyro, in thousandths of a count."""
         self._at_us = -1
@@ -186,27 +194,18 @@ class DriveBase:
 
     # The gyro
 
-    @property
-    def uses_gyro(self) -> bool:
-        """Whether a gyro tells the heading."""
-        return self._find_heading is not None
-
-    def use_gyro(self, now_us: int, find_heading: Callable[[], float] | None) -> None:
-        """Let a gyro tell the heading from now on, or the wheels again; the motors coast.
-
-        Args:
-            find_heading: Returns the gyro's heading in degrees, clockwise; None: the wheels tell the heading.
-        """
+    def use_gyro(self, now_us: int, uses_gyro: bool) -> None:
+        """Let a gyro tell the heading from now on, or the wheels again; the motors coast."""
         self.stop(now_us, None)
-        self._find_heading = find_heading
+        self.uses_gyro = uses_gyro
         self._offset = 0
-        window_ms = 0 if find_heading else self.distance.settings.speed_window_ms
+        window_ms = 0 if uses_gyro else self.distance.settings.speed_window_ms
         self.heading.settings = replace(self.heading.settings, speed_window_ms=window_ms)
 
     def _follow_gyro(self) -> None:
         """Note how far the heading by the motors differs from that of the gyro."""
-        if self._find_heading is not None:
-            counts = self._find_heading() * self.heading.settings.counts_per_unit
+        if self.uses_gyro:
+            counts = self._find_gyro_deg() * self.heading.settings.counts_per_unit
             self._offset = self.left.milli - self.right.milli - round(counts * MILLI)
 
     # Commands
@@ -371,7 +370,7 @@ class DriveBase:
 
     def find_segment_end_us(self, now_us: int) -> int | None:
         """Return when the current segment of either trajectory ends; None if neither does."""
-        if self._find_heading is not None and (self.end_us is None or now_us < self.end_us):
+        if self.uses_gyro and (self.end_us is None or now_us < self.end_us):
             # The gyro corrects the motors at every tick.
             return now_us + 1
         ends = [
