@@ -14,7 +14,7 @@ from tuisim.engine.core.driver.motor import STATES, SetPoints
 from tuisim.engine.core.driver.simulated import SimulatedMotor
 from tuisim.engine.protocol import MotorRegisters
 from tuisim.engine.shim.device_files import NumberWriter, Reader, SimDevice, refuse
-from tuisim.engine.shim.motor import MAX_RAMP_MS, MAX_SET_POINT, Tacho
+from tuisim.engine.shim.motor import MAX_SET_POINT, Tacho
 from tuisim.engine.shim.session import DeviceSession
 
 SET_POINTS = (
@@ -57,18 +57,10 @@ class DriverTacho(Tacho):
             "duty_cycle": lambda: self._now().duty * self._sign,
             "state": lambda: STATE_TEXTS[self._now().state_bits],
         }
-        max_speed = self._kind.max_speed_dps
-        limits = dict.fromkeys(SET_POINTS, (0, MAX_SET_POINT)) | {
-            "speed_sp": (-max_speed, max_speed),
-            "duty_cycle_sp": (-100, 100),
-            "position_sp": (-MAX_SET_POINT - 1, MAX_SET_POINT),
-            "ramp_up_sp": (0, MAX_RAMP_MS),
-            "ramp_down_sp": (0, MAX_RAMP_MS),
-        }
         numbers: dict[str, NumberWriter] = {"position": self._set_position}
         for name in SET_POINTS:
             readers[name] = partial(self._set_point, name)
-            numbers[name] = self._set_point_writer(name, *limits[name])
+            numbers[name] = self._set_point_writer(name, *self._limits(name))
         for control, group in enumerate(CONTROLS):
             for constant, field in enumerate(CONSTANTS):
                 name = f"{group}_pid/{field.capitalize()}"

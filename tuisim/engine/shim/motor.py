@@ -63,7 +63,9 @@ KINDS = {
 class Tacho(ABC):
     """One motor on an output port, such as `outB`; its kind is one of `KINDS`."""
 
-    def __init__(self, session: DeviceSession, motor: Motor, port: str, kind: str) -> None:
+    def __init__(
+        self, session: DeviceSession, motor: Motor, port: str, kind: str = "large"
+    ) -> None:
         self._session = session
         self._port = port
         self._kind = KINDS[kind]
@@ -125,6 +127,17 @@ class Tacho(ABC):
             notifying=notifying,
             codes={name: READING_CODES[self._port, name] for name in MODES_BY_KIND["motor"]},
         )
+
+    def _limits(self, name: str) -> tuple[int, int]:
+        """Return the lowest and the highest value of a number that a program writes."""
+        max_speed = self._kind.max_speed_dps
+        return {
+            "speed_sp": (-max_speed, max_speed),
+            "duty_cycle_sp": (-100, 100),
+            "position_sp": (-MAX_SET_POINT - 1, MAX_SET_POINT),
+            "ramp_up_sp": (0, MAX_RAMP_MS),
+            "ramp_down_sp": (0, MAX_RAMP_MS),
+        }.get(name, (0, MAX_SET_POINT))
 
     def _take_command(self, text: str) -> None:
         self._command(text)
@@ -193,16 +206,7 @@ class TachoMotor(Tacho):
             "duty_cycle": self._duty_cycle,
             "state": self.state,
         }
-        limits = dict.fromkeys(self._numbers, (0, MAX_SET_POINT))
-        max_speed = self._kind.max_speed_dps
-        limits |= {
-            "speed_sp": (-max_speed, max_speed),
-            "duty_cycle_sp": (-100, 100),
-            "position_sp": (-MAX_SET_POINT - 1, MAX_SET_POINT),
-            "ramp_up_sp": (0, MAX_RAMP_MS),
-            "ramp_down_sp": (0, MAX_RAMP_MS),
-        }
-        numbers = {name: self._number_writer(name, *limits[name]) for name in self._numbers}
+        numbers = {name: self._number_writer(name, *self._limits(name)) for name in self._numbers}
         return self._device(readers, {}, {**numbers, "position": self._set_position})
 
     def registers(self) -> MotorRegisters:
@@ -465,11 +469,6 @@ class ServoTacho(Tacho):
     """One motor that the Pybricks firmware moves: its driver only shows the state, and takes no commands."""
 
     _motor: ServoMotor
-
-    def __init__(
-        self, session: DeviceSession, motor: ServoMotor, port: str, kind: str = "large"
-    ) -> None:
-        super().__init__(session, motor, port, kind)
 
     def device(self) -> SimDevice:
         """Return the device with the state of the motor."""

@@ -92,28 +92,23 @@ def is_aside(names: Iterable[str]) -> bool:
 
 def is_diameter(name: str) -> bool:
     """Return whether a name is that of the diameter of a wheel."""
-    parts = {*_split_name(name)}
-    return parts <= _WHEEL | _DIAMETER and bool(parts & _WHEEL) and bool(parts & _DIAMETER)
+    return _is_of_wheel(name, _DIAMETER)
 
 
 def is_radius(name: str) -> bool:
     """Return whether a name is that of the radius of a wheel."""
-    parts = {*_split_name(name)}
-    return (
-        parts <= _WHEEL | _RADIUS | _UNITS_MM.keys()
-        and bool(parts & _WHEEL)
-        and bool(parts & _RADIUS)
-    )
+    return _is_of_wheel(name, _RADIUS)
 
 
 def is_girth(name: str) -> bool:
     """Return whether a name is that of the circumference of a wheel."""
+    return _is_of_wheel(name, _GIRTH)
+
+
+def _is_of_wheel(name: str, measure: frozenset[str]) -> bool:
     parts = {*_split_name(name)}
-    return (
-        parts <= _WHEEL | _GIRTH | _UNITS_MM.keys()
-        and bool(parts & _WHEEL)
-        and bool(parts & _GIRTH)
-    )
+    known = _WHEEL | measure | _UNITS_MM.keys()
+    return parts <= known and bool(parts & _WHEEL) and bool(parts & measure)
 
 
 def is_spacing(name: str) -> bool:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 import types
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from functools import wraps
 from importlib.machinery import ModuleSpec
 from typing import Any
@@ -100,12 +100,7 @@ def replace(
 class PatchedModules:
     """Finds a patched module after a program has removed it from `sys.modules`: a new one would have the real clock."""
 
-    def find_spec(
-        self,
-        fullname: str,
-        path: Sequence[str] | None = None,
-        target: types.ModuleType | None = None,
-    ) -> ModuleSpec | None:
+    def find_spec(self, fullname: str, *_: object) -> ModuleSpec | None:
         """Return how to load a patched module; None for any other module."""
         loader: Any = self
         return ModuleSpec(fullname, loader) if fullname in _patched else None

@@ -29,7 +29,7 @@ from tuisim.engine.shim.plugs import Plugs
 from tuisim.engine.shim.sensors import ColorDevice
 from tuisim.engine.shim.session import DeviceSession
 from tuisim.engine.shim.sound import Mixer, patch_sound_module
-from tuisim.engine.shim.unsupported.modules import HardwareFinder, OtherLibrary
+from tuisim.engine.shim.unsupported.modules import HardwareFinder, refuse_other
 from tuisim.engine.shim.unsupported.parts import (
     OTHER_BOARDS,
     PROCESSES,
@@ -148,7 +148,7 @@ def finishers(
 
 def install(session: DeviceSession, built: BuiltBrick, plugs: Plugs) -> None:
     """Let a program import the libraries."""
-    sys.meta_path.insert(0, OtherLibrary((PYBRICKS,), Library.EV3DEV2))
+    sys.meta_path.insert(0, refuse_other((PYBRICKS,), Library.EV3DEV2))
     sys.meta_path.append(MissingLibrary())
     sys.meta_path.append(HardwareFinder(Library.EV3DEV2))
     connect(session, built.files, plugs, partial(ports_hint, session))

@@ -62,8 +62,8 @@ class Matrix:
     def __sub__(self, other: Matrix) -> Matrix:
         return self._each(other, lambda a, b: a - b)
 
-    def __neg__(self) -> Matrix:
-        return -1 * self
+    def __neg__(self) -> Any:
+        return self * -1
 
     def __mul__(self, other: Any) -> Any:
         if not isinstance(other, Matrix):
@@ -77,11 +77,10 @@ class Matrix:
         ]
         return product[0][0] if len(product) == len(columns) == 1 else Matrix(product)
 
-    def __rmul__(self, factor: float) -> Matrix:
-        return Matrix([[value * factor for value in row] for row in self._rows])
+    __rmul__ = __mul__
 
-    def __truediv__(self, divisor: float) -> Matrix:
-        return (1 / divisor) * self
+    def __truediv__(self, divisor: float) -> Any:
+        return self * (1 / divisor)
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Matrix) and self._rows == other._rows

@@ -8,7 +8,7 @@ import re
 import sys
 import types
 from collections import namedtuple
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from functools import wraps
 from importlib import import_module
 from importlib.machinery import ModuleSpec
@@ -90,12 +90,7 @@ class MicroPythonFinder:
         self._of_python = of_python
         self._refused = refused
 
-    def find_spec(
-        self,
-        fullname: str,
-        path: Sequence[str] | None = None,
-        target: types.ModuleType | None = None,
-    ) -> ModuleSpec | None:
+    def find_spec(self, fullname: str, *_: object) -> ModuleSpec | None:
         """Return how to load a module of MicroPython; None for other modules."""
         loader: Any = self
         is_refused = fullname.partition(".")[0] in self._refused

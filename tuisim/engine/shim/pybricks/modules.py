@@ -9,6 +9,7 @@ from importlib import import_module
 from pkgutil import walk_packages
 from typing import Any
 
+from tuisim.base.source import HUB_DEVICES
 from tuisim.engine.core.hub_spec import HUBS_WITH_MATRIX
 from tuisim.engine.core.profile import Library, MotorLaw
 from tuisim.engine.shim.brick import BuiltBrick, ports_hint
@@ -21,7 +22,7 @@ from tuisim.engine.shim.pybricks.unsimulated import (
     IO_DEVICES,
     NXT_DEVICES,
     VERSION_4,
-    OtherHub,
+    explain_hub,
     refuse_all,
     refuse_hub,
     refused_classes,
@@ -35,7 +36,8 @@ from tuisim.engine.shim.unsupported.modules import (
     BLUETOOTH,
     HardwareFinder,
     HardwareModule,
-    OtherLibrary,
+    RefusedImports,
+    refuse_other,
 )
 
 Names = dict[str, dict[str, Any]]
@@ -104,7 +106,7 @@ def _choose_names(brick: Brick, law: MotorLaw, hub: str) -> Names:
         hub: The robot's hub; empty for the EV3.
     """
     if not hub:
-        sys.meta_path.insert(0, OtherHub())
+        sys.meta_path.insert(0, RefusedImports({HUB_DEVICES: explain_hub(HUB_DEVICES)}))
         if law != MotorLaw.PYBRICKS_4:
             brick.name_replacement = _name_later
             return read_version_2()
@@ -125,7 +127,7 @@ def install(
     session: DeviceSession, built: BuiltBrick, plugs: Plugs, screen: Screen, mixer: Mixer
 ) -> None:
     """Let a program import the library, and the modules of MicroPython."""
-    sys.meta_path.insert(0, OtherLibrary(("ev3dev2", "ev3dev"), Library.PYBRICKS))
+    sys.meta_path.insert(0, refuse_other(("ev3dev2", "ev3dev"), Library.PYBRICKS))
     sys.meta_path.append(HardwareFinder(Library.PYBRICKS))
     micropython.install(session)
     plugs.missing = OSError

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import types
 from collections.abc import Mapping, Sequence
 from typing import Any, NoReturn
 
-from tuisim.base.source import HUB_DEVICES
 from tuisim.engine.core.hub_spec import HUBS
 from tuisim.engine.core.profile import Library
 from tuisim.engine.shim.unsupported.modules import (
@@ -84,24 +82,6 @@ HUB_CLASSES: Mapping[str, tuple[str, ...]] = {
 """Likewise, on hubs."""
 
 
-class OtherHub:
-    """Refuses, in a run with an EV3, to import the module for devices of hubs; it is the first finder."""
-
-    def find_spec(
-        self,
-        fullname: str,
-        path: Sequence[str] | None = None,
-        target: types.ModuleType | None = None,
-    ) -> None:
-        """Return None for other modules than that one.
-
-        Raises:
-            NotSimulated: it is that module; the error is also an ImportError.
-        """
-        if fullname == HUB_DEVICES:
-            raise _refusal(fullname)
-
-
 def refuse_hub(hub: str, name: str) -> NoReturn:
     """Raise the error for a name that `pybricks.hubs` does not have in this run.
 
@@ -114,22 +94,26 @@ def refuse_hub(hub: str, name: str) -> NoReturn:
         AttributeError: no hub has this name.
     """
     if name in HUBS:
-        raise _refusal(f"pybricks.hubs.{name}", hub)
+        raise refused_as(ImportError, *explain_hub(f"pybricks.hubs.{name}", hub))
     raise AttributeError(f"module 'pybricks.hubs' has no attribute {name!r}")
 
 
-def _refusal(name: str, hub: str = "") -> Exception:
-    """Return the error for a name that belongs to another hub than the robot's.
+def explain_hub(name: str, hub: str = "") -> tuple[str, str]:
+    """Return what to say about a name that belongs to another hub than the robot's, and a hint.
 
     Args:
         name: The full name.
         hub: The robot's hub; empty for the EV3.
     """
     if hub:
-        hint = "a program gets the first hub that it imports, unless -r names a robot"
-        return refused_as(ImportError, f"{name}: the hub of this run's robot is {hub}", hint)
-    hint = "a program that uses no part of the EV3 gets the hub that it imports, unless -r names a robot"
-    return refused_as(ImportError, f"{name}: the robot of this run has an EV3", hint)
+        return (
+            f"{name}: the hub of this run's robot is {hub}",
+            "a program gets the first hub that it imports, unless -r names a robot",
+        )
+    return (
+        f"{name}: the robot of this run has an EV3",
+        "a program that uses no part of the EV3 gets the hub that it imports, unless -r names a robot",
+    )
 
 
 def refuse_all(classes: Mapping[str, Sequence[str]], instead: str) -> dict[str, dict[str, Any]]:

@@ -14,7 +14,7 @@ from tuisim.engine.core.commands.calls import Call
 from tuisim.engine.core.servo.control import Ending
 from tuisim.engine.core.servo.settings import COUNTS_PER_DEG
 from tuisim.engine.core.servo.trajectory import MILLI
-from tuisim.engine.shim.pybricks import motor, robotics
+from tuisim.engine.shim.pybricks import ev3devices, motor, robotics, tools
 from tuisim.engine.shim.pybricks.brick import (
     Connected,
     Waiting,
@@ -24,13 +24,9 @@ from tuisim.engine.shim.pybricks.brick import (
     round_number,
     whole,
 )
-from tuisim.engine.shim.pybricks.ev3devices import ColorSensor as EarlierColorSensor
-from tuisim.engine.shim.pybricks.ev3devices import GyroSensor as EarlierGyroSensor
-from tuisim.engine.shim.pybricks.ev3devices import InfraredSensor as EarlierInfraredSensor
 from tuisim.engine.shim.pybricks.hsv_color import Color as Color
 from tuisim.engine.shim.pybricks.motor import ending_of, gear_ratio
 from tuisim.engine.shim.pybricks.parameters import Button, Direction, Port, shown_by_name
-from tuisim.engine.shim.pybricks.tools import StopWatch as EarlierStopWatch
 from tuisim.engine.shim.pybricks.unsimulated import MODEL
 from tuisim.engine.shim.unsupported.modules import refused_part
 
@@ -343,7 +339,7 @@ class GyroDriveBase(DriveBase):
         self.use_gyro(True)
 
 
-class ColorSensor(EarlierColorSensor):
+class ColorSensor(ev3devices.ColorSensor):
     """A colour sensor."""
 
     def color(self, surface: bool = True) -> Any:
@@ -352,7 +348,7 @@ class ColorSensor(EarlierColorSensor):
         return Color.NONE if color is None else Color[color.name]
 
 
-class InfraredSensor(EarlierInfraredSensor):
+class InfraredSensor(ev3devices.InfraredSensor):
     """An infrared sensor."""
 
     def buttons(self, channel: int) -> set[Button]:  # type: ignore[override]
@@ -364,7 +360,7 @@ class InfraredSensor(EarlierInfraredSensor):
         return set(super().keypad())
 
 
-class GyroSensor(EarlierGyroSensor):
+class GyroSensor(ev3devices.GyroSensor):
     """A gyro."""
 
     def calibrate(self) -> None:
@@ -372,7 +368,7 @@ class GyroSensor(EarlierGyroSensor):
         self.reset_angle(0)
 
 
-class StopWatch(EarlierStopWatch):
+class StopWatch(tools.StopWatch):
     """A stopwatch; it runs from its creation on."""
 
     def running(self) -> bool:

@@ -225,32 +225,37 @@ class HardwareModule(types.ModuleType):
         return _kept_part(self, self.__name__, name, vars(self)["_hardware"])
 
 
-class OtherLibrary:
-    """Refuses to import a library that does not belong to the profile of this run; it is the first finder.
+class RefusedImports:
+    """Refuses to import modules; it is the first finder.
 
     Args:
-        names: The packages of that library.
-        library: The library of this run.
+        reasons: What the error says about each module, and its hint.
     """
 
-    def __init__(self, names: Sequence[str], library: Library) -> None:
-        self._names = names
-        self._library = library
+    def __init__(self, reasons: Mapping[str, tuple[str, str]]) -> None:
+        self._reasons = reasons
 
-    def find_spec(
-        self,
-        fullname: str,
-        path: Sequence[str] | None = None,
-        target: types.ModuleType | None = None,
-    ) -> None:
-        """Return None for other packages than those of the library.
+    def find_spec(self, fullname: str, *_: object) -> None:
+        """Return None for other modules.
 
         Raises:
             NotSimulated: it is one of them; the error is also an ImportError.
         """
-        if fullname in self._names:
-            told = f"{fullname}: this program runs by the rules of {self._library}"
-            raise refused_as(ImportError, told, "a program uses one of the two libraries")
+        if fullname in self._reasons:
+            raise refused_as(ImportError, *self._reasons[fullname])
+
+
+def refuse_other(names: Sequence[str], library: Library) -> RefusedImports:
+    """Return the finder that refuses the packages of a library which does not belong to the profile of this run.
+
+    Args:
+        names: The packages.
+        library: The library of this run.
+    """
+    hint = "a program uses one of the two libraries"
+    return RefusedImports(
+        {name: (f"{name}: this program runs by the rules of {library}", hint) for name in names}
+    )
 
 
 class HardwareFinder:
@@ -263,12 +268,7 @@ class HardwareFinder:
     def __init__(self, library: Library) -> None:
         self._library = library
 
-    def find_spec(
-        self,
-        fullname: str,
-        path: Sequence[str] | None = None,
-        target: types.ModuleType | None = None,
-    ) -> ModuleSpec | None:
+    def find_spec(self, fullname: str, *_: object) -> ModuleSpec | None:
         """Return how to load a module for hardware; None for other modules."""
         top = fullname.partition(".")[0]
         if top == fullname:
