@@ -22,9 +22,9 @@ from tuisim.programs.robot.mechanics import read_mechanics
 from tuisim.programs.robot.mentions import Mention, Mentions, Pair, Where
 from tuisim.programs.robot.places import (
     KINDS,
-    NewSensors,
     add_sides,
     build_fields,
+    choose_likeliest,
     find_path,
     mount,
     name_sensor,
@@ -401,17 +401,17 @@ class _Builder:
         if by_side:
             missing.sort(key=lambda device: not find_side(device[1].names))
         left = [sensor for sensor in self.usual.sensors if sensor.port not in placed]
-        new = NewSensors()
+        new: dict[str, Mention] = {}
         for port, mention in missing:
             alike = [sensor for sensor in left if KINDS[type(sensor)] is mention.kind]
             if by_side and mention.kind is DeviceKind.COLOR and (side := find_side(mention.names)):
                 alike = [sensor for sensor in alike if sensor.name == side]
             if alike:
-                chosen = new.choose_likeliest(alike, mention)
+                chosen = choose_likeliest(alike, mention)
                 left.remove(chosen)
                 placed[port] = mount(on_port(chosen, port), mention)
             else:
-                new.add(port, mention)
+                new[port] = mention
         placed |= place_sensors(new, placed, self._build_body(motors), self.doubts)
         self._stay(left, placed)
         self._tell_sensors(placed, by_port, mentions)

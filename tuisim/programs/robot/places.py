@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import field, replace
+from dataclasses import replace
 from typing import Any
 
-from tuisim.base.data_class import dataclass
 from tuisim.engine.core.sensor_places import LOOKS, ORDERS, SENSOR_MAKERS, Body
 from tuisim.engine.core.spec import (
     ColorSensorSpec,
@@ -62,37 +61,28 @@ def say_other_sides(mentions: Mapping[str, Mention], usual: Mapping[str, SensorS
     )
 
 
-@dataclass(slots=True)
-class NewSensors:
-    """The sensors that the usual robot does not have, by port."""
-
-    by_port: dict[str, Mention] = field(default_factory=dict)
-
-    def add(self, port: str, mention: Mention) -> None:
-        """Add a sensor."""
-        self.by_port[port] = mention
-
-    @staticmethod
-    def choose_likeliest(sensors: list[SensorSpec], mention: Mention) -> SensorSpec:
-        """Return the sensor that a program most likely means, by its name for the sensor."""
-        side = find_side(mention.names)
-        return next((sensor for sensor in sensors if sensor.name == side), sensors[0])
+def choose_likeliest(sensors: list[SensorSpec], mention: Mention) -> SensorSpec:
+    """Return the sensor that a program most likely means, by its name for the sensor."""
+    side = find_side(mention.names)
+    return next((sensor for sensor in sensors if sensor.name == side), sensors[0])
 
 
 def place_sensors(
-    new: NewSensors, placed: Mapping[str, SensorSpec], body: Body, doubts: list[str]
+    new: Mapping[str, Mention],
+    placed: Mapping[str, SensorSpec],
+    body: Body,
+    doubts: list[str],
 ) -> dict[str, SensorSpec]:
     """Return new sensors by port, with places and names that no other sensor has.
 
     Args:
+        new: What the program says of the sensors that the usual robot does not have, by port.
         placed: The other sensors, by port.
         doubts: Gets a sentence for each sensor that cannot be built.
     """
     sensors: dict[str, SensorSpec] = {}
     for kind, spec in SENSOR_SPECS.items():
-        mentions = {
-            port: mention for port, mention in sorted(new.by_port.items()) if mention.kind is kind
-        }
+        mentions = {port: mention for port, mention in sorted(new.items()) if mention.kind is kind}
         known = [*placed.values(), *sensors.values()]
         names = {sensor.name for sensor in known}
         if kind is DeviceKind.GYRO:

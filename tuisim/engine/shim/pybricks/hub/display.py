@@ -26,14 +26,9 @@ PLACES: Mapping[Side, Callable[[int, int], tuple[int, int]]] = {
 """Where a pixel of a picture is on the matrix, by the side that is up."""
 
 
-def _spread_bits(rows: Iterable[int], columns: int = SIDE_PIXELS) -> list[list[int]]:
-    """Return brightnesses, 0 or 100, for the bits of numbers: a row for each number, its highest bit on the left."""
-    return [[100 * (row >> columns - 1 - column & 1) for column in range(columns)] for row in rows]
-
-
-def _read_picture(picture: str, columns: int = SIDE_PIXELS) -> list[list[int]]:
-    """Return the brightnesses, row by row, of one of `pictures`: a digit to the base 32 for each row."""
-    return _spread_bits((int(digit, 32) for digit in picture), columns)
+def _spread_bits(bits: int) -> Pixels:
+    """Return a brightness, 0 or 100, for each of 25 bits, from the highest to the lowest."""
+    return tuple(100 * (bits >> place & 1) for place in reversed(range(len(DARK))))
 
 
 class Icon:
@@ -41,24 +36,21 @@ class Icon:
 
     def __new__(cls, bits: int) -> Any:
         """Return a picture as a matrix of brightnesses."""
-        return Matrix(
-            _spread_bits(bits >> SIDE_PIXELS * (LAST - row) for row in range(SIDE_PIXELS))
-        )
+        pixels = _spread_bits(bits)
+        return Matrix([pixels[row : row + SIDE_PIXELS] for row in range(0, len(DARK), SIDE_PIXELS)])
 
 
 for _name, _picture in ICONS.items():
-    setattr(Icon, _name, Matrix(_read_picture(_picture)))
+    setattr(Icon, _name, Icon(int(_picture, 32)))
 
 
 def _read_icon(icon: Any) -> Pixels:
-    rows = (
-        [[icon[row, column] for column in range(SIDE_PIXELS)] for row in range(SIDE_PIXELS)]
-        if isinstance(icon, Matrix) and icon.shape == (SIDE_PIXELS, SIDE_PIXELS)
-        else icon
-    )
-    if not isinstance(rows, Sequence) or [len(row) for row in rows] != [SIDE_PIXELS] * SIDE_PIXELS:
+    if not isinstance(icon, Matrix | Sequence):
         raise invalid_argument()
-    return tuple(max(0, min(100, whole(value))) for row in rows for value in row)
+    matrix = icon if isinstance(icon, Matrix) else Matrix(icon)
+    if matrix.shape != (SIDE_PIXELS, SIDE_PIXELS):
+        raise invalid_argument()
+    return tuple(max(0, min(100, whole(value))) for value in matrix)
 
 
 class Display(Connected):
@@ -119,8 +111,7 @@ class Display(Connected):
         """Show a character."""
         if len(text_of(char)) != 1 or not " " <= char <= "~":
             raise invalid_argument()
-        rows = _read_picture(CHARACTERS[ord(char) - ord(" ")])
-        self._show(tuple(pixel for row in rows for pixel in row))
+        self._show(_spread_bits(int(CHARACTERS[ord(char) - ord(" ")], 32)))
 
     def number(self, number: int) -> None:
         """Show a number of two digits; a negative one with a faint dot."""
@@ -129,9 +120,8 @@ class Display(Connected):
             self.char(">" if value > 0 else "<")
             return
         tens, ones = divmod(abs(value), 10)
-        left = _read_picture(DIGITS[tens], 2) if tens else [[0, 0]] * SIDE_PIXELS
-        rows = zip(left, _read_picture(DIGITS[ones], 2), strict=True)
-        pixels = [pixel for first, second in rows for pixel in (*first, 0, *second)]
+        left = int(DIGITS[tens], 32) << 3 if tens else 0
+        pixels = [*_spread_bits(left | int(DIGITS[ones], 32))]
         if value < 0:
             pixels[len(DARK) // 2] = 50
         self._show(tuple(pixels))

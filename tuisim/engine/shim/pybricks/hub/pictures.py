@@ -18,7 +18,7 @@ _PACKED = (
 CHARACTERS = tuple(_PACKED[at : at + 5] for at in range(0, len(_PACKED), 5))
 """From the blank to ~."""
 DIGITS = ["33333", "11111", "31323", "31313", "23311", "32313", "32333", "31111", "33033", "33313"]
-"""Two columns wide."""
+"""The last two columns of each; as a number, `<< 3` moves them to the first two."""
 ICONS: Mapping[str, str] = {
     "UP": "4evee",
     "DOWN": "eeve4",
