@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import tracemalloc
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -93,9 +94,11 @@ def test_new_levels_and_errors_stand_out_once(tmp_path: Path) -> None:
     ]
 
 
-def stored(text: str, choices: Mapping[str, Any] | None = None) -> StoredRun:
+def stored(
+    text: str, choices: Mapping[str, Any] | None = None, prelude: str = "preloaded"
+) -> StoredRun:
     spec = build_run_spec(Settings({"background": "Grey_bands", **(choices or {})}))
-    run = start_run(program(text), spec, RunOptions())
+    run = start_run(replace(program(text), prelude=prelude), spec, RunOptions())
     assert run.wait(PATIENCE_S)
     return RunStore().load_run(run.run_id)
 
@@ -142,3 +145,24 @@ def test_a_timeline_marks_what_the_user_and_breakpoints_did() -> None:
     assert timeline.advance_playback(12.0, 0.0)
     assert not timeline.playing
     assert timeline.record() is None
+
+
+DRIVE = """\
+from pybricks.ev3devices import Motor
+from pybricks.parameters import Port
+from pybricks.robotics import DriveBase
+from pybricks.tools import wait
+base = DriveBase(Motor(Port.B), Motor(Port.C), 56, 118)
+base.drive({speed}, 0)
+wait(9000)
+"""
+
+
+@pytest.mark.parametrize("speed, stalls", [(0, False), (300, True)])
+def test_wheels_that_rest_under_control_are_not_stalled_and_wheels_at_a_wall_are(
+    speed: int, stalls: bool
+) -> None:
+    choices = {"profile": "lego-micropython", "solid": True}
+    run = stored(DRIVE.format(speed=speed), choices, "none")
+    recording = Recording(run)
+    assert recording.stalled(run.telemetry.record(800)) == (stalls, stalls)

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tuisim.base.errors import LogError
+from tuisim.engine.core.commands.table import SERVO_LAWS
 from tuisim.engine.core.field import Field
 from tuisim.engine.core.motion import compute_stall_ticks
 from tuisim.engine.core.pen_marks import MarkedField, PenMarks
@@ -25,6 +26,7 @@ from tuisim.engine.runs.records import SAMPLE_STREAMS, TEXT_STREAMS, Mark, Outpu
 from tuisim.engine.runs.run_folder import StoredRun, find_noise, restore_program
 from tuisim.engine.runs.samples import parse_sample
 from tuisim.engine.runs.side_files import read_actions
+from tuisim.engine.runs.standstill import touches_solid
 from tuisim.engine.runs.views import build_instant
 
 if TYPE_CHECKING:
@@ -142,7 +144,10 @@ class Recording:
         return replace(build_instant(record, spec, noise), motors=motors)
 
     def stalled(self, record: TickRecord) -> tuple[bool, bool]:
-        """Return whether the left and the right motor were running but did not turn."""
+        """Return whether the left and the right motor were running but did not turn.
+
+        A motor of the Pybricks firmware also runs at a speed of 0: it stalls only where the robot touches something.
+        """
         ticks = self._stall_ticks
         if record.tick < ticks:
             return False, False
@@ -152,10 +157,14 @@ class Recording:
             abs(record.left_position_deg - before.left_position_deg),
             abs(record.right_position_deg - before.right_position_deg),
         )
-        return (
+        stalled = (
             bool(running & FLAG_LEFT_RUNNING) and turned[0] < _STILL_DEG,
             bool(running & FLAG_RIGHT_RUNNING) and turned[1] < _STILL_DEG,
         )
+        if any(stalled) and self.spec.profile.motor_law in SERVO_LAWS:
+            pose = record.x_mm, record.y_mm, record.heading_deg
+            return stalled if touches_solid(pose, self.spec) else (False, False)
+        return stalled
 
 
 class _TimedMarks:

@@ -109,6 +109,14 @@ def find_standstill(telemetry: TelemetryView, spec: RunSpec) -> Standstill | Non
     )
 
 
+def touches_solid(pose: PoseTuple, spec: RunSpec) -> bool:
+    """Return whether the robot of a run touches something that can stop it, at a pose."""
+    from tuisim.engine.core.collision import Solids
+
+    gaps = Solids(spec.world, spec.robot).measure_gaps_mm(pose) if spec.world.solid else ()
+    return any(gap < _CONTACT_MM for gap in gaps)
+
+
 def has_left_field(telemetry: TelemetryView, spec: RunSpec) -> bool:
     """Return whether a robot on an open floor has been off the field.
 
