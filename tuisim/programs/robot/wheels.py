@@ -68,6 +68,10 @@ def find_wheels(
         tools: Ports of motors that drive no wheel, unless the program drives them as a pair.
     """
     devices = mentions.devices
+    if mentions.hub:
+        # Motors of the EV3 with such names are medium ones.
+        named = [device for device in devices if device.kind.is_motor and is_tool(device.names)]
+        tools = {*tools, *(device.port for device in named)}
     return (
         _choose_pair(mentions.pairs)
         or _choose_single(devices, kinds, tools)
