@@ -26,7 +26,7 @@ from pybricks.hubs import {hub} as Hub
 from pybricks import parameters, tools
 hub = Hub()
 print("parts:", *[part for part in {parts} if hasattr(hub, part)])
-print("matrix:", hasattr(parameters, "Icon"), hasattr(tools, "hub_menu"))
+print("matrix:", "Icon" in vars(parameters), "hub_menu" in vars(tools))
 for part in {refused}:
     try:
         getattr(hub, part).observe(1)

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import inspect
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +18,7 @@ from tuisim.base.errors import NotSimulated
 from tuisim.engine.core.profile import MotorLaw
 from tuisim.engine.shim.pybricks.hub.hubs import PrimeHub
 from tuisim.engine.shim.pybricks.hub.pupdevices import Lights
-from tuisim.engine.shim.pybricks.modules import read_version_4
+from tuisim.engine.shim.pybricks.modules import read_version_4, refuse_name
 from tuisim.engine.shim.pybricks.unsimulated import HUB_CLASSES
 from tuisim.engine.shim.pybricks.version_4 import Control
 
@@ -52,3 +53,20 @@ def test_a_member_cannot_be_called_by_the_names_of_its_parameters(hub: Any, memb
 def test_a_class_that_is_not_simulated_can_be_used(name: str) -> None:
     with pytest.raises(NotSimulated, match=name):
         NAMES[name]()
+
+
+@pytest.mark.parametrize(
+    ("module", "name", "hint"),
+    [
+        ("pybricks.tools", "hub_menu", "pybricks.tools of PrimeHub has it"),
+        ("pybricks.ev3devices", "ForceSensor", "pybricks.pupdevices of PrimeHub has it"),
+        ("pybricks.iodevices", "XboxController", "pybricks.iodevices of PrimeHub has it"),
+        ("pybricks.experimental", "run_parallel", "multitask() and run_task()"),
+    ],
+)
+def test_the_ev3_does_not_say_in_a_sentence_what_only_others_have(
+    module: str, name: str, hint: str
+) -> None:
+    with pytest.raises(ImportError, match=re.escape(f"{module}.{name}")) as error:
+        refuse_name("", module, name)
+    assert hint in str(getattr(error.value, "hint", ""))

@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import NoReturn
-
-from tuisim.engine.shim.unsupported.modules import refused_as
 
 _SOUNDS = "its speaker has beep() and play_notes()"
-_BRICK = "use EV3Brick() of pybricks.hubs"
+_BRICK = "use the class of the brick or hub in pybricks.hubs"
 _PARAMETERS = "pybricks.parameters has it"
 _TASKS = "use multitask() and run_task() of pybricks.tools"
 _FILES = "Image, Font and ImageFile are in pybricks.parameters, and no sound is a file"
@@ -59,17 +56,9 @@ EARLIER_MEMBERS: Mapping[str, str] = {
 """Hints for attributes of objects that version 4 no longer has, by name."""
 
 
-def refuse_earlier(module: str, name: str) -> NoReturn:
-    """Raise the error for a name that a module does not have under version 4.
-
-    Raises:
-        NotSimulated: version 2.0 has the name; the error is also an ImportError.
-        AttributeError: version 2.0 does not have it either.
-    """
-    hint = EARLIER_MODULES.get(module) or EARLIER.get(module, {}).get(name)
-    if hint and not name.startswith("__"):
-        raise refused_as(ImportError, f"{module}.{name} is not in Pybricks 4", hint)
-    raise AttributeError(f"module {module!r} has no attribute {name!r}")
+def find_earlier(module: str, name: str) -> str:
+    """Return what to use in place of a name that a module does not have under version 4; empty if unknown."""
+    return EARLIER_MODULES.get(module) or EARLIER.get(module, {}).get(name, "")
 
 
 def name_replacement(_owner: str, name: str) -> str:

@@ -7,7 +7,7 @@ import types
 from functools import partial
 from importlib import import_module
 from pkgutil import walk_packages
-from typing import Any
+from typing import Any, NoReturn
 
 from tuisim.base.source import HUB_DEVICES
 from tuisim.engine.core.hub_spec import HUBS_WITH_MATRIX
@@ -38,6 +38,7 @@ from tuisim.engine.shim.unsupported.modules import (
     HardwareModule,
     RefusedImports,
     refuse_other,
+    refused_as,
 )
 
 Names = dict[str, dict[str, Any]]
@@ -110,17 +111,33 @@ def _choose_names(brick: Brick, law: MotorLaw, hub: str) -> Names:
         if law != MotorLaw.PYBRICKS_4:
             brick.name_replacement = _name_later
             return read_version_2()
-    from tuisim.engine.shim.pybricks.earlier import (
-        EARLIER_MODULES,
-        name_replacement,
-        refuse_earlier,
-    )
+    from tuisim.engine.shim.pybricks.earlier import EARLIER_MODULES, name_replacement
 
     brick.name_replacement = name_replacement
-    names = read_version_4(hub)
-    if not hub:
-        names |= {name: {} for name in EARLIER_MODULES}
-    return {name: {"__getattr__": partial(refuse_earlier, name), **names[name]} for name in names}
+    names: Names = {name: {} for name in EARLIER_MODULES}
+    names |= read_version_4(hub)
+    return {name: {"__getattr__": partial(refuse_name, hub, name), **names[name]} for name in names}
+
+
+def refuse_name(hub: str, module: str, name: str) -> NoReturn:
+    """Raise the error for a name that a module does not have under version 4.
+
+    Raises:
+        NotSimulated: version 2.0, another module or another hub has the name; the error is also an ImportError.
+        AttributeError: nothing has it.
+    """
+    from tuisim.engine.shim.pybricks.earlier import find_earlier
+
+    if name.startswith("__"):
+        raise AttributeError(f"module {module!r} has no attribute {name!r}")
+    if hint := find_earlier(module, name):
+        raise refused_as(ImportError, f"{module}.{name} is not in Pybricks 4", hint)
+    for owner in dict.fromkeys((hub, "", "PrimeHub")):
+        for place, names in read_version_4(owner).items():
+            if name in names:
+                hint = f"{place} of {owner or 'the EV3'} has it"
+                raise refused_as(ImportError, f"{module}.{name}: {hub or 'the EV3'} lacks it", hint)
+    raise AttributeError(f"module {module!r} has no attribute {name!r}")
 
 
 def install(
