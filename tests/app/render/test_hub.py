@@ -56,3 +56,8 @@ def test_the_keys_of_a_remote_control_cannot_be_clicked(width: int, rows: int) -
     assert {box.row for box in keys} == {*range(6, 6 + rows)}
     assert max(map(len, texts)) <= width
     assert len(draw_hub(connected, (), width, 6).lines) <= 6
+
+
+def test_the_light_on_a_port_is_shown_with_its_brightness() -> None:
+    picture = draw_hub(BrickState(leds={"light B": 204}), (), 30, 10, has_matrix=False)
+    assert "".join(text for text, _ in picture.lines[1]).strip() == "B ☼ 80 %"

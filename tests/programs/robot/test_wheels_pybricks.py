@@ -187,3 +187,24 @@ def test_the_port_of_a_sensor_is_none_of_a_wheel_on_a_hub() -> None:
     assert robot.choice.spec.left_port == NO_PORT
     assert [motor.port for motor in robot.choice.spec.extra_motors] == ["A"]
     assert [sensor.port for sensor in robot.choice.spec.color_sensors] == ["B"]
+
+
+@pytest.mark.parametrize(
+    ("parts", "wheels"),
+    [
+        ("gate = Motor(Port.B)", ("A", "B")),
+        ("arm = Motor(Port.B)", ("A", "C")),
+        ("train = DCMotor(Port.A)\nlamp = Light(Port.B)", ("A", "C")),
+    ],
+    ids=["a motor without a telling name", "an arm", "a light"],
+)
+def test_the_port_of_an_arm_or_a_light_on_a_hub_is_none_of_a_wheel(
+    parts: str, wheels: tuple[str, str]
+) -> None:
+    head = "from pybricks.hubs import PrimeHub\nfrom pybricks.pupdevices import DCMotor, Light, Motor\n"
+    facts = read_source_facts(
+        Program("prog.py", f"{head}from pybricks.parameters import Port\n{parts}\n")
+    )
+    assert facts.robot is not None
+    robot = facts.robot.choice.spec
+    assert (robot.left_port, robot.right_port) == wheels

@@ -15,6 +15,7 @@ from tuisim.engine.core.hub_spec import CONTROLLERS
 from tuisim.engine.runs.brick_state import (
     HUB_LIGHT_NAMES,
     PIXEL_NAMES,
+    PORT_LIGHT,
     REMOTE_LIGHT_NAMES,
     SIDE_PIXELS,
     XBOX_LIGHT_NAMES,
@@ -73,6 +74,9 @@ def draw_hub(
     for key_line, key_boxes in keys:
         boxes += tuple(replace(box, row=len(lines)) for box in key_boxes)
         lines.append(key_line)
+    lamps = [*_draw_lamps(face)]
+    if lamps and height > len(lines):
+        lines.append(lamps)
     if bumpers and height > len(lines):
         bumper_line, more = draw_bumpers(bumpers, pressed, width, len(lines))
         lines.append(bumper_line)
@@ -114,6 +118,13 @@ def _mix_light(face: BrickState, names: Sequence[str]) -> Style:
     """Return the style of a light whose red, green and blue LEDs have these names."""
     levels = [max(_DARK // 2, face.leds.get(name, 0)) for name in names]
     return Style(bgcolor=Color.from_rgb(*levels))
+
+
+def _draw_lamps(face: BrickState) -> Iterator[Run]:
+    """Yield the ports of the lights on ports, each with the brightness of its light."""
+    for name, level in face.leds.items():
+        if name.startswith(PORT_LIGHT):
+            yield f" {name.removeprefix(PORT_LIGHT)} ☼ {round(level / 2.55)} % ", _CAPTION
 
 
 def _draw_controllers(

@@ -29,6 +29,8 @@ REMOTE_LIGHT_NAMES = ("remote red", "remote green", "remote blue")
 """The LEDs of a connected remote control."""
 XBOX_LIGHT_NAMES = ("xbox red", "xbox green", "xbox blue")
 """The LEDs of a connected game controller."""
+PORT_LIGHT = "light "
+"""Before the port in the name of a light on a port of a hub."""
 SIDE_PIXELS = 5
 PIXEL_NAMES = tuple(f"{row}{column}" for row in range(SIDE_PIXELS) for column in range(SIDE_PIXELS))
 """The LEDs of a hub's matrix, row by row from the top."""

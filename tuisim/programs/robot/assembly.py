@@ -22,6 +22,7 @@ from tuisim.programs.robot.mechanics import read_mechanics
 from tuisim.programs.robot.mentions import Mention, Mentions, Pair, Where
 from tuisim.programs.robot.places import (
     KINDS,
+    SENSOR_SPECS,
     add_sides,
     build_fields,
     choose_likeliest,
@@ -392,7 +393,7 @@ class _Builder:
         waiting = {
             port: device
             for port, device in by_port.items()
-            if port not in placed and device.kind is not DeviceKind.SENSOR
+            if port not in placed and device.kind in SENSOR_SPECS
         }
         missing = [
             *waiting.items(),
@@ -435,9 +436,7 @@ class _Builder:
         """Return the sensors that a program makes without a port, each with a free port for it."""
         ported: list[tuple[str, Mention]] = []
         for kind in dict.fromkeys(
-            device.kind
-            for device in mentions
-            if not device.port and device.kind is not DeviceKind.SENSOR
+            device.kind for device in mentions if not device.port and device.kind in SENSOR_SPECS
         ):
             of_kind = [device for device in mentions if device.kind is kind and not device.port]
             unknown = [device for device in of_kind if not device.is_any]

@@ -29,6 +29,7 @@ class DeviceKind(StrEnum):
     GYRO = "gyro"
     TOUCH = "touch sensor"
     INFRARED = "infrared sensor"
+    LIGHT = "light"
     SENSOR = "sensor"
     """A sensor of a kind that the program does not say."""
 
@@ -51,6 +52,7 @@ DEVICES: Mapping[str, DeviceKind] = {
     "TouchSensor": DeviceKind.TOUCH,
     "InfraredSensor": DeviceKind.INFRARED,
     "ForceSensor": DeviceKind.TOUCH,
+    "Light": DeviceKind.LIGHT,
     "Sensor": DeviceKind.SENSOR,
     "RemoteControl": DeviceKind.INFRARED,
     "BeaconSeeker": DeviceKind.INFRARED,

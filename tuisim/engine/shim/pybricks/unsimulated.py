@@ -74,7 +74,7 @@ VERSION_4: Mapping[str, tuple[str, ...]] = {
 """Classes of version 4 that can be imported but not used, by module, on the EV3 and on hubs alike."""
 HUB_CLASSES: Mapping[str, tuple[str, ...]] = {
     "pybricks.pupdevices": (
-        *("ColorDistanceSensor", "ColorLightMatrix", "DuploTrain", "InfraredSensor", "Light"),
+        *("ColorDistanceSensor", "ColorLightMatrix", "DuploTrain", "InfraredSensor"),
         *("MarioHub", "PFMotor", "TechnicMoveHub", "TiltSensor"),
     ),
     **VERSION_4,

@@ -18,6 +18,7 @@ from tuisim.engine.core.profile import MotorLaw
 from tuisim.engine.core.servo.trajectory import MILLI
 from tuisim.engine.shim.pybricks import robotics, version_4
 from tuisim.engine.shim.pybricks.hub.parameters import Port
+from tuisim.engine.shim.pybricks.hub.pupdevices import Light
 from tuisim.engine.shim.pybricks.parameters import Direction
 
 with gzip.open(Path(__file__).with_name("reference.jsonl.gz"), "rt", encoding="utf-8") as _file:
@@ -186,3 +187,13 @@ QUICK: tuple[str, ...] = tuple(RECORDED)[::4]
 @pytest.mark.quick_cases(*QUICK)
 def test_a_recording_is_met(key: str) -> None:
     assert bool(find_misses(key)) == (key in MISSED)
+
+
+def test_a_light_shines_on_its_port_only_where_nothing_else_is() -> None:
+    lab = Lab(MotorLaw.PYBRICKS_4, {"A": "medium-angular"}, hub="PrimeHub")
+    light = Light(Port.F)
+    light.on(80)
+    light.off()
+    assert [json.loads(row)["light F"] for row, _ in lab.shown] == [204, 0]
+    with pytest.raises(OSError, match="ENODEV"):
+        Light(Port.A)

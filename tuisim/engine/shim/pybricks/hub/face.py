@@ -5,7 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from tuisim.engine.runs.brick_state import HUB_LIGHT_NAMES, PIXEL_NAMES, SIDE_PIXELS, build_led_row
+from tuisim.engine.runs.brick_state import (
+    HUB_LIGHT_NAMES,
+    PIXEL_NAMES,
+    PORT_LIGHT,
+    SIDE_PIXELS,
+    build_led_row,
+)
 from tuisim.engine.runs.records import Stream
 from tuisim.engine.shim.leds import MAX_BRIGHTNESS
 from tuisim.engine.shim.pybricks.brick import Connected
@@ -27,8 +33,16 @@ def shine(color: Any, names: Sequence[str] = HUB_LIGHT_NAMES) -> None:
 
 def show_pixels(pixels: Sequence[int]) -> None:
     """Show a picture on the matrix of lights."""
-    levels = (max(0, min(100, value)) * MAX_BRIGHTNESS // 100 for value in pixels)
-    _show(dict(zip(PIXEL_NAMES, levels, strict=True)))
+    _show(dict(zip(PIXEL_NAMES, map(_convert, pixels), strict=True)))
+
+
+def show_light(port: str, brightness: int) -> None:
+    """Show how bright the light on a port is, in percent."""
+    _show({f"{PORT_LIGHT}{port}": _convert(brightness)})
+
+
+def _convert(brightness: int) -> int:
+    return max(0, min(100, brightness)) * MAX_BRIGHTNESS // 100
 
 
 def _show(levels: dict[str, int]) -> None:

@@ -6,10 +6,13 @@ from collections.abc import Callable
 from typing import Any, ClassVar, TypeVar
 
 from tuisim.engine.core.sensors import color
+from tuisim.engine.shim.brick import SENSOR_CLASS
 from tuisim.engine.shim.pybricks import ev3devices
-from tuisim.engine.shim.pybricks.brick import Connected, Waiting
+from tuisim.engine.shim.pybricks.brick import Connected, Waiting, no_device, whole
 from tuisim.engine.shim.pybricks.hub.colors import find_nearest, measure_hsv
+from tuisim.engine.shim.pybricks.hub.face import show_light
 from tuisim.engine.shim.pybricks.hub.parameters import Port
+from tuisim.engine.shim.pybricks.parameters import find_port
 from tuisim.engine.shim.pybricks.version_4 import Color
 from tuisim.engine.shim.sensors import ColorDevice
 
@@ -55,6 +58,26 @@ class Lights(Connected):
 
     def _wait(self) -> Waiting[None]:
         yield self.brick.now_us + 10_000
+
+
+class Light(Connected):
+    """A light on a port: nothing senses it, and the panel of the hub shows it."""
+
+    def __init__(self, port: Port) -> None:
+        self.port = port
+        name = find_port(port)
+        if name not in self.brick.session.sim.spec.robot.output_ports:
+            raise ValueError("Invalid port")
+        if name in self.brick.built.motors or name in self.brick.built.sensors:
+            raise no_device(self.brick.hint(SENSOR_CLASS))
+
+    def on(self, brightness: float = 100) -> None:
+        """Turn the light on with a brightness in percent."""
+        show_light(find_port(self.port), whole(brightness))
+
+    def off(self) -> None:
+        """Turn the light off."""
+        self.on(0)
 
 
 class ColorSensor(Sensor):
