@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import heapq
 import json
+import math
 from collections.abc import Callable, Iterator, Sequence
+from itertools import repeat
+from operator import itemgetter
 from pathlib import Path
 from types import ModuleType
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tuisim.base.atomic import replacing
 from tuisim.base.errors import ConfigError, ExportError
@@ -47,9 +52,9 @@ class _Channel(NamedTuple):
     topic: str
     schema_name: str
     schema: dict[str, Any]
-    times_ns: IntArray
-    write: Callable[[int], str]
-    """Returns the message with an index as JSON."""
+    times_ns: list[int]
+    """Times of the messages, not falling."""
+    messages: Iterator[dict[str, Any]]
 
 
 def load_writer() -> ModuleType:
@@ -87,9 +92,9 @@ def export_mcap(
     check_place(path)
     is_posed = has_pose and set(POSE) <= set(log.table.column_names)
     values = [name for name in names if not (is_posed and name.partition(" #")[0] in POSE)]
-    channels = [*map(_build_value_channel, [log] * len(values), values)]
+    channels = [_build_value_channel(log, name) for name in values]
     channels += _build_pose_channels(log) if is_posed else ()
-    if any(len(channel.times_ns) and channel.times_ns.min() < 0 for channel in channels):
+    if any(channel.times_ns and channel.times_ns[0] < 0 for channel in channels):
         raise ExportError(f"cannot write {path}: MCAP has no times before 0", "export to Parquet")
     try:
         with replacing(path) as handle:
@@ -107,74 +112,65 @@ def _write_messages(
     writer: Any, channels: Sequence[_Channel], tell: Callable[[float], None]
 ) -> None:
     """Write the messages of all channels in the order of their times."""
-    ids = []
+    streams = []
     for channel in channels:
         schema = json.dumps(channel.schema).encode()
         schema_id = writer.register_schema(channel.schema_name, "jsonschema", schema)
-        ids.append(writer.register_channel(channel.topic, "json", schema_id))
-    counts = [len(channel.times_ns) for channel in channels]
-    times_ns = np.concatenate([np.empty(0, np.int64), *(stream.times_ns for stream in channels)])
-    of_channel = np.repeat(np.arange(len(channels)), counts)
-    index = np.arange(len(times_ns)) - np.repeat(np.cumsum([0, *counts])[:-1], counts)
-    order = np.argsort(times_ns, kind="stable")
-    rows = zip(*(part[order].tolist() for part in (times_ns, of_channel, index)), strict=True)
-    for count, (time_ns, channel_index, message) in enumerate(rows):
+        channel_id = writer.register_channel(channel.topic, "json", schema_id)
+        streams.append(zip(channel.times_ns, repeat(channel_id), channel.messages, strict=False))
+    total = sum(len(channel.times_ns) for channel in channels)
+    in_order = heapq.merge(*streams, key=itemgetter(0))
+    for count, (time_ns, channel_id, message) in enumerate(in_order):
         if not count % _TOLD_EVERY:
-            tell(count / len(times_ns))
-        text = channels[channel_index].write(message).encode()
-        writer.add_message(ids[channel_index], time_ns, text, time_ns, count)
+            tell(count / total)
+        writer.add_message(channel_id, time_ns, json.dumps(message).encode(), time_ns, count)
 
 
 def _build_value_channel(log: Log, name: str) -> _Channel:
     series = log.series(name)
-    known = np.isfinite(series.values)
-    times_s, values = series.time_s[known].tolist(), series.values[known].tolist()
+    rows = _sort_rows(np.isfinite(series.values), series.time_s)
+    times_s = series.time_s[rows]
+    pairs = zip(times_s.tolist(), series.values[rows].tolist(), strict=True)
     base = name.partition(" #")[0]
     unit = log.metadata.get("units", {}).get(base) or parse_unit(base).words
     number = {"type": "number", "description": unit} if unit else _NUMBER
     schema = _build_object(name, time={"type": "number", "description": "s"}, value=number)
-    return _Channel(
-        f"/{name}",
-        f"tuisim.{name}",
-        schema,
-        _round_nanoseconds(series.time_s[known]),
-        lambda at: f'{{"time": {times_s[at]!r}, "value": {values[at]!r}}}',
-    )
+    messages = ({"time": time_s, "value": value} for time_s, value in pairs)
+    return _Channel(f"/{name}", f"tuisim.{name}", schema, _round_nanoseconds(times_s), messages)
 
 
 def _build_pose_channels(log: Log) -> Iterator[_Channel]:
     """Yield the poses of each run."""
     runs = log.numbers(log.layout.run) if log.layout.run else np.ones(log.rows)
-    numbers = [log.numbers(name) for name in POSE]
+    numbers = np.array([log.numbers(name) for name in POSE])
     known = np.isfinite([runs, *numbers]).all(axis=0)
     ordinals = np.unique(runs[known]).tolist()
     for run in ordinals:
-        of_run = known & (runs == run)
+        rows = _sort_rows(known & (runs == run), log.times_s)
         topic = "/pose" if len(ordinals) == 1 else f"/pose #{run:.0f}"
-        times_ns = _round_nanoseconds(log.times_s[of_run])
-        write = _build_pose_writer(times_ns, *(column[of_run] for column in numbers))
-        yield _Channel(topic, "foxglove.PoseInFrame", _POSE_SCHEMA, times_ns, write)
+        times_ns = _round_nanoseconds(log.times_s[rows])
+        poses = map(_build_pose, times_ns, *numbers[:, rows].tolist())
+        yield _Channel(topic, "foxglove.PoseInFrame", _POSE_SCHEMA, times_ns, poses)
 
 
-def _build_pose_writer(
-    times_ns: IntArray, x_mm: FloatArray, y_mm: FloatArray, heading_deg: FloatArray
-) -> Callable[[int], str]:
-    half_rad = np.radians(heading_deg) / 2
-
-    def write(at: int) -> str:
-        seconds, nanoseconds = divmod(int(times_ns[at]), 10**9)
-        position = {"x": x_mm[at] / 1000, "y": y_mm[at] / 1000, "z": 0.0}
-        turn = {"x": 0.0, "y": 0.0, "z": np.sin(half_rad[at]), "w": np.cos(half_rad[at])}
-        return json.dumps(
-            {
-                "timestamp": {"sec": seconds, "nsec": nanoseconds},
-                "frame_id": FRAME_ID,
-                "pose": {"position": position, "orientation": turn},
-            }
-        )
-
-    return write
+def _build_pose(time_ns: int, x_mm: float, y_mm: float, heading_deg: float) -> dict[str, Any]:
+    seconds, nanoseconds = divmod(time_ns, 10**9)
+    half_rad = math.radians(heading_deg) / 2
+    position = {"x": x_mm / 1000, "y": y_mm / 1000, "z": 0.0}
+    turn = {"x": 0.0, "y": 0.0, "z": math.sin(half_rad), "w": math.cos(half_rad)}
+    return {
+        "timestamp": {"sec": seconds, "nsec": nanoseconds},
+        "frame_id": FRAME_ID,
+        "pose": {"position": position, "orientation": turn},
+    }
 
 
-def _round_nanoseconds(times_s: FloatArray) -> IntArray:
-    return np.rint(times_s * 1e9).astype(np.int64)
+def _sort_rows(chosen: NDArray[np.bool_], times_s: FloatArray) -> IntArray:
+    """Return the chosen rows in the order of their times."""
+    rows = np.flatnonzero(chosen)
+    return rows[np.argsort(times_s[rows], kind="stable")]
+
+
+def _round_nanoseconds(times_s: FloatArray) -> list[int]:
+    times_ns: list[int] = np.rint(times_s * 1e9).astype(np.int64).tolist()
+    return times_ns
