@@ -121,7 +121,7 @@ CASES: dict[str, Case] = {
     ),
     "an Arrow stream": ("a.arrows", arrow_stream, TWO),
     "an Arrow stream that was cut off": ("a.arrows", lambda: arrow_stream()[:-60], "no rows"),
-    "dates of 64 bits": ("a.arrow", arrow_date64, "column 'date' is of Arrow's type date64"),
+    "dates of 64 bits": ("a.arrow", arrow_date64, "has a column of Arrow's type date64"),
     "bzip2": ("a.csv.bz2", bz2.compress(CSV), TWO),
     "two bzip2 files in one": ("a.csv.bz2", bz2.compress(CSV[:15]) + bz2.compress(CSV[15:]), TWO),
     "bzip2 cut off": (

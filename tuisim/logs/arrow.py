@@ -199,14 +199,14 @@ def read_parquet(path: Path, notes: Notes) -> Iterator[tuple[float, pa.Table]]:
 
     try:
         file = pq.ParquetFile(path)
-        _check_columns(file.schema_arrow)
+        empty = _name_columns(file.schema_arrow.empty_table(), notes)
     except (pa.ArrowException, OSError, ValueError) as error:
         hint = "a truncated Parquet file cannot be read: its index is at its end"
         raise LogError(f"not a readable Parquet file: {_shorten_error(error)}", hint) from error
     with file:
         count = file.metadata.num_row_groups
         if not count:
-            yield 1.0, _name_columns(file.schema_arrow.empty_table(), notes)
+            yield 1.0, empty
         first = 1
         for group in range(count):
             rows = file.metadata.row_group(group).num_rows
@@ -236,10 +236,10 @@ def read_arrow(path: Path, notes: Notes) -> Iterator[tuple[float, pa.Table]]:
         size = max(path.stat().st_size, 1)
         try:
             stream = pa.ipc.open_stream(source)
-            _check_columns(stream.schema)
+            empty = _name_columns(stream.schema.empty_table(), notes)
         except (pa.ArrowException, OSError, ValueError) as error:
             raise LogError(f"not a readable Arrow file: {_shorten_error(error)}") from error
-        yield 0.0, _name_columns(stream.schema.empty_table(), notes)
+        yield 0.0, empty
         while True:
             try:
                 part = _validate_batch(stream.read_next_batch())
@@ -257,19 +257,6 @@ FORMATS: Mapping[bytes, Callable[[Path, Notes], Iterator[tuple[float, pa.Table]]
     b"\xff\xff\xff\xff": read_arrow,
 }
 """The readers by the first bytes of a file."""
-
-
-def _check_columns(schema: pa.Schema) -> None:
-    """Check names and types of the columns.
-
-    Raises:
-        ValueError: a name is not UTF-8, as in a damaged file.
-        LogError: a column is of a type that cannot be read.
-    """
-    for name, kind in zip(schema.names, schema.types, strict=True):
-        if pa.types.is_date64(kind):
-            message = f"column {name!r} is of Arrow's type date64, which cannot be read"
-            raise LogError(message, "write dates as date32 and times as timestamp")
 
 
 def _validate_batch(batch: pa.RecordBatch) -> pa.Table:
@@ -297,6 +284,9 @@ def _choose_type(kind: pa.DataType) -> pa.DataType:
     """Return the type to which columns of a type are converted, such as decimals to floats; mostly the same."""
     if pa.types.is_decimal(kind):
         return pa.float64()
+    if pa.types.is_date64(kind):
+        message = "has a column of Arrow's type date64, which cannot be read"
+        raise LogError(message, "write dates as date32 and times as timestamp")
     # Times of day have no nanoseconds in pandas.
     if kind == pa.time64("ns"):
         return pa.time64("us")

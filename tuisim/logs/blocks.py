@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import bz2
 import codecs
 import io
-import zlib
-from collections.abc import Callable, Iterator, Mapping
-from gzip import GzipFile
+from collections.abc import Iterator
 from typing import Any, Protocol
 
 import pyarrow as pa
@@ -160,20 +157,12 @@ class Readable(Protocol):
         """Return up to `count` bytes, none at the end."""
 
 
-_UNPACKED_BYTES = 1 << 18
-"""Unpacked at once."""
+_UNPACKED_BYTES = 1 << 12
+"""Unpacked at once; as many are lost where a file is damaged."""
 _CUT_OFF = "the compressed file is truncated or damaged: only the readable part was read"
 
-_ERRORS = (zlib.error, OSError, EOFError, pa.ArrowException)
-
-_FORMATS: Mapping[bytes, Callable[[Any], Any]] = {
-    b"\x1f\x8b": lambda handle: GzipFile(fileobj=handle),
-    b"BZh": bz2.BZ2File,
-    b"\x28\xb5\x2f\xfd": lambda handle: pa.CompressedInputStream(
-        pa.PythonFile(handle, "r"), "zstd"
-    ),
-}
-"""Functions that open compressed files, by the first bytes of their formats."""
+_CODECS = {b"\x1f\x8b": "gzip", b"BZh": "bz2", b"\x28\xb5\x2f\xfd": "zstd"}
+"""Arrow's names of the compressed formats, by their first bytes."""
 _REFUSED = {
     b"PK\x03\x04": "a ZIP archive or a spreadsheet",
     b"7z\xbc\xaf\x27\x1c": "a 7-Zip archive",
@@ -187,7 +176,7 @@ _REFUSED = {
 }
 """Formats that cannot be read, by their first bytes."""
 
-MAGICS = (*_FORMATS, *_REFUSED)
+MAGICS = (*_CODECS, *_REFUSED)
 """First bytes of all known formats."""
 MAGIC_BYTES = max(map(len, MAGICS))
 
@@ -208,34 +197,24 @@ def unpack(head: bytes, handle: Any, notes: Notes) -> Readable | None:
             f"is {refused}, which cannot be read",
             "a log is CSV, Parquet, JSONL, Arrow or text",
         )
-    open_file = next((opener for magic, opener in _FORMATS.items() if head.startswith(magic)), None)
-    return None if open_file is None else _Unpacked(open_file(handle), notes)
+    codec = next((codec for magic, codec in _CODECS.items() if head.startswith(magic)), "")
+    return _Unpacked(handle, codec, notes) if codec else None
 
 
 class _Unpacked:
-    """A compressed file, read as far as it is intact.
+    """A compressed file, read as far as it is intact."""
 
-    Args:
-        file: The open file, which unpacks; reading raises one of `_ERRORS` where it is damaged or cut off.
-    """
-
-    def __init__(self, file: Any, notes: Notes) -> None:
+    def __init__(self, handle: Any, codec: str, notes: Notes) -> None:
         self._notes = notes
-        # `read` of Python's files would lose what was unpacked before an error.
-        self._unpack: Callable[[int], bytes] = getattr(file, "read1", file.read)
+        self._stream = pa.CompressedInputStream(pa.PythonFile(handle, "r"), codec)
 
     def read(self, count: int, /) -> bytes:
-        """Return up to `count` bytes, none at the end."""
-        parts: list[bytes] = []
-        while count > 0 and (part := self._read_part(min(count, _UNPACKED_BYTES))):
-            parts.append(part)
-            count -= len(part)
-        return b"".join(parts)
-
-    def _read_part(self, count: int) -> bytes:
+        """Return up to `count` bytes, none at the end or where it is damaged or cut off."""
+        parts = []
         try:
-            return bytes(self._unpack(count))
-        except _ERRORS:
+            while count > 0 and (part := self._stream.read(min(count, _UNPACKED_BYTES))):
+                parts.append(part)
+                count -= len(part)
+        except (OSError, pa.ArrowException):
             self._notes.say(_CUT_OFF)
-            self._unpack = lambda _: b""
-            return b""
+        return b"".join(parts)

@@ -102,7 +102,8 @@ def compute_moving_average(values: FloatArray, width: int) -> FloatArray:
     known = pd.Series(np.where(np.isfinite(values), values, np.nan), dtype=np.float64)
     # Wider windows give the same result.
     width = min(width, 2 * len(values) + 1)
-    return known.rolling(width, min_periods=1, center=True).mean().to_numpy()
+    means: FloatArray = known.rolling(width, min_periods=1, center=True).mean().to_numpy()
+    return means
 
 
 def resample(
