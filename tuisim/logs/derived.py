@@ -292,11 +292,8 @@ def build_reckoned_series(log: Log) -> list[Series]:
         reckoned.heading_deg,
         compute_error_mm(reckoned, x_mm, y_mm),
     )
-    base = next(
-        (log.series(name) for name in log.names if len(log.series(name).rows) == log.rows), None
-    )
-    time_s = base.time_s if base else np.arange(log.rows, dtype=np.float64)
-    rows = base.rows if base else np.arange(log.rows)
+    time_s = log.times_s
+    rows = np.arange(log.rows)
     return [
         Series(name, time_s, values, rows)
         for name, values in zip(RECKONED_COLUMNS, columns, strict=True)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import json
 import os
 import warnings
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pyarrow as pa
@@ -19,7 +20,6 @@ from tuisim.logs.choices import NO_CHOICES, ReadChoices
 from tuisim.logs.columns import ROW, list_numeric_columns
 from tuisim.logs.export import EXPORTERS, build_typed_frame, find_companion
 from tuisim.logs.expressions import evaluate
-from tuisim.logs.json_rows import JsonReader
 from tuisim.logs.log import Log, Series
 from tuisim.logs.reader import join_tables, open_log, read_companion, read_parts
 from tuisim.logs.signals import Between, sample_unsorted_signal
@@ -99,14 +99,22 @@ def _read_exported(source: Path, notes: Notes) -> pa.Table:
     if suffix == ".csv":
         return read_exported_csv(source.read_bytes().decode())
     if suffix == ".jsonl":
-        table = JsonReader(notes, exact=True).read(Block(1, source.read_text("utf-8")))
+        lines = Block(1, source.read_text("utf-8")).lines()
+        rows = [json.loads(line) for _, line in lines]
         # Without a row, only the companion file names the columns.
-        names = () if table is not None else read_companion(source).get("columns", ())
-        kinds = {
-            name: pa.string() if name in (*TIMEDELTA, *TEXT) else pa.float64() for name in names
-        }
-        return pa.schema(kinds).empty_table() if table is None else table
+        names = rows[0] if rows else read_companion(source).get("columns", ())
+        return pa.table({name: _build_column(name, rows) for name in names})
     return join_tables([table for _, table in read_parts(source, notes) if table is not None])
+
+
+def _build_column(name: str, rows: Sequence[Mapping[str, Any]]) -> pa.Array:
+    """Return a column of exported rows with the type that all its cells have."""
+    if not rows:
+        return pa.nulls(0, pa.string() if name in (*TIMEDELTA, *TEXT) else pa.float64())
+    column = pa.array([row[name] for row in rows])
+    # Of numbers and truth values, a missing one is not a number.
+    is_number = pa.types.is_null(column.type) or pa.types.is_boolean(column.type)
+    return column.cast(pa.float64()) if column.null_count and is_number else column
 
 
 def build_sampled_frame(

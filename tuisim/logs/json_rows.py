@@ -5,27 +5,23 @@ from __future__ import annotations
 import ast
 import json
 from contextlib import suppress
-from typing import Any, TypeGuard
+from typing import Any
 
 import pyarrow as pa
 
 from tuisim.logs.blocks import Block
+from tuisim.logs.typed_columns import TypedColumns
 from tuisim.logs.warnings import Notes
 
 _NAMELESS = "(no name)"
 
 
 class JsonReader:
-    """Reads blocks of JSON lines of one file; names and types of the columns are fixed by the first block.
+    """Reads blocks of JSON lines of one file; names and types of the columns are fixed by the first block."""
 
-    Columns are texts or numbers; if `exact`, each has the type that all its cells have, as in an export.
-    """
-
-    def __init__(self, notes: Notes, exact: bool = False) -> None:
+    def __init__(self, notes: Notes) -> None:
         self._notes = notes
-        self._exact = exact
-        self._kinds: dict[str, bool] = {}
-        """By column, whether it has numbers; missing while all its cells were empty."""
+        self._columns = TypedColumns(notes, "")
 
     def read(self, block: Block) -> pa.Table | None:
         """Return the rows of a block; None if it has none."""
@@ -48,57 +44,18 @@ class JsonReader:
     def build_table(self, numbered_rows: list[tuple[int, dict[str, Any]]]) -> pa.Table:
         """Return a table of objects, each of which comes with its row in the file."""
         names = dict.fromkeys(name for _, cells in numbered_rows for name in cells)
-        return pa.table(
-            {
-                _escape_surrogates(name) or _NAMELESS: self._build_column(name, numbered_rows)
-                for name in names
-            }
-        )
-
-    def _build_column(self, name: str, numbered_rows: list[tuple[int, dict[str, Any]]]) -> pa.Array:
-        cells = [cells.get(name) for _, cells in numbered_rows]
-        if self._exact:
-            column = pa.array(cells)
-            # Of numbers and truth values, a missing one is not a number.
-            whole = column.null_count and (
-                pa.types.is_null(column.type) or pa.types.is_boolean(column.type)
+        texts = {
+            _escape_surrogates(name) or _NAMELESS: pa.array(
+                [_format_cell(cells.get(name)) for _, cells in numbered_rows], pa.string()
             )
-            return column.cast(pa.float64()) if whole else column
-        if name not in self._kinds:
-            kinds = [_is_number(cell) for cell in cells if cell is not None]
-            if not kinds:
-                return pa.nulls(len(cells))
-            self._kinds[name] = 2 * sum(kinds) >= len(kinds)
-        if not self._kinds[name]:
-            return pa.array(
-                [None if cell is None else _format_cell(cell) for cell in cells], pa.string()
-            )
-        wrong = [
-            row
-            for (row, _), cell in zip(numbered_rows, cells, strict=True)
-            if cell is not None and not _is_number(cell)
-        ]
-        self._notes.add(
-            f"cell of {name!r} is not a number", f"cells of {name!r} are not numbers", wrong
-        )
-        return pa.array(
-            [_float(cell) if _is_number(cell) else None for cell in cells], pa.float64()
-        )
+            for name in names
+        }
+        return self._columns.convert(texts, lambda: [row for row, _ in numbered_rows], "")
 
 
-def _is_number(cell: object) -> TypeGuard[float]:
-    # True and false count as 1 and 0.
-    return isinstance(cell, int | float)
-
-
-def _float(cell: float) -> float:
-    try:
-        return float(cell)
-    except OverflowError:
-        return float("inf") if cell > 0 else float("-inf")
-
-
-def _format_cell(cell: object) -> str:
+def _format_cell(cell: object) -> str | None:
+    if cell is None:
+        return None
     return _escape_surrogates(cell) if isinstance(cell, str) else json.dumps(cell)
 
 

@@ -10,25 +10,15 @@ from dataclasses import replace
 from itertools import islice, takewhile
 from typing import Any
 
-import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 import pyarrow.csv as pa_csv
 from pyarrow.types import is_floating
 
-from tuisim.base.data_class import dataclass
 from tuisim.base.errors import LogError, counted, listed
 from tuisim.logs.arrow import build_text_array
 from tuisim.logs.blocks import Block
-from tuisim.logs.cells import (
-    DECIMAL_COMMA,
-    EMPTY_CELLS,
-    PLAIN,
-    NumberForm,
-    find_form,
-    is_empty,
-    parse_numbers,
-)
+from tuisim.logs.cells import EMPTY_CELLS
 from tuisim.logs.choices import NAMES_OF_SIGNS, ReadChoices
 from tuisim.logs.csv_cells import WRITTEN, restore_formula
 from tuisim.logs.heading import (
@@ -43,16 +33,10 @@ from tuisim.logs.heading import (
     parse_kinds,
     split_cells,
 )
+from tuisim.logs.typed_columns import TypedColumns
 from tuisim.logs.units import TEXT, TIMEDELTA
 from tuisim.logs.warnings import Notes
 
-CODED = pa.dictionary(pa.int32(), pa.string())
-"""Dictionary-encoded text."""
-
-_MIN_REPEATED = 4
-"""Texts are dictionary-encoded if each occurs at least this often, on average."""
-_MIN_CELLS = 100
-"""With fewer cells, texts are not dictionary-encoded."""
 _BLANKS = re.compile(r'(?<!\S)("[^"\n]*")(?!\S)|[ \t]+')
 _MARGINS = re.compile(r"(?m)^[ \t]+|[ \t]+$")
 _COMMENTS = re.compile(r"(?m)^#.*")
@@ -63,20 +47,6 @@ _LOOK_AHEAD = 10
 """Lines in which a heading and rows below it are looked for."""
 _MIN_ROWS = 2
 """Rows below a heading that make another table."""
-
-
-@dataclass(frozen=True, slots=True)
-class _Column:
-    kind: pa.DataType
-    form: NumberForm = PLAIN
-
-
-def choose_text_kind(cells: pa.Array) -> pa.DataType:
-    """Return the type for a text column: `CODED` if its first cells often repeat, else a string."""
-    often = len(cells) > _MIN_CELLS and _MIN_REPEATED * pc.count_distinct(cells).as_py() <= len(
-        cells
-    )
-    return CODED if often else pa.string()
 
 
 class CsvReader:
@@ -93,8 +63,7 @@ class CsvReader:
         self._has_gaps = False
         """Whether there are blanks between quotes and separators."""
         self._joins_left = _MAX_JOINS
-        self._columns: dict[str, _Column] = {}
-        """By name; missing while all cells of a column were empty."""
+        self._columns = TypedColumns(notes, choices.decimal)
 
     @property
     def _separator(self) -> str:
@@ -109,14 +78,15 @@ class CsvReader:
                     return None
             block = Block(block.first_row, self._clean(block.text))
             # The usual case is fast: every cell is of the known type of its column.
-            columns = self._parse_block(block.text, self._choose_kinds()) if self._columns else None
+            kinds = self._columns.list_plain()
+            columns = self._parse_block(block.text, kinds) if kinds else None
             if columns is None or any(map(_has_infinite, columns)):
                 block, rest = self._cut_table(block)
                 if rest is not None and self._tables_left:
                     self._tables_left -= 1
                     block = rest
                     self._heading = Heading()
-                    self._columns = {}
+                    self._columns = TypedColumns(self._notes, self._choices.decimal)
                     continue
                 self._is_over = rest is not None
                 columns = self._parse_block(block.text, {})
@@ -139,14 +109,11 @@ class CsvReader:
             columns, rows = self._parse_lines(block)
         if not len(columns[0]):
             return None
-        names = list(self._heading.names)
-        self._find_columns(columns)
-        typed = [
-            self._convert_column(name, cells, block, rows)
-            for name, cells in zip(names, columns, strict=True)
-        ]
-        table = pa.Table.from_arrays(typed, names)
-        return table.slice(0, len(table) - _count_words(columns, typed))
+        cells = dict(zip(self._heading.names, columns, strict=True))
+        table = self._columns.convert(cells, lambda: rows or _list_rows(block), self._separator)
+        decimal = "," if self._columns.has_decimal_commas else "."
+        self._notes.form = replace(self._notes.form, decimal=decimal)
+        return table.slice(0, len(table) - _count_words(columns, table.columns))
 
     # The heading
 
@@ -223,21 +190,12 @@ class CsvReader:
 
     # Cells
 
-    def _choose_kinds(self) -> dict[str, pa.DataType]:
-        """Return the columns that pyarrow can parse, with their types; the others are read as texts."""
-        forms = (PLAIN, DECIMAL_COMMA) if self._has_decimal_commas else (PLAIN,)
-        return {name: column.kind for name, column in self._columns.items() if column.form in forms}
-
-    @property
-    def _has_decimal_commas(self) -> bool:
-        return any(column.form is DECIMAL_COMMA for column in self._columns.values())
-
     def _parse_block(self, text: str, kinds: Mapping[str, pa.DataType]) -> list[pa.Array] | None:
         """Parse rows with pyarrow; None if a row has another number of cells, or a cell another type."""
         if text.isspace() or not text:
             return [pa.nulls(0, pa.string()) for _ in self._heading.names]
         types = {name: kinds.get(name, pa.string()) for name in self._heading.names}
-        decimal_point = "," if self._has_decimal_commas else "."
+        decimal_point = "," if self._columns.has_decimal_commas else "."
         parse = pa_csv.ParseOptions(delimiter=self._separator)
         try:
             table = _parse_csv(
@@ -307,60 +265,6 @@ class CsvReader:
             return False
         return '"' not in line or parse_kinds(cells[:1]) == "n"
 
-    def _find_columns(self, columns: Sequence[pa.Array]) -> None:
-        """Find type and number format of each column that has cells for the first time."""
-        texts = {
-            name: cells
-            for name, cells in zip(self._heading.names, columns, strict=True)
-            if name not in self._columns and not is_empty(cells)
-        }
-        separator = self._separator
-        decimal = self._choices.decimal
-        forms = {name: find_form(cells, separator, decimal) for name, cells in texts.items()}
-        if DECIMAL_COMMA in forms.values():
-            # Where one column has decimal commas, points are between thousands.
-            forms = {
-                name: find_form(texts[name], separator, ",") or form for name, form in forms.items()
-            }
-        names_by_words: dict[str, list[str]] = {}
-        for name, form in forms.items():
-            if form is None:
-                self._columns[name] = _Column(choose_text_kind(texts[name]))
-                continue
-            self._columns[name] = _Column(pa.float64(), form)
-            if form.words and not (form is DECIMAL_COMMA and separator == ";"):
-                names_by_words.setdefault(form.words, []).append(repr(name))
-        self._notes.form = replace(
-            self._notes.form, decimal="," if self._has_decimal_commas else "."
-        )
-        for words, names in names_by_words.items():
-            self._notes.say(f"the numbers of {listed(names)} {words}")
-
-    def _convert_column(
-        self, name: str, cells: pa.Array, block: Block, rows: list[int] | None
-    ) -> pa.Array:
-        column = self._columns.get(name)
-        if column is None:
-            return pa.nulls(len(cells))
-        if cells.type == column.kind:
-            return cells
-        if column.kind == CODED:
-            return cells.dictionary_encode()
-        numbers, wrong = parse_numbers(cells, column.form)
-        positions = np.flatnonzero(wrong)
-        # pyarrow counts a line of blanks as a row.
-        if len(positions) and rows is None:
-            lines = enumerate(block.text.split("\n"), block.first_row)
-            rows = [row for row, line in lines if line]
-        odd = [rows[position] for position in positions[:5]] if rows else []
-        self._notes.add(
-            f"cell of {name!r} is not a number",
-            f"cells of {name!r} are not numbers",
-            odd,
-            len(positions),
-        )
-        return numbers
-
 
 def _are_both_numbers(kind: str, other: str) -> bool:
     return kind == other and has_numbers(kind)
@@ -370,7 +274,13 @@ def _has_infinite(cells: pa.Array) -> bool:
     return is_floating(cells.type) and bool(pc.any(pc.is_inf(cells)).as_py())
 
 
-def _count_words(texts: Sequence[pa.Array], typed: Sequence[pa.Array]) -> int:
+def _list_rows(block: Block) -> list[int]:
+    """Return the rows that pyarrow has read: it counts a line of blanks, too."""
+    lines = enumerate(block.text.split("\n"), block.first_row)
+    return [row for row, line in lines if line]
+
+
+def _count_words(texts: Sequence[pa.Array], typed: Sequence[pa.ChunkedArray]) -> int:
     """Return how many rows at the end have words where the numbers should be: they are sentences below the table."""
     numbers = [
         cells for cells, column in zip(texts, typed, strict=True) if is_floating(column.type)
