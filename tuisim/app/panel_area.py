@@ -166,8 +166,8 @@ class PanelArea(Container):
         if show:
             self.front = panel
         self._chosen.pop(panel, None)
-        # A panel that no terminal shows by default is needed only now, and is not kept.
-        if PANELS[panel].sizes:
+        # A panel that a terminal of this size hides by default is needed only now, and is not kept.
+        if self._find_size() in PANELS[panel].sizes:
             self._chosen[panel] = show
         if self.preset == self._kept_preset:
             self.keep_panels()

@@ -25,12 +25,17 @@ async def test_the_next_start_finds_the_arrangement_only_if_it_was_kept_for_its_
 
 
 def test_what_is_known_stays() -> None:
-    save_layout(TerminalSize.SMALL, KeptLayout(Preset.DRIVE, {"chart": True}))
-    assert load_layout(TerminalSize.SMALL) == KeptLayout(Preset.DRIVE, {"chart": True})
+    save_layout(TerminalSize.SMALL, KeptLayout(Preset.DRIVE, {"output": False}))
+    assert load_layout(TerminalSize.SMALL) == KeptLayout(Preset.DRIVE, {"output": False})
 
 
-async def test_panels_that_nothing_shows_unasked_are_not_kept_for_the_next_start() -> None:
+async def test_panels_hidden_by_default_in_this_size_are_not_kept_for_the_next_start() -> None:
     async with open_lab(LOGS, size=(80, 24)) as (pilot, app):
-        await pilot.press("G", "K", "c")
+        await pilot.press("G", "X", "c", "O")
         await until(pilot, lambda: app.panel_area.is_shown("chart"))
-    assert load_layout(TerminalSize.SMALL).asked == {"chart": True}
+    assert load_layout(TerminalSize.SMALL).asked == {"output": True}
+
+
+def test_a_kept_panel_that_is_hidden_by_default_in_this_size_is_forgotten() -> None:
+    save_layout(TerminalSize.SMALL, KeptLayout(asked={"positioning": True, "output": False}))
+    assert load_layout(TerminalSize.SMALL).asked == {"output": False}
