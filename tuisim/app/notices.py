@@ -1,4 +1,4 @@
-"""Notices: one message at a time, on the lower edge of the panels or, if it is long, in a few rows at the top."""
+"""Notices: one message at a time, in a few rows on the lower edge of the panels."""
 
 from __future__ import annotations
 
@@ -66,9 +66,7 @@ def split_message(message: str, columns: int) -> list[str]:
 
 
 class NoticeRow(Static):
-    """The row of a notice. A long one has more rows, at the top, where they cover neither keys nor a chart's axis.
-
-    One that stays is read beside the panels, which make room for it above the footer.
+    """The row of a notice above the footer; a long one has more rows. The panels below it keep their places.
 
     Args:
         notice: What it shows.
@@ -88,8 +86,7 @@ class NoticeRow(Static):
         text-overflow: ellipsis;
         border-left: outer $success;
     }}
-    NoticeRow.-long {{ dock: top; height: auto; margin: 0; }}
-    NoticeRow.-long.-stays {{ layer: default; dock: bottom; margin-bottom: 1; }}
+    NoticeRow.-long {{ height: auto; }}
     NoticeRow.-warning {{ border-left: outer $warning; }}
     NoticeRow.-error {{ border-left: outer $error; }}
     """
@@ -97,7 +94,6 @@ class NoticeRow(Static):
 
     def __init__(self, notice: Notice, ended: Callable[[], None]) -> None:
         super().__init__(markup=False, classes=f"-{notice.severity}")
-        self.set_class(notice.stays, "-stays")
         self.notice = notice
         self._ended = ended
         self._parts: deque[str] = deque()
