@@ -233,7 +233,7 @@ def _compute_variable(values: Sequence[float]) -> VariableStatistics:
     scaled = [value / scale for value in values]
     # Exact sums: the result does not depend on the order of equal values. Rounding may lead out of their range.
     mean = min(max(math.fsum(scaled) / count, min(scaled)), max(scaled))
-    std = math.sqrt(math.fsum((value - mean) ** 2 for value in scaled) / count)
+    std = math.sqrt(math.fsum((value - mean) ** 2 for value in scaled) / max(count - 1, 1))
     return VariableStatistics(values[-1], count, mean * scale, std * scale, low, high)
 
 

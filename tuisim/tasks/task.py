@@ -64,7 +64,7 @@ class VariableStatistics:
     count: int
     mean: float
     std: float
-    """Of the population; 0 for one sample."""
+    """Of a sample, as in pandas (`ddof=1`); 0 for one value."""
     min: float
     max: float
 
