@@ -161,13 +161,13 @@ def experiment(
             the values of a run only metrics and expressions.
         expressions: Further columns by name, such as `{{"error_mm": "hypot(x_mm - 750, y_mm - 850)"}}`.
         goals: A goals file; its world is used without a `world`, where no option says otherwise.
-        keep: Which runs to store.
+        keep: Which runs to store: the column `stored` then has their numbers for `load_run`.
         jobs: Number of worker processes; 0 is one for each processor. The results do not depend on it.
         out: A file for the table, in any format of a log; an interrupted experiment that is called again goes on with
             the rows so far.
         until: A column of the runs and how well its mean is to be known, such as `"x_mm ± 2"` or `"error_mm +- 2"`:
-            each combination takes the seeds in their order, ten or more, until the mean is within this margin with
-            95 % (Student's t). Runs that raise do not count. Warns if the seeds do not suffice.
+            each combination takes the seeds in their order, ten first and then several at a time, until the mean is
+            within this margin with 95 % (Student's t). Runs that raise do not count. Warns if the seeds do not suffice.
         scheduler: Address of a Dask scheduler whose workers run the programs, such as `tcp://host:8786`.
         arguments, answers, timeout_s, world: As for `simulate`.
 {help}

@@ -102,8 +102,8 @@ class World(WorldDescription):
         x: Start x in mm.
         y: Start y in mm.
         angle: Start heading, counter-clockwise from +x, in °.
-        sensornoise: Light noise, 0 to 128.
-        motornoise: Motor noise, 0 to 500, in °/s.
+        sensornoise: Light noise, ± 0 to 128 on each pixel of 0 to 255.
+        motornoise: Motor noise, ± 0 to 500 on each wheel and tick, in °/s.
         drift: Errors of wheels and sensors: none, typical, or values.
         pencolor: Colour of the pen: a CSS name, or #rrggbb.
         pen_width: Width of the trace, in mm.
@@ -192,14 +192,14 @@ def simulate(
         x: Start x in mm.
         y: Start y in mm.
         angle: Start heading, counter-clockwise from +x, in °.
-        sensornoise: Light noise, 0 to 128.
-        motornoise: Motor noise, 0 to 500, in °/s.
+        sensornoise: Light noise, ± 0 to 128 on each pixel of 0 to 255.
+        motornoise: Motor noise, ± 0 to 500 on each wheel and tick, in °/s.
         drift: Errors of wheels and sensors: none, typical, or values.
         pencolor: Colour of the pen: a CSS name, or #rrggbb.
         pen_width: Width of the trace, in mm.
         pendown: Start with the pen down.
         profile: A profile from `tuisim profiles`, or a file.
-        seed: Seed for noise and `random`.
+        seed: Seed for noise, drift, `random`, and an EV3's clock.
         press: Press by hand a button, a touch sensor or the remote: enter@1.0-1.5, in1@2, remote.left_up@1-3; may be
             repeated.
         preload: Names predefined for the program.
@@ -270,13 +270,13 @@ def experiment(
             the values of a run only metrics and expressions.
         expressions: Further columns by name, such as `{"error_mm": "hypot(x_mm - 750, y_mm - 850)"}`.
         goals: A goals file; its world is used without a `world`, where no option says otherwise.
-        keep: Which runs to store.
+        keep: Which runs to store: the column `stored` then has their numbers for `load_run`.
         jobs: Number of worker processes; 0 is one for each processor. The results do not depend on it.
         out: A file for the table, in any format of a log; an interrupted experiment that is called again goes on with
             the rows so far.
         until: A column of the runs and how well its mean is to be known, such as `"x_mm ± 2"` or `"error_mm +- 2"`:
-            each combination takes the seeds in their order, ten or more, until the mean is within this margin with
-            95 % (Student's t). Runs that raise do not count. Warns if the seeds do not suffice.
+            each combination takes the seeds in their order, ten first and then several at a time, until the mean is
+            within this margin with 95 % (Student's t). Runs that raise do not count. Warns if the seeds do not suffice.
         scheduler: Address of a Dask scheduler whose workers run the programs, such as `tcp://host:8786`.
         arguments, answers, timeout_s, world: As for `simulate`.
         background: A mat from `tuisim backgrounds`, or an image file.
@@ -290,8 +290,8 @@ def experiment(
         x: Start x in mm.
         y: Start y in mm.
         angle: Start heading, counter-clockwise from +x, in °.
-        sensornoise: Light noise, 0 to 128.
-        motornoise: Motor noise, 0 to 500, in °/s.
+        sensornoise: Light noise, ± 0 to 128 on each pixel of 0 to 255.
+        motornoise: Motor noise, ± 0 to 500 on each wheel and tick, in °/s.
         drift: Errors of wheels and sensors: none, typical, or values.
         pencolor: Colour of the pen: a CSS name, or #rrggbb.
         pen_width: Width of the trace, in mm.

@@ -46,11 +46,18 @@ def read_log(
     """Return the table in a file. Without choices, an export of tuisim is as it was written, to the last bit.
 
     Of another file, or with choices, the index is the time in seconds, if there is one; warnings say what was guessed
-    or left out. The choices are the options of the `log` commands: see `ReadChoices`.
+    or left out, and name the argument that decides as an option, such as `--unit`.
 
     Args:
         path: A CSV, Parquet, JSON, JSONL, Arrow or text file.
+        time: The column with the time; empty to count the rows, None to find it.
+        unit: The unit of numbers in it: `s`, `ms`, `us`, `ns` or `min`; empty to guess it.
         value: Columns with values: beside them, only times, names of variables and runs are kept.
+        header: The line of a text that names the columns, from 1; 0 to find it.
+        table: Which of several tables in a text, from 1.
+        encoding: Of a text, as in Python, such as `cp1252`; empty to find it.
+        separator: Of the cells of a text: `comma`, `semicolon`, `tab`, `bar` or `blank`; empty to find it.
+        decimal: `.` or `,`; empty to find it.
 
     Raises:
         LogError: it cannot be read, has no row, there is no such column, or a choice is not allowed.

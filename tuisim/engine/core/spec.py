@@ -629,7 +629,12 @@ class NoiseSpec(Spec):
     KEY = "noise"
 
     light: int = whole(
-        0, 128, default=0, label="Light", flags=("-N", "--sensornoise"), help="light noise, 0 … 128"
+        0,
+        128,
+        default=0,
+        label="Light",
+        flags=("-N", "--sensornoise"),
+        help="light noise, ± 0 … 128 on each pixel of 0 … 255",
     )
     """0 … 128: uniform ±light on every pixel and channel that a colour sensor sees."""
     motor: int = whole(
@@ -639,7 +644,7 @@ class NoiseSpec(Spec):
         unit="°/s",
         label="Motor",
         flags=("-M", "--motornoise"),
-        help="motor noise, 0 … 500",
+        help="motor noise, ± 0 … 500 on each wheel and tick",
     )
     """0 … 500: uniform ±motor degrees per second on the wheel speed, every tick."""
 
@@ -753,5 +758,5 @@ class RunSpec(Spec):
         label="Seed",
         flags=("--seed",),
         in_config=False,
-        help="seed for noise and `random`",
+        help="seed for noise, drift, `random`, and an EV3's clock",
     )
