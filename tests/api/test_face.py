@@ -61,6 +61,8 @@ def test_an_error_of_the_program_is_in_the_run() -> None:
     "choices, expected",
     {
         "unknown argument": ({"backgrond": "Loop"}, "did you mean background"),
+        "constants": ({"constants": {"K": 1}}, "tuisim.experiment has it"),
+        "goals": ({"goals": "g.toml"}, r"Run.judge\(goals\) has it"),
         "boxes": (
             {"obstacles": [{"x_mm": 4}]},
             "obstacles: must be one value, .*a file has several",

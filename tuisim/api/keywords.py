@@ -29,11 +29,20 @@ _OTHER_NAMES = {
 """The names that other libraries have for an argument, with the name here."""
 
 
+_ELSEWHERE = {
+    "goals": "Run.judge(goals)",
+    **dict.fromkeys(("constants", "metrics", "columns", "parameters"), "tuisim.experiment"),
+}
+"""What has an argument that a function does not have."""
+
+
 def build_keyword_error(name: str, known: Sequence[str]) -> ConfigError:
     """Return the error for an argument that a function does not have: what was meant, or what has it."""
     option = OPTIONS_BY_NAME.get(name)
     if _OTHER_NAMES.get(name) in known:
         hint = did_you_mean([_OTHER_NAMES[name]])
+    elif name in _ELSEWHERE:
+        hint = f"{_ELSEWHERE[name]} has it"
     elif option is None or f"{name}s" in known:
         hint = nearest(name, known)
     elif option.group == WORLD and name != "robot":
@@ -58,6 +67,9 @@ def check_keywords(function: _Function) -> _Function:
             flag = error.key.partition(" ")[0]
             if not error.file and flag in _NAMES:
                 error.message = error.message.replace(flag, _NAMES[flag], 1)
-            raise
+            # The line of the script stands above the message, without the lines in between.
+            raise error.with_traceback(None) from None
+        except KeyboardInterrupt as error:
+            raise error.with_traceback(None) from None
 
     return cast(_Function, call)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from base64 import b64encode
 from html import escape
 from io import BytesIO
+from math import nan
 from typing import TYPE_CHECKING
 
 from tuisim.base.data_class import dataclass
@@ -114,6 +115,34 @@ class Run:
         from tuisim.engine.runs.command_records import read_commands
 
         return tuple(read_commands(self.stored.folder).unpack())
+
+    def judge(self, goals: str | Path) -> pd.DataFrame:
+        """Return how the run did on a goals file, which is also a world for `simulate`: one row for each goal.
+
+        Columns: `goal`, `state` (`met`, `missed`, `open`, `unknown`), `points`, `time` in s when it was
+        decided, `reason`, `line`.
+
+        Raises:
+            ConfigError: the goals are wrong.
+            LogError: the recording is damaged, or the mat no longer exists.
+        """
+        import pandas as pd
+
+        from tuisim.tasks.goals.files import load_goals
+        from tuisim.tasks.goals.judge import judge
+        from tuisim.tasks.goals.judgement import GoalState
+
+        return pd.DataFrame(
+            {
+                "goal": each.goal.name,
+                "state": each.state.value,
+                "points": each.goal.points if each.state is GoalState.MET else 0.0,
+                "time": each.event.time_s if each.event else nan,
+                "reason": each.reason,
+                "line": each.line,
+            }
+            for each in judge(load_goals(goals).goals, self.stored)
+        )
 
     def picture(self) -> Image:
         """Return the world at the end of the run, with the pen's trace, as a Pillow image."""
