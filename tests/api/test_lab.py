@@ -47,6 +47,11 @@ def go_through(run: Run, period_s: float) -> tuple[list[int], list[list[float]]]
     return ends, rows
 
 
+def test_the_time_is_a_column() -> None:
+    lab = tuisim.Lab(columns=["x_mm", "time"])
+    assert [*lab.step(period_s=0.5).items()][1] == ("time", lab.time_s) == ("time", 0.5)
+
+
 @pytest.mark.parametrize("period_s", [0.0, 0.13])
 @pytest.mark.parametrize("world", [ROUGH, SMOOTH], ids=["rough", "smooth"])
 @pytest.mark.parametrize("profile", ["robolab", "ev3", "nbev3devsim"])

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections import Counter
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +13,7 @@ import pytest
 
 import tuisim
 from tests.cases import cases
+from tuisim.api.measures import describe
 from tuisim.base.errors import ConfigError
 from tuisim.batch.sweep import Workers
 from tuisim.guide.catalogue import find_page
@@ -38,7 +41,7 @@ def test_constants_vary_and_functions_measure_each_run() -> None:
 
 
 def test_columns_are_those_of_each_run_over_time() -> None:
-    columns = ["x_mm", "left_red"]
+    columns = ["x_mm", "left_red", "line"]
     with_time = ["time", *columns]
     how: dict[str, Any] = {"background": "Grey_bands", "x": 100}
     frame = tuisim.experiment(
@@ -48,9 +51,59 @@ def test_columns_are_those_of_each_run_over_time() -> None:
     for run, noise, seed in ((1, 0, 4), (2, 0, 2), (3, 20, 4), (4, 20, 2)):
         single = tuisim.simulate(PROGRAM, seed=seed, sensornoise=noise, **how).telemetry
         part = frame[frame["run"] == run].reset_index(drop=True)
-        assert part[["time", "x_mm"]].equals(single[["time", "x_mm"]])
+        assert part[["time", "x_mm", "line"]].equals(single[["time", "x_mm", "line"]])
         assert {*part["sensornoise"]} == {noise} and {*part["seed"]} == {seed}
         assert part["left_red"].equals(single["left_red"])
+
+
+def build_metric(goal_mm: float, share: float = 1) -> Callable[[Any], float]:
+    def measure(run: Any) -> float:
+        return float(sum(abs(x_mm - goal_mm) for x_mm in run.xs_mm) * share)
+
+    return measure
+
+
+def test_metrics_are_told_apart_by_what_they_compute() -> None:
+    texts = [describe(build_metric(goal_mm)) for goal_mm in (3, 3, 4)]
+    assert texts[0] == texts[1] != texts[2]
+    lambdas: list[Any] = [lambda run: run.a + 1, lambda run: run.a + 2, lambda run: run.b + 1]
+    assert len({*map(describe, lambdas)}) == 3
+
+
+def test_a_stored_run_of_an_experiment_opens_by_its_number() -> None:
+    tuisim.simulate("print('A: 0')\n")
+    frame = tuisim.experiment("print('A: 1')\n", seeds=[3, 5], keep="all", jobs=1)
+    runs = [tuisim.load_run(number) for number in frame["stored"]]
+    assert [run.stored.spec.seed for run in runs] == [3, 5]
+    assert [run.output for run in runs] == ["A: 1\n"] * 2
+
+
+GOALS = """\
+background = "Loop"
+[[goal]]
+name = "far"
+when = "x_mm > 3000"
+points = 2
+[[goal]]
+name = "printed"
+print = "A: 1"
+"""
+
+
+def test_a_run_is_judged_by_the_goals_of_its_world(tmp_path: Path) -> None:
+    (file := tmp_path / "goals.toml").write_text(GOALS)
+    run = tuisim.simulate("print('A: 1')\n", world=file)
+    judged = run.judge(file)
+    assert judged[["goal", "state", "points"]].to_numpy().tolist() == [
+        ["far", "missed", 0],
+        ["printed", "met", 1],
+    ]
+    assert run.stored.spec.world.background == "Loop" and judged["reason"][0]
+
+
+def test_the_spread_of_samples_is_that_of_pandas() -> None:
+    frame = tuisim.experiment("print('A: 1')\nprint('A: 4')\n", seeds=[0], jobs=1)
+    assert frame["A_std"].tolist() == [pd.Series([1, 4]).std()]
 
 
 def test_the_number_of_processes_does_not_matter() -> None:
@@ -74,23 +127,24 @@ def test_an_interrupted_experiment_goes_on(
                 raise KeyboardInterrupt
             yield result
 
-    measured: list[int] = []
+    measured: Counter[str] = Counter()
 
     how: dict[str, Any] = {
         "seeds": range(5),
-        "metrics": {"end_mm": lambda run: measured.append(1) or run.pose.x_mm},  # type: ignore[func-returns-value]
+        "metrics": {"end_mm": lambda run: measured.update("m") or run.pose.x_mm},
         "columns": columns,
         "jobs": 1,
     }
     with monkeypatch.context() as patch:
         patch.setattr(Workers, "run", stop_soon)
-        with pytest.raises(KeyboardInterrupt):
+        with pytest.raises(KeyboardInterrupt) as stop:
             tuisim.experiment(PROGRAM, **how, out=out)
-    assert len(measured) == 2
-    with pytest.raises(ConfigError, match="is of another batch"):
-        tuisim.experiment(PROGRAM, **how | {"metrics": {}}, out=out)
+    assert stop.value.__notes__ == [f"2 runs done, in {out}.part; the same call goes on"]
+    for metrics in ({}, {"end_mm": lambda run: run.pose.y_mm}):
+        with pytest.raises(ConfigError, match="is of another batch"):
+            tuisim.experiment(PROGRAM, **how | {"metrics": metrics}, out=out)
     frame = tuisim.experiment(PROGRAM, **how, out=out)
-    assert (len(measured), frame["run"].nunique()) == (5, 5)
+    assert (measured.total(), frame["run"].nunique()) == (5, 5)
     assert (
         frame.groupby("run").last()["x_mm"].tolist()
         == frame.groupby("run").last()["end_mm"].tolist()
@@ -127,6 +181,7 @@ def test_a_mean_that_is_known_needs_no_further_seeds() -> None:
         "expression": ({"expressions": {"x_mm": "1"}}, "^expressions x_mm: cannot be"),
         "letters": ({"answers": "yes"}, "answers: must be a list of texts, got 'yes'"),
         "mat": ({"background": ["Loop", "Lop"]}, "^background: no such mat 'Lop'"),
+        "array": ({"constants": {"GAIN": [np.eye(2)]}}, "constants: array.* cannot go along"),
         "keep": ({"keep": "some"}, "keep: no such value 'some'"),
         "no program": ({"program": []}, "no program is named"),
         "seeds": ({"seeds": "0..4"}, "seeds: must be several"),

@@ -29,6 +29,10 @@ OPTIONS_BY_NAME: Mapping[str, Option] = {
 """Every option that affects a run, by the name that it has in Python."""
 
 
+TIME = "time"
+"""The column of the simulated time in seconds."""
+
+
 class Description:
     """The values, by name, that a script has chosen for a world or a robot. The same values make equal descriptions."""
 
@@ -111,7 +115,7 @@ def read_columns(columns: Sequence[str], spec: RunSpec) -> tuple[str, ...]:
         ConfigError: the run has no such column.
     """
     names = (columns,) if isinstance(columns, str) else columns
-    return tuple(find_named_column(name, spec) for name in names)
+    return tuple(name if name == TIME else find_named_column(name, spec) for name in names)
 
 
 def read_seeds(seeds: Any) -> tuple[int, ...]:

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Never
 
 from tuisim.api.descriptions import (
+    TIME,
     RobotDescription,
     WorldDescription,
     plain,
@@ -59,8 +60,8 @@ class Lab:
         seed: Seed of noise and drift.
         profile: A profile from `tuisim profiles`, or a file; by default that of the world, or `robolab`, or
             `pybricks4` for a robot with a hub.
-        columns: What `step` returns: names of columns as in `Run.telemetry`; of a colour sensor also its light in
-            percent, such as `left_red_pc` for `left_red`.
+        columns: What `step` returns: names of columns as in `Run.telemetry`, except `line`; of a colour sensor also its
+            light in percent, such as `left_red_pc` for `left_red`.
         goals: A goals file for `judge`; its world is used without a `world`.
 
     Raises:
@@ -106,6 +107,8 @@ class Lab:
         self._readers = {
             name: read for name in self.columns if (read := build_reader(name, spec)) is not None
         }
+        if TIME in self.columns:
+            self._readers[TIME] = lambda *_: self.time_s
         self._field = open_field(field_files(spec), has_floor=spec.world.is_open)
         self._spec = spec
         self._hz = spec.profile.tick_hz
@@ -164,8 +167,8 @@ class Lab:
         """Move the robot on by one tick or longer, and return the columns at the end. Does not block.
 
         Args:
-            left, right: Speed of each wheel's motor in degrees per second, positive forwards, at most what the motor
-                can do; without speeds, both motors go on as before.
+            left, right: Speed of each wheel's motor in degrees per second, positive forwards; beyond `max_speed_dps`
+                it is that. Without speeds, both motors go on as before.
             period_s: Simulated seconds, rounded to ticks; at least one tick.
             commands: What a program asks for meanwhile, such as the part of `Run.commands` that lies in the step: each
                 takes effect at its own time.
@@ -208,7 +211,7 @@ class Lab:
         if self._marks is not None:
             self._marks.add_records(self._sim.read_records(self._marks.records))
             field = self._marks.field
-        return {name: read(instant, self._spec, field) for name, read in self._readers.items()}
+        return {name: self._readers[name](instant, self._spec, field) for name in self.columns}
 
     def judge(self) -> tuple[float, bool]:
         """Return the points if the run ended now, and whether all goals not met at the start are met or missed for

@@ -6,16 +6,20 @@ import sys
 from base64 import b64decode, b64encode
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
+from functools import partial
+from hashlib import sha256
+from inspect import getclosurevars
 from io import BytesIO
+from types import CodeType, FunctionType
 from typing import TYPE_CHECKING, Any
 
-from tuisim.api.descriptions import plain, read_columns
+from tuisim.api.descriptions import TIME, plain, read_columns
 from tuisim.api.run import Run
 from tuisim.base.errors import ConfigError
 from tuisim.batch.plan import Plan
 from tuisim.batch.table import Row, list_usual_columns
 from tuisim.engine.protocol import End
-from tuisim.engine.runs.frames import build_telemetry_columns
+from tuisim.engine.runs.frames import LINE, build_telemetry_columns
 from tuisim.engine.runs.run_folder import read_run
 from tuisim.engine.runs.temporary import create_temporary_home
 from tuisim.tasks.task import Result
@@ -43,9 +47,10 @@ class Measures:
         self._columns = (columns,) if isinstance(columns, str) else tuple(columns)
 
     @property
-    def names(self) -> tuple[str, ...]:
-        """The names of the metrics and of the columns."""
-        return *self._metrics, *self._columns
+    def identity(self) -> list[str]:
+        """The metrics, with what their functions do, and the columns: equal for equal values of the same runs."""
+        metrics = (f"{name} {describe(metric)}" for name, metric in self._metrics.items())
+        return [*(sha256(text.encode()).hexdigest() for text in metrics), *self._columns]
 
     @property
     def needs_files(self) -> bool:
@@ -64,8 +69,10 @@ class Measures:
                 raise ConfigError(f"{name!r} is a column already", key="metrics")
         for subject in plan.subjects:
             spec = plan.build_spec(subject, {})
+            names = read_columns([name for name in self._columns if name != LINE], spec)
+            lines = (LINE,) if LINE in self._columns else ()
             # The time is not asked for: telemetry always has it.
-            self._columns = read_columns([name for name in self._columns if name != "time"], spec)
+            self._columns = (*(name for name in names if name != TIME), *lines)
 
     def measure(self, result: Result) -> Row:
         """Return the metrics of a run by name, and its columns as one packed cell."""
@@ -119,6 +126,30 @@ def take_columns(rows: Mapping[int, Row]) -> dict[int, pd.DataFrame]:
         for index in sorted(rows)
         if _TICKS in rows[index]
     }
+
+
+def describe(value: Any, known: frozenset[int] = frozenset()) -> str:
+    """Return what a value is: of a function its code, its defaults, and the constants and functions of its file."""
+    if isinstance(value, partial):
+        return describe([value.func, *value.args, *value.keywords.items()], known)
+    if isinstance(value, CodeType):
+        return f"{value.co_code.hex()} {value.co_names} {[*map(describe, value.co_consts)]}"
+    if isinstance(value, frozenset):
+        return f"{sorted(map(repr, value))}"
+    if isinstance(value, FunctionType) and id(value) not in known:
+        names = getclosurevars(value)
+        used = {**names.globals, **names.nonlocals}
+        own = {
+            name: describe(each, known | {id(value)})
+            for name, each in sorted(used.items())
+            if getattr(each, "__globals__", value.__globals__) is value.__globals__
+        }
+        return f"{describe(value.__code__)} {value.__defaults__!r} {own}"
+    if isinstance(value, list | tuple):
+        return f"{[describe(each, known) for each in value]}"
+    if type(value) in (str, bytes, bool, int, float, dict):
+        return repr(value)
+    return getattr(value, "__qualname__", type(value).__qualname__)
 
 
 @contextmanager

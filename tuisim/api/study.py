@@ -19,7 +19,9 @@ from tuisim.batch.parameters import SEED, Choice, parse_values
 from tuisim.batch.plan import Plan, Subject
 from tuisim.batch.rounds import Rounds, parse_precision
 from tuisim.batch.sweep import Sweep, Workers, is_interrupted
+from tuisim.batch.table import RUN_ID
 from tuisim.engine.protocol import End
+from tuisim.engine.runs.store import RunStore
 from tuisim.logs.export import check_target
 from tuisim.programs.constants import set_constants
 from tuisim.programs.program_file import ProgramSource
@@ -29,6 +31,8 @@ from tuisim.tasks.task import MAX_JOBS, Keep
 if TYPE_CHECKING:
     import pandas as pd
 
+STORED = "stored"
+"""The column with the numbers that runs have in the store; 0 for runs that are not kept."""
 _NOT_VARIED = ("press",)
 """Options whose value is a list."""
 
@@ -62,7 +66,7 @@ def run_experiment(
     target = check_target(user_path(str(out))) if out is not None else None
     resumes = target is not None and is_interrupted(target)
     sweep = Sweep(
-        plan, expressions, target, version("tuisim"), resumes=resumes, measured=measures.names
+        plan, expressions, target, version("tuisim"), resumes=resumes, measured=measures.identity
     )
     rounds = Rounds(plan, sweep, precision) if precision else None
     with show_progress(len(plan) - len(sweep.rows)) as tell:
@@ -206,6 +210,9 @@ class Study:
         for place, name in enumerate(names, start=1):
             values = [variants[number][name] for number in numbers]
             frame.insert(place, name, [_name_value(value) for value in values])
+        if RUN_ID in frame:
+            stored = {info.id: info.number for info in RunStore().runs()}
+            frame[STORED] = [stored.get(run_id, 0) for run_id in frame[RUN_ID]]
         is_named = len(self._programs) > 1 or "program" not in frame
         return frame if is_named else frame.drop(columns="program")
 
@@ -225,7 +232,8 @@ def join_columns(
     if not frames:
         return table.iloc[:0]
     runs = [index + 1 for index, frame in frames.items() for _ in range(len(frame))]
-    values = table[[*table.loc[:, :"seed"], *names]].set_index("run", drop=False).loc[runs]
+    stored = [STORED] if STORED in table else []
+    values = table[[*table.loc[:, :"seed"], *names, *stored]].set_index("run", drop=False).loc[runs]
     joined = pd.concat(frames.values(), ignore_index=True)
     return pd.concat([values.reset_index(drop=True), joined], axis=1)
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO, Self
 
 from tuisim.base.atomic import replacing
 from tuisim.base.data_class import dataclass
-from tuisim.base.errors import ConfigError, ExportError, TuisimError
+from tuisim.base.errors import ConfigError, ExportError, TuisimError, counted
 from tuisim.batch.plan import Plan
 from tuisim.batch.table import (
     PROGRAM,
@@ -69,7 +69,7 @@ class PartialTable:
         except OSError as error:
             raise ConfigError(f"cannot be read: {error.strerror}", file=str(self._path)) from None
         if _decode_line(head) != self._identity:
-            hint = "it needs the same programs, parameters, goals, limits and columns; to start again, remove it"
+            hint = "programs, parameters, goals, limits, metrics or columns differ; to start again, remove it"
             raise ConfigError("is of another batch", hint, file=str(self._path))
         # The last line of a killed process may be incomplete.
         rows = [row for line in lines if isinstance(row := _decode_line(line), dict) and RUN in row]
@@ -292,6 +292,11 @@ class Sweep:
                     if self._partial is not None:
                         self._partial.add(row)
                     on_row(row)
+        except KeyboardInterrupt as error:
+            if self._out is not None:
+                done = f"{counted(len(self.rows), 'run')} done, in {find_partial(self._out)}"
+                error.add_note(f"{done}; the same call goes on")
+            raise
         finally:
             if self._partial is not None:
                 self._partial.close()

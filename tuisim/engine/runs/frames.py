@@ -48,7 +48,9 @@ class RecordedRun(Protocol):
 
 
 _POSE = ("x_mm", "y_mm", "heading_deg")
-SAMPLE_COLUMNS = ("index", "variable", "value", "time", "run", *_POSE, "line")
+LINE = "line"
+"""The column with the source line that spent the time, 0 for none."""
+SAMPLE_COLUMNS = ("index", "variable", "value", "time", "run", *_POSE, LINE)
 """Columns of the samples frame, in order."""
 
 MOTION_COLUMNS = list_measured_names(MOTION)
@@ -144,18 +146,18 @@ def build_telemetry_columns(
 
     Args:
         field: The mat; by default that of the run.
-        names: Names of columns from `list_columns`, which replace all columns after `time`.
+        names: `line`, and names of columns from `list_columns`, which replace all columns after `time`.
 
     Raises:
         LogError: a recording is damaged, or the mat no longer exists.
     """
     records = _select_sound(run.telemetry.array())
     mat = open_mat(run) if field is None else field
-    exported = names or list_measured_names(list_columns(run.spec))
-    values = compute_column_values(exported, records, run, run.actions, mat)
-    if names:
-        return {"time": tick_times_s(records, run.spec), **{name: values[name] for name in names}}
-    return {"time": tick_times_s(records, run.spec), **values, "line": records["line"].astype("i8")}
+    exported = names or (*list_measured_names(list_columns(run.spec)), LINE)
+    columns = [name for name in exported if name != LINE]
+    values = compute_column_values(columns, records, run, run.actions, mat)
+    values[LINE] = records[LINE].astype("i8")
+    return {"time": tick_times_s(records, run.spec), **{name: values[name] for name in exported}}
 
 
 def compute_column_values(
