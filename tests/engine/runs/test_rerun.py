@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases import cases
 from tests.running import Start, over, until, until_tick
 from tuisim.base.errors import LogError
 from tuisim.base.source import Program
@@ -193,6 +194,48 @@ arm.position = 7
 arm.on_for_degrees(20, -90)
 time.sleep(0.0137)
 """
+
+
+ENDS_BETWEEN_LOOKS = """
+from ev3dev2.motor import MoveTank, OUTPUT_B, OUTPUT_C
+from ev3dev2.sensor.lego import ColorSensor
+tank = MoveTank(OUTPUT_B, OUTPUT_C)
+light = ColorSensor()
+tank.on_for_seconds(30, 30, 1)
+print('Light:', light.reflected_light_intensity)
+"""
+STARTS_AND_STOPS = """
+from ev3dev2.motor import LargeMotor, MediumMotor, OUTPUT_A, OUTPUT_B, OUTPUT_C
+from ev3dev2.sensor.lego import ColorSensor
+left = LargeMotor(OUTPUT_B)
+right = LargeMotor(OUTPUT_C)
+arm = MediumMotor(OUTPUT_A)
+light = ColorSensor()
+left.on_for_degrees(30, 90)
+arm.on(-50)
+print('Light:', light.reflected_light_intensity, left.position, right.speed, arm.state)
+arm.off()
+print('Light:', light.reflected_light_intensity, left.position, right.speed, arm.state)
+"""
+
+
+@cases(
+    "text, choices",
+    {
+        "both wheels": (ENDS_BETWEEN_LOOKS, {"profile": "ev3"}),
+        "an arm": (STARTS_AND_STOPS, {"profile": "robolab", "robot": "Explorer"}),
+    },
+)
+def test_a_program_does_the_same_live_and_headless(
+    home: Path, text: str, choices: dict[str, str]
+) -> None:
+    spec = build_run_spec(Settings(choices))
+    live = start_run(Program("p.py", text), spec, RunOptions(live=True, speed=16.0))
+    over(live)
+    run = RunStore().load_run(live.run_id)
+    again = rerun(run, RunStore())
+    over(again)
+    assert same(run, RunStore().load_run(again.run_id)).same
 
 
 def test_a_motor_that_does_not_drive_is_recorded_alike_live_and_headless(home: Path) -> None:

@@ -261,7 +261,7 @@ class Motion:
         end_ns = -(-(self.tick + 1) * NS_PER_S // self._hz)
         for motor in self._driven:
             if motor.next_look_ns <= end_ns:
-                motor.run_until(motor.next_look_ns)
+                motor.run_until(motor.find_last_look_ns(end_ns))
             if motor.noticed_ns > self.changed_ns:
                 self.changed_ns = motor.noticed_ns
                 self.changed = True

@@ -39,7 +39,6 @@ class Simulation(Motion):
     __slots__ = (
         "_reported",
         "_reported_tick",
-        "_reports_first",
         "_stops",
         "bases",
         "on_command",
@@ -57,7 +56,6 @@ class Simulation(Motion):
             build_stops(spec.robot, *pair) for pair in zip(extra, self.others, strict=True)
         )
         super().__init__(spec, sink, self.others)
-        self._reports_first = spec.profile.motor_law.is_measured
         self.on_turns: Callable[[tuple[Turn, ...]], None] = lambda _: None
         """Called when one of the other motors deviates from its last report: until then it turns as reported."""
         self._reported: tuple[Turn, ...] = ((0.0, 0.0),) * len(self.others)
@@ -278,9 +276,8 @@ class FurtherMotors(Simulation):
 
     def tick_once(self) -> None:
         """Run one tick of the motors that drive no wheel, then of the robot, and record it."""
-        if self._reports_first:
-            # A position may have been set since the last tick.
-            self._report_turns()
+        # A position may have been set, or a motor started, since the last tick.
+        self._report_turns()
         # Reserve space before anything moves: if there is none, the tick does not happen.
         self._make_room(1)
         for motor, stops in zip(self.others, self._stops, strict=True):

@@ -214,6 +214,10 @@ class DriverMotor(MotorDriver):
         """When the driver next checks whether the state has changed."""
         return self._look_ns
 
+    def find_last_look_ns(self, time_ns: int) -> int:
+        """Return when the driver checks for the last time until `time_ns`, from its next check on; else that one."""
+        return self._look_ns + max(0, time_ns - self._look_ns) // LOOK_NS * LOOK_NS
+
     def run_until(self, time_ns: int) -> None:
         """Run all steps and timers that are due."""
         if self.is_at_rest:

@@ -276,6 +276,8 @@ class SimulatedMotor(DriverMotor):
 
     def run_until(self, time_ns: int) -> None:
         """Run all steps and timers that are due."""
+        if self._cruise_dps and time_ns >= self._cruise_end_ns:
+            self._leave_cruise()
         if not self._cruise_dps:
             DriverMotor.run_until(self, time_ns)
             return
