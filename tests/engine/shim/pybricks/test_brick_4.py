@@ -112,7 +112,7 @@ def test_the_model_of_a_motor_is_refused(run_on: RunOn) -> None:
         ("from pybricks.messaging import TextMailbox", "is not in Pybricks 4"),
         (
             "import pybricks.ev3brick as brick\nbrick.sound.beep()",
-            "use EV3Brick() of pybricks.hubs",
+            "use the class of the brick or hub in pybricks.hubs",
         ),
         ("ev3.speaker.say('hello')", "no attribute 'say': print() shows a text"),
         ("from pybricks.tools import Nothing", "cannot import name 'Nothing'"),
