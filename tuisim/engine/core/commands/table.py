@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from enum import Enum, auto
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from tuisim.base.data_class import dataclass
@@ -60,6 +61,19 @@ class CallSpec:
     """Index of the value that is a speed, limited by the kind of motor; None without one."""
 
 
+def _specify_servo(
+    apply: Callable[[Any, int, Values], None],
+    *ranges: Range,
+    laws: frozenset[MotorLaw] = SERVO_LAWS,
+    **more: Any,
+) -> CallSpec:
+    """Return what a call of the Pybricks firmware does."""
+    return CallSpec(apply, ranges, laws, **more)
+
+
+_specify_base = partial(_specify_servo, target=Target.BASE)
+
+
 CALLS: Mapping[Call, CallSpec] = {
     Call.RESET_GYRO: CallSpec(robot.reset_gyro, target=Target.ROBOT),
     Call.SET_GYRO: CallSpec(robot.set_gyro, (_ANY,), PYBRICKS_4, target=Target.ROBOT),
@@ -92,44 +106,26 @@ CALLS: Mapping[Call, CallSpec] = {
     Call.SET_CONSTANT: CallSpec(
         driver.set_constant, (_FLAG, (0.0, 2.0), _INT), frozenset({MotorLaw.EV3DEV})
     ),
-    Call.SET_UP: CallSpec(servo.begin_anew, ((-1.0, 1.0), _POSITIVE, _FLAG), SERVO_LAWS),
-    Call.RUN_FREELY: CallSpec(servo.run_freely, (_DUTY,), SERVO_LAWS, may_be_missing=True),
-    Call.SET_MILLI: CallSpec(servo.set_milli, (_ANY,), SERVO_LAWS),
-    Call.HOLD: CallSpec(servo.hold, (), SERVO_LAWS),
-    Call.HOLD_MILLI: CallSpec(servo.hold_milli, (_ANY,), SERVO_LAWS),
-    Call.RUN_AT: CallSpec(
-        servo.run_control, (_ANY, _ANY, _POSITIVE, _ENDING), SERVO_LAWS, may_be_missing=True
+    Call.SET_UP: _specify_servo(servo.begin_anew, (-1.0, 1.0), _POSITIVE, _FLAG),
+    Call.RUN_FREELY: _specify_servo(servo.run_freely, _DUTY, may_be_missing=True),
+    Call.SET_MILLI: _specify_servo(servo.set_milli, _ANY),
+    Call.HOLD: _specify_servo(servo.hold),
+    Call.HOLD_MILLI: _specify_servo(servo.hold_milli, _ANY),
+    Call.RUN_AT: _specify_servo(
+        servo.run_control, _ANY, _ANY, _POSITIVE, _ENDING, may_be_missing=True
     ),
-    Call.MOVE: CallSpec(servo.move, (_ANY, _ANY, _ANY, _FLAG), SERVO_LAWS),
-    Call.FOLLOW: CallSpec(servo.follow, (_ENDING,), SERVO_LAWS),
-    Call.LIMIT_DUTY: CallSpec(servo.limit_duty, (_DUTY,), SERVO_LAWS, may_be_missing=True),
-    Call.SET_CONTROL: CallSpec(servo.set_control, (_POSITIVE, _POSITIVE), SERVO_LAWS),
-    Call.BUILD_BASE: CallSpec(
-        servo.build_base,
-        (_POSITIVE, _POSITIVE, _POSITIVE, _POSITIVE),
-        SERVO_LAWS,
-        target=Target.ROBOT,
-    ),
-    Call.MOVE_BASE: CallSpec(
-        servo.move_base, (_ANY, _ANY, _ENDING), SERVO_LAWS, target=Target.BASE
-    ),
-    Call.DRIVE_BASE: CallSpec(servo.drive_base, (_ANY, _ANY), SERVO_LAWS, target=Target.BASE),
-    Call.STOP_BASE: CallSpec(
-        servo.stop_base, (_DUTY,), SERVO_LAWS, may_be_missing=True, target=Target.BASE
-    ),
-    Call.SET_BASE: CallSpec(
-        servo.set_base, (_ANY, _ANY, _ANY, _ANY), SERVO_LAWS, target=Target.BASE
-    ),
-    Call.SET_BASE_CONTROL: CallSpec(
-        servo.set_base_control,
-        (_FLAG, _POSITIVE, _POSITIVE),
-        SERVO_LAWS,
-        target=Target.BASE,
-    ),
-    Call.SET_SLOWING: CallSpec(
-        servo.set_slowing, (_POSITIVE, _POSITIVE), PYBRICKS_4, target=Target.BASE
-    ),
-    Call.USE_GYRO: CallSpec(servo.use_gyro, (_FLAG,), PYBRICKS_4, target=Target.BASE),
+    Call.MOVE: _specify_servo(servo.move, _ANY, _ANY, _ANY, _FLAG),
+    Call.FOLLOW: _specify_servo(servo.follow, _ENDING),
+    Call.LIMIT_DUTY: _specify_servo(servo.limit_duty, _DUTY, may_be_missing=True),
+    Call.SET_CONTROL: _specify_servo(servo.set_control, _POSITIVE, _POSITIVE),
+    Call.BUILD_BASE: _specify_servo(servo.build_base, *(_POSITIVE,) * 4, target=Target.ROBOT),
+    Call.MOVE_BASE: _specify_base(servo.move_base, _ANY, _ANY, _ENDING),
+    Call.DRIVE_BASE: _specify_base(servo.drive_base, _ANY, _ANY),
+    Call.STOP_BASE: _specify_base(servo.stop_base, _DUTY, may_be_missing=True),
+    Call.SET_BASE: _specify_base(servo.set_base, _ANY, _ANY, _ANY, _ANY),
+    Call.SET_BASE_CONTROL: _specify_base(servo.set_base_control, _FLAG, _POSITIVE, _POSITIVE),
+    Call.SET_SLOWING: _specify_base(servo.set_slowing, _POSITIVE, _POSITIVE, laws=PYBRICKS_4),
+    Call.USE_GYRO: _specify_base(servo.use_gyro, _FLAG, laws=PYBRICKS_4),
 }
 
 

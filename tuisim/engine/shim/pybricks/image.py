@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
+from tuisim.engine.core.css_colors import Rgb, load_css_colors
 from tuisim.engine.runs.brick_state import DISPLAY_HEIGHT, DISPLAY_WIDTH, display_row
 from tuisim.engine.runs.records import Stream
 from tuisim.engine.shim.display import dark_pixels
@@ -20,26 +21,14 @@ if TYPE_CHECKING:
     from PIL.Image import Image as Picture
     from PIL.ImageDraw import ImageDraw
 
-Paint = tuple[int, int, int]
-"""Red, green and blue, 0 to 255."""
-PAINTS: Mapping[str, Paint] = {
-    "BLACK": (0, 0, 0),
-    "BLUE": (0, 0, 255),
-    "BROWN": (165, 42, 42),
-    "CYAN": (0, 255, 255),
-    "GRAY": (128, 128, 128),
-    "GREEN": (0, 128, 0),
-    "MAGENTA": (255, 0, 255),
-    "ORANGE": (255, 165, 0),
-    "PURPLE": (128, 0, 128),
-    "RED": (255, 0, 0),
-    "VIOLET": (238, 130, 238),
-    "WHITE": (255, 255, 255),
-    "YELLOW": (255, 255, 0),
+PAINTS: Mapping[str, Rgb] = {
+    name: load_css_colors()[name.lower()]
+    for name in (
+        *("BLACK", "BLUE", "BROWN", "CYAN", "GRAY", "GREEN", "MAGENTA", "ORANGE", "PURPLE"),
+        *("RED", "VIOLET", "WHITE", "YELLOW"),
+    )
 }
-"""By the name of the colour, with the values of CSS; the screen shows those with a dark grey as black. Other colours
-paint nothing.
-"""
+"""By the name of the colour; the screen shows those with a dark grey as black. Other colours paint nothing."""
 BLACK = PAINTS["BLACK"]
 WHITE = PAINTS["WHITE"]
 MODE = "RGB"
@@ -50,7 +39,7 @@ MOST_PIXELS = 4_000_000
 """Larger images do not fit into the memory of the brick."""
 
 
-def paint_of(color: Any) -> Paint | None:
+def paint_of(color: Any) -> Rgb | None:
     """Return the paint for a colour; None, which paints nothing, for None.
 
     Raises:
@@ -355,8 +344,8 @@ class Image(Connected):
         pen: ImageDraw,
         place: tuple[int, int],
         text: str,
-        paint: Paint | None,
-        background: Paint | None,
+        paint: Rgb | None,
+        background: Rgb | None,
     ) -> int:
         """Write a line of text, and return its width in pixels."""
         x, y = place
@@ -402,7 +391,7 @@ def pixels_of(source: Image | str) -> Picture:
     return (source if isinstance(source, Image) else Image(source))._pixels()
 
 
-def mask_without(picture: Picture, paint: Paint) -> Picture:
+def mask_without(picture: Picture, paint: Rgb) -> Picture:
     """Return a mask of the pixels that do not have this paint."""
     from PIL import Image as pillow
     from PIL import ImageChops

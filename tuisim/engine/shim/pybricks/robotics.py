@@ -5,11 +5,12 @@ from __future__ import annotations
 from typing import Any, ClassVar
 
 from tuisim.engine.core.commands.calls import Call
-from tuisim.engine.core.servo.control import Controller, Ending
+from tuisim.engine.core.servo.control import Controller
 from tuisim.engine.core.servo.trajectory import MILLI
 from tuisim.engine.shim.plugs import PART_OF_KIND
 from tuisim.engine.shim.pybricks.brick import Connected, invalid_argument, not_permitted, whole
-from tuisim.engine.shim.pybricks.motor import Control, Motor
+from tuisim.engine.shim.pybricks.motor import Control, Motor, ending_of
+from tuisim.engine.shim.pybricks.parameters import Stop
 from tuisim.engine.shim.pybricks.unsimulated import LOGGER
 from tuisim.engine.shim.unsupported.modules import refused_part
 
@@ -84,11 +85,12 @@ class DriveBase(Connected):
         distance_mm: float,
         angle_deg: float,
         call: str,
-        ending: Ending = Ending.HOLD,
+        then: Any = Stop.HOLD,
         *,
         wait: bool = True,
     ) -> None:
         base = self._base
+        ending = ending_of(self.left.ENDINGS, then)
         self.brick.command()
         try:
             self.tell(Call.MOVE_BASE, distance_mm, angle_deg, ending)

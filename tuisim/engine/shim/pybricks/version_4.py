@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from enum import Enum
 from math import atan2, degrees, hypot, radians
-from typing import Any
+from typing import Any, ClassVar
 
 from tuisim.engine.core.commands.calls import Call
 from tuisim.engine.core.servo.control import Ending
@@ -25,7 +25,7 @@ from tuisim.engine.shim.pybricks.brick import (
     whole,
 )
 from tuisim.engine.shim.pybricks.hsv_color import Color as Color
-from tuisim.engine.shim.pybricks.motor import ending_of, gear_ratio
+from tuisim.engine.shim.pybricks.motor import gear_ratio
 from tuisim.engine.shim.pybricks.parameters import Button, Direction, Port, shown_by_name
 from tuisim.engine.shim.pybricks.unsimulated import MODEL
 from tuisim.engine.shim.unsupported.modules import refused_part
@@ -46,22 +46,14 @@ class Stop(Enum):
     COAST, BRAKE, HOLD, NONE, COAST_SMART, BRAKE_SMART = range(6)
 
 
-ENDINGS: Mapping[Any, Ending] = {
-    **motor.Motor.ENDINGS,
-    Stop.COAST: Ending.COAST,
-    Stop.COAST_SMART: Ending.COAST,
-    Stop.BRAKE: Ending.BRAKE,
-    Stop.BRAKE_SMART: Ending.BRAKE,
-    Stop.HOLD: Ending.HOLD,
-    Stop.NONE: Ending.NONE,
-}
-"""How moves end. A smart ending is like a plain one, as a simulated motor is always where it should be."""
-
-
 class Motor(motor.Motor):
     """A large or medium motor."""
 
-    ENDINGS = ENDINGS
+    # A smart ending is like a plain one, as a simulated motor is always where it should be.
+    ENDINGS: ClassVar[Mapping[Any, Ending]] = {
+        **motor.Motor.ENDINGS,
+        **{stop: Ending[stop.name.removesuffix("_SMART")] for stop in Stop},
+    }
     model = refused_part("Motor", "model", MODEL)
 
     def __init__(
@@ -186,7 +178,7 @@ class DriveBase(robotics.DriveBase):
 
     def straight(self, distance: float, then: Stop = Stop.HOLD, wait: bool = True) -> None:
         """Drive a distance in mm."""
-        return self._move(whole(distance), 0, "straight()", ending_of(ENDINGS, then), wait=wait)
+        return self._move(whole(distance), 0, "straight()", then, wait=wait)
 
     def move_by(self, dx: float, dy: float, then: Stop = Stop.HOLD) -> None:
         """Turn to the direction of a point, and drive there.
@@ -220,18 +212,13 @@ class DriveBase(robotics.DriveBase):
         by: float = whole(angle)
         if absolute:
             by = (by - self.angle() + 180) % 360 - 180
-        return self._move(0, by, "turn()", ending_of(ENDINGS, then), wait=wait)
+        return self._move(0, by, "turn()", then, wait=wait)
 
     def curve(self, radius: float, angle: float, then: Stop = Stop.HOLD, wait: bool = True) -> None:
         """Drive along an arc by an angle in degrees; a negative radius turns the other way."""
         turned = -whole(angle) if radius < 0 else whole(angle)
-        return self._move(
-            whole(radius) * radians(abs(whole(angle))),
-            turned,
-            "curve()",
-            ending_of(ENDINGS, then),
-            wait=wait,
-        )
+        way = whole(radius) * radians(abs(whole(angle)))
+        return self._move(way, turned, "curve()", then, wait=wait)
 
     def arc(
         self,
@@ -247,7 +234,7 @@ class DriveBase(robotics.DriveBase):
         if abs(whole(radius)) < MIN_RADIUS_MM:
             raise invalid_argument()
         way = whole(distance) if distance is not None else abs(radius) * radians(whole(angle))
-        return self._move(way, degrees(way / radius), "arc()", ending_of(ENDINGS, then), wait=wait)
+        return self._move(way, degrees(way / radius), "arc()", then, wait=wait)
 
     def angle(self) -> float:  # type: ignore[override]
         """Return the turned angle in degrees, clockwise."""

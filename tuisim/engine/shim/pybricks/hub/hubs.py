@@ -45,7 +45,7 @@ class Hub(Connected):
     """Base of the classes of all hubs."""
 
     BUTTONS: tuple[str, ...] = ("enter",)
-    SENSES: ClassVar[type[Accelerometer]] = IMU
+    SENSES: ClassVar[type[Accelerometer] | None] = IMU
     ble = refused_part("PrimeHub", "ble", RADIO)
 
     def __init__(
@@ -56,35 +56,33 @@ class Hub(Connected):
         observe_channels: Iterable[int] = (),
     ) -> None:
         self.brick.command()
-        self.imu = self.SENSES(
-            Axis.Z if top_side is None else top_side, Axis.X if front_side is None else front_side
-        )
+        if self.SENSES is not None:
+            self.imu = self.SENSES(top_side or Axis.Z, front_side or Axis.X)
         self.brick.stop_buttons = frozenset({"enter"})
         self.light = AnimatedLight(shine)
         self.battery, self.system = Battery(), System(type(self).__name__, BUTTON_NAMES)
         buttons = {name: BUTTON_NAMES[name] for name in self.BUTTONS}
-        self.buttons = self.button = Buttons(buttons, HUB_BUTTONS_PORT)
+        self.buttons = Buttons(buttons, HUB_BUTTONS_PORT)
+        if len(buttons) == 1:
+            self.button = self.buttons
 
 
 class PrimeHub(Hub):
     """The hub of SPIKE Prime, and of the Robot Inventor."""
 
     BUTTONS = tuple(BUTTON_NAMES)
+    charger = Charger()
 
     def __init__(self, *given: Any, **named: Any) -> None:
         super().__init__(*given, **named)
-        # The attribute `button` is for hubs with a single button.
-        del self.button
-        self.speaker, self.charger = Speaker(), Charger()
+        self.speaker = Speaker()
         self.display = Display()
 
 
 class EssentialHub(Hub):
     """The hub of SPIKE Essential."""
 
-    def __init__(self, *given: Any, **named: Any) -> None:
-        super().__init__(*given, **named)
-        self.charger = Charger()
+    charger = Charger()
 
 
 class TechnicHub(Hub):
@@ -94,9 +92,7 @@ class TechnicHub(Hub):
 class CityHub(Hub):
     """The hub of trains, which has no gyro."""
 
-    def __init__(self, *given: Any, **named: Any) -> None:
-        super().__init__(*given, **named)
-        del self.imu
+    SENSES = None
 
 
 class MoveHub(Hub):
