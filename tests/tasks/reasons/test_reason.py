@@ -61,6 +61,12 @@ for side in range(4):
     left.run_angle(300, 90, wait=False)
     right.run_angle(300, -90)
 """
+TURN_OF_A_BRICK = """\
+from ev3dev2.motor import MoveTank, OUTPUT_B, OUTPUT_C
+tank = MoveTank(OUTPUT_B, OUTPUT_C)
+tank.on_for_degrees(30, 30, 500)
+tank.on_for_degrees(20, -20, 180)
+"""
 CASES = {
     "raised": (MISTAKE, ReasonKind.RAISED, "1.00 s, line 2: NameError: name 'colour' is not"),
     "in a thread": (IN_A_THREAD, ReasonKind.RAISED, "1.00 s, line 4: ZeroDivisionError: division"),
@@ -103,6 +109,11 @@ CASES = {
         BOTH_WHEELS,
         ReasonKind.MISTAKEN,
         "line 7: this line turned the robot by 28°: run_angle counts degrees of the wheels; ",
+    ),
+    "degrees of the wheels, by motors that overshoot": (
+        TURN_OF_A_BRICK,
+        ReasonKind.MISTAKEN,
+        "line 4: this line turned the robot by 56°: on_for_degrees counts degrees of the wheels; ",
     ),
     "each reading": (
         COUNTS.format(step="count += 1", more="pass"),
@@ -199,7 +210,9 @@ def test_a_run_of_another_text_is_no_measure() -> None:
         assert find_reasons(run, (), Recording(run_text(text))) == ()
 
 
-def test_a_run_that_met_its_goals_has_lost_nothing(tmp_path: Path) -> None:
+def test_a_run_that_met_its_goals_has_lost_nothing_and_a_missed_goal_follows_its_cause(
+    tmp_path: Path,
+) -> None:
     run = run_text(OFF_THE_MAT)
     goals = goals_of(tmp_path, '[[goal]]\nname = "ends"\nsay = "End."\nfinish = true\n')
     judgements = judge(goals, run)
@@ -207,8 +220,8 @@ def test_a_run_that_met_its_goals_has_lost_nothing(tmp_path: Path) -> None:
     assert find_reasons(run, judgements) == ()
     away = tuple(replace(each, goal=replace(each.goal, points=-1.0)) for each in judgements)
     assert [reason.kind for reason in find_reasons(run, away)] == [
-        ReasonKind.MISSED,
         ReasonKind.LOST,
+        ReasonKind.MISSED,
     ]
 
 

@@ -68,8 +68,8 @@ def _measure_turns(run: StoredRun, turn: WheelTurn) -> MistakenTurn | None:
     left_deg, right_deg = (float(positions[-1] - positions[0]) for positions in wheels)
     wheel_deg = abs(left_deg - right_deg) / 2
     steps_deg = (np.diff(span["heading_deg"]) + 180) % 360 - 180
-    # Two numbers may be speeds, or the steering of a curve and a speed.
-    is_on_the_spot = abs(left_deg + right_deg) <= (1 - _MIN_SHARE) * wheel_deg
+    # Two numbers may be speeds, or the steering of a curve and a speed. Each wheel may be off by its share.
+    is_on_the_spot = abs(left_deg + right_deg) <= 2 * (1 - _MIN_SHARE) * wheel_deg
     if not is_on_the_spot or wheel_deg < turn.angle_deg * _MIN_SHARE:
         return None
     # The line may have run several times in a row: scale to one turn.
