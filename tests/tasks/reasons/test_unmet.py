@@ -149,12 +149,33 @@ while eye.color() != Color.RED:
 """
 
 
+HEADING = """\
+# %%sim_magic -b Empty_Map
+from pybricks.hubs import PrimeHub
+from pybricks.parameters import Direction, Port
+from pybricks.pupdevices import Motor
+Motor(Port.A, Direction.COUNTERCLOCKWISE).run(-200)
+Motor(Port.B).run(200)
+while PrimeHub().imu.heading() < 90:
+    pass
+"""
+
+
 @cases(
     "text, words",
     {
         "no colour": (
             GREYS,
             "the colour sensor on in3 to see red: it saw only black, blue, no colour, white",
+        ),
+        "a text for a colour": (
+            GREYS.replace("Color.RED", "'red'"),
+            "the colour sensor on in3 to see 'red': it saw only Color.BLACK, Color.BLUE, "
+            "Color.NONE, Color.WHITE; a text equals no colour, Color.RED does",
+        ),
+        "the gyro of a hub": (
+            HEADING,
+            "the gyro in the hub to read 90° or more: it went from 0 to -",
         ),
         "a value": (OLD_LIBRARY, "the colour sensor on in2 to read 3 or less: it stayed at 85"),
         "turns": (

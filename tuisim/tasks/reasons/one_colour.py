@@ -83,15 +83,16 @@ def describe_colors(loop: LoopEnd, device: str, codes: Array, has_codes: bool) -
         codes: Codes of the colours that it read, shape (n,).
         has_codes: Whether `color` is a number in the program's library.
     """
-    seen = name_seen(loop, codes)
+    seen = name_seen(loop, codes, has_codes)
     color = name_limit(loop)
     if loop.operator != "==" or color in {"", *seen}:
         return ""
     text = f"{device} to see {color}: it saw only {', '.join(seen)}"
-    names = [name.lower() for name in COLOR_NAMES]
-    if not has_codes or loop.attribute != "color" or not loop.color or not _is_text(loop):
+    if loop.attribute != "color" or not loop.color or not _is_text(loop):
         return text
-    code = names.index(loop.color)
+    if not has_codes:
+        return f"{text}; a text equals no colour, Color.{loop.color.upper()} does"
+    code = [name.lower() for name in COLOR_NAMES].index(loop.color)
     return f"{text}; color is a number ({code} for {color}), color_name is the word"
 
 
@@ -100,12 +101,21 @@ def _is_text(loop: LoopEnd) -> bool:
     return isinstance(loop.limit, str) and not loop.limit.isupper()
 
 
-def name_seen(loop: LoopEnd, codes: Array) -> list[str]:
-    """Return the colours that were seen, in words; if the loop compares with a text, as the program reads them."""
+def name_seen(loop: LoopEnd, codes: Array, has_codes: bool) -> list[str]:
+    """Return the colours that were seen, in words; if the loop compares with a text, as the program reads them.
+
+    Arguments as of `describe_colors`.
+    """
     names = {COLOR_NAMES[int(code)]: f"{code:g}" for code in codes}
     if not _is_text(loop):
         return sorted("no colour" if name == COLOR_NAMES[0] else name.lower() for name in names)
-    return sorted(names.values() if loop.attribute == "color" else map(repr, names))
+    if loop.attribute != "color":
+        return sorted(map(repr, names))
+    if has_codes:
+        return sorted(names.values())
+    return sorted(
+        "Color.NONE" if name == COLOR_NAMES[0] else f"Color.{name.upper()}" for name in names
+    )
 
 
 def name_limit(loop: LoopEnd) -> str:

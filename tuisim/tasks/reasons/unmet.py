@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ConfigError, LogError
 from tuisim.engine.core.conditions import COMPARE
-from tuisim.engine.core.hub_spec import HUB_PORTS
+from tuisim.engine.core.hub_spec import HUB_PORTS, INSIDE
 from tuisim.engine.core.profile import Library
 from tuisim.engine.core.spec import (
     ColorSensorSpec,
@@ -66,6 +66,7 @@ _COLUMNS: Mapping[str, tuple[str, float, str]] = {
     "color": ("color", 1.0, ""),
     "color_name": ("color", 1.0, ""),
     "angle": _DEGREES,
+    "heading": _DEGREES,
     "rate": ("rate_dps", 1.0, "°/s"),
     "distance_centimeters": ("mm", 0.1, " cm"),
     "distance_inches": ("mm", 1 / 25.4, " in"),
@@ -208,6 +209,8 @@ class _Search:
         self._hz = run.spec.profile.tick_hz
         self._records = run.telemetry.array()
         self._loops = read_facts(run.program).loop_ends
+        self._has_codes = run.spec.profile.motor_law.library is not Library.PYBRICKS
+        """Whether `color` is a number in the program's library."""
 
     @cached_property
     def _readings(self) -> Array:
@@ -253,7 +256,7 @@ class _Search:
                 continue
             text = f"the loop ended at once: {series.device} read"
             if series.column == "color":
-                (name,) = name_seen(loop, series.values[:1])
+                (name,) = name_seen(loop, series.values[:1], self._has_codes)
                 if loop.operator == "!=" and name != name_limit(loop):
                     text = f"{text} {name}, not {name_limit(loop)}"
                     yield Unmet(series.ticks[0] / self._hz, loop.line, text)
@@ -329,8 +332,7 @@ class _Search:
         if series is None:
             return ""
         if series.column == "color":
-            has_codes = self._run.spec.profile.motor_law.library is not Library.PYBRICKS
-            return describe_colors(loop, series.device, series.values, has_codes)
+            return describe_colors(loop, series.device, series.values, self._has_codes)
         if isinstance(loop.limit, str) or COMPARE[loop.operator](series.values, loop.limit).any():
             return ""
         goal = _name_goal(loop, f"{loop.limit:g}{series.unit}")
@@ -463,7 +465,7 @@ class _Search:
             values = np.floor(values * spec.profile.reflected_max / 100)
         elif loop.attribute == "reflection":
             values = np.floor(values)
-        device = f"the {_NOUNS.get(type(sensor), 'sensor')} on {sensor.port}"
+        device = f"the {_NOUNS.get(type(sensor), 'sensor')} {describe_place(sensor.port)}"
         return _Series(device, column, unit, ticks, values)
 
     def _find_wheel(self, ports: list[str]) -> str:
@@ -474,6 +476,11 @@ class _Search:
             robot.right_port: "" if robot.right_reversed else "right",
         }
         return wheels.get(ports[0], "") if len(ports) == 1 and robot.gear_ratio == 1 else ""
+
+
+def describe_place(port: str) -> str:
+    """Return where a sensor is, to follow its kind."""
+    return "in the hub" if port == INSIDE else f"on {port}"
 
 
 def _round(value: float) -> str:
