@@ -277,6 +277,10 @@ MEASURED = {
         f"{ULTRASONIC}state = 0\nwhile state < 2:\n    if us.distance_centimeters < 20: state = 2\n",
         "ultrasonic sensor on in1 saw nothing nearer than 116 cm",
     ),
+    "nearer than a wall, by a state": (
+        f"{ULTRASONIC}state = 0\nwhile state < 2:\n    if us.distance_centimeters < 2: state = 2\n",
+        "ultrasonic sensor on in1 saw nothing nearer than 116 cm: at a wall it reads 3 cm, never less",
+    ),
     "the largest turn": (f"{GYRO}m = 0\nwhile True:\n    if g.angle > m: m = g.angle\n", ""),
     "a note of what is near": (
         f"{ULTRASONIC}while True:\n    if us.distance_centimeters < 5: print('near')\n",

@@ -19,7 +19,7 @@ from tuisim.engine.obstacles import OBSTACLES
 from tuisim.engine.runs.readings import BUTTONS_PORT, HUB_BUTTONS_PORT, KEYS_BY_PORT
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.tasks.reasons.hand_presses import find_hits
-from tuisim.tasks.reasons.unmet import Unmet, find_unmet
+from tuisim.tasks.reasons.unmet import Unmet, describe_place, find_unmet
 from tuisim.tasks.reasons.waited import SEEN, Awaited, Subject, find_awaited
 
 if TYPE_CHECKING:
@@ -67,7 +67,6 @@ def find_waits(run: StoredRun, mat: Field | None = None) -> list[Wait]:
     for awaited in all_awaited:
         remedy = name_remedy(awaited, run.spec, run.live)
         if unmet and unmet.line == awaited.line:
-            remedy = _name_nearest(awaited, run.spec) or remedy
             waits.append(_describe_unmet(unmet, f"; {remedy}", awaited.subject))
             continue
         text = describe_awaited(awaited)
@@ -121,7 +120,7 @@ def describe_awaited(awaited: Awaited) -> str:
         case Subject.PROXIMITY:
             return f"infrared sensor on {port} saw nothing nearer than {value}"
         case Subject.GYRO:
-            return f"gyro on {port} was never turned"
+            return f"gyro {describe_place(port)} was never turned"
         case Subject.CONNECTION:
             return f"socket.accept in line {awaited.line}: nobody connected"
         case Subject.DATA:
@@ -179,7 +178,7 @@ def name_remedy(awaited: Awaited, spec: RunSpec, is_live: bool = False) -> str:
         case Subject.COLOR:
             return _name_mat(awaited, spec)
         case Subject.DISTANCE | Subject.PROXIMITY:
-            return _name_obstacle(awaited, spec)
+            return _name_nearest(awaited, spec) or _name_obstacle(awaited, spec)
         case Subject.GYRO:
             return "only its motors turn this robot"
         case Subject.CONNECTION | Subject.DATA if is_live:
