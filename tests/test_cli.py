@@ -75,7 +75,10 @@ def test_the_last_line_says_that_the_robot_stood_at_the_wall(tmp_path: Path, her
     for words in ("--walls on", "--profile robolab", "--world room.toml -y 800 -a 0"):
         done = here("run", "push.py", "-x", "2200", *words.split())
         told[words] = done.stderr.splitlines()[-1]
-    assert " · stood at the wall for 1.5 s (--walls off) · 0 samples · run " in told["--walls on"]
+    assert (
+        " · stood at the wall for 1.5 s; --walls off takes the walls away · 0 samples · run "
+        in told["--walls on"]
+    )
     assert "stood" not in told["--profile robolab"]
     assert (
         " · stood at the wall from 0.49 s on, its wheels pushed for 1.5 s · 0 samples · run "

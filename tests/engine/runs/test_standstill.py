@@ -88,7 +88,7 @@ SAID: dict[str, tuple[RunSpec, Moves, str]] = {
     "on a floor": (
         replace(SPEC, world=replace(WALL, floor=True)),
         [(ON, 200)],
-        "stood at the wall for 0.9 s (--walls off)",
+        "stood at the wall for 0.9 s; --walls off takes the walls away",
     ),
     "an obstacle on a floor": (
         replace(SPEC, world=replace(BOX, floor=True)),

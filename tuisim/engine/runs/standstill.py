@@ -57,7 +57,7 @@ class Standstill:
     def words(self) -> str:
         """A sentence for people about it, without its subject, the robot."""
         if self.on_floor and WALL in self.at:
-            return f"stood at {self.at} for {self.pushed_s:.1f} s (--walls off)"
+            return f"stood at {self.at} for {self.pushed_s:.1f} s; --walls off takes the walls away"
         pushed = f"its wheels pushed for {self.pushed_s:.1f} s"
         if self.times > 1:
             return f"stood at {self.at} {counted(self.times, 'time')}, first at {self.since_s:.2f} s, {pushed} in all"

@@ -78,6 +78,8 @@ def find_reasons(
 ) -> tuple[Reason, ...]:
     """Return every reason why a run went wrong, most important first, those of one kind by time.
 
+    Missed goals and what a sensor lost are one kind here.
+
     Args:
         run: The run; it may still be running.
         judgements: How it did on the goals of its task. A run that met them all went wrong by none of what blocked it
@@ -101,7 +103,13 @@ def find_reasons(
         reasons += [*left_mat, *_find_mistaken(run, mat, bool(left_mat)), *_find_ended(run, mat)]
     if earlier is not None and is_repeat(run, earlier):
         reasons += _find_difference(run, earlier)
-    return tuple(sorted(reasons, key=lambda reason: (reason.kind, reason.time_s)))
+    return tuple(sorted(reasons, key=_rank))
+
+
+def _rank(reason: Reason) -> tuple[ReasonKind, float]:
+    """Return a sort key: a goal is often missed because of what a sensor lost before."""
+    kind = ReasonKind.LOST if reason.kind is ReasonKind.MISSED else reason.kind
+    return kind, reason.time_s
 
 
 def is_repeat(run: StoredRun | Recording, earlier: StoredRun | Recording) -> bool:
