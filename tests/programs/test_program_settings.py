@@ -363,6 +363,29 @@ def test_the_line_names_what_was_built_and_how_to_change_it() -> None:
     )
 
 
+READS_LIGHT = """\
+from ev3dev2.sensor.lego import ColorSensor
+print(ColorSensor("in2").reflected_light_intensity)
+"""
+
+
+@cases(
+    "text, above, is_told",
+    {
+        "a magic line": (f"# %sim_magic -b Loop\n{READS_LIGHT}", {}, True),
+        "the brick's rules": (READS_LIGHT, {}, False),
+        "a chosen profile": (f"# %sim_magic\n{READS_LIGHT}", {"profile": "robolab"}, False),
+        "the course's names": (f"# %sim_magic\n{READS_LIGHT}".replace(")\n", "_pc)\n"), {}, False),
+        "no light": (f"# %sim_magic\n{READS_LIGHT}".replace("reflected_", "ambient_"), {}, False),
+    },
+)
+def test_a_program_for_the_brick_with_a_magic_line_is_told_the_scale_of_light(
+    text: str, above: dict[str, str], is_told: bool
+) -> None:
+    note = build_program_settings(parse_program(text, "p.py"), above).decided.note
+    assert ("light is 0 to 255 (with --profile ev3 0 to 100)" in note) is is_told
+
+
 ON_USUAL_PORTS = """\
 from ev3dev2.motor import OUTPUT_B, OUTPUT_C, MoveDifferential
 from ev3dev2.wheel import EV3Tire

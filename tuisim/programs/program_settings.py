@@ -49,6 +49,12 @@ BRICK_PROFILES = (*PROFILES_BY_LIBRARY.values(), PYBRICKS_4.name)
 SHEBANG = "#!/usr/bin/env pybricks-micropython"
 """The first line of a program for LEGO's MicroPython."""
 _NO_PRELUDE = "none"
+_BRICK_LIGHT = "reflected_light_intensity"
+"""The attribute whose scale the course changes."""
+_COURSE_RULES = (
+    "by the rules of the course, because of its magic line: light is 0 to 255 "
+    f"(with --profile {BRICK_PROFILE} 0 to 100)"
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -279,7 +285,7 @@ def decide(
     if by_brick_rules and has_rules:
         layer |= _decide_ground(facts, free)
     needed = facts.robot.choice if facts.robot else None
-    words = _describe_decision(source.program, facts, layer)
+    words = _describe_decision(source, facts, layer, free)
     unseen_parts = _find_shown(facts, free)
     return Decided(
         layer, *words, needed, unseen_parts, frozenset(free), _find_refused(facts, profile)
@@ -400,10 +406,25 @@ def _has_brick_rules(source: ProgramSource, facts: SourceFacts) -> bool:
     return facts.library is not None and not facts.of_course and not source.has_magic
 
 
+def _describe_course_rules(source: ProgramSource, facts: SourceFacts) -> str:
+    """Return what a program with its own imports may not expect of the course's rules; empty for nothing."""
+    brings_library = facts.library is Library.EV3DEV2 and facts.shown_ports is not None
+    is_surprised = brings_library and source.has_magic and not facts.of_course
+    return _COURSE_RULES if is_surprised and _BRICK_LIGHT in source.program.text else ""
+
+
 def _describe_decision(
-    program: Program, facts: SourceFacts, layer: Mapping[str, Any]
+    source: ProgramSource, facts: SourceFacts, layer: Mapping[str, Any], free: Collection[str]
 ) -> tuple[str, str]:
-    """Return what the source of a program decided, and how to change it; both are empty if it decided nothing."""
+    """Return what the source of a program decided, and how to change it; both are empty if it decided nothing.
+
+    Args:
+        source: The program.
+        facts: What its source shows.
+        layer: The settings that it decides.
+        free: The paths that nobody has chosen.
+    """
+    program = source.program
     if facts.for_other_hub:
         # No profile is for that hub, so no setting helps.
         return "", ""
@@ -412,6 +433,8 @@ def _describe_decision(
     version = uses if profile == PYBRICKS_4.name else ""
     brick = "hub" if facts.robot and facts.robot.choice.spec.hub else "brick"
     rules = f"as on a {brick}{version} (profile {profile})" if profile else ""
+    if not rules and "profile" in free:
+        rules = _describe_course_rules(source, facts)
     if facts.robot and "robot" in layer:
         from tuisim.programs.robot.report import describe_robot
 

@@ -124,6 +124,15 @@ def test_nothing_may_follow(text: str) -> None:
     assert names(text) == []
 
 
+def test_the_help_of_light_has_both_scales_in_a_program_with_own_imports() -> None:
+    text = (
+        "from ev3dev2.sensor.lego import ColorSensor\nColorSensor('in2').reflected_light_intensity"
+    )
+    assert [one.help for one in at_end(text)] == [
+        "Reflected red light from 0 to 255, or to 100 under the profile `ev3`"
+    ]
+
+
 def test_a_candidate_has_a_signature_and_help(home: Path) -> None:
     found = {one.name: one for one in at_end("tank_drive.o")}
     assert found["on"] == Candidate(

@@ -61,6 +61,10 @@ _USUAL = (
 )
 """Patterns of what most programs use of the libraries, in the order of a list."""
 _UNUSUAL = frozenset({"mro"})
+_HELP = {
+    "reflected_light_intensity": "Reflected red light from 0 to 255, or to 100 under the profile `ev3`"
+}
+"""Help in place of docstrings that are true only of a brick."""
 _EXTENSIONS = [path for path in sys.path if path.endswith("lib-dynload")]
 _WARM_UP_PLACE = "colorLeft.r", "", 0, len("colorLeft.r")
 """The first question to Jedi, as arguments of `find_candidates`: what an object of the prelude has."""
@@ -340,7 +344,8 @@ def _describe_completion(completion: Completion) -> Candidate:
     documentation = (
         "" if completion.type in ("keyword", "instance") else completion.docstring(raw=True)
     )
-    return Candidate(completion.name, called, kind, extract_sentence(documentation))
+    help_line = _HELP.get(completion.name) or extract_sentence(documentation)
+    return Candidate(completion.name, called, kind, help_line)
 
 
 def _format_parameter(parameter: Any) -> str:
