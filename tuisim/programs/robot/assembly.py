@@ -302,18 +302,13 @@ class _Builder:
     def find_sizes(self, motors: Mapping[str, Any]) -> dict[str, float]:
         """Return the sizes of the wheels that constants of the program give, where their class gives none."""
         sizes = self._find_sizes(motors)
-        self._tell_sizes(
-            {key: size.mm for key, size in sizes.items()},
-            {key: size.where for key, size in sizes.items()},
-        )
+        self._tell_sizes(sizes)
         return {key: size.mm for key, size in sizes.items()}
 
     def _find_sizes(self, motors: Mapping[str, Any]) -> dict[str, Size]:
-        named = find_sizes(self.mentions)
-        sizes = {"wheel_diameter_mm": named.wheel, "wheel_spacing_mm": named.spacing}
         return {
             key: size
-            for key, size in sizes.items()
+            for key, size in find_sizes(self.mentions).items()
             if size
             and motors["left_port"] != NO_PORT
             and key not in {*motors, *self._list_exact()}
@@ -327,13 +322,14 @@ class _Builder:
                 yield from ["wheel_diameter_mm"] if pair.wheel_mm else []
                 yield from ["wheel_spacing_mm"] if pair.spacing_mm is not None else []
 
-    def _tell_sizes(self, sizes: Mapping[str, float], where: Mapping[str, Where | None]) -> None:
+    def _tell_sizes(self, sizes: Mapping[str, Size]) -> None:
         for key, words in (
             ("wheel_diameter_mm", "wheels of {:g} mm"),
             ("wheel_spacing_mm", "{:g} mm apart"),
         ):
             if key in sizes:
-                self.parts.append(RobotPart(words.format(sizes[key]), key, where[key]))
+                size = sizes[key]
+                self.parts.append(RobotPart(words.format(size.mm), key, size.where))
 
     def _tell_wheels(self, wheels: WheelMotors, changes: Mapping[str, Any]) -> None:
         moved = (wheels.left, wheels.right) != (self.usual.left_port, self.usual.right_port)
@@ -346,7 +342,8 @@ class _Builder:
         )
         is_told = moved or bool(medium or self.usual.hub)
         self.parts.append(RobotPart(what, "left_port", wheels.where, is_told))
-        self._tell_sizes(changes, dict.fromkeys(changes, wheels.where))
+        sizes = self._read_sizes(wheels.pair)
+        self._tell_sizes({key: Size(mm, wheels.where) for key, mm in sizes.items()})
 
     def _find_kinds(self, mentions: Iterable[Mention]) -> dict[str, DeviceKind]:
         """Return the kind of device on each port that the program names; of several kinds the one named most often."""

@@ -241,16 +241,11 @@ class Size:
     where: Where | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Sizes:
-    """The sizes of the wheels in a program; None for one that it does not name, or not clearly."""
+def find_sizes(mentions: Mentions) -> dict[str, Size | None]:
+    """Return the diameter of the wheels and their distance, from numbers with such names in a program.
 
-    wheel: Size | None = None
-    spacing: Size | None = None
-
-
-def find_sizes(mentions: Mentions) -> Sizes:
-    """Return the diameter of the wheels and their distance, from numbers with such names in a program."""
+    By their fields of `RobotSpec`; None for one that the program does not name, or not clearly.
+    """
     named = [*_find_named(mentions)]
     wheels = [
         *((name, size) for name, size in named if is_diameter(name)),
@@ -267,10 +262,10 @@ def find_sizes(mentions: Mentions) -> Sizes:
         for pair in named
         if is_spacing(pair[0]) and (pair[0].lower() != "track" or wheels or girths)
     ]
-    return Sizes(
-        _pick_only(wheels, _DIAMETERS_MM) or _pick_only(girths, _DIAMETERS_MM),
-        _pick_only(spacings, _SPACINGS_MM),
-    )
+    return {
+        "wheel_diameter_mm": _pick_only(wheels, _DIAMETERS_MM) or _pick_only(girths, _DIAMETERS_MM),
+        "wheel_spacing_mm": _pick_only(spacings, _SPACINGS_MM),
+    }
 
 
 def _find_named(mentions: Mentions) -> Iterator[tuple[str, Size]]:

@@ -56,11 +56,6 @@ EARLIER_MEMBERS: Mapping[str, str] = {
 """Hints for attributes of objects that version 4 no longer has, by name."""
 
 
-def find_earlier(module: str, name: str) -> str:
-    """Return what to use in place of a name that a module does not have under version 4; empty if unknown."""
-    return EARLIER_MODULES.get(module) or EARLIER.get(module, {}).get(name, "")
-
-
 def name_replacement(_owner: str, name: str) -> str:
     """Return, after a colon, what version 4 has in place of an attribute of an earlier version; empty if unknown."""
     return f": {EARLIER_MEMBERS[name]}" if name in EARLIER_MEMBERS else ""

@@ -126,11 +126,11 @@ def refuse_name(hub: str, module: str, name: str) -> NoReturn:
         NotSimulated: version 2.0, another module or another hub has the name; the error is also an ImportError.
         AttributeError: nothing has it.
     """
-    from tuisim.engine.shim.pybricks.earlier import find_earlier
+    from tuisim.engine.shim.pybricks.earlier import EARLIER, EARLIER_MODULES
 
     if name.startswith("__"):
         raise AttributeError(f"module {module!r} has no attribute {name!r}")
-    if hint := find_earlier(module, name):
+    if hint := EARLIER_MODULES.get(module) or EARLIER.get(module, {}).get(name):
         raise refused_as(ImportError, f"{module}.{name} is not in Pybricks 4", hint)
     for owner in dict.fromkeys((hub, "", "PrimeHub")):
         for place, names in read_version_4(owner).items():

@@ -8,7 +8,13 @@ from tuisim.engine.core.commands.calls import Call
 from tuisim.engine.core.servo.control import Controller
 from tuisim.engine.core.servo.trajectory import MILLI
 from tuisim.engine.shim.plugs import PART_OF_KIND
-from tuisim.engine.shim.pybricks.brick import Connected, invalid_argument, not_permitted, whole
+from tuisim.engine.shim.pybricks.brick import (
+    Connected,
+    Waiting,
+    invalid_argument,
+    not_permitted,
+    whole,
+)
 from tuisim.engine.shim.pybricks.motor import Control, Motor, ending_of
 from tuisim.engine.shim.pybricks.parameters import Stop
 from tuisim.engine.shim.pybricks.unsimulated import LOGGER
@@ -89,22 +95,24 @@ class DriveBase(Connected):
         *,
         wait: bool = True,
     ) -> None:
-        base = self._base
         ending = ending_of(self.left.ENDINGS, then)
         self.brick.command()
         try:
             self.tell(Call.MOVE_BASE, distance_mm, angle_deg, ending)
         except ValueError:
             raise invalid_argument() from None
-        if not wait:
-            return None
+        return self.brick.finish(self._wait_for_end(call)) if wait else None
+
+    def _wait_for_end(self, call: str) -> Waiting[None]:
+        """Wait until the move of a call is over; tell the user once if something blocks the wheels."""
+        base = self._base
 
         def done(now_us: int) -> bool:
             if base.stalled:
                 self.brick.say_stalled("the wheels are", call)
             return not base.active or base.done(now_us)
 
-        return self.brick.finish(self.brick.until_done(done, lambda: base.end_us, self.stop))
+        return self.brick.until_done(done, lambda: base.end_us, self.stop)
 
     def drive(
         self,

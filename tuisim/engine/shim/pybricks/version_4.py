@@ -5,7 +5,7 @@ In a task, which `run_task` runs, a blocking call returns at once what the task 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from enum import Enum
 from math import atan2, degrees, hypot, radians
 from typing import Any, ClassVar
@@ -190,20 +190,10 @@ class DriveBase(robotics.DriveBase):
         return self.brick.finish(self._move_by(whole(dx), whole(dy), then))
 
     def _move_by(self, dx: int, dy: int, then: Stop) -> Waiting[None]:
-        heading_deg, distance = -degrees(atan2(dy, dx)), hypot(dx, dy)
-        yield from self._wait_for(lambda: self.turn(round(heading_deg), absolute=True))
-        yield from self._wait_for(lambda: self.straight(distance, then))
-
-    def _wait_for(self, move: Callable[[], Any]) -> Waiting[None]:
-        """Begin a move as in a task, and wait for its end."""
-        brick = self.brick
-        in_task = self.brick.in_task
-        brick.in_task = True
-        try:
-            awaited = move()
-        finally:
-            brick.in_task = in_task
-        yield from awaited.__await__()
+        self.turn(round(-degrees(atan2(dy, dx))), wait=False, absolute=True)
+        yield from self._wait_for_end("move_by()")
+        self.straight(hypot(dx, dy), then, wait=False)
+        yield from self._wait_for_end("move_by()")
 
     def turn(
         self, angle: float, then: Stop = Stop.HOLD, wait: bool = True, absolute: bool = False
