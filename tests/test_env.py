@@ -71,6 +71,20 @@ def test_a_thousand_seeds_give_the_same_episodes() -> None:
     assert _is_repeated(1000)
 
 
+def test_the_follower_ends_off_the_mat_and_shows_itself() -> None:
+    world = tuisim.World(background="Loop", x=2300, y=500, angle=0)
+    env = gymnasium.make("tuisim/LineFollower-v0", world=world, render_mode="rgb_array")
+    env.reset(seed=0)
+    pictures: list[Any] = []
+    is_over = False
+    while not is_over:
+        _, _, is_over, is_cut, values = env.step(np.ones(2, np.float32))
+        pictures.append(env.render())
+        assert not is_cut
+    assert values["x_mm"] > 2362
+    assert pictures[0].ndim == 3 and (pictures[0] != pictures[-1]).any()
+
+
 def test_a_function_rewards_and_ends() -> None:
     env = LabEnv(
         "left_red_pc",

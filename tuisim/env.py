@@ -16,6 +16,7 @@ from tuisim.api.face import Robot, World
 from tuisim.api.keywords import check_keywords
 from tuisim.api.lab import MOTION, Lab
 from tuisim.base.errors import ConfigError
+from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 from tuisim.engine.core.values import MAX_SEED
 
 try:
@@ -42,24 +43,27 @@ class LabEnv(gymnasium.Env[Vector, Vector]):
 
     Args:
         columns: What the robot observes, such as `left_red_pc`.
-        reward: Takes the values before and after a step, and returns its reward.
-        is_over: Takes the values after a step, and returns whether the task has ended.
+        reward: Takes the values before and after a step, and returns its reward; None for 0.
+        is_over: Takes the values after a step, and returns whether the task has ended; None for never.
         goals: A goals file. The points that a step gains or loses, if the run ended after it, are added to its reward,
             and the task has also ended when no goal can be met any more.
         background: A mat, in place of a world.
         world, robot, profile: As for `Lab`.
         period_s: Simulated seconds of a step.
+        render_mode: `rgb_array` for pictures, such as for `gymnasium.wrappers.RecordVideo`.
 
     Raises:
         ConfigError: as for `Lab`; there are a mat and a world; or a function takes other values.
     """
 
+    metadata = {"render_modes": ["rgb_array"], "render_fps": 10}  # noqa: RUF012
+
     @check_keywords
     def __init__(
         self,
         columns: Sequence[str],
-        reward: Callable[[Values, Values], float] = lambda *_: 0.0,
-        is_over: Callable[[Values], bool] = lambda _: False,
+        reward: Callable[[Values, Values], float] | None = None,
+        is_over: Callable[[Values], bool] | None = None,
         *,
         goals: str | Path | None = None,
         background: str | Path | None = None,
@@ -67,9 +71,13 @@ class LabEnv(gymnasium.Env[Vector, Vector]):
         robot: Robot | str | Path | None = None,
         profile: str | Path | None = None,
         period_s: float = 0.1,
+        render_mode: str | None = None,
     ) -> None:
         check_call(reward, "reward", "before", "after")
         check_call(is_over, "is_over", "after")
+        if render_mode not in (None, *self.metadata["render_modes"]):
+            raise ConfigError(f"no such mode {render_mode!r}", "rgb_array", key="render_mode")
+        self.render_mode = render_mode
         if background is not None:
             if world is not None:
                 raise ConfigError("a world has a mat", "give one of them", key="background")
@@ -100,11 +108,16 @@ class LabEnv(gymnasium.Env[Vector, Vector]):
         left, right = (float(share) * self.lab.max_speed_dps for share in action)
         values = self.lab.step(left, right, period_s=self._period_s)
         points, has_all = self.lab.judge()
-        reward = float(self._reward(self._before, values)) + points - self._points
+        reward = float(self._reward(self._before, values)) if self._reward else 0.0
+        reward += points - self._points
         self._before = values
         self._points = points
-        is_over = has_all or bool(self._is_over(values))
+        is_over = has_all or bool(self._is_over and self._is_over(values))
         return self._observe(values), reward, is_over, False, dict(values)
+
+    def render(self) -> Any:
+        """Return the world as an array of shape (height, width, 3) in the mode `rgb_array`, else None."""
+        return np.asarray(self.lab.picture()) if self.render_mode else None
 
     def _observe(self, values: Values) -> Vector:
         return np.array([values[name] for name in self.columns], np.float32)
@@ -117,12 +130,14 @@ def _build_space(columns: Sequence[str]) -> Box[Any]:
     return Box(np.array(low, np.float32), np.array(high, np.float32))
 
 
-def check_call(function: Callable[..., object], call: str, *values: str) -> None:
+def check_call(function: Callable[..., object] | None, call: str, *values: str) -> None:
     """Check that a function can be called with so many values; `call` is its name for users.
 
     Raises:
         ConfigError: it cannot.
     """
+    if function is None:
+        return
     try:
         signature(function).bind(*values)
     except TypeError:
@@ -141,13 +156,21 @@ def measure_progress(before: Values, after: Values) -> float:
 
 
 def follow_line(**how: Any) -> LabEnv:
-    """Return the task to drive along the edge of a line, which the left sensor sees half: mm of progress on it."""
+    """Return the task to drive along the edge of a line, which the left sensor sees half: mm of progress on it.
+
+    It is over off the mat.
+    """
 
     def reward(before: Values, after: Values) -> float:
         share = 1.0 - abs(after["left_red_pc"] - 50.0) / 50.0
         return share * measure_progress(before, after)
 
-    return _build_task(("left_red_pc", "right_red_pc"), reward, "Loop", **how)
+    def has_left_mat(values: Values) -> bool:
+        return not (
+            0.0 <= values["x_mm"] <= FIELD_WIDTH_MM and 0.0 <= values["y_mm"] <= FIELD_HEIGHT_MM
+        )
+
+    return _build_task(("left_red_pc", "right_red_pc"), reward, "Loop", has_left_mat, **how)
 
 
 def stop_on_band(**how: Any) -> LabEnv:
@@ -179,7 +202,7 @@ def _build_task(
     columns: tuple[str, ...],
     reward: Callable[[Values, Values], float],
     mat: str,
-    is_over: Callable[[Values], bool] = lambda _: False,
+    is_over: Callable[[Values], bool] | None = None,
     **how: Any,
 ) -> LabEnv:
     """Return a task on its usual mat, on the mat of a name, or in a world."""

@@ -38,6 +38,8 @@ from tuisim.tasks.goals.files import load_goals
 from tuisim.tasks.goals.live import LiveGoals, check_goals
 
 if TYPE_CHECKING:
+    from PIL.Image import Image
+
     from tuisim.api.run import Run
     from tuisim.engine.core.geometry import Pose
     from tuisim.engine.core.spec import RunSpec
@@ -212,6 +214,13 @@ class Lab:
             self._marks.add_records(self._sim.read_records(self._marks.records))
             field = self._marks.field
         return {name: self._readers[name](instant, self._spec, field) for name in self.columns}
+
+    def picture(self) -> Image:
+        """Return the world now as a Pillow image, without the pen's trace."""
+        from tuisim.engine.mat_cache import mat_pixels
+        from tuisim.pictures.scene.pictures import draw_world
+
+        return draw_world(self._spec, mat_pixels(field_files(self._spec)), self.pose)
 
     def judge(self) -> tuple[float, bool]:
         """Return the points if the run ended now, and whether all goals not met at the start are met or missed for
