@@ -101,6 +101,14 @@ def test_a_run_is_judged_by_the_goals_of_its_world(tmp_path: Path) -> None:
     assert run.stored.spec.world.background == "Loop" and judged["reason"][0]
 
 
+def test_samples_in_a_file_are_read_back(tmp_path: Path) -> None:
+    samples = tuisim.simulate(
+        "print('A: 1')\ntank_drive.on_for_seconds(1, 1, 0.5)\nprint('A: 2')\n"
+    ).samples
+    samples.to_csv(tmp_path / "samples.csv", index=False)
+    assert tuisim.read_log(tmp_path / "samples.csv")["index"].tolist() == samples["index"].tolist()
+
+
 def test_the_spread_of_samples_is_that_of_pandas() -> None:
     frame = tuisim.experiment("print('A: 1')\nprint('A: 4')\n", seeds=[0], jobs=1)
     assert frame["A_std"].tolist() == [pd.Series([1, 4]).std()]

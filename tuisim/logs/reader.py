@@ -57,6 +57,7 @@ from tuisim.logs.program_lines import (
 )
 from tuisim.logs.text_tables import CsvReader
 from tuisim.logs.time_order import guess_unit_s, join_times, order_times
+from tuisim.logs.units import TIMEDELTA
 from tuisim.logs.warnings import Notes
 
 STDIN = "-"
@@ -173,7 +174,7 @@ def _build_log(title: str, parts: Sequence[pa.Table], notes: Notes, choices: Rea
 
 def _tell_odd_columns(table: pa.Table, layout: Layout, unread: str, notes: Notes) -> None:
     """Note which columns are text, and how many values are infinite."""
-    used = (layout.time, layout.variable, layout.run, unread)
+    used = (layout.time, layout.variable, layout.run, unread, *TIMEDELTA)
     texts = [
         repr(field.name) for field in table.schema if is_text(field.type) and field.name not in used
     ]
