@@ -196,6 +196,7 @@ FOUND = {
     "many names": "if False:\n"
     + "".join(f"    a{number} = a{number + 1}\n" for number in range(1500))
     + "print('Colour: 86.3')",
+    "a text without an end": "'" + "\\'" * 100_000,
     "a pose": f"{_STEERING}s.steering.apply(s, SetPose(1750.0, 500.0, 0.0))\ntime.sleep(1)",
     "another coding": "# coding: utf-7\nprint('Colour: +ADE-')",
     "a sparse file": "open('x', 'w').truncate(1 << 30)",

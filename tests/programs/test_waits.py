@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import pytest
 
 from tests.cases import cases
+from tests.effort import count_calls
 from tuisim.base.source import Program
 from tuisim.programs.facts import ProgramFacts, read_facts
 
@@ -128,3 +131,16 @@ def test_a_call_turns_so_far(call: str, turns: tuple[float, str] | None) -> None
 )
 def test_the_first_line_that_starts_motors_is_told(text: str, line: int) -> None:
     assert read(text).first_drive == line
+
+
+def _read_loop_ends(text: str) -> object:
+    return read(text).loop_ends
+
+
+def test_twice_as_many_functions_take_at_most_three_times_the_work() -> None:
+    small, large = (
+        "".join(f"def f{number}(a):\n    f{number}(a)\n" for number in range(count))
+        for count in (40, 80)
+    )
+    few, many = (count_calls(partial(_read_loop_ends, text)) for text in (small, large))
+    assert many < 3 * few

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Mapping
 from typing import TypeGuard
 
@@ -247,14 +247,13 @@ def list_constants(tree: ast.Module) -> dict[str, Word]:
         match node:
             case ast.Assign(targets=[ast.Name(id=name)], value=value):
                 add(name, [value])
+    calls_by_name: dict[str, list[list[ast.expr]]] = defaultdict(list)
+    for node in nodes:
+        match node:
+            case ast.Call(func=ast.Name(id=name), args=values):
+                calls_by_name[name].append(values)
     for function in functions:
-        calls = [
-            node.args
-            for node in nodes
-            if isinstance(node, ast.Call)
-            and isinstance(node.func, ast.Name)
-            and node.func.id == function.name
-        ]
+        calls = calls_by_name[function.name]
         for index, parameter in enumerate(function.args.args):
             if all(len(values) > index for values in calls):
                 add(parameter.arg, [values[index] for values in calls])

@@ -8,7 +8,7 @@ import pytest
 
 from tests.tasks.marks.the_class import CLASS
 from tuisim.tasks.marks import copies
-from tuisim.tasks.marks.copies import MIN_TOKENS, Similar, find_similar
+from tuisim.tasks.marks.copies import MIN_TOKENS, Similar, find_similar, list_tokens
 
 LINE = """\
 while True:
@@ -103,6 +103,11 @@ def test_short_and_broken_programs_are_not_compared() -> None:
     assert _similar({"ada": short, "ben": short}).compared == 0
     broken = _similar({"ada": LINE + "\n)\x00 '''", "ben": LINE})
     assert broken.compared == 2 and MIN_TOKENS > 20
+
+
+def test_a_text_without_an_end_is_read_to_its_beginning() -> None:
+    tokens = list_tokens("x = 1\n'" + r"\'" * 100)
+    assert [token.text for token in tokens] == ["x", "=", "1", "\n"]
 
 
 def test_the_result_does_not_depend_on_the_order() -> None:

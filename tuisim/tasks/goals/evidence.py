@@ -170,6 +170,16 @@ class Evidence:
             for sample in list_samples([row])
         ]
 
+    def list_sample_ticks(self, name: str) -> list[int]:
+        """Return the ticks of the samples of a variable, in ascending order."""
+        key = f"ticks of {name}"
+        if key not in self.memo:
+            self.memo[key] = sorted(
+                sample.tick for _, sample in self.samples if sample.name == name
+            )
+        ticks: list[int] = self.memo[key]
+        return ticks
+
     def search(self, pattern: str) -> Search:
         """Return the search for a regular expression in the lines that the program printed.
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from bisect import bisect_right
 from itertools import islice, pairwise
 
 from tuisim.base.errors import counted
@@ -285,14 +286,10 @@ def _explain_unmeasured(
 ) -> str:
     """Return why a sample near its level does not count, in a sentence; empty if it does."""
     value = f"{sample.name}: {sample.value:.6g} was printed at {sample.time_ns / NS_PER_S:.2f} s"
-    printed = sum(
-        other.name == condition.counts and other.tick <= sample.tick
-        for _, other in evidence.samples
-    )
-    if condition.counts and printed != sample.value:
-        return (
-            f"{value}, but the program had printed {counted(printed, 'sample')} {condition.counts}."
-        )
+    if condition.counts:
+        printed = bisect_right(evidence.list_sample_ticks(condition.counts), sample.tick)
+        if printed != sample.value:
+            return f"{value}, but the program had printed {counted(printed, 'sample')} {condition.counts}."
     reading = condition.reading
     place = select_place(condition, count)
     # The count of a motor is judged by where it is printed, not where it was read.

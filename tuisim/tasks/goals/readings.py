@@ -46,8 +46,14 @@ def describe_ranges(place: Mapping[str, Range]) -> str:
 
 
 def read_ticks(reading: Reading, evidence: Evidence) -> Array:
-    """Return the tick of each reading of a kind that the program took, in ascending order."""
-    return _find_readings(reading, evidence)[0]
+    """Return the ticks in which the program took readings of a kind, in ascending order."""
+    import numpy as np
+
+    name = f"ticks with {reading}"
+    if name not in evidence.memo:
+        evidence.memo[name] = np.unique(_find_readings(reading, evidence)[0])
+    ticks: Array = evidence.memo[name]
+    return ticks
 
 
 def _find_readings(reading: Reading, evidence: Evidence) -> tuple[Array, Array]:

@@ -53,6 +53,9 @@ def list_tokens(text: str) -> Iterator[Token]:
         for token in tokenize.generate_tokens(io.StringIO(text).readline):
             if token.type in _SKIPPED:
                 continue
+            if token.type == tokenize.ERRORTOKEN and token.string in "'\"":
+                # A text that does not end: each quote in it would be looked at to the end of the line.
+                return
             kind = _ONE_TOKEN.get(token.type, token.string)
             if token.type == tokenize.NAME and not keyword.iskeyword(kind):
                 kind = "x"
