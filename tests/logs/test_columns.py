@@ -85,11 +85,6 @@ CASES: dict[str, Case] = {
     ),
     "a position": ("a.csv", b"position,red\n5,1\n9,2\n", Read(2, ("position", "red"))),
     "x beside others": ("a.csv", b"x,red\n5,1\n9,2\n", Read(2, ("x", "red"))),
-    "x alone": (
-        "a.csv",
-        b"x\n5\n9\n",
-        Read(2, ("x",), check=lambda log: times(log, "x") == [0, 1]),
-    ),
     "a line of a program": ("a.csv", b"time,x_mm,line\n0,5,3\n1,6,4\n", Read(2, ("x_mm",))),
     "a time that is a value": ("a.csv", b"lap_time,red\n5,1\n4,2\n", Read(2, ("lap_time", "red"))),
     "comments above the heading": ("a.csv", b"# made by hand\n# twice\n" + CSV, TWO),

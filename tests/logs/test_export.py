@@ -15,7 +15,6 @@ import pandas as pd
 import pyarrow as pa
 import pytest
 
-import tuisim
 from tests.cases import cases
 from tests.engine.runs.run_recorder import Recorder
 from tuisim.base.errors import ExportError, LogError
@@ -200,19 +199,6 @@ def test_what_travels_with_a_log(logged: StoredRun, tmp_path: Path, suffix: str)
 
 
 @each_format
-def test_existing_file_is_replaced_with_common_rights(
-    logged: StoredRun, tmp_path: Path, suffix: str
-) -> None:
-    target = tmp_path / f"x{suffix}"
-    target.write_text("old")
-    export_samples([logged], target)
-    assert len(read_log(target)) == 4
-    mask = os.umask(0)
-    os.umask(mask)
-    assert target.stat().st_mode & 0o777 == 0o666 & ~mask
-
-
-@each_format
 def test_failure_leaves_what_was_there(
     tmp_path: Path, suffix: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -269,18 +255,6 @@ def test_pandas_alone_reads_the_same_rows(logged: StoredRun, tmp_path: Path) -> 
         assert text["value"].tolist() == pytest.approx(parquet["value"].tolist())
 
 
-def test_link_is_followed_not_replaced(logged: StoredRun, tmp_path: Path) -> None:
-    (tmp_path / "link.csv").symlink_to(tmp_path / "real.csv")
-    export_samples([logged], tmp_path / "link.csv")
-    assert (tmp_path / "link.csv").is_symlink()
-    assert len(read_log(tmp_path / "link.csv")) == 4
-
-
-def test_read_log_is_where_users_look_for_it(logged: StoredRun, tmp_path: Path) -> None:
-    export_samples([logged], tmp_path / "x.parquet")
-    assert tuisim.read_log(tmp_path / "x.parquet").equals(read_log(str(tmp_path / "x.parquet")))
-
-
 def test_csv_without_companion_is_read_all_the_same(logged: StoredRun, tmp_path: Path) -> None:
     export_samples([logged], tmp_path / "x.csv")
     find_companion(tmp_path / "x.csv").unlink()
@@ -329,18 +303,6 @@ def test_folder_that_cannot_be_written_is_refused() -> None:
     # Nobody can make a file there, not even root.
     with pytest.raises(ExportError, match=r"cannot write /proc/self/x\.csv"):
         check_target("/proc/self/x.csv")
-
-
-READ_ERRORS = {
-    "no such file": ("gone.csv", "no such file"),
-    "a folder": (".", "is a folder"),
-}
-
-
-@cases("name, message", READ_ERRORS)
-def test_log_that_cannot_be_read(tmp_path: Path, name: str, message: str) -> None:
-    with pytest.raises(LogError, match=message):
-        read_log(tmp_path / name)
 
 
 @pytest.mark.parametrize("lines, kind", [([1.0, 2.0], "int64"), ([1.5, 2.5], "float64")])

@@ -32,11 +32,6 @@ CASES: dict[str, Case] = {
     "one row without a heading": ("a.csv", b"0,5\n", row(0, 5)),
     "one row of blanks": ("a.txt", b"0 5", row(0, 5)),
     "one row of semicolons": ("a.txt", b"0;5,5\n", row(0, 5.5)),
-    "two rows of semicolons and decimal commas": (
-        "a.csv",
-        b"0;5,5\n1;6,5\n",
-        Read(2, BOTH[1:], check=lambda log: values(log, BOTH[1]) == [5.5, 6.5]),
-    ),
     "one row with a word": (
         "a.csv",
         b"a,5\n",
@@ -45,7 +40,6 @@ CASES: dict[str, Case] = {
     "one number": ("a.txt", b"5\n", Read(1, BOTH[:1])),
     "one sample": ("a.txt", b"Colour: 5\n", Read(1, ("Colour",))),
     "only a heading": ("a.txt", b"time red\n", "no rows"),
-    "two lines of numbers": ("a.csv", b"0,5,6\n1,7,8\n", Read(2, ("column 2", "column 3"))),
 }
 
 
