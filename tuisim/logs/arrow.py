@@ -216,8 +216,7 @@ def read_parquet(path: Path, notes: Notes) -> Iterator[tuple[float, pa.Table]]:
                 notes.add(
                     "row is damaged and was skipped",
                     "rows are damaged and were skipped",
-                    [first],
-                    rows,
+                    range(first, first + rows),
                 )
             else:
                 yield (group + 1) / count, _name_columns(part, notes)

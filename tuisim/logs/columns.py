@@ -301,7 +301,7 @@ def is_time(kind: pa.DataType) -> bool:
 def time_columns(table: pa.Table) -> list[str]:
     """Return the names of the columns that can be the time."""
     names = table.column_names[:_MAX_TIMES]
-    return [n for n in names if is_numeric(table.schema.field(n).type) or _is_moment(table, n)]
+    return [n for n in names if is_numeric(table.field(n).type) or _is_moment(table, n)]
 
 
 def guess_columns(table: pa.Table) -> Layout:
@@ -314,10 +314,10 @@ def guess_columns(table: pa.Table) -> Layout:
     names = table.column_names
     named = _find_named_time(table)
     time = named or _find_rising(table)
-    run = "run" if "run" in names and is_numeric(table.schema.field("run").type) else ""
+    run = "run" if "run" in names and is_numeric(table.field("run").type) else ""
     variable = _find_named(table, _VARIABLE_NAMES, is_text)
     value = _find_named(table, _VALUE_NAMES, is_numeric)
-    numeric = [n for n in names if is_numeric(table.schema.field(n).type) and n not in (time, run)]
+    numeric = [n for n in names if is_numeric(table.field(n).type) and n not in (time, run)]
     if variable and value and value != time:
         sure = bool(named) or not set(numeric) - {value, *_NO_VALUES}
         return _set_time_unit(Layout(time, 1.0, False, variable, (value,), run, sure), table)
@@ -341,7 +341,7 @@ def _find_named(table: pa.Table, names: Sequence[str], fits: Callable[[pa.DataTy
 
 def _set_time_unit(layout: Layout, table: pa.Table, unit_s: float | None = None) -> Layout:
     """Return a layout with the unit of its time column: as given, or guessed from name and size of the numbers."""
-    if not layout.time or not is_numeric(table.schema.field(layout.time).type):
+    if not layout.time or not is_numeric(table.field(layout.time).type):
         return replace(layout, unit_s=1.0, since_first=False)
     if unit_s is None:
         unit_s = parse_time_name(layout.time).unit_s
@@ -366,7 +366,7 @@ def _find_named_time(table: pa.Table) -> str:
         for n in table.column_names
         if has_time_word(n) and _is_usable(table, n) and _is_rising_time(table, n)
     )
-    by_type = (n for n in table.column_names if is_time(table.schema.field(n).type))
+    by_type = (n for n in table.column_names if is_time(table.field(n).type))
     by_content = find_texts(table, is_moment)
     return next((name for names in (compound, by_type, by_content) for name in names), ROW)
 
@@ -382,7 +382,7 @@ def find_texts(table: pa.Table, fits: Callable[[str], bool]) -> Iterator[str]:
 
 
 def _is_rising_time(table: pa.Table, name: str) -> bool:
-    return not is_numeric(table.schema.field(name).type) or _is_rising(table, name)
+    return not is_numeric(table.field(name).type) or _is_rising(table, name)
 
 
 def find_unread_time(table: pa.Table, layout: Layout) -> str:
@@ -390,12 +390,12 @@ def find_unread_time(table: pa.Table, layout: Layout) -> str:
     if layout.time:
         return ""
     named = (name for name in table.column_names if parse_time_name(name).base in _TEXT_TIMES)
-    return next((name for name in named if is_text(table.schema.field(name).type)), "")
+    return next((name for name in named if is_text(table.field(name).type)), "")
 
 
 def has_guessed_order(table: pa.Table, layout: Layout) -> bool:
     """Return whether the times are dates such as 03/04/2024, whose first number is only guessed to be the day."""
-    if not layout.time or not is_text(table.schema.field(layout.time).type):
+    if not layout.time or not is_text(table.field(layout.time).type):
         return False
     return order_is_guessed(table.column(layout.time).cast(pa.string()))
 
@@ -414,9 +414,7 @@ def _find_rising(table: pa.Table) -> str:
     nameless = all(name == f"column {number}" for number, name in enumerate(names, 1))
     first = names[0] if nameless and len(names) > 1 else ROW
     return (
-        first
-        if first and is_numeric(table.schema.field(first).type) and _is_rising(table, first)
-        else ROW
+        first if first and is_numeric(table.field(first).type) and _is_rising(table, first) else ROW
     )
 
 
@@ -437,7 +435,7 @@ def is_text(kind: pa.DataType) -> bool:
 
 def _is_moment(table: pa.Table, name: str) -> bool:
     """Return whether a column has times, also as ISO texts."""
-    kind = table.schema.field(name).type
+    kind = table.field(name).type
     if is_time(kind):
         return True
     if not is_text(kind) or not table.num_rows:
@@ -471,7 +469,7 @@ def choose_columns(table: pa.Table, choices: ReadChoices) -> Layout:
     if values and values != layout.values:
         for name in values:
             _require(table, name)
-            if not is_numeric(table.schema.field(name).type):
+            if not is_numeric(table.field(name).type):
                 raise LogError(f"column {name!r} is not numeric")
         keep = layout.variable if len(values) == 1 and layout.variable else ""
         layout = replace(layout, variable=keep, values=values, sure=True)

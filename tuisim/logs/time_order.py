@@ -83,7 +83,7 @@ def _replace_columns(
 
 
 def _join_parts(table: pa.Table, seconds: str, parts: str, per_s: int) -> pa.ChunkedArray | None:
-    if not all(is_numeric(table.schema.field(name).type) for name in (seconds, parts)):
+    if not all(is_numeric(table.field(name).type) for name in (seconds, parts)):
         return None
     whole, fraction = (
         np.asarray(convert_to_floats(table.column(name)), float) for name in (seconds, parts)
@@ -101,7 +101,7 @@ def guess_unit_s(table: pa.Table, layout: Layout) -> float | None:
     if layout.time in (ROW, *COUNTS) or layout.since_first or "line" in table.column_names:
         return None
     if parse_time_name(layout.time).unit_s is not None or not is_numeric(
-        table.schema.field(layout.time).type
+        table.field(layout.time).type
     ):
         return None
     times = convert_to_floats(table.column(layout.time))

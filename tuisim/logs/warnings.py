@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
 from tuisim.base.errors import counted, shortened
 from tuisim.logs.choices import NO_CHOICES
@@ -35,25 +35,20 @@ class Notes:
         """Add a warning about the whole file, once."""
         self._general[text] = None
 
-    def add(
-        self, singular: str, plural: str, rows: Iterable[int], count: int | None = None
-    ) -> None:
-        """Add a warning about some rows.
+    def add(self, singular: str, plural: str, rows: Sequence[int]) -> None:
+        """Add a warning about some rows; none without rows.
 
         Args:
             singular: The problem, such as `cell is not a number`.
             plural: The same in the plural.
-            rows: Rows of the file, from 1; the first few are enough if `count` is given.
-            count: Number of occurrences; without any, nothing is added.
+            rows: Rows of the file, from 1.
         """
-        numbers = list(rows)
-        count = len(numbers) if count is None else count
-        if not count:
-            return
-        text = (singular, plural)
-        self._counts[text] = self._counts.get(text, 0) + count
-        named = self._rows.setdefault(text, [])
-        named += numbers[: ROWS_NAMED - len(named)]
+        if rows:
+            text = (singular, plural)
+            self._counts[text] = self._counts.get(text, 0) + len(rows)
+            named = self._rows.setdefault(text, [])
+            # One more than are named, so that the others are hinted at.
+            named += rows[: ROWS_NAMED + 1 - len(named)]
 
     def say_rows(self, text: str, rows: Sequence[int]) -> None:
         """Add a warning about rows that were read all the same; none without rows."""
@@ -67,16 +62,10 @@ class Notes:
 
     def texts(self) -> tuple[str, ...]:
         """Return the warnings, one sentence each."""
-        texts = []
-        for text, count in self._counts.items():
-            rows = self._rows[text]
-            where = (
-                f" ({'row' if len(rows) == 1 == count else 'rows'} {', '.join(map(str, rows))}"
-                if rows
-                else ""
-            )
-            where += f"{', …' if count > len(rows) else ''})" if rows else ""
-            texts.append(f"{counted(count, *text)}{where}")
+        texts = [
+            f"{counted(count, *text)} ({list_rows(self._rows[text])})"
+            for text, count in self._counts.items()
+        ]
         sentences = [shortened(text, MAX_CHARACTERS) for text in self._general]
         more = len(sentences) - MAX_WARNINGS
         return (
