@@ -166,10 +166,10 @@ class Base:
         return GAIN * error
 """
 STUDY = """\
-from controller import Base
+from controller import Base as Parent
 import numpy as np
 COUNT = 0
-class Controller(Base):
+class Controller(Parent):
     def act(self, error: np.ndarray | None = None) -> np.ndarray:
         global COUNT
         COUNT += 1

@@ -59,6 +59,7 @@ def read_function(function: Callable[[], object]) -> ProgramSource:
 class _Block(NamedTuple):
     """The lines of a function or a class."""
 
+    name: str
     file: str
     first: int
     """The number of the first line, from 1."""
@@ -110,7 +111,7 @@ class _Reader:
             raise ConfigError(f"the function {own} has no source", hint) from None
         around = Surroundings.read_function(function, text)
         around.check_source([function], own)
-        self._add_block(_Block(function.__code__.co_filename, first, lines), around, own)
+        self._add_block(_Block(own, function.__code__.co_filename, first, lines), around, own)
         self._add_alias(name, own, user)
 
     def _add_class(self, name: str, kind: type, around: Surroundings, user: str) -> None:
@@ -127,7 +128,7 @@ class _Reader:
         around.check_source(methods, own)
         first = min([node.lineno, *(each.lineno for each in node.decorator_list)])
         lines = [f"{line}\n" for line in source_lines(text)[first - 1 : node.end_lineno]]
-        self._add_block(_Block(around.file, first, lines), around, own)
+        self._add_block(_Block(own, around.file, first, lines), around, own)
         self._add_alias(name, own, user)
 
     def _add_block(self, block: _Block, around: Surroundings, user: str) -> None:
@@ -201,11 +202,14 @@ class _Reader:
             numbered = block.numbered
             is_early = block.is_evaluated and block.first <= place
             if block.file != own or is_early or not lines.keys().isdisjoint(numbered):
+                # A class may have its other name as a base.
+                names = [alias for alias in self._aliases if alias.endswith(f" = {block.name}")]
+                moved = [*block.lines, *names]
                 first = place + 1
-                while not reserved.isdisjoint(range(first, first + len(numbered))):
+                while not reserved.isdisjoint(range(first, first + len(moved))):
                     first += 1
-                place = first + len(numbered) - 1
-                numbered = dict(enumerate(block.lines, first))
+                place = first + len(moved) - 1
+                numbered = dict(enumerate(moved, first))
             lines |= numbered
         last = max(lines)
         lines[last + 2] = "; ".join([*self._aliases, f"{name}()"])
