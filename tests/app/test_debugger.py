@@ -20,6 +20,7 @@ from tests.app.app_help import (
     until_typing,
 )
 from tuisim.app.app import LabApp
+from tuisim.app.dialogs.question import BranchQuestion
 from tuisim.app.kept_breaks import StoredBreaks, keep, load_kept
 from tuisim.app.panels.chart import Chart
 from tuisim.app.snapshot import RunPhase
@@ -132,6 +133,18 @@ async def test_one_line_back_and_on_again() -> None:
         await until(pilot, lambda: not app.debugger.looks_back and app.debugger.view is not None)
         assert line(app) == 6
         await press(pilot, app, "n", 3)
+
+
+async def test_an_earlier_line_of_the_newest_tick_does_not_let_keys_move_the_live_robot() -> None:
+    async with open_lab(COUNTS) as (pilot, app):
+        await press(pilot, app, "n", 1, 2, 3)
+        await press(pilot, app, "N", 2)
+        assert app.debugger.looks_back and not app.run_controller.in_past
+        pose = app.run_controller.pose
+        app.panel_area.focus_world()
+        await pilot.press("a")
+        await until(pilot, lambda: isinstance(app.screen, BranchQuestion))
+        assert app.run_controller.pose == pose
 
 
 @pytest.mark.slow

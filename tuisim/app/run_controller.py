@@ -137,8 +137,10 @@ class RunController:
         """Whether the robot was placed since the last run, so that the run's last record no longer applies."""
         self._pending = Pending()
         self._waits = WaitWatch()
+        self.views_past: Callable[[], bool] = lambda: self.in_past
+        """Whether an instant before the newest is viewed, or an earlier line of the newest tick."""
         self.propose: Callable[[protocol.Message], None] = lambda _: None
-        """Called instead of a user action while a past instant is in view: the action is only possible in a branch."""
+        """Called instead of a user action while the past is in view: the action is only possible in a branch."""
         self.paused_line: tuple[int, int] | None = None
         """Tick and line at which the program is paused: more exact than the record of that tick."""
         self.chosen_line: tuple[int, int] | None = None
@@ -449,7 +451,7 @@ class RunController:
 
     def set_pen(self, down: bool) -> None:
         """Put the pen down or up, for this run and the next."""
-        if self.in_past:
+        if self.views_past():
             self.propose(protocol.SetPen(down))
             return
         self._send_action(protocol.SetPen(down))
@@ -464,7 +466,7 @@ class RunController:
 
     def set_noise(self, noise: NoiseSpec) -> None:
         """Change the noise, at once and for the next run."""
-        if self.in_past:
+        if self.views_past():
             if noise != self._find_moment(self._record())[0].noise:
                 self.propose(protocol.SetNoise(noise.light, noise.motor))
             return
@@ -483,7 +485,7 @@ class RunController:
     def place(self, pose: Pose) -> None:
         """Place the robot: during a run as a user action, else as the start of the next run."""
         command = protocol.SetPose(pose.x_mm, pose.y_mm, pose.heading_deg)
-        if self.in_past:
+        if self.views_past():
             self.propose(command)
             return
         if self.in_run:

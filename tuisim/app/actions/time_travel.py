@@ -245,15 +245,14 @@ def propose_branch(
     run_controller = context.runs
     timeline = run_controller.timeline
     recording = timeline.recording
-    tick = timeline.at
     if isinstance(context.panels.app.screen, BranchQuestion):
         return
-    if recording is None or tick is None or not context.document.apply():
+    if recording is None or not context.document.apply():
         return
     if (program := run_controller.program) is None:
         return
     timeline.stop_playback()
-    branch = Branch(recording, tick, program, then, run_controller.state is not RunPhase.PAUSED)
+    branch = Branch(recording, timeline.tick, program, then, run_controller.state is not RunPhase.PAUSED)
 
     def handle_answer(answer: str | None) -> None:
         if answer == BRANCH:
