@@ -122,7 +122,7 @@ def action_words(action: protocol.Message | None) -> str:
     """Return in words what a user action changes, for the end of a sentence; empty for nothing."""
     match action:
         case protocol.SetPose(x_mm=x, y_mm=y, heading_deg=heading):
-            return f" with the robot at x {x:.0f}, y {y:.0f}, {heading:.0f}°"
+            return f" with the robot at x {x:z.0f}, y {y:z.0f}, {heading:z.0f}°"
         case protocol.SetNoise(light=light, motor=motor):
             return f" with noise {light} in the light and {motor} in the motors"
         case protocol.SetPen(down=down):

@@ -32,6 +32,9 @@ ENTRIES = [
         ("grey robot", "earlier"),
         ("ghost", "earlier"),
         ("grey bands", "mats"),
+        ("stored runs", "runs"),
+        ("runs", "runs"),
+        ("charts", "panel-chart"),
     ],
 )
 def test_words_that_people_use_find_an_action(typed: str, first: str) -> None:

@@ -300,3 +300,11 @@ async def test_words_of_the_question_stand_out_and_a_section_is_named_once() -> 
         assert bold <= {"colour", "color", "colours", "sensor", "sensors"} and bold
         same = (answers[0].name, answers[0].heading) == (answers[1].name, answers[1].heading)
         assert str(second).startswith("• ") == same
+
+
+async def test_a_letter_begins_a_question() -> None:
+    async with open_lab("x = 1\n", size=SMALL) as (pilot, _):
+        await pilot.press("question_mark")
+        await until_shown(pilot, "Guide")
+        await pilot.press(*"grey")
+        await until(pilot, lambda: guide(pilot).query_one(Input).value == "grey")

@@ -57,6 +57,7 @@ def text(now: Snapshot, width: int, height: int) -> list[str]:
     [
         (-399.3, "-39.3°"),
         (0.0, "0.0°"),
+        (-0.04, "0.0°"),
         (-90.0, "-90.0°"),
         (270.0, "-90.0°"),
         (180.0, "180.0°"),
@@ -69,6 +70,10 @@ def test_a_heading_is_shown_within_half_a_turn(heading_deg: float, shown: str) -
     now = moment(Pose(1.0, 2.0, heading_deg))
     assert text(now, 44, 11)[-3].split()[-1] == shown
     assert now.instant.pose.heading_deg == heading_deg
+
+
+def test_a_place_just_below_zero_has_no_minus_sign() -> None:
+    assert "x 0 y 0 h 0°" in "\n".join(text(moment(Pose(-0.3, -0.4, -0.2)), 40, 7))
 
 
 def test_a_robot_that_was_moved_after_its_run_is_not_called_finished() -> None:

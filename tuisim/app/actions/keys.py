@@ -375,7 +375,7 @@ _WORDS: Mapping[str, str] = {
     "quit": "exit close leave end",
     "help": "help manual documentation shortcuts",
     "clear-log": "erase delete graph",
-    "runs": "history earlier old load log",
+    "runs": "runs history earlier old load log",
     "compare": "difference earlier",
     "home": "reset place position home",
     "random": "place position anywhere",

@@ -252,7 +252,9 @@ def propose_branch(
     if (program := run_controller.program) is None:
         return
     timeline.stop_playback()
-    branch = Branch(recording, timeline.tick, program, then, run_controller.state is not RunPhase.PAUSED)
+    branch = Branch(
+        recording, timeline.tick, program, then, run_controller.state is not RunPhase.PAUSED
+    )
 
     def handle_answer(answer: str | None) -> None:
         if answer == BRANCH:

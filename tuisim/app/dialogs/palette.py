@@ -38,14 +38,17 @@ class Entry(NamedTuple):
     """Whether it can be chosen with effect now."""
 
 
-def find_entries(entries: Iterable[Entry], typed: str) -> list[Entry]:
-    """Return the entries that contain every word of a text.
+def find_entries(entries: Sequence[Entry], typed: str) -> list[Entry]:
+    """Return the entries that contain every word of a text; if none does, the words count without a plural s.
 
     They are ranked by where the words are: the start of the title, or of what it shows or hides; the starts of words of
     the title; anywhere in title or group; among the further words. Of equals, entries that show or hide something come
     first.
     """
     words = typed.lower().split()
+    texts = {entry.id: " ".join(entry[1:5]).lower() for entry in entries}
+    if not any(all(word in text for word in words) for text in texts.values()):
+        words = [word.removesuffix("s") for word in words]
 
     def rank(entry: Entry) -> tuple[int, bool]:
         title, title_and_group = entry.title.lower(), f"{entry.title} {entry.group}".lower()
@@ -58,9 +61,7 @@ def find_entries(entries: Iterable[Entry], typed: str) -> list[Entry]:
         return fits.index(True) if True in fits else len(fits), not title.startswith(_SHOW)
 
     matches = [
-        candidate
-        for candidate in entries
-        if all(word in " ".join(candidate[1:5]).lower() for word in words)
+        candidate for candidate in entries if all(word in texts[candidate.id] for word in words)
     ]
     return sorted(matches, key=rank) if words else matches
 

@@ -236,7 +236,7 @@ class GuideScreen(Dialog[None]):
     """
 
     TITLE_TEXT = "Guide"
-    HINT = "/ search · Enter opens · tab switch · esc closes"
+    HINT = "type to search · Enter opens · tab switch · esc closes"
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("question_mark,q", "leave", "Close", show=False),
         Binding("slash", "search", "Search", show=False),
@@ -265,8 +265,20 @@ class GuideScreen(Dialog[None]):
         )
         return super().can_take(event) and not (leads_there and self._answered != self._question)
 
+    def on_key(self, event: events.Key) -> None:
+        """Begin a question with a letter, except the one that closes the guide."""
+        if event.character and event.character.isalnum() and event.key != "q":
+            event.stop()
+            self._search.focus()
+            self._search.insert_text_at_cursor(event.character)
+
     def compose_content(self) -> ComposeResult:
-        yield Input(placeholder="Search: words or a question", compact=True, id="search")
+        yield Input(
+            placeholder="Search: words or a question",
+            compact=True,
+            select_on_focus=False,
+            id="search",
+        )
         with Horizontal(id="both"):
             yield _Contents()
             yield AnswerList()
@@ -421,6 +433,7 @@ class GuideScreen(Dialog[None]):
 
     def action_search(self) -> None:
         self._search.focus()
+        self._search.select_all()
 
     def action_down(self) -> None:
         """Go to the contents, or from the question to its second answer."""

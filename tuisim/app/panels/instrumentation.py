@@ -221,18 +221,18 @@ def _arrange_cells(now: Snapshot, height: int, detail: int) -> tuple[list[list[L
         ranging.append([format_label("Gyro", 5), *format_values(f"{now.gyro_deg:4d}", "°")])
     ranging += [_build_further_line(column, value, _CELL) for column, value in now.further.items()]
     pose = now.instant.pose
-    heading = [format_unit("h"), *format_values(f"{shown_heading_deg(pose.heading_deg):4.0f}", "°")]
+    heading = f"{shown_heading_deg(pose.heading_deg):z4.0f}"
     places: list[Line] = [
-        [format_unit("x "), format_value(f"{pose.x_mm:4.0f}")],
-        [format_unit("y "), format_value(f"{pose.y_mm:4.0f}")],
+        [format_unit("x "), format_value(f"{pose.x_mm:z4.0f}")],
+        [format_unit("y "), format_value(f"{pose.y_mm:z4.0f}")],
+        [format_unit("h "), format_value(heading)],
     ]
     groups = [motors + ranging[:1], sensors + ranging[1:]]
     if not motors or not sensors or max(map(len, groups)) > height:
         cells = motors + sensors + ranging
         groups = [cells[start : start + height] for start in range(0, len(cells), height)]
-    last = [*places, heading]
     return [group for group in groups if group] + [
-        last[start : start + height] for start in range(0, 3, height)
+        places[start : start + height] for start in range(0, 3, height)
     ], len(groups)
 
 
@@ -281,9 +281,9 @@ def _build_gyro_line(now: Snapshot, width: int) -> Line:
 def _build_pose_line(now: Snapshot, width: int) -> Line:
     pose = now.instant.pose
     shown_deg = shown_heading_deg(pose.heading_deg)
-    x = f"{pose.x_mm:.1f}"
-    y = f"{pose.y_mm:.1f}"
-    heading = f"{shown_deg:.1f}"
+    x = f"{pose.x_mm:z.1f}"
+    y = f"{pose.y_mm:z.1f}"
+    heading = f"{shown_deg:z.1f}"
     return fit_line(
         width,
         (
@@ -298,8 +298,8 @@ def _build_pose_line(now: Snapshot, width: int) -> Line:
         ),
         (format_unit("x "), *format_values(x, " y ", y, " ", heading, "°")),
         (
-            *format_values(f"{pose.x_mm:.0f}", ",", f"{pose.y_mm:.0f}"),
-            *format_values(f" {shown_deg:.0f}", "°"),
+            *format_values(f"{pose.x_mm:z.0f}", ",", f"{pose.y_mm:z.0f}"),
+            *format_values(f" {shown_deg:z.0f}", "°"),
         ),
     )
 
@@ -405,9 +405,9 @@ def _build_ranging_line(now: Snapshot, width: int) -> Line:
 
 def _place_and_time(now: Snapshot, width: int) -> Line:
     pose = now.instant.pose
-    x = f"{pose.x_mm:.0f}"
-    y = f"{pose.y_mm:.0f}"
-    heading = f"{shown_heading_deg(pose.heading_deg):.0f}"
+    x = f"{pose.x_mm:z.0f}"
+    y = f"{pose.y_mm:z.0f}"
+    heading = f"{shown_heading_deg(pose.heading_deg):z.0f}"
     position = format_unit("x "), format_value(x), format_unit(" y "), format_value(y)
     where = (*position, format_unit(" "), format_value(heading), format_unit("°"))
     named = (*position, format_unit(" h "), format_value(heading), format_unit("°"))

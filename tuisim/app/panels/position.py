@@ -79,7 +79,7 @@ class Positioning(FormPanel, can_focus=True):
         pose = snapshot.instant.pose
         values = {"x": pose.x_mm, "y": pose.y_mm, "angle": shown_heading_deg(pose.heading_deg)}
         for field, value in values.items():
-            text = f"{value:.1f}".removesuffix(".0")
+            text = f"{value:z.1f}".removesuffix(".0")
             text = "0" if text == "-0" else text
             for entry in self.query(f"#{field}").results(Input):
                 if self._shown[field] != text and not self._is_typing(entry):

@@ -198,7 +198,7 @@ def _describe_moment(judgement: Judgement) -> str:
         return "by the program's text"
     if (event := judgement.event) is None:
         return ""
-    return f"at {event.time_s:.2f} s, x {event.x_mm:.0f}, y {event.y_mm:.0f} mm"
+    return f"at {event.time_s:.2f} s, x {event.x_mm:z.0f}, y {event.y_mm:z.0f} mm"
 
 
 def _wrap_text(text: str, width: int, style: Style) -> Iterator[Line]:
