@@ -7,8 +7,8 @@ from typing import Any
 import pytest
 
 from tests.app.panel_help import moment
-from tuisim.app.snapshot import AppState, RunPhase, Situation, shorten_value
-from tuisim.engine.protocol import End, Unended
+from tuisim.app.snapshot import AppState, RunPhase, Situation, end_words, shorten_value
+from tuisim.engine.protocol import End, Ended, Unended
 
 
 def app_state(looks_back: bool, playing: bool, **run: Any) -> AppState:
@@ -50,9 +50,15 @@ def test_the_status_tells_phase_speed_and_past(
         ("100.0", "100.0"),
         ("[1.23456789, 2]", "[1.235, 2]"),
         ("12345.678901", "12345.7"),
+        ("1577836800.123456", "1577836800.12"),
         ("1.2345678e-07", "1.235e-07"),
         ("'v 1.23456789'", "'v 1.23456789'"),
     ],
 )
 def test_numbers_of_many_decimals_get_four_digits(text: str, expected: str) -> None:
     assert shorten_value(text) == expected
+
+
+def test_a_run_ends_at_no_later_time_than_the_clock_shows() -> None:
+    assert end_words(Ended(End.FINISHED, 4860, 48_607_000_000), "")[1] == "— finished at 48.60 s"
+    assert end_words(Ended(End.FINISHED, 29, 290_000_000), "")[1] == "— finished at 0.29 s"

@@ -238,6 +238,11 @@ def speed_label(speed: float) -> str:
     return {0.0: "max", 0.25: "¼×", 0.5: "½×"}.get(speed, f"{speed:g}×")
 
 
+def format_end(time_s: float) -> str:
+    """Return when a run ended, rounded down as the clock, which has reached no later tick."""
+    return f"{int(time_s * 100 + 1e-6) / 100:.2f}"
+
+
 def end_words(ended: Ended, stood: str) -> tuple[str, str]:
     """Return two texts about the end of a run: for the notice, and for the end of the output.
 
@@ -250,7 +255,7 @@ def end_words(ended: Ended, stood: str) -> tuple[str, str]:
         words = f"{end_label(ended.end)}: {ended.summary}"
     # The traceback is among the rows already.
     known = ended.end in (End.FINISHED, End.RAISED) and not caught
-    last = f"— {end_label(ended.end) if known else words} at {ended.time_ns / 1e9:.2f} s"
+    last = f"— {end_label(ended.end) if known else words} at {format_end(ended.time_ns / 1e9)} s"
     return ", ".join(filter(None, (words, stood))), ", ".join(filter(None, (last, stood)))
 
 
@@ -274,7 +279,9 @@ def shorten_value(text: str) -> str:
         if word[0] in "'\"" or len(word) <= _SHORT:
             return word
         number = float(word)
-        return min(word, f"{number:.1f}" if 1000 <= abs(number) < 1e9 else f"{number:.4g}", key=len)
+        # The time of the clock, in seconds since 1970, changes in its last digits only.
+        form = ".1f" if 1000 <= abs(number) < 1e9 else ".2f" if 1e9 <= abs(number) < 1e10 else ".4g"
+        return min(word, format(number, form), key=len)
 
     return _NUMBERS.sub(shorten_number, text)
 

@@ -74,7 +74,7 @@ async def test_a_threshold_is_on_the_scale_and_in_words() -> None:
         "50.2 %" in text
         and "> 5: yes" in text
         and "┃" in text
-        and "line 1 asks" in text
+        and "code line 1 >" in text
         and "in→out" in text
     )
 

@@ -55,15 +55,15 @@ def test_why_a_condition_holds_is_told_whole() -> None:
 
 
 @pytest.mark.parametrize("changed", ["left", "right"])
-def test_variables_keep_their_places_and_names_of_constants_are_the_last(changed: str) -> None:
-    names = ("SPEED", "GAIN", "left", "right", "steering")
-    variables = tuple(Variable(name, "int", "1", name == changed) for name in names)
+def test_variables_keep_their_places_and_constants_and_functions_are_the_last(changed: str) -> None:
+    kinds = {"sleep": "builtin_function_or_method", "SPEED": "int", "left": "int", "right": "int"}
+    variables = tuple(Variable(name, kind, "1", name == changed) for name, kind in kinds.items())
     looked = Inspected(
         5, 50_000_000, "main", 0, "", (), (FrameState("<module>", 3, ""),), variables, (), ()
     )
     rows = text(DebugView(RunPhase.PAUSED, Paused(5, 50_000_000, 3, PauseReason.STEP), looked), 30)
     shown = [row[2:].split()[0] for row in rows[rows.index("Variables") + 1 :]]
-    assert shown == ["left", "right", "steering", "SPEED", "GAIN"]
+    assert shown == ["left", "right", "SPEED", "sleep"]
 
 
 @pytest.mark.parametrize(

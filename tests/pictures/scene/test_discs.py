@@ -115,14 +115,10 @@ def test_thresholds_say_what_they_give_now() -> None:
     face = replace(FACE, thresholds=thresholds)
 
     assert face.limit_words(99) == (
-        "line 15 asks > 90: no; line 16 asks == White: yes; line 17: aim 50; line 18 asks < 300: yes"
+        "code line 15 > 90: no; code line 16 == White: yes; code line 17 aim 50; code line 18 < 300: yes"
     )
-    assert (
-        face.limit_words(80)
-        == "line 15 > 90: no; line 16 == White: yes; line 17 aim 50; line 18 < 300: yes"
-    )
-    assert face.limit_words(50) == "> 90: no; == White: yes; aim 50; < 300: yes"
-    assert face.limit_words(19) == "line 15 > 90: no"
+    assert face.limit_words(80) == "> 90: no; == White: yes; aim 50; < 300: yes"
+    assert face.limit_words(21) == "code line 15 > 90: no"
     assert face.limit_words(13) == "> 90: no"
     assert face.limit_shares == (0.9, 0.5)
 

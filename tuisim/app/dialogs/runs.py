@@ -21,7 +21,7 @@ from tuisim.app import background
 from tuisim.app.branch import BRANCH_TAG
 from tuisim.app.dialogs.chooser import ListDialog, find_field_view
 from tuisim.app.dialogs.dialog import Dialog
-from tuisim.app.snapshot import GOOD_ENDS, end_label
+from tuisim.app.snapshot import GOOD_ENDS, end_label, format_end
 from tuisim.base import palette
 from tuisim.engine.protocol import End
 from tuisim.engine.runs.catalogue import RunInfo
@@ -109,7 +109,7 @@ def run_line(run: RunInfo, columns: int, *, marked: bool = False) -> Text:
         "program": run.program,
         "mat": Path(run.background).name,
         "end": end_label(run.end),
-        "s": f"{run.time_s or 0:.2f}",
+        "s": format_end(run.time_s or 0),
         "samples": f"{run.samples or 0:,}",
     }
     styles = {"run": "bold", "when": palette.SOFT, "program": "bold"}

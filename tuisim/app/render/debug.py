@@ -27,6 +27,7 @@ _ERROR = Style(color=palette.RED)
 _CHOSEN = Style(color=palette.WHITE, bgcolor=palette.CHOSEN)
 
 _NAME_COLUMN = 16
+_FUNCTIONS = ("function", "builtin_function_or_method", "type")
 
 _OVER = (
     "The program has ended.",
@@ -196,8 +197,8 @@ def _list_variables(title: str, variables: Sequence[Variable], width: int) -> li
     lines: list[Line] = [[(cut(title, width), _HEAD)]]
     if not variables:
         lines.append([("  none", _PALE)])
-    # Changed variables are highlighted, each in its place; names of constants, which do not change, are the last.
-    for variable in sorted(variables, key=lambda one: one.name.isupper()):
+    # Changed variables are highlighted, each in its place; constants and functions, which do not change, are the last.
+    for variable in sorted(variables, key=lambda one: (one.kind in _FUNCTIONS, one.name.isupper())):
         style = _CHANGED if variable.changed else _VALUE
         lines.append(
             _build_pair(

@@ -84,25 +84,23 @@ class DiscFace:
         return tuple(share for share in dict.fromkeys(shares) if 0 <= share <= 1)
 
     def limit_words(self, width: int) -> str:
-        """Return the comparisons of the program and their present results, such as `line 15 asks > 90: no`.
+        """Return the comparisons of the program and their present results, such as `code line 15 > 90: no`.
+
+        The words do not say that the program asks now.
 
         Args:
-            width: Room in letters: to fit, `asks` is left out, then the lines, then all but the first comparison.
+            width: Room in letters: to fit, the lines are left out, else all but the first comparison, else both.
         """
         texts = []
         for threshold in self.thresholds:
             holds = threshold.holds(threshold.read.compute_value(self.seen, self.reflected_max))
             answers = {None: "", True: ": yes", False: ": no"}
             texts.append(threshold.words + answers[holds])
-        asking = (
-            f"line {threshold.line}{':' if threshold.is_aim else ' asks'} {words}"
-            for words, threshold in zip(texts, self.thresholds, strict=True)
-        )
-        short = [
-            f"line {threshold.line} {words}"
+        placed = [
+            f"code line {threshold.line} {words}"
             for words, threshold in zip(texts, self.thresholds, strict=True)
         ]
-        variants = ("; ".join(asking), "; ".join(short), "; ".join(texts), *short[:1], *texts[:1])
+        variants = ("; ".join(placed), "; ".join(texts), *placed[:1], *texts[:1])
         return next((words for words in variants if len(words) <= width), variants[-1])
 
     @property
