@@ -198,8 +198,7 @@ class LabApp(PanelMessages):
         self.context = ActionContext(
             self, runs, panels, self.document, self.loader, self.debugger, self.lesson
         )
-        runs.propose = partial(time_travel.propose_branch, self.context)
-        runs.views_past = lambda: self.debugger.is_away
+        runs.propose = partial(time_travel.propose_action, self.context)
         self._run_when_ready = settings.autorun and settings.replay is None
         self._frame_timer: Timer | None = None
         self._awake_until_s = 0.0

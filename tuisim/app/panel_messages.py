@@ -155,7 +155,7 @@ class PanelMessages(LabHost):
 
     def on_world_pose_dragged(self, message: World.PoseDragged) -> None:
         """Move the robot with the mouse; in the past, ask about a branch at the end of the drag."""
-        if message.done or not self.context.runs.views_past():
+        if message.done or not self.context.debugger.is_away:
             self.context.runs.place(message.pose)
 
     def on_chart_cursor_moved(self, message: Chart.CursorMoved) -> None:
@@ -208,7 +208,7 @@ class PanelMessages(LabHost):
 
     def on_brick_pressed(self, message: Brick.Pressed) -> None:
         runs = self.context.runs
-        if message.buttons <= runs.pressed or (runs.in_run and not runs.views_past()):
+        if message.buttons <= runs.pressed or (runs.in_run and not self.context.debugger.is_away):
             runs.press(message.buttons)
         elif runs.in_run:
             self.say("The brick's buttons work only in the present: {now} returns to it")

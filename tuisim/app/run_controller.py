@@ -137,10 +137,8 @@ class RunController:
         """Whether the robot was placed since the last run, so that the run's last record no longer applies."""
         self._pending = Pending()
         self._waits = WaitWatch()
-        self.views_past: Callable[[], bool] = lambda: self.in_past
-        """Whether an instant before the newest is viewed, or an earlier line of the newest tick."""
-        self.propose: Callable[[protocol.Message], None] = lambda _: None
-        """Called instead of a user action while the past is in view: the action is only possible in a branch."""
+        self.propose: Callable[[protocol.Message], bool] = lambda _: False
+        """Proposes a branch with a user action if the past is in view, and returns whether it is."""
         self.paused_line: tuple[int, int] | None = None
         """Tick and line at which the program is paused: more exact than the record of that tick."""
         self.chosen_line: tuple[int, int] | None = None
@@ -451,8 +449,7 @@ class RunController:
 
     def set_pen(self, down: bool) -> None:
         """Put the pen down or up, for this run and the next."""
-        if self.views_past():
-            self.propose(protocol.SetPen(down))
+        if self.propose(protocol.SetPen(down)):
             return
         self._send_action(protocol.SetPen(down))
         self.next_run = plans.change_pen(self.next_run, down)
@@ -466,16 +463,14 @@ class RunController:
 
     def set_noise(self, noise: NoiseSpec) -> None:
         """Change the noise, at once and for the next run."""
-        if self.views_past():
-            if noise != self._find_moment(self._record())[0].noise:
-                self.propose(protocol.SetNoise(noise.light, noise.motor))
-            return
-        if noise == self.next_run.spec.world.noise:
+        present = self._find_moment(self._record())[0] if self.in_past else self.next_run.spec.world
+        change = protocol.SetNoise(noise.light, noise.motor)
+        if noise == present.noise or self.propose(change):
             return
         self.next_run = plans.change_noise(self.next_run, noise)
         self._still = replace(self._still, noise=noise)
         if self.in_run:
-            self._send_action(protocol.SetNoise(noise.light, noise.motor))
+            self._send_action(change)
 
     def set_seed(self, seed: int) -> None:
         """Choose the seed of the next run."""
@@ -485,8 +480,7 @@ class RunController:
     def place(self, pose: Pose) -> None:
         """Place the robot: during a run as a user action, else as the start of the next run."""
         command = protocol.SetPose(pose.x_mm, pose.y_mm, pose.heading_deg)
-        if self.views_past():
-            self.propose(command)
+        if self.propose(command):
             return
         if self.in_run:
             # While paused, placing the robot where it already is would only add a needless action to the record.

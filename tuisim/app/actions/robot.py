@@ -20,7 +20,7 @@ def switch_pen(context: ActionContext) -> None:
     """Lift the pen if it is down, else lower it."""
     runs = context.runs
     runs.set_pen(not runs.pen_down)
-    if not runs.views_past():
+    if not context.debugger.is_away:
         kind = runs.spec.robot.pen
         context.app.say(
             f"Pen down: {kind.color}, {kind.width_mm:g} mm" if runs.pen_down else "Pen up"
@@ -36,7 +36,7 @@ def _move(context: ActionContext, pose: Pose) -> None:
     """Place the robot at a pose, and offer to undo that."""
     before = context.runs.pose
     context.runs.place(pose)
-    if not context.runs.views_past():
+    if not context.debugger.is_away:
         context.app.offer_undo(lambda: context.runs.place(before))
 
 

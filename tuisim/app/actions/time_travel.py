@@ -230,6 +230,17 @@ def _say_nothing_wrong(context: ActionContext) -> str:
     return describe_so_far(recording)
 
 
+def propose_action(context: ActionContext, action: protocol.Message) -> bool:
+    """Propose a branch with a user action if the past is in view, even an earlier line of the newest tick.
+
+    Returns:
+        Whether it is, so that the action does not apply to the present.
+    """
+    if is_away := context.debugger.is_away:
+        propose_branch(context, action)
+    return is_away
+
+
 def propose_branch(
     context: ActionContext, then: protocol.Message | None = None, restart: bool = False
 ) -> None:
