@@ -16,13 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from tuisim.engine.core.driver.jiffies import Jiffies
-from tuisim.engine.core.driver.motor import (
-    Command,
-    Constant,
-    DriverMotor,
-    SetPoints,
-    Setting,
-)
+from tuisim.engine.core.driver.motor import Command, DriverMotor, SetPoints
 from tuisim.engine.core.driver.regulator import MODELS, StopAction
 
 MS = 1_000_000
@@ -133,7 +127,7 @@ class Bench:
         if name in SET_POINTS:
             self.set_points[number][SET_POINTS[name]] = value
             if name == "duty_cycle_sp":
-                tell(motor, now_ms * MS, Setting.DUTY, value)
+                motor.set_duty(now_ms * MS, value)
             return
         match name:
             case "stop_action":
@@ -146,9 +140,10 @@ class Bench:
             case "polarity":
                 self.signs[number] = POLARITIES[value]
             case "position":
-                tell(motor, now_ms * MS, Setting.POSITION, value)
+                renumber(motor, now_ms * MS, value)
             case "speed_pid/Ki":
-                tell(motor, now_ms * MS, Setting.CONSTANT, Constant("speed", "ki", value))
+                motor.wake(now_ms * MS)
+                motor.speed_control.ki = value
             case "BLOCK":
                 motor.wake(now_ms * MS)
                 axle = motor.axle
@@ -175,9 +170,10 @@ class Bench:
             samples.duty.append(motor.duty * sign)
 
 
-def tell(motor: DriverMotor, time_ns: int, setting: Setting, value: Constant | int) -> None:
-    """Set something that takes effect at once."""
-    motor.obey(time_ns, setting, value)
+def renumber(motor: DriverMotor, time_ns: int, position: int) -> None:
+    """Set the number that stands for the position at a time."""
+    motor.wake(time_ns)
+    motor.set_position(position)
 
 
 def give(motor: DriverMotor, time_ns: int, command: Command, **setpoints: Any) -> None:

@@ -11,9 +11,9 @@ from unittest.mock import patch
 import pytest
 
 from tests.cases import for_each
-from tests.engine.core.driver.lab import MS, Bench, give, load_recordings, tell
+from tests.engine.core.driver.lab import MS, Bench, give, load_recordings, renumber
 from tuisim.engine.core.driver.jiffies import Jiffies
-from tuisim.engine.core.driver.motor import Command, DriverMotor, Setting, State
+from tuisim.engine.core.driver.motor import Command, DriverMotor, State
 from tuisim.engine.core.driver.regulator import MODELS, StopAction
 
 RECORDINGS = load_recordings()
@@ -107,7 +107,7 @@ def play(motor: DriverMotor, seed: int, looks: random.Random | None) -> Iterator
         now_ns = end_ns
         give(motor, now_ns, chance.choice([*Command]), **random_setpoints(chance))
         if chance.random() < 0.2:
-            tell(motor, now_ns, Setting.POSITION, chance.randrange(-100, 100))
+            renumber(motor, now_ns, chance.randrange(-100, 100))
         if chance.random() < 0.3:
             angle_deg = motor.axle.angle_deg
             motor.axle.low_deg, motor.axle.high_deg = chance.choice(
@@ -173,6 +173,6 @@ def test_a_relative_move_after_another_begins_where_that_was_to_end() -> None:
         time_ns = number * 1000 * MS
         give(motor, time_ns, Command.RUN_TO_REL_POS, speed_dps=900, position=90)
     assert motor.target == 360
-    tell(motor, 4900 * MS, Setting.POSITION, 0)
+    renumber(motor, 4900 * MS, 0)
     give(motor, 5000 * MS, Command.RUN_TO_REL_POS)
     assert motor.target == 90

@@ -7,9 +7,9 @@ from dataclasses import replace
 
 import pytest
 
-from tests.engine.core.driver.lab import MS, give, tell
+from tests.engine.core.driver.lab import MS, give, renumber
 from tests.engine.core.memory_sink import MemorySink
-from tuisim.engine.core.driver.motor import Command, Setting, State
+from tuisim.engine.core.driver.motor import Command, State
 from tuisim.engine.core.driver.plant import LARGE
 from tuisim.engine.core.driver.regulator import StopAction
 from tuisim.engine.core.driver.simulated import SimulatedMotor, load_wheel
@@ -60,7 +60,7 @@ class Lab:
             stop_action=chance.choice([*StopAction]),
         )
         if chance.random() < 0.1:
-            tell(motor, now_ns, Setting.POSITION, chance.randrange(-90, 90))
+            renumber(motor, now_ns, chance.randrange(-90, 90))
 
     def run(self, seed: int, most: int, looks: random.Random | None = None) -> bytes:
         """Give random commands for some seconds, ticks in parts of at most `most`; return what was recorded."""

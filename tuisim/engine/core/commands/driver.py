@@ -6,12 +6,7 @@ from collections.abc import Callable
 from functools import lru_cache
 
 from tuisim.engine.core.commands.calls import Call, Values, find_index
-from tuisim.engine.core.driver.motor import (
-    Command,
-    Constant,
-    SetPoints,
-    Setting,
-)
+from tuisim.engine.core.driver.motor import Command, SetPoints
 from tuisim.engine.core.driver.regulator import StopAction
 from tuisim.engine.core.driver.simulated import SimulatedMotor
 
@@ -44,18 +39,19 @@ def build_effect(command: Command) -> Callable[[SimulatedMotor, int, Values], No
 
 
 def set_duty(motor: SimulatedMotor, time_ns: int, values: Values) -> None:
-    """Set the duty; it takes effect at once if `run-direct` was the last command, else it is ignored."""
-    motor.obey(time_ns, Setting.DUTY, int(values[0]))
+    """Set the duty, as `DriverMotor.set_duty`."""
+    motor.set_duty(time_ns, int(values[0]))
 
 
 def set_position(motor: SimulatedMotor, time_ns: int, values: Values) -> None:
     """Set the number that the motor shows as its present position."""
-    motor.obey(time_ns, Setting.POSITION, int(values[0]))
+    motor.wake(time_ns)
+    motor.set_position(int(values[0]))
 
 
 def set_constant(motor: SimulatedMotor, time_ns: int, values: Values) -> None:
     """Set a constant of a controller. Values: the number of the controller, that of the constant, and the new value."""
     control = CONTROLS[find_index(values, 0, len(CONTROLS))]
     name = CONSTANTS[find_index(values, 1, len(CONSTANTS))]
-    constant = Constant(control, name, int(values[2]))
-    motor.obey(time_ns, Setting.CONSTANT, constant)
+    motor.wake(time_ns)
+    setattr(getattr(motor, f"{control}_control"), name, int(values[2]))

@@ -64,17 +64,6 @@ STATES = tuple(
 """The list in `state`, by the bits that are recorded."""
 
 
-class Setting(StrEnum):
-    """What a program can set without a command: it takes effect at once."""
-
-    DUTY = "duty"
-    POSITION = "position"
-    CONSTANT = "constant"
-
-
-DUTY, POSITION, CONSTANT = Setting
-
-
 class SetPoints(NamedTuple):
     """All that a program has set when it gives a command, in the motor's own direction."""
 
@@ -90,16 +79,6 @@ class SetPoints(NamedTuple):
     def ramped(self) -> bool:
         """Whether the speed changes gradually, by ramps."""
         return bool(self.ramp_up_ms or self.ramp_down_ms)
-
-
-class Constant(NamedTuple):
-    """A new value for a constant of one of the two controllers."""
-
-    control: str
-    """`speed` or `hold`."""
-    name: str
-    """`kp`, `ki` or `kd`."""
-    value: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -157,7 +136,7 @@ class DriverMotor(MotorDriver):
         self.start_clock(jiffies)
         self.active = SetPoints()
         """The set points of the last command."""
-        self._last_command: Command | Setting | None = None
+        self._last_command: Command | None = None
         self._step_ns = STEP_NS
         self._ramp_ns = self._timed_ns = self._timers_ns = NEVER_NS
         """When a ramp's next change and the end of a timed move are due, and the earlier of the two."""
@@ -328,30 +307,14 @@ class DriverMotor(MotorDriver):
             self.leave_roll()
         self.is_at_rest = False
 
-    def obey(
-        self, time_ns: int, call: Command | Setting, values: SetPoints | Constant | int
-    ) -> None:
-        """Do what a program wants, after all steps and timers that are due.
+    def set_duty(self, time_ns: int, duty: int) -> None:
+        """Set the duty; it takes effect at once if `run-direct` was the last command, else it is ignored."""
+        if self._last_command is RUN_DIRECT:
+            self.wake(time_ns)
+            self.run_direct(time_ns, duty)
 
-        Args:
-            time_ns: When the program does so.
-            call: A command, or what is set.
-            values: The set points of a command; the constant, duty or position that is set.
-        """
-        if isinstance(values, SetPoints):
-            self._run_command(time_ns, call, values)
-        elif isinstance(values, Constant):
-            self.wake(time_ns)
-            control = self.speed_control if values.control == "speed" else self.hold_control
-            setattr(control, values.name, values.value)
-        elif call is POSITION:
-            self.wake(time_ns)
-            self.set_position(values)
-        elif self._last_command is RUN_DIRECT:
-            self.wake(time_ns)
-            self.run_direct(time_ns, values)
-
-    def _run_command(self, time_ns: int, command: Command | Setting, active: SetPoints) -> None:
+    def obey(self, time_ns: int, command: Command, active: SetPoints) -> None:
+        """Do a command, after all steps and timers that are due."""
         if command is RUN_FOREVER and self._keeps_running(active):
             if active != self.active:
                 self.wake(time_ns)
