@@ -294,12 +294,8 @@ class Motion:
             return 0
         if self._strains_gyro and not (left.resting and right.resting):
             return 0
-        return min(
-            most,
-            left.count_quiet_ticks(self.tick),
-            right.count_quiet_ticks(self.tick),
-            self._clear_ticks(most),
-        )
+        quiet = min(left.count_quiet_ticks(self.tick), right.count_quiet_ticks(self.tick))
+        return min(most, quiet, self._clear_ticks(most)) if quiet > 0 else 0
 
     def _can_glide_with_noise(self) -> bool:
         """Return whether motors with noise can run several ticks at once: without obstacles, and without a goal."""
