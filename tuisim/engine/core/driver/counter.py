@@ -158,10 +158,11 @@ class Counter:
         per_count = CLOCK_HZ / (2 * speed_dps)
         edge, direction = (count, -1) if speed_dps > 0 else (count + 1, 1)
         self._straight = -CAPACITY * direction
-        backs = range(CAPACITY - 1, -1, -1)
-        self._counts = [count + direction * back for back in backs]
+        first = count + direction * (CAPACITY - 1)
+        self._counts = [*range(first, count - direction, -direction)]
         self._times = [
-            int(time - (2 * angle_deg - edge - direction * back) * per_count) for back in backs
+            int(time - (2 * angle_deg - edge - direction * back) * per_count)
+            for back in range(CAPACITY - 1, -1, -1)
         ]
         self._speed_dps = None
 

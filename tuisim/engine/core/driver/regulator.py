@@ -284,6 +284,7 @@ class MotorDriver:
         decay = circuit.step_decay
         constant_s = circuit.time_constant_s
         end_dps = goal_dps - friction_dps
+        begin = self._moved_ns * TICKS_PER_NS
         while step_ns < end_ns and read_dps:
             after_dps = end_dps + (speed_dps - end_dps) * decay
             if after_dps * speed_dps <= 0.0:
@@ -291,9 +292,7 @@ class MotorDriver:
             begin_deg = angle_deg
             angle_deg += end_dps * STEP_S + (speed_dps - after_dps) * constant_s
             middle = 0.25 + 0.5 * speed_dps / (speed_dps + after_dps)
-            counter.record(
-                (step_ns - STEP_NS) * TICKS_PER_NS, STEP_TICKS, begin_deg, angle_deg, middle
-            )
+            counter.record(begin, STEP_TICKS, begin_deg, angle_deg, middle)
             read_dps = counter.measure_speed_dps()
             speed_dps = after_dps
             next_duty = control.compute_duty(read_dps)
@@ -301,6 +300,8 @@ class MotorDriver:
                 duty = next_duty
                 goal_dps = next_duty * circuit.dps_per_percent
                 end_dps = goal_dps - friction_dps
+            # Whole numbers, and so exactly the product of the time.
+            begin += STEP_TICKS
             step_ns += STEP_NS
         axle.angle_deg = angle_deg
         axle.speed_dps = speed_dps

@@ -219,7 +219,8 @@ class SimulatedMotor(DriverMotor):
         self._angle_deg = axle.angle_deg
         self.position_deg += turned_deg
         if axle.speed_dps == 0.0:
-            self.settle()
+            if not self.is_at_rest:
+                self.settle()
             if turned_deg == 0.0 and (axle.low_deg > -inf or axle.high_deg < inf):
                 self.blocked_ticks = 0 if axle.stands else self.blocked_ticks + 1
         elif self._control is self.speed_control:
