@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 from collections import deque
 from collections.abc import Callable, Iterable, Sequence
-from contextlib import suppress
 from dataclasses import replace
 from math import inf
 from time import thread_time
@@ -133,10 +132,11 @@ def replay(
 
 def give_command(sim: Simulation, command: SimulationCommand) -> None:
     """Let a simulation obey a recorded command."""
-    count = len(CALLS[command.call].ranges)
-    # Whatever was raised in the program, here it ends the command, too.
-    with suppress(Exception):
-        obey(sim, command.time_ns, command.part, command.call, *command.values[:count])
+    time_ns, part, call, values = command
+    try:
+        obey(sim, time_ns, part, call, *values[: len(CALLS[call].ranges)])
+    except Exception:  # Whatever was raised in the program, here it ends the command, too.
+        return
 
 
 def _build_advance(sim: Simulation, actions: Iterable[UserAction]) -> Callable[[int], None]:

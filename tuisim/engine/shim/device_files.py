@@ -104,7 +104,8 @@ class SimDevice:
         cost_ns = self.session.sim.spec.profile.attribute_write_ns
 
         def write_slowly(value: Any) -> None:
-            session.charge(cost_ns)
+            if not session.free:
+                session.spend(cost_ns)
             write(value)
 
         return write_slowly
