@@ -8,7 +8,6 @@ from enum import Enum
 from typing import Any
 
 from tuisim.engine.core.profile import MS, NS_PER_S
-from tuisim.engine.runs.readings import BUTTONS_PORT
 from tuisim.engine.shim.pybricks import hubs
 from tuisim.engine.shim.pybricks import speaker as tones
 from tuisim.engine.shim.pybricks.brick import Connected, Waiting, invalid_argument, whole
@@ -191,23 +190,12 @@ class System(Connected):
         return 0
 
 
-class Buttons(Connected):
-    """Buttons of a hub or a controller that a hand presses.
-
-    Args:
-        buttons: The buttons by their names in the session.
-        port: The place of the buttons, one of `READING_PORTS`.
-    """
-
-    def __init__(self, buttons: Mapping[str, Enum], port: str = BUTTONS_PORT) -> None:
-        self._buttons = buttons
-        self._place = port
+class Buttons(hubs.Buttons):
+    """The buttons of a hub or a controller."""
 
     def pressed(self) -> set[Any]:
         """Return the pressed buttons."""
-        self.brick.read("pressed", self._place)
-        names = self.brick.session.pressed & self._buttons.keys()
-        return {self._buttons[name] for name in names}
+        return {*super().pressed()}
 
 
 class Battery(hubs.Battery):
@@ -239,7 +227,7 @@ class Light(AnimatedLight, hubs.Light):  # type: ignore[misc]
 class EV3Brick(hubs.EV3Brick):
     """The brick."""
 
-    buttons = Buttons(hubs.BUTTON_NAMES)  # type: ignore[assignment]
+    buttons = Buttons()
     battery = Battery()
     light = Light()
     speaker = Speaker()  # type: ignore[assignment]

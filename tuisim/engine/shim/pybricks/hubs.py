@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from enum import Enum
+from typing import Any
 
 from tuisim.engine.runs.readings import BUTTONS_PORT
 from tuisim.engine.shim.leds import MAX_BRIGHTNESS
@@ -31,13 +32,23 @@ LIGHTS: Mapping[str, tuple[int, int]] = {
 
 
 class Buttons(Connected):
-    """The buttons of the brick."""
+    """Buttons that a hand presses.
 
-    def pressed(self) -> list[Button]:
+    Args:
+        buttons: The buttons by their names in the session.
+        place: Where they are, one of `READING_PORTS`.
+    """
+
+    def __init__(
+        self, buttons: Mapping[str, Enum] = BUTTON_NAMES, place: str = BUTTONS_PORT
+    ) -> None:
+        self._buttons, self._place = buttons, place
+
+    def pressed(self) -> Any:
         """Return the pressed buttons."""
-        self.brick.read("pressed", BUTTONS_PORT)
+        self.brick.read("pressed", self._place)
         pressed = self.brick.session.pressed
-        return [button for name, button in BUTTON_NAMES.items() if name in pressed]
+        return [button for name, button in self._buttons.items() if name in pressed]
 
 
 class Light(Connected):

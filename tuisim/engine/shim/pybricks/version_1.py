@@ -107,4 +107,4 @@ def light(color: Color | None) -> None:
 
 def buttons() -> list[Button]:
     """Return the pressed buttons."""
-    return _brick.buttons.pressed()
+    return [*_brick.buttons.pressed()]

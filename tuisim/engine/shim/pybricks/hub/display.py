@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, ClassVar
 
 from tuisim.engine.runs.brick_state import SIDE_PIXELS
@@ -17,13 +17,8 @@ from tuisim.engine.shim.pybricks.tools import wait
 LAST = SIDE_PIXELS - 1
 MAX_NUMBER = 99
 POLL_MS = 10
-PLACES: Mapping[Side, Callable[[int, int], tuple[int, int]]] = {
-    Side.TOP: lambda row, column: (row, column),
-    Side.BOTTOM: lambda row, column: (LAST - row, LAST - column),
-    Side.LEFT: lambda row, column: (LAST - column, row),
-    Side.RIGHT: lambda row, column: (column, LAST - row),
-}
-"""Where a pixel of a picture is on the matrix, by the side that is up."""
+TURNS: Mapping[Side, int] = {Side.TOP: 0, Side.RIGHT: 1, Side.BOTTOM: 2, Side.LEFT: 3}
+"""By how many quarters a picture is turned clockwise on the matrix, by the side that is up."""
 
 
 def _spread_bits(bits: int) -> Pixels:
@@ -31,13 +26,16 @@ def _spread_bits(bits: int) -> Pixels:
     return tuple(100 * (bits >> place & 1) for place in reversed(range(len(DARK))))
 
 
+def _split_rows(pixels: Pixels) -> list[Pixels]:
+    return [pixels[start : start + SIDE_PIXELS] for start in range(0, len(DARK), SIDE_PIXELS)]
+
+
 class Icon:
     """Pictures for the matrix; `Icon(bits)` makes one from 25 bits, of which the highest is the upper left pixel."""
 
     def __new__(cls, bits: int) -> Any:
         """Return a picture as a matrix of brightnesses."""
-        pixels = _spread_bits(bits)
-        return Matrix([pixels[row : row + SIDE_PIXELS] for row in range(0, len(DARK), SIDE_PIXELS)])
+        return Matrix(_split_rows(_spread_bits(bits)))
 
 
 for _name, _picture in ICONS.items():
@@ -71,15 +69,14 @@ class Display(Connected):
 
     def _draw(self, pixels: Pixels) -> None:
         self._pixels = pixels
-        turned = [*DARK]
-        for number, value in enumerate(pixels):
-            row, column = PLACES[self._up](*divmod(number, SIDE_PIXELS))
-            turned[SIDE_PIXELS * row + column] = value
-        show_pixels(turned)
+        rows = _split_rows(pixels)
+        for _ in range(TURNS[self._up]):
+            rows = [*zip(*reversed(rows), strict=True)]
+        show_pixels([value for row in rows for value in row])
 
     def orientation(self, up: Side) -> None:
         """Say which side of the matrix is up."""
-        if up not in PLACES:
+        if up not in TURNS:
             raise invalid_argument()
         self._up = up
         self._draw(self._pixels)
