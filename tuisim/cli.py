@@ -20,7 +20,7 @@ from tuisim import __version__
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import (
     EXIT_BROKEN_PIPE,
-    EXIT_INTERRUPTED,
+    SIGNALLED,
     ConfigError,
     HostError,
     TuisimError,
@@ -30,6 +30,8 @@ from tuisim.base.errors import (
     shortened,
 )
 from tuisim.settings.command_line import Group, command
+
+EXIT_INTERRUPTED = SIGNALLED + 2
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,8 +6,8 @@ import pytest
 
 from tests.app.analyser.logs import long_log, model_of, wide_log
 from tests.cases import cases
-from tuisim.analysis.chart import draw_event_marks
 from tuisim.analysis.events import Event, find_events, parse_events
+from tuisim.app.analyser.chart import draw_event_marks
 from tuisim.app.analyser.panes import PANES, pane_lines
 from tuisim.base.errors import LogError
 

@@ -13,10 +13,10 @@ from tuisim.analysis.source import (
     LogRequest,
     find_choices,
     open_pieces,
-    read_doubtful,
     remember_choices,
     request_file,
 )
+from tuisim.app.analyser.screen import read_doubtful
 from tuisim.logs.choices import NO_CHOICES, ReadChoices
 from tuisim.settings.preferences import find_preferences_file, keep
 

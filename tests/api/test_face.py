@@ -17,7 +17,7 @@ from tests.api.write_face import FACE, write_face
 from tests.cases import cases
 from tests.conftest import ROOT
 from tuisim.base.errors import ConfigError, LogError
-from tuisim.guide.catalogue import find_page
+from tuisim.commands.guide import find_page
 
 LOGGER = """\
 tank_drive.on(SpeedPercent(50), SpeedPercent(50))

@@ -16,7 +16,7 @@ from tests.cases import cases
 from tuisim.api.measures import describe
 from tuisim.base.errors import ConfigError
 from tuisim.batch.sweep import Workers
-from tuisim.guide.catalogue import find_page
+from tuisim.commands.guide import find_page
 
 PROGRAM = """\
 GAIN = 1.2

@@ -8,14 +8,8 @@ import pytest
 
 from tests.cases import cases
 from tuisim.base.errors import ConfigError
-from tuisim.batch.parameters import (
-    RandomDraw,
-    SampleValues,
-    build_grid,
-    parse_seeds,
-    parse_set,
-    parse_values,
-)
+from tuisim.batch.parameters import RandomDraw, SampleValues, build_grid, parse_seeds, parse_values
+from tuisim.commands.batch_request import parse_set
 from tuisim.engine.core.values import MAX_SEED
 
 

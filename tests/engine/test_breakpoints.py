@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from tuisim.app.debugger import break_lines
 from tuisim.base.errors import ConfigError
 from tuisim.engine.breakpoints import (
     Breakpoint,
@@ -12,7 +13,6 @@ from tuisim.engine.breakpoints import (
     StallBreak,
     TimeBreak,
     break_line_of,
-    break_lines,
     moved,
     parse_break,
     parse_breakpoints,

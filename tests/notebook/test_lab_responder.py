@@ -9,7 +9,7 @@ import pytest
 
 from tests.notebook.conftest import Cell, Kernel
 from tests.running import PATIENCE_S
-from tuisim.guide.catalogue import find_page
+from tuisim.commands.guide import find_page
 
 TALK = """\
 %%sim_magic_preloaded -b Grey_bands -x 300 -RWL

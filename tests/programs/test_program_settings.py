@@ -11,10 +11,14 @@ import pytest
 
 from tests.cases import cases
 from tuisim.base.errors import ProfileError, RobotError
-from tuisim.base.source import FOR_SPIKE
 from tuisim.engine.core.profile import PROFILES
 from tuisim.programs.program_file import parse_program, read_program
-from tuisim.programs.program_settings import build_program_settings, choose_robot, require_library
+from tuisim.programs.program_settings import (
+    FOR_SPIKE,
+    build_program_settings,
+    choose_robot,
+    require_library,
+)
 from tuisim.settings.build import build_run_spec
 from tuisim.settings.options import Settings
 

@@ -7,12 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tuisim.analysis.events import CommandRow
 from tuisim.analysis.traces import DISTANCE, LogTrace, sample_and_hold
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import LogError, printable
 from tuisim.logs.magnitude import limit_drawn
-from tuisim.pictures.charts.axes import Limits, choose_limits, find_column
+from tuisim.pictures.charts.axes import Limits, choose_limits
 from tuisim.pictures.charts.bands import build_band_span
 from tuisim.pictures.charts.canvas import DOTS_X, DOTS_Y, drop_hidden_points
 from tuisim.pictures.charts.layout import ChartData, Line, Span, add_unit
@@ -99,23 +98,3 @@ def build_spans(bands: Iterable[Band]) -> tuple[Span, ...]:
         build_band_span(band.variable, band.start_s, band.stop_s, band.true_level, band.grey)
         for band in bands
     )
-
-
-def draw_event_marks(model: AnalysisModel, limits: Limits, columns: int) -> str:
-    """Return a line of text with a mark in each column of the chart that has events."""
-    line = [" "] * columns
-    for event in model.events.list_events(model.log):
-        if isinstance(event, CommandRow):
-            place = model.find_place(event.row, event.time_s)
-            mark = "╷"
-        else:
-            trace = model.traces.find_trace(event.variable)
-            crossing = event.crossing
-            place = crossing.time_s + float(
-                trace.places[crossing.sample] - trace.series.time_s[crossing.sample]
-            )
-            mark = "▲" if crossing.rising else "▼"
-        if limits[0] <= place <= limits[1]:
-            column = min(max(find_column(place, limits, columns), 0), columns - 1)
-            line[column] = mark if line[column] in (" ", mark) else "◆"
-    return "".join(line)

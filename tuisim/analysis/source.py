@@ -23,7 +23,7 @@ from tuisim.base.folders import home_folder
 from tuisim.base.regular_file import open_regular, read_regular
 from tuisim.logs.choices import NO_CHOICES, ReadChoices
 from tuisim.logs.log import Log
-from tuisim.logs.reader import STDIN, read_beginning
+from tuisim.logs.reader import STDIN
 from tuisim.settings.preferences import get_preference, keep
 
 if TYPE_CHECKING:
@@ -69,21 +69,6 @@ def remember_choices(file: str, choices: ReadChoices) -> None:
         others = [old for old in _load() if old.path != reading.path]
         newest = [*others, replace(reading, choices=choices)][-MAX_FILES:]
         keep(_NAME, list(map(asdict, newest)))
-
-
-def read_doubtful(request: LogRequest) -> Log | None:
-    """Return the first rows of a file if the user should check how it is read, since something was guessed; else None.
-
-    Raises:
-        LogError: it cannot be read, or has no row.
-    """
-    is_known = request.is_remembered or request.choices != NO_CHOICES
-    if is_known or not is_readable_again(request.file):
-        return None
-    log = read_beginning(request.file, NO_CHOICES)
-    # The lines that a program printed are read in one way only: there is nothing to choose.
-    is_guessed = not log.layout.sure or bool(log.form.separator and log.notes)
-    return log if is_guessed and not log.metadata else None
 
 
 def is_readable_again(file: str) -> bool:

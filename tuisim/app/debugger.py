@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -12,14 +12,7 @@ from tuisim.app.snapshot import PauseView
 from tuisim.base.errors import TuisimError, counted
 from tuisim.base.source import find_code_line, source_lines
 from tuisim.engine import protocol
-from tuisim.engine.breakpoints import (
-    Breakpoint,
-    LineBreak,
-    break_line_of,
-    break_lines,
-    moved,
-    parse_break,
-)
+from tuisim.engine.breakpoints import Breakpoint, LineBreak, break_line_of, moved, parse_break
 from tuisim.engine.core.profile import compute_due_ns
 from tuisim.engine.protocol import UNKNOWN_ORDINAL, Inspected, Message, Paused, PauseReason
 from tuisim.engine.runs.replay_debugger import Position, ReplayDebugger
@@ -556,3 +549,13 @@ def _mark(one: Breakpoint) -> str:
     if one.disabled:
         return "○"
     return "◆" if isinstance(one.rule, LineBreak) and one.rule.condition else "●"
+
+
+def break_lines(breaks: Iterable[Breakpoint]) -> dict[int, Breakpoint]:
+    """Return the line breakpoints by line; if a line has several, an enabled one takes precedence."""
+    by_line: dict[int, Breakpoint] = {}
+    for point in sorted(breaks, key=lambda point: not point.disabled):
+        line = break_line_of(point)
+        if line:
+            by_line[line] = point
+    return by_line

@@ -6,7 +6,7 @@ import re
 from bisect import bisect_left, bisect_right
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ConfigError, closest, did_you_mean
@@ -24,13 +24,17 @@ from tuisim.engine.core.field import Field
 from tuisim.engine.core.sensors import find_named_column, list_column_names, list_columns
 from tuisim.engine.runs.brick_state import BrickState, update_face
 from tuisim.engine.runs.command_events import parse_command_search
-from tuisim.engine.runs.frames import compute_column_values, evaluate_condition, find_begins
+from tuisim.engine.runs.frames import compute_column_values, evaluate_condition
 from tuisim.engine.runs.records import TEXT_STREAMS, Mark, OutputRow
 from tuisim.engine.runs.samples import parse_sample, select_rows
 
 if TYPE_CHECKING:
+    import numpy as np
+
     from tuisim.engine.runs.recorded_run import Recording
     from tuisim.engine.runs.views import TickRecord
+
+    Array = np.ndarray[Any, Any]
 
 FASTEST = 16.0
 """Playback speed, relative to real time, when the speed is as fast as possible."""
@@ -419,3 +423,12 @@ def _find_printed(search: _Search, condition: ValueCondition) -> int:
     if tick is None:
         raise ConfigError(f"nothing printed {search.words} matches {pattern!r}")
     return tick
+
+
+def find_begins(condition: ValueCondition, true: Array) -> Array:
+    """Return the ticks at which a condition becomes true, in order; `true` tells whether it is true at each tick."""
+    import numpy as np
+
+    before = np.concatenate(([False], true[:-1]))
+    began: Array = np.flatnonzero(true if condition.is_momentary else true & ~before)
+    return began

@@ -13,14 +13,11 @@ goes to stderr, to a notice in the app, and to the notebook.
 
 from __future__ import annotations
 
-import re
-import reprlib
 from collections.abc import Iterable, Sequence
 from typing import ClassVar
 
 SIGNALLED = 128
 """Exit codes above this come from a signal; no further program is then run."""
-EXIT_INTERRUPTED = SIGNALLED + 2
 EXIT_BROKEN_PIPE = SIGNALLED + 13
 """The exit codes of a program that was ended by SIGINT or SIGPIPE."""
 MOST_LISTED = 20
@@ -217,40 +214,3 @@ class LogError(TuisimError):
 
 class ExportError(TuisimError):
     """An export could not be written; no partial file is left."""
-
-
-def require_one_of(value: object, what: str, allowed: Iterable[object], key: str) -> None:
-    """Check that a value is one of `allowed`.
-
-    Args:
-        value: Value to check; a bool is not a number.
-        what: What the value is, such as `port`.
-        allowed: All allowed values.
-        key: Name of the value in the error.
-
-    Raises:
-        RobotError: the check failed.
-    """
-    allowed = tuple(allowed)
-    if value not in allowed or isinstance(value, bool):
-        raise RobotError(
-            f"no such {what} {reprlib.repr(value)}",
-            f"one of {', '.join(map(str, allowed))}",
-            key=key,
-        )
-
-
-def require_regex(pattern: str, key: str) -> None:
-    """Check that a text is a regular expression.
-
-    Args:
-        pattern: Text to check.
-        key: Name of the value in the error.
-
-    Raises:
-        ConfigError: it is not.
-    """
-    try:
-        re.compile(pattern)
-    except (re.error, RecursionError, OverflowError) as error:
-        raise ConfigError(f"{pattern!r} is not a regular expression: {error}", key=key) from None

@@ -40,15 +40,6 @@ def session_folder() -> Path:
     return Path(session) if session else home_folder()
 
 
-def config_folder() -> Path:
-    """Return the folder of `config.toml`: `TUISIM_HOME`, or the platform's folder for the user's configuration."""
-    if home := os.environ.get("TUISIM_HOME"):
-        return Path(home)
-    import platformdirs
-
-    return platformdirs.user_config_path("tuisim")
-
-
 def cache_folder() -> Path:
     """Return the folder of prepared mats: `cache` in TUISIM_HOME, else the user's cache folder."""
     if home := os.environ.get("TUISIM_HOME"):

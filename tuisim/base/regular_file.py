@@ -49,9 +49,3 @@ def read_regular(path: Path, most_bytes: int, follow_links: bool = False) -> byt
 def of_the_machine(error: OSError) -> bool:
     """Return whether the cause of a file error is this machine, such as a full disk, and not the program."""
     return error.errno in _OF_THE_MACHINE
-
-
-def has_machine_cause(error: BaseException) -> bool:
-    """Return whether the direct cause of an error is a file error of this machine; see `of_the_machine`."""
-    cause = error.__cause__
-    return isinstance(cause, OSError) and of_the_machine(cause)

@@ -59,8 +59,6 @@ HUB_DEVICES = "pybricks.pupdevices"
 """The module of Pybricks for motors and sensors of hubs other than the EV3."""
 PYBRICKS_4_NAMES = frozenset({"ThisHub", "hub_menu", "multitask", "run_task"})
 """Names that only Pybricks 4 has, and that nothing else is called."""
-FOR_SPIKE = "a program in LEGO's own Python for SPIKE, which tuisim does not run"
-"""What is told about a program that imports one of these."""
 
 PRELUDES: Mapping[str, str] = {
     "sim_magic": "none",

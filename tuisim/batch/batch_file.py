@@ -17,7 +17,7 @@ from tuisim.batch.parameters import SEED, Choice, check_seeds, parse_seeds, pars
 from tuisim.engine import files
 from tuisim.engine.core.values import quote
 from tuisim.engine.files import Location
-from tuisim.settings.worlds import BATCH_KEY, WORLD_SUFFIX, WorldFile, load_world, parse_world
+from tuisim.settings.worlds import BATCH_KEY, WorldFile, load_world, parse_world
 from tuisim.tasks.task import MAX_JOBS, Keep, Value
 
 MAX_PROGRAMS = 10_000
@@ -52,21 +52,6 @@ class BatchFile:
     goals: str | None = None
     keep: Keep | None = None
     expressions: Mapping[str, str] = field(default_factory=dict)
-
-
-def is_batch_file(word: str) -> bool:
-    """Return whether a word of the command line names a batch file: one with a table `[batch]`, unlike a world file.
-
-    False for a file that cannot be read.
-    """
-    path = user_path(word)
-    if path.suffix.lower() != WORLD_SUFFIX:
-        return False
-    try:
-        data = files.read_file(path, ConfigError)
-    except ConfigError:
-        return False
-    return BATCH_KEY in data
 
 
 def load_batch(path: Path, mats: str | None = None) -> BatchFile:

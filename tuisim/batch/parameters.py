@@ -15,7 +15,7 @@ from enum import StrEnum
 from random import Random
 
 from tuisim.base.data_class import dataclass
-from tuisim.base.errors import ConfigError, nearest, see_page
+from tuisim.base.errors import ConfigError, nearest
 from tuisim.engine.core.values import MAX_SEED
 from tuisim.tasks.task import Value
 
@@ -182,20 +182,6 @@ def _list_values(
     return choice.values(
         name, is_whole(name, inside if inside < choice.high else (choice.low + choice.high) / 2)
     )
-
-
-def parse_set(text: str) -> tuple[str, Choice]:
-    """Parse `NAME=VALUES`; return the name and the values.
-
-    Raises:
-        ConfigError: there is no name, or the values are wrong; errors blame `--set`.
-    """
-    name, equals, values = text.partition("=")
-    name = name.strip()
-    if not equals or not name:
-        hint = f"such as noise.motor=0,20,50; {see_page('experiments')}"
-        raise ConfigError(f"must be NAME=VALUES, got {text!r}", hint, key="--set")
-    return name, parse_values(values, f"--set {name}")
 
 
 def parse_values(text: str, key: str) -> Choice:

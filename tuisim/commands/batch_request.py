@@ -8,10 +8,10 @@ from dataclasses import replace
 from pathlib import Path
 
 from tuisim.base.data_class import dataclass
-from tuisim.base.errors import ConfigError
+from tuisim.base.errors import ConfigError, see_page
 from tuisim.base.folders import user_path
-from tuisim.batch.batch_file import BatchFile, is_batch_file, load_batch
-from tuisim.batch.parameters import SEED, Choice, parse_seeds, parse_set
+from tuisim.batch.batch_file import BatchFile, load_batch
+from tuisim.batch.parameters import SEED, Choice, parse_seeds, parse_values
 from tuisim.batch.plan import Plan, Subject
 from tuisim.batch.sweep import Workers
 from tuisim.commands.echo import echo_error
@@ -25,11 +25,12 @@ from tuisim.commands.run_options import (
     build_workers_option,
     keep_option,
 )
+from tuisim.engine import files
 from tuisim.engine.files import read_file
 from tuisim.engine.runs.handle import RunOptions
 from tuisim.logs.export import LISTED, check_target
 from tuisim.settings.command_line import Arguments, WordType, argument, option
-from tuisim.settings.worlds import WorldFile, is_world_name
+from tuisim.settings.worlds import BATCH_KEY, WORLD_SUFFIX, WorldFile, is_world_name
 from tuisim.tasks.goals.files import GoalsFile, load_goals
 from tuisim.tasks.task import Keep
 
@@ -251,3 +252,32 @@ def _parse_expression(text: str) -> tuple[str, str]:
             f"must be NAME=EXPR, got {text!r}", "such as 'far_mm=hypot(x_mm, y_mm)'", key="--expr"
         )
     return name.strip(), expression.strip()
+
+
+def is_batch_file(word: str) -> bool:
+    """Return whether a word of the command line names a batch file: one with a table `[batch]`, unlike a world file.
+
+    False for a file that cannot be read.
+    """
+    path = user_path(word)
+    if path.suffix.lower() != WORLD_SUFFIX:
+        return False
+    try:
+        data = files.read_file(path, ConfigError)
+    except ConfigError:
+        return False
+    return BATCH_KEY in data
+
+
+def parse_set(text: str) -> tuple[str, Choice]:
+    """Parse `NAME=VALUES`; return the name and the values.
+
+    Raises:
+        ConfigError: there is no name, or the values are wrong; errors blame `--set`.
+    """
+    name, equals, values = text.partition("=")
+    name = name.strip()
+    if not equals or not name:
+        hint = f"such as noise.motor=0,20,50; {see_page('experiments')}"
+        raise ConfigError(f"must be NAME=VALUES, got {text!r}", hint, key="--set")
+    return name, parse_values(values, f"--set {name}")

@@ -21,10 +21,13 @@ from textwrap import wrap
 from typing import TYPE_CHECKING, Any, Self, TextIO
 
 from tuisim.base.errors import printable
+from tuisim.settings.command_line import option
 
 if TYPE_CHECKING:
     from rich.progress import Progress as Bar
     from rich.text import Text
+
+AS_JSON = option("--json", "as_json", is_flag=True, help="Print JSON.")
 
 
 def echo(line: str = "") -> None:

@@ -12,6 +12,7 @@ from typing import Any
 from tuisim.base.errors import ConfigError, counted, nearest
 from tuisim.batch.parameters import parse_seeds
 from tuisim.commands.echo import (
+    AS_JSON,
     Progress,
     draw_table,
     echo,
@@ -27,7 +28,7 @@ from tuisim.engine.presses import press_actions
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.engine.runs.store import RunStore
 from tuisim.settings.build import build_run_spec, extract_settings
-from tuisim.settings.command_line import AS_JSON, Group, WordType, argument, command, option
+from tuisim.settings.command_line import Group, WordType, argument, command, option
 from tuisim.settings.options import START, merge_settings
 from tuisim.tasks.goals.drawn_mats import DRAWN_MATS, format_world_lines, generate_mat
 from tuisim.tasks.goals.files import GoalsFile, list_example_names, load_goals

@@ -6,16 +6,18 @@ import os
 import shutil
 import sys
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import click
+from rich.style import Style
 
-from tuisim.base.errors import ConfigError
+from tuisim.base.errors import ConfigError, nearest
 from tuisim.commands.echo import echo
+from tuisim.guide.catalogue import CONTENTS, Page, load_pages
+from tuisim.guide.excerpt import draw_excerpt
+from tuisim.guide.search import SearchResult
 from tuisim.settings.command_line import WordType, argument, command, option
-
-if TYPE_CHECKING:
-    from tuisim.terminal.text_runs import Line
+from tuisim.tasks.lessons.markdown import PLAIN, render_markdown
+from tuisim.terminal.text_runs import Line
 
 _MAX_COLUMNS = 100
 _MAX_RESULTS = 5
@@ -43,8 +45,7 @@ def guide(topic: str | None, words: str | None) -> int:
 
     In the app, the key ? opens the same pages.
     """
-    from tuisim.guide.catalogue import find_page
-    from tuisim.guide.text import draw_contents, draw_page
+    from tuisim.guide.text import draw_page
 
     if topic is not None and words is not None:
         raise ConfigError(
@@ -66,7 +67,6 @@ def _measure_width() -> int:
 
 
 def _show(lines: list[Line]) -> None:
-    from tuisim.guide.text import render_lines
 
     styled = sys.stdout.isatty() and "NO_COLOR" not in os.environ
     text = render_lines(lines, styled=styled)
@@ -78,7 +78,7 @@ def _show(lines: list[Line]) -> None:
 
 def _search(words: str) -> int:
     from tuisim.guide.search import search
-    from tuisim.guide.text import NO_WORDS, draw_results
+    from tuisim.guide.text import NO_WORDS
 
     results = search(words)[:_MAX_RESULTS]
     if not results:
@@ -86,3 +86,60 @@ def _search(words: str) -> int:
         return 1
     _show(draw_results(results, _measure_width()))
     return 0
+
+
+_PASSAGE_LINES = 2
+"""How much of a passage is shown among results."""
+
+
+def draw_contents(width: int) -> list[Line]:
+    """Return the contents of the guide as lines: the pages of each part."""
+    text = [
+        "# The guide",
+        "`tuisim guide TOPIC` shows a page, `tuisim guide --search WORDS` finds one.",
+    ]
+    for part, names in CONTENTS.items():
+        text += [
+            f"## {part}",
+            "\n".join(f"- `{name}` {load_pages()[name].title}" for name in names),
+        ]
+    return render_markdown("\n\n".join(text), width)
+
+
+def draw_results(results: list[SearchResult], width: int) -> list[Line]:
+    """Return the results of a search as lines, the best first, each below its page and section."""
+    lines = []
+    for hit in results:
+        title = f"- `{hit.name}` **{load_pages()[hit.name].title}**{f': {hit.heading}' if hit.heading else ''}"
+        passage = draw_excerpt(hit, max(20, width - 3), _PASSAGE_LINES)
+        lines += [*render_markdown(title, width), *([("   ", PLAIN), *line] for line in passage)]
+    return lines
+
+
+def render_lines(lines: list[Line], *, styled: bool) -> str:
+    """Return lines as one text; with control sequences for a terminal if `styled`."""
+
+    def render_run(text: str, style: Style) -> str:
+        # No colours: the terminal may have any background.
+        bold = style.bold or style.color != PLAIN.color
+        return (
+            Style(bold=bold, italic=style.italic, underline=style.underline).render(text)
+            if styled
+            else text
+        )
+
+    return "\n".join("".join(render_run(*run) for run in line) for line in lines) + "\n"
+
+
+def find_page(name: str) -> Page:
+    """Return a page by its name.
+
+    Raises:
+        ConfigError: there is no such page.
+    """
+    known = load_pages()
+    if name not in known:
+        raise ConfigError(
+            f"no such page {name!r}", f"{nearest(name, known)} See `tuisim guide`", key="guide"
+        )
+    return known[name]

@@ -17,8 +17,8 @@ from tuisim.base.atomic import replacing
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ConfigError
 from tuisim.base.folders import user_path
-from tuisim.commands.echo import draw_table, echo, echo_json, echo_lines
-from tuisim.settings.command_line import AS_JSON, Group, command, option
+from tuisim.commands.echo import AS_JSON, draw_table, echo, echo_json, echo_lines
+from tuisim.settings.command_line import Group, command, option
 
 if TYPE_CHECKING:
     from jupyter_client.kernelspec import KernelSpecManager

@@ -2,27 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 import click
 
 from tuisim.base.errors import ConfigError, counted
 from tuisim.base.folders import user_path
-from tuisim.commands.echo import Progress, draw_table, echo, echo_json, echo_lines, tell
+from tuisim.commands.echo import AS_JSON, Progress, draw_table, echo, echo_json, echo_lines, tell
 from tuisim.engine.core.profile import Library
-from tuisim.settings.command_line import AS_JSON, Group, WordType, argument, choice, command, option
+from tuisim.settings.command_line import Group, WordType, argument, choice, command, option
 from tuisim.tasks.lessons.catalogue import (
     find_lesson,
     find_lesson_paths,
     find_shipped_paths,
     find_telling,
-    load_all,
 )
 from tuisim.tasks.lessons.files import load_lesson
 from tuisim.tasks.lessons.markdown import render_plain_text
-from tuisim.tasks.lessons.progress import LessonProgress, StepState, find_last_opened, load_progress
-from tuisim.tasks.lessons.spec import Lesson, LessonStep, QuestionCheck
+from tuisim.tasks.lessons.progress import LessonProgress, StepState, load_progress
+from tuisim.tasks.lessons.spec import Lesson, LessonStep, QuestionCheck, RunCheck
 
 _COLUMNS = 80
 _MARKS = {StepState.OPEN: "·", StepState.DONE: "✓", StepState.SKIPPED: "–"}
@@ -232,7 +232,7 @@ def check(paths: Sequence[str], no_runs: bool, strict: bool) -> int:
 
     Exit code: 0 if all is well, 1 if a model answer does not pass or a wrong program does, 2 if a file is wrong.
     """
-    from tuisim.tasks.lessons.trial import find_faults, find_warnings
+    from tuisim.tasks.lessons.trial import find_faults
 
     files = [find_lesson(path) for path in paths] or list(find_shipped_paths().values())
     lessons = [load_lesson(path) for path in files]
@@ -295,3 +295,38 @@ learn = _Learn.of(
     Without a command, `tuisim learn [LESSON]` opens a lesson in the app.
     """,
 )
+
+
+def load_all(folder: Path | str | None = None) -> list[Lesson]:
+    """Read all lessons.
+
+    Raises:
+        ConfigError: the folder or a lesson is wrong.
+    """
+    return [load_lesson(path) for path in find_lesson_paths(folder).values()]
+
+
+def find_last_opened(progress: Mapping[str, LessonProgress]) -> str:
+    """Return the name of the lesson that was opened last; empty if none was."""
+    opened = [
+        (lesson_progress.opened_at, name)
+        for name, lesson_progress in progress.items()
+        if lesson_progress.opened_at
+    ]
+    return max(opened)[1] if opened else ""
+
+
+def find_warnings(lesson: Lesson) -> list[str]:
+    """Return what a lesson lacks, each as a line: wrong ways that are not tried, and answers without a reason."""
+    warnings = []
+    for step in lesson.steps:
+        place = f"{lesson.path}, line {step.line}"
+        warnings += [
+            f"{place}: step “{step.title}” does not try the wrong way “{way}”, or name it in `excludes`"
+            for way in step.find_missing_ways()
+        ]
+        if isinstance(step.check, QuestionCheck | RunCheck) and not step.why:
+            warnings.append(
+                f"{place}: step “{step.title}” has no `why`, which says why an answer or a run is right"
+            )
+    return warnings

@@ -11,11 +11,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tuisim.base.errors import ConfigError, counted, listed
-from tuisim.commands.echo import draw_table, echo, echo_error, echo_json, echo_lines
+from tuisim.commands.echo import AS_JSON, draw_table, echo, echo_error, echo_json, echo_lines
 from tuisim.engine.core.profile import MS, PROFILES, MotorLaw, ProfileSpec
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, RobotSpec, RunSpec, WorldSpec
 from tuisim.engine.core.values import list_values
-from tuisim.settings.command_line import AS_JSON, WordType, argument, command, option
+from tuisim.settings.command_line import WordType, argument, command, option
 
 if TYPE_CHECKING:
     from tuisim.engine.mats import Background, Taken

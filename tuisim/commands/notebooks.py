@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -11,12 +12,7 @@ from tuisim.base.errors import ConfigError, counted
 from tuisim.commands import exit_status
 from tuisim.commands.echo import draw_table, echo, echo_error, echo_json, echo_lines
 from tuisim.engine.runs.run_folder import StoredRun
-from tuisim.programs.notebook_file import (
-    NotebookProgram,
-    choose_programs,
-    find_notebooks,
-    is_notebook,
-)
+from tuisim.programs.notebook_file import SUFFIX, NotebookProgram, choose_programs, is_notebook
 
 NOT_RUN = "not_run"
 
@@ -130,3 +126,30 @@ def _build_row(label: str, run: StoredRun | None) -> tuple[object, ...]:
         return label, NOT_RUN, "", "", ""
     facts = exit_status.describe(run)
     return label, facts["state"], facts["samples"], f"{facts['time_s']:.3f}", facts["run"]
+
+
+_NUMBERS = re.compile(r"([0-9]+)|([^0-9]+)")
+
+
+def find_notebooks(folder: Path) -> list[Path]:
+    """Return the notebooks in a folder and its subfolders, in natural order: 2 comes before 10.
+
+    Hidden folders are left out: Jupyter keeps former versions in them.
+    """
+    notebooks: list[Path] = []
+    for place, folders, files in os.walk(folder):
+        folders[:] = [name for name in folders if not name.startswith(".")]
+        notebooks += [
+            Path(place, name)
+            for name in files
+            if name.endswith(SUFFIX) and not name.startswith(".")
+        ]
+    return sorted(notebooks, key=lambda path: [_build_sort_key(part) for part in path.parts])
+
+
+def _build_sort_key(name: str) -> list[tuple[int, str]]:
+    """Return a sort key for natural order."""
+    return [
+        (int(digits), "") if digits else (-1, text.lower())
+        for digits, text in _NUMBERS.findall(name)
+    ]

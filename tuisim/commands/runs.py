@@ -16,6 +16,7 @@ from typing import Any
 
 from tuisim.base.errors import ConfigError, LogError, counted, shortened
 from tuisim.commands.echo import (
+    AS_JSON,
     Progress,
     draw_table,
     echo,
@@ -46,7 +47,7 @@ from tuisim.engine.runs.side_files import MAX_PATH, FilesRead, read_reads
 from tuisim.engine.runs.store import RunStore, count_bytes
 from tuisim.engine.runs.temporary import create_temporary_home
 from tuisim.logs.export import EXPORTERS, LISTED, check_targets, export_samples, export_telemetry
-from tuisim.settings.command_line import AS_JSON, Group, WordType, argument, command, option
+from tuisim.settings.command_line import Group, WordType, argument, command, option
 from tuisim.settings.options import RUN_VALUES
 
 QUICK_BYTES = 8 << 20

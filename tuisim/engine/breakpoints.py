@@ -133,16 +133,6 @@ def check_line(one: Breakpoint, lines: Sequence[str]) -> None:
         raise _refuse(one.text, why, f"the program has {counted(last, 'line')}")
 
 
-def break_lines(breaks: Iterable[Breakpoint]) -> dict[int, Breakpoint]:
-    """Return the line breakpoints by line; if a line has several, an enabled one takes precedence."""
-    by_line: dict[int, Breakpoint] = {}
-    for point in sorted(breaks, key=lambda point: not point.disabled):
-        line = break_line_of(point)
-        if line:
-            by_line[line] = point
-    return by_line
-
-
 def break_line_of(one: Breakpoint) -> int:
     """Return the line of a breakpoint; 0 if it has none."""
     return one.rule.line if isinstance(one.rule, LineBreak) else 0

@@ -14,7 +14,6 @@ from functools import cache
 from pathlib import Path
 
 from tuisim.base.data_class import dataclass
-from tuisim.base.errors import ConfigError, nearest
 
 _PAGES = Path(__file__).resolve().parent / "pages"
 _PARTS = re.compile(
@@ -108,17 +107,3 @@ def _read_page(name: str, part: GuidePart) -> Page:
     assert match is not None, name
     head = tomllib.loads(match["head"])
     return Page(name, part, match["title"], head["about"], head["words"], match["text"].strip("\n"))
-
-
-def find_page(name: str) -> Page:
-    """Return a page by its name.
-
-    Raises:
-        ConfigError: there is no such page.
-    """
-    known = load_pages()
-    if name not in known:
-        raise ConfigError(
-            f"no such page {name!r}", f"{nearest(name, known)} See `tuisim guide`", key="guide"
-        )
-    return known[name]

@@ -5,21 +5,16 @@ from __future__ import annotations
 import re
 from itertools import accumulate
 
-from rich.style import Style
-
-from tuisim.guide.catalogue import CONTENTS, LINK, Page, load_pages
-from tuisim.guide.excerpt import draw_excerpt, flatten_passage, split_cells
-from tuisim.guide.search import SearchResult
+from tuisim.guide.catalogue import LINK, Page
+from tuisim.guide.excerpt import flatten_passage, split_cells
 from tuisim.guide.tables import build_markdown
-from tuisim.tasks.lessons.markdown import PLAIN, render_markdown
+from tuisim.tasks.lessons.markdown import render_markdown
 from tuisim.terminal.text_runs import Line
 
 _HEADING = re.compile(r"^## (.+)$", re.MULTILINE)
 _LETTERS = re.compile(r"[\W_]+")
 _LONG_PREFIXES, _SHORT_PREFIXES = (40, 20), (10, 5)
 """Numbers of first letters by which the beginning of a passage is looked for, the most reliable number first."""
-_PASSAGE_LINES = 2
-"""How much of a passage is shown among results."""
 NO_WORDS = "No page has these words"
 
 
@@ -43,30 +38,6 @@ def _format_link(link: re.Match[str]) -> str:
     name = link[2]
     plain = text.replace("`", "").lower().replace(" ", "-")
     return f"**{text}**" if plain == name else f"**{text}** (page `{name}`)"
-
-
-def draw_contents(width: int) -> list[Line]:
-    """Return the contents of the guide as lines: the pages of each part."""
-    text = [
-        "# The guide",
-        "`tuisim guide TOPIC` shows a page, `tuisim guide --search WORDS` finds one.",
-    ]
-    for part, names in CONTENTS.items():
-        text += [
-            f"## {part}",
-            "\n".join(f"- `{name}` {load_pages()[name].title}" for name in names),
-        ]
-    return render_markdown("\n\n".join(text), width)
-
-
-def draw_results(results: list[SearchResult], width: int) -> list[Line]:
-    """Return the results of a search as lines, the best first, each below its page and section."""
-    lines = []
-    for hit in results:
-        title = f"- `{hit.name}` **{load_pages()[hit.name].title}**{f': {hit.heading}' if hit.heading else ''}"
-        passage = draw_excerpt(hit, max(20, width - 3), _PASSAGE_LINES)
-        lines += [*render_markdown(title, width), *([("   ", PLAIN), *line] for line in passage)]
-    return lines
 
 
 def find_rows(lines: list[Line], heading: str, passage: str) -> tuple[int, int]:
@@ -109,18 +80,3 @@ def find_passage_end(lines: list[Line], row: int, passage: str) -> int:
         left -= len(_LETTERS.sub("", "".join(part for part, _ in lines[row])))
         row += 1
     return row
-
-
-def render_lines(lines: list[Line], *, styled: bool) -> str:
-    """Return lines as one text; with control sequences for a terminal if `styled`."""
-
-    def render_run(text: str, style: Style) -> str:
-        # No colours: the terminal may have any background.
-        bold = style.bold or style.color != PLAIN.color
-        return (
-            Style(bold=bold, italic=style.italic, underline=style.underline).render(text)
-            if styled
-            else text
-        )
-
-    return "\n".join("".join(render_run(*run) for run in line) for line in lines) + "\n"

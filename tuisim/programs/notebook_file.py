@@ -22,8 +22,6 @@ SUFFIX = ".ipynb"
 _MAGIC = re.compile(r"%(?P<cell>%)?(?P<name>sim_magic\w*)(?P<words>.*)")
 _VARIABLE = re.compile(r"(?<!\$)\$[A-Za-z_][\w.]*|\{[^{}]+\}")
 """Variables that IPython expands in a magic line."""
-
-_NUMBERS = re.compile(r"([0-9]+)|([^0-9]+)")
 _HEADING = re.compile(r"#+\s+(.*\S)")
 
 
@@ -54,30 +52,6 @@ class _Words:
 def is_notebook(word: str) -> bool:
     """Return whether a word of the command line names a notebook, or a cell of one as `FILE#number`."""
     return word.partition("#")[0].endswith(SUFFIX)
-
-
-def find_notebooks(folder: Path) -> list[Path]:
-    """Return the notebooks in a folder and its subfolders, in natural order: 2 comes before 10.
-
-    Hidden folders are left out: Jupyter keeps former versions in them.
-    """
-    notebooks: list[Path] = []
-    for place, folders, files in os.walk(folder):
-        folders[:] = [name for name in folders if not name.startswith(".")]
-        notebooks += [
-            Path(place, name)
-            for name in files
-            if name.endswith(SUFFIX) and not name.startswith(".")
-        ]
-    return sorted(notebooks, key=lambda path: [_build_sort_key(part) for part in path.parts])
-
-
-def _build_sort_key(name: str) -> list[tuple[int, str]]:
-    """Return a sort key for natural order."""
-    return [
-        (int(digits), "") if digits else (-1, text.lower())
-        for digits, text in _NUMBERS.findall(name)
-    ]
 
 
 def _read_cells(path: Path) -> Iterator[tuple[str, str]]:

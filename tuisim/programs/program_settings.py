@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ProfileError, RobotError
-from tuisim.base.source import FOR_SPIKE, Program
+from tuisim.base.source import Program
 from tuisim.engine.core.hub_spec import HUBS
 from tuisim.engine.core.profile import PROFILES, PYBRICKS_4, Library, MotorLaw, ProfileSpec
 from tuisim.programs.program_file import ProgramSource
@@ -36,6 +36,10 @@ if TYPE_CHECKING:
     from tuisim.programs.robot.assembly import BuiltRobot
     from tuisim.programs.robot.brick_syntax import RefusedLine
     from tuisim.programs.robot.report import ProgramRobot
+
+FOR_SPIKE = "a program in LEGO's own Python for SPIKE, which tuisim does not run"
+"""What is told about a program that imports one of these."""
+
 
 BRICK_PROFILE = "ev3"
 """The profile of programs that are for a real brick."""

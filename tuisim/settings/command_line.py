@@ -114,9 +114,6 @@ def choice(flag: str, allowed: Sequence[str], **how: Any) -> GroupedOption:
     return GroupedOption([flag], type=click.Choice(allowed), metavar="|".join(allowed), **how)
 
 
-AS_JSON = option("--json", "as_json", is_flag=True, help="Print JSON.")
-
-
 def argument(
     name: str, metavar: str, names: Callable[[], Iterable[str]] | None = None, **how: Any
 ) -> click.Argument:

@@ -27,7 +27,13 @@ from tuisim.engine.core.values import (
     list_values,
 )
 from tuisim.engine.presses import Presses
-from tuisim.terminal.picture_options import AUTO, CELLS, PIXELS
+from tuisim.terminal.picture_options import AUTO, NO_PIXELS, CellSet, Protocol
+
+CELLS = (AUTO, *CellSet)
+"""What `--cells` accepts."""
+PIXELS = (AUTO, *Protocol, NO_PIXELS)
+"""What `--pixels` accepts."""
+
 
 COLOR_DEPTHS = ("auto", "truecolor", "256", "16", "8", "none")
 MIN_SPEED, MAX_SPEED = 0.01, 1000.0

@@ -112,7 +112,6 @@ ROBOTS: Mapping[str, RobotSpec] = {
 """Every robot by name."""
 
 DEFAULT_ROBOT = "Default_Robot"
-HUB_ROBOT = "Prime_Robot"
 _VALUES = list_values(RobotSpec)
 _BODY_KEYS = tuple(
     key

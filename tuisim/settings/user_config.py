@@ -6,6 +6,7 @@ end of `_EVERY`. To add a setting: do the one or the other.
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import field, replace
@@ -18,7 +19,7 @@ from typing import Any
 from tuisim.base.atomic import make_private_folder, replacing
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ConfigError, nearest, see_page
-from tuisim.base.folders import config_folder, user_path
+from tuisim.base.folders import user_path
 from tuisim.base.regular_file import read_regular
 from tuisim.engine.core.values import Value, quote
 from tuisim.engine.files import (
@@ -415,3 +416,12 @@ def _write(path: Path, text: str) -> None:
             file.write(text.encode())
     except OSError as error:
         raise ConfigError(f"cannot be written: {error.strerror or error}", file=str(path)) from None
+
+
+def config_folder() -> Path:
+    """Return the folder of `config.toml`: `TUISIM_HOME`, or the platform's folder for the user's configuration."""
+    if home := os.environ.get("TUISIM_HOME"):
+        return Path(home)
+    import platformdirs
+
+    return platformdirs.user_config_path("tuisim")

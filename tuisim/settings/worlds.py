@@ -15,10 +15,9 @@ from tuisim.base.errors import ConfigError, ObstacleError, ProfileError, RobotEr
 from tuisim.base.folders import programs_folder, user_path
 from tuisim.engine import files
 from tuisim.engine.core import tree
-from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.profile import ProfileSpec
 from tuisim.engine.core.remote_spec import BeaconSpec, RemotePress
-from tuisim.engine.core.spec import START_VALUES, RunSpec
+from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.core.values import list_values, quote
 from tuisim.engine.files import Location, Scalar
 from tuisim.engine.mats import find_mat, spec_name
@@ -245,22 +244,6 @@ def _split_table(data: object, location: Location) -> tuple[dict[str, Any], dict
     return values, {
         key: value for key, value in structs.asdict(others).items() if value is not UNSET
     }
-
-
-def parse_pose(data: object, location: Location) -> Pose:
-    """Return a pose; all of its keys are required.
-
-    Raises:
-        ConfigError: a key is missing or unknown, or a value is wrong.
-    """
-    entries = files.table(data, location, START_VALUES)
-    coordinates = {
-        key: files.read_value(value, START_VALUES[key], location.at(key))
-        for key, value in entries.items()
-    }
-    for key in START_VALUES:
-        files.required(coordinates, key, location)
-    return Pose(**coordinates)
 
 
 def _parse_argument(word: object, location: Location) -> str:

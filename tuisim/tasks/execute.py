@@ -12,7 +12,7 @@ from pathlib import Path
 
 from tuisim.base.errors import LogError, TuisimError
 from tuisim.base.faults import describe_fault
-from tuisim.base.regular_file import has_machine_cause
+from tuisim.base.regular_file import of_the_machine
 from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.mat_cache import FieldFiles, prepare
 from tuisim.engine.mats import background
@@ -245,3 +245,9 @@ def _read_beginning(rows: Iterable[OutputRow]) -> str:
             text.append(row.text)
             size += len(row.text) + 1
     return "\n".join(text)[:OUTPUT_CHARACTERS]
+
+
+def has_machine_cause(error: BaseException) -> bool:
+    """Return whether the direct cause of an error is a file error of this machine; see `of_the_machine`."""
+    cause = error.__cause__
+    return isinstance(cause, OSError) and of_the_machine(cause)

@@ -23,8 +23,6 @@ class CellSet(StrEnum):
 
 
 AUTO = "auto"
-CELLS = (AUTO, *CellSet)
-"""What `--cells` accepts."""
 
 
 class Protocol(StrEnum):
@@ -36,5 +34,3 @@ class Protocol(StrEnum):
 
 
 NO_PIXELS = "none"
-PIXELS = (AUTO, *Protocol, NO_PIXELS)
-"""What `--pixels` accepts."""

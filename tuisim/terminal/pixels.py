@@ -36,7 +36,3 @@ class CellPoints(NamedTuple):
     def tall(self) -> float:
         """Height of a pixel, as a multiple of its width."""
         return self.aspect * self.cols / self.rows
-
-
-SQUARE = CellPoints()
-"""Two square pixels, one above the other."""

@@ -9,8 +9,8 @@ from tests.app.app_help import open_lab, screen_text, until
 from tuisim.app.dialogs.robots import RobotPicker, describe_parts, draw_robot_picture, fit_view
 from tuisim.engine.core.spec import RobotSpec
 from tuisim.pictures.scene.robot import COLORED
+from tuisim.pictures.scene.view import SQUARE
 from tuisim.settings.robots import ROBOTS
-from tuisim.terminal.pixels import SQUARE
 
 
 def words_of(robot: RobotSpec) -> list[str]:

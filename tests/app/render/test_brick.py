@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tuisim.app.render.brick import draw_brick, name_led
+from tuisim.app.render.brick import draw_brick, name_led, shrink_pixels
 from tuisim.engine.core.spec import BUTTONS
 from tuisim.engine.runs.brick_state import (
     DISPLAY_HEIGHT,
@@ -16,7 +16,6 @@ from tuisim.engine.runs.brick_state import (
     BrickState,
     TextScreen,
 )
-from tuisim.pictures.scene.discs import shrink_pixels
 
 SIZES = [(178, 70), (118, 37), (78, 20), (44, 12), (26, 6), (12, 3), (1, 1)]
 

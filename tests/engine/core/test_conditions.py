@@ -11,7 +11,7 @@ import pyarrow as pa
 import pytest
 
 from tuisim.analysis.events import FORM, Threshold, parse_events, parse_threshold
-from tuisim.app.timeline import find
+from tuisim.app.timeline import find, find_begins
 from tuisim.base.errors import ConfigError, LogError
 from tuisim.engine.breakpoints import parse_break
 from tuisim.engine.core.conditions import (
@@ -23,7 +23,7 @@ from tuisim.engine.core.conditions import (
 )
 from tuisim.engine.core.profile import PROFILES
 from tuisim.engine.core.spec import RobotSpec
-from tuisim.engine.runs.frames import evaluate_condition, find_begins
+from tuisim.engine.runs.frames import evaluate_condition
 from tuisim.engine.runs.records import OutputRow, Stream
 from tuisim.logs.columns import Layout
 from tuisim.logs.expressions import evaluate

@@ -8,7 +8,7 @@ import pytest
 
 from tests.engine.shim.checking import Check, Table, differences
 from tests.engine.shim.conftest import RunOn
-from tuisim.guide.catalogue import find_page
+from tuisim.commands.guide import find_page
 
 SETUP = """
 import time

@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.cases import cases, for_each
+from tuisim.app.panels import time_bar
 from tuisim.pictures.charts import axes
 from tuisim.pictures.charts.traces import reduce_points
 
@@ -46,12 +47,12 @@ def test_one_value_of_any_size_has_limits_around_it(value: float) -> None:
     "end_s, upper_s", [(0, 5), (5, 5), (5.1, 10), (45, 60), (61, 120), (600, 600), (700, 720)]
 )
 def test_time_limits(end_s: float, upper_s: float) -> None:
-    assert axes.time_limits(end_s) == (0, upper_s)
+    assert time_bar.time_limits(end_s) == (0, upper_s)
 
 
 @given(st.integers(4, 300), st.floats(0.1, 5000))
 def test_time_axis_has_the_width_and_a_unit(columns: int, end_s: float) -> None:
-    line, below = axes.draw_time_axis(axes.time_limits(end_s), columns)
+    line, below = axes.draw_time_axis(time_bar.time_limits(end_s), columns)
 
     assert len(line) == len(below) == columns
 

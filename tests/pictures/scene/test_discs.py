@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from tests.cases import cases
+from tuisim.app.render.brick import shrink_pixels
 from tuisim.engine.core.sensors.color import ColorReading, LightRead
-from tuisim.pictures.scene.discs import RIM_RGB, RINGS, DiscFace, draw_disc, shrink_pixels
+from tuisim.pictures.scene.discs import RIM_RGB, RINGS, DiscFace, draw_disc
 from tuisim.programs.robot.thresholds import AIM, ProgramThreshold
 
 GROUND = (1, 2, 3)

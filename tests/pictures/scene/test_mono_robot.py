@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 from tests.cases import cases, for_each
+from tuisim.app.render.world_text import draw_pointer
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.outline import build_outline
 from tuisim.engine.core.spec import RobotSpec
-from tuisim.pictures.scene.mono_robot import draw_body, draw_pointer
+from tuisim.pictures.scene.mono_robot import draw_body
 from tuisim.pictures.scene.pen import choose_pen_rgb
 from tuisim.pictures.scene.view import fit_field
 from tuisim.terminal.glyphs import GLYPHS, SIGNS

@@ -10,8 +10,8 @@ import pytest
 from tests.cases import for_each
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
-from tuisim.pictures.scene.view import ZOOMS, Area, Viewport, fit_field, follow_robot
-from tuisim.terminal.pixels import SQUARE, CellPoints
+from tuisim.pictures.scene.view import SQUARE, ZOOMS, Area, Viewport, fit_field, follow_robot
+from tuisim.terminal.pixels import CellPoints
 
 SIZE = (76, 38)
 WHOLE = fit_field(*SIZE)

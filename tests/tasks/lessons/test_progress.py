@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from tuisim.base.errors import ConfigError
+from tuisim.commands.learn import find_last_opened
 from tuisim.tasks.lessons.catalogue import find_shipped_paths
 from tuisim.tasks.lessons.files import load_lesson
 from tuisim.tasks.lessons.progress import (
@@ -14,7 +15,6 @@ from tuisim.tasks.lessons.progress import (
     StepProgress,
     StepState,
     find_folder,
-    find_last_opened,
     load_progress,
     prepare_program,
     save_progress,

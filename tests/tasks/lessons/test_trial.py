@@ -8,14 +8,14 @@ from collections.abc import Callable
 import pytest
 
 from tuisim.cli import COMMANDS
-from tuisim.commands.learn import learn
+from tuisim.commands.learn import find_warnings, learn
 from tuisim.engine.runs.store import RunStore
 from tuisim.programs.program_file import list_programs
 from tuisim.tasks.goals.spec import LogCondition
 from tuisim.tasks.lessons.catalogue import find_shipped_paths
 from tuisim.tasks.lessons.files import load_lesson
 from tuisim.tasks.lessons.spec import Lesson, QuestionCheck, RunCheck
-from tuisim.tasks.lessons.trial import build_task, find_faults, find_warnings, run_model
+from tuisim.tasks.lessons.trial import build_task, find_faults, run_model
 from tuisim.tasks.pool import run_many
 
 LESSONS = {name: load_lesson(path) for name, path in find_shipped_paths().items()}

@@ -10,12 +10,14 @@ from rich.style import Style
 from textual import events
 from textual.message import Message
 
-from tuisim.analysis.chart import build_spans, draw_event_marks
+from tuisim.analysis.chart import build_spans
+from tuisim.analysis.events import CommandRow
 from tuisim.analysis.traces import DISTANCE, TIME
 from tuisim.app.plot_view import PlotView
 from tuisim.base import palette
 from tuisim.base.data_class import dataclass
 from tuisim.logs.magnitude import limit_drawn
+from tuisim.pictures.charts.axes import Limits, find_column
 from tuisim.pictures.charts.canvas import BRAILLE, draw_xy_chart
 from tuisim.pictures.charts.text_chart import (
     ChartPainter,
@@ -276,3 +278,23 @@ def _build_measure_line(model: AnalysisModel, unit: str, width: int) -> list[lis
             break
         line += [(f"  {word} ", plain), (text, strong)]
     return [line]
+
+
+def draw_event_marks(model: AnalysisModel, limits: Limits, columns: int) -> str:
+    """Return a line of text with a mark in each column of the chart that has events."""
+    line = [" "] * columns
+    for event in model.events.list_events(model.log):
+        if isinstance(event, CommandRow):
+            place = model.find_place(event.row, event.time_s)
+            mark = "╷"
+        else:
+            trace = model.traces.find_trace(event.variable)
+            crossing = event.crossing
+            place = crossing.time_s + float(
+                trace.places[crossing.sample] - trace.series.time_s[crossing.sample]
+            )
+            mark = "▲" if crossing.rising else "▼"
+        if limits[0] <= place <= limits[1]:
+            column = min(max(find_column(place, limits, columns), 0), columns - 1)
+            line[column] = mark if line[column] in (" ", mark) else "◆"
+    return "".join(line)

@@ -17,13 +17,7 @@ from textual.widget import Widget
 
 from tuisim.analysis.events import CommandRow
 from tuisim.analysis.model import RECKONING, AnalysisModel
-from tuisim.analysis.source import (
-    LogRequest,
-    is_readable_again,
-    open_pieces,
-    read_doubtful,
-    remember_choices,
-)
+from tuisim.analysis.source import LogRequest, is_readable_again, open_pieces, remember_choices
 from tuisim.app import background
 from tuisim.app.action import ActionHost, KeyFooter
 from tuisim.app.analyser.chart import LogChart
@@ -35,7 +29,7 @@ from tuisim.app.dialogs.question import Form, LinePrompt
 from tuisim.app.layout.forms import is_tall
 from tuisim.base import palette
 from tuisim.base.errors import LogError, TuisimError
-from tuisim.logs.choices import ReadChoices
+from tuisim.logs.choices import NO_CHOICES, ReadChoices
 from tuisim.logs.columns import list_numeric_columns
 from tuisim.logs.derived import SIGNALS, TIME, find_computed_columns
 from tuisim.logs.expressions import CONSTANTS, FUNCTIONS
@@ -474,3 +468,18 @@ class LogScreen(ActionHost, ClosesOnce[None]):
 
     def on_unmount(self) -> None:
         self.give_up()
+
+
+def read_doubtful(request: LogRequest) -> Log | None:
+    """Return the first rows of a file if the user should check how it is read, since something was guessed; else None.
+
+    Raises:
+        LogError: it cannot be read, or has no row.
+    """
+    is_known = request.is_remembered or request.choices != NO_CHOICES
+    if is_known or not is_readable_again(request.file):
+        return None
+    log = read_beginning(request.file, NO_CHOICES)
+    # The lines that a program printed are read in one way only: there is nothing to choose.
+    is_guessed = not log.layout.sure or bool(log.form.separator and log.notes)
+    return log if is_guessed and not log.metadata else None

@@ -9,12 +9,15 @@ from textual.widget import Widget
 
 from tuisim.app.panels.titles import name_sensors
 from tuisim.app.render.arrays import Arrangement, arrange_discs, build_face_lines, list_border_names
-from tuisim.pictures.scene.discs import RIM_16_RGB, RIM_RGB, DiscFace, draw_disc, list_disc_faces
+from tuisim.pictures.scene.discs import RIM_RGB, DiscFace, draw_disc, list_disc_faces
 from tuisim.terminal.cell_view import LinesView, PixelView
 from tuisim.terminal.text_runs import Line
 
 if TYPE_CHECKING:
     from tuisim.app.snapshot import Snapshot
+
+RIM_16_RGB = (0, 0, 135)
+"""In place of `RIM_RGB` for 8 or 16 colours: they have no grey to spare, and a pattern would outshine the disc."""
 
 
 class _DiscPicture(PixelView):

@@ -14,7 +14,7 @@ from tuisim.app.snapshot import RunPhase, Snapshot
 from tuisim.base import palette
 from tuisim.base.data_class import dataclass
 from tuisim.engine.runs.records import Mark
-from tuisim.pictures.charts.axes import time_limits
+from tuisim.pictures.charts.axes import Limits
 from tuisim.terminal.cell_view import LinesView
 from tuisim.terminal.text_runs import Run
 
@@ -206,3 +206,17 @@ class TimeBar(LinesView):
     def on_mouse_release(self) -> None:
         """Stop following the mouse: a dialog has captured it."""
         self._dragging = False
+
+
+_SPANS_S = (5.0, 10.0, 20.0, 30.0, 60.0)
+
+
+def time_limits(end_s: float) -> Limits:
+    """Return limits from 0 to a round time after `end_s`; there are few such times, so that axes seldom change."""
+    for span_s in _SPANS_S:
+        if end_s <= span_s:
+            return 0.0, span_s
+    step = 60.0
+    while end_s > 5 * step:
+        step *= 2
+    return 0.0, math.ceil(end_s / step) * step

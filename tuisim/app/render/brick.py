@@ -6,6 +6,7 @@ from collections.abc import Collection, Sequence
 from functools import lru_cache
 
 import numpy as np
+import numpy.typing as npt
 from numpy.typing import NDArray
 from rich.color import Color
 from rich.style import Style
@@ -21,7 +22,6 @@ from tuisim.engine.runs.brick_state import (
     BrickState,
     TextScreen,
 )
-from tuisim.pictures.scene.discs import shrink_pixels
 from tuisim.terminal.text_runs import Run
 
 _PAPER_RGB, _INK_RGB = (172, 186, 158), (22, 28, 20)
@@ -298,3 +298,25 @@ def draw_bumpers(
         boxes.append(ButtonBox(row, first, first + len(label), port))
         first += len(label) + 1
     return line[:-1], tuple(boxes)
+
+
+def shrink_pixels(
+    pixels: npt.NDArray[np.uint8], rows: int, columns: int
+) -> npt.NDArray[np.float64]:
+    """Return the mean of the pixels in each cell of a coarser grid.
+
+    Args:
+        pixels: Shape (h, w).
+        rows: Of the coarser grid, at most h.
+        columns: Of the coarser grid, at most w.
+
+    Returns:
+        Shape (rows, columns).
+    """
+    down = np.arange(rows + 1) * pixels.shape[0] // rows
+    across = np.arange(columns + 1) * pixels.shape[1] // columns
+    sums = np.add.reduceat(
+        np.add.reduceat(pixels, down[:-1], axis=0, dtype=np.float64), across[:-1], axis=1
+    )
+    means: npt.NDArray[np.float64] = sums / (np.diff(down)[:, None] * np.diff(across)[None, :])
+    return means

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import math
+
 from tuisim.app.snapshot import Snapshot
+from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.outline import build_outline
-from tuisim.pictures.scene.mono_robot import draw_body, draw_pointer
+from tuisim.pictures.scene.mono_robot import draw_body
 from tuisim.pictures.scene.off_field import describe_off_field
 from tuisim.pictures.scene.painter import Faint, ScenePainter, SceneState
 from tuisim.pictures.scene.pen import PenTrace
 from tuisim.pictures.scene.robot import choose_scale
 from tuisim.pictures.scene.view import Viewport, follow_robot
-from tuisim.terminal.cells import draw_mono_rows, find_cell_points
+from tuisim.terminal.cells import draw_mono_rows, find_cell_points, sign_cell
 from tuisim.terminal.picture_options import CellSet
 from tuisim.terminal.pixels import Pixels
 
@@ -91,3 +94,43 @@ def draw_signs(port: Viewport, scene: SceneState) -> dict[tuple[int, int], int]:
         | draw_body(port, scene.pose, outline)
         | draw_pointer(port, scene.pose, reach_mm, _PIVOT)
     )
+
+
+_LINES = "-/|\\"
+_TIPS = {0: ">", 2: "^", 4: "<", 6: "v"}
+"""Signs for the eight directions, counter-clockwise from the right; a line looks the same backwards."""
+_STEPS_PER_CELL = 4
+_AHEAD_CELLS = 2.0
+
+
+def draw_pointer(
+    view: Viewport, pose: Pose, reach_mm: float, pivot: str
+) -> dict[tuple[int, int], int]:
+    """Return signs that show place and heading of a robot, by row and column of their cells.
+
+    Args:
+        view: The visible part of the field.
+        pose: Where the robot is.
+        reach_mm: How far the drawn robot reaches ahead; the pointer is longer.
+        pivot: The sign for the place of the robot.
+    """
+    width_mm, height_mm = view.mm_per_px * view.cell.cols, view.mm_per_row * view.cell.rows
+    heading = math.radians(pose.heading_deg)
+    # From the middle of a cell, so that it does not change while the robot drives on straight.
+    col = math.floor((pose.x_mm - view.left_mm) / width_mm) + 0.5
+    row = math.floor((view.top_mm - pose.y_mm) / height_mm) + 0.5
+    length = reach_mm / width_mm + _AHEAD_CELLS
+    direction = round(math.degrees(heading) / 45) % 8
+    steps = (step / _STEPS_PER_CELL for step in range(1, math.ceil(length * _STEPS_PER_CELL) + 1))
+    down = width_mm / height_mm
+    path = [
+        (
+            math.floor(row - step * math.sin(heading) * down),
+            math.floor(col + step * math.cos(heading)),
+        )
+        for step in steps
+    ]
+    signs = dict.fromkeys(path, _LINES[direction % 4])
+    signs[path[-1]] = _TIPS.get(direction, _LINES[direction % 4])
+    signs[math.floor(row), math.floor(col)] = pivot
+    return {cell: sign_cell(sign) for cell, sign in signs.items()}

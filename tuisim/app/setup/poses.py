@@ -11,9 +11,10 @@ from pathlib import Path
 from tuisim.base.atomic import make_private_folder
 from tuisim.base.errors import ConfigError
 from tuisim.base.folders import home_folder
+from tuisim.engine import files
 from tuisim.engine.core.geometry import Pose, world_point
 from tuisim.engine.core.outline import build_outline
-from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, RunSpec
+from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, START_VALUES, RunSpec
 from tuisim.engine.files import (
     Location,
     read_file,
@@ -23,7 +24,6 @@ from tuisim.engine.files import (
     toml_key,
     toml_lines,
 )
-from tuisim.settings.worlds import parse_pose
 
 MAX_TRIES = 2000
 
@@ -152,3 +152,19 @@ def _write(poses: Mapping[str, Pose]) -> None:
             f"cannot be made: {error.strerror or error}", file=str(path.parent)
         ) from None
     save_toml(path, lines, Location(str(path)), _parse_poses, poses, owner_only=True)
+
+
+def parse_pose(data: object, location: Location) -> Pose:
+    """Return a pose; all of its keys are required.
+
+    Raises:
+        ConfigError: a key is missing or unknown, or a value is wrong.
+    """
+    entries = files.table(data, location, START_VALUES)
+    coordinates = {
+        key: files.read_value(value, START_VALUES[key], location.at(key))
+        for key, value in entries.items()
+    }
+    for key in START_VALUES:
+        files.required(coordinates, key, location)
+    return Pose(**coordinates)

@@ -20,9 +20,9 @@ from tuisim import __version__
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ConfigError, TuisimError
 from tuisim.base.folders import backgrounds_folder, home_folder, programs_folder
-from tuisim.commands.echo import echo, echo_json
+from tuisim.commands.echo import AS_JSON, echo, echo_json
 from tuisim.notebook.kernel import find_old_simulator
-from tuisim.settings.command_line import AS_JSON, command, option
+from tuisim.settings.command_line import command, option
 from tuisim.terminal.picture_options import CellSet
 
 # Pure: `doctor` looks at the machine, and these functions judge what it found.

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from tuisim.base.errors import ConfigError
-from tuisim.commands.echo import draw_table, echo, echo_json, echo_lines
-from tuisim.settings.command_line import AS_JSON, command, option
+from tuisim.commands.echo import AS_JSON, draw_table, echo, echo_json, echo_lines
+from tuisim.settings.command_line import command, option
 from tuisim.settings.user_config import FILE, SETTINGS, UserConfig, load_config, write_template
 
 

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import reprlib
+from collections.abc import Iterable, Mapping, Sequence
 from typing import NamedTuple
 
-from tuisim.base.errors import require_one_of
+from tuisim.base.errors import RobotError
 
 
 class HubKind(NamedTuple):
@@ -72,3 +73,24 @@ def check_motor_kinds(hub: str, kinds: Mapping[str, str]) -> None:
 def find_touch_keys(ports: Sequence[str]) -> dict[str, str]:
     """Return ports of touch sensors by the digits that press them: one after another where ports are letters."""
     return {port[2:] or str(number): port for number, port in enumerate(ports, 1)}
+
+
+def require_one_of(value: object, what: str, allowed: Iterable[object], key: str) -> None:
+    """Check that a value is one of `allowed`.
+
+    Args:
+        value: Value to check; a bool is not a number.
+        what: What the value is, such as `port`.
+        allowed: All allowed values.
+        key: Name of the value in the error.
+
+    Raises:
+        RobotError: the check failed.
+    """
+    allowed = tuple(allowed)
+    if value not in allowed or isinstance(value, bool):
+        raise RobotError(
+            f"no such {what} {reprlib.repr(value)}",
+            f"one of {', '.join(map(str, allowed))}",
+            key=key,
+        )

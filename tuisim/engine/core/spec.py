@@ -14,7 +14,7 @@ from collections.abc import Mapping
 from dataclasses import MISSING
 from typing import Any, NamedTuple
 
-from tuisim.base.errors import ObstacleError, RobotError, require_one_of
+from tuisim.base.errors import ObstacleError, RobotError
 from tuisim.engine.core.drift_spec import NO_DRIFT, DriftSpec
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.hub_spec import (
@@ -25,6 +25,7 @@ from tuisim.engine.core.hub_spec import (
     HUBS,
     INSIDE,
     check_motor_kinds,
+    require_one_of,
 )
 from tuisim.engine.core.profile import ProfileSpec
 from tuisim.engine.core.remote_spec import MAX_POSITION_MM, REMOTE_BY_HAND, BeaconSpec, RemotePress

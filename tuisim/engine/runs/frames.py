@@ -239,15 +239,6 @@ def evaluate_condition(condition: ValueCondition, values: Array) -> Array:
     return true
 
 
-def find_begins(condition: ValueCondition, true: Array) -> Array:
-    """Return the ticks at which a condition becomes true, in order; `true` tells whether it is true at each tick."""
-    import numpy as np
-
-    before = np.concatenate(([False], true[:-1]))
-    began: Array = np.flatnonzero(true if condition.is_momentary else true & ~before)
-    return began
-
-
 def describe_damage(run: StoredRun) -> str:
     """Return a message with the number of damaged records; empty if there are none.
 

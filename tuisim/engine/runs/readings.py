@@ -17,7 +17,6 @@ from tuisim.base.data_class import dataclass
 from tuisim.base.errors import LogError
 from tuisim.base.regular_file import of_the_machine, read_regular
 from tuisim.engine.core.hub_spec import CONTROLLERS, HUB_BUTTONS, HUB_PORTS, INSIDE
-from tuisim.engine.core.profile import NS_PER_S
 from tuisim.engine.core.spec import BUTTONS, INPUT_PORTS, OUTPUT_PORTS
 from tuisim.engine.runs.records import HEADER_BYTES, MappedWriter, read_published_length
 from tuisim.engine.runs.side_files import READINGS_FILE
@@ -148,13 +147,6 @@ class Readings:
             np.isin(self.rows["mode"], [READING_MODES.index(mode) for mode in modes])
         ]
         return rows
-
-
-def find_ticks(rows: Array, hz: int) -> Array:
-    """Return the tick at which each of some readings was taken; `hz` is ticks per second."""
-    seconds, rest_ns = divmod(rows["time_ns"], NS_PER_S)
-    ticks: Array = seconds * hz + rest_ns * hz // NS_PER_S
-    return ticks
 
 
 def read_readings(folder: Path, *, is_over: bool = True) -> Readings:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import counted
 from tuisim.engine.core.profile import NS_PER_S, compute_due_ns
-from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, RunSpec
+from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.core.tick_record import FLAG_LEFT_RUNNING, FLAG_RIGHT_RUNNING
 from tuisim.engine.runs.views import TelemetryView
 
@@ -115,19 +115,6 @@ def touches_solid(pose: PoseTuple, spec: RunSpec) -> bool:
 
     gaps = Solids(spec.world, spec.robot).measure_gaps_mm(pose) if spec.world.solid else ()
     return any(gap < _CONTACT_MM for gap in gaps)
-
-
-def has_left_field(telemetry: TelemetryView, spec: RunSpec) -> bool:
-    """Return whether a robot on an open floor has been off the field.
-
-    Raises:
-        LogError: the recording is damaged.
-    """
-    if not spec.world.is_open:
-        return False
-    records = telemetry.array()
-    sides = (records["x_mm"], FIELD_WIDTH_MM), (records["y_mm"], FIELD_HEIGHT_MM)
-    return any(bool(((at_mm < 0) | (at_mm > size_mm)).any()) for at_mm, size_mm in sides)
 
 
 def describe_standstill(telemetry: TelemetryView, spec: RunSpec) -> str:

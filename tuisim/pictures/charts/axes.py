@@ -93,24 +93,10 @@ def label_ticks(limits: Limits, count: int) -> list[tuple[float, str]]:
     return list(zip(positions, texts, strict=True))
 
 
-_SPANS_S = (5.0, 10.0, 20.0, 30.0, 60.0)
-
-
 def grow_limits(end_s: float) -> Limits:
     """Return limits from 0 to shortly after `end_s`; they grow in steps, so that a new point rarely rescales curves."""
     step = choose_step(max(end_s, 1.0), 8)
     return 0.0, max(math.ceil(end_s / step - 1e-9) * step, 1.0)
-
-
-def time_limits(end_s: float) -> Limits:
-    """Return limits from 0 to a round time after `end_s`; there are few such times, so that axes seldom change."""
-    for span_s in _SPANS_S:
-        if end_s <= span_s:
-            return 0.0, span_s
-    step = 60.0
-    while end_s > 5 * step:
-        step *= 2
-    return 0.0, math.ceil(end_s / step) * step
 
 
 _MIN_TIME_SHARE = 1e-14

@@ -25,9 +25,6 @@ from tuisim.terminal.pixels import Pixels
 RIM_RGB = (58, 70, 88)
 """Around a disc: neither black, white nor a colour of a mat, so that its outline is seen on any of them."""
 
-RIM_16_RGB = (0, 0, 135)
-"""In place of `RIM_RGB` for 8 or 16 colours: they have no grey to spare, and a pattern would outshine the disc."""
-
 RINGS = ("centre", "middle", "edge")
 """Rings of equal width, from the inside."""
 
@@ -201,25 +198,3 @@ def _means(samples: npt.NDArray[np.generic], fine: int) -> npt.NDArray[np.float6
 def _place_samples(size_px: int, fine: int) -> npt.NDArray[np.float64]:
     """Return the places of samples along a side, in pixels from its middle; `fine` samples are in a pixel."""
     return (np.arange(size_px * fine) + 0.5) / fine - size_px / 2
-
-
-def shrink_pixels(
-    pixels: npt.NDArray[np.uint8], rows: int, columns: int
-) -> npt.NDArray[np.float64]:
-    """Return the mean of the pixels in each cell of a coarser grid.
-
-    Args:
-        pixels: Shape (h, w).
-        rows: Of the coarser grid, at most h.
-        columns: Of the coarser grid, at most w.
-
-    Returns:
-        Shape (rows, columns).
-    """
-    down = np.arange(rows + 1) * pixels.shape[0] // rows
-    across = np.arange(columns + 1) * pixels.shape[1] // columns
-    sums = np.add.reduceat(
-        np.add.reduceat(pixels, down[:-1], axis=0, dtype=np.float64), across[:-1], axis=1
-    )
-    means: npt.NDArray[np.float64] = sums / (np.diff(down)[:, None] * np.diff(across)[None, :])
-    return means

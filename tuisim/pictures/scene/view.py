@@ -9,7 +9,11 @@ from typing import NamedTuple
 from tuisim.base.data_class import dataclass
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
-from tuisim.terminal.pixels import SQUARE, CellPoints
+from tuisim.terminal.pixels import CellPoints
+
+SQUARE = CellPoints()
+"""Two square pixels, one above the other."""
+
 
 ZOOMS = (1, 2, 4)
 """Zoom factors, relative to the whole field."""

@@ -19,12 +19,14 @@ from tuisim.programs.robot.library import DEVICES, PAIRS
 from tuisim.programs.robot.mentions import Mentions
 from tuisim.settings.robots import (
     DEFAULT_ROBOT,
-    HUB_ROBOT,
     ROBOTS,
     format_robot,
     list_table_values,
     parse_robot,
 )
+
+HUB_ROBOT = "Prime_Robot"
+
 
 USUAL = ROBOTS[DEFAULT_ROBOT]
 """The robot that programs for the EV3 change."""

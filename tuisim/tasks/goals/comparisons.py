@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import ClassVar
 
 from tuisim.base.data_class import dataclass
-from tuisim.base.errors import ConfigError, nearest, require_regex
+from tuisim.base.errors import ConfigError, nearest
 from tuisim.engine.core.conditions import (
     COMPARE,
     Operator,
@@ -15,7 +15,15 @@ from tuisim.engine.core.conditions import (
 )
 from tuisim.programs.facts import STRUCTURES
 from tuisim.tasks.goals.brick import parse_goal_condition
-from tuisim.tasks.goals.condition import Condition, ConditionKind, Gap, Share, Times, check_count
+from tuisim.tasks.goals.condition import (
+    Condition,
+    ConditionKind,
+    Gap,
+    Share,
+    Times,
+    check_count,
+    require_regex,
+)
 
 
 @dataclass(frozen=True, slots=True)

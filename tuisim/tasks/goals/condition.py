@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from enum import StrEnum
 from typing import Annotated, ClassVar
@@ -74,3 +75,19 @@ class Condition:
     KIND: ClassVar[ConditionKind] = ConditionKind.REACHED
     SHORT: ClassVar[str] = ""
     """The key that is meant if a file gives a value instead of a table; its value may be one text instead of a list."""
+
+
+def require_regex(pattern: str, key: str) -> None:
+    """Check that a text is a regular expression.
+
+    Args:
+        pattern: Text to check.
+        key: Name of the value in the error.
+
+    Raises:
+        ConfigError: it is not.
+    """
+    try:
+        re.compile(pattern)
+    except (re.error, RecursionError, OverflowError) as error:
+        raise ConfigError(f"{pattern!r} is not a regular expression: {error}", key=key) from None

@@ -14,7 +14,7 @@ from typing import Annotated, ClassVar
 from msgspec import Meta
 
 from tuisim.base.data_class import dataclass
-from tuisim.base.errors import ConfigError, require_regex
+from tuisim.base.errors import ConfigError
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 from tuisim.tasks.goals.comparisons import (
     CountCondition,
@@ -36,6 +36,7 @@ from tuisim.tasks.goals.condition import (
     X,
     Y,
     check_count,
+    require_regex,
 )
 
 MAX_GOALS = 200

@@ -19,7 +19,6 @@ from tuisim.tasks.lessons.files import (
     load_lesson,
     parse_lesson,
 )
-from tuisim.tasks.lessons.spec import Lesson
 
 SKELETON = """\
 +++
@@ -239,12 +238,3 @@ def find_telling(lesson: Path, library: Library, folder: Path | str | None = Non
             key="--library",
         )
     return paths[build_telling_name(name, library)]
-
-
-def load_all(folder: Path | str | None = None) -> list[Lesson]:
-    """Read all lessons.
-
-    Raises:
-        ConfigError: the folder or a lesson is wrong.
-    """
-    return [load_lesson(path) for path in find_lesson_paths(folder).values()]

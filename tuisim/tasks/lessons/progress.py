@@ -151,16 +151,6 @@ def save_progress(lesson: str, progress: LessonProgress) -> None:
         ) from None
 
 
-def find_last_opened(progress: Mapping[str, LessonProgress]) -> str:
-    """Return the name of the lesson that was opened last; empty if none was."""
-    opened = [
-        (lesson_progress.opened_at, name)
-        for name, lesson_progress in progress.items()
-        if lesson_progress.opened_at
-    ]
-    return max(opened)[1] if opened else ""
-
-
 def build_program_path(lesson: Lesson) -> Path:
     """Return the file with the student's program of a lesson; it may not exist yet."""
     return find_folder() / f"{lesson.name}.py"

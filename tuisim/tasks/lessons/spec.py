@@ -14,8 +14,9 @@ from typing import Annotated, Any, ClassVar, TypeAlias
 from msgspec import Meta
 
 from tuisim.base.data_class import dataclass
-from tuisim.base.errors import ConfigError, nearest, require_regex
+from tuisim.base.errors import ConfigError, nearest
 from tuisim.settings.options import OPTION_PANELS
+from tuisim.tasks.goals.condition import require_regex
 from tuisim.tasks.goals.files import GoalsFile
 from tuisim.tasks.goals.spec import Goal, Range
 from tuisim.tasks.goals.trial_world import TrialWorld

@@ -18,7 +18,7 @@ from tuisim.settings.build import build_run_spec
 from tuisim.settings.options import merge_settings
 from tuisim.tasks.goals.judgement import GoalState, Judgement
 from tuisim.tasks.goals.trial_world import TrialWorld
-from tuisim.tasks.lessons.spec import Lesson, LessonStep, QuestionCheck, RunCheck, Way
+from tuisim.tasks.lessons.spec import Lesson, LessonStep, RunCheck, Way
 from tuisim.tasks.pool import run_many
 from tuisim.tasks.task import Result, Task
 
@@ -139,22 +139,6 @@ def _list_worlds(trial: Trial) -> list[tuple[_Key, TrialWorld | None]]:
         for other in check.also
     ]
     return [((trial.text, trial.seed, ""), None), *others]
-
-
-def find_warnings(lesson: Lesson) -> list[str]:
-    """Return what a lesson lacks, each as a line: wrong ways that are not tried, and answers without a reason."""
-    warnings = []
-    for step in lesson.steps:
-        place = f"{lesson.path}, line {step.line}"
-        warnings += [
-            f"{place}: step “{step.title}” does not try the wrong way “{way}”, or name it in `excludes`"
-            for way in step.find_missing_ways()
-        ]
-        if isinstance(step.check, QuestionCheck | RunCheck) and not step.why:
-            warnings.append(
-                f"{place}: step “{step.title}” has no `why`, which says why an answer or a run is right"
-            )
-    return warnings
 
 
 def _find_trial_faults(

@@ -10,7 +10,6 @@ from typing import Any
 from tuisim.base.errors import ConfigError, ProfileError, printable
 from tuisim.base.faults import describe_fault
 from tuisim.base.folders import backgrounds_folder
-from tuisim.base.regular_file import has_machine_cause
 from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.mat_image import decode, read_file
 from tuisim.engine.mats import background
@@ -18,6 +17,7 @@ from tuisim.programs.program_file import ProgramSource
 from tuisim.programs.program_settings import ProgramSettings, build_program_settings
 from tuisim.settings.build import build_run_spec
 from tuisim.settings.options import has_world_values, merge_settings
+from tuisim.tasks.execute import has_machine_cause
 from tuisim.tasks.goals.files import GoalsFile
 from tuisim.tasks.goals.trial_world import TrialWorld
 from tuisim.tasks.marks.runs import RunEntry

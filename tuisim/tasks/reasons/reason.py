@@ -15,12 +15,13 @@ from tuisim.engine.core.profile import NS_PER_S
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 from tuisim.engine.protocol import End
 from tuisim.engine.runs.diff import find_first_difference_s
-from tuisim.engine.runs.readings import MODES_BY_KIND, READING_PORTS, find_ticks, read_readings
+from tuisim.engine.runs.readings import MODES_BY_KIND, READING_PORTS, read_readings
 from tuisim.engine.runs.records import Stream
 from tuisim.engine.runs.run_folder import open_mat
 from tuisim.engine.runs.standstill import find_standstill
 from tuisim.programs.facts import read_facts
 from tuisim.tasks.goals.judgement import GoalState, Judgement
+from tuisim.tasks.goals.readings import find_ticks
 from tuisim.tasks.reasons.unmet import find_early_end, find_near_miss, find_recount
 from tuisim.tasks.reasons.waited import Subject
 from tuisim.tasks.reasons.waited_words import Wait, find_waits

@@ -21,10 +21,11 @@ from tuisim.engine.core.spec import (
 )
 from tuisim.engine.protocol import End
 from tuisim.engine.runs.frames import compute_column_values
-from tuisim.engine.runs.readings import READING_MODES, READING_PORTS, find_ticks, read_readings
+from tuisim.engine.runs.readings import READING_MODES, READING_PORTS, read_readings
 from tuisim.engine.runs.records import Stream
 from tuisim.engine.runs.run_folder import StoredRun, open_mat
 from tuisim.programs.facts import LoopEnd, read_facts
+from tuisim.tasks.goals.readings import find_ticks
 from tuisim.tasks.reasons.one_colour import describe_colors, name_limit, name_seen
 
 if TYPE_CHECKING:

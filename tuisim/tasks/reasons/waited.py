@@ -40,13 +40,13 @@ from tuisim.engine.runs.readings import (
     MODES_BY_KIND,
     READING_MODES,
     READING_PORTS,
-    find_ticks,
     read_readings,
 )
 from tuisim.engine.runs.records import Stream
 from tuisim.engine.runs.run_folder import StoredRun, open_mat
 from tuisim.engine.runs.views import OutputView, TelemetryView, build_instant
 from tuisim.programs.facts import Question, read_facts
+from tuisim.tasks.goals.readings import find_ticks
 from tuisim.tasks.reasons.hand_presses import HandPress, find_hits, find_presses
 
 if TYPE_CHECKING:

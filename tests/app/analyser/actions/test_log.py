@@ -8,8 +8,8 @@ import pytest
 
 from tests.app.analyser.test_screen import open_analyser, text_of, typed
 from tests.app.app_help import LOGS, program, until
-from tuisim.analysis.chart import draw_event_marks
 from tuisim.analysis.events import CommandRow
+from tuisim.app.analyser.chart import draw_event_marks
 from tuisim.app.dialogs.runs import Differences
 from tuisim.engine.core.spec import NoiseSpec
 from tuisim.engine.runs.handle import RunOptions, start_run

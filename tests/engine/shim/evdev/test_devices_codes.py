@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from tuisim.engine.shim.evdev.codes import codes_module, numbered
+from tuisim.engine.shim.evdev.devices import codes_module, numbered
 
 CODES: Any = codes_module("evdev.ecodes")
 
