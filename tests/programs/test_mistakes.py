@@ -1,11 +1,12 @@
-"""Why a program cannot run."""
+"""Why a program cannot run: its faults, and the mistake that is shown of them."""
 
 from __future__ import annotations
 
 import pytest
 
 from tests.cases import cases
-from tuisim.programs.mistakes import find_fault, find_mistake
+from tuisim.programs.mistakes import find_fault
+from tuisim.programs.program_file import find_mistake
 
 NO_TEXT = "'rot13' is not a text encoding; use codecs.encode() to handle arbitrary codecs"
 FAULTS = {

@@ -10,9 +10,9 @@ from tuisim.base.errors import LogError
 from tuisim.base.source import Program
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.spec import RunSpec
+from tuisim.engine.runs.diff import is_repeat
 from tuisim.engine.runs.recorded_run import Recording
 from tuisim.engine.runs.run_folder import StoredRun
-from tuisim.tasks.reasons.reason import is_repeat
 
 
 def is_comparable(earlier: Recording, later: Recording) -> bool:

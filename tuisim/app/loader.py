@@ -22,7 +22,7 @@ from tuisim.engine.files import means_file
 from tuisim.engine.runs.run_folder import restore_program
 from tuisim.engine.runs.standstill import describe_standstill
 from tuisim.engine.runs.store import RunStore
-from tuisim.programs.mistakes import drop_wrong_mat
+from tuisim.programs.program_file import drop_wrong_mat
 from tuisim.programs.program_settings import Decided, find_free_paths
 from tuisim.settings.options import START, Settings, merge_settings
 

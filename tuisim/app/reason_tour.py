@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from tuisim.tasks.reasons.reason import is_repeat
+from tuisim.engine.runs.diff import is_repeat
 
 if TYPE_CHECKING:
     from tuisim.app.run_controller import RunController

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING
 from tuisim.app import background
 from tuisim.app.earlier_run import find_run_before
 from tuisim.app.snapshot import RunPhase
+from tuisim.engine.runs.diff import is_repeat
 from tuisim.engine.runs.store import load_run
 from tuisim.tasks.lessons.spec import RunCheck
-from tuisim.tasks.reasons.reason import find_reasons, is_repeat
+from tuisim.tasks.reasons.reason import find_reasons
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

@@ -7,14 +7,17 @@ import re
 from collections import deque
 from collections.abc import Iterable, Iterator
 from statistics import NormalDist, stdev
+from typing import TYPE_CHECKING
 
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ConfigError, nearest
-from tuisim.batch.plan import Plan
-from tuisim.batch.sweep import Sweep
 from tuisim.batch.table import POINTS, POSE, is_statistic, name_goals
 from tuisim.engine.core.conditions import NUMBER
 from tuisim.engine.protocol import End
+
+if TYPE_CHECKING:
+    from tuisim.batch.plan import Plan
+    from tuisim.batch.sweep import Sweep
 
 MIN_RUNS = 10
 """So many runs of a combination come first: the spread of fewer says little."""

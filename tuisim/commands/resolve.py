@@ -22,9 +22,14 @@ from tuisim.commands.notebooks import NotRun, check_folder, drop_unknown, find_p
 from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.runs.run_folder import StoredRun, field_files
 from tuisim.engine.runs.store import RunStore
-from tuisim.programs.mistakes import drop_wrong_mat, find_wrong_mat
 from tuisim.programs.notebook_file import is_notebook, read_notebook_programs
-from tuisim.programs.program_file import ProgramSource, find_program, read_program
+from tuisim.programs.program_file import (
+    ProgramSource,
+    drop_wrong_mat,
+    find_program,
+    find_wrong_mat,
+    read_program,
+)
 from tuisim.programs.program_settings import Decided, build_program_settings, find_free_paths
 from tuisim.settings.build import build_run_spec
 from tuisim.settings.command_line import ARGUMENTS_FOLLOW, Arguments

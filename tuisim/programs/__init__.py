@@ -6,7 +6,6 @@ __all__ = [
     "facts",
     "function",
     "line_values",
-    "mistakes",
     "names",
     "notebook_file",
     "plugged_words",

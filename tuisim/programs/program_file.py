@@ -13,7 +13,15 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from tuisim.base.data_class import dataclass
-from tuisim.base.errors import ConfigError, closest, did_you_mean, nearest, see_page
+from tuisim.base.errors import (
+    BackgroundError,
+    ConfigError,
+    TuisimError,
+    closest,
+    did_you_mean,
+    nearest,
+    see_page,
+)
 from tuisim.base.folders import programs_folder, user_path
 from tuisim.base.regular_file import read_regular
 from tuisim.base.source import (
@@ -26,9 +34,94 @@ from tuisim.base.source import (
 )
 from tuisim.base.syntax_tree import parse_module
 from tuisim.engine.files import close_beside, read_bytes
+from tuisim.engine.mats import find_mat
+from tuisim.programs.mistakes import find_fault
 from tuisim.programs.robot.course import has_course_names, list_global_names
 from tuisim.programs.robot.source import find_library, read_modules
 from tuisim.settings.shared_options import parse_words
+
+
+class WrongMat(NamedTuple):
+    """A magic line with a mat that cannot be laid out."""
+
+    line: int
+    """From 1."""
+    error: BackgroundError
+    """Names the program and the line."""
+
+    @property
+    def words(self) -> str:
+        """What is wrong, with the mat that may be meant, in one line."""
+        guess, question, _ = self.error.hint.partition("?")
+        return f"{self.error.message.partition(': ')[2]}{f', {guess}?' if question else ''}"
+
+
+def find_wrong_mat(text: str, name: str, folder: str | None) -> WrongMat | None:
+    """Return what is wrong with the mat in a magic line; None if nothing is wrong, or if the mat is not judged here.
+
+    Args:
+        text: The program.
+        name: The name of its file.
+        folder: The user's own mats.
+    """
+    try:
+        magic = find_magic(text, name)
+        options: Mapping[str, str] = magic.options if magic else {}
+        if (
+            magic
+            and "background" in options
+            and "mats" not in options
+            and not is_file_name(options["background"])
+        ):
+            find_mat(options["background"], folder)
+    except BackgroundError as error:
+        assert magic is not None
+        return WrongMat(
+            magic.line,
+            BackgroundError(error.message, error.hint, file=f"{name}, line {magic.line}"),
+        )
+    except ConfigError:
+        pass
+    return None
+
+
+def drop_wrong_mat(source: ProgramSource, folder: str | None) -> ProgramSource:
+    """Return a program without the mat of its magic line if the mat is wrong, so that it can be opened and mended."""
+    if find_wrong_mat(source.program.text, source.program.name, folder) is None:
+        return source
+    return replace(
+        source,
+        options={path: value for path, value in source.options.items() if path != "background"},
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class Mistake:
+    """Why a program cannot run."""
+
+    line: int
+    """From 1; 0 if unknown."""
+    message: str
+
+
+def find_mistake(text: str, name: str, mats: str | None = None) -> Mistake | None:
+    """Return the syntax error of a program, or the wrong mat in its magic line; None if it can run.
+
+    Args:
+        text: The text of the file; a magic line is allowed.
+        name: Name of the file, for the message.
+        mats: The folder of the user's own mats.
+    """
+    try:
+        source = parse_program(text, name)
+    except TuisimError as error:
+        return Mistake(0, str(error))
+    if fault := find_fault(source.program.text):
+        message, line = fault
+        return Mistake(line, f"line {line}: {message}" if line else message)
+    wrong = find_wrong_mat(text, name, mats)
+    return Mistake(wrong.line, f"line {wrong.line}: {wrong.words}") if wrong else None
+
 
 MAX_PROGRAM_BYTES = 4 << 20
 LOG_SUFFIXES = (".csv", ".tsv", ".parquet", ".jsonl", ".arrow")

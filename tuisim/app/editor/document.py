@@ -20,7 +20,7 @@ from tuisim.app.editor.text_file import (
 from tuisim.app.editor.text_lines import LineMap, count_differing_lines
 from tuisim.base.errors import ConfigError, TuisimError, counted
 from tuisim.base.source import source_lines
-from tuisim.programs.mistakes import find_wrong_mat
+from tuisim.programs.program_file import find_wrong_mat
 from tuisim.settings.options import Settings
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from tuisim.app.run_controller import RunController
     from tuisim.base.source import Program
     from tuisim.engine.runs.recorded_run import Recording
-    from tuisim.programs.mistakes import Mistake
+    from tuisim.programs.program_file import Mistake
 
 DRAFT_DELAY_S = 1.0
 """Delay after an edit before unsaved text is stored as a draft, in case of a crash."""
@@ -343,7 +343,7 @@ class Document:
 
     def _find_mistake(self) -> Mistake | None:
         """Return the mistake in the text, and mark its line."""
-        from tuisim.programs.mistakes import find_mistake
+        from tuisim.programs.program_file import find_mistake
 
         mistake = find_mistake(
             self._text, self._name, self._run_controller.next_run.settings["mats"]

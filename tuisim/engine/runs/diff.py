@@ -19,6 +19,8 @@ from tuisim.engine.runs.samples import list_samples
 if TYPE_CHECKING:
     import numpy as np
 
+    from tuisim.engine.runs.recorded_run import Recording
+
     _Series = np.ndarray[Any, Any]
 
 DIFF_LINES = 20
@@ -352,3 +354,17 @@ def describe_recording(diff: RunDiff) -> Iterator[tuple[str, str]]:
         yield "poses", f"{max_text}; {apart.end_mm:.3f} mm at the common end, {apart.end_s:.2f} s"
         for limit, since_s in apart.exceeded:
             yield f"over {limit:g} mm", "never" if since_s is None else f"from {since_s:.2f} s"
+
+
+def is_repeat(run: StoredRun | Recording, earlier: StoredRun | Recording) -> bool:
+    """Return whether a run has the same program text, arguments and settings as an earlier one.
+
+    Only then a difference between them is a fault: with another text the robot should drive another way.
+    """
+    program = run.program
+    before = earlier.program
+    return (program.text, program.arguments, run.spec) == (
+        before.text,
+        before.arguments,
+        earlier.spec,
+    )

@@ -12,8 +12,14 @@ from tuisim.engine.core.conditions import Operator, ValueCondition, ValueSource
 from tuisim.engine.core.spec import WorldSpec
 from tuisim.tasks.goals.brick import resolve_column
 from tuisim.tasks.goals.comparisons import CountCondition, KeepCondition, WhenCondition
-from tuisim.tasks.goals.evidence import Evidence, EvidencePoint, EvidenceSpan, Finding, share_words
-from tuisim.tasks.goals.places import find_motion_line
+from tuisim.tasks.goals.evidence import (
+    Evidence,
+    EvidencePoint,
+    EvidenceSpan,
+    Finding,
+    find_motion_line,
+    share_words,
+)
 
 if TYPE_CHECKING:
     import numpy as np

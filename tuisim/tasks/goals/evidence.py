@@ -343,3 +343,25 @@ class Evidence:
     def time_words(self, tick: int) -> str:
         """Return the time of a tick for a sentence, such as `3.20 s`."""
         return f"{float(self.times_s[tick]):.2f} s"
+
+
+def find_ticks(rows: Array, hz: int) -> Array:
+    """Return the tick at which each of some readings was taken; `hz` is ticks per second."""
+    seconds, rest_ns = divmod(rows["time_ns"], NS_PER_S)
+    ticks: Array = seconds * hz + rest_ns * hz // NS_PER_S
+    return ticks
+
+
+def find_motion_line(records: Array, index: int) -> int:
+    """Return the program's line of the last tick up to an index that moved the robot, else of the first after it.
+
+    The lines of ticks in which the robot stands still do not count. 0, if it never moved.
+    """
+    import numpy as np
+
+    steps = [np.diff(records[name]) != 0 for name in ("x_mm", "y_mm", "heading_deg")]
+    moved = np.flatnonzero(np.logical_or.reduce(steps)) + 1
+    if not len(moved):
+        return 0
+    before = int(np.searchsorted(moved, index, side="right")) - 1
+    return int(records["line"][moved[max(0, before)]])

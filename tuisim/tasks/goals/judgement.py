@@ -5,9 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from enum import StrEnum
+from typing import TYPE_CHECKING
 
 from tuisim.base.data_class import dataclass
-from tuisim.tasks.goals.spec import Goal
+
+if TYPE_CHECKING:
+    from tuisim.tasks.goals.spec import Goal
 
 
 class GoalState(StrEnum):

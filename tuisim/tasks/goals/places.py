@@ -12,6 +12,7 @@ from tuisim.tasks.goals.evidence import (
     EvidencePoint,
     EvidenceSpan,
     Finding,
+    find_motion_line,
     format_distance,
 )
 from tuisim.tasks.goals.spec import (
@@ -72,21 +73,6 @@ def find_reach(condition: ReachCondition, evidence: Evidence, span: EvidenceSpan
     text = f"The robot stayed there for at most {stayed_s[longest]:.2f} s, {condition.for_s:g} s are needed."
     # The line that moved the robot away, else the one that brought it there.
     return Finding(None, text, find_motion_line(records, longest + 1))
-
-
-def find_motion_line(records: Array, index: int) -> int:
-    """Return the program's line of the last tick up to an index that moved the robot, else of the first after it.
-
-    The lines of ticks in which the robot stands still do not count. 0, if it never moved.
-    """
-    import numpy as np
-
-    steps = [np.diff(records[name]) != 0 for name in ("x_mm", "y_mm", "heading_deg")]
-    moved = np.flatnonzero(np.logical_or.reduce(steps)) + 1
-    if not len(moved):
-        return 0
-    before = int(np.searchsorted(moved, index, side="right")) - 1
-    return int(records["line"][moved[max(0, before)]])
 
 
 def _find_arrivals(there: Array) -> Array:

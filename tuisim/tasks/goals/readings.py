@@ -6,12 +6,18 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from tuisim.base.errors import counted
-from tuisim.engine.core.profile import NS_PER_S
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, ColorSensorSpec
 from tuisim.engine.runs.readings import MODES_BY_KIND
 from tuisim.tasks.goals.condition import UnjudgedError
-from tuisim.tasks.goals.evidence import Evidence, EvidencePoint, EvidenceSpan, Finding, share_words
-from tuisim.tasks.goals.places import find_motion_line
+from tuisim.tasks.goals.evidence import (
+    Evidence,
+    EvidencePoint,
+    EvidenceSpan,
+    Finding,
+    find_motion_line,
+    find_ticks,
+    share_words,
+)
 from tuisim.tasks.goals.spec import FollowCondition, Range, ReadCondition, Reading, select_place
 
 if TYPE_CHECKING:
@@ -223,10 +229,3 @@ def _find_longest_gap(on_line: Array) -> int:
     begins = edges[::2]
     ends = edges[1::2]
     return int(begins[np.argmax(ends - begins)]) if len(begins) else 0
-
-
-def find_ticks(rows: Array, hz: int) -> Array:
-    """Return the tick at which each of some readings was taken; `hz` is ticks per second."""
-    seconds, rest_ns = divmod(rows["time_ns"], NS_PER_S)
-    ticks: Array = seconds * hz + rest_ns * hz // NS_PER_S
-    return ticks

@@ -14,14 +14,14 @@ from tuisim.base.data_class import dataclass
 from tuisim.engine.core.profile import NS_PER_S
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 from tuisim.engine.protocol import End
-from tuisim.engine.runs.diff import find_first_difference_s
+from tuisim.engine.runs.diff import find_first_difference_s, is_repeat
 from tuisim.engine.runs.readings import MODES_BY_KIND, READING_PORTS, read_readings
 from tuisim.engine.runs.records import Stream
 from tuisim.engine.runs.run_folder import open_mat
 from tuisim.engine.runs.standstill import find_standstill
 from tuisim.programs.facts import read_facts
+from tuisim.tasks.goals.evidence import find_ticks
 from tuisim.tasks.goals.judgement import GoalState, Judgement
-from tuisim.tasks.goals.readings import find_ticks
 from tuisim.tasks.reasons.unmet import find_early_end, find_near_miss, find_recount
 from tuisim.tasks.reasons.waited import Subject
 from tuisim.tasks.reasons.waited_words import Wait, find_waits
@@ -111,20 +111,6 @@ def _rank(reason: Reason) -> tuple[ReasonKind, float]:
     """Return a sort key: a goal is often missed because of what a sensor lost before."""
     kind = ReasonKind.LOST if reason.kind is ReasonKind.MISSED else reason.kind
     return kind, reason.time_s
-
-
-def is_repeat(run: StoredRun | Recording, earlier: StoredRun | Recording) -> bool:
-    """Return whether a run has the same program text, arguments and settings as an earlier one.
-
-    Only then a difference between them is a fault: with another text the robot should drive another way.
-    """
-    program = run.program
-    before = earlier.program
-    return (program.text, program.arguments, run.spec) == (
-        before.text,
-        before.arguments,
-        earlier.spec,
-    )
 
 
 def _find_line(run: StoredRun, time_s: float) -> int:

@@ -25,7 +25,7 @@ from tuisim.engine.runs.readings import READING_MODES, READING_PORTS, read_readi
 from tuisim.engine.runs.records import Stream
 from tuisim.engine.runs.run_folder import StoredRun, open_mat
 from tuisim.programs.facts import LoopEnd, read_facts
-from tuisim.tasks.goals.readings import find_ticks
+from tuisim.tasks.goals.evidence import find_ticks
 from tuisim.tasks.reasons.one_colour import describe_colors, name_limit, name_seen
 
 if TYPE_CHECKING:

@@ -46,7 +46,7 @@ from tuisim.engine.runs.records import Stream
 from tuisim.engine.runs.run_folder import StoredRun, open_mat
 from tuisim.engine.runs.views import OutputView, TelemetryView, build_instant
 from tuisim.programs.facts import Question, read_facts
-from tuisim.tasks.goals.readings import find_ticks
+from tuisim.tasks.goals.evidence import find_ticks
 from tuisim.tasks.reasons.hand_presses import HandPress, find_hits, find_presses
 
 if TYPE_CHECKING:

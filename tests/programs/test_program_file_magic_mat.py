@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tuisim.programs.mistakes import drop_wrong_mat, find_wrong_mat
-from tuisim.programs.program_file import parse_program
+from tuisim.programs.program_file import drop_wrong_mat, find_wrong_mat, parse_program
 
 WRONG = '"""A program."""\n# %%sim_magic_preloaded -b Grey_bandz -x 300\n'
 
