@@ -61,6 +61,7 @@ LONG_TOKENS = 1_300
 """A module with more has a test of its own."""
 TESTED_BESIDE = {
     "app/analyser/actions/keys.py": "app/analyser/test_screen.py",
+    "app/panels/instrumentation_lines.py": "app/panels/test_instrumentation.py",
     "app/setup/fields.py": "app/setup/test_next_run.py",
     "programs/robot/scopes.py": "programs/robot/test_evaluation.py",
     "engine/core/commands/table.py": "engine/shim/pybricks/test_reference.py",

@@ -2,29 +2,25 @@
 
 from __future__ import annotations
 
-from tuisim.app.panels.light_lines import (
+from tuisim.app.panels.instrumentation_lines import (
+    COLUMN,
     MAX_NAME_CELLS,
-    build_color_cell,
-    build_sensor_line,
-    build_sensor_lines,
-    list_seen,
-)
-from tuisim.app.panels.motor_lines import (
+    VALUE,
+    WARNING,
     add_states,
+    build_color_cell,
     build_driver_line,
     build_extra_motor_lines,
     build_motor_cells,
+    build_sensor_line,
+    build_sensor_lines,
     build_wheel_lines,
-)
-from tuisim.app.panels.reading_runs import (
-    COLUMN,
-    VALUE,
-    WARNING,
     fit_line,
     format_label,
     format_unit,
     format_value,
     format_values,
+    list_seen,
 )
 from tuisim.app.panels.titles import build_title, name_setup
 from tuisim.app.snapshot import RunPhase, Snapshot, end_label

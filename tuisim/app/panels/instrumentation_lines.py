@@ -1,0 +1,347 @@
+"""Lines of the instrumentation panel, for colour sensors and motors: labels, values and units, as far as they fit."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from rich.style import Style
+
+from tuisim.app.render.arrays import build_swatch
+from tuisim.app.snapshot import Snapshot
+from tuisim.base import palette
+from tuisim.base.data_class import dataclass
+from tuisim.engine.core.motor_columns import STATE_BITS
+from tuisim.engine.core.sensors.color import ColorReading, LightRead
+from tuisim.engine.core.state import MotorValues
+from tuisim.programs.facts import read_facts
+from tuisim.terminal.text_runs import Line, Run
+
+LABEL = Style(color=palette.LABEL)
+VALUE = Style(color=palette.WHITE, bold=True)
+UNIT = Style(color=palette.LABEL)
+WARNING = Style(color=palette.RED, bold=True)
+COLUMN = 12
+"""Width of the labels if there is room."""
+
+
+def fit_line(width: int, *variants: Sequence[Run]) -> Line:
+    """Return the first variant that fits, or the last one."""
+    for variant in variants:
+        if sum(len(text) for text, _ in variant) <= width:
+            return list(variant)
+    return list(variants[-1])
+
+
+def format_label(text: str, column: int = COLUMN) -> Run:
+    """Return a label."""
+    return text.ljust(column), LABEL
+
+
+def format_value(text: str) -> Run:
+    """Return a value."""
+    return text, VALUE
+
+
+def format_unit(text: str) -> Run:
+    """Return a unit, or other words between values."""
+    return text, UNIT
+
+
+def format_values(*texts: str) -> list[Run]:
+    """Return values, each with the unit after it."""
+    return [
+        format_unit(text) if index % 2 else format_value(text) for index, text in enumerate(texts)
+    ]
+
+
+MAX_NAME_CELLS = 7
+"""Cells for the name of a colour, so that readings do not move when a sensor sees another colour."""
+
+
+@dataclass(frozen=True, slots=True)
+class LightSeen:
+    """A reading of a colour sensor, and what the program reads of it."""
+
+    color: ColorReading
+    read: LightRead
+    reflected_max: int
+    """Value of `reflected_light_intensity` on white."""
+
+    @property
+    def value(self) -> str:
+        """The number that the program gets."""
+        number = self.read.compute_value(self.color, self.reflected_max)
+        if self.read is LightRead.REFLECTED:
+            return f"{number:3.0f}"
+        return f"{number:5.0f}" if self.read is LightRead.REFLECTION else f"{number:5.1f}"
+
+    @property
+    def unit(self) -> str:
+        """The unit behind the value."""
+        return f"/{self.reflected_max}" if self.read is LightRead.REFLECTED else "%"
+
+
+def list_seen(now: Snapshot, word: str) -> list[tuple[str, LightSeen | None]]:
+    """Return a name for each colour sensor, a word with its number, and what it sees; None before the mat is known."""
+    robot = now.spec.robot
+    reads = read_facts(now.program).find_light_reads(robot) if now.program else {}
+    lines: list[tuple[str, LightSeen | None]] = []
+    for number, sensor in enumerate(robot.color_sensors, 1):
+        color = now.colors.get(sensor.name)
+        read = reads.get(sensor.name, LightRead.PERCENT)
+        seen = LightSeen(color, read, now.spec.profile.reflected_max) if color else None
+        lines.append((f"{word}{number}", seen))
+    return lines
+
+
+def build_color_cell(name: str, seen: LightSeen | None, with_name: bool) -> Line:
+    """Return a sensor as a cell of a column."""
+    if seen is None:
+        return [format_label(name, 3), format_unit("–")]
+    cell: Line = [
+        format_label(name, 3),
+        format_value(seen.value),
+        format_unit(f"{seen.unit:<{7 - len(seen.value)}}"),
+        build_swatch(seen.color),
+    ]
+    return [*cell, format_value(f" {seen.color.name:<{MAX_NAME_CELLS}}")] if with_name else cell
+
+
+def build_sensor_lines(name: str, seen: LightSeen | None, width: int) -> tuple[Line, Line]:
+    """Return a sensor in two lines, the second one with its channels and its colour."""
+    if seen is None:
+        return [format_label(name), format_unit("–")], []
+    color = seen.color
+    red = f"{color.red_percent:5.1f}"
+    red_unit = " %"
+    mean = f"{color.mean_percent:5.1f}"
+    if seen.read is LightRead.REFLECTED:
+        red = seen.value
+        red_unit = seen.unit
+    # 100 without a decimal leaves a space after the word before it.
+    short_red, short_mean = (
+        f"{value[:3]:>5}" if value == "100.0" else f"{value:>5}" for value in (red, mean)
+    )
+    first = fit_line(
+        width,
+        (
+            format_label(name),
+            format_unit("red "),
+            format_value(red),
+            format_unit(f"{red_unit}  mean "),
+            format_value(mean),
+            format_unit(" %"),
+        ),
+        (
+            format_label(name, 8),
+            format_unit("red"),
+            format_value(short_red),
+            format_unit(" mean"),
+            format_value(short_mean),
+        ),
+        (
+            format_label(name, 8),
+            format_value(short_red),
+            format_unit(" mean"),
+            format_value(short_mean),
+        ),
+        (
+            format_label(name[:1] + name[-1:], 3),
+            format_value(short_red),
+            format_unit(" mean"),
+            format_value(short_mean),
+        ),
+    )
+    channels = [f"{channel}" for channel in color.rgb]
+    wide = f"({', '.join(channels)})"
+    narrow = f"({','.join(channels)})"
+    second = fit_line(
+        width,
+        (
+            format_label(""),
+            format_value(wide.ljust(16)),
+            build_swatch(color),
+            format_value(f" {color.name}"),
+        ),
+        (
+            format_label("", 2),
+            format_value(narrow.ljust(14)),
+            build_swatch(color),
+            format_value(f" {color.name}"),
+        ),
+        (build_swatch(color), format_value(f" {narrow}")),
+    )
+    return first, second
+
+
+def build_sensor_line(name: str, seen: LightSeen | None, width: int) -> Line:
+    """Return a sensor in one line."""
+    short = name[:1] + name[-1:]
+    if seen is None:
+        return fit_line(
+            width,
+            (format_label(name, 9), format_unit("–")),
+            (format_label(short, 3), format_unit("–")),
+        )
+    what = "mean " if seen.read is LightRead.MEAN else "red "
+    after = (build_swatch(seen.color), format_value(f" {seen.color.name}"))
+    return fit_line(
+        width,
+        (
+            format_label(name),
+            format_unit(what),
+            format_value(seen.value),
+            format_unit(f"{seen.unit:>2}  "),
+            *after,
+        ),
+        (format_label(name, 9), format_value(seen.value), format_unit(f"{seen.unit} "), *after),
+        (format_label(short, 3), format_value(seen.value), format_unit(f"{seen.unit} "), *after),
+    )
+
+
+_MAX_STATE_CELLS = 10
+
+
+def build_wheel_lines(now: Snapshot, width: int) -> list[Line]:
+    """Return the lines of the motors of the wheels; none without wheels."""
+    if not now.spec.robot.has_wheels:
+        return []
+    return [
+        _build_wheel_line(now, "LeftMotor", "L", width),
+        _build_wheel_line(now, "RightMotor", "R", width),
+    ]
+
+
+def build_extra_motor_lines(now: Snapshot, width: int) -> list[Line]:
+    """Return the lines of the motors that drive no wheel."""
+    return [
+        _build_motor_line(
+            f"Motor {motor.port[-1]}",
+            motor.port[-1],
+            round(position),
+            format_value(f"{round(dps):d}"),
+            width,
+        )
+        for motor, (position, dps) in zip(now.spec.robot.extra_motors, now.turns, strict=False)
+    ]
+
+
+def build_driver_line(values: MotorValues, width: int) -> Line:
+    """Return the line with the values of a motor's driver: the speed asked for, the duty and the state."""
+    asked_dps, _, duty_pc, state = values
+    asked_text = f"{asked_dps:5d}"
+    duty = f"{duty_pc:4d}"
+    word = _describe_motor_state(state)
+    return fit_line(
+        width,
+        (
+            format_label(""),
+            format_unit("asked "),
+            *format_values(asked_text, " °/s  duty ", duty, " %  "),
+            word,
+        ),
+        (format_unit("asked "), *format_values(asked_text, " °/s  duty ", duty, " %  "), word),
+        (format_unit("asked "), *format_values(asked_text, "°/s ", duty, "% "), word),
+        (*format_values(asked_text, "°/s "), word),
+        (word,),
+    )
+
+
+def add_states(lines: list[Line], now: Snapshot, width: int) -> list[Line]:
+    """Return the lines of wheel motors with the states that their drivers know, where there is room."""
+    states = [
+        (*format_values("", "  "), _describe_motor_state(values[3]))
+        for values in now.instant.motors
+    ]
+    return [
+        fit_line(width, (*line, *state), line) for line, state in zip(lines, states, strict=False)
+    ] or lines
+
+
+def _describe_motor_state(state: int) -> Run:
+    """Return the most important state of a motor, padded; blanks if it has none."""
+    for word in ("stalled", "overloaded", "holding", "ramping", "running"):
+        if state & STATE_BITS[word]:
+            return word.ljust(_MAX_STATE_CELLS), WARNING if word == "stalled" else VALUE
+    return " " * _MAX_STATE_CELLS, VALUE
+
+
+def _build_wheel_line(now: Snapshot, name: str, short: str, width: int) -> Line:
+    left = short == "L"
+    instant = now.instant
+    counts = round(instant.left_position_deg if left else instant.right_position_deg)
+    dps = round(instant.left_speed_dps if left else instant.right_speed_dps)
+    if instant.motors:
+        dps = instant.motors[0 if left else 1][1]
+    if now.stalled[0 if left else 1]:
+        return _build_motor_line(name, short, counts, ("stalled", WARNING), width)
+    return _build_motor_line(name, short, counts, format_value(f"{dps:d}"), width)
+
+
+def _build_motor_line(name: str, short: str, counts: int, speed: Run, width: int) -> Line:
+    """Return the line of a motor's counts and speed, or a warning instead."""
+    warns = speed[1] is WARNING
+    unit, close = (
+        (format_unit(""), format_unit("")) if warns else (format_unit(" °/s"), format_unit("°/s"))
+    )
+    return fit_line(
+        width,
+        (
+            format_label(name),
+            format_unit("tacho"),
+            format_value(f"{counts:8d}"),
+            _align_right(speed, 7 + 4 * warns),
+            unit,
+        ),
+        (
+            format_label(name, 11),
+            format_value(f"{counts:6d}"),
+            _align_right(speed, 6 + 3 * warns),
+            close,
+        ),
+        (format_label(name, 11), format_value(f"{counts:d} "), speed, close),
+        (
+            format_label(short, 2),
+            format_value(f"{counts:7d}"),
+            _align_right(speed, 6 + 3 * warns),
+            close,
+        ),
+    )
+
+
+def build_motor_cells(now: Snapshot, *, with_speed: bool) -> list[Line]:
+    """Return a cell for each motor: counts, and with speed also speed or state."""
+    instant = now.instant
+    robot = now.spec.robot
+    wheels = (
+        ("L", instant.left_position_deg, instant.left_speed_dps),
+        ("R", instant.right_position_deg, instant.right_speed_dps),
+    )
+    turns = zip(robot.extra_motors, now.turns, strict=False)
+    extra = ((motor.port[-1], position, dps) for motor, (position, dps) in turns)
+    known = instant.motors
+    cells = [
+        _build_motor_cell(
+            *motor,
+            has_stalled=number < len(now.stalled) and now.stalled[number],
+            is_held=number < len(known) and bool(known[number][3] & STATE_BITS["holding"]),
+            with_speed=with_speed,
+        )
+        for number, motor in enumerate((*wheels, *extra))
+    ]
+    return cells if robot.has_wheels else cells[2:]
+
+
+def _build_motor_cell(
+    name: str, counts: float, dps: float, *, has_stalled: bool, is_held: bool, with_speed: bool
+) -> Line:
+    cell: Line = [format_label(name, 2), format_value(f"{round(counts):5d}")]
+    if has_stalled:
+        return [*cell, (" stalled" if with_speed else "!", WARNING)]
+    if is_held and with_speed:
+        return [*cell, format_value(" holding")]
+    return [*cell, *format_values(f"{round(dps):6d}", "°/s")] if with_speed else cell
+
+
+def _align_right(run: Run, width: int) -> Run:
+    return run[0].rjust(width), run[1]
