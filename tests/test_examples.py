@@ -11,7 +11,7 @@ import pytest
 
 from tests.conftest import ROOT, Command
 from tuisim.engine.core.profile import PROFILES, Library
-from tuisim.engine.runs.brick_state import ROW_BYTES, BrickState, update_face
+from tuisim.engine.runs.brick_state import ROW_BYTES, BrickState
 from tuisim.engine.runs.records import Stream
 from tuisim.engine.runs.store import load_run
 from tuisim.programs.program_file import list_programs, read_program
@@ -113,7 +113,7 @@ def test_all_properties_of_a_grey(x_mm: int, value: int, here: Command) -> None:
 def test_display_shows_the_light_as_a_bar(here: Command) -> None:
     run = load_run(json.loads(here("run", "draw_light", "--json").stdout)["id"])
     pictures = [
-        update_face(BrickState(), [row]).picture
+        BrickState().update_face([row]).picture
         for row in run.output.read_all_rows()
         if row.stream == Stream.DISPLAY
     ]

@@ -7,7 +7,6 @@ import pytest
 
 from tests.app.analyser.logs import long_log, model_of, wide_log
 from tuisim.analysis.chart import View, build_chart
-from tuisim.analysis.model import derive
 from tuisim.base.errors import LogError
 from tuisim.logs.columns import Layout
 from tuisim.logs.log import Log
@@ -133,7 +132,7 @@ def test_a_chart_shows_what_is_in_view(view: View, xs: list[float], ys: list[flo
 def test_derived_variables_go_where_the_log_goes() -> None:
     model = model_of(long_log())
     other = model_of(long_log())
-    derive(model, "Twice = Colour * 2")
+    model.derive("Twice = Colour * 2")
     assert (model.selected, [trace.name for trace in model.traces]) == (
         "Twice",
         ["Colour", "Left", "Twice"],
@@ -149,11 +148,11 @@ def test_derived_variables_go_where_the_log_goes() -> None:
     assert (other.definitions, other.selected) == (model.definitions, "Twice")
     assert [trace.on for trace in other.traces] == [True, False, True]
     assert other.rows.view.sorted_by == "Twice"
-    derive(other, "Twice =")
+    other.derive("Twice =")
     assert (other.definitions, other.selected, other.rows.view.sorted_by) == ({}, "Colour", "")
     assert "Twice" not in other.rows.columns
     with pytest.raises(LogError, match="no derived variable 'Twice'"):
-        derive(other, "Twice =")
+        other.derive("Twice =")
 
 
 def test_figures_are_those_between_the_cursors() -> None:

@@ -9,13 +9,7 @@ import pytest
 
 from tests.cases import cases
 from tuisim.analysis import source
-from tuisim.analysis.source import (
-    LogRequest,
-    find_choices,
-    open_pieces,
-    remember_choices,
-    request_file,
-)
+from tuisim.analysis.source import LogRequest, find_choices, remember_choices, request_file
 from tuisim.app.analyser.screen import read_doubtful
 from tuisim.logs.choices import NO_CHOICES, ReadChoices
 from tuisim.settings.preferences import find_preferences_file, keep
@@ -92,11 +86,11 @@ def test_damaged_memory_is_no_error(text: str, file: Path) -> None:
 
 def test_what_is_remembered_counts_without_choices_and_is_said(file: Path) -> None:
     remember_choices(str(file), CHOICES)
-    *_, opened = open_pieces(request_file(str(file)))
+    *_, opened = request_file(str(file)).open_pieces()
     assert opened.log.series("light").time_s[-1] == pytest.approx(0.16)
     options = "--time boot --unit ms --header 1 --separator semicolon --decimal ,"
     assert opened.log.notes[0].startswith(f"read as chosen in the analyser: {options} (")
-    *_, opened = open_pieces(request_file(str(file), ReadChoices(time="")))
+    *_, opened = request_file(str(file), ReadChoices(time="")).open_pieces()
     assert opened.log.series("light").time_s[-1] == 8
     assert opened.log.notes == ()
 

@@ -173,7 +173,7 @@ async def test_quit_during_a_run_asks_and_leaves_no_child() -> None:
 async def test_a_mat_that_failed_is_prepared_again_for_a_run(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    open_field = mat_cache.open_field
+    open_field = mat_cache.FieldFiles.open_field
     tries = []
 
     def opened(files: mat_cache.FieldFiles, **choices: bool) -> Field:
@@ -182,7 +182,7 @@ async def test_a_mat_that_failed_is_prepared_again_for_a_run(
             raise BackgroundError("the prepared mat cannot be opened")
         return open_field(files, **choices)
 
-    monkeypatch.setattr(mat_cache, "open_field", opened)
+    monkeypatch.setattr(mat_cache.FieldFiles, "open_field", opened)
     async with LabApp(settings("print(1)\n")).run_test(size=(80, 24)) as pilot:
         app = lab(pilot)
         await until(pilot, lambda: any("cannot be opened" in notice for notice in notices(app)))

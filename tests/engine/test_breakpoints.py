@@ -12,8 +12,6 @@ from tuisim.engine.breakpoints import (
     LineBreak,
     StallBreak,
     TimeBreak,
-    break_line_of,
-    moved,
     parse_break,
     parse_breakpoints,
 )
@@ -115,5 +113,5 @@ def test_every_column_of_a_robot_can_be_compared_and_without_one_any_name() -> N
 def test_lines_with_a_break_and_breaks_that_move() -> None:
     breaks = parse_breakpoints(["# 3", "3 if x", "# 5", "stall"])
     assert {line: one.text for line, one in break_lines(breaks).items()} == {3: "3 if x", 5: "5"}
-    assert [break_line_of(one) for one in breaks] == [3, 3, 5, 0]
-    assert [moved(one, 9).written() for one in breaks] == ["# 9", "9 if x", "# 9", "stall"]
+    assert [one.find_line() for one in breaks] == [3, 3, 5, 0]
+    assert [one.move(9).written() for one in breaks] == ["# 9", "9 if x", "# 9", "stall"]

@@ -67,8 +67,8 @@ def naive_sums(pixels: np.ndarray, diameter: int, col: int, row: int) -> list[in
 
 def test_sums_equal_naive_sums_everywhere(home: Path) -> None:
     files = mat_cache.prepare(mats.background("Testcard").image, (10, 20, 30))
-    field = mat_cache.open_field(files)
-    pixels = mat_cache.mat_pixels(files)
+    field = files.open_field()
+    pixels = files.read_pixels()
     dice = random.Random(5)
     for diameter in (10, 20, 30):
         corners = [
@@ -96,8 +96,8 @@ def test_sums_equal_naive_sums_everywhere(home: Path) -> None:
 @pytest.mark.parametrize("diameter", [2, 7, 100, 128])
 def test_sums_of_unusual_diameters(diameter: int, home: Path) -> None:
     files = mat_cache.prepare(mats.background("Radial_red").image, [diameter])
-    field = mat_cache.open_field(files)
-    pixels = mat_cache.mat_pixels(files)
+    field = files.open_field()
+    pixels = files.read_pixels()
     for col, row in [(1130, 520), (-3, -3), (WIDTH - 2, 600)]:
         assert list(field.sum_disc(diameter, col, row)) == naive_sums(pixels, diameter, col, row)
 
@@ -106,18 +106,15 @@ def test_sums_of_unusual_diameters(diameter: int, home: Path) -> None:
 def test_white_discs_do_not_overflow(home: Path, tmp_path: Path) -> None:
     files = mat_cache.prepare(picture(tmp_path, fill="white"), [mat_cache.MAX_DIAMETER_PX])
     pixels = sum(map(sum, build_disc_mask(mat_cache.MAX_DIAMETER_PX)))
-    assert (
-        mat_cache.open_field(files).sum_disc(mat_cache.MAX_DIAMETER_PX, 500, 500)
-        == (255 * pixels,) * 3
-    )
+    assert files.open_field().sum_disc(mat_cache.MAX_DIAMETER_PX, 500, 500) == (255 * pixels,) * 3
 
 
 def test_pixels_are_those_of_the_image(home: Path) -> None:
     image = mats.background("Rainbow_bands").image
     files = mat_cache.prepare(image, ())
     with Image.open(image) as opened:
-        assert np.array_equal(mat_cache.mat_pixels(files), np.asarray(opened))
-    assert mat_cache.open_field(files).read_box(4, -1, -1)[12:24] == bytes(3) + b"\xff" * 9
+        assert np.array_equal(files.read_pixels(), np.asarray(opened))
+    assert files.open_field().read_box(4, -1, -1)[12:24] == bytes(3) + b"\xff" * 9
 
 
 def test_what_is_cached_is_not_made_again(home: Path, tmp_path: Path) -> None:
@@ -143,7 +140,7 @@ def test_a_torn_file_is_made_again(home: Path, tmp_path: Path) -> None:
     whole = files.sums[0][1].read_bytes()
     os.truncate(files.sums[0][1], 1000)
     with pytest.raises(BackgroundError, match="1000 bytes"):
-        mat_cache.open_field(files)
+        files.open_field()
     assert mat_cache.prepare(image, [20]).sums[0][1].read_bytes() == whole
 
 
@@ -198,10 +195,10 @@ def test_a_damaged_file_is_made_again(
         damage(path)
         assert not files.are_sound
     with pytest.raises(BackgroundError):
-        mat_cache.open_field(files)
+        files.open_field()
     assert mat_cache.prepare(image, [10]) == files
-    assert mat_cache.open_field(files).sum_disc(10, 500, 500) == (69 * 255,) * 3
-    assert mat_cache.open_field(files).read_box(1, 500, 500) == b"\xff" * 3
+    assert files.open_field().sum_disc(10, 500, 500) == (69 * 255,) * 3
+    assert files.open_field().read_box(1, 500, 500) == b"\xff" * 3
 
 
 def test_a_copied_file_is_read_once_to_be_trusted(home: Path, tmp_path: Path) -> None:
@@ -220,12 +217,12 @@ def test_a_missing_file_is_told(home: Path, tmp_path: Path) -> None:
     files = mat_cache.prepare(picture(tmp_path), [20])
     files.pixels.unlink()
     with pytest.raises(BackgroundError, match="cannot be opened"):
-        mat_cache.open_field(files)
+        files.open_field()
 
 
 def test_an_open_field_outlives_its_files(home: Path, tmp_path: Path) -> None:
     files = mat_cache.prepare(picture(tmp_path, fill="white"), [10])
-    field = mat_cache.open_field(files)
+    field = files.open_field()
     for path in cached(home):
         path.unlink()
     assert field.sum_disc(10, 50, 50) == (69 * 255,) * 3
@@ -272,7 +269,7 @@ def test_a_mat_with_many_diameters_is_kept_whole(
 ) -> None:
     monkeypatch.setattr(mat_cache, "MAX_CACHED_FILES", 1)
     files = mat_cache.prepare(picture(tmp_path), (10, 20))
-    assert mat_cache.open_field(files).sums.keys() == {10, 20}
+    assert files.open_field().sums.keys() == {10, 20}
 
 
 def test_parts_of_killed_processes_are_cleared(home: Path, tmp_path: Path) -> None:
@@ -294,13 +291,13 @@ def test_several_at_once_make_the_same_files(home: Path, tmp_path: Path) -> None
     assert len({each.result() for each in found}) == 1
     assert [path.suffix for path in cached(home)] == [".sums", ".rgb"]
     (files,) = {each.result() for each in found}
-    assert mat_cache.open_field(files).sum_disc(20, 500, 500) == (0, 0, 305 * 128)
+    assert files.open_field().sum_disc(20, 500, 500) == (0, 0, 305 * 128)
 
 
 def test_a_copied_field_outlives_what_is_cut_off_its_files(home: Path, tmp_path: Path) -> None:
     files = mat_cache.prepare(picture(tmp_path, fill="white"), [10])
-    field = mat_cache.open_field(files, is_copied=True)
-    pixels = mat_cache.mat_pixels(files)
+    field = files.open_field(is_copied=True)
+    pixels = files.read_pixels()
     for path in (files.pixels, *dict(files.sums).values()):
         path.chmod(0o600)
         os.truncate(path, 0)

@@ -13,7 +13,6 @@ from numpy.testing import assert_allclose
 from tests.app.analyser.logs import long_log, model_of, wide_log
 from tests.cases import cases
 from tests.logs.test_signals import column
-from tuisim.analysis.model import derive
 from tuisim.app.analyser.panes import PANES
 from tuisim.base.errors import LogError
 from tuisim.engine.core.geometry import Pose
@@ -48,7 +47,7 @@ DEFINED = {
 @cases("text, values", DEFINED)
 def test_what_is_reckoned(text: str, values: np.ndarray) -> None:
     model = model_of(long_log())
-    derive(model, text)
+    model.derive(text)
     assert model.log.series("v").values.tolist() == pytest.approx(values.tolist())
     assert model.selected == "v" and model.trace.on
 
@@ -81,7 +80,7 @@ def test_what_cannot_be_reckoned_changes_nothing(text: str, said: str) -> None:
     model = model_of(long_log())
     before = model.log
     with pytest.raises(LogError, match=said):
-        derive(model, text)
+        model.derive(text)
     assert model.log is before
 
 
@@ -107,7 +106,7 @@ def test_each_run_has_its_own() -> None:
 
 def test_it_is_a_variable_like_any_other() -> None:
     model = model_of(long_log())
-    derive(model, "v = slope(Colour)")
+    model.derive("v = slope(Colour)")
     assert [row[0] for row in PANES["statistics"].rows(model)] == ["Colour", "Left", "v"]
     assert model.rows.columns[-1] == "v"
     assert model.rows.text(0, "v") == "-10" and model.rows.text(1, "v") == ""
@@ -118,8 +117,8 @@ def test_it_is_a_variable_like_any_other() -> None:
 
 def test_it_is_replaced_taken_away_and_kept_when_the_log_grows() -> None:
     model = model_of(wide_log(100))
-    derive(model, "v = wave + 1")
-    derive(model, "v = wave + 2")
+    model.derive("v = wave + 1")
+    model.derive("v = wave + 2")
     assert model.trace.find_value(0.0) == pytest.approx(3.0)
     grown = model_of(wide_log(200))
     grown.restore(model)
@@ -128,7 +127,7 @@ def test_it_is_replaced_taken_away_and_kept_when_the_log_grows() -> None:
     other.restore(model)
     assert [trace.name for trace in other.traces] == ["Colour", "Left"]
     model.rows.view = model.rows.build_sorted_view("v", True)
-    derive(model, "v =")
+    model.derive("v =")
     assert [trace.name for trace in model.traces] == ["wave"] and model.rows.columns == [
         "time",
         "wave",
@@ -138,7 +137,7 @@ def test_it_is_replaced_taken_away_and_kept_when_the_log_grows() -> None:
 
 def test_columns_that_mean_something_else_have_nothing_derived() -> None:
     model = model_of(wide_log(100))
-    derive(model, "v = wave + 1")
+    model.derive("v = wave + 1")
     other = model.log.replace_layout(model.log.layout)
     assert other.names == ("wave",) and other.table.column_names == ["time", "wave"]
 

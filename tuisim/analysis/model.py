@@ -206,7 +206,7 @@ class AnalysisModel:
             if name not in self.definitions:
                 # Definitions that need variables which no longer exist are dropped.
                 with suppress(LogError):
-                    derive(self, text)
+                    self.derive(text)
 
     def set_log(self, log: Log) -> None:
         """Switch to the same log with other derived variables."""
@@ -243,7 +243,7 @@ class AnalysisModel:
     def add_named_columns(self, text: str) -> None:
         """Derive the columns of the recording that a text names, if the log lacks them but can compute them."""
         for name in find_named_columns(self.log, text):
-            derive(self, name)
+            self.derive(name)
 
     def align(self, way: str) -> None:
         """Align the runs by `time`; by `distance`, how far each robot has driven; or by an event such as `Colour < 50`.
@@ -402,57 +402,55 @@ class AnalysisModel:
             raise LogError("notes cannot be stored", "open a file or a run instead of a pipe")
         return self._places[run]
 
+    def apply_definition(self, text: str, log: Log) -> None:
+        """Apply a definition to a model, with the log that `compute_definition` returned for it."""
+        name = RECKONING if text == RECKONING else parse_definition(text).name
+        self.definitions.pop(name, None)
+        if text == RECKONING or parse_definition(text).expression:
+            self.definitions[name] = text
+        self.set_log(log)
+        derived_name = RECKONED_COLUMNS[-1] if name == RECKONING else name
+        self.selected = next(
+            (variable for variable in log.derived if variable.partition(" #")[0] == derived_name),
+            self.selected,
+        )
+
+    def compute_definition(self, text: str) -> tuple[str, Log]:
+        """Return a definition without blanks around it, and the log with its variable; an empty one removes it.
+
+        Raises:
+            LogError: the line is invalid, or names an unknown variable.
+        """
+        text = text.strip()
+        log = self.log
+        if text == RECKONING:
+            for column in RECKONED_COLUMNS:
+                log = log.drop_derived(column)
+            for series in build_reckoned_series(log):
+                log = log.add_derived(series.name, [series])
+            return text, log
+        definition = parse_definition(text)
+        bare = log.drop_derived(definition.name)
+        if definition.expression:
+            return text, bare.add_derived(
+                definition.name, compute_derived(bare, definition, self.selected)
+            )
+        if bare is log:
+            names = dict.fromkeys(name.partition(" #")[0] for name in log.derived)
+            raise LogError(
+                f"no derived variable {definition.name!r}",
+                f"there are {', '.join(names) or 'none'}",
+            )
+        return text, bare
+
+    def derive(self, text: str) -> None:
+        """Derive a variable; blocks until it is computed.
+
+        Raises:
+            LogError: as for `compute_definition`.
+        """
+        self.apply_definition(*self.compute_definition(text))
+
 
 RECKONING = "reckoning"
 """Definition text for dead reckoning from the wheel encoders."""
-
-
-def derive(model: AnalysisModel, text: str) -> None:
-    """Derive a variable; blocks until it is computed.
-
-    Raises:
-        LogError: as for `compute_definition`.
-    """
-    apply_definition(model, *compute_definition(model, text))
-
-
-def apply_definition(model: AnalysisModel, text: str, log: Log) -> None:
-    """Apply a definition to a model, with the log that `compute_definition` returned for it."""
-    name = RECKONING if text == RECKONING else parse_definition(text).name
-    model.definitions.pop(name, None)
-    if text == RECKONING or parse_definition(text).expression:
-        model.definitions[name] = text
-    model.set_log(log)
-    derived_name = RECKONED_COLUMNS[-1] if name == RECKONING else name
-    model.selected = next(
-        (variable for variable in log.derived if variable.partition(" #")[0] == derived_name),
-        model.selected,
-    )
-
-
-def compute_definition(model: AnalysisModel, text: str) -> tuple[str, Log]:
-    """Return a definition without blanks around it, and the log with its variable; an empty one removes the variable.
-
-    Raises:
-        LogError: the line is invalid, or names an unknown variable.
-    """
-    text = text.strip()
-    log = model.log
-    if text == RECKONING:
-        for column in RECKONED_COLUMNS:
-            log = log.drop_derived(column)
-        for series in build_reckoned_series(log):
-            log = log.add_derived(series.name, [series])
-        return text, log
-    definition = parse_definition(text)
-    bare = log.drop_derived(definition.name)
-    if definition.expression:
-        return text, bare.add_derived(
-            definition.name, compute_derived(bare, definition, model.selected)
-        )
-    if bare is log:
-        names = dict.fromkeys(name.partition(" #")[0] for name in log.derived)
-        raise LogError(
-            f"no derived variable {definition.name!r}", f"there are {', '.join(names) or 'none'}"
-        )
-    return text, bare

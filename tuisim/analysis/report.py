@@ -13,10 +13,9 @@ from typing import TYPE_CHECKING, Any
 from tuisim.analysis.chart import View, build_chart, build_spans
 from tuisim.analysis.model import AnalysisModel
 from tuisim.analysis.pins import Picture, Pin, encode_data, encode_picture, place_pins
-from tuisim.analysis.source import LogRequest, OpenedLog, open_pieces
+from tuisim.analysis.source import LogRequest, OpenedLog
 from tuisim.base.errors import ExportError, LogError, listed
 from tuisim.base.source import source_lines
-from tuisim.engine.core.geometry import pose_in_words
 from tuisim.engine.core.profile import NS_PER_S
 from tuisim.engine.core.tick_record import FLAG_PEN_DOWN
 from tuisim.engine.files import name_of
@@ -142,7 +141,7 @@ def _choose_rows(opened: OpenedLog) -> tuple[OpenedLog, str]:
         return opened, ""
     if not opened.runs:
         raise LogError("no rows", "a report needs a log or a run", file=opened.log.title)
-    *_, telemetry = open_pieces(LogRequest(runs=(opened.runs[0].id,), telemetry=True))
+    *_, telemetry = LogRequest(runs=(opened.runs[0].id,), telemetry=True).open_pieces()
     # The run as it was given: its end may be described otherwise than in the store.
     telemetry = replace(telemetry, runs=opened.runs[:1])
     return (
@@ -386,9 +385,9 @@ _FACTS: Mapping[str, Callable[[StoredRun], str]] = {
     "robot": lambda run: run.spec.robot.name,
     "seed": lambda run: str(run.spec.seed),
     "noise": _describe_noise,
-    "start": lambda run: pose_in_words(run.spec.world.start),
+    "start": lambda run: run.spec.world.start.describe(),
     "end": _describe_end,
-    "end pose": lambda run: pose_in_words(last.pose) if (last := run.telemetry.last()) else "",
+    "end pose": lambda run: last.pose.describe() if (last := run.telemetry.last()) else "",
     "simulated time": _time_s,
     "user actions": lambda run: str(len(run.actions)) if run.actions else "",
     "tags": lambda run: ", ".join(run.tags),

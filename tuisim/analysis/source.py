@@ -119,6 +119,27 @@ class LogRequest:
         note = f"read as chosen in the analyser: {options} (giving one of these options replaces all of them)"
         return replace(log, notes=(note, *log.notes))
 
+    def open_pieces(self) -> Iterator[OpenedLog]:
+        """Open a log; yield what has been read, soon after the start and then repeatedly.
+
+        Slow for a large file: call it in a thread.
+
+        Raises:
+            LogError: there is no such run or file, or it cannot be read.
+        """
+        from tuisim.engine.runs.store import RunStore
+        from tuisim.logs.reader import build_log, build_telemetry_log, read_pieces
+
+        if not self.file:
+            store = RunStore()
+            runs = tuple(store.load_run(word) for word in self.runs)
+            log = build_telemetry_log(runs[0]) if self.telemetry else build_log(runs)
+            yield OpenedLog(self, log, runs[:1] if self.telemetry else runs)
+            return
+        for loaded in read_pieces(self.file, self.choices):
+            if loaded.log is not None:
+                yield OpenedLog(self, self.mark(loaded.log), (), loaded.part, loaded.done)
+
 
 @dataclass(frozen=True, slots=True)
 class OpenedLog:
@@ -154,28 +175,6 @@ class OpenedLog:
             return Path(self.request.file).stat().st_size
         except OSError:
             return None
-
-
-def open_pieces(request: LogRequest) -> Iterator[OpenedLog]:
-    """Open a log; yield what has been read, soon after the start and then repeatedly.
-
-    Slow for a large file: call it in a thread.
-
-    Raises:
-        LogError: there is no such run or file, or it cannot be read.
-    """
-    from tuisim.engine.runs.store import RunStore
-    from tuisim.logs.reader import build_log, build_telemetry_log, read_pieces
-
-    if not request.file:
-        store = RunStore()
-        runs = tuple(store.load_run(word) for word in request.runs)
-        log = build_telemetry_log(runs[0]) if request.telemetry else build_log(runs)
-        yield OpenedLog(request, log, runs[:1] if request.telemetry else runs)
-        return
-    for loaded in read_pieces(request.file, request.choices):
-        if loaded.log is not None:
-            yield OpenedLog(request, request.mark(loaded.log), (), loaded.part, loaded.done)
 
 
 NOTES_FILE = "notes.jsonl"

@@ -29,7 +29,6 @@ from tuisim.engine.core.servo.control import Ending
 from tuisim.engine.core.servo.motor import ServoMotor
 from tuisim.engine.core.simulation import Simulation, build_simulation
 from tuisim.engine.core.tick_record import MemoryRecording, NoRecording
-from tuisim.engine.mat_cache import open_field
 from tuisim.engine.runs.replay import give_command
 from tuisim.engine.runs.run_folder import field_files
 from tuisim.settings.build import build_run_spec
@@ -111,7 +110,7 @@ class Lab:
         }
         if TIME in self.columns:
             self._readers[TIME] = lambda *_: self.time_s
-        self._field = open_field(field_files(spec), has_floor=spec.world.is_open)
+        self._field = field_files(spec).open_field(has_floor=spec.world.is_open)
         self._spec = spec
         self._hz = spec.profile.tick_hz
         self.reset()

@@ -13,8 +13,7 @@ from tuisim.api.measures import show_progress
 from tuisim.base.errors import HostError
 from tuisim.engine.runs.child.isolation import check_isolation
 from tuisim.tasks.goals.files import load_goals
-from tuisim.tasks.marks.marking import MarkRequest, open_marking
-from tuisim.tasks.marks.sheet import build_frame
+from tuisim.tasks.marks.marking import MarkRequest
 from tuisim.tasks.task import TIME_LIMIT_S
 
 if TYPE_CHECKING:
@@ -68,7 +67,7 @@ def mark(
         jobs=jobs,
         resumes=resume,
     )
-    with open_marking(request) as marking:
+    with request.open_marking() as marking:
         marking.read_programs()
         with show_progress() as tell:
             marking.run(tell, isolate=isolate)
@@ -78,4 +77,4 @@ def mark(
                 f"this machine could not run {name} with seed {outcome.seed}: {outcome.failure}"
             )
             raise HostError(message, "resume=True runs what is missing")
-        return build_frame(marking.build_sheet())
+        return marking.build_sheet().build_frame()

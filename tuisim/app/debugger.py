@@ -12,7 +12,7 @@ from tuisim.app.snapshot import PauseView
 from tuisim.base.errors import TuisimError, counted
 from tuisim.base.source import find_code_line, source_lines
 from tuisim.engine import protocol
-from tuisim.engine.breakpoints import Breakpoint, LineBreak, break_line_of, moved, parse_break
+from tuisim.engine.breakpoints import Breakpoint, LineBreak, parse_break
 from tuisim.engine.core.profile import compute_due_ns
 from tuisim.engine.protocol import UNKNOWN_ORDINAL, Inspected, Message, Paused, PauseReason
 from tuisim.engine.runs.replay_debugger import Position, ReplayDebugger
@@ -119,10 +119,10 @@ class DebugController:
         lines = self._lines()
         texts = []
         for entry in self.breaks:
-            shown_line = break_line_of(entry)
+            shown_line = entry.find_line()
             runs = lines.find_run_line(shown_line)
             if runs or not shown_line:
-                texts.append(moved(entry, runs).written())
+                texts.append(entry.move(runs).written())
         self._run_controller.send(protocol.SetBreaks(tuple(texts)))
 
     def set_watches(self, watches: tuple[str, ...]) -> None:
@@ -148,7 +148,7 @@ class DebugController:
     def _count_words(self) -> str:
         """The number of active breakpoints in words; empty if each is on a line, where its mark shows it."""
         active = [entry for entry in self.breaks if not entry.disabled]
-        if all(map(break_line_of, active)):
+        if all(entry.find_line() for entry in active):
             return ""
         return self._app.fill_keys(f"{counted(len(active), 'breakpoint')}: {{breaks}}")
 
@@ -555,7 +555,7 @@ def break_lines(breaks: Iterable[Breakpoint]) -> dict[int, Breakpoint]:
     """Return the line breakpoints by line; if a line has several, an enabled one takes precedence."""
     by_line: dict[int, Breakpoint] = {}
     for point in sorted(breaks, key=lambda point: not point.disabled):
-        line = break_line_of(point)
+        line = point.find_line()
         if line:
             by_line[line] = point
     return by_line

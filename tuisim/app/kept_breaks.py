@@ -10,7 +10,7 @@ from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ConfigError
 from tuisim.base.regular_file import read_regular
 from tuisim.base.source import source_lines
-from tuisim.engine.breakpoints import Breakpoint, break_line_of, moved, parse_break
+from tuisim.engine.breakpoints import Breakpoint, parse_break
 from tuisim.engine.files import MAX_FILE_BYTES
 
 FOLDER = "breaks"
@@ -69,9 +69,9 @@ def follow_edit(breaks: tuple[Breakpoint, ...], before: str, now: str) -> tuple[
     same = count_same_lines(old, new)
     kept = []
     for entry in breaks:
-        line = break_line_of(entry)
+        line = entry.find_line()
         if line <= same or not line:
             kept.append(entry)
         elif line + shift > same:
-            kept.append(moved(entry, line + shift))
+            kept.append(entry.move(line + shift))
     return tuple(kept)

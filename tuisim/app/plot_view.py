@@ -14,7 +14,7 @@ from textual.strip import Strip
 
 from tuisim.pictures.charts.bands import SHADES
 from tuisim.pictures.charts.canvas import AXIS
-from tuisim.pictures.charts.plot_image import Plot, PlotInks, draw_plot
+from tuisim.pictures.charts.plot_image import Plot, PlotInks
 from tuisim.pictures.charts.text_chart import ChartPicture
 from tuisim.terminal.cell_view import JoinedStrip, LinesView, PictureStrip
 from tuisim.terminal.picture import Graphics, TilePicture
@@ -144,7 +144,7 @@ class PlotView(LinesView):
         for top, left, plot in plots:
             rows, cols = plot.size
             curves = tuple(replace(curve, rgb=self._find_ink(curve.rgb)) for curve in plot.curves)
-            part = draw_plot(replace(plot, curves=curves), cell, inks)
+            part = replace(plot, curves=curves).draw(cell, inks)
             image[top * height : (top + rows) * height, left * width : (left + cols) * width] = part
         return image
 

@@ -22,7 +22,7 @@ from tuisim.engine.core.conditions import (
 )
 from tuisim.engine.core.field import Field
 from tuisim.engine.core.sensors import find_named_column, list_column_names, list_columns
-from tuisim.engine.runs.brick_state import BrickState, update_face
+from tuisim.engine.runs.brick_state import BrickState
 from tuisim.engine.runs.command_events import parse_command_search
 from tuisim.engine.runs.frames import compute_column_values, evaluate_condition
 from tuisim.engine.runs.records import TEXT_STREAMS, Mark, OutputRow
@@ -106,8 +106,8 @@ class Timeline:
         numbers = self.recording.rows.list_face_numbers(tick)
         if numbers != self._face_numbers:
             self._face_numbers = numbers
-            self._face = update_face(
-                BrickState(), [self.recording.rows.row(number) for number in numbers]
+            self._face = BrickState().update_face(
+                [self.recording.rows.row(number) for number in numbers]
             )
         return self._face
 

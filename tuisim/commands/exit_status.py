@@ -11,7 +11,7 @@ from typing import Any, assert_never
 
 from tuisim.base.errors import SIGNALLED, counted
 from tuisim.commands.echo import echo_error, echo_error_lines, echo_json
-from tuisim.engine.core.geometry import Pose, pose_in_words
+from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, RunSpec
 from tuisim.engine.protocol import NO_ANSWER, End, describe_state
 from tuisim.engine.runs.records import Stream
@@ -101,7 +101,7 @@ def describe_last_state(facts: dict[str, Any]) -> str:
     samples = "" if facts["samples"] is None else f"{counted(facts['samples'], 'sample')} · "
     return (
         f"{facts['program']}: {what} · {facts['time_s']:.3f} s, tick {facts['tick']} · "
-        f"{pose_in_words(pose)} · {left}{stood}{waited}{samples}run {facts['run']}"
+        f"{pose.describe()} · {left}{stood}{waited}{samples}run {facts['run']}"
     )
 
 

@@ -30,7 +30,7 @@ from tuisim.engine.runs.store import RunStore
 from tuisim.settings.build import build_run_spec, extract_settings
 from tuisim.settings.command_line import Group, WordType, argument, command, option
 from tuisim.settings.options import START, merge_settings
-from tuisim.tasks.goals.drawn_mats import DRAWN_MATS, format_world_lines, generate_mat
+from tuisim.tasks.goals.drawn_mats import DRAWN_MATS, generate_mat
 from tuisim.tasks.goals.files import GoalsFile, list_example_names, load_goals
 from tuisim.tasks.goals.judge import judge
 from tuisim.tasks.goals.judgement import (
@@ -267,7 +267,7 @@ def draw_mat(kind: str, seed: int, out: str | None) -> int:
     check_format(path, "mat", (".png",))
     mat = generate_mat(kind, seed)
     write_whole(path, mat.png)
-    echo_lines("\n".join(format_world_lines(mat, path.name)))
+    echo_lines("\n".join(mat.format_world_lines(path.name)))
     return 0
 
 

@@ -47,7 +47,7 @@ from tuisim.settings.command_line import Arguments, WordType, argument, command,
 from tuisim.settings.options import APP, PANEL, parse
 from tuisim.settings.shared_options import build_shared_options
 from tuisim.tasks.goals.files import GoalsFile, load_goals
-from tuisim.tasks.marks.marking import GRADEBOOKS, Marking, MarkRequest, open_marking
+from tuisim.tasks.marks.marking import GRADEBOOKS, Marking, MarkRequest
 from tuisim.tasks.marks.sheet import Sheet
 from tuisim.tasks.task import TIME_LIMIT_S, Keep
 
@@ -213,7 +213,7 @@ def mark(**given: Any) -> int:
         movies=arguments.movies,
         feedback=Path(arguments.feedback) if arguments.feedback else None,
     )
-    with open_marking(request) as marking:
+    with request.open_marking() as marking:
         return _mark(marking, arguments)
 
 

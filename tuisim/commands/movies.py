@@ -65,7 +65,7 @@ def movie(
 ) -> int:
     """Save a run as a movie: the world, the chart, the sensor arrays, with time and values."""
     from tuisim.pictures.charts.files import check_format
-    from tuisim.pictures.movies.files import MOVIE_SUFFIXES, Clip, save_movie
+    from tuisim.pictures.movies.files import MOVIE_SUFFIXES, Clip
 
     run = RunStore().load_run(word)
     path = Path(out or _build_default_name(run, "movie.gif"))
@@ -80,7 +80,7 @@ def movie(
         span_s = recorded.clip_span_s(start_s, stop_s)
         speed = speed or max(1, math.ceil((span_s[1] - span_s[0]) / _FAST_S))
         clip = Clip(recorded, chosen or _choose_panels(recorded, sides), span_s, speed, fps, sides)
-        size_bytes = save_movie(clip, path, partial(tell, f"drawing {path.name}"))
+        size_bytes = clip.save(path, partial(tell, f"drawing {path.name}"))
     shots = clip.shots
     lasts_s = sum(shot.duration_ms for shot in shots) / 1000
     echo(f"{path}: {len(shots)} frames, {lasts_s:.1f} s at {speed:g}×, {size_bytes:,} bytes")

@@ -15,7 +15,7 @@ from tuisim.base.errors import EXIT_BROKEN_PIPE, SIGNALLED
 from tuisim.commands.echo import echo_error, hide_progress, tell
 from tuisim.engine.protocol import Ended, Message
 from tuisim.engine.runs.handle import RunHandle
-from tuisim.engine.runs.records import OutputRow, Stream, line_of
+from tuisim.engine.runs.records import OutputRow, Stream
 
 POLL_S = 0.05
 """The interval at which printed lines are relayed."""
@@ -103,7 +103,7 @@ class Follower:
                     with hide_progress(sys.stderr):
                         sys.stderr.write(row.text + "\n")
                 elif row.stream == Stream.SPEECH:
-                    echo_error(line_of(row))
+                    echo_error(row.format_line())
 
     def _write(self, text: str) -> None:
         if self.cut or self.lost:

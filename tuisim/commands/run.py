@@ -24,8 +24,7 @@ from tuisim.commands.notebooks import NotRun, find_listed, print_list, print_res
 from tuisim.commands.relay import Follower, RelayInterrupts, is_piped, read_answer
 from tuisim.commands.resolve import Prepared, check_arguments, prepare_runs
 from tuisim.commands.run_options import build_input_option, build_timeout_option
-from tuisim.engine.breakpoints import check_line, parse_breakpoints, parse_watch
-from tuisim.engine.core.geometry import pose_in_words
+from tuisim.engine.breakpoints import parse_breakpoints, parse_watch
 from tuisim.engine.core.profile import NS_PER_S
 from tuisim.engine.presses import press_actions
 from tuisim.engine.protocol import Answer, InputWanted, Inspect, Inspected, Message, Paused, Resume
@@ -197,7 +196,7 @@ def check_breaks(
     """
     for candidate in prepared:
         for entry in parse_breakpoints(texts, candidate.spec):
-            check_line(entry, source_lines(candidate.program.text if candidate.program else ""))
+            entry.check_line(source_lines(candidate.program.text if candidate.program else ""))
     for watch in watches:
         parse_watch(watch)
     if watches and not texts:
@@ -248,7 +247,7 @@ class BreakpointReporter:
         value = f" ({paused.value})" if paused.value else ""
         thread = f", thread {paused.thread}" if len(inspected.threads) > 1 else ""
         last = self._handle.telemetry.last()
-        pose = f", {pose_in_words(last.pose)}" if last else ""
+        pose = f", {last.pose.describe()}" if last else ""
         where = f"{name}:{paused.line}, {paused.time_ns / NS_PER_S:.3f} s, tick {paused.tick}{pose}{thread}"
         lines = [f"break {paused.detail}{value}: {where}"]
         if not paused.file and 0 < paused.line <= len(self._source):

@@ -37,10 +37,10 @@ from tuisim.engine.core.values import quote
 from tuisim.engine.files import toml_form
 from tuisim.engine.protocol import Unended
 from tuisim.engine.runs.catalogue import RunInfo
-from tuisim.engine.runs.diff import RunDiff, describe_recording, describe_setup
+from tuisim.engine.runs.diff import RunDiff
 from tuisim.engine.runs.frames import describe_damage
 from tuisim.engine.runs.handle import ASK_AGAIN_S
-from tuisim.engine.runs.records import OutputRow, Stream, line_of
+from tuisim.engine.runs.records import OutputRow, Stream
 from tuisim.engine.runs.rerun import list_changed_files, rerun, same
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.engine.runs.side_files import MAX_PATH, FilesRead, read_reads
@@ -239,7 +239,7 @@ def _show(run: StoredRun, *, as_json: bool) -> None:
         echo(f"and {counted(read.left_out, 'more file')}")
     for row in rows:
         echo(
-            f"{row.time_ns / 1e9:10.3f} s  {'! ' if row.stream == Stream.STDERR else ''}{line_of(row)}"
+            f"{row.time_ns / 1e9:10.3f} s  {'! ' if row.stream == Stream.STDERR else ''}{row.format_line()}"
         )
     if facts["error"]:
         echo_lines(facts["error"].rstrip("\n"))
@@ -345,8 +345,8 @@ def _rerun(run: StoredRun, *, as_json: bool) -> int:
 
 def format_diff(comparison: RunDiff) -> str:
     """Return a comparison as readable text."""
-    recording = describe_recording(comparison)
-    setup = describe_setup(comparison)
+    recording = comparison.describe_recording()
+    setup = comparison.describe_setup()
     pairs = (*recording, *setup) if comparison.same else (*setup, *recording)
     lines = [f"{label}: {words}" if label else words for label, words in pairs]
     if comparison.divergence and not comparison.same:

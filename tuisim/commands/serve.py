@@ -109,9 +109,7 @@ def serve(**given: Any) -> int:
     visitors = server.Server(
         build_app_command(drop_options(_SERVER)), gate, limits, echo_error_lines
     )
-    return server.serve(
-        visitors, arguments.host, arguments.port, lambda port: _announce(gate, port)
-    )
+    return visitors.serve(arguments.host, arguments.port, lambda port: _announce(gate, port))
 
 
 def _announce(gate: Gate, port: int) -> None:

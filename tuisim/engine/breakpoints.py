@@ -93,6 +93,34 @@ class Breakpoint:
         """The text from which `parse_break` makes this breakpoint again, also a disabled one."""
         return f"# {self.text}" if self.disabled else self.text
 
+    def check_line(self, lines: Sequence[str]) -> None:
+        """Check that a line breakpoint can be hit: its line, or one after it, must have code.
+
+        One without a line passes.
+
+        Args:
+            lines: The lines of the program.
+
+        Raises:
+            ConfigError: it can never be hit.
+        """
+        line = self.find_line()
+        if line and not find_code_line(lines, line):
+            last = len(lines)
+            why = f"line {line} does not exist" if line > last else f"no code follows line {line}"
+            raise _refuse(self.text, why, f"the program has {counted(last, 'line')}")
+
+    def move(self, line: int) -> Breakpoint:
+        """Return a copy of a line breakpoint on another line."""
+        if not isinstance(self.rule, LineBreak):
+            return self
+        rule = LineBreak(line, self.rule.condition)
+        return Breakpoint(rule, _common_text(rule), self.disabled)
+
+    def find_line(self) -> int:
+        """Return the line of a breakpoint; 0 if it has none."""
+        return self.rule.line if isinstance(self.rule, LineBreak) else 0
+
 
 _LINE = re.compile(r"(?:line\s+)?(\d+)(?:\s+if\s+(.*))?", re.DOTALL)
 _NAME = re.compile(r"\w+(?:[. ]\w+)*\s*%?")
@@ -114,36 +142,6 @@ def parse_break(text: str, run: RunSpec | None = None) -> Breakpoint:
 def parse_breakpoints(texts: Iterable[str], run: RunSpec | None = None) -> tuple[Breakpoint, ...]:
     """Return the breakpoints of several texts; see `parse_break`."""
     return tuple(parse_break(text, run) for text in texts)
-
-
-def check_line(one: Breakpoint, lines: Sequence[str]) -> None:
-    """Check that a line breakpoint can be hit: its line, or one after it, must have code.
-
-    Args:
-        one: The breakpoint; one without a line passes.
-        lines: The lines of the program.
-
-    Raises:
-        ConfigError: it can never be hit.
-    """
-    line = break_line_of(one)
-    if line and not find_code_line(lines, line):
-        last = len(lines)
-        why = f"line {line} does not exist" if line > last else f"no code follows line {line}"
-        raise _refuse(one.text, why, f"the program has {counted(last, 'line')}")
-
-
-def break_line_of(one: Breakpoint) -> int:
-    """Return the line of a breakpoint; 0 if it has none."""
-    return one.rule.line if isinstance(one.rule, LineBreak) else 0
-
-
-def moved(one: Breakpoint, line: int) -> Breakpoint:
-    """Return a copy of a line breakpoint on another line."""
-    if not isinstance(one.rule, LineBreak):
-        return one
-    rule = LineBreak(line, one.rule.condition)
-    return Breakpoint(rule, _common_text(rule), one.disabled)
 
 
 def _refuse(

@@ -108,6 +108,45 @@ class FieldFiles:
         sums = tuple((int(diameter), Path(path)) for diameter, path in data["sums"])
         return cls(int(data["width_px"]), int(data["height_px"]), Path(data["pixels"]), sums)
 
+    def read_pixels(self) -> NDArray[np.uint8]:
+        """Return a copy of a prepared mat for drawing: shape (height, width, 3), rows from the top, read-only.
+
+        Raises:
+            BackgroundError: the file is missing or incomplete.
+        """
+        import numpy as np
+
+        shape = (self.height_px, self.width_px, 3)
+        data = _open_data(self.pixels, shape[0] * shape[1] * 3, is_copied=True)
+        return np.frombuffer(data, np.uint8).reshape(shape)
+
+    def open_field(self, *, has_floor: bool = False, is_copied: bool = False) -> Field:
+        """Memory-map a prepared mat, in any process.
+
+        Args:
+            has_floor: Whether it lies on a floor of the colour of its edges: `WorldSpec.is_open`.
+            is_copied: Whether it is read into memory instead, for a process that outlives programs: the system ends a
+                process that reads a mapped file of which a program has cut something off.
+
+        Raises:
+            BackgroundError: a file is missing, for example because the cache evicted it, or incomplete.
+        """
+        width, height = self.width_px, self.height_px
+        pixels = _open_data(self.pixels, 3 * width * height, is_copied)
+        sums = {
+            diameter: _open_data(
+                path, 12 * (width + diameter) * (height + diameter), is_copied
+            ).cast("I")
+            for diameter, path in self.sums
+        }
+        return Field(
+            width,
+            height,
+            pixels,
+            sums,
+            find_floor_rgb(width, height, pixels) if has_floor else None,
+        )
+
 
 def _sums_size(diameter: int) -> int:
     return (FIELD_HEIGHT_MM + diameter) * (FIELD_WIDTH_MM + diameter) * 3 * 4
@@ -296,40 +335,3 @@ def _open_data(path: Path, size: int, is_copied: bool) -> memoryview:
     except OSError as error:
         message = f"the prepared mat cannot be opened: {error.strerror or error}"
         raise BackgroundError(message, file=str(path)) from error
-
-
-def open_field(files: FieldFiles, *, has_floor: bool = False, is_copied: bool = False) -> Field:
-    """Memory-map a prepared mat, in any process.
-
-    Args:
-        has_floor: Whether it lies on a floor of the colour of its edges: `WorldSpec.is_open`.
-        is_copied: Whether it is read into memory instead, for a process that outlives programs: the system ends a
-            process that reads a mapped file of which a program has cut something off.
-
-    Raises:
-        BackgroundError: a file is missing, for example because the cache evicted it, or incomplete.
-    """
-    width, height = files.width_px, files.height_px
-    pixels = _open_data(files.pixels, 3 * width * height, is_copied)
-    sums = {
-        diameter: _open_data(path, 12 * (width + diameter) * (height + diameter), is_copied).cast(
-            "I"
-        )
-        for diameter, path in files.sums
-    }
-    return Field(
-        width, height, pixels, sums, find_floor_rgb(width, height, pixels) if has_floor else None
-    )
-
-
-def mat_pixels(files: FieldFiles) -> NDArray[np.uint8]:
-    """Return a copy of a prepared mat for drawing: shape (height, width, 3), rows from the top, read-only.
-
-    Raises:
-        BackgroundError: the file is missing or incomplete.
-    """
-    import numpy as np
-
-    shape = (files.height_px, files.width_px, 3)
-    data = _open_data(files.pixels, shape[0] * shape[1] * 3, is_copied=True)
-    return np.frombuffer(data, np.uint8).reshape(shape)

@@ -54,6 +54,11 @@ class Background:
     fit: str | None = None
     """The default fit of its image, one of `engine.core.spec.BACKGROUND_FITS`; None is the first."""
 
+    def find_spec_name(self) -> str:
+        """Return the name in a run specification: the mat's own name if tuisim has the image, else the image's path."""
+        ours = catalogue().get(self.name)
+        return self.name if ours is not None and ours.image == self.image else str(self.image)
+
 
 @dataclass(frozen=True, slots=True)
 class _MatEntry:
@@ -221,12 +226,6 @@ def find_mat(word: str, folder: str | None = None) -> Background:
                 word = str(place / word)
                 break
     return _of_path(os.path.abspath(user_path(word)), known) or own_background(Path(word))
-
-
-def spec_name(mat: Background) -> str:
-    """Return the name of a mat in a run specification: its own name if tuisim has the image, else the image's path."""
-    ours = catalogue().get(mat.name)
-    return mat.name if ours is not None and ours.image == mat.image else str(mat.image)
 
 
 def mat_of_spec(name: str) -> tuple[str, Background]:

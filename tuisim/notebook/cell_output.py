@@ -11,7 +11,7 @@ from itertools import groupby
 from IPython.display import DisplayHandle, display
 
 from tuisim.base.errors import counted
-from tuisim.engine.runs.records import OutputRow, Stream, line_of
+from tuisim.engine.runs.records import OutputRow, Stream
 from tuisim.notebook.image_log import IMAGE_DATA, parse_side
 
 FIRST_LINES, LAST_LINES = 20, 5
@@ -28,7 +28,7 @@ def format_row(row: OutputRow) -> str:
     """Return the text that a cell shows for a row of output."""
     if row.text.startswith(IMAGE_DATA) and (side := parse_side(row)):
         return f"{side} image data logged..."
-    return line_of(row)
+    return row.format_line()
 
 
 class CellOutput:

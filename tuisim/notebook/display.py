@@ -20,7 +20,7 @@ from tuisim.engine.core.geometry import shown_heading_deg
 from tuisim.engine.core.sensors import measure_sensors
 from tuisim.engine.core.sensors.color import ColorReading
 from tuisim.engine.core.spec import RunSpec
-from tuisim.engine.mat_cache import FieldFiles, mat_pixels, open_field
+from tuisim.engine.mat_cache import FieldFiles
 from tuisim.engine.runs.samples import Sample
 from tuisim.engine.runs.views import TickRecord, build_instant
 from tuisim.pictures.charts.files import draw_image, encode_png
@@ -108,7 +108,7 @@ class Scene:
 
     def open_field(self) -> Field:
         """Return the mat as sensors see it."""
-        return open_field(self.files, has_floor=self.spec.world.is_open)
+        return self.files.open_field(has_floor=self.spec.world.is_open)
 
 
 def start_record(spec: RunSpec) -> TickRecord:
@@ -226,7 +226,7 @@ class Stage:
         on = self._settings["panels_on"]
         off = self._settings["panels_off"]
         if "world" not in off:
-            mat = mat_pixels(scene.files)
+            mat = scene.files.read_pixels()
             pose = scene.last.pose
             rays = self._settings["rays"]
             picture = draw_world(scene.spec, mat, pose, scene.traces, rays=rays)

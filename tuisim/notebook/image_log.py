@@ -91,12 +91,11 @@ class ArrayReader:
         Raises:
             LogError: as for `read_arrays`.
         """
-        from tuisim.engine.runs.run_folder import open_mat
 
         run = self._run
         if row.tick >= run.telemetry.count:
             return {}
-        self._field = self._field or open_mat(run)
+        self._field = self._field or run.open_mat()
         record = run.telemetry.record(row.tick)
         arrays = read_arrays(run.spec, record, run.find_noise(record), self._field)
         return {sensor.name: add_alpha(pixels) for sensor, pixels in arrays}

@@ -170,8 +170,7 @@ class Lab:
 
     def robot_state(self) -> dict[str, Any]:
         """Return the old simulator's dictionary of the robot's state, see `old_formats.robot_state`."""
-        from tuisim.engine.mat_cache import open_field
-        from tuisim.engine.runs.run_folder import field_files, open_mat
+        from tuisim.engine.runs.run_folder import field_files
         from tuisim.notebook.display import start_record
 
         self._catch_up()
@@ -179,14 +178,14 @@ class Lab:
         record = run.telemetry.last() if run else None
         if run is None or record is None:
             spec = self.spec
-            field = open_field(field_files(spec), has_floor=spec.world.is_open)
+            field = field_files(spec).open_field(has_floor=spec.world.is_open)
             highest_deg = spec.world.start.heading_deg
             return old_formats.build_robot_state(
                 spec, start_record(spec), spec.world.noise, field, highest_deg, self._wheels
             )
         highest_deg = float(run.telemetry.array()["heading_deg"].max())
         return old_formats.build_robot_state(
-            run.spec, record, run.find_noise(record), open_mat(run), highest_deg, self._wheels
+            run.spec, record, run.find_noise(record), run.open_mat(), highest_deg, self._wheels
         )
 
     # The world
@@ -426,7 +425,6 @@ class Lab:
     def _build_scene(self, plan: _CellPlan) -> tuple[Scene, str]:
         """Return the scene while no program runs, and its status line."""
         from tuisim.engine.runs.records import TEXT_STREAMS
-        from tuisim.engine.runs.run_folder import find_mat_files
         from tuisim.engine.runs.samples import list_samples
         from tuisim.notebook.cell_output import format_row
         from tuisim.notebook.cell_run import describe_end
@@ -442,7 +440,7 @@ class Lab:
         files = plan.files
         if self._last.first_spec != spec:
             spec = self._last.spec
-            files = find_mat_files(self._last)
+            files = self._last.find_mat_files()
         rows = self._last.output.read_all_rows()
         printed = [format_row(row) for row in rows if row.stream in TEXT_STREAMS]
         last = self._last.telemetry.last() or start

@@ -22,7 +22,7 @@ from tuisim.engine.core.spec import (
     WorldSpec,
 )
 from tuisim.engine.files import errors_at
-from tuisim.engine.mats import Background, find_mat, mat_of_spec, spec_name
+from tuisim.engine.mats import Background, find_mat, mat_of_spec
 from tuisim.engine.obstacles import OBSTACLES, load_obstacles
 from tuisim.settings.options import RUN_VALUES, START, Settings
 from tuisim.settings.profiles import load_profile
@@ -89,7 +89,7 @@ def build_run_spec(settings: Settings) -> RunSpec:
     named = settings["profile"]
     profile = named if isinstance(named, ProfileSpec) else load_profile(named, "--profile")
     world = WorldSpec(
-        background=spec_name(mat),
+        background=mat.find_spec_name(),
         obstacles=_place_obstacles(settings, mat),
         solid=profile.solid,
         background_fit=mat.fit or BACKGROUND_FITS[0],

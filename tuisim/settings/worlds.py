@@ -20,7 +20,7 @@ from tuisim.engine.core.remote_spec import BeaconSpec, RemotePress
 from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.core.values import list_values, quote
 from tuisim.engine.files import Location, Scalar
-from tuisim.engine.mats import find_mat, spec_name
+from tuisim.engine.mats import find_mat
 from tuisim.engine.obstacles import load_obstacles, obstacle_lines, obstacles_from_list
 from tuisim.engine.presses import MAX_PRESSES
 from tuisim.settings.build import build_run_spec, extract_settings
@@ -351,7 +351,7 @@ def save_world(
             mat = find_mat(
                 extract_settings(spec)["background"], str(path.parent / user_path(world["mats"]))
             )
-            if spec_name(mat) != spec.world.background:
+            if mat.find_spec_name() != spec.world.background:
                 kept_keys.remove("mats")
 
     kept_keys = list(_NOT_IN_A_RUN)

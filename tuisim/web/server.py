@@ -356,6 +356,19 @@ class Server:
             visit.end("The server has stopped.")
         await asyncio.gather(*self._lives.values())
 
+    def serve(self, host: str, port: int, announce: Callable[[int], None]) -> int:
+        """Serve until a signal ends it, and with it the apps of all visitors. Return the exit code.
+
+        Args:
+            host: Host name or address to listen on.
+            port: Port to listen on; 0 takes any free one.
+            announce: Called with the port as soon as visitors can come.
+
+        Raises:
+            ConfigError: the address cannot be used.
+        """
+        return asyncio.run(_serve(self, host, port, announce))
+
 
 async def _redirect(request: web.Request) -> web.StreamResponse:
     """Redirect to the address of the page, which ends in a slash: addresses in the page are relative to it."""
@@ -379,21 +392,6 @@ def _read_size(request: web.Request) -> tuple[int, int]:
         return int(request.query["width"]), int(request.query["height"])
     except (KeyError, ValueError):
         return _DEFAULT_SIZE
-
-
-def serve(server: Server, host: str, port: int, announce: Callable[[int], None]) -> int:
-    """Serve until a signal ends it, and with it the apps of all visitors. Return the exit code.
-
-    Args:
-        server: Answers the requests.
-        host: Host name or address to listen on.
-        port: Port to listen on; 0 takes any free one.
-        announce: Called with the port as soon as visitors can come.
-
-    Raises:
-        ConfigError: the address cannot be used.
-    """
-    return asyncio.run(_serve(server, host, port, announce))
 
 
 async def _serve(server: Server, host: str, port: int, announce: Callable[[int], None]) -> int:

@@ -29,7 +29,7 @@ from tuisim.engine.core.simulation import Simulation
 from tuisim.engine.core.spec import RobotSpec, RunSpec, WorldSpec
 from tuisim.engine.core.tick_record import TICK_RECORD
 from tuisim.engine.core.tree import dump_run, load_run
-from tuisim.engine.mat_cache import FieldFiles, open_field
+from tuisim.engine.mat_cache import FieldFiles
 from tuisim.engine.runs.readings import ReadingsWriter
 from tuisim.engine.runs.run_folder import field_files
 from tuisim.engine.runs.run_options import RunOptions
@@ -153,7 +153,7 @@ def carry_out(
     output.writer = lines  # type: ignore[assignment]
     channel = Channel(*os.pipe())
     steering = RunControl(channel, Path(), False, 0.0, False, ())
-    session = Session(sim, open_field(files), output)
+    session = Session(sim, files.open_field(), output)
     session.readings = ReadingsWriter(folder)
     session.connect(channel, steering, RunLimits(60 * NS_PER_S), "program.py")
     output.place = lambda: (sim.tick, session.now, 0)

@@ -9,13 +9,13 @@ import pytest
 
 from tests.tasks.goals.recorded import goals_of
 from tuisim.analysis.events import find_events, parse_events
-from tuisim.analysis.model import AnalysisModel, derive
-from tuisim.analysis.source import LogRequest, open_pieces
+from tuisim.analysis.model import AnalysisModel
+from tuisim.analysis.source import LogRequest
 from tuisim.cli import run_command
 from tuisim.engine.core.columns import find_column_name
 from tuisim.engine.core.sensors import list_columns
 from tuisim.engine.runs.frames import compute_column_values
-from tuisim.engine.runs.run_folder import StoredRun, open_mat
+from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.engine.runs.store import RunStore
 from tuisim.logs.table import parse_conditions
 from tuisim.settings.build import build_run_spec
@@ -44,7 +44,7 @@ def run(home_of_runs: Path, monkeypatch: pytest.MonkeyPatch) -> StoredRun:
 
 
 def value_of(run: StoredRun, name: str) -> float:
-    values = compute_column_values([name], run.telemetry.array(), run, run.actions, open_mat(run))
+    values = compute_column_values([name], run.telemetry.array(), run, run.actions, run.open_mat())
     return float(values[name][-1])
 
 
@@ -81,7 +81,7 @@ def test_the_name_of_a_trace_is_a_breakpoint_a_watch_and_an_event(
 def test_the_name_of_a_trace_is_an_event_a_filter_and_a_variable_of_the_analyser(
     name: str, run: StoredRun
 ) -> None:
-    *_, opened = open_pieces(LogRequest(runs=("1",), telemetry=True))
+    *_, opened = LogRequest(runs=("1",), telemetry=True).open_pieces()
     model = AnalysisModel(opened)
     model.add_named_columns(f"{name} changes")
     assert len(find_events(model.log, parse_events(f"{name} changes", model.log))) > 5
@@ -90,7 +90,7 @@ def test_the_name_of_a_trace_is_an_event_a_filter_and_a_variable_of_the_analyser
     )
     model.rows.view = model.rows.build_filtered_view(tuple(conditions))
     assert 0 < len(model.rows) < model.log.rows
-    derive(model, f"half = {name} / 2")
+    model.derive(f"half = {name} / 2")
     assert model.log.series("half").values[-1] == value_of(run, name) / 2
 
 

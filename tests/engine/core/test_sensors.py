@@ -24,7 +24,7 @@ from tuisim.engine.core.tree import dump_run, load_run
 from tuisim.engine.protocol import Resume
 from tuisim.engine.runs.frames import MOTION_COLUMNS, build_telemetry_frame
 from tuisim.engine.runs.handle import RunOptions, start_run
-from tuisim.engine.runs.run_folder import StoredRun, open_mat
+from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.engine.runs.store import RunStore
 from tuisim.engine.runs.views import build_instant
 from tuisim.engine.shim.sensors import DEVICES
@@ -151,7 +151,7 @@ def test_it_is_in_the_telemetry_as_measured(kind: SensorKind) -> None:
     last = run.telemetry.last()
     assert last is not None
     measured = kind.measure(
-        sensor, build_instant(last, run.spec, run.spec.world.noise), run.spec, open_mat(run)
+        sensor, build_instant(last, run.spec, run.spec.world.noise), run.spec, run.open_mat()
     )
     assert frame.iloc[-1][list(names)].tolist() == list(measured)
 
@@ -162,7 +162,7 @@ def test_the_panels_show_it(kind: SensorKind) -> None:
     last = run.telemetry.last()
     assert last is not None
     instant = build_instant(last, run.spec, run.spec.world.noise)
-    field = open_mat(run)
+    field = run.open_mat()
     (sensor,) = run.spec.robot.sensors
     now = Snapshot(
         RunPhase.ENDED, None, run.spec, field, instant, line=0, speed=1.0, pen_down=False

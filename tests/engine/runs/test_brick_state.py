@@ -14,7 +14,6 @@ from tuisim.engine.runs.brick_state import (
     build_led_row,
     build_motors_row,
     display_row,
-    update_face,
 )
 from tuisim.engine.runs.records import OutputRow, Stream
 
@@ -24,7 +23,7 @@ def row(text: str, stream: Stream) -> OutputRow:
 
 
 def test_untouched_brick_is_blank() -> None:
-    face = update_face(BrickState(), [row("Colour: 3", Stream.STDOUT)])
+    face = BrickState().update_face([row("Colour: 3", Stream.STDOUT)])
     assert face == BrickState()
     assert not any(face.picture)
 
@@ -33,8 +32,7 @@ def test_each_stream_comes_back() -> None:
     picture = random.Random(5).randbytes(len(BLANK))
     screen = TextScreen(14, 5, ("hello", "", "", "", ""), ((0, 1, 3),))
     lights = {"left red": 255, "left green": 0, "right red": 7, "right green": 128}
-    face = update_face(
-        BrickState(),
+    face = BrickState().update_face(
         [
             row(build_led_row(lights), Stream.LED),
             row(display_row(picture), Stream.DISPLAY),
@@ -46,8 +44,7 @@ def test_each_stream_comes_back() -> None:
 
 def test_newest_screen_is_shown() -> None:
     screen = TextScreen(14, 5, ("",) * 5)
-    face = update_face(
-        BrickState(),
+    face = BrickState().update_face(
         [row(build_console_row(screen), Stream.CONSOLE), row(display_row(BLANK), Stream.DISPLAY)],
     )
     assert face.text == screen
@@ -56,21 +53,22 @@ def test_newest_screen_is_shown() -> None:
 
 def test_the_last_sound_is_kept() -> None:
     assert (
-        update_face(
-            BrickState(),
+        BrickState()
+        .update_face(
             [
                 row("[beep]", Stream.SPEECH),
                 row("hello", Stream.SPEECH),
                 row("Colour: 3", Stream.STDOUT),
             ],
-        ).sound
+        )
+        .sound
         == "hello"
     )
 
 
 def test_motors_turn_evenly_on() -> None:
-    face = update_face(
-        BrickState(), [row(build_motors_row([(90.0, -50.0), (1.5, 0.0)]), Stream.MOTORS)]
+    face = BrickState().update_face(
+        [row(build_motors_row([(90.0, -50.0), (1.5, 0.0)]), Stream.MOTORS)]
     )
     # The row is of tick 1.
     (turning, standing) = face.extrapolate_turns(2.01, 100)

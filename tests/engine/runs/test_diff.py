@@ -7,12 +7,7 @@ import pytest
 
 from tests.engine.runs.test_recorded_run import stored
 from tuisim.engine.core.tick_record import TICK_FIELDS
-from tuisim.engine.runs.diff import (
-    describe_recording,
-    describe_setup,
-    diff_runs,
-    find_first_difference_s,
-)
+from tuisim.engine.runs.diff import diff_runs, find_first_difference_s
 
 
 def test_the_difference_of_two_runs_is_told() -> None:
@@ -20,13 +15,13 @@ def test_the_difference_of_two_runs_is_told() -> None:
     one = stored(text.format(30), {"seed": 1})
     two = stored(text.format("speed"), {"seed": 2})
     found = diff_runs(one, two)
-    recording = dict(describe_recording(found))
-    setup = dict(describe_setup(found))
+    recording = dict(found.describe_recording())
+    setup = dict(found.describe_setup())
     assert "x_mm" in recording["first differing tick"]
     assert "mm apart" in recording["poses"]
     assert setup["settings, seed"] == "1 | 2"
-    assert "--- prog.py" in [line for label, line in describe_setup(found) if not label]
-    assert list(describe_recording(diff_runs(one, one))) == [
+    assert "--- prog.py" in [line for label, line in found.describe_setup() if not label]
+    assert list(diff_runs(one, one).describe_recording()) == [
         ("bit-identical", "recording, output, settings")
     ]
 
@@ -77,5 +72,5 @@ def test_runs_part_only_while_both_last() -> None:
 def test_output_that_ends_earlier_is_told() -> None:
     one = stored("print('a')\n")
     two = stored("print('a')\nprint('b')\n")
-    recording = dict(describe_recording(diff_runs(one, two)))
+    recording = dict(diff_runs(one, two).describe_recording())
     assert recording["first differing output row"].startswith("2: no more | 'b' at ")

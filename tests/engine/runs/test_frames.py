@@ -19,7 +19,7 @@ from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.sensors import measure_sensors
 from tuisim.engine.core.sensors.color import measure_color
 from tuisim.engine.core.spec import NoiseSpec, Obstacle, RunSpec, WorldSpec
-from tuisim.engine.mat_cache import FieldFiles, open_field, prepare
+from tuisim.engine.mat_cache import FieldFiles, prepare
 from tuisim.engine.mats import background
 from tuisim.engine.runs.frames import SAMPLE_COLUMNS, build_samples_frame, build_telemetry_frame
 from tuisim.engine.runs.records import TELEMETRY_FILE
@@ -251,7 +251,7 @@ def test_mat_is_opened_where_the_host_left_it(
 def reading_at(run: StoredRun, files: FieldFiles) -> float:
     record = run.telemetry.record(0)
     instant = build_instant(record, run.spec, NoiseSpec())
-    return measure_color(run.spec.robot.color_sensors[0], instant, open_field(files)).red
+    return measure_color(run.spec.robot.color_sensors[0], instant, files.open_field()).red
 
 
 @pytest.mark.quick_cases("never said")

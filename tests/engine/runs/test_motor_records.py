@@ -10,7 +10,6 @@ import pytest
 
 from tests.running import Done, Run
 from tuisim.base.errors import LogError
-from tuisim.engine.mat_cache import open_field
 from tuisim.engine.runs.frames import compute_column_values
 from tuisim.engine.runs.motor_records import read_motor_columns, read_motor_values
 from tuisim.engine.runs.records import HEADER_BYTES
@@ -66,7 +65,7 @@ def test_without_drivers_there_is_no_file(run: Run) -> None:
 def test_what_is_lost_is_unknown(hold: Callable[..., Done]) -> None:
     done = hold()
     os.truncate(done.run.folder / MOTORS_FILE, HEADER_BYTES + 16 * 5 + 3)
-    mat = open_field(done.run.field)
+    mat = done.run.field.open_field()
     columns = compute_column_values(
         ["left_duty_pc", "left_holding"], done.run.telemetry.array(), done.run, [], mat
     )

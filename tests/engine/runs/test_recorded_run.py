@@ -18,7 +18,7 @@ from tuisim.engine.runs.brick_state import LED_NAMES, build_led_row
 from tuisim.engine.runs.handle import RunOptions, start_run
 from tuisim.engine.runs.recorded_run import Recording, RowIndex
 from tuisim.engine.runs.records import Mark, OutputWriter, Stream
-from tuisim.engine.runs.run_folder import StoredRun, open_mat
+from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.engine.runs.store import RunStore
 from tuisim.engine.runs.views import OutputView
 from tuisim.settings.build import build_run_spec
@@ -105,7 +105,7 @@ def stored(
 
 def test_sensors_see_what_the_pen_had_drawn_by_then() -> None:
     run = stored("tank_drive.on_for_seconds(50, 50, 0.6)\n", {"pen.down": True, "pen_marks": True})
-    mat = open_mat(run)
+    mat = run.open_mat()
     recording = Recording(run)
     records = run.telemetry.array().tolist()
     for tick in (30, 30, 31, 0, 59):
@@ -118,7 +118,7 @@ def test_sensors_see_what_the_pen_had_drawn_by_then() -> None:
 
 def test_the_pen_of_a_long_run_takes_little_memory() -> None:
     run = stored("import time\ntime.sleep(100)\n", {"pen.down": True, "pen_marks": True})
-    mat = open_mat(run)
+    mat = run.open_mat()
     recording = Recording(run)
     assert recording.newest >= 10_000
     tracemalloc.start()

@@ -19,7 +19,6 @@ from tuisim.engine.runs.records import (
     is_hole,
     iterate_raw_rows,
     iterate_rows,
-    line_of,
     pack_header,
     read_published_length,
 )
@@ -117,7 +116,7 @@ def test_rows_that_are_not_complete_are_left_out(tmp_path: Path) -> None:
     ],
 )
 def test_speech_and_answers_are_marked(text: str, stream: Stream, shown: str) -> None:
-    assert line_of(OutputRow(text, 0, 0, 0, stream)) == shown
+    assert OutputRow(text, 0, 0, 0, stream).format_line() == shown
 
 
 def test_a_part_that_was_never_written_is_a_hole() -> None:

@@ -15,7 +15,7 @@ from tests.running import Start, over, until, until_tick
 from tuisim.base.errors import LogError
 from tuisim.base.source import Program
 from tuisim.engine.protocol import Answer, Message, SetButtons, SetNoise, SetPen, SetPose
-from tuisim.engine.runs.brick_state import BrickState, update_face
+from tuisim.engine.runs.brick_state import BrickState
 from tuisim.engine.runs.handle import RunOptions, start_run
 from tuisim.engine.runs.records import Stream
 from tuisim.engine.runs.rerun import rerun, same
@@ -244,7 +244,7 @@ def test_a_motor_that_does_not_drive_is_recorded_alike_live_and_headless(home: P
     over(live)
     run = RunStore().load_run(live.run_id)
     turns = [row for row in run.output.rows() if row.stream == Stream.MOTORS]
-    ((position_deg, speed_dps),) = update_face(BrickState(), turns).turns
+    ((position_deg, speed_dps),) = BrickState().update_face(turns).turns
     assert (round(position_deg), speed_dps) == (-83, 0.0)
     again = rerun(run, RunStore())
     over(again)

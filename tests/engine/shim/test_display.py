@@ -9,7 +9,7 @@ from tests.engine.shim.conftest import RunOn
 from tests.engine.shim.table_display import DISPLAY, FRAME_BUFFER
 from tests.engine.shim.test_console import SCREENS
 from tests.running import Done
-from tuisim.engine.runs.brick_state import BLANK, DISPLAY_WIDTH, ROW_BYTES, BrickState, update_face
+from tuisim.engine.runs.brick_state import BLANK, DISPLAY_WIDTH, ROW_BYTES, BrickState
 from tuisim.engine.runs.records import OutputRow, Stream
 
 EXERCISED = {
@@ -45,7 +45,7 @@ def shown(done: Done) -> list[OutputRow]:
 
 def dark(row: OutputRow) -> set[tuple[int, int]]:
     """Return the dark pixels of a picture's row."""
-    picture = update_face(BrickState(), [row]).picture
+    picture = BrickState().update_face([row]).picture
     assert len(picture) == len(BLANK)
     bits = ((at, bit) for at, byte in enumerate(picture) for bit in range(8) if byte << bit & 0x80)
     return {(at % ROW_BYTES * 8 + bit, at // ROW_BYTES) for at, bit in bits}
@@ -64,7 +64,7 @@ def test_an_update_is_written_down_once_it_is_done(run_on: RunOn) -> None:
 def test_the_text_screen_after_each_call(run_on: RunOn) -> None:
     lines = ["from ev3dev2.console import Console", "c = Console()", *SCREENS]
     done = run_on("\n".join([*lines, "print('done')"]))
-    faces = {row.line: update_face(BrickState(), [row]).text for row in shown(done)}
+    faces = {row.line: BrickState().update_face([row]).text for row in shown(done)}
     found = {}
     for number, statement in enumerate(lines[1:], 2):
         # What leaves the screen as it was is not written down.

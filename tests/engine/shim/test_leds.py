@@ -6,7 +6,7 @@ from tests.engine.shim.checking import Table, Tables, cases, check
 from tests.engine.shim.conftest import RunOn
 from tests.engine.shim.table_led import LED
 from tests.running import Done
-from tuisim.engine.runs.brick_state import BrickState, update_face
+from tuisim.engine.runs.brick_state import BrickState
 from tuisim.engine.runs.records import OutputRow, Stream
 
 STEPS = """\
@@ -39,7 +39,7 @@ def rows(done: Done) -> list[OutputRow]:
 
 def lights(row: OutputRow) -> tuple[int, ...]:
     """Return left red, left green, right red, right green."""
-    return tuple(update_face(BrickState(), [row]).leds.values())
+    return tuple(BrickState().update_face([row]).leds.values())
 
 
 def test_each_change_is_written_down_once_with_its_line(run_on: RunOn) -> None:
@@ -50,7 +50,7 @@ def test_each_change_is_written_down_once_with_its_line(run_on: RunOn) -> None:
     ]
     first, last = rows(done)
     assert last.time_ns - first.time_ns == 1_000_000_000
-    assert list(update_face(BrickState(), [first]).leds) == [
+    assert list(BrickState().update_face([first]).leds) == [
         "left red",
         "left green",
         "right red",

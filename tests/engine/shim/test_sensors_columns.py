@@ -5,7 +5,6 @@ from __future__ import annotations
 import pytest
 
 from tests.engine.shim.conftest import RunOn
-from tuisim.engine.mat_cache import open_field
 from tuisim.engine.runs.frames import compute_column_values
 
 PROGRAM = """
@@ -22,7 +21,7 @@ print(touch.is_pressed, eye.proximity)
 def test_columns_of_touch_and_infrared(run_on: RunOn, profile: str) -> None:
     done = run_on(PROGRAM, "eyes", "furnished", profile)
     names = ["touch_pressed", "infrared_proximity"]
-    mat = open_field(done.run.field)
+    mat = done.run.field.open_field()
     columns = compute_column_values(names, done.run.telemetry.array(), done.run, [], mat)
     assert list(columns) == names
     pressed = columns["touch_pressed"]

@@ -8,7 +8,7 @@ import pytest
 from tests.cases import for_each
 from tuisim.logs.levels import PLAIN_LIGHT
 from tuisim.pictures.charts.bands import MAX_SAMPLES, SHADES, find_spans, place_names
-from tuisim.pictures.charts.plot_image import PlotInks, draw_plot
+from tuisim.pictures.charts.plot_image import PlotInks
 from tuisim.pictures.charts.text_chart import ChartPainter, ChartState
 from tuisim.pictures.charts.traces import Traces
 
@@ -98,7 +98,7 @@ def test_a_band_in_pixels_is_shaded_and_named_where_nothing_is_drawn() -> None:
     traces, state = chart(LEVELS)
     plot = ChartPainter().paint(traces, state, 80, 12, is_blank=True).plot
     assert plot is not None
-    image = draw_plot(plot, (8, 16), PlotInks(GROUND, AXIS, WHITE, SHADED))
+    image = plot.draw((8, 16), PlotInks(GROUND, AXIS, WHITE, SHADED))
 
     first, second, third = np.array_split(image[:, 8 : 8 + plot.columns * 8], 3, axis=1)
     assert [

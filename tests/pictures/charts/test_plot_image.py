@@ -10,7 +10,7 @@ from tests.cases import cases
 from tuisim.engine.core.css_colors import Rgb
 from tuisim.pictures.charts import axes
 from tuisim.pictures.charts.canvas import Curve
-from tuisim.pictures.charts.plot_image import Plot, PlotInks, draw_plot
+from tuisim.pictures.charts.plot_image import Plot, PlotInks
 
 CELL = WIDTH, HEIGHT = 8, 16
 COLUMNS = 30
@@ -24,7 +24,7 @@ EMPTY = Plot((), COLUMNS, ROWS, (0.0, 10.0), (0.0, 100.0), (), (), True, ())
 
 def cells_with(plot: Plot, rgb: Rgb) -> set[tuple[int, int]]:
     """Row and column on the canvas, whose axis is column -1, of the cells that show a colour."""
-    at = (draw_plot(plot, CELL, PlotInks(GROUND, AXIS, CURSOR)) == rgb).all(axis=2)
+    at = (plot.draw(CELL, PlotInks(GROUND, AXIS, CURSOR)) == rgb).all(axis=2)
     rows, cols = plot.size
     assert at.shape == (rows * HEIGHT, cols * WIDTH)
     found = at.reshape(rows, HEIGHT, cols, WIDTH).any(axis=(1, 3))

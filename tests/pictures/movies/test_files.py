@@ -12,13 +12,7 @@ from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 from tuisim.pictures.charts.files import check_format
 from tuisim.pictures.movies import files
 from tuisim.pictures.movies.clip import ClipPanel, ClipRun
-from tuisim.pictures.movies.files import (
-    MOVIE_SUFFIXES,
-    Clip,
-    make_small_movie,
-    save_movie,
-    save_picture,
-)
+from tuisim.pictures.movies.files import MOVIE_SUFFIXES, Clip, make_small_movie, save_picture
 from tuisim.pictures.scene.pictures import RIM_RGB
 
 
@@ -30,10 +24,7 @@ def clip(recorded: ClipRun) -> Clip:
 def test_a_movie_is_a_gif_and_says_how_far_it_is(clip: Clip, tmp_path: Path) -> None:
     drawn: list[tuple[int, int]] = []
     path = tmp_path / "a.GIF"
-    assert (
-        save_movie(clip, path, lambda done, total: drawn.append((done, total)))
-        == path.stat().st_size
-    )
+    assert clip.save(path, lambda done, total: drawn.append((done, total))) == path.stat().st_size
     assert path.read_bytes().startswith(b"GIF8")
     assert drawn[0] == (0, 3) and drawn[-1] == (2, 3)
 
@@ -62,7 +53,7 @@ def test_too_many_frames_are_refused(
         with monkeypatch.context() as patch:
             patch.setattr(files, name, most)
             with pytest.raises(ConfigError, match="3 frames of 160x160, at most 2"):
-                save_movie(clip, path)
+                clip.save(path)
     assert path.read_bytes() == b"before"
 
 

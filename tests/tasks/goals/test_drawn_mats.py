@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
-from tuisim.tasks.goals.drawn_mats import DRAWN_MATS, format_world_lines, generate_mat
+from tuisim.tasks.goals.drawn_mats import DRAWN_MATS, generate_mat
 
 SEEDS = range(12)
 BANDS_OF_0 = "8a4511ccfc22"
@@ -61,7 +61,7 @@ def test_a_line_begins_at_the_robot_and_stays_on_the_mat() -> None:
 
 @pytest.mark.parametrize("kind", DRAWN_MATS)
 def test_the_lines_are_a_world_of_a_task(kind: str) -> None:
-    lines = format_world_lines(generate_mat(kind, 7), "m.png")
+    lines = generate_mat(kind, 7).format_world_lines("m.png")
     (found,) = tomllib.loads("\n".join(lines))["also"]
     assert (found["background"], found["hidden"]) == ("m.png", True)
     # The goal of the bands is a remark: its name is the author's.

@@ -12,7 +12,6 @@ from tuisim.base.errors import ConfigError
 from tuisim.engine.core.simulation import build_simulation
 from tuisim.engine.core.tick_record import MemoryRecording
 from tuisim.engine.runs.replay import give_command
-from tuisim.engine.runs.run_folder import open_mat
 from tuisim.tasks.goals.files import load_goals
 from tuisim.tasks.goals.judge import judge
 from tuisim.tasks.goals.judgement import compute_points
@@ -37,7 +36,7 @@ def test_the_commands_of_a_run_lead_to_its_points() -> None:
     run = tuisim.simulate("square", world="square_goals.toml").stored
     recording = MemoryRecording()
     sim = build_simulation(run.first_spec, recording)
-    live = LiveGoals(goals, sim, recording, open_mat(run))
+    live = LiveGoals(goals, sim, recording, run.open_mat())
     assert live.judge() == (0, False)
     for command in tuisim.load_run(run.folder).commands:
         sim.advance(sim.count_ticks(command.time_ns) - sim.tick)

@@ -10,7 +10,7 @@ import pytest
 from tuisim.engine.protocol import End
 from tuisim.tasks.goals.files import load_goals
 from tuisim.tasks.marks import marking as markings
-from tuisim.tasks.marks.marking import MarkRequest, open_marking
+from tuisim.tasks.marks.marking import MarkRequest
 from tuisim.tasks.marks.outcome import GoalOutcome, Outcome
 
 GOALS = """\
@@ -56,7 +56,7 @@ def test_what_is_known_of_a_class_while_it_is_marked(
 
     told: list[str] = []
     monkeypatch.setattr(markings, "run_entries", outcomes)
-    with open_marking(_request(tmp_path)) as marking:
+    with _request(tmp_path).open_marking() as marking:
         assert (marking.unlisted, marking.absent, marking.ignored) == (["ben", "cleo"], ["zoe"], ())
         marking.read_programs()
         marking.run(lambda text, *_: told.append(text), isolate=True)

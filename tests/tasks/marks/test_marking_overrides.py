@@ -12,7 +12,7 @@ from tuisim.base.errors import ConfigError
 from tuisim.tasks.marks.feedback import build_feedback
 from tuisim.tasks.marks.marking import apply_overrides, read_overrides
 from tuisim.tasks.marks.page import build_page
-from tuisim.tasks.marks.sheet import Sheet, build_frame
+from tuisim.tasks.marks.sheet import Sheet
 
 NAMES = [row.name for row in SHEET.rows]
 TEXT = """\
@@ -32,7 +32,7 @@ def _sheet(tmp_path: Path, text: str = TEXT) -> Sheet:
 
 
 def test_points_of_a_goal_and_of_the_task(tmp_path: Path) -> None:
-    frame = build_frame(_sheet(tmp_path)).set_index("student")
+    frame = _sheet(tmp_path).build_frame().set_index("student")
     columns = ["points", "earned", "goal_place", "goal_wall", "comment"]
     assert frame.loc[["ada", "ben", "cleo"], columns].to_numpy().tolist() == [
         [10.0, 10.0, 7.0, 3.0, "Neat."],

@@ -26,12 +26,7 @@ from tuisim.tasks.marks.hand_ins import GradebookKind
 from tuisim.tasks.marks.marking import Override, apply_overrides
 from tuisim.tasks.marks.outcome import GoalOutcome, Outcome
 from tuisim.tasks.marks.page import build_page, compute_distribution, compute_goal_statistics
-from tuisim.tasks.marks.sheet import (
-    Sheet,
-    build_frame,
-    build_sheet,
-    export_marks,
-)
+from tuisim.tasks.marks.sheet import Sheet, build_sheet, export_marks
 from tuisim.tasks.marks.students import Student
 
 COLUMNS = (
@@ -359,7 +354,7 @@ def test_exports_of_equal_sheets_are_equal(tmp_path: Path, suffix: str) -> None:
 
 
 def test_a_frame_has_a_row_a_student_and_a_column_a_goal() -> None:
-    frame = build_frame(SHEET)
+    frame = SHEET.build_frame()
     assert list(frame.columns) == [
         "student",
         "program",

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from tests.tasks.reasons.runs import run_text
-from tuisim.engine.runs.run_folder import open_mat
 from tuisim.tasks.reasons.one_colour import OneColor, find_one_color
 
 TEXT = """\
@@ -33,4 +32,4 @@ def test_one_colour_on_a_long_way(
     records = run.telemetry.array()
     every = np.arange(1, len(records), max(1, len(records) // reads))
     ticks = {"left": every, "right": every[:0]}
-    assert find_one_color(records, run.spec, open_mat(run), ticks) == seen
+    assert find_one_color(records, run.spec, run.open_mat(), ticks) == seen

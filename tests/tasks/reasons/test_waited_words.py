@@ -14,7 +14,6 @@ from tests.conftest import Command
 from tuisim.engine.core.profile import PROFILES
 from tuisim.engine.core.sensors.color import clear_reading
 from tuisim.engine.core.spec import RobotSpec, RunSpec, WorldSpec
-from tuisim.engine.mat_cache import open_field
 from tuisim.engine.mats import background
 from tuisim.engine.runs.run_folder import field_files
 from tuisim.tasks.reasons.hand_presses import HandPress
@@ -376,7 +375,7 @@ def test_a_run_that_took_as_long_as_in_reality_is_not_told_to() -> None:
 @pytest.mark.parametrize(("color", "x_mm"), COLOR_PLACES_MM.items())
 def test_the_coloured_mat_has_each_colour_there(color: str, x_mm: int) -> None:
     spec = replace(SPEC, world=WorldSpec(background=COLORED_MAT))
-    field = open_field(field_files(spec))
+    field = field_files(spec).open_field()
     pose = replace(background(COLORED_MAT).start, x_mm=float(x_mm))
     for sensor in spec.robot.color_sensors:
         assert clear_reading(sensor, pose, field).name.lower() == color

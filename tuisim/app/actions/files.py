@@ -257,12 +257,13 @@ def start_program(context: ActionContext) -> None:
 
 def _ask_new_program(context: ActionContext) -> None:
     from tuisim.app.dialogs.new_program import NewProgramDialog
-    from tuisim.engine.mats import mats, spec_name
+    from tuisim.engine.mats import mats
 
     plan = context.runs.next_run
     known = mats(plan.settings["mats"])
     current = next(
-        (name for name, mat in known.items() if spec_name(mat) == plan.spec.world.background), ""
+        (name for name, mat in known.items() if mat.find_spec_name() == plan.spec.world.background),
+        "",
     )
     # The list has no mats from the user's own files: offer the current one, too.
     own = {} if current else {plan.spec.world.background: Path(plan.spec.world.background).name}

@@ -17,7 +17,7 @@ from textual.widget import Widget
 
 from tuisim.analysis.events import CommandRow
 from tuisim.analysis.model import RECKONING, AnalysisModel
-from tuisim.analysis.source import LogRequest, is_readable_again, open_pieces, remember_choices
+from tuisim.analysis.source import LogRequest, is_readable_again, remember_choices
 from tuisim.app import background
 from tuisim.app.action import ActionHost, KeyFooter
 from tuisim.app.analyser.chart import LogChart
@@ -179,7 +179,7 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         if asks and (log := read_doubtful(request)) is not None:
             background.call(self.app, self._ask_choices, request, log)
             return
-        for opened in open_pieces(request):
+        for opened in request.open_pieces():
             if request is not self.request or not self.is_running:
                 return
             model = AnalysisModel(opened)

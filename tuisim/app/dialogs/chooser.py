@@ -29,7 +29,7 @@ from tuisim.base.folders import user_path
 from tuisim.engine.core.profile import PROFILES
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 from tuisim.engine.mat_image import decode, read_file
-from tuisim.engine.mats import find_mat, spec_name
+from tuisim.engine.mats import find_mat
 from tuisim.engine.obstacles import OBSTACLES, load_obstacles
 from tuisim.logs.export import is_companion
 from tuisim.pictures.scene.mat import shrink
@@ -435,7 +435,7 @@ class MatPicker(Chooser):
 
     def __init__(self, current: str, known: Mapping[str, Background], folder: str | None) -> None:
         laid = next(
-            (name for name, mat in known.items() if spec_name(mat) == current),
+            (name for name, mat in known.items() if mat.find_spec_name() == current),
             next(iter(known), ""),
         )
         groups = [ChoiceGroup("", [(name, name, "") for name in known])]

@@ -342,12 +342,11 @@ class Differences(Dialog[bool]):
         self._diff = diff
 
     def compose_content(self) -> ComposeResult:
-        from tuisim.engine.runs.diff import describe_recording, describe_setup
 
         table = Table.grid(padding=(0, 2))
         table.add_column(style="bold")
         table.add_column()
-        rows = [*describe_recording(self._diff), *describe_setup(self._diff)]
+        rows = [*self._diff.describe_recording(), *self._diff.describe_setup()]
         for name, what in rows:
             if name:
                 table.add_row(Text(name), Text(what))

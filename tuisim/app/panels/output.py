@@ -26,7 +26,7 @@ from tuisim.app.panels.titles import build_title
 from tuisim.app.snapshot import RunPhase, Snapshot
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import counted
-from tuisim.engine.runs.records import OutputRow, Stream, line_of
+from tuisim.engine.runs.records import OutputRow, Stream
 
 _INFO = PANELS["output"]
 IDLE_WORDS = "What the program prints appears here: {run} runs it"
@@ -162,7 +162,7 @@ def replace_controls(text: str) -> str:
 
 def split_row(row: OutputRow, width: int) -> list[str]:
     """Return a row as lines of at most `width` cells, at least one."""
-    text = line_of(row)
+    text = row.format_line()
     if len(text) > MAX_LINE_CHARS:
         text = (
             f"{text[:MAX_LINE_CHARS]} … ({counted(len(text) - MAX_LINE_CHARS, 'more character')})"
@@ -239,7 +239,7 @@ class Log(Widget, can_focus=True):
     @property
     def text(self) -> str:
         """The rows that are kept, whole."""
-        return "\n".join(replace_controls(line_of(row)) for row in self._rows)
+        return "\n".join(replace_controls(row.format_line()) for row in self._rows)
 
     def clear(self) -> None:
         """Remove every line."""

@@ -10,7 +10,7 @@ from tuisim.engine import mat_cache, mats
 from tuisim.engine.core.field import Field
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, RunSpec
 from tuisim.engine.mat_cache import FieldFiles
-from tuisim.engine.runs.run_folder import StoredRun, find_mat_files
+from tuisim.engine.runs.run_folder import StoredRun
 
 PATIENCE_S = 1.0
 """Seconds after which a notice says that a run waits for its mat; mostly the mat is prepared sooner."""
@@ -65,7 +65,7 @@ def prepare_stored_mat(run: StoredRun) -> Mat:
     Raises:
         LogError: it is no longer available.
     """
-    return _open_mat(mat_key(run.spec), find_mat_files(run))
+    return _open_mat(mat_key(run.spec), run.find_mat_files())
 
 
 def make_blank_mat(spec: RunSpec) -> Mat:
@@ -74,6 +74,6 @@ def make_blank_mat(spec: RunSpec) -> Mat:
 
 
 def _open_mat(key: MatKey, files: FieldFiles) -> Mat:
-    field = mat_cache.open_field(files, has_floor=key[3], is_copied=True)
+    field = files.open_field(has_floor=key[3], is_copied=True)
     pixels = np.frombuffer(field.pixels, np.uint8)
     return Mat(key, field, pixels.reshape(field.height_px, field.width_px, 3))

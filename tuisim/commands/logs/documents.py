@@ -10,7 +10,7 @@ from pathlib import Path
 
 from tuisim.analysis.chart import View, build_chart
 from tuisim.analysis.model import AnalysisModel
-from tuisim.analysis.source import LogRequest, OpenedLog, open_pieces
+from tuisim.analysis.source import LogRequest, OpenedLog
 from tuisim.base.errors import ConfigError, LogError, listed
 from tuisim.commands.echo import echo, echo_drawn, echo_error, echo_written
 from tuisim.commands.logs.sources import build_request, choose_names, open_single
@@ -158,7 +158,7 @@ def report(arguments: Arguments) -> int:
         raise ConfigError(
             "are for files only", "the columns of a run are fixed", key="--time and --value"
         )
-    *_, source = open_pieces(request)
+    *_, source = request.open_pieces()
     source = replace(source, log=add_named_columns(source.log, " ".join(arguments.variable)))
     names = choose_names(source.log, arguments) if arguments.variable else ()
     target = Path(arguments.out or build_default_name(source))

@@ -16,17 +16,16 @@ class Pose:
     heading_deg: float
     """Counter-clockwise from +x, not wrapped: -90 stays -90, two turns are 720."""
 
+    def describe(self) -> str:
+        """Return a pose as text, such as `x 1.00 mm, y 2.00 mm, heading 90.00°`."""
+        return f"x {self.x_mm:.2f} mm, y {self.y_mm:.2f} mm, heading {shown_heading_deg(self.heading_deg):.2f}°"
+
 
 def shown_heading_deg(heading_deg: float) -> float:
     """Return a heading wrapped to -180 … 180 for display; recorded headings are not wrapped."""
     if -180.0 <= heading_deg <= 180.0:
         return heading_deg
     return 180.0 - (180.0 - heading_deg) % 360.0
-
-
-def pose_in_words(pose: Pose) -> str:
-    """Return a pose as text, such as `x 1.00 mm, y 2.00 mm, heading 90.00°`."""
-    return f"x {pose.x_mm:.2f} mm, y {pose.y_mm:.2f} mm, heading {shown_heading_deg(pose.heading_deg):.2f}°"
 
 
 def world_point(pose: Pose, x_mm: float, y_mm: float) -> tuple[float, float]:

@@ -79,6 +79,38 @@ class BrickState:
         since_s = time_s - self.turns_tick / tick_hz
         return tuple((position_deg + dps * since_s, dps) for position_deg, dps in self.turns)
 
+    def update_face(self, rows: Iterable[OutputRow]) -> BrickState:
+        """Return the brick's state after further output; rows of streams that do not show the brick are ignored."""
+        for row in rows:
+            match row.stream:
+                case Stream.LED:
+                    self = replace(self, leds=json.loads(row.text))
+                case Stream.DISPLAY:
+                    self = replace(self, picture=_unpack_picture(row.text), shows_text=False)
+                case Stream.CONSOLE:
+                    columns, count, lines, inverse = json.loads(row.text)
+                    spans = tuple((line, start, end) for line, start, end in inverse)
+                    self = replace(
+                        self, text=TextScreen(columns, count, tuple(lines), spans), shows_text=True
+                    )
+                case Stream.SPEECH:
+                    self = replace(self, sound=row.text)
+                case Stream.MOTORS:
+                    turns = tuple((position_deg, dps) for position_deg, dps in json.loads(row.text))
+                    self = replace(self, turns=turns, turns_tick=row.tick)
+                case (
+                    Stream.STDOUT
+                    | Stream.STDERR
+                    | Stream.INPUT
+                    | Stream.NOTE
+                    | Stream.DATA
+                    | Stream.UNKNOWN
+                ):
+                    pass
+                case _:
+                    assert_never(row.stream)
+        return self
+
 
 def build_led_row(brightness: Mapping[str, int]) -> str:
     """Return the text of an output row for the LEDs.
@@ -111,7 +143,7 @@ DRAWN_STREAMS = frozenset({Stream.LED, Stream.DISPLAY, Stream.CONSOLE, Stream.MO
 def is_sound(stream: Stream, text: bytes) -> bool:
     """Return whether a row of one of `DRAWN_STREAMS` has a text that the functions of this module can have written."""
     try:
-        face = update_face(BrickState(), [OutputRow(text.decode(), 0, 0, 0, stream)])
+        face = BrickState().update_face([OutputRow(text.decode(), 0, 0, 0, stream)])
     except (ValueError, TypeError, AttributeError, RecursionError, zlib.error):
         return False
     match stream:
@@ -143,36 +175,3 @@ def _is_screen(screen: TextScreen) -> bool:
 def _unpack_picture(text: str) -> bytes:
     """Return the picture in a row's text; a longer one is cut off one byte after the size of a picture."""
     return zlib.decompressobj().decompress(base64.b85decode(text), len(BLANK) + 1)
-
-
-def update_face(face: BrickState, rows: Iterable[OutputRow]) -> BrickState:
-    """Return the brick's state after further output; rows of streams that do not show the brick are ignored."""
-    for row in rows:
-        match row.stream:
-            case Stream.LED:
-                face = replace(face, leds=json.loads(row.text))
-            case Stream.DISPLAY:
-                face = replace(face, picture=_unpack_picture(row.text), shows_text=False)
-            case Stream.CONSOLE:
-                columns, count, lines, inverse = json.loads(row.text)
-                spans = tuple((line, start, end) for line, start, end in inverse)
-                face = replace(
-                    face, text=TextScreen(columns, count, tuple(lines), spans), shows_text=True
-                )
-            case Stream.SPEECH:
-                face = replace(face, sound=row.text)
-            case Stream.MOTORS:
-                turns = tuple((position_deg, dps) for position_deg, dps in json.loads(row.text))
-                face = replace(face, turns=turns, turns_tick=row.tick)
-            case (
-                Stream.STDOUT
-                | Stream.STDERR
-                | Stream.INPUT
-                | Stream.NOTE
-                | Stream.DATA
-                | Stream.UNKNOWN
-            ):
-                pass
-            case _:
-                assert_never(row.stream)
-    return face

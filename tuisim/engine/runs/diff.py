@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, assert_never
 from tuisim.base.data_class import dataclass
 from tuisim.base.source import source_lines
 from tuisim.engine.core.tree import dump_run
-from tuisim.engine.runs.records import TEXT_STREAMS, OutputRow, Stream, line_of
+from tuisim.engine.runs.records import TEXT_STREAMS, OutputRow, Stream
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.engine.runs.samples import list_samples
 
@@ -93,6 +93,46 @@ class RunDiff:
     def to_plain(self) -> dict[str, Any]:
         """Return the differences as JSON-compatible data."""
         return {"same": self.same, **asdict(self)}
+
+    def describe_recording(self) -> Iterator[tuple[str, str]]:
+        """Yield a label and a text for each difference between the recordings, or one pair if they are identical."""
+        if self.same:
+            settings = "" if self.setup or self.program else ", settings"
+            yield "bit-identical", f"recording, output{settings}"
+            return
+        if self.by_time:
+            yield "tick rates differ", "compared by time, no record is the same"
+        for what, difference in (("tick", self.tick), ("line", self.line)):
+            if difference:
+                how = ", ".join(difference.fields) if difference.fields else "one recording ends"
+                yield (
+                    f"first differing {what}",
+                    f"tick {difference.tick}, {difference.time_s:.2f} s: {how}",
+                )
+        for what, row in (("output row", self.output), ("sample", self.sample)):
+            if row:
+                sides = zip((row.first, row.second), row.times_s, strict=True)
+                left, right = (
+                    "no more" if text is None else f"{text!r} at {at_s:.3f} s"
+                    for text, at_s in sides
+                )
+                yield f"first differing {what}", f"{row.row}: {left} | {right}"
+        if self.divergence:
+            apart = self.divergence
+            max_text = f"at most {apart.max_mm:.3f} mm apart, at {apart.max_at_s:.2f} s"
+            yield (
+                "poses",
+                f"{max_text}; {apart.end_mm:.3f} mm at the common end, {apart.end_s:.2f} s",
+            )
+            for limit, since_s in apart.exceeded:
+                yield f"over {limit:g} mm", "never" if since_s is None else f"from {since_s:.2f} s"
+
+    def describe_setup(self) -> Iterator[tuple[str, str]]:
+        """Yield a label and a text per difference of the setup, then the lines of the programs' diff without labels."""
+        for name, left, right in self.setup:
+            yield f"settings, {name}", f"{left} | {right}"
+        for line in self.program:
+            yield "", line
 
 
 def diff_runs(
@@ -244,7 +284,7 @@ def _describe_row(row: OutputRow) -> str:
         case (
             Stream.STDOUT | Stream.STDERR | Stream.SPEECH | Stream.INPUT | Stream.NOTE | Stream.DATA
         ):
-            return line_of(row)
+            return row.format_line()
         case Stream.LED:
             return "[lights]"
         case Stream.CONSOLE:
@@ -316,44 +356,6 @@ def _flatten(plain: Any, name: str = "") -> dict[str, Any]:
     else:
         return {name: plain}
     return {path: leaf for below, value in pairs for path, leaf in _flatten(value, below).items()}
-
-
-def describe_setup(diff: RunDiff) -> Iterator[tuple[str, str]]:
-    """Yield a label and a text per difference of the setup, then the lines of the programs' diff without labels."""
-    for name, left, right in diff.setup:
-        yield f"settings, {name}", f"{left} | {right}"
-    for line in diff.program:
-        yield "", line
-
-
-def describe_recording(diff: RunDiff) -> Iterator[tuple[str, str]]:
-    """Yield a label and a text for each difference between the recordings, or one pair if they are identical."""
-    if diff.same:
-        settings = "" if diff.setup or diff.program else ", settings"
-        yield "bit-identical", f"recording, output{settings}"
-        return
-    if diff.by_time:
-        yield "tick rates differ", "compared by time, no record is the same"
-    for what, difference in (("tick", diff.tick), ("line", diff.line)):
-        if difference:
-            how = ", ".join(difference.fields) if difference.fields else "one recording ends"
-            yield (
-                f"first differing {what}",
-                f"tick {difference.tick}, {difference.time_s:.2f} s: {how}",
-            )
-    for what, row in (("output row", diff.output), ("sample", diff.sample)):
-        if row:
-            sides = zip((row.first, row.second), row.times_s, strict=True)
-            left, right = (
-                "no more" if text is None else f"{text!r} at {at_s:.3f} s" for text, at_s in sides
-            )
-            yield f"first differing {what}", f"{row.row}: {left} | {right}"
-    if diff.divergence:
-        apart = diff.divergence
-        max_text = f"at most {apart.max_mm:.3f} mm apart, at {apart.max_at_s:.2f} s"
-        yield "poses", f"{max_text}; {apart.end_mm:.3f} mm at the common end, {apart.end_s:.2f} s"
-        for limit, since_s in apart.exceeded:
-            yield f"over {limit:g} mm", "never" if since_s is None else f"from {since_s:.2f} s"
 
 
 def is_repeat(run: StoredRun | Recording, earlier: StoredRun | Recording) -> bool:

@@ -23,7 +23,7 @@ from tuisim.engine.core.tick_record import TICK_RECORD
 from tuisim.engine.protocol import SetNoise, UserAction
 from tuisim.engine.runs.motor_records import read_motor_columns
 from tuisim.engine.runs.records import TELEMETRY_FILE
-from tuisim.engine.runs.run_folder import StoredRun, find_noise, open_mat
+from tuisim.engine.runs.run_folder import StoredRun, find_noise
 from tuisim.engine.runs.samples import list_samples
 from tuisim.engine.runs.views import TickRecord, build_instant
 
@@ -152,7 +152,7 @@ def build_telemetry_columns(
         LogError: a recording is damaged, or the mat no longer exists.
     """
     records = _select_sound(run.telemetry.array())
-    mat = open_mat(run) if field is None else field
+    mat = run.open_mat() if field is None else field
     exported = names or (*list_measured_names(list_columns(run.spec)), LINE)
     columns = [name for name in exported if name != LINE]
     values = compute_column_values(columns, records, run, run.actions, mat)

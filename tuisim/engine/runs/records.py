@@ -276,13 +276,12 @@ class OutputRow:
     line: int
     stream: Stream
 
-
-def line_of(row: OutputRow) -> str:
-    """Return the display text of a row; speech and answers are marked."""
-    if row.stream is Stream.SPEECH and not row.text.startswith("["):
-        # Sounds are in brackets already.
-        return f"says: {row.text}"
-    return f"> {row.text}" if row.stream is Stream.INPUT else row.text
+    def get_line(self) -> str:
+        """Return the display text of a row; speech and answers are marked."""
+        if self.stream is Stream.SPEECH and not self.text.startswith("["):
+            # Sounds are in brackets already.
+            return f"says: {self.text}"
+        return f"> {self.text}" if self.stream is Stream.INPUT else self.text
 
 
 def read_published_length(data: bytes, magic: bytes, file: str) -> int:

@@ -19,7 +19,7 @@ from tuisim.engine.core.plugged import PLUGGED_DIAMETER_MM, PluggedPart, plug_pa
 from tuisim.engine.core.profile import NS_PER_S, compute_due_ns
 from tuisim.engine.core.spec import NoiseSpec, RunSpec
 from tuisim.engine.core.tree import dump_run, restore
-from tuisim.engine.mat_cache import FieldFiles, open_field, prepare
+from tuisim.engine.mat_cache import FieldFiles, prepare
 from tuisim.engine.mats import background
 from tuisim.engine.protocol import End, Ended, RunState, SetNoise, Unended, UserAction
 from tuisim.engine.runs.removal import remove_tree
@@ -101,6 +101,45 @@ class StoredRun:
     def find_noise(self, record: TickRecord) -> NoiseSpec:
         """Return the noise at the tick of a telemetry record."""
         return find_noise(self.spec, self.actions, record)
+
+    def open_mat(self) -> Field:
+        """Return the mat of a run; prepares it again if it is no longer cached.
+
+        Raises:
+            LogError: the mat no longer exists, or its image has changed.
+        """
+        files = self.find_mat_files()
+        try:
+            return files.open_field(has_floor=self.spec.world.is_open)
+        except ConfigError as error:
+            raise _build_mat_error(self, error) from error
+
+    def find_mat_files(self) -> FieldFiles:
+        """Return the files of the mat that `open_mat` opens; prepares them again if necessary.
+
+        Raises:
+            LogError: as `open_mat`.
+        """
+        try:
+            made_on = None if self.field is None else FieldFiles.from_plain(self.field)
+            diameters = {sensor.diameter_mm for sensor in self.spec.robot.color_sensors}
+            if made_on is not None and made_on.is_for(diameters) and made_on.are_sound:
+                return made_on
+            files = field_files(self.spec)
+            # The file names are derived from the contents of the image.
+            if made_on is not None and files.pixels.name != made_on.pixels.name:
+                name = self.spec.world.background
+                raise LogError(
+                    f"the mat {name} has changed since the run", file=str(background(name).image)
+                )
+        except ConfigError as error:
+            raise _build_mat_error(self, error) from error
+        # The system refuses some names that come from damaged files.
+        except (KeyError, TypeError, ValueError, AttributeError, OverflowError, OSError) as error:
+            raise LogError(
+                f"the mat of the run is not named: {error}", file=str(self.folder)
+            ) from error
+        return files
 
 
 def find_state_without_end(folder: Path) -> Unended:
@@ -340,45 +379,6 @@ def find_diameters(spec: RunSpec) -> frozenset[int]:
     """Return the diameters of a run's colour sensors, also of one that may be plugged in."""
     sensors = spec.robot.color_sensors
     return frozenset({PLUGGED_DIAMETER_MM, *(sensor.diameter_mm for sensor in sensors)})
-
-
-def open_mat(run: StoredRun) -> Field:
-    """Return the mat of a run; prepares it again if it is no longer cached.
-
-    Raises:
-        LogError: the mat no longer exists, or its image has changed.
-    """
-    files = find_mat_files(run)
-    try:
-        return open_field(files, has_floor=run.spec.world.is_open)
-    except ConfigError as error:
-        raise _build_mat_error(run, error) from error
-
-
-def find_mat_files(run: StoredRun) -> FieldFiles:
-    """Return the files of the mat that `open_mat` opens; prepares them again if necessary.
-
-    Raises:
-        LogError: as `open_mat`.
-    """
-    try:
-        made_on = None if run.field is None else FieldFiles.from_plain(run.field)
-        diameters = {sensor.diameter_mm for sensor in run.spec.robot.color_sensors}
-        if made_on is not None and made_on.is_for(diameters) and made_on.are_sound:
-            return made_on
-        files = field_files(run.spec)
-        # The file names are derived from the contents of the image.
-        if made_on is not None and files.pixels.name != made_on.pixels.name:
-            name = run.spec.world.background
-            raise LogError(
-                f"the mat {name} has changed since the run", file=str(background(name).image)
-            )
-    except ConfigError as error:
-        raise _build_mat_error(run, error) from error
-    # The system refuses some names that come from damaged files.
-    except (KeyError, TypeError, ValueError, AttributeError, OverflowError, OSError) as error:
-        raise LogError(f"the mat of the run is not named: {error}", file=str(run.folder)) from error
-    return files
 
 
 def _build_mat_error(run: StoredRun, error: ConfigError) -> LogError:

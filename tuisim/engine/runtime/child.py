@@ -21,7 +21,6 @@ from tuisim.engine import protocol
 from tuisim.engine.core.profile import NS_PER_S
 from tuisim.engine.core.simulation import Turn, build_simulation
 from tuisim.engine.core.tick_record import NoRecording
-from tuisim.engine.mat_cache import open_field
 from tuisim.engine.protocol import COMMAND_SIGNAL, STACK_SIGNAL, End
 from tuisim.engine.runs.brick_state import build_motors_row
 from tuisim.engine.runs.command_records import CommandsWriter
@@ -301,7 +300,7 @@ class Child:
         """The commands of the prelude."""
         self._sim.on_command = lambda *command: self._early_commands.append(command)
         self._output = OutputRecorder()
-        mat = open_field(config.field, has_floor=config.spec.world.is_open)
+        mat = config.field.open_field(has_floor=config.spec.world.is_open)
         self._session = session = Session(self._sim, mat, self._output)
         turn = loop_hook(session, LOOP_TURNS, LOOP_COST_NS)
         self._interrupts = Interrupts(session, frozenset({turn.__code__}))

@@ -63,6 +63,32 @@ class Plot:
         """Return how many points below the top of the canvas values are, for cells of a height in points."""
         return axes.measure_row(values, self.y_limits, self.rows) * height
 
+    def draw(self, cell: tuple[int, int], inks: PlotInks) -> Pixels:
+        """Return it as an image of the size of its cells; the colours of its curves are final.
+
+        Args:
+            cell: Width and height of a cell in points.
+            inks: The other colours.
+        """
+        width, height = cell
+        rows, cols = self.size
+        image: Pixels = np.full((rows * height, cols * width, 3), inks.ground, np.uint8)
+        inside = image[: self.rows * height, width : (1 + self.columns) * width]
+        for number, span in enumerate(self.spans):
+            start, stop = _find_cells(span, self, width)
+            inside[:, start:stop] = inks.shades[number % len(inks.shades)]
+        _draw_axes(image, inside, self, cell, inks)
+        covered = [_measure_coverage(self, curve, cell) for curve in self.curves]
+        _draw_names(inside, covered, self, cell, inks)
+        seen = choose_owners(np.array(covered, np.bool_), _TURN * width) if covered else ()
+        for curve, coverage, is_seen in zip(self.curves, covered, seen, strict=True):
+            _lay(inside, coverage * is_seen, curve.rgb)
+        for column in _clip_places(
+            self.measure_across(np.array(self.cursors), width), inside.shape[1]
+        ):
+            inside[:, column] = inks.cursor
+        return image
+
 
 @dataclass(frozen=True, slots=True)
 class PlotInks:
@@ -87,32 +113,6 @@ _TURN = 4
 """Cells across that a curve has at a time where it lies on others."""
 _LINE_SHARE, _MARK_SHARE = 1 / 9, 1 / 5
 """Width of a line and radius of a mark, of the height of a cell."""
-
-
-def draw_plot(plot: Plot, cell: tuple[int, int], inks: PlotInks) -> Pixels:
-    """Return a plot as an image of the size of its cells.
-
-    Args:
-        plot: What to draw; the colours of its curves are final.
-        cell: Width and height of a cell in points.
-        inks: The other colours.
-    """
-    width, height = cell
-    rows, cols = plot.size
-    image: Pixels = np.full((rows * height, cols * width, 3), inks.ground, np.uint8)
-    inside = image[: plot.rows * height, width : (1 + plot.columns) * width]
-    for number, span in enumerate(plot.spans):
-        start, stop = _find_cells(span, plot, width)
-        inside[:, start:stop] = inks.shades[number % len(inks.shades)]
-    _draw_axes(image, inside, plot, cell, inks)
-    covered = [_measure_coverage(plot, curve, cell) for curve in plot.curves]
-    _draw_names(inside, covered, plot, cell, inks)
-    seen = choose_owners(np.array(covered, np.bool_), _TURN * width) if covered else ()
-    for curve, coverage, is_seen in zip(plot.curves, covered, seen, strict=True):
-        _lay(inside, coverage * is_seen, curve.rgb)
-    for column in _clip_places(plot.measure_across(np.array(plot.cursors), width), inside.shape[1]):
-        inside[:, column] = inks.cursor
-    return image
 
 
 def _find_cells(span: Span, plot: Plot, width: int) -> tuple[int, int]:

@@ -126,6 +126,20 @@ class Clip:
         """The view of a whole frame in which the world lies as in the frame, which must have a panel of the world."""
         return find_frame_view(self.recorded, self.panels, self.size)
 
+    def save(self, path: Path, watch: Watch = lambda done, total: None) -> int:
+        """Write a movie as GIF, replacing an existing file; return its size in bytes.
+
+        Raises:
+            ConfigError: the movie is too large, or its panels do not fit.
+            ExportError: it cannot be written; an existing file is unchanged.
+            LogError: the mat no longer exists.
+        """
+        check_format(path, "movie", MOVIE_SUFFIXES)
+        _check_size(self)
+        content = _encode_gif(self, watch)
+        write_whole(path, content)
+        return len(content)
+
 
 def _encode_gif(clip: Clip, watch: Watch) -> bytes:
     shots = clip.shots
@@ -160,21 +174,6 @@ PICTURE_FORMATS: Mapping[str, Callable[[FramePainter, ClipRun, float], bytes]] =
     ".svg": _encode_svg,
 }
 """Every format of a picture by the suffix of its files. To add one: write its function and a line here."""
-
-
-def save_movie(clip: Clip, path: Path, watch: Watch = lambda done, total: None) -> int:
-    """Write a movie as GIF, replacing an existing file; return its size in bytes.
-
-    Raises:
-        ConfigError: the movie is too large, or its panels do not fit.
-        ExportError: it cannot be written; an existing file is unchanged.
-        LogError: the mat no longer exists.
-    """
-    check_format(path, "movie", MOVIE_SUFFIXES)
-    _check_size(clip)
-    content = _encode_gif(clip, watch)
-    write_whole(path, content)
-    return len(content)
 
 
 def _check_size(clip: Clip) -> None:

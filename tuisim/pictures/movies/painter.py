@@ -10,9 +10,7 @@ import numpy as np
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ConfigError, printable
 from tuisim.engine.core.spec import RobotSpec
-from tuisim.engine.mat_cache import mat_pixels
 from tuisim.engine.runs.recorded_run import Recording
-from tuisim.engine.runs.run_folder import find_mat_files, open_mat
 from tuisim.engine.runs.views import build_instant
 from tuisim.pictures.charts.files import draw_image
 from tuisim.pictures.charts.layout import (
@@ -264,7 +262,7 @@ class MovingWorld:
         self._recorded = recorded
         self._spec = recorded.run.spec
         self._view = view
-        mat = mat_pixels(find_mat_files(recorded.run))
+        mat = recorded.run.find_mat_files().read_pixels()
         self._painter = build_painter(mat, has_floor=self._spec.world.is_open)
         self._traced = 0
         """Records whose pen traces are drawn."""
@@ -294,7 +292,7 @@ class SensorArrays:
 
     def __init__(self, recorded: ClipRun) -> None:
         self._run = recorded.run
-        self._mat, self._recording = open_mat(recorded.run), Recording(recorded.run)
+        self._mat, self._recording = recorded.run.open_mat(), Recording(recorded.run)
 
     def list_faces(self, moment: ClipMoment) -> list[DiscFace]:
         """Return what is shown of each sensor; nothing for a damaged record."""

@@ -157,12 +157,10 @@ def draw_end(run: StoredRun) -> Image:
     Raises:
         LogError: the recording is damaged, or the mat no longer exists.
     """
-    from tuisim.engine.mat_cache import mat_pixels
-    from tuisim.engine.runs.run_folder import find_mat_files
 
     last = run.telemetry.last()
     records = run.telemetry.array()
-    mat = mat_pixels(find_mat_files(run))
+    mat = run.find_mat_files().read_pixels()
     trace = build_pen_trace(run.spec, records)
     return draw_world(run.spec, mat, read_pose(last), (trace,), area=find_area(run.spec, records))
 
@@ -177,14 +175,12 @@ def draw_path(run: StoredRun, port: Viewport, outside_rgb: Rgb) -> Pixels:
     Raises:
         LogError: the recording is damaged, or the mat no longer exists.
     """
-    from tuisim.engine.mat_cache import mat_pixels
-    from tuisim.engine.runs.run_folder import find_mat_files
 
     records = run.telemetry.array()
     some = records[:: max(1, len(records) // _MAX_PATH_POINTS)]
     trace = PenTrace()
     trace.add(Piece.from_points(some["x_mm"].astype(float), some["y_mm"].astype(float), _PATH))
-    mat = mat_pixels(find_mat_files(run))
+    mat = run.find_mat_files().read_pixels()
     has_floor = run.spec.world.is_open
     painter = ScenePainter(mat, outside_rgb, trace, has_floor=has_floor)
     area = find_area(run.spec, records)

@@ -11,7 +11,7 @@ from tuisim.engine.core.conditions import Operator, ValueCondition, ValueSource,
 from tuisim.engine.core.sensors import find_named_column
 from tuisim.engine.core.spec import BUTTONS, RunSpec
 from tuisim.engine.protocol import SetButtons, UserAction
-from tuisim.engine.runs.brick_state import LED_NAMES, BrickState, update_face
+from tuisim.engine.runs.brick_state import LED_NAMES, BrickState
 from tuisim.engine.runs.records import OutputRow, Stream
 from tuisim.tasks.goals.patterns import build_search
 
@@ -95,7 +95,7 @@ def build_brick_column(
     stream = Stream.DISPLAY if name == _DARK else Stream.LED
     for row in rows:
         if row.stream is stream:
-            face = update_face(BrickState(), [row])
+            face = BrickState().update_face([row])
             dark = sum(byte.bit_count() for byte in face.picture)
             values[max(0, row.tick) :] = dark if name == _DARK else face.leds.get(_LEDS[name], 0)
     return values

@@ -48,6 +48,33 @@ class DrawnMat:
         Image.fromarray(self.pixels).save(content, "png")
         return content.getvalue()
 
+    def format_world_lines(self, image: str) -> list[str]:
+        """Return the lines of a task's file that make a hidden world of a mat.
+
+        Args:
+            image: The name of its file, beside that of the task.
+        """
+        x_mm, y_mm, heading_deg = self.start
+        lines = [
+            "[[also]]",
+            'where = "on another mat"',
+            "hidden = true",
+            f'background = "{image}"',
+            f"start = {{ x_mm = {x_mm:g}, y_mm = {y_mm:g}, heading_deg = {heading_deg:g} }}",
+        ]
+        lines += [
+            f"# a band from x {left_mm:g} to {right_mm:g} mm: {level:g} %"
+            for left_mm, right_mm, level in self.bands
+        ]
+        if self.bands:
+            levels = ", ".join(f"{level:g}" for *_, level in self.bands)
+            lines += [
+                "# [[also.goal]]",
+                '# name = "levels"',
+                f'# log = {{ name = "Colour", levels = [{levels}], reading = "color" }}',
+            ]
+        return lines
+
 
 def _build_white_mat() -> Array:
     import numpy as np
@@ -118,32 +145,3 @@ DRAWN_MATS: Mapping[str, Callable[[Random], DrawnMat]] = {"bands": _draw_bands, 
 def generate_mat(kind: str, seed: int) -> DrawnMat:
     """Return a mat of a kind, one of `DRAWN_MATS`, drawn at random from a seed."""
     return DRAWN_MATS[kind](Random(seed))
-
-
-def format_world_lines(mat: DrawnMat, image: str) -> list[str]:
-    """Return the lines of a task's file that make a hidden world of a mat.
-
-    Args:
-        mat: The mat.
-        image: The name of its file, beside that of the task.
-    """
-    x_mm, y_mm, heading_deg = mat.start
-    lines = [
-        "[[also]]",
-        'where = "on another mat"',
-        "hidden = true",
-        f'background = "{image}"',
-        f"start = {{ x_mm = {x_mm:g}, y_mm = {y_mm:g}, heading_deg = {heading_deg:g} }}",
-    ]
-    lines += [
-        f"# a band from x {left_mm:g} to {right_mm:g} mm: {level:g} %"
-        for left_mm, right_mm, level in mat.bands
-    ]
-    if mat.bands:
-        levels = ", ".join(f"{level:g}" for *_, level in mat.bands)
-        lines += [
-            "# [[also.goal]]",
-            '# name = "levels"',
-            f'# log = {{ name = "Colour", levels = [{levels}], reading = "color" }}',
-        ]
-    return lines

@@ -12,12 +12,11 @@ from tuisim.base.data_class import dataclass
 from tuisim.engine.core.conditions import Operator, ValueCondition, ValueSource
 from tuisim.engine.core.field import Field
 from tuisim.engine.core.profile import NS_PER_S
-from tuisim.engine.mat_cache import open_field
 from tuisim.engine.protocol import End, Ended, Unended, UserAction
 from tuisim.engine.runs.frames import compute_column_values, evaluate_condition, tick_times_s
 from tuisim.engine.runs.readings import Readings, read_readings
 from tuisim.engine.runs.records import SAMPLE_STREAMS, OutputRow, Stream
-from tuisim.engine.runs.run_folder import StoredRun, open_mat
+from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.engine.runs.samples import Sample, list_samples, select_rows
 from tuisim.engine.runs.side_files import read_actions
 from tuisim.tasks.goals.brick import (
@@ -267,8 +266,8 @@ class Evidence:
         if self._field is not None:
             return self._field
         if isinstance(self._run, StoredRun):
-            return open_mat(self._run)
-        return open_field(self._run.field, has_floor=self.spec.world.is_open)
+            return self._run.open_mat()
+        return self._run.field.open_field(has_floor=self.spec.world.is_open)
 
     @cached_property
     def end_s(self) -> float:

@@ -8,8 +8,7 @@ from collections.abc import Sequence
 from tuisim.analysis.pins import Dot, Picture, encode_picture
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import LogError, listed
-from tuisim.engine.mat_cache import mat_pixels
-from tuisim.engine.runs.run_folder import StoredRun, find_mat_files
+from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.pictures.scene.pictures import build_world_view, draw_world
 from tuisim.pictures.scene.view import Viewport
 
@@ -62,7 +61,7 @@ def _build_map(runs: Sequence[MissesOfRun]) -> Picture | None:
     first = runs[0].run
     misses = [miss for run_misses in runs for miss in run_misses.misses]
     try:
-        picture = draw_world(first.spec, mat_pixels(find_mat_files(first)))
+        picture = draw_world(first.spec, first.find_mat_files().read_pixels())
     except LogError:
         return None
     students = {miss.student for miss in misses}

@@ -167,16 +167,15 @@ class MarkRequest:
             files += [target, target.with_name(target.name + ".json"), build_reports_folder(target)]
         return frozenset(Path(os.path.realpath(path)) for path in files if path)
 
+    @contextmanager
+    def open_marking(self) -> Iterator[Marking]:
+        """Yield a marking whose hand-ins are unpacked into a folder that is removed after the block.
 
-@contextmanager
-def open_marking(request: MarkRequest) -> Iterator[Marking]:
-    """Yield a marking whose hand-ins are unpacked into a folder that is removed after the block.
-
-    Raises:
-        ConfigError: a folder, the class list or the overrides are wrong.
-    """
-    with create_temporary_home("tuisim-hand-ins-") as unpacked:
-        yield Marking(request, unpacked.resolve())
+        Raises:
+            ConfigError: a folder, the class list or the overrides are wrong.
+        """
+        with create_temporary_home("tuisim-hand-ins-") as unpacked:
+            yield Marking(self, unpacked.resolve())
 
 
 class Marking:

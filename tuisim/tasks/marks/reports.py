@@ -12,7 +12,7 @@ from pathlib import Path
 
 from tuisim.analysis.pins import Pin
 from tuisim.analysis.report import build_report
-from tuisim.analysis.source import LogRequest, open_pieces
+from tuisim.analysis.source import LogRequest
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ExportError, LogError, counted
 from tuisim.base.faults import describe_fault
@@ -116,7 +116,7 @@ _Judged = tuple[Sequence[Goal], Mapping[str, Change]]
 def _build_report(
     student: str, goals: _Judged, outcome: Outcome, run: StoredRun, *, movie: bool
 ) -> str:
-    *_, opened = open_pieces(LogRequest(runs=(run.id,)))
+    *_, opened = LogRequest(runs=(run.id,)).open_pieces()
     opened = replace(opened, runs=tuple(map(_make_portable, opened.runs)))
     goals_table, pins = _list_verdicts(*goals, outcome)
     title = ", ".join(filter(None, (student, outcome.world, f"seed {outcome.seed}")))

@@ -140,6 +140,30 @@ class Sheet:
             rows.append([_cut_middle(row.name, max_name), *points, f"{where}{row.reason}"])
         return heads, rows
 
+    def build_frame(self) -> pd.DataFrame:
+        """Return the sheet as a frame: one row a student, for each goal a column `goal_NAME` with its mean points."""
+        import pandas as pd
+
+        rows = self.rows
+        columns: dict[str, list[Any]] = {
+            "student": [row.name for row in rows],
+            "program": [row.program for row in rows],
+            "points": [row.points for row in rows],
+            "robustness": [row.robustness for row in rows],
+            "runs": [row.runs for row in rows],
+        }
+        for index, column in enumerate(self.columns):
+            columns[f"{GOAL_PREFIX}{column.name}"] = [row.cells[index].points for row in rows]
+        columns |= {
+            "reason": [row.reason for row in rows],
+            "line": [row.line for row in rows],
+            "source_line": [row.source_line for row in rows],
+            "seed": [row.seed for row in rows],
+            "earned": [row.points if row.earned is None else row.earned for row in rows],
+            "comment": [row.comment for row in rows],
+        }
+        return pd.DataFrame(columns)
+
 
 def list_columns(goals: Sequence[Goal]) -> list[Goal]:
     """Return the goals that a student is shown, in words; others, without points and words, are parts of these."""
@@ -296,31 +320,6 @@ def _cut_middle(name: str, max_length: int) -> str:
     return name if len(name) <= max_length else f"{name[: max_length - end - 1]}…{name[-end:]}"
 
 
-def build_frame(sheet: Sheet) -> pd.DataFrame:
-    """Return the sheet as a frame: one row a student, for each goal a column `goal_NAME` with its mean points."""
-    import pandas as pd
-
-    rows = sheet.rows
-    columns: dict[str, list[Any]] = {
-        "student": [row.name for row in rows],
-        "program": [row.program for row in rows],
-        "points": [row.points for row in rows],
-        "robustness": [row.robustness for row in rows],
-        "runs": [row.runs for row in rows],
-    }
-    for index, column in enumerate(sheet.columns):
-        columns[f"{GOAL_PREFIX}{column.name}"] = [row.cells[index].points for row in rows]
-    columns |= {
-        "reason": [row.reason for row in rows],
-        "line": [row.line for row in rows],
-        "source_line": [row.source_line for row in rows],
-        "seed": [row.seed for row in rows],
-        "earned": [row.points if row.earned is None else row.earned for row in rows],
-        "comment": [row.comment for row in rows],
-    }
-    return pd.DataFrame(columns)
-
-
 def build_metadata(sheet: Sheet) -> dict[str, Any]:
     """Return the metadata of an exported sheet: the goals with their points, and the seeds."""
     return {
@@ -341,4 +340,4 @@ def export_marks(sheet: Sheet, path: Path) -> None:
     Raises:
         ExportError: it cannot be written; an existing file is unchanged.
     """
-    export_frame(build_frame(sheet), path, build_metadata(sheet))
+    export_frame(sheet.build_frame(), path, build_metadata(sheet))

@@ -17,7 +17,6 @@ from tuisim.engine.protocol import End
 from tuisim.engine.runs.diff import find_first_difference_s, is_repeat
 from tuisim.engine.runs.readings import MODES_BY_KIND, READING_PORTS, read_readings
 from tuisim.engine.runs.records import Stream
-from tuisim.engine.runs.run_folder import open_mat
 from tuisim.engine.runs.standstill import find_standstill
 from tuisim.programs.facts import read_facts
 from tuisim.tasks.goals.evidence import find_ticks
@@ -187,7 +186,7 @@ def _find_lost(run: StoredRun, mat: Field | None, has_waited: bool) -> Iterator[
     from tuisim.tasks.reasons.one_colour import find_one_color
     from tuisim.tasks.reasons.unwatched import find_unwatched
 
-    mat = open_mat(run) if mat is None else mat
+    mat = run.open_mat() if mat is None else mat
     if missed := find_near_miss(run, mat):
         yield Reason(ReasonKind.LOST, missed.time_s, missed.line, missed.text)
     records = run.telemetry.array()
@@ -250,7 +249,7 @@ def describe_end(run: StoredRun) -> str:
         from tuisim.tasks.reasons.lost_line import find_lost_lines
 
         read_ticks = _find_read_ticks(run, len(records))
-        for lost in find_lost_lines(records, run.spec, open_mat(run), read_ticks):
+        for lost in find_lost_lines(records, run.spec, run.open_mat(), read_ticks):
             if lost.seen_again is None:
                 return _describe_loss(run, lost).words
     if missed := find_near_miss(run):

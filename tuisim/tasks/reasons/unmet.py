@@ -23,7 +23,7 @@ from tuisim.engine.protocol import End
 from tuisim.engine.runs.frames import compute_column_values
 from tuisim.engine.runs.readings import READING_MODES, READING_PORTS, read_readings
 from tuisim.engine.runs.records import Stream
-from tuisim.engine.runs.run_folder import StoredRun, open_mat
+from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.programs.facts import LoopEnd, read_facts
 from tuisim.tasks.goals.evidence import find_ticks
 from tuisim.tasks.reasons.one_colour import describe_colors, name_limit, name_seen
@@ -221,7 +221,7 @@ class _Search:
     @cached_property
     def _field(self) -> Field:
         """The mat, opened if nobody has done so."""
-        return open_mat(self._run) if self._mat is None else self._mat
+        return self._run.open_mat() if self._mat is None else self._mat
 
     def find_unmet(self) -> Iterator[Unmet]:
         """Yield what was waited for in the last move or in each loop, the inner ones first."""

@@ -34,7 +34,7 @@ from tuisim.engine.core.spec import (
     UltrasonicSpec,
 )
 from tuisim.engine.protocol import End, SetButtons, UserAction
-from tuisim.engine.runs.brick_state import BrickState, update_face
+from tuisim.engine.runs.brick_state import BrickState
 from tuisim.engine.runs.readings import (
     KEYS_BY_PORT,
     MODES_BY_KIND,
@@ -43,7 +43,7 @@ from tuisim.engine.runs.readings import (
     read_readings,
 )
 from tuisim.engine.runs.records import Stream
-from tuisim.engine.runs.run_folder import StoredRun, open_mat
+from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.engine.runs.views import OutputView, TelemetryView, build_instant
 from tuisim.programs.facts import Question, read_facts
 from tuisim.tasks.goals.evidence import find_ticks
@@ -176,7 +176,7 @@ def find_awaited(run: StoredRun) -> tuple[Awaited, ...]:
         telemetry=run.telemetry,
         output=run.output,
         actions=run.actions,
-        open_mat=lambda: open_mat(run),
+        open_mat=lambda: run.open_mat(),
     )
     return find_at_end(recorded, run.end.end) if run.end else find_in_recording(recorded)
 
@@ -316,7 +316,7 @@ class _Search:
             if row.stream is Stream.MOTORS:
                 if row.tick > self._first:
                     return True
-                face = update_face(face, [row])
+                face = face.update_face([row])
         return any(dps for _, dps in face.turns)
 
     def _describe(self, subject: Subject, port: str, rows: Array) -> Awaited | None:

@@ -6,13 +6,7 @@ from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
-from tuisim.analysis.model import (
-    RECKONING,
-    AnalysisModel,
-    apply_definition,
-    compute_definition,
-    derive,
-)
+from tuisim.analysis.model import RECKONING, AnalysisModel
 from tuisim.analysis.source import LogRequest
 from tuisim.app.dialogs.question import Form
 from tuisim.base.errors import LogError
@@ -68,7 +62,7 @@ def ask_variable(screen: LogScreen) -> None:
         screen.run_task(
             "computing …",
             model.log.rows,
-            lambda _: (model, *compute_definition(model, text)),
+            lambda _: (model, *model.compute_definition(text)),
             show_log,
         )
 
@@ -76,10 +70,10 @@ def ask_variable(screen: LogScreen) -> None:
         of, text, log = result
         model = screen.model
         if model is of:
-            apply_definition(model, text, log)
+            model.apply_definition(text, log)
         else:
             # The log may have grown while it was computed.
-            derive(model, text)
+            model.derive(text)
         screen.redraw_chart()
 
     can_reckon = set(NEEDED) <= set(screen.model.log.table.column_names)
