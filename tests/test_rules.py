@@ -118,7 +118,7 @@ TOP_LEVEL = {
 }
 """What git may track there: all else is somebody's own."""
 
-WITH_COLORS = frozenset({"css_colors.py", "palette.py", "themes.py"})
+WITH_COLORS = frozenset({"css_colors.py", "design.py", "palette.py", "themes.py"})
 """The palette, and tables of colours of others."""
 
 PACKAGE = python_files("tuisim")

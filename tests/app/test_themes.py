@@ -16,6 +16,7 @@ from textual.theme import BUILTIN_THEMES
 
 import tuisim.app
 from tests.app.app_help import LOGS, open_lab, settings, until
+from tuisim.app import design
 from tuisim.app.app import LabApp
 from tuisim.app.dialogs.palette import ThemeChooser
 from tuisim.app.themes import (
@@ -26,7 +27,6 @@ from tuisim.app.themes import (
     ThemeColors,
     measure_contrast,
 )
-from tuisim.base import palette
 from tuisim.pictures.charts.traces import TRACE_COLORS
 
 THEMES = [
@@ -58,18 +58,20 @@ def test_every_colour_of_the_palette_is_used_and_named_once() -> None:
     files = [
         path
         for path in folder.rglob("*")
-        if path.suffix in (".py", ".tcss") and path.name != "palette.py"
+        if path.suffix in (".py", ".tcss") and path.name not in ("design.py", "palette.py")
     ]
     text = "".join(path.read_text("utf-8") for path in files)
 
     used = {
         name
-        for name in palette.COLORS
-        if f"palette.{name}" in text or f"$tuisim-{_in_css(name)}" in text
+        for name in design.COLORS
+        if any(
+            use in text for use in (f"palette.{name}", f"design.{name}", f"$tuisim-{_in_css(name)}")
+        )
     }
 
-    assert used == set(palette.COLORS)
-    assert len(set(palette.COLORS.values())) == len(palette.COLORS)
+    assert used == set(design.COLORS)
+    assert len(set(design.COLORS.values())) == len(design.COLORS)
 
 
 def _in_css(name: str) -> str:

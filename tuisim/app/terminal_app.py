@@ -16,7 +16,7 @@ from textual.notifications import SeverityLevel
 from textual.screen import Screen
 from textual.theme import Theme
 
-from tuisim.app import background
+from tuisim.app import background, design
 from tuisim.app.action import ActionHost, KeyFooter, fill_keys
 from tuisim.app.dialogs.dialog import ClosesOnce, Dialog
 from tuisim.app.notices import Notice, Notices
@@ -28,7 +28,6 @@ from tuisim.app.themes import (
     ThemeColors,
     list_themes,
 )
-from tuisim.base import palette
 from tuisim.base.errors import ConfigError, TuisimError
 from tuisim.engine.files import Scalar
 from tuisim.pictures.charts.traces import TRACE_COLORS
@@ -113,7 +112,7 @@ class TerminalApp(BufferedApp):
         """Return the names of the palette's colours in style sheets, such as `$tuisim-ink`."""
         return {
             f"tuisim-{name.lower().replace('_', '-')}": color
-            for name, color in palette.COLORS.items()
+            for name, color in design.COLORS.items()
         }
 
     def on_mount(self) -> None:

@@ -18,6 +18,7 @@ from textual.color import Color
 from textual.filter import LineFilter
 from textual.theme import BUILTIN_THEMES, Theme
 
+from tuisim.app import design
 from tuisim.base import palette
 from tuisim.terminal.pixels import Rgb
 from tuisim.terminal.text_runs import convert_color
@@ -69,7 +70,7 @@ def list_themes() -> list[str]:
 _ROLES = {
     palette.BLUE: "primary",
     palette.YELLOW: "warning",
-    palette.RED: "error",
+    design.RED: "error",
     palette.GREEN: "success",
 }
 _DARKEST = 0.086
@@ -94,7 +95,7 @@ class ThemeColors(LineFilter):
         self._foreground = Color.parse(theme.foreground or ("#e0e0e0" if theme.dark else "#101010"))
         self._contrast = _HIGH_CONTRAST if theme.name == HIGH_CONTRAST.name else _LEAST_CONTRAST
         roles = {own: getattr(theme, role) or own for own, role in _ROLES.items()}
-        own = {Color.parse(name).rgb for name in palette.COLORS.values()} | set(traces)
+        own = {Color.parse(name).rgb for name in design.COLORS.values()} | set(traces)
         self._replaced = {rgb: self._find_replacement(rgb) for rgb in own}
         self._replaced |= {
             Color.parse(name).rgb: Color.parse(color).rgb for name, color in roles.items()

@@ -13,6 +13,7 @@ from textual.message import Message
 from tuisim.analysis.chart import build_spans
 from tuisim.analysis.events import CommandRow
 from tuisim.analysis.traces import DISTANCE, TIME
+from tuisim.app import design
 from tuisim.app.plot_view import PlotView
 from tuisim.base import palette
 from tuisim.base.data_class import dataclass
@@ -36,7 +37,7 @@ if TYPE_CHECKING:
     from tuisim.analysis.model import AnalysisModel
     from tuisim.analysis.traces import LogTrace
 
-_EVENTS = Style(color=palette.EVENT, bold=True)
+_EVENTS = Style(color=design.EVENT, bold=True)
 _MAX_BANDS = 100
 """More bands of a variable are not shaded: they are too narrow to be told apart."""
 _MIN_FACET_ROWS = 6

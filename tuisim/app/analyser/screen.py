@@ -18,7 +18,7 @@ from textual.widget import Widget
 from tuisim.analysis.events import CommandRow
 from tuisim.analysis.model import RECKONING, AnalysisModel
 from tuisim.analysis.source import LogRequest, is_readable_again, remember_choices
-from tuisim.app import background
+from tuisim.app import background, design
 from tuisim.app.action import ActionHost, KeyFooter
 from tuisim.app.analyser.chart import LogChart
 from tuisim.app.analyser.panes import PANES, PaneView
@@ -75,12 +75,12 @@ class LogScreen(ActionHost, ClosesOnce[None]):
     """
 
     DEFAULT_CSS = f"""
-    LogScreen {{ background: {palette.GROUND}; color: {palette.INK}; }}
-    LogScreen #title {{ height: 1; background: {palette.BAR}; color: {palette.WHITE}; }}
+    LogScreen {{ background: {design.GROUND}; color: {palette.INK}; }}
+    LogScreen #title {{ height: 1; background: {design.BAR}; color: {palette.WHITE}; }}
     LogScreen #log {{ width: 1fr; }}
     LogScreen .beside {{
-        width: 34%; min-width: 32; height: 1fr; background: {palette.GROUND}; border: round {palette.LINE};
-        border-title-color: {palette.SOFT}; border-subtitle-color: {palette.SUBTITLE};
+        width: 34%; min-width: 32; height: 1fr; background: {design.GROUND}; border: round {palette.LINE};
+        border-title-color: {palette.SOFT}; border-subtitle-color: {design.SUBTITLE};
     }}
     LogScreen.-tall > Horizontal {{ layout: vertical; }}
     LogScreen.-tall WorldPane, LogScreen.-tall .beside {{ width: 1fr; height: 34%; }}

@@ -7,13 +7,14 @@ from collections.abc import Sequence
 from rich.style import Style
 
 from tuisim.analysis.model import AnalysisModel
+from tuisim.app import design
 from tuisim.base import palette
 from tuisim.base.errors import counted
 from tuisim.terminal.text_runs import Line, cut, escape_markup, find_first_row
 
 PLAIN, DIM = Style(color=palette.INK), Style(color=palette.SOFT)
 HEAD = Style(color=palette.BLUE, bold=True)
-HERE = Style(color=palette.WHITE, bgcolor=palette.CHOSEN)
+HERE = Style(color=palette.WHITE, bgcolor=design.CHOSEN)
 CHOSEN = Style(color=palette.YELLOW, bold=True)
 MAX_CELL = 28
 """Characters of the widest cell."""

@@ -12,7 +12,7 @@ from rich.style import Style
 from textual.app import ComposeResult
 from textual.containers import Vertical
 
-from tuisim.app import background
+from tuisim.app import background, design
 from tuisim.app.panels import PANELS
 from tuisim.app.panels.arrays import Arrays
 from tuisim.app.panels.world import WorldView
@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from tuisim.logs.log import Log
 
 _POSE = ("x_mm", "y_mm", "heading_deg")
-_PLAIN, _DIM = Style(color=palette.INK), Style(color=palette.SUBTITLE)
+_PLAIN, _DIM = Style(color=palette.INK), Style(color=design.SUBTITLE)
 _HERE = Style(color=palette.WHITE, bgcolor=palette.HERE, bold=True)
 _BESIDE_COLS = 60
 """In a narrower terminal the chart gets the whole width, until the key of the world is pressed."""

@@ -12,6 +12,7 @@ from textual.binding import BindingType
 from textual.widgets import Input, OptionList, Static
 from textual.widgets.option_list import Option
 
+from tuisim.app import design
 from tuisim.app.action import Action
 from tuisim.app.dialogs.dialog import MOVE_KEYS, Dialog
 from tuisim.base import palette
@@ -140,10 +141,10 @@ def _build_line(entry: Entry, cells: int) -> Text:
     right = f"{entry.group}  {entry.key:>7}" if entry.key else entry.group
     title = cut(entry.title, cells - len(right) - 1)
     line = Text(no_wrap=True, overflow="ellipsis")
-    line.append(f"{title:<{cells - len(right)}}", "" if entry.works else palette.SUBTITLE)
-    line.append(right[: len(entry.group)], palette.SUBTITLE)
+    line.append(f"{title:<{cells - len(right)}}", "" if entry.works else design.SUBTITLE)
+    line.append(right[: len(entry.group)], design.SUBTITLE)
     line.append(
-        right[len(entry.group) :], f"bold {palette.YELLOW}" if entry.works else palette.SUBTITLE
+        right[len(entry.group) :], f"bold {palette.YELLOW}" if entry.works else design.SUBTITLE
     )
     return line
 

@@ -17,7 +17,7 @@ from textual.containers import Horizontal, VerticalScroll
 from textual.widgets import Input, OptionList, Static
 from textual.widgets.option_list import Option
 
-from tuisim.app import background
+from tuisim.app import background, design
 from tuisim.app.branch import BRANCH_TAG
 from tuisim.app.dialogs.chooser import ListDialog, find_field_view
 from tuisim.app.dialogs.dialog import Dialog
@@ -114,7 +114,7 @@ def run_line(run: RunInfo, columns: int, *, marked: bool = False) -> Text:
     }
     styles = {"run": "bold", "when": palette.SOFT, "program": "bold"}
     if run.end not in GOOD_ENDS:
-        styles["end"] = palette.RED
+        styles["end"] = design.RED
     line = Text(no_wrap=True, overflow="ellipsis")
     for name, text in _arrange(texts, columns).items():
         line.append(f"{' ' if line else ''}{text}", styles.get(name, ""))

@@ -14,6 +14,7 @@ from textual.message import Message
 from textual.strip import Strip
 from textual.widget import Widget
 
+from tuisim.app import design
 from tuisim.app.editor.completion import Candidate, Signature
 from tuisim.base import palette
 from tuisim.base.data_class import dataclass
@@ -22,13 +23,13 @@ from tuisim.terminal.text_runs import Line, cut, cut_line, find_first_row
 MAX_ROWS = 8
 MAX_WIDTH = 76
 MIN_WIDTH = 24
-_GROUND, _CHOSEN_GROUND = Style(bgcolor=palette.FIELD), Style(bgcolor=palette.CHOSEN, bold=True)
+_GROUND, _CHOSEN_GROUND = Style(bgcolor=palette.FIELD), Style(bgcolor=design.CHOSEN, bold=True)
 _NAME, _SIGNATURE, _HELP = (
     Style(color=palette.WHITE),
-    Style(color=palette.PALE),
+    Style(color=design.PALE),
     Style(color=palette.YELLOW),
 )
-_HELP_GROUND = Style(bgcolor=palette.RAISED)
+_HELP_GROUND = Style(bgcolor=design.RAISED)
 
 
 def list_lines(candidates: Sequence[Candidate], chosen: int, width: int) -> list[Line]:

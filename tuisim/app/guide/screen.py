@@ -16,7 +16,7 @@ from textual.geometry import Size
 from textual.widgets import Input, Static, Tree
 from textual.widgets.tree import TreeNode
 
-from tuisim.app import background
+from tuisim.app import background, design
 from tuisim.app.action import KeyWord, build_key_table
 from tuisim.app.dialogs.dialog import Dialog
 from tuisim.app.guide.answers import AnswerList, name_answer
@@ -85,7 +85,7 @@ _SEARCHING = "searching …"
 _CORNERS = 4
 """Columns of a frame beside its title."""
 
-_FOUND = Style(bgcolor=palette.CHOSEN)
+_FOUND = Style(bgcolor=design.CHOSEN)
 """The style of a passage that a search has found."""
 _ROWS_OF_PASSAGE = 6
 """Minimum number of rows of a passage that are in view."""

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from rich.style import Style
 
+from tuisim.app import design
 from tuisim.app.render.arrays import build_swatch
 from tuisim.app.snapshot import Snapshot
 from tuisim.base import palette
@@ -19,7 +20,7 @@ from tuisim.terminal.text_runs import Line, Run
 LABEL = Style(color=palette.LABEL)
 VALUE = Style(color=palette.WHITE, bold=True)
 UNIT = Style(color=palette.LABEL)
-WARNING = Style(color=palette.RED, bold=True)
+WARNING = Style(color=design.RED, bold=True)
 COLUMN = 12
 """Width of the labels if there is room."""
 

@@ -10,6 +10,7 @@ from rich.style import Style
 from textual import events
 from textual.message import Message
 
+from tuisim.app import design
 from tuisim.app.snapshot import RunPhase, Snapshot
 from tuisim.base import palette
 from tuisim.base.data_class import dataclass
@@ -24,18 +25,18 @@ MIN_BAR_COLS = 40
 _PAST, _LATER, _BEYOND = (
     Style(color=palette.BLUE),
     Style(color=palette.LINE),
-    Style(color=palette.TRACK),
+    Style(color=design.TRACK),
 )
-_CURSOR = Style(color=palette.GROUND, bgcolor=palette.YELLOW, bold=True)
+_CURSOR = Style(color=design.GROUND, bgcolor=palette.YELLOW, bold=True)
 _WORDS, _STRONG = Style(color=palette.SOFT), Style(color=palette.YELLOW, bold=True)
 
 # By priority: of several markers in one cell, the first in this order is shown.
 _MARKS: Mapping[Mark, tuple[str, Style]] = {
-    Mark.ERROR: ("✗", Style(color=palette.RED, bold=True)),
-    Mark.BREAK: ("●", Style(color=palette.BREAKPOINT)),
-    Mark.ACTION: ("◆", Style(color=palette.KEYWORD)),
+    Mark.ERROR: ("✗", Style(color=design.RED, bold=True)),
+    Mark.BREAK: ("●", Style(color=design.BREAKPOINT)),
+    Mark.ACTION: ("◆", Style(color=design.KEYWORD)),
     Mark.SAMPLE: ("╵", Style(color=palette.GREEN)),
-    Mark.COMMAND: ("╷", Style(color=palette.EVENT)),
+    Mark.COMMAND: ("╷", Style(color=design.EVENT)),
 }
 
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from rich.color import Color
 from rich.style import Style
 
+from tuisim.app import design
 from tuisim.base import palette
 from tuisim.base.data_class import dataclass
 from tuisim.engine.core.css_colors import Rgb
@@ -29,8 +30,8 @@ _PAPER = Style(color=Color.from_rgb(*_INK_RGB), bgcolor=Color.from_rgb(*_PAPER_R
 _INVERSE = Style(color=Color.from_rgb(*_PAPER_RGB), bgcolor=Color.from_rgb(*_INK_RGB))
 _PLAIN = Style()
 _CAPTION = Style(color=palette.LABEL)
-_BUTTON = Style(color=palette.LIGHT, bgcolor=palette.BUTTON, bold=True)
-_PRESSED = Style(color=palette.BLACK, bgcolor=palette.PRESSED, bold=True)
+_BUTTON = Style(color=design.LIGHT, bgcolor=design.BUTTON, bold=True)
+_PRESSED = Style(color=palette.BLACK, bgcolor=design.PRESSED, bold=True)
 _DARK_LED_RGB = (48, 48, 48)
 
 HALF_BLOCK_SCALE = 0.7

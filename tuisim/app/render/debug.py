@@ -10,6 +10,7 @@ from typing import assert_never
 
 from rich.style import Style
 
+from tuisim.app import design
 from tuisim.app.snapshot import RunPhase, shorten_value
 from tuisim.base import palette
 from tuisim.base.data_class import dataclass
@@ -17,14 +18,14 @@ from tuisim.engine.protocol import FrameState, Inspected, Paused, PauseReason, V
 from tuisim.terminal.text_runs import Line, cut
 
 _PLAIN = Style(color=palette.INK)
-_NAME = Style(color=palette.NAME)
+_NAME = Style(color=design.NAME)
 _VALUE = Style(color=palette.WHITE)
 _CHANGED = Style(color=palette.YELLOW, bold=True)
 _HEAD = Style(color=palette.GREEN, bold=True)
-_PALE = Style(color=palette.PALE)
-_WAITS = Style(color=palette.BLACK, bgcolor=palette.WAITING)
-_ERROR = Style(color=palette.RED)
-_CHOSEN = Style(color=palette.WHITE, bgcolor=palette.CHOSEN)
+_PALE = Style(color=design.PALE)
+_WAITS = Style(color=palette.BLACK, bgcolor=design.WAITING)
+_ERROR = Style(color=design.RED)
+_CHOSEN = Style(color=palette.WHITE, bgcolor=design.CHOSEN)
 
 _NAME_COLUMN = 16
 _FUNCTIONS = ("function", "builtin_function_or_method", "type")

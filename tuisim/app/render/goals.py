@@ -8,6 +8,7 @@ from typing import assert_never
 
 from rich.style import Style
 
+from tuisim.app import design
 from tuisim.base import palette
 from tuisim.base.data_class import dataclass
 from tuisim.tasks.goals.condition import ConditionKind
@@ -23,7 +24,7 @@ _HINT = Style(color=palette.YELLOW)
 _STATES = {
     GoalState.OPEN: ("·", _PALE),
     GoalState.MET: ("✓", Style(color=palette.GREEN, bold=True)),
-    GoalState.MISSED: ("✗", Style(color=palette.RED, bold=True)),
+    GoalState.MISSED: ("✗", Style(color=design.RED, bold=True)),
     GoalState.UNKNOWN: ("?", _HINT),
 }
 _PENALTY_WORDS = {

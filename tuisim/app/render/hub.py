@@ -9,6 +9,7 @@ from typing import Final
 from rich.color import Color
 from rich.style import Style
 
+from tuisim.app import design
 from tuisim.app.render.brick import BrickPicture, ButtonBox, draw_bumpers
 from tuisim.base import palette
 from tuisim.engine.core.hub_spec import CONTROLLERS
@@ -25,8 +26,8 @@ from tuisim.terminal.text_runs import Run
 
 _PLAIN = Style()
 _CAPTION = Style(color=palette.LABEL)
-_BUTTON = Style(color=palette.LIGHT, bgcolor=palette.BUTTON, bold=True)
-_PRESSED = Style(color=palette.BLACK, bgcolor=palette.PRESSED, bold=True)
+_BUTTON = Style(color=design.LIGHT, bgcolor=design.BUTTON, bold=True)
+_PRESSED = Style(color=palette.BLACK, bgcolor=design.PRESSED, bold=True)
 _SYMBOLS: Final = {"left": "◀", "enter": "●", "right": "▶", "up": "B"}
 """The buttons by their names in the session, from the left; the last one is that of Bluetooth."""
 _LIGHTS: Final = {"remote": REMOTE_LIGHT_NAMES, "xbox": XBOX_LIGHT_NAMES}

@@ -8,6 +8,7 @@ from enum import StrEnum
 
 from rich.style import Style
 
+from tuisim.app import design
 from tuisim.app.panels import PANELS
 from tuisim.base import palette
 from tuisim.base.data_class import dataclass
@@ -33,7 +34,7 @@ _NAME = Style(color=palette.WHITE, bold=True)
 _PLAIN = Style(color=palette.INK)
 _PALE = Style(color=palette.SOFT)
 _GOOD = Style(color=palette.GREEN, bold=True)
-_BAD = Style(color=palette.RED)
+_BAD = Style(color=design.RED)
 _HINT = Style(color=palette.YELLOW)
 _CODE = Style(color=palette.YELLOW)
 _MARKS = {
