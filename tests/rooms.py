@@ -45,7 +45,7 @@ CHILD = ("engine.runtime", "engine.shim")
 """What runs in the process of a program."""
 ONLY_IN_PARENT = (
     "terminal",
-    *(f"engine.runs.{name}" for name in ("handle", "recorded_run", "replay_debugger", "rerun")),
+    *(f"engine.runs.{name}" for name in ("handle", "recorded_run", "replay_debugger")),
     "engine.runs.child.process",
 )
 PURE = (

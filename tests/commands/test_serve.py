@@ -13,7 +13,6 @@ import pytest
 
 from tests.cases import cases
 from tests.conftest import Command
-from tuisim.web import server as web_server
 from tuisim.web.server import Server, ServerLimits
 from tuisim.web.visit import VisitLimits
 
@@ -35,7 +34,7 @@ def served(monkeypatch: pytest.MonkeyPatch) -> list[tuple[list[str], ServerLimit
         found.append((list(server._command), server._limits, host, port))
         return 0
 
-    monkeypatch.setattr(web_server, "serve", note)
+    monkeypatch.setattr(Server, "serve", note)
     return found
 
 

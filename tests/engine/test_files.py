@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 
 from tests.settings.makers import boxes, mm, presses, robots
 from tuisim.base.errors import ConfigError, ObstacleError, RobotError
-from tuisim.batch.batch_file import load_batch
+from tuisim.commands.batch_file import load_batch
 from tuisim.engine.core.profile import PROFILES, MotorLaw, ProfileSpec
 from tuisim.engine.core.remote_spec import BeaconSpec
 from tuisim.engine.core.spec import (

@@ -331,7 +331,7 @@ def test_opening_needs_no_heavy_library(home: Path, tmp_path: Path) -> None:
     code = (
         "import json, sys\n"
         "from tuisim.engine import mat_cache as fields\n"
-        "field = fields.open_field(fields.FieldFiles.from_plain(json.loads(sys.argv[1])))\n"
+        "field = fields.FieldFiles.from_plain(json.loads(sys.argv[1])).open_field()\n"
         "print(field.sum_disc(20, 5, 5)[0])\n"
         "print(sorted({'numpy', 'PIL', 'platformdirs', 'tempfile'} & set(sys.modules)))\n"
     )

@@ -24,7 +24,7 @@ from tuisim.app.layout.arrangement import load_layout
 from tuisim.app.panels import TerminalSize
 from tuisim.base.errors import TuisimError
 from tuisim.base.folders import home_folder
-from tuisim.batch.batch_file import load_batch
+from tuisim.commands.batch_file import load_batch
 from tuisim.engine.core.profile import PROFILES
 from tuisim.engine.runs.side_files import (
     ACTIONS_FILE,

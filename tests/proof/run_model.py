@@ -17,6 +17,7 @@ from tests.proof.kind import FaultError
 from tests.proof.operations import prepared
 from tests.running import PATIENCE_S
 from tuisim.base.source import Program
+from tuisim.commands.rerun import rerun, same
 from tuisim.engine.core.tick_record import TICK_FIELDS, TICK_RECORD
 from tuisim.engine.protocol import (
     Message,
@@ -25,7 +26,6 @@ from tuisim.engine.protocol import (
 from tuisim.engine.runs.child import process
 from tuisim.engine.runs.handle import RunHandle, RunOptions, start_run
 from tuisim.engine.runs.records import OutputRow
-from tuisim.engine.runs.rerun import rerun, same
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.engine.runs.store import RunStore
 from tuisim.settings.build import build_run_spec

@@ -216,10 +216,9 @@ class Lab:
 
     def picture(self) -> Image:
         """Return the world now as a Pillow image, without the pen's trace."""
-        from tuisim.engine.mat_cache import mat_pixels
         from tuisim.pictures.scene.pictures import draw_world
 
-        return draw_world(self._spec, mat_pixels(field_files(self._spec)), self.pose)
+        return draw_world(self._spec, field_files(self._spec).read_pixels(), self.pose)
 
     def judge(self) -> tuple[float, bool]:
         """Return the points if the run ended now, and whether all goals not met at the start are met or missed for

@@ -1,7 +1,6 @@
 """Many runs: tasks as plain values, the processes that run them, and their results as a table."""
 
 __all__ = [
-    "batch_file",
     "parameters",
     "plan",
     "rounds",

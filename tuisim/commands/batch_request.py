@@ -10,10 +10,10 @@ from pathlib import Path
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ConfigError, see_page
 from tuisim.base.folders import user_path
-from tuisim.batch.batch_file import BatchFile, load_batch
 from tuisim.batch.parameters import SEED, Choice, parse_seeds, parse_values
 from tuisim.batch.plan import Plan, Subject
 from tuisim.batch.sweep import Workers
+from tuisim.commands.batch_file import BatchFile, load_batch
 from tuisim.commands.echo import echo_error
 from tuisim.commands.listings import WORLD, list_names
 from tuisim.commands.notebooks import NotRun

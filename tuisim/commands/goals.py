@@ -11,6 +11,7 @@ from typing import Any
 
 from tuisim.base.errors import ConfigError, counted, nearest
 from tuisim.batch.parameters import parse_seeds
+from tuisim.commands.drawn_mats import DRAWN_MATS, generate_mat
 from tuisim.commands.echo import (
     AS_JSON,
     Progress,
@@ -30,7 +31,6 @@ from tuisim.engine.runs.store import RunStore
 from tuisim.settings.build import build_run_spec, extract_settings
 from tuisim.settings.command_line import Group, WordType, argument, command, option
 from tuisim.settings.options import START, merge_settings
-from tuisim.tasks.goals.drawn_mats import DRAWN_MATS, generate_mat
 from tuisim.tasks.goals.files import GoalsFile, list_example_names, load_goals
 from tuisim.tasks.goals.judge import judge
 from tuisim.tasks.goals.judgement import (

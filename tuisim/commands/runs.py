@@ -30,6 +30,7 @@ from tuisim.commands.echo import (
 )
 from tuisim.commands.exit_status import describe, describe_last_state
 from tuisim.commands.movies import movie, picture
+from tuisim.commands.rerun import list_changed_files, rerun, same
 from tuisim.engine.core import tree
 from tuisim.engine.core.drift import draw_echo_bias_mm, draw_errors, draw_light_gain, find_drift
 from tuisim.engine.core.spec import ColorSensorSpec, RunSpec, UltrasonicSpec
@@ -41,7 +42,6 @@ from tuisim.engine.runs.diff import RunDiff
 from tuisim.engine.runs.frames import describe_damage
 from tuisim.engine.runs.handle import ASK_AGAIN_S
 from tuisim.engine.runs.records import OutputRow, Stream
-from tuisim.engine.runs.rerun import list_changed_files, rerun, same
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.engine.runs.side_files import MAX_PATH, FilesRead, read_reads
 from tuisim.engine.runs.store import RunStore, count_bytes

@@ -3,7 +3,6 @@
 __all__ = [
     "execute",
     "goals.condition",
-    "goals.drawn_mats",
     "goals.files",
     "goals.judge",
     "goals.judgement",

@@ -28,10 +28,10 @@ from tuisim.app.form import Slider
 from tuisim.app.panels.chart import Chart
 from tuisim.app.setup.next_run import change_obstacles
 from tuisim.app.snapshot import RunPhase
+from tuisim.commands.rerun import rerun, same
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.spec import NoiseSpec, Obstacle
 from tuisim.engine.protocol import Answer, LineStep, Resume, SetNoise
-from tuisim.engine.runs.rerun import rerun, same
 from tuisim.engine.runs.store import RunStore
 
 STEPS = """\

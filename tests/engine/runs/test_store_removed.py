@@ -11,12 +11,12 @@ import pytest
 
 from tests.engine.runs.run_recorder import PROGRAM
 from tuisim.base.errors import LogError
+from tuisim.commands.rerun import rerun
 from tuisim.engine.core.profile import ROBOLAB
 from tuisim.engine.core.spec import RobotSpec, RunSpec, WorldSpec
 from tuisim.engine.runs import run_folder
 from tuisim.engine.runs import store as store_module
 from tuisim.engine.runs.catalogue import CATALOGUE_FILE, RunInfo
-from tuisim.engine.runs.rerun import rerun
 from tuisim.engine.runs.store import NewRun, RunStore
 
 READ = run_folder.read_run_file

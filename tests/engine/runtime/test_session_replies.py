@@ -9,9 +9,9 @@ from typing import Any
 
 from tests.cases import cases
 from tests.running import Done, Run, Start, over, until
+from tuisim.commands.rerun import rerun, same
 from tuisim.engine.protocol import Answer, Message, Reply, UserAction
 from tuisim.engine.runs.handle import RunHandle
-from tuisim.engine.runs.rerun import rerun, same
 from tuisim.engine.runs.store import RunStore
 
 GLUE = "from ev3dev2_glue import pyState, get_clock\n"

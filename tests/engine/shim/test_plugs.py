@@ -10,10 +10,10 @@ import pytest
 import tuisim
 from tests.engine.shim.late_programs import LATE_PROGRAMS, LateProgram
 from tests.running import Done, over
+from tuisim.commands.rerun import rerun
 from tuisim.engine.runs.diff import diff_runs
 from tuisim.engine.runs.frames import build_telemetry_columns
 from tuisim.engine.runs.handle import RunHandle, RunOptions, set_surroundings
-from tuisim.engine.runs.rerun import rerun
 from tuisim.engine.runs.run_folder import field_files
 from tuisim.engine.runs.store import RunStore
 from tuisim.logs.export import export_telemetry

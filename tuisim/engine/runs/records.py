@@ -276,7 +276,7 @@ class OutputRow:
     line: int
     stream: Stream
 
-    def get_line(self) -> str:
+    def format_line(self) -> str:
         """Return the display text of a row; speech and answers are marked."""
         if self.stream is Stream.SPEECH and not self.text.startswith("["):
             # Sounds are in brackets already.

@@ -9,8 +9,8 @@ import pytest
 
 from tests.cases import cases
 from tuisim.base.errors import ConfigError
-from tuisim.batch.batch_file import load_batch
 from tuisim.batch.parameters import RandomDraw, SampleValues
+from tuisim.commands.batch_file import load_batch
 from tuisim.commands.batch_request import is_batch_file
 from tuisim.settings.worlds import load_world
 

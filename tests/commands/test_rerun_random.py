@@ -9,8 +9,8 @@ import pytest
 
 from tests.running import over
 from tuisim.base.source import Program
+from tuisim.commands.rerun import rerun, same
 from tuisim.engine.runs.handle import RunOptions, start_run
-from tuisim.engine.runs.rerun import rerun, same
 from tuisim.engine.runs.store import RunStore
 from tuisim.settings.build import build_run_spec
 from tuisim.settings.options import Settings

@@ -14,11 +14,11 @@ from tests.cases import cases
 from tests.running import Start, over, until, until_tick
 from tuisim.base.errors import LogError
 from tuisim.base.source import Program
+from tuisim.commands.rerun import rerun, same
 from tuisim.engine.protocol import Answer, Message, SetButtons, SetNoise, SetPen, SetPose
 from tuisim.engine.runs.brick_state import BrickState
 from tuisim.engine.runs.handle import RunOptions, start_run
 from tuisim.engine.runs.records import Stream
-from tuisim.engine.runs.rerun import rerun, same
 from tuisim.engine.runs.side_files import MODULES_FILE, STOP_FILE
 from tuisim.engine.runs.store import RunStore
 from tuisim.settings.build import build_run_spec

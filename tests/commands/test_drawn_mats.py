@@ -9,8 +9,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from tuisim.commands.drawn_mats import DRAWN_MATS, generate_mat
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
-from tuisim.tasks.goals.drawn_mats import DRAWN_MATS, generate_mat
 
 SEEDS = range(12)
 BANDS_OF_0 = "8a4511ccfc22"
