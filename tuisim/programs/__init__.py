@@ -1,7 +1,6 @@
 """What the text of a program says: its first line, its robot, what it calls and asks, names that it lacks."""
 
 __all__ = [
-    "code_rows",
     "constants",
     "facts",
     "function",

@@ -10,9 +10,9 @@ from rich.style import Style
 
 from tuisim.app import design
 from tuisim.app.panels import PANELS
+from tuisim.app.render.code_rows import split_rows
 from tuisim.base import palette
 from tuisim.base.data_class import dataclass
-from tuisim.programs.code_rows import split_rows
 from tuisim.tasks.goals.judgement import GoalState, Judgement
 from tuisim.tasks.lessons.markdown import render_markdown
 from tuisim.tasks.lessons.progress import StepState

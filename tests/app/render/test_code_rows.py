@@ -7,7 +7,7 @@ import ast
 import pytest
 
 from tests.cases import cases
-from tuisim.programs.code_rows import split_rows
+from tuisim.app.render.code_rows import split_rows
 from tuisim.tasks.lessons.catalogue import find_shipped_paths
 from tuisim.tasks.lessons.files import load_lesson
 
