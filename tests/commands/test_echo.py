@@ -258,15 +258,16 @@ WRITERS = {
     "runs export 1 --out a.csv": "a.csv; what it is and its units",
     "log export 1 --out a.jsonl": "a.jsonl",
     "log plot 1 --out a.svg": "a.svg",
+    "runs picture 1 --out a.png": "a.png",
+    "log report 1 --out a.html": "a.html",
     "batch p.py --jobs 1 --out b.csv": "b.csv; what it is",
 }
 """Words in one home, one after the other, and the file that is named."""
 
 
 def test_commands_name_the_files_that_they_write(
-    home: object, here: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    home: object, here: Command, tmp_path: Path
 ) -> None:
     (tmp_path / "p.py").write_text("for i in range(3):\n    print('Number:', i)\n")
-    monkeypatch.setattr("tuisim.commands.echo.is_watched", lambda: True)
     for words, file in WRITERS.items():
         assert f"written: {file}" in here(*words.split()).stderr

@@ -99,12 +99,11 @@ def echo_error(line: str) -> None:
     _print([line], sys.stderr)
 
 
-def echo_written(file: str | Path) -> None:
-    """Print which files an export has written, if stderr is a terminal."""
+def echo_written(file: str | Path, what: str = "") -> None:
+    """Print on stderr which files a command has written, and what is in them, if that is worth saying."""
     from tuisim.logs.export import describe_files
 
-    if is_watched():
-        echo_error(f"written: {describe_files(Path(file))}")
+    echo_error(f"written: {describe_files(Path(file))}{what and f'; {what}'}")
 
 
 def echo_error_lines(text: str) -> None:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tuisim.base.errors import ConfigError, nearest
-from tuisim.commands.echo import Progress, echo, echo_error, tell
+from tuisim.commands.echo import Progress, echo_error, echo_written, tell
 from tuisim.engine.files import name_of
 from tuisim.engine.runs.store import RunStore
 from tuisim.settings.command_line import WordType, argument, command, option
@@ -83,7 +83,8 @@ def movie(
         size_bytes = clip.save(path, partial(tell, f"drawing {path.name}"))
     shots = clip.shots
     lasts_s = sum(shot.duration_ms for shot in shots) / 1000
-    echo(f"{path}: {len(shots)} frames, {lasts_s:.1f} s at {speed:g}×, {size_bytes:,} bytes")
+    what = f"{len(shots)} frames, {lasts_s:.1f} s at {speed:g}×, {size_bytes:,} bytes"
+    echo_written(path, what)
     return 0
 
 
@@ -114,7 +115,7 @@ def picture(word: str, out: str | None, time_s: float | None, panels: str | None
         at_s = recorded.end_s if time_s is None else time_s
         _check_number(at_s, 0, recorded.end_s, "--at")
         save_picture(recorded, chosen or _choose_panels(recorded, sides), at_s, path, sides)
-    echo(str(path))
+    echo_written(path)
     return 0
 
 

@@ -12,7 +12,7 @@ from tuisim.analysis.chart import View, build_chart
 from tuisim.analysis.model import AnalysisModel
 from tuisim.analysis.source import LogRequest, OpenedLog
 from tuisim.base.errors import ConfigError, LogError, listed
-from tuisim.commands.echo import echo, echo_drawn, echo_error, echo_written
+from tuisim.commands.echo import echo_drawn, echo_error, echo_written
 from tuisim.commands.logs.sources import build_request, choose_names, open_single
 from tuisim.logs.derived import add_named_columns
 from tuisim.logs.log import Log
@@ -163,5 +163,5 @@ def report(arguments: Arguments) -> int:
     names = choose_names(source.log, arguments) if arguments.variable else ()
     target = Path(arguments.out or build_default_name(source))
     write_report(source, target, names)
-    echo(str(target))
+    echo_written(target)
     return 0
