@@ -36,9 +36,7 @@ class Run:
     """What the source of the program has decided about robot and profile, in words; empty for nothing."""
 
     def __repr__(self) -> str:
-        number = f" {self.number}" if self.number else ""
-        what = f"{self.stored.program.name} under {self.stored.spec.profile.name}"
-        return f"<run{number} of {what}: {self.state} after {self.time_s:.2f} s>"
+        return repr(self.stored)
 
     def _repr_html_(self) -> str:
         """Return the HTML that a notebook shows: picture, end, error and samples."""

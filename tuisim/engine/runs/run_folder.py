@@ -83,6 +83,11 @@ class StoredRun:
     telemetry: TelemetryView
     output: OutputView
 
+    def __repr__(self) -> str:
+        number = f" {self.number}" if self.number else ""
+        what = f"{self.program.name} under {self.spec.profile.name}"
+        return f"<run{number} of {what}: {self.state.value} after {self.time_s:.2f} s>"
+
     @property
     def state(self) -> RunState:
         """How the run ended; whether it is running or was interrupted if it has no end."""
