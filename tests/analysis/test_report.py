@@ -229,7 +229,7 @@ def test_a_file_is_told_without_program_and_world(
         "time,<b>\n" + "".join(f"{at},{50 * (at // 20)}\n" for at in range(40)) + "40,oops\n"
     )
     write_notes(find_notes_file(log), [Note("here", 3.0, 3.0)])
-    assert here("log", "report", "some.csv").stdout == "some-report.html\n"
+    assert here("log", "report", "some.csv").stderr.endswith("written: some-report.html\n")
     page = page_of(tmp_path / "some-report.html")
     assert list(page.section) == ["Facts", "Chart", "Bands", "Statistics", "Notes"]
     assert page.section["Facts"][:4] == [
@@ -240,6 +240,17 @@ def test_a_file_is_told_without_program_and_world(
     ]
     assert "<b>" in page.section["Chart"]
     assert "here" in page.section["Notes"]
+
+
+def test_the_many_bands_of_an_oscillation_hide_no_curve(
+    here: Command, home: Path, tmp_path: Path
+) -> None:
+    rows = "".join(f"{at},{40 + 20 * (at // 20 % 2)}\n" for at in range(20 * 150))
+    (tmp_path / "some.csv").write_text(f"time,light\n{rows}")
+    here("log", "report", "some.csv")
+    section = page_of(tmp_path / "some-report.html").section
+    assert "and 50 more" in section["Bands"]
+    assert not any("shaded" in text for text in section["Chart"])
 
 
 def test_an_export_tells_of_its_runs(here: Command, tmp_path: Path, driven: Driven) -> None:

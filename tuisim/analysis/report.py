@@ -37,8 +37,8 @@ if TYPE_CHECKING:
     from PIL.Image import Image
 
 SUFFIXES = (".html", ".htm")
-MAX_BANDS = 300
-"""Maximum number of rows of the table of bands."""
+MAX_BANDS = 100
+"""Maximum number of rows of the table of bands, and of shaded bands of a variable: more hide its curve."""
 _WIDTH_PX = 960
 _WAY = (230, 90, 0)
 _HALO = (255, 255, 255)
@@ -211,7 +211,10 @@ def _draw_chart(model: AnalysisModel) -> Mapping[str, Any]:
     height = 2 * FACET_PX if lines < 2 else 80 + FACET_PX * lines
     chart = build_chart(model, View(facets=True), _WIDTH_PX, height)
     spans = tuple(
-        span for report in model.list_reports() for span in build_spans(report.bands[:MAX_BANDS])
+        span
+        for report in model.list_reports()
+        if len(report.bands) <= MAX_BANDS
+        for span in build_spans(report.bands)
     )
     chart = replace(chart, spans=spans)
     hidden = [trace.name for trace in model.traces if not trace.on]
