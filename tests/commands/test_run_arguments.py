@@ -109,6 +109,32 @@ def test_wrong_arguments_in_a_world_file(
     assert (done.returncode, done.stderr.strip()) == (2, f"tuisim: lab.toml: {message}")
 
 
+@pytest.mark.parametrize("x_mm, is_told", [("9999", True), ("2000", False)])
+def test_a_start_outside_the_mat_is_told(
+    folder: Path, here: Command, x_mm: str, is_told: bool
+) -> None:
+    note = "note: the robot starts outside the mat, which is 2362 × 1143 mm"
+    assert (note in here("run", "p.py", "-x", x_mm).stderr) is is_told
+
+
+@pytest.mark.parametrize(
+    "words, message",
+    [
+        (
+            "run p.py --profile ev",
+            "--profile: no such profile 'ev' (did you mean ev3?)",
+        ),
+        ("run p.py -b Lop", "-b: no such mat 'Lop' (did you mean Loop?)"),
+        ("guide foo", "guide: no such page 'foo' (`tuisim guide` lists the pages)"),
+        ("runs report", "runs: no such command 'report' (`tuisim log report RUN` writes it)"),
+    ],
+)
+def test_a_hint_names_what_is_near_or_where_the_names_are(
+    folder: Path, here: Command, words: str, message: str
+) -> None:
+    assert here(*words.split()).stderr == f"tuisim: {message}\n"
+
+
 def test_a_world_is_saved_with_the_arguments(folder: Path) -> None:
     save_world(build_run_spec(Settings()), folder / "new.toml", "log_greys", ("A", "B 'C"))
     assert merge_settings(load_world(folder / "new.toml").settings)["arguments"] == ("A", "B 'C")

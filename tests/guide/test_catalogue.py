@@ -112,7 +112,7 @@ def test_the_shell_lists_the_contents_and_searches(here: Command) -> None:
         "no page": (
             ["keyz"],
             2,
-            "guide: no such page 'keyz' (did you mean keys? See `tuisim guide`)",
+            "guide: no such page 'keyz' (did you mean keys?)",
         ),
         "two at once": (["keys", "--search", "x"], 2, "cannot be combined"),
         "HTML": (["--html", "a"], 2, "no such option: --html (`tuisim guide` and the key ?"),

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 import click
 from rich.style import Style
 
-from tuisim.base.errors import ConfigError, nearest
+from tuisim.base.errors import ConfigError, closest, did_you_mean
 from tuisim.commands.echo import echo
 from tuisim.guide.catalogue import CONTENTS, Page, load_pages
 from tuisim.guide.excerpt import draw_excerpt
@@ -140,6 +140,8 @@ def find_page(name: str) -> Page:
     known = load_pages()
     if name not in known:
         raise ConfigError(
-            f"no such page {name!r}", f"{nearest(name, known)} See `tuisim guide`", key="guide"
+            f"no such page {name!r}",
+            did_you_mean(closest(name, known, 3, 0.5)) or "`tuisim guide` lists the pages",
+            key="guide",
         )
     return known[name]

@@ -26,6 +26,7 @@ from tuisim.commands.resolve import Prepared, check_arguments, prepare_runs
 from tuisim.commands.run_options import build_input_option, build_timeout_option
 from tuisim.engine.breakpoints import parse_breakpoints, parse_watch
 from tuisim.engine.core.profile import NS_PER_S
+from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, RunSpec
 from tuisim.engine.presses import press_actions
 from tuisim.engine.protocol import Answer, InputWanted, Inspect, Inspected, Message, Paused, Resume
 from tuisim.engine.runs.handle import RunHandle, RunOptions, start_run
@@ -179,10 +180,19 @@ def _tell_notes(prepared: Sequence[Prepared], *, strict: bool) -> None:
     decided = [program.decided for program in prepared]
     if strict and (refused := next(filter(None, (program.refusal for program in decided)), "")):
         raise ConfigError(refused, "leave out --strict to run it")
+    notes = [note for program in decided for note in (program.note, program.refusal)]
     for note in dict.fromkeys(
-        note for program in decided for note in (program.note, program.refusal) if note
+        filter(None, [*notes, *(_describe_start(each.spec) for each in prepared)])
     ):
         echo_error(f"note: {note}")
+
+
+def _describe_start(spec: RunSpec) -> str:
+    """Return that the robot starts outside the mat; empty if it does not."""
+    start = spec.world.start
+    is_on = 0 <= start.x_mm <= FIELD_WIDTH_MM and 0 <= start.y_mm <= FIELD_HEIGHT_MM
+    size = f"{FIELD_WIDTH_MM} × {FIELD_HEIGHT_MM} mm"
+    return "" if is_on else f"the robot starts outside the mat, which is {size}"
 
 
 def check_breaks(

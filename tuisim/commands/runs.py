@@ -410,7 +410,8 @@ runs = Group.of(
     (list_runs, show, export, movie, picture, rerun_runs, rm),
     default="list",
     instead={
-        "compact": "recordings are plain files; `tuisim runs rm` removes those you do not need"
+        "report": "`tuisim log report RUN` writes it",
+        "compact": "recordings are plain files; `tuisim runs rm` removes those you do not need",
     },
     help="""List, show, export, draw or remove stored runs.
 

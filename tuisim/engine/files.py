@@ -84,8 +84,11 @@ def read_named(
         ConfigError: of the class `error`: the word names no file, or `read_file` cannot read the file.
     """
     if not means_file(word):
-        allowed = f"{nearest(word, known)}; or a {' or '.join(kinds)} file"
-        raise error(f"no such {what} {word!r}", allowed, key=key)
+        raise error(
+            f"no such {what} {word!r}",
+            nearest(word, [*known, f"or a {' or '.join(kinds)} file"]),
+            key=key,
+        )
     path = user_path(word)
     if len(kinds) == 1 and path.suffix.lower() not in kinds:
         raise error(f"is not a {kinds[0]} file", "the suffix selects the format", file=str(path))
@@ -178,7 +181,12 @@ def read_bytes(
 
 def _text(path: Path, error: type[ConfigError]) -> str:
     file = str(path)
-    data = read_bytes(path, MAX_FILE_BYTES, error, neighbours=_neighbours)
+    data = read_bytes(
+        path,
+        MAX_FILE_BYTES,
+        error,
+        neighbours=lambda missing: did_you_mean(close_beside(missing, FILE_SUFFIXES)),
+    )
     if len(data) > MAX_FILE_BYTES:
         raise error(
             "is too large", f"at most {MAX_FILE_BYTES:,} bytes".replace(",", " "), file=file
@@ -188,10 +196,6 @@ def _text(path: Path, error: type[ConfigError]) -> str:
     except UnicodeDecodeError as reason:
         line = data.count(b"\n", 0, reason.start) + 1
         raise error(f"line {line} is not UTF-8 text", "save it as UTF-8", file=file) from None
-
-
-def _neighbours(path: Path) -> str:
-    return did_you_mean(close_beside(path, FILE_SUFFIXES))
 
 
 def close_beside(path: Path, suffixes: Collection[str]) -> list[str]:

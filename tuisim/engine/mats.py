@@ -157,9 +157,9 @@ def own_background(path: Path) -> Background:
 
 
 def names_hint(name: str, known: list[str]) -> str:
-    """Return the hint for an unknown mat: the closest match, and all names."""
+    """Return the hint for an unknown mat: the closest match or, if there is none, all names."""
     guess = did_you_mean(closest(name, known, 1, 0.5))
-    return f"{guess} one of {', '.join(known)}, or the path of an image".lstrip()
+    return guess or f"one of {', '.join(known)}, or the path of an image"
 
 
 FOLDER = "backgrounds"
