@@ -134,12 +134,11 @@ def test_every_mat_is_listed_in_order() -> None:
         ("EMPTY_MAP", "Empty_Map"),
     ],
 )
-def test_a_wrong_name_gets_a_guess_and_the_list(name: str, guess: str) -> None:
+def test_a_wrong_name_gets_a_guess_without_the_list(name: str, guess: str) -> None:
     with pytest.raises(BackgroundError) as caught:
         mats.background(name)
     assert name in caught.value.message
-    assert f"did you mean {guess}?" in caught.value.hint
-    assert all(known in caught.value.hint for known in STARTS)
+    assert caught.value.hint == f"did you mean {guess}?"
 
 
 @pytest.mark.parametrize("name", ["", "zzzzzz", "..", "~"])

@@ -294,7 +294,8 @@ def test_a_cell_gets_the_robot_that_its_program_talks_about_under_the_course_s_r
     shown = cell(f"%%sim_magic -RHW\n{text}")
     assert shown.out == "ev3-ports:outA 255\n"
     assert (
-        "cell runs on a robot built from it: medium motor on outA. -r to change it\n" in shown.err
+        "cell runs on a robot built from it: medium motor on outA; by the rules of the course"
+        in shown.err
     )
     assert "is not connected" in cell(f"%%sim_magic -RHW -r Small_Robot\n{text}").err
     # A chosen robot lasts until another cell changes it.
