@@ -18,6 +18,11 @@ MISTAKE = """\
 tank_drive.on_for_seconds(SpeedPercent(20), SpeedPercent(20), 1)
 print(colour)
 """
+IN_A_FUNCTION = """\
+def mean(values):
+    return sum(values) / len(values)
+print(mean([]))
+"""
 IN_A_THREAD = """\
 import threading, time
 def work():
@@ -69,6 +74,11 @@ tank.on_for_degrees(20, -20, 180)
 """
 CASES = {
     "raised": (MISTAKE, ReasonKind.RAISED, "1.00 s, line 2: NameError: name 'colour' is not"),
+    "in a function": (
+        IN_A_FUNCTION,
+        ReasonKind.RAISED,
+        "line 2: ZeroDivisionError: division by zero, called in line 3",
+    ),
     "in a thread": (IN_A_THREAD, ReasonKind.RAISED, "1.00 s, line 4: ZeroDivisionError: division"),
     "at a wall": (AT_THE_WALL, ReasonKind.BLOCKED, "line 2: the robot stood at an obstacle from"),
     "waits": (WAITS, ReasonKind.BLOCKED, "2.00 s, line 4: from here on it waited: touch sensor on"),

@@ -402,7 +402,7 @@ def build_obstacle_chooser(plan: NextRun) -> Chooser:
 def build_profile_chooser(plan: NextRun) -> Chooser:
     """Return the dialog for profiles."""
     presets = [
-        (name, name, f"{p.tick_hz} ticks a second, {'solid' if p.solid else 'nothing is solid'}")
+        (name, name, f"light 0 to {p.reflected_max}, {'solid' if p.solid else 'nothing is solid'}")
         for name, p in PROFILES.items()
     ]
     groups = [ChoiceGroup("", presets), list_files([".toml"], lambda path: load_profile(str(path)))]

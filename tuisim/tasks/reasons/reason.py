@@ -129,12 +129,19 @@ def _find_raised(run: StoredRun) -> Iterator[Reason]:
             yield error
     if end and ending:
         text = ending.removesuffix(f" (line {end.error_line})")
+        lines = _compile_place(run).findall(end.error.rpartition(_TRACEBACK)[2])
+        text += f", called in line {lines[-2]}" if len(lines) > 1 else ""
         yield Reason(ReasonKind.RAISED, end.time_ns / NS_PER_S, end.error_line, text)
+
+
+def _compile_place(run: StoredRun) -> re.Pattern[str]:
+    """Return the pattern of a line of a traceback that names a line of the program."""
+    return re.compile(rf'  File ".*{re.escape(Path(run.program.file).name)}", line ([0-9]+)')
 
 
 def _find_tracebacks(run: StoredRun) -> Iterator[Reason]:
     """Yield each traceback in the program's error output."""
-    place = re.compile(rf'  File ".*{re.escape(Path(run.program.file).name)}", line ([0-9]+)')
+    place = _compile_place(run)
     line = 0
     is_inside = False
     for row in run.output.rows():
