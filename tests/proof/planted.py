@@ -58,7 +58,7 @@ PLANTED: tuple[Planted, ...] = (
         "0 if follow_links else os.O_NOFOLLOW",
         "0",
         "enemies",
-        ("run:places:366",),
+        ("batch:places:604", "mark:places:604"),
         "was copied into",
     ),
     Planted(
@@ -103,7 +103,7 @@ PLANTED: tuple[Planted, ...] = (
         "            self.falsified = str(error)\n            return None",
         "            raise",
         "enemies",
-        ("run:bytes:0", "batch:bytes:0", "mark:bytes:0"),
+        ("run:bytes:0",),
         "the others end with",
     ),
     Planted(
@@ -130,7 +130,7 @@ PLANTED: tuple[Planted, ...] = (
         "        if are_all(part, begin, end):\n            return end",
         "        return end",
         "enemies",
-        ("mark:recording:3",),
+        ("run:recording:3", "batch:recording:3"),
         "other records",
     ),
     Planted(
