@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from tuisim.app import background
 from tuisim.app.file_watch import FileWatch
+from tuisim.app.run_update import describe_standstill
 from tuisim.app.setup import next_run as plans
 from tuisim.app.setup.mat import SOON, Mat, make_blank_mat, mat_key, prepare_mat, prepare_stored_mat
 from tuisim.app.setup.next_run import NextRun, plan_rerun, read_first_line
@@ -20,7 +21,6 @@ from tuisim.base.folders import user_path
 from tuisim.base.source import Program
 from tuisim.engine.files import means_file
 from tuisim.engine.runs.run_folder import restore_program
-from tuisim.engine.runs.standstill import describe_standstill
 from tuisim.engine.runs.store import RunStore
 from tuisim.programs.program_file import drop_wrong_mat
 from tuisim.programs.program_settings import Decided, find_free_paths

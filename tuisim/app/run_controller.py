@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from tuisim.app.earlier_run import find_pose, is_comparable
-from tuisim.app.run_update import RunUpdate, describe_remarks
+from tuisim.app.run_update import RunUpdate, describe_remarks, describe_standstill
 from tuisim.app.setup import next_run as plans
 from tuisim.app.setup.next_run import NextRun
 from tuisim.app.snapshot import RunPhase, Snapshot
@@ -24,7 +24,6 @@ from tuisim.engine.core.tick_record import FLAG_PEN_DOWN
 from tuisim.engine.protocol import RunState
 from tuisim.engine.runs.handle import RunOptions, start_run
 from tuisim.engine.runs.recorded_run import Recording
-from tuisim.engine.runs.standstill import describe_standstill
 from tuisim.engine.runs.store import RunStore
 from tuisim.programs.program_settings import require_library
 from tuisim.tasks.reasons.waiting import WaitWatch

@@ -9,7 +9,10 @@ from tuisim.app.branch import Branch
 from tuisim.app.snapshot import describe_busy_loop
 from tuisim.base.data_class import dataclass
 from tuisim.engine import protocol
+from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.runs.records import OutputRow
+from tuisim.engine.runs.standstill import find_standstill
+from tuisim.engine.runs.views import TelemetryView
 from tuisim.programs.plugged_words import describe_newest
 
 if TYPE_CHECKING:
@@ -51,3 +54,13 @@ def describe_remarks(
         yield describe_busy_loop(event)
     elif words := describe_newest(recording.plugged, recording.spec):
         yield words
+
+
+def describe_standstill(telemetry: TelemetryView, spec: RunSpec) -> str:
+    """Return `Standstill.words` of a run; empty if there is nothing to say.
+
+    Raises:
+        LogError: the recording is damaged.
+    """
+    standstill = find_standstill(telemetry, spec)
+    return standstill.words if standstill else ""

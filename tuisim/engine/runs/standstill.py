@@ -117,16 +117,6 @@ def touches_solid(pose: PoseTuple, spec: RunSpec) -> bool:
     return any(gap < _CONTACT_MM for gap in gaps)
 
 
-def describe_standstill(telemetry: TelemetryView, spec: RunSpec) -> str:
-    """Return `Standstill.words` of a run; empty if there is nothing to say.
-
-    Raises:
-        LogError: the recording is damaged.
-    """
-    standstill = find_standstill(telemetry, spec)
-    return standstill.words if standstill else ""
-
-
 def _find_stretches(records: NDArray[Any], spec: RunSpec) -> Iterator[_Stretch]:
     """Yield each stretch that is long enough for the motors to stall.
 

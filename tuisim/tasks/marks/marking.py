@@ -15,7 +15,6 @@ from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ConfigError
 from tuisim.engine import files
 from tuisim.engine.runs.child.isolation import MOST_BYTES
-from tuisim.engine.runs.child.supervisor import keep_running
 from tuisim.engine.runs.handle import RunOptions
 from tuisim.engine.runs.temporary import create_temporary_home
 from tuisim.logs.export import EXPORTERS
@@ -40,6 +39,7 @@ from tuisim.tasks.marks.sheet import (
     round_points,
 )
 from tuisim.tasks.marks.students import Student, find_students
+from tuisim.tasks.marks.supervisor import keep_running
 from tuisim.tasks.task import TIME_LIMIT_S, Keep
 
 # ```toml

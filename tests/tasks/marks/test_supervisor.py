@@ -14,7 +14,7 @@ import pytest
 
 from tests.running import PATIENCE_S
 from tuisim.base.errors import HostError
-from tuisim.engine.runs.child import supervisor
+from tuisim.tasks.marks import supervisor
 
 STOPPED_CHILD = """
 import subprocess, sys
@@ -59,7 +59,7 @@ def test_stopped_processes_go_on_at_the_second_look() -> None:
 
 SUPERVISED = """
 import os, signal
-from tuisim.engine.runs.child.supervisor import keep_running
+from tuisim.tasks.marks.supervisor import keep_running
 with keep_running():
     os.kill(os.getpid(), signal.SIGSTOP)
     print("goes on")
@@ -75,7 +75,7 @@ def test_a_command_that_was_stopped_goes_on_and_leaves_no_supervisor() -> None:
 
 SUSPENDED = """
 import os, signal, sys
-from tuisim.engine.runs.child.supervisor import LOOK_EVERY_S, keep_running
+from tuisim.tasks.marks.supervisor import LOOK_EVERY_S, keep_running
 with keep_running():
     print("ready", flush=True)
     os.kill(os.getpid(), signal.SIGTSTP)
