@@ -60,5 +60,6 @@ async def test_the_script_films_the_app(home: object) -> None:
     shown = ["\n".join("".join(text for text, _ in row) for row in grid) for _, grid in film]
     for panel in ("World: Grey_bands", "Instrumentation", "Sensor arrays", "Chart", "log_greys.py"):
         assert panel in shown[0]
-    assert ("idle 2×" in shown[0], "running 2×" in shown[-1]) == (True, True)
+    assert "idle 2×" in shown[0]
+    assert any("running 2×" in frame for frame in shown)
     assert len(durations_ms(gif_of(film))) > 1
