@@ -75,6 +75,7 @@ def test_whole_numbers_are_not_copied() -> None:
 
 def test_texts_that_are_no_utf_8_are_replaced() -> None:
     assert build_text_array(["é", "", "\udcff"]).to_pylist() == ["é", "", "?"]
+    assert build_table({"\udcff_mm": np.array([1.0])}).column_names == ["?_mm"]
 
 
 @pytest.mark.parametrize(

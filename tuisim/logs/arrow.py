@@ -37,7 +37,9 @@ def build_text_array(texts: Sequence[str]) -> pa.Array:
 
 def build_table(columns: Mapping[str, Any]) -> pa.Table:
     """Return columns, lists of texts or arrays of numbers, as a table as if from a frame: NaN becomes null."""
-    return pa.table({name: _build_column(cells) for name, cells in columns.items()})
+    # A name in a damaged run may be no text that UTF-8 can have.
+    names = [name.encode("utf-8", "replace").decode() for name in columns]
+    return pa.table([_build_column(cells) for cells in columns.values()], names=names)
 
 
 def _build_column(cells: Any) -> pa.Array:
