@@ -30,7 +30,6 @@ from tuisim.app.timeline import Timeline, find
 from tuisim.base.errors import ConfigError
 from tuisim.engine.protocol import End
 from tuisim.engine.runs.records import Mark
-from tuisim.engine.runs.views import build_instant
 
 PEN = LOGS.replace("tank_drive.on", "print('off we go')\ntank_drive.on", 1)
 
@@ -90,7 +89,7 @@ async def test_a_former_instant_is_shown_as_it_was() -> None:
         assert app.debugger.view is not None
         record = recording.telemetry.record(200)
         line = app.debugger.view.paused.line
-        then = build_instant(record, recording.spec, recording.spec.world.noise)
+        then = record.build_instant(recording.spec, recording.spec.world.noise)
         expected = Snapshot(
             RunPhase.ENDED,
             End.FINISHED,

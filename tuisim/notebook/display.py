@@ -22,7 +22,7 @@ from tuisim.engine.core.sensors.color import ColorReading
 from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.mat_cache import FieldFiles
 from tuisim.engine.runs.samples import Sample
-from tuisim.engine.runs.views import TickRecord, build_instant
+from tuisim.engine.runs.views import TickRecord
 from tuisim.pictures.charts.files import draw_image, encode_png
 from tuisim.pictures.charts.layout import lay_out_chart
 from tuisim.pictures.charts.sample_chart import build_sample_chart
@@ -125,7 +125,7 @@ def list_instruments(scene: Scene) -> list[Row]:
     spec = scene.spec
     record = scene.last
     field = scene.open_field()
-    instant = build_instant(record, spec, spec.world.noise)
+    instant = record.build_instant(spec, spec.world.noise)
     rows = [
         ("LeftMotor", f"{record.left_position_deg:.0f} counts, {record.left_speed_dps:.0f} °/s"),
         ("RightMotor", f"{record.right_position_deg:.0f} counts, {record.right_speed_dps:.0f} °/s"),
@@ -183,7 +183,7 @@ CHART_SIZE = (760, 300)
 
 
 def _draw_arrays(scene: Scene) -> Image:
-    instant = build_instant(scene.last, scene.spec, scene.spec.world.noise)
+    instant = scene.last.build_instant(scene.spec, scene.spec.world.noise)
     faces = list_disc_faces(scene.spec, instant, scene.open_field(), scene.program)
     return draw_image(draw_arrays(faces, FACE_PX[0] * max(len(faces), 1), FACE_PX[1]))
 

@@ -51,9 +51,8 @@ def read_arrays(
 ) -> list[tuple[ColorSensorSpec, bytes]]:
     """Return the pixels under the colour sensors at a tick: RGB bytes, row by row."""
     from tuisim.engine.core.sensors.color import read_pixel_array
-    from tuisim.engine.runs.views import build_instant
 
-    instant = build_instant(record, spec, noise)
+    instant = record.build_instant(spec, noise)
     return [
         (sensor, read_pixel_array(sensor, instant, field)) for sensor in spec.robot.color_sensors
     ]

@@ -210,12 +210,11 @@ def build_robot_state(
     """
     from tuisim.engine.core.sensors import measure_sensors
     from tuisim.engine.core.tick_record import FLAG_LEFT_RUNNING, FLAG_PEN_DOWN, FLAG_RIGHT_RUNNING
-    from tuisim.engine.runs.views import build_instant
     from tuisim.notebook.image_log import add_alpha, read_arrays
 
     start = spec.world.start
     pose = record.pose
-    instant = build_instant(record, spec, noise)
+    instant = record.build_instant(spec, noise)
     measured = measure_sensors(spec.robot.sensors, instant, spec, field)
     seen = {
         sensor.name: format_values(add_alpha(rgb))

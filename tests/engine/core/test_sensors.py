@@ -26,7 +26,6 @@ from tuisim.engine.runs.frames import MOTION_COLUMNS, build_telemetry_frame
 from tuisim.engine.runs.handle import RunOptions, start_run
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.engine.runs.store import RunStore
-from tuisim.engine.runs.views import build_instant
 from tuisim.engine.shim.sensors import DEVICES
 from tuisim.settings.robots import load_robot, save_robot
 
@@ -151,7 +150,7 @@ def test_it_is_in_the_telemetry_as_measured(kind: SensorKind) -> None:
     last = run.telemetry.last()
     assert last is not None
     measured = kind.measure(
-        sensor, build_instant(last, run.spec, run.spec.world.noise), run.spec, run.open_mat()
+        sensor, last.build_instant(run.spec, run.spec.world.noise), run.spec, run.open_mat()
     )
     assert frame.iloc[-1][list(names)].tolist() == list(measured)
 
@@ -161,7 +160,7 @@ def test_the_panels_show_it(kind: SensorKind) -> None:
     run = read_out(kind)
     last = run.telemetry.last()
     assert last is not None
-    instant = build_instant(last, run.spec, run.spec.world.noise)
+    instant = last.build_instant(run.spec, run.spec.world.noise)
     field = run.open_mat()
     (sensor,) = run.spec.robot.sensors
     now = Snapshot(

@@ -25,7 +25,6 @@ from tuisim.engine.runs.frames import SAMPLE_COLUMNS, build_samples_frame, build
 from tuisim.engine.runs.records import TELEMETRY_FILE
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.engine.runs.sensor_arrays import measure_quiet_color
-from tuisim.engine.runs.views import build_instant
 
 TELEMETRY_COLUMNS = [
     "time",
@@ -134,7 +133,7 @@ def sensors_one_by_one(run: StoredRun, field: Field) -> pd.DataFrame:
     rows = []
     for tick in range(run.telemetry.count):
         record = run.telemetry.record(tick)
-        instant = build_instant(record, run.spec, run.find_noise(record))
+        instant = record.build_instant(run.spec, run.find_noise(record))
         rows.append(measure_sensors(run.spec.robot.sensors, instant, run.spec, field))
     return pd.DataFrame(rows)
 
@@ -250,7 +249,7 @@ def test_mat_is_opened_where_the_host_left_it(
 
 def reading_at(run: StoredRun, files: FieldFiles) -> float:
     record = run.telemetry.record(0)
-    instant = build_instant(record, run.spec, NoiseSpec())
+    instant = record.build_instant(run.spec, NoiseSpec())
     return measure_color(run.spec.robot.color_sensors[0], instant, files.open_field()).red
 
 

@@ -22,7 +22,7 @@ from tuisim.engine.core.spec import (
 )
 from tuisim.engine.core.tick_record import TICK_FIELDS
 from tuisim.engine.runs.sensor_arrays import measure_array
-from tuisim.engine.runs.views import TickRecord, build_instant
+from tuisim.engine.runs.views import TickRecord
 
 BOXES = (Obstacle(300, 900, 50, 300), Obstacle(900, 500, 200, 200), Obstacle(1000, 560, 40, 900))
 ROBOTS = {
@@ -71,7 +71,7 @@ def test_arrays_are_the_readings_to_the_bit(
         assert found is not None
         one_by_one = [
             kind.measure(
-                sensor, build_instant(TickRecord(*record.item()), run, NoiseSpec()), run, field
+                sensor, TickRecord(*record.item()).build_instant(run, NoiseSpec()), run, field
             )
             for record in records
         ]

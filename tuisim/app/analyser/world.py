@@ -27,7 +27,6 @@ from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.core.state import Instant
 from tuisim.engine.core.tick_record import FLAG_PEN_DOWN
 from tuisim.engine.runs.recorded_run import Recording
-from tuisim.engine.runs.views import build_instant
 from tuisim.logs.derived import read_spec
 from tuisim.terminal.cell_view import LinesView
 from tuisim.terminal.text_runs import Run, find_first_row
@@ -81,7 +80,7 @@ class RunWorld:
             return None
         tick = min(max(round(time_s * self.spec.profile.tick_hz), 0), recording.newest)
         record = recording.telemetry.record(tick)
-        instant = build_instant(record, self.spec, recording.find_noise(record))
+        instant = record.build_instant(self.spec, recording.find_noise(record))
         field = recording.find_field(tick, self.mat.field) if self.mat.field else None
         pen = bool(record.flags & FLAG_PEN_DOWN)
         return self._build_snapshot(instant, field, record.line, pen)

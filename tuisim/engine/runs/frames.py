@@ -25,7 +25,7 @@ from tuisim.engine.runs.motor_records import read_motor_columns
 from tuisim.engine.runs.records import TELEMETRY_FILE
 from tuisim.engine.runs.run_folder import StoredRun, find_noise
 from tuisim.engine.runs.samples import list_samples
-from tuisim.engine.runs.views import TickRecord, build_instant
+from tuisim.engine.runs.views import TickRecord
 
 if TYPE_CHECKING:
     import numpy as np
@@ -321,7 +321,7 @@ def _measure_columns(
     for index, (record, noise) in enumerate(
         zip(TICK_RECORD.iter_unpack(records.data), every, strict=True)
     ):
-        instant = build_instant(TickRecord(*record), spec, noise)
+        instant = TickRecord(*record).build_instant(spec, noise)
         seen = field_at(record)
         rows[index] = [
             value

@@ -27,7 +27,6 @@ from tuisim.engine.runs.run_folder import StoredRun, find_noise, restore_program
 from tuisim.engine.runs.samples import parse_sample
 from tuisim.engine.runs.side_files import read_actions
 from tuisim.engine.runs.standstill import touches_solid
-from tuisim.engine.runs.views import build_instant
 
 if TYPE_CHECKING:
     from tuisim.engine.core.plugged import PluggedPart
@@ -141,7 +140,7 @@ class Recording:
         motors: tuple[MotorValues, ...] = ()
         with suppress(LogError):
             motors = read_motor_values(self.folder, self.spec, record.tick)
-        return replace(build_instant(record, spec, noise), motors=motors)
+        return replace(record.build_instant(spec, noise), motors=motors)
 
     def stalled(self, record: TickRecord) -> tuple[bool, bool]:
         """Return whether the left and the right motor were running but did not turn.

@@ -82,26 +82,25 @@ class TickRecord:
         """The robot's pose."""
         return Pose(self.x_mm, self.y_mm, self.heading_deg)
 
+    def build_instant(self, spec: RunSpec, noise: NoiseSpec) -> Instant:
+        """Return the instant of a record with the noise at its tick, for the functions of `engine.core.sensors`."""
+        from tuisim.engine.core.drift import sense_turn_rate_dps
 
-def build_instant(record: TickRecord, spec: RunSpec, noise: NoiseSpec) -> Instant:
-    """Return the instant of a record with the noise at its tick, for the functions of `engine.core.sensors`."""
-    from tuisim.engine.core.drift import sense_turn_rate_dps
-
-    return Instant(
-        tick=record.tick,
-        pose=record.pose,
-        left_position_deg=record.left_position_deg,
-        right_position_deg=record.right_position_deg,
-        left_speed_dps=record.left_speed_dps,
-        right_speed_dps=record.right_speed_dps,
-        turn_rate_dps=sense_turn_rate_dps(record.left_speed_dps, record.right_speed_dps, spec),
-        gyro_zero_deg=record.gyro_zero_deg,
-        press_flags=record.flags & PRESS_FLAGS,
-        noise=noise,
-        drift=find_drift(spec),
-        profile=spec.profile,
-        seed=spec.seed,
-    )
+        return Instant(
+            tick=self.tick,
+            pose=self.pose,
+            left_position_deg=self.left_position_deg,
+            right_position_deg=self.right_position_deg,
+            left_speed_dps=self.left_speed_dps,
+            right_speed_dps=self.right_speed_dps,
+            turn_rate_dps=sense_turn_rate_dps(self.left_speed_dps, self.right_speed_dps, spec),
+            gyro_zero_deg=self.gyro_zero_deg,
+            press_flags=self.flags & PRESS_FLAGS,
+            noise=noise,
+            drift=find_drift(spec),
+            profile=spec.profile,
+            seed=spec.seed,
+        )
 
 
 class _View(ABC):

@@ -11,7 +11,6 @@ from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ConfigError, printable
 from tuisim.engine.core.spec import RobotSpec
 from tuisim.engine.runs.recorded_run import Recording
-from tuisim.engine.runs.views import build_instant
 from tuisim.pictures.charts.files import draw_image
 from tuisim.pictures.charts.layout import (
     LETTER_PX,
@@ -299,7 +298,7 @@ class SensorArrays:
         if read_pose(moment.record) is None:
             return []
         run = self._run
-        instant = build_instant(moment.record, run.spec, run.find_noise(moment.record))
+        instant = moment.record.build_instant(run.spec, run.find_noise(moment.record))
         return list_disc_faces(
             run.spec, instant, self._recording.find_field(moment.tick, self._mat), run.program
         )

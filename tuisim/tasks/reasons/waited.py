@@ -44,7 +44,7 @@ from tuisim.engine.runs.readings import (
 )
 from tuisim.engine.runs.records import Stream
 from tuisim.engine.runs.run_folder import StoredRun
-from tuisim.engine.runs.views import OutputView, TelemetryView, build_instant
+from tuisim.engine.runs.views import OutputView, TelemetryView
 from tuisim.programs.facts import Question, read_facts
 from tuisim.tasks.goals.evidence import find_ticks
 from tuisim.tasks.reasons.hand_presses import HandPress, find_hits, find_presses
@@ -442,7 +442,7 @@ class _Search:
         # Only a colour sensor looks at the mat.
         measure: Callable[..., tuple[float, ...]] = build_mounted_sensor(sensor).kind.measure
         for tick in poses[:: 1 + len(poses) // _MAX_POSES].tolist():
-            instant = build_instant(run.telemetry.record(tick), run.spec, run.spec.world.noise)
+            instant = run.telemetry.record(tick).build_instant(run.spec, run.spec.world.noise)
             yield measure(sensor, instant, run.spec, None)
 
     def _describe_distance(
