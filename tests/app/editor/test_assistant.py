@@ -132,6 +132,28 @@ async def test_what_is_typed_during_a_lookup_goes_on_with_the_name(
         await until(pilot, lambda: "looking up" not in str(code.border_subtitle))
 
 
+async def test_enter_during_a_lookup_chooses_nothing_from_the_list_that_follows(
+    home: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    answers = Event()
+
+    def slow(*_: object) -> tuple[Candidate, ...]:
+        answers.wait(PATIENCE_S)
+        return Candidate("tank_drive"), Candidate("tank_turn")
+
+    monkeypatch.setattr(area_module, "find_candidates", slow)
+    async with open_lab("tan") as (pilot, app):
+        code = app.query_one(Code)
+        code.start_typing(at_end=True)
+        await until(pilot, lambda: code.typing and code.query_one(CodeArea).has_focus)
+        for key, character in (("tab", "\t"), ("enter", "\r"), ("o", "o")):
+            app.post_message(events.Key(key, character))
+        await until(pilot, lambda: str(code.border_subtitle) == "looking up …")
+        answers.set()
+        await until(pilot, lambda: code.query_one(CodeArea).program_text.endswith("o"))
+        assert code.query_one(CodeArea).program_text == "tan\no"
+
+
 async def test_a_click_chooses_a_name(home: Path) -> None:
     async with CodeApp().run_test(size=SIZE) as pilot:
         _, area = await listed(pilot, "tank_drive.o")

@@ -417,7 +417,7 @@ class CodeArea(TextArea):
         ):
             # The user types on instead of choosing from the list.
             self.replace_word(self.candidates.take_key("enter"))
-        elif self.candidates.takes_key(event.key):
+        elif self.candidates.takes_key(event):
             self._consume_event(event)
             if name := self.candidates.take_key(event.key):
                 self.replace_word(name)

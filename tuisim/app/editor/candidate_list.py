@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Sequence
 from typing import ClassVar
 
@@ -127,6 +128,7 @@ class CandidateList(Widget):
         self._chosen = 0
         self._width = 0
         self._word = ""
+        self._opened_s = 0.0
         self.is_offered = False
         """Whether nobody asked for the open list: then only enter, tab and a click put a name in."""
         self.begin = (0, 0)
@@ -151,6 +153,7 @@ class CandidateList(Widget):
         self._candidates = candidates
         self.begin = begin
         self.is_offered = False
+        self._opened_s = time.monotonic()
         self._width = measure_width(candidates, self.screen.size.width - 2)
         self.filter(word, place)
 
@@ -189,10 +192,14 @@ class CandidateList(Widget):
             self.is_open and bool(word) and not self.is_offered and not self._has_whole_name(word)
         )
 
-    def takes_key(self, key: str) -> bool:
-        """Return whether the list handles a key; in an offered list, enter after a whole name begins a line instead."""
-        ends_line = key == "enter" and self.is_offered and self._has_whole_name(self._word)
-        return self.is_open and key in self._KEYS and not ends_line
+    def takes_key(self, event: events.Key) -> bool:
+        """Return whether the list handles a key.
+
+        Enter begins a line instead if it was pressed before the list was seen, or after a whole name in an offered one.
+        """
+        is_whole = self.is_offered and self._has_whole_name(self._word)
+        ends_line = event.key == "enter" and (is_whole or event.time < self._opened_s)
+        return self.is_open and event.key in self._KEYS and not ends_line
 
     def _has_whole_name(self, word: str) -> bool:
         return any(candidate.name == word for candidate in self._shown)
