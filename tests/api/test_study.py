@@ -25,6 +25,7 @@ print("Gain:", GAIN)
 """
 
 
+@pytest.mark.slow
 def test_constants_vary_and_functions_measure_each_run() -> None:
     frame = tuisim.experiment(
         PROGRAM,
@@ -40,6 +41,7 @@ def test_constants_vary_and_functions_measure_each_run() -> None:
     assert frame["ticks"].dtype == np.int64 and (frame["ticks"] > 50).all()
 
 
+@pytest.mark.slow
 def test_columns_are_those_of_each_run_over_time() -> None:
     columns = ["x_mm", "left_red", "line"]
     with_time = ["time", *columns]
@@ -114,6 +116,7 @@ def test_the_spread_of_samples_is_that_of_pandas() -> None:
     assert frame["A_std"].tolist() == [pd.Series([1, 4]).std()]
 
 
+@pytest.mark.slow
 def test_the_number_of_processes_does_not_matter() -> None:
     first, second = (
         tuisim.experiment(PROGRAM, seeds=range(6), motornoise=20, columns=["x_mm"], jobs=jobs)
@@ -161,6 +164,7 @@ def test_an_interrupted_experiment_goes_on(
     pd.testing.assert_frame_equal(frame, tuisim.read_log(out), check_exact=True)
 
 
+@pytest.mark.slow
 def test_a_mean_that_is_known_needs_no_further_seeds() -> None:
     how: dict[str, Any] = {"metrics": {"end_mm": lambda run: run.pose.x_mm}, "jobs": 2}
     with pytest.warns(UserWarning, match="1 mean known only to"):
@@ -232,6 +236,7 @@ def test_what_a_metric_raises_ends_the_experiment() -> None:
     assert raised.value.__notes__ == ["in the metric 'n' of run 1"]
 
 
+@pytest.mark.slow
 def test_the_experiments_of_the_page_measure_what_noise_changes(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

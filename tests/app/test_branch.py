@@ -181,6 +181,7 @@ async def test_an_edited_program_says_where_it_went_another_way() -> None:
         await stop(pilot, app)
 
 
+@pytest.mark.slow
 async def test_from_the_past_the_program_can_be_run_from_its_start() -> None:
     async with open_with_a_past(ticks=80) as (pilot, app):
         first = app.run_controller.run_id

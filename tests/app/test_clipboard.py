@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pytest
+
 from tests.app.app_help import LOGS, notices, open_lab, until, until_shown
 from tuisim.app.app import LabApp
 from tuisim.engine.protocol import End
@@ -14,6 +16,7 @@ def copied_text(app: LabApp) -> str:
     return app.clipboard
 
 
+@pytest.mark.slow
 async def test_each_panel_copies_what_it_shows() -> None:
     async with open_lab(LOGS, autorun=True, speed=0.0) as (pilot, app):
         await until(pilot, lambda: app.run_controller.build_snapshot().end == End.FINISHED)
@@ -42,6 +45,7 @@ async def test_each_panel_copies_what_it_shows() -> None:
         assert "\n" not in copied_text(app)
 
 
+@pytest.mark.slow
 async def test_a_click_chooses_a_panel_that_cannot_have_the_focus() -> None:
     async with open_lab(LOGS) as (pilot, app):
         await until_shown(pilot, "Ultrasonic")

@@ -91,6 +91,7 @@ def drawn(app: LabApp) -> str:
     return "\n".join("".join(text for text, _ in row) for row in (panel._lines if panel else ()))
 
 
+@pytest.mark.slow
 async def test_steps_from_the_first_line() -> None:
     async with open_lab(COUNTS) as (pilot, app):
         await press(pilot, app, "n", 1, 2, 3, 4, 5)
@@ -102,6 +103,7 @@ async def test_steps_from_the_first_line() -> None:
         await until(pilot, lambda: "line 4" in drawn(app))
 
 
+@pytest.mark.slow
 async def test_every_press_counts_though_a_step_is_on_its_way() -> None:
     async with open_lab(COUNTS) as (pilot, app):
         await pilot.press(*"nnnnn")
@@ -160,6 +162,7 @@ async def test_going_on_from_the_past_ends_at_now(home: object, key: str) -> Non
         await press(pilot, app, "n", 3)
 
 
+@pytest.mark.slow
 async def test_into_and_out_of_calls() -> None:
     async with open_lab(CALLS) as (pilot, app):
         await press(pilot, app, "n", 1, 2, 7, 11)
@@ -210,6 +213,7 @@ async def test_a_breakpoint_on_the_current_line_needs_no_code_in_sight() -> None
         assert not app.panel_area.is_shown("code")
 
 
+@pytest.mark.slow
 async def test_the_footer_offers_what_is_needed_while_the_code_is_read() -> None:
     async with open_lab(COUNTS, size=(80, 24)) as (pilot, app):
         await press(pilot, app, "n", 1, 2)
@@ -292,6 +296,7 @@ async def test_code_and_debugger_stand_at_the_line_that_printed_a_sample() -> No
         assert app.run_controller.build_snapshot().line == 3
 
 
+@pytest.mark.slow
 async def test_run_to_the_cursor_starts_the_program() -> None:
     async with open_lab(COUNTS) as (pilot, app):
         cursor_to(app, 6)
@@ -301,6 +306,7 @@ async def test_run_to_the_cursor_starts_the_program() -> None:
         await until(pilot, lambda: not app.run_controller.in_run)
 
 
+@pytest.mark.slow
 async def test_breaks_are_kept_with_a_program_that_no_panel_shows() -> None:
     app = LabApp(settings(COUNTS, panels_off=("code", "controls")))
     keep(program_of(app).path, StoredBreaks(parse_breakpoints(("4",)), ("total",)))
@@ -315,6 +321,7 @@ async def test_breaks_are_kept_with_a_program_that_no_panel_shows() -> None:
         assert [one.text for one in app.debugger.breaks] == ["4", "6"]
 
 
+@pytest.mark.slow
 async def test_editing_begins_where_the_program_is_paused() -> None:
     async with open_lab(COUNTS, size=(80, 24)) as (pilot, app):
         await pilot.press("R")
@@ -329,6 +336,7 @@ async def test_editing_begins_where_the_program_is_paused() -> None:
         assert app.panel_area.code.cursor_line == app.run_controller.build_snapshot().line > 1
 
 
+@pytest.mark.slow
 async def test_a_step_back_has_the_time_of_its_tick() -> None:
     text = "import time\ntime.sleep(0.0199)\nx = 1\ntime.sleep(1)\ny = 2\n"
     async with open_lab(text, speed=0.0) as (pilot, app):
@@ -341,6 +349,7 @@ async def test_a_step_back_has_the_time_of_its_tick() -> None:
         assert paused.time_ns / 1e9 == snapshot.time_s
 
 
+@pytest.mark.slow
 async def test_a_breakpoint_without_a_line_is_told_of_before_it_pauses_a_run() -> None:
     opened = settings(COUNTS)
     async with open_lab(opened) as (pilot, app):

@@ -28,6 +28,7 @@ def earlier_pose(app: LabApp) -> Pose | None:
     return app.run_controller.build_snapshot().earlier_pose
 
 
+@pytest.mark.slow
 async def test_the_run_before_is_drawn_at_the_same_time() -> None:
     async with open_lab(STRAIGHT, speed=0.0, size=SIZE) as (pilot, app):
         await run_from_start(pilot, app, STRAIGHT)

@@ -84,6 +84,7 @@ def state(app: LabApp, name: str) -> str:
     return next((text[:9].rstrip() for text in shown(app) if text[9:].startswith(f"{name} ")), "")
 
 
+@pytest.mark.slow
 async def test_without_goals_the_panel_says_what_to_do_next() -> None:
     async with open_lab(size=SIZE) as (pilot, app):
         await pilot.press("J")
@@ -91,6 +92,7 @@ async def test_without_goals_the_panel_says_what_to_do_next() -> None:
         assert shown(app) == ["No goals: o opens a goals file such as", "square_goals.toml"]
 
 
+@pytest.mark.slow
 async def test_a_run_is_judged_when_it_has_ended(task: Path) -> None:
     async with open_lab(with_goals(task, DRIVES), size=SIZE) as (pilot, app):
         await until(pilot, lambda: "0 of 5 points" in shown(app))
@@ -120,6 +122,7 @@ async def test_goals_are_judged_while_the_program_runs(task: Path) -> None:
         await until(pilot, lambda: "5 of 5 points" in shown(app))
 
 
+@pytest.mark.slow
 async def test_a_past_instant_shows_the_goals_as_of_then(task: Path) -> None:
     async with open_lab(with_goals(task, DRIVES), size=SIZE) as (pilot, app):
         await pilot.press("R")
@@ -142,6 +145,7 @@ async def test_a_past_instant_shows_the_goals_as_of_then(task: Path) -> None:
         assert panel.border_subtitle == ""
 
 
+@pytest.mark.slow
 async def test_a_stored_run_is_judged(task: Path) -> None:
     made = with_goals(task, DRIVES)
     assert made.program is not None
@@ -153,6 +157,7 @@ async def test_a_stored_run_is_judged(task: Path) -> None:
         )
 
 
+@pytest.mark.slow
 async def test_keys_and_mouse_choose_the_goal_that_is_shown_in_detail(task: Path) -> None:
     async with open_lab(with_goals(task, DRIVES), size=SIZE) as (pilot, app):
         panel = app.panel_area.goals
@@ -244,6 +249,7 @@ async def test_goals_that_change_on_disk_are_read_again(task: Path, is_world: bo
         assert state(app, "there") == "✗ missed"
 
 
+@pytest.mark.slow
 async def test_nothing_is_judged_while_the_panel_is_closed(
     task: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -266,6 +272,7 @@ async def test_nothing_is_judged_while_the_panel_is_closed(
         assert len(judged) == 1
 
 
+@pytest.mark.slow
 async def test_an_error_in_judging_is_told_once(task: Path) -> None:
     async with open_lab(with_goals(task, DRIVES, panels_on=frozenset()), size=SIZE) as (pilot, app):
         await pilot.press("R")

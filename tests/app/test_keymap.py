@@ -35,6 +35,7 @@ def test_keys_are_those_of_the_user(
     } == written
 
 
+@pytest.mark.slow
 async def test_the_new_key_works_and_is_shown_and_the_old_one_does_nothing(tmp_path: Path) -> None:
     (tmp_path / "config.toml").write_text("[keys]\npen = '%'\nzoom = 'p'\nmats = '$'\n")
     async with open_lab(LOGS, size=(200, 170)) as (pilot, app):
@@ -65,6 +66,7 @@ async def test_notices_and_panels_name_the_new_key(panel: str, tmp_path: Path) -
         )
 
 
+@pytest.mark.slow
 async def test_the_welcome_obeys_the_new_key(tmp_path: Path) -> None:
     (tmp_path / "config.toml").write_text("[keys]\nhelp = '%'\n")
     async with open_lab(welcomes=True, size=(80, 24)) as (pilot, app):
@@ -73,6 +75,7 @@ async def test_the_welcome_obeys_the_new_key(tmp_path: Path) -> None:
         await until(pilot, lambda: isinstance(app.screen, GuideScreen))
 
 
+@pytest.mark.slow
 async def test_a_wrong_file_is_told_and_the_app_works_with_what_is_right(tmp_path: Path) -> None:
     (tmp_path / "config.toml").write_text(
         "[app]\ntheme = 'light'\nfps = 0\n[keys]\npen = 'R'\nzoom = 'ctrl+k'\n"

@@ -38,6 +38,7 @@ async def wheel_up(pilot: Pilot[Any], panel: LessonPanel) -> None:
 PLACED = "question = { ask = 'What?', answer = 5, at_x_mm = [[600, 700]], where = 'the right: → moves it' }"
 
 
+@pytest.mark.slow
 async def test_a_question_is_answered_by_its_key_while_the_panel_of_the_place_is_shown(
     tmp_path: Path,
 ) -> None:
@@ -55,6 +56,7 @@ async def test_a_question_is_answered_by_its_key_while_the_panel_of_the_place_is
         assert x_mm.value == before
 
 
+@pytest.mark.slow
 async def test_answer_about_another_place_is_not_wrong(tmp_path: Path) -> None:
     async with open_lab(opened(tmp_path, PLACED), size=SMALL) as (pilot, app):
         app.lesson.skip_step()
@@ -69,6 +71,7 @@ async def test_answer_about_another_place_is_not_wrong(tmp_path: Path) -> None:
         await until(pilot, lambda: states().get("do") == "done")
 
 
+@pytest.mark.slow
 async def test_panel_of_a_paused_program(tmp_path: Path) -> None:
     async with open_lab(
         opened(tmp_path, "show = { panel = 'debug', paused = true }"), size=SMALL
@@ -83,6 +86,7 @@ async def test_panel_of_a_paused_program(tmp_path: Path) -> None:
         await until(pilot, lambda: states().get("do") == "done")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size, has_world", [(SMALL, False), (LARGE, True)], ids=["80", "120"])
 async def test_lesson_is_beside_the_log(
     size: tuple[int, int], has_world: bool, tmp_path: Path
@@ -160,6 +164,7 @@ async def test_lesson_is_in_sight_and_scrolls_while_one_types_in_a_small_termina
         await until(pilot, lambda: app.panel_area.is_shown("world"))
 
 
+@pytest.mark.slow
 async def test_way_to_the_next_lesson_is_in_sight_in_a_small_terminal(tmp_path: Path) -> None:
     made = opened(tmp_path)
     (tmp_path / "lessons" / "zz.md").write_text(
@@ -174,6 +179,7 @@ async def test_way_to_the_next_lesson_is_in_sight_in_a_small_terminal(tmp_path: 
         )
 
 
+@pytest.mark.slow
 async def test_a_lesson_that_is_opened_again_shows_the_last_run_of_its_program(
     tmp_path: Path,
 ) -> None:

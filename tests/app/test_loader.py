@@ -83,6 +83,7 @@ def look(app: LabApp) -> None:
     app.check_files()
 
 
+@pytest.mark.slow
 async def test_a_world_is_opened_whole(folder: Path) -> None:
     async with open_lab(LOGS) as (pilot, app):
         app.run_controller.set_noise(NoiseSpec(1, 99))
@@ -97,6 +98,7 @@ async def test_a_world_is_opened_whole(folder: Path) -> None:
         assert app.run_controller.pose.x_mm == 600
 
 
+@pytest.mark.slow
 async def test_worlds_of_the_folder_are_offered_and_robots_are_not(folder: Path) -> None:
     async with open_lab() as (pilot, app):
         await pilot.press("o")
@@ -106,6 +108,7 @@ async def test_worlds_of_the_folder_are_offered_and_robots_are_not(folder: Path)
         assert "mine.toml" not in text
 
 
+@pytest.mark.slow
 async def test_a_wrong_world_changes_nothing(folder: Path) -> None:
     (folder / "lab.toml").write_text(LAB + "[pen]\nwidth_mm = 'thick'\n")
     async with open_lab(LOGS) as (pilot, app):
@@ -158,6 +161,7 @@ async def test_panels_of_a_magic_line_come_as_a_program_is_opened(folder: Path) 
         assert app.run_controller.speed == 2
 
 
+@pytest.mark.slow
 async def test_a_world_is_saved_and_an_old_file_only_after_a_question(folder: Path) -> None:
     async with open_lab() as (pilot, app):
         app.loader.open_file(str(folder / "mine.py"))
@@ -200,6 +204,7 @@ async def test_what_cannot_be_written_is_told(folder: Path) -> None:
         ]
 
 
+@pytest.mark.slow
 async def test_a_changed_program_is_reloaded_at_once(folder: Path) -> None:
     path = folder / "mine.py"
     path.write_text("print('A: 1')\n")
@@ -291,6 +296,7 @@ async def test_a_file_that_became_wrong_is_told_and_the_former_stays(
         assert app.run_controller.next_run.spec == before[0].spec
 
 
+@pytest.mark.slow
 async def test_robot_obstacles_and_world_are_reloaded(folder: Path) -> None:
     (folder / "boxes.toml").write_text("obstacle = []\n")
     (folder / "lab.toml").write_text(LAB.replace("seed = 5", 'seed = 5\nobstacles = "boxes.toml"'))

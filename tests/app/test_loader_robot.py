@@ -39,6 +39,7 @@ def extra_ports(app: LabApp) -> list[str]:
     return [motor.port for motor in app.run_controller.next_run.spec.robot.extra_motors]
 
 
+@pytest.mark.slow
 async def test_it_is_told_and_the_dialog_lists_its_ports(claw: Path) -> None:
     async with open_lab(opened(claw)) as (pilot, app):
         await until(
@@ -65,6 +66,7 @@ async def test_what_the_brick_would_refuse_is_told(claw: Path) -> None:
         )
 
 
+@pytest.mark.slow
 async def test_another_robot_is_chosen_and_the_program_s_again(claw: Path) -> None:
     async with open_lab(opened(claw)) as (pilot, app):
         for key, ports in (("down", []), ("up", ["outA"])):
@@ -74,6 +76,7 @@ async def test_another_robot_is_chosen_and_the_program_s_again(claw: Path) -> No
             await until(pilot, lambda ports=ports: extra_ports(app) == ports)  # type: ignore[misc]
 
 
+@pytest.mark.slow
 async def test_it_follows_the_text_of_the_program(claw: Path) -> None:
     async with open_lab(opened(claw)) as (pilot, app):
         claw.write_text(CLAW.replace("outA", "outD"))
@@ -82,6 +85,7 @@ async def test_it_follows_the_text_of_the_program(claw: Path) -> None:
         await until(pilot, lambda: any("medium motor on outD" in notice for notice in notices(app)))
 
 
+@pytest.mark.slow
 async def test_opening_a_program_gives_it_its_robot(claw: Path) -> None:
     settings = Settings()
     decided = Decided(free=frozenset(PROGRAM_PATHS))
@@ -99,6 +103,7 @@ def stored_profile(app: LabApp) -> str:
     return run.stored().spec.profile.name if run else ""
 
 
+@pytest.mark.slow
 async def test_a_chosen_profile_that_does_not_fit_the_program_is_told_when_it_is_to_run(
     claw: Path,
 ) -> None:

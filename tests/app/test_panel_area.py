@@ -89,6 +89,7 @@ async def test_the_world_is_as_large_as_its_panel(size: tuple[int, int]) -> None
             assert columns * rows >= 0.8 * view.size.width * (view.size.height - 1)
 
 
+@pytest.mark.slow
 async def test_the_panel_with_the_focus_stays_when_the_keyboard_of_a_phone_takes_room() -> None:
     async with open_lab(LOGS, size=(64, 60)) as (pilot, app):
         area = app.panel_area
@@ -101,6 +102,7 @@ async def test_the_panel_with_the_focus_stays_when_the_keyboard_of_a_phone_takes
             assert (area.is_shown("code"), area.find_focused_panel()) == (True, "code"), rows
 
 
+@pytest.mark.slow
 async def test_a_large_terminal_edits_in_a_high_panel_beside_the_world() -> None:
     async with open_lab(LOGS, size=(200, 60)) as (pilot, app):
         boxes = app.panel_area.arrangement.boxes

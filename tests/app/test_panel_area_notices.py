@@ -58,6 +58,7 @@ async def test_a_notice_lies_on_the_lower_border_and_moves_no_panel(
             assert not row.overlaps(panel.region.shrink((1, 1, 1, 1)))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("key", ["g", "question_mark", "o"])
 async def test_a_notice_covers_nothing_that_a_dialog_says(key: str) -> None:
     opened = settings(LOGS, autorun=True, speed=0.0)

@@ -28,6 +28,7 @@ def test_a_program_that_looks_at_the_buttons(text: str, expected: bool) -> None:
     assert has_button_calls(text) == expected
 
 
+@pytest.mark.slow
 async def test_the_panel_is_named_once_while_it_is_hidden() -> None:
     async with open_lab(DRAWS, speed=0.0, size=(80, 24)) as (pilot, app):
         for _ in range(2):

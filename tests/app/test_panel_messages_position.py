@@ -38,6 +38,7 @@ async def test_good_position_is_applied() -> None:
         await until(pilot, lambda: app.run_controller.pose == Pose(400.5, 500, 0))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "panel, field, words",
     [("positioning", "x", "not '999999'"), ("noise", "seed", "Seed")],

@@ -36,6 +36,7 @@ async def _open_and_close(pilot: Pilot[Any], panel: str) -> None:
         await until(pilot, lambda: not app.panel_area.is_shown(panel), panel)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", [(80, 24), (120, 40)], ids=["80", "120"])
 async def test_each_empty_panel_says_what_to_do(size: tuple[int, int]) -> None:
     async with open_lab("x = 1\n", size=size) as (pilot, _):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from functools import partial
 from pathlib import Path
 
+import pytest
 from textual.pilot import Pilot
 
 from tests.app.app_help import (
@@ -35,6 +36,7 @@ async def ask(pilot: Pilot[None], app: LabApp, words: str) -> None:
     await until(pilot, lambda: any(words in text for text in notices(app)[known:]), words)
 
 
+@pytest.mark.slow
 async def test_it_goes_to_each_reason_and_back_to_the_end() -> None:
     text = "tank_drive.on_for_seconds(20, int(input()), 1)\nprint(colour)\n"
     async with open_lab(STRAIGHT, speed=0.0, size=SIZE) as (pilot, app):
@@ -69,6 +71,7 @@ while True:
 """
 
 
+@pytest.mark.slow
 async def test_the_answer_stays_until_a_key_does_something() -> None:
     async with LabApp(settings(STRAIGHT, speed=0.0)).run_test(
         size=SIZE, notifications=True
@@ -85,6 +88,7 @@ async def test_the_answer_stays_until_a_key_does_something() -> None:
         await until(pilot, lambda: not stays())
 
 
+@pytest.mark.slow
 async def test_the_arrow_stays_on_the_line_of_the_reason() -> None:
     async with open_lab(LEAVES_THE_MAT, speed=0.0, size=SIZE) as (pilot, app):
         await pilot.press("R")
@@ -122,6 +126,7 @@ pass = { places_mm = [[1700, 500]], within_mm = 40 }
 """
 
 
+@pytest.mark.slow
 async def test_the_goals_that_are_open_are_judged(tmp_path: Path) -> None:
     path = tmp_path / "task_goals.toml"
     path.write_text(GOALS, encoding="utf-8")
@@ -140,6 +145,7 @@ while not brick.any():
 SLEEPS = "import time\nwhile True:\n    time.sleep(9)\n"
 
 
+@pytest.mark.slow
 @cases(
     "text, words",
     {

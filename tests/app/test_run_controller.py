@@ -34,6 +34,7 @@ from tuisim.terminal.picture_options import CellSet
 PUSHES = "from time import sleep\ntank_drive.on(50, 50)\nsleep(2)\ntank_drive.off()\n"
 
 
+@pytest.mark.slow
 async def test_the_end_says_that_the_robot_stood_at_a_wall() -> None:
     setup = settings(PUSHES, autorun=True, speed=0.0)
     world = replace(setup.spec.world, solid=True, start=Pose(2200.0, 571.5, 0.0))
@@ -51,6 +52,7 @@ async def test_the_end_says_that_the_robot_stood_at_a_wall() -> None:
         assert f"finished, {stood}" not in notices(app)
 
 
+@pytest.mark.slow
 async def test_pause_one_tick_go_on_and_stop() -> None:
     async with open_lab(ENDLESS, autorun=True) as (pilot, app):
         await until(
@@ -72,6 +74,7 @@ async def test_pause_one_tick_go_on_and_stop() -> None:
         assert app.run_controller.build_snapshot().end == "stopped"
 
 
+@pytest.mark.slow
 async def test_the_robot_can_be_placed_during_a_run() -> None:
     async with open_lab(ENDLESS, autorun=True) as (pilot, app):
         await until(pilot, lambda: app.run_controller.in_run)
@@ -96,6 +99,7 @@ async def test_the_robot_can_be_placed_during_a_run() -> None:
         assert app.run_controller.pose.y_mm == 500
 
 
+@pytest.mark.slow
 async def test_an_error_is_shown_with_its_line() -> None:
     async with open_lab("print('A: 1')\nprint(nothing)\n", autorun=True) as (pilot, app):
         await until_state(pilot, RunPhase.ENDED)
@@ -116,6 +120,7 @@ async def test_an_error_opens_the_code_at_its_line() -> None:
         assert app.panel_area.is_shown("output")
 
 
+@pytest.mark.slow
 async def test_an_error_is_readable_in_a_small_terminal_until_the_next_run() -> None:
     # The output is narrow there: the line goes on in the next row.
     parts = "NameError: name 'nothing' is ", "not defined"
@@ -190,6 +195,7 @@ async def test_a_mat_that_failed_is_prepared_again_for_a_run(
         await until_state(pilot, RunPhase.ENDED)
 
 
+@pytest.mark.slow
 async def test_no_words_say_that_the_robot_stands_before_it_does() -> None:
     async with open_lab(ENDLESS, autorun=True) as (pilot, app):
         await until(
@@ -207,6 +213,7 @@ async def test_no_words_say_that_the_robot_stands_before_it_does() -> None:
             assert scene is not None and scene.pose == app.run_controller.pose
 
 
+@pytest.mark.slow
 async def test_what_stands_still_is_drawn_finely_at_once_on_a_slow_link() -> None:
     setup = settings(ENDLESS, autorun=True)
     mode = PictureMode(CellSet.QUADRANT, CellSet.QUADRANT, is_slow=lambda: True)

@@ -73,6 +73,7 @@ async def test_what_is_not_seen_is_not_clicked_on() -> None:
         assert (len(app.screen_stack), app.run_controller.run) == (1, None)
 
 
+@pytest.mark.slow
 async def test_a_click_on_what_is_not_drawn_yet_does_no_harm() -> None:
     click = events.MouseDown(None, 5, 4, 0, 0, 1, False, False, False, screen_x=5, screen_y=4)
     async with open_lab(size=(20, 5)) as (pilot, app):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+import pytest
 from textual.pilot import Pilot
 from textual.widgets import Input
 
@@ -34,6 +35,7 @@ async def settle(pilot: Pilot[Any]) -> None:
     await pilot.pause()
 
 
+@pytest.mark.slow
 async def test_backspace_is_not_overtaken_by_what_is_typed_after_it() -> None:
     async with open_lab(LOGS, size=(80, 24)) as (pilot, _):
         send(pilot, "onew.csv\x7f\x7f\x7fparquet")

@@ -11,6 +11,7 @@ from tuisim.app.snapshot import IN_RUN
 from tuisim.terminal.app import ActionAsked
 
 
+@pytest.mark.slow
 async def test_a_button_of_the_page_acts_also_while_the_user_types() -> None:
     async with open_lab(ENDLESS) as (pilot, app):
         await pilot.press("d")
@@ -21,6 +22,7 @@ async def test_a_button_of_the_page_acts_also_while_the_user_types() -> None:
         await until(pilot, lambda: app.run_controller.state not in IN_RUN)
 
 
+@pytest.mark.slow
 async def test_a_button_of_the_page_leaves_a_dialog_alone() -> None:
     async with open_lab(ENDLESS) as (pilot, app):
         await pilot.press("b")
@@ -37,6 +39,7 @@ async def test_an_action_that_no_page_has_is_ignored() -> None:
         await until(pilot, lambda: app.panel_area.is_shown("chart"))
 
 
+@pytest.mark.slow
 async def test_a_click_on_the_empty_panel_of_lessons_offers_them() -> None:
     async with open_lab(ENDLESS, panels_on=frozenset({"lesson"})) as (pilot, app):
         await until(pilot, lambda: app.panel_area.is_shown("lesson"))

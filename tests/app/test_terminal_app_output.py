@@ -122,6 +122,7 @@ async def test_a_run_that_stands_still_or_is_over_sends_nothing(panels: list[str
             assert await sent_at_rest(pilot) == "", state
 
 
+@pytest.mark.slow
 async def test_the_analyser_at_rest_sends_nothing(tmp_path: Path) -> None:
     path = tmp_path / "log.csv"
     path.write_text(LOG, "utf-8")
@@ -181,6 +182,7 @@ async def test_the_first_frame_of_a_run_waits_for_its_first_tick(
         assert next(one for one in drawn if one[0] is not RunPhase.IDLE) == (RunPhase.RUNNING, True)
 
 
+@pytest.mark.slow
 async def test_frames_of_a_run_that_pauses_at_its_first_line_do_not_wait_for_a_tick(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

@@ -46,6 +46,7 @@ async def a_run(
         yield pilot, app
 
 
+@pytest.mark.slow
 async def test_keys_go_back_and_forward() -> None:
     async with a_run() as (pilot, app):
         timeline = app.run_controller.timeline
@@ -179,6 +180,7 @@ async def test_looking_back_pauses_a_running_program_and_space_plays_it_on() -> 
         await until_state(pilot, RunPhase.ENDED)
 
 
+@pytest.mark.slow
 async def test_a_click_on_the_bar_or_a_panel_leaves_no_instant() -> None:
     async with a_run() as (pilot, app):
         world = app.panel_area.world
@@ -225,6 +227,7 @@ async def test_words_that_are_no_place_are_answered() -> None:
                 find(text, app.run_controller.timeline)
 
 
+@pytest.mark.slow
 async def test_words_find_their_instants() -> None:
     async with a_run(PEN) as (_, app):
         timeline = app.run_controller.timeline
@@ -282,6 +285,7 @@ async def test_words_find_their_instants() -> None:
         assert find("sample", timeline) == min(r.tick for r in rows if r.tick > dark)
 
 
+@pytest.mark.slow
 async def test_commands_are_marked_and_found_and_told() -> None:
     async with a_run() as (pilot, app):
         timeline = app.run_controller.timeline
@@ -301,6 +305,7 @@ async def test_commands_are_marked_and_found_and_told() -> None:
         await until(pilot, lambda: asked in notices(app))
 
 
+@pytest.mark.slow
 async def test_a_column_finds_the_tick_at_which_it_becomes_so() -> None:
     async with a_run() as (_, app):
         timeline = app.run_controller.timeline

@@ -218,6 +218,7 @@ COMMANDS = (
 """Words in one home, one after the other, and what is told meanwhile."""
 
 
+@pytest.mark.slow
 def test_commands_tell_how_far_they_are(
     home: object, here: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

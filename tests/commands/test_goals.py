@@ -232,6 +232,7 @@ def test_rows_of_a_flood_are_limited(task: Path, monkeypatch: pytest.MonkeyPatch
     assert [each.state for each in judge(load_goals(task).goals, run.end())] == ["missed", "missed"]
 
 
+@pytest.mark.slow
 def test_examples_are_found_by_name(here: Command, home: Path) -> None:
     record().end()
     for name in list_example_names():

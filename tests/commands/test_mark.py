@@ -177,6 +177,7 @@ def test_a_resumed_marking_gives_the_bytes_of_another_one_elsewhere(tmp_path: Pa
     assert [name for name in first if first[name] != resumed[name]] == []
 
 
+@pytest.mark.slow
 def test_a_class_is_marked_as_a_table(tmp_path: Path, here: Command) -> None:
     write_class(tmp_path / "class", _few("ada.py", "gustav.py", "raises.py", "zip.py"))
     (tmp_path / "class" / "notes.doc").write_text("")
@@ -289,6 +290,7 @@ print = "green"
 """
 
 
+@pytest.mark.slow
 def test_a_program_that_cannot_be_read_gets_what_a_syntax_error_gets(
     tmp_path: Path, here: Command
 ) -> None:
@@ -384,6 +386,7 @@ def test_a_signal_ends_a_marking_in_good_order(
     assert "--resume continues" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_a_program_that_this_machine_cannot_read_is_missing_in_the_marks(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

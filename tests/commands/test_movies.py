@@ -75,6 +75,7 @@ def view(width_px: int, height_px: int) -> Viewport:
     return fit_view(ROBOT, width_px, height_px)
 
 
+@pytest.mark.slow
 def test_a_movie_follows_the_robot(here: Command, run: StoredRun, tmp_path: Path) -> None:
     done = here("runs", "movie", "last", "--out", "a.gif", "--fps", "10")
     assert (done.returncode, done.stdout) == (0, "")

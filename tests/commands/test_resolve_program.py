@@ -140,6 +140,7 @@ def test_a_batch_varies_the_robot_that_was_built(folder: Path, here: Command) ->
     assert [round(row["x_mm"]) for row in rows] == [1358, 1269]
 
 
+@pytest.mark.slow
 def test_marks_use_the_robot_of_the_task_and_else_that_of_the_program(
     folder: Path, here: Command
 ) -> None:

@@ -269,6 +269,7 @@ def shows(folder: Path, *arguments: str) -> AppSettings:
     )
 
 
+@pytest.mark.slow
 async def test_the_app_gives_arguments_that_can_be_edited(folder: Path) -> None:
     async with open_lab(shows(folder, "A", "B C")) as (pilot, app):
         edit = find(app.run_controller.next_run, "arguments")
@@ -293,6 +294,7 @@ async def test_the_app_gives_arguments_that_can_be_edited(folder: Path) -> None:
 ASKS = "# %%sim_magic\nwhile True:\n    print(input('? '))\n"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["pipe", "file"])
 def test_what_is_on_stdin_answers_until_its_end(tmp_path: Path, here: Command, kind: str) -> None:
     (tmp_path / "asks.py").write_text(ASKS)
@@ -308,6 +310,7 @@ def test_what_is_on_stdin_answers_until_its_end(tmp_path: Path, here: Command, k
     assert "one" in here("runs", "rerun", "last").stdout
 
 
+@pytest.mark.slow
 def test_given_answers_leave_stdin_alone(tmp_path: Path) -> None:
     (tmp_path / "asks.py").write_text(ASKS)
     command = [sys.executable, "-m", "tuisim", "run", "asks.py", "--input", "given"]

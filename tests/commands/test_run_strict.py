@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
 from tests.conftest import Command
 
 
@@ -19,6 +21,7 @@ def test_strict_runs_nothing_that_the_brick_would_refuse(here: Command, tmp_path
     assert done.stderr.startswith(f"tuisim: {told}")
 
 
+@pytest.mark.slow
 def test_batches_and_marks_tell_what_the_brick_would_refuse(here: Command, tmp_path: Path) -> None:
     (tmp_path / "class").mkdir()
     (tmp_path / "class" / "ada.py").write_text("from pybricks.tools import wait\n\nprint(f'{1}')\n")

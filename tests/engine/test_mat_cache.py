@@ -65,6 +65,7 @@ def naive_sums(pixels: np.ndarray, diameter: int, col: int, row: int) -> list[in
     return total
 
 
+@pytest.mark.slow
 def test_sums_equal_naive_sums_everywhere(home: Path) -> None:
     files = mat_cache.prepare(mats.background("Testcard").image, (10, 20, 30))
     field = files.open_field()
@@ -326,6 +327,7 @@ def test_without_a_home_the_users_cache_is_used(
     assert folders.cache_folder() == tmp_path / "tuisim"
 
 
+@pytest.mark.slow
 def test_opening_needs_no_heavy_library(home: Path, tmp_path: Path) -> None:
     files = mat_cache.prepare(picture(tmp_path, fill="white"), [20])
     code = (

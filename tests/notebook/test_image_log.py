@@ -42,6 +42,7 @@ def test_each_side_is_a_record(side: str, sides: list[str], cell: Cell) -> None:
     assert cell(SIDES).result == sides
 
 
+@pytest.mark.slow
 def test_records_add_up_until_they_are_cleared(cell: Cell) -> None:
     cell(program("print('image_data left')\nprint('IMG_DATA left')"))
     cell(program("print('image_data right')"))

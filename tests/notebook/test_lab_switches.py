@@ -257,6 +257,7 @@ print(Button().wait_for_pressed('enter', timeout_ms=3000))
 """
 
 
+@pytest.mark.slow
 def test_a_hand_presses_as_the_cell_of_the_program_says(cell: Cell) -> None:
     assert cell(WAITS).out == "True\n"
     assert cell("%sim_magic -R").out == "True\n"

@@ -166,6 +166,7 @@ def test_only_the_newest_offer_is_answered(run: Run, front: Front) -> None:
     assert front.ask(new)["port"] == 5
 
 
+@pytest.mark.slow
 def test_the_cell_that_shows_the_app_offers_it_again_and_others_do_not(
     run: Run, front: Front
 ) -> None:

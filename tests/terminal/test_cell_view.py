@@ -75,6 +75,7 @@ async def test_a_resized_terminal_is_asked_for_the_size_of_its_cells() -> None:
         await until(pilot, lambda: CELL_SIZE_QUERY + ATTRIBUTES_QUERY in wire_of(pilot).sent)
 
 
+@pytest.mark.slow
 async def test_kitty_is_asked_for_what_is_used_and_is_told_to_report_errors() -> None:
     async with on_wire(LabApp(settings()), "truecolor") as pilot:
         await answered(pilot, ANSWERS[Protocol.KITTY].partition("\x1b_G")[0])
@@ -87,6 +88,7 @@ async def test_kitty_is_asked_for_what_is_used_and_is_told_to_report_errors() ->
         assert all("q=1" in one.split(",") for one in commands if "a=T" in one.split(","))
 
 
+@pytest.mark.slow
 async def test_an_error_of_kitty_brings_the_cells_back_at_once() -> None:
     async with on_wire(LabApp(settings()), "truecolor") as pilot:
         await answered(pilot, ANSWERS[Protocol.KITTY])
@@ -98,6 +100,7 @@ async def test_an_error_of_kitty_brings_the_cells_back_at_once() -> None:
         assert any("ENOSPC:No space left" in message for message in notices(lab(pilot)))
 
 
+@pytest.mark.slow
 async def test_one_key_switches_to_characters_and_back() -> None:
     async with on_wire(LabApp(settings()), "truecolor") as pilot:
         await answered(pilot, ANSWERS[Protocol.SIXEL])
@@ -108,6 +111,7 @@ async def test_one_key_switches_to_characters_and_back() -> None:
         assert pilot.app.query_one(WorldView)._tiles is not None
 
 
+@pytest.mark.slow
 async def test_who_wants_no_colors_gets_no_pixels(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("NO_COLOR", "1")
     async with on_wire(LabApp(settings()), "truecolor") as pilot:
@@ -115,6 +119,7 @@ async def test_who_wants_no_colors_gets_no_pixels(monkeypatch: pytest.MonkeyPatc
         assert pilot.app.query_one(WorldView)._tiles is None
 
 
+@pytest.mark.slow
 async def test_glyphs_that_the_user_has_chosen_are_shown_instead() -> None:
     async with on_wire(LabApp(settings()), "truecolor") as pilot:
         await answered(pilot, ANSWERS[Protocol.SIXEL])

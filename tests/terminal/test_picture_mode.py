@@ -64,6 +64,7 @@ def test_colours_of_a_kind_of_terminal(terminal: str, colors: str) -> None:
     assert read_colors({"TERM": terminal, "COLORTERM": "truecolor"}) == colors
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("terminal", ["vt52", "xterm-256color"])
 def test_terminfo_knows_which_terminals_have_no_colours(terminal: str) -> None:
     code = f"from tuisim.terminal.probe import has_terminfo_colors; print(has_terminfo_colors({terminal!r}))"
@@ -159,6 +160,7 @@ async def test_without_colours_what_is_selected_is_seen(
     assert any(row.startswith(lit) for row in shown)
 
 
+@pytest.mark.slow
 async def test_in_ascii_without_colours_signs_point_where_the_robot_is_heading(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

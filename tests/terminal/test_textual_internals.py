@@ -112,6 +112,7 @@ async def test_a_click_on_an_option_that_is_gone_does_nothing(kind: type[OptionL
             assert listed.highlighted == highlighted
 
 
+@pytest.mark.slow
 async def test_a_notice_that_is_gone_leaves_the_screen(told: dict[Widget, Size]) -> None:
     async with on_wire(LabApp(settings(LOGS)), notifications=True) as pilot:
         app = await ready(pilot)

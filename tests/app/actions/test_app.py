@@ -33,6 +33,7 @@ async def test_every_panels_key_shows_and_hides_it() -> None:
                 ), panel.id
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("panel", "key"), [("chart", "c"), ("noise", "z")])
 async def test_the_key_of_a_panel_that_is_shown_focuses_it_first(panel: str, key: str) -> None:
     async with open_lab(size=(200, 60)) as (pilot, app):
@@ -80,6 +81,7 @@ async def test_quit_without_a_run_asks_nothing() -> None:
         assert not lab(pilot).is_running or lab(pilot)._exit
 
 
+@pytest.mark.slow
 async def test_nothing_is_opened_while_the_app_ends() -> None:
     async with open_lab(LOGS) as (_, app):
         app.exit()

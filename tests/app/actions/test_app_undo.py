@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import pytest
+
 from tests.app.app_help import LOGS, notices, open_lab, screen_text, until, until_shown
 from tuisim.engine.protocol import End
 
 
+@pytest.mark.slow
 async def test_a_move_is_taken_back() -> None:
     async with open_lab(LOGS) as (pilot, app):
         await pilot.press("right")
@@ -39,6 +42,7 @@ async def test_a_cleared_log_and_a_cleared_trace_come_back() -> None:
         await until(pilot, lambda: len(world._view.trace) == pieces)
 
 
+@pytest.mark.slow
 async def test_without_a_change_there_is_nothing_to_undo() -> None:
     async with open_lab(LOGS) as (pilot, app):
         await pilot.press("backspace")

@@ -59,6 +59,7 @@ async def test_without_a_terminal_to_give_that_is_said(
         )
 
 
+@pytest.mark.slow
 async def test_unsaved_changes_are_saved_before(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -74,6 +75,7 @@ async def test_unsaved_changes_are_saved_before(
         assert not app.document.dirty
 
 
+@pytest.mark.slow
 async def test_of_an_example_a_copy_is_saved_first(monkeypatch: pytest.MonkeyPatch) -> None:
     opened = list[str]()
     monkeypatch.setenv("VISUAL", "nano")

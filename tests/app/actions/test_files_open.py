@@ -19,6 +19,7 @@ async def test_a_program_that_is_not_there_is_a_notice(tmp_path: Path) -> None:
         assert app.run_controller.program is None
 
 
+@pytest.mark.slow
 async def test_opening_a_log_shows_how_it_is_read(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

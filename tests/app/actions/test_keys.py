@@ -81,6 +81,7 @@ async def test_pen_is_p_and_not_shift_p() -> None:
         assert app.panel_area.is_shown("positioning")
 
 
+@pytest.mark.slow
 async def test_help_lists_every_key() -> None:
     async with open_lab(size=(150, 240)) as (pilot, app):
         await pilot.press("question_mark")

@@ -105,6 +105,7 @@ def test_the_pause_key_says_what_it_does_now(now: Situation, playing: bool, word
     assert pause.footer == word
 
 
+@pytest.mark.slow
 async def test_letters_and_signs_do_nothing_in_a_field_for_numbers() -> None:
     async with open_lab("pass\n", size=(80, 24)) as (pilot, app):
         await pilot.press("X")
@@ -122,6 +123,7 @@ async def test_letters_and_signs_do_nothing_in_a_field_for_numbers() -> None:
         assert any("This field takes a number" in words for words in notices(app))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "key, own",
     [("c", "← → cursor 1…9 traces"), ("Z", "↑ ↓ fields ← → choices"), ("z", "← → set 0…9 number")],
@@ -148,6 +150,7 @@ def test_a_question_of_a_lesson_offers_to_answer_it() -> None:
     assert [action.id for action in shown if action.group == "Lesson"] == [*now.lesson_actions]
 
 
+@pytest.mark.slow
 async def test_under_a_dialog_the_footer_names_only_keys_that_work_in_it() -> None:
     others = ("run", "mats", "quit", "help", "apply", "suspend", "redraw", "screenshot")
     async with open_lab("x = 1\n", size=(80, 24)) as (pilot, _):
@@ -171,6 +174,7 @@ async def test_the_footer_names_the_answers_to_a_question() -> None:
         )
 
 
+@pytest.mark.slow
 async def test_letters_are_no_keys_of_a_dialog_while_its_field_has_the_focus() -> None:
     async with open_lab("x = 1\n", size=(80, 24)) as (pilot, _):
         await pilot.press("T")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pytest
+
 from tests.app.app_help import ENDLESS, open_lab, until, until_state
 from tuisim.app.app import AppSettings
 from tuisim.app.dialogs.question import Question
@@ -10,6 +12,7 @@ from tuisim.settings.build import build_run_spec
 from tuisim.settings.options import Settings
 
 
+@pytest.mark.slow
 async def test_a_paused_program_starts_again() -> None:
     async with open_lab(ENDLESS, autorun=True) as (pilot, app):
         await until_state(pilot, RunPhase.RUNNING)

@@ -240,6 +240,7 @@ async def test_what_is_changed_for_the_next_run_is_seen_also_from_the_past() -> 
         )
 
 
+@pytest.mark.slow
 async def test_a_sample_clicked_in_the_chart_is_found_in_the_code() -> None:
     program = "import time\ntank_drive.on(50, 50)\nfor n in range(20):\n    time.sleep(0.1)\n    print('Colour: 100')\n"
     async with open_lab(program, speed=0.0) as (pilot, app):
@@ -259,6 +260,7 @@ async def test_a_sample_clicked_in_the_chart_is_found_in_the_code() -> None:
         assert app.run_controller.build_snapshot().line == 4
 
 
+@pytest.mark.slow
 async def test_a_line_of_a_module_beside_the_program_is_shown(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -273,6 +275,7 @@ async def test_a_line_of_a_module_beside_the_program_is_shown(
         await until_shown(pilot, "  return by + 1")
 
 
+@pytest.mark.slow
 async def test_go_to_is_empty_and_enter_alone_repeats_the_last_search() -> None:
     async with open_lab("tank_drive.on_for_seconds(20, 20, 1)\n", speed=0.0) as (pilot, app):
         await pilot.press("R")

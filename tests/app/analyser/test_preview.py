@@ -7,6 +7,7 @@ from contextlib import asynccontextmanager
 from pathlib import Path
 from typing import Any
 
+import pytest
 from textual.pilot import Pilot
 from textual.widgets import Select, Static
 
@@ -62,6 +63,7 @@ async def choose(pilot: Pilot[Any], dialog: PreviewDialog, key: str, downs: int)
     await until(pilot, lambda: dialog.focused is dialog.query_one("#rows"))
 
 
+@pytest.mark.slow
 @cases(
     "name, key, downs, before, after, choices",
     {
@@ -88,6 +90,7 @@ async def test_each_choice_changes_the_first_rows_and_opens_the_file(
     assert "read as chosen" in (await open_again(file))[0]
 
 
+@pytest.mark.slow
 async def test_what_is_found_opens_with_one_key_and_is_not_asked_again(tmp_path: Path) -> None:
     file = tmp_path / "time.csv"
     file.write_text(FILES["time"])
@@ -119,6 +122,7 @@ async def shown_again(pilot: Pilot[Any]) -> PreviewDialog:
     return dialog
 
 
+@pytest.mark.slow
 async def test_an_open_file_is_read_in_another_way_and_back(tmp_path: Path) -> None:
     file = tmp_path / "time.csv"
     file.write_text(FILES["time"])
@@ -138,6 +142,7 @@ async def test_an_open_file_is_read_in_another_way_and_back(tmp_path: Path) -> N
         await until(pilot, lambda: analyser(pilot).model.log.names == ("boot", "id", "light"))
 
 
+@pytest.mark.slow
 async def test_what_cannot_be_read_is_said_and_does_not_open(tmp_path: Path) -> None:
     file = tmp_path / "end.csv"
     file.write_text("boot;far\n0;0\n20;1\n40;2\nend;all\n")

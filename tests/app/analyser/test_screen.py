@@ -71,6 +71,7 @@ async def test_a_high_and_narrow_screen_has_all_columns_for_each_view(run: Store
         assert screen.chart.region.y < screen.pane.region.y < screen.world.region.y
 
 
+@pytest.mark.slow
 async def test_the_bands_are_found_and_noted_by_keys(run: StoredRun) -> None:
     async with open_analyser(runs=(run.id,)) as (pilot, screen, model):
         await pilot.press("b", "down")

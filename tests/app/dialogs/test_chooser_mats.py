@@ -137,6 +137,7 @@ async def test_mats_of_ones_own_are_listed_by_name(named: bool, home: Path, tmp_
         assert app.run_controller.next_run.spec.world.start.x_mm == 150
 
 
+@pytest.mark.slow
 async def test_a_folder_of_mats_that_is_gone_is_told(tmp_path: Path) -> None:
     folder = tmp_path / "pics"
     folder.mkdir()
@@ -148,6 +149,7 @@ async def test_a_folder_of_mats_that_is_gone_is_told(tmp_path: Path) -> None:
         )
 
 
+@pytest.mark.slow
 async def test_a_path_to_nothing_has_no_preview() -> None:
     async with open_lab(with_mats(None)) as (pilot, _):
         await pilot.press("b")
@@ -157,6 +159,7 @@ async def test_a_path_to_nothing_has_no_preview() -> None:
         await until(pilot, lambda: not str(title.content))
 
 
+@pytest.mark.slow
 async def test_a_picture_that_comes_while_the_dialog_closes_is_dropped() -> None:
     async with open_lab(LOGS) as (pilot, app):
         await pilot.press("b")

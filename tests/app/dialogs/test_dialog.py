@@ -55,6 +55,7 @@ async def test_a_key_too_many_leaves_the_lab_as_it_is(keys: str) -> None:
         await until(pilot, lambda: isinstance(app.screen, GuideScreen))
 
 
+@pytest.mark.slow
 async def test_what_is_typed_while_a_dialog_opens_is_typed_into_it() -> None:
     async with open_lab(size=(80, 24)) as (pilot, app):
         at_once(pilot, "o/tmp")
@@ -62,6 +63,7 @@ async def test_what_is_typed_while_a_dialog_opens_is_typed_into_it() -> None:
         await until(pilot, lambda: [field.value for field in app.screen.query(Input)] == ["/tmp"])
 
 
+@pytest.mark.slow
 async def test_a_closed_screen_draws_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     drawn: list[object] = []
     async with LabApp(settings()).run_test(size=(80, 24)) as pilot:
@@ -91,6 +93,7 @@ async def test_a_screen_that_is_still_opening_when_the_app_is_shut_down_does_no_
     assert app._exception is None
 
 
+@pytest.mark.slow
 async def test_a_click_beside_the_list_of_a_dialog_leaves_the_keys_to_the_dialog() -> None:
     async with open_lab(size=(80, 24)) as (pilot, app):
         await pilot.press("o")
@@ -111,6 +114,7 @@ async def test_a_dialog_gives_its_result_once() -> None:
     assert given == ["y"]
 
 
+@pytest.mark.slow
 async def test_a_click_on_what_has_just_been_removed_does_nothing() -> None:
     async with open_lab(size=(80, 24)) as (pilot, app):
         text = Static("gone", id="gone")
@@ -129,6 +133,7 @@ async def test_a_click_on_what_has_just_been_removed_does_nothing() -> None:
         await until(pilot, lambda: len(app.screen_stack) == 1)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("is_ready", [False, True])
 async def test_a_screen_that_is_not_drawn_yet_does_not_hear_the_mouse(
     is_ready: bool, monkeypatch: pytest.MonkeyPatch
@@ -159,6 +164,7 @@ async def test_no_palette_opens_above_a_dialog() -> None:
             await until(pilot, lambda: len(app.screen_stack) == 1, key)
 
 
+@pytest.mark.slow
 async def test_a_dialog_is_drawn_above_a_screen_that_is_not_laid_out_for_a_larger_terminal_yet() -> (
     None
 ):
@@ -169,6 +175,7 @@ async def test_a_dialog_is_drawn_above_a_screen_that_is_not_laid_out_for_a_large
         assert [line.cell_length for line in lines] == [80] * 30
 
 
+@pytest.mark.slow
 async def test_a_click_on_the_palette_where_the_terminal_was_does_no_harm() -> None:
     async with open_lab(size=(80, 24)) as (pilot, app):
         await pilot.press("ctrl+p")

@@ -13,6 +13,7 @@ from tuisim.app.dialogs.save import SaveDialog
 from tuisim.base.source import Program
 
 
+@pytest.mark.slow
 async def test_a_click_on_a_word_of_the_footer_presses_its_key(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

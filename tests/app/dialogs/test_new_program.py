@@ -43,6 +43,7 @@ async def test_a_new_program_is_chosen_by_keys(
         assert app.run_controller.next_run.spec.world.background == wanted[0]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("answer", ["w", "enter", "escape"])
 async def test_another_mat_is_written_into_the_file_if_one_agrees(
     answer: str, tmp_path: Path

@@ -53,6 +53,7 @@ def test_the_analyser_offers_all_that_saves_a_picture() -> None:
     ]
 
 
+@pytest.mark.slow
 async def test_the_palette_keeps_its_place_while_the_list_becomes_shorter() -> None:
     async with open_lab("x = 1\n", size=(80, 24)) as (pilot, _):
         await pilot.press("ctrl+p")
@@ -70,6 +71,7 @@ async def test_the_palette_keeps_its_place_while_the_list_becomes_shorter() -> N
         await until_shown(pilot, "No command contains these words")
 
 
+@pytest.mark.slow
 async def test_words_of_no_command_are_a_question_to_the_guide() -> None:
     async with open_lab("x = 1\n", size=(80, 24)) as (pilot, _):
         await pilot.press("ctrl+p")
@@ -83,6 +85,7 @@ async def test_words_of_no_command_are_a_question_to_the_guide() -> None:
         await until_shown(pilot, "To turn on the spot")
 
 
+@pytest.mark.slow
 async def test_enter_where_nothing_is_typed_or_found_does_nothing() -> None:
     async with open_lab("x = 1\n", size=(80, 24)) as (pilot, _):
         await pilot.press("f10")

@@ -41,6 +41,7 @@ def test_a_robot_is_whole_in_its_picture(robot: str, size: tuple[int, int]) -> N
         assert (np.abs(picture - part).sum(axis=2) < 90).any(), part
 
 
+@pytest.mark.slow
 async def test_what_names_no_robot_shows_none() -> None:
     async with open_lab() as (pilot, app):
         await pilot.press("r")

@@ -55,6 +55,7 @@ def replaying(run_id: str) -> AppSettings:
     return AppSettings(spec=run.spec, replay=run, program=program(run.program.text))
 
 
+@pytest.mark.slow
 async def test_a_stored_run_is_shown_as_it_was_and_run_anew_alike() -> None:
     run_id = stored()
     async with open_lab(replaying(run_id)) as (pilot, app):
@@ -119,6 +120,7 @@ async def test_a_run_is_searched_for_and_chosen() -> None:
         assert app.run_controller.build_snapshot().past
 
 
+@pytest.mark.slow
 async def test_keys_count_where_the_list_of_runs_is_too_low_for_a_path() -> None:
     stored("print('A: 1')\n")
     async with open_lab(size=(80, 16)) as (pilot, _):

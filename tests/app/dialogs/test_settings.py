@@ -73,6 +73,7 @@ async def change(pilot: Pilot[Any], app: LabApp, path: str) -> None:
     await until(pilot, lambda: path not in load_config().written)
 
 
+@pytest.mark.slow
 async def test_a_change_is_written_and_applies() -> None:
     async with open_settings() as (pilot, app):
         for path in APPLIED:
@@ -81,6 +82,7 @@ async def test_a_change_is_written_and_applies() -> None:
         await until(pilot, lambda: len(app.screen_stack) == 1)
 
 
+@pytest.mark.slow
 async def test_a_wrong_value_is_told_and_can_be_corrected() -> None:
     async with open_settings() as (pilot, app):
         listed = app.screen.query_one(OptionList)
@@ -97,6 +99,7 @@ async def test_a_wrong_value_is_told_and_can_be_corrected() -> None:
         await until(pilot, lambda: load_config().written == {"app.fps": 9})
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", [(80, 24), (40, 12)], ids=str)
 async def test_every_setting_can_be_reached_and_says_what_it_is(size: tuple[int, int]) -> None:
     async with open_settings(size) as (pilot, app):

@@ -106,6 +106,7 @@ async def test_a_later_start_offers_unsaved_text_to_go_on_with(
         assert name or app.run_controller.next_run.spec.world.background == "Loop"
 
 
+@pytest.mark.slow
 async def test_all_that_the_first_welcome_offers_is_in_sight(tmp_path: Path) -> None:
     folder = tmp_path / ("far/" * 9 + "away")
     folder.mkdir(parents=True)
@@ -119,6 +120,7 @@ async def test_all_that_the_first_welcome_offers_is_in_sight(tmp_path: Path) -> 
         assert "This is a robot lab." in screen_text(lab(pilot))
 
 
+@pytest.mark.slow
 async def test_the_footer_below_the_welcome_names_only_keys_that_work_there() -> None:
     async with open_lab("print(1)", size=(80, 24)) as (pilot, app):
         await pilot.press("f4")

@@ -54,6 +54,7 @@ async def test_keys_change_the_text(keys: Keys, after: str) -> None:
         assert area.program_text == after
 
 
+@pytest.mark.slow
 async def test_the_start_of_the_lines_returns_once_the_cursor_fits_beside_it() -> None:
     async with CodeApp().run_test(size=(40, 12)) as pilot:
         _, area = await alone(pilot)
@@ -76,6 +77,7 @@ async def test_the_keys_of_layouts_select_text_only_while_one_types() -> None:
         assert area.selected_text == TEXT
 
 
+@pytest.mark.slow
 async def test_no_line_is_wrapped_and_the_rest_is_scrolled_to() -> None:
     app = CodeApp()
     async with app.run_test(size=(30, 12)) as pilot:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pytest
 from textual.pilot import Pilot
 
 from tests.app.app_help import ENDLESS, open_lab, screen_text, until, until_state
@@ -21,6 +22,7 @@ async def click_into_text(pilot: Pilot[None], app: LabApp) -> CodeArea:
     return area
 
 
+@pytest.mark.slow
 async def test_a_click_and_letters_edit() -> None:
     async with open_lab(TEXT) as (pilot, app):
         area = await click_into_text(pilot, app)
@@ -40,6 +42,7 @@ async def test_escape_makes_letters_keys_again() -> None:
         assert area.program_text == TEXT
 
 
+@pytest.mark.slow
 async def test_during_a_run_a_click_leaves_letters_to_the_app() -> None:
     async with open_lab("x = 1\n" + ENDLESS, autorun=True) as (pilot, app):
         await until_state(pilot, RunPhase.RUNNING)

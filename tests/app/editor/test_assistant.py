@@ -42,6 +42,7 @@ async def listed(pilot: Pilot[Any], text: str) -> tuple[Code, CodeArea]:
     return code, area
 
 
+@pytest.mark.slow
 async def test_the_library_is_read_when_typing_begins(monkeypatch: pytest.MonkeyPatch) -> None:
     is_warm = Event()
     monkeypatch.setattr(completion, "preload", is_warm.set)
@@ -54,6 +55,7 @@ async def test_the_library_is_read_when_typing_begins(monkeypatch: pytest.Monkey
         await until(pilot, is_warm.is_set)
 
 
+@pytest.mark.slow
 async def test_the_only_name_is_put_in(home: Path) -> None:
     async with CodeApp().run_test(size=SIZE) as pilot:
         _, area = await typed(pilot, "tank_drive.of")
@@ -62,6 +64,7 @@ async def test_the_only_name_is_put_in(home: Path) -> None:
         assert not area.candidates.is_open
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "keys, text",
     [
@@ -99,6 +102,7 @@ async def test_keys_of_the_list(home: Path, keys: list[str], text: str) -> None:
         assert area.typing
 
 
+@pytest.mark.slow
 async def test_the_list_shows_names_signatures_and_help(home: Path) -> None:
     app = CodeApp()
     async with app.run_test(size=SIZE) as pilot:
@@ -109,6 +113,7 @@ async def test_the_list_shows_names_signatures_and_help(home: Path) -> None:
         assert " on_for_degrees(left_speed, right_speed, degrees, brake=True, block=True)" in rows
 
 
+@pytest.mark.slow
 async def test_what_is_typed_during_a_lookup_goes_on_with_the_name(
     home: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -154,6 +159,7 @@ async def test_enter_during_a_lookup_chooses_nothing_from_the_list_that_follows(
         assert code.query_one(CodeArea).program_text == "tan\no"
 
 
+@pytest.mark.slow
 async def test_a_click_chooses_a_name(home: Path) -> None:
     async with CodeApp().run_test(size=SIZE) as pilot:
         _, area = await listed(pilot, "tank_drive.o")
@@ -162,6 +168,7 @@ async def test_a_click_chooses_a_name(home: Path) -> None:
         assert area.has_focus
 
 
+@pytest.mark.slow
 async def test_the_list_follows_neither_the_cursor_nor_the_focus(home: Path) -> None:
     async with CodeApp().run_test(size=SIZE) as pilot:
         _, area = await listed(pilot, "tank_drive.o")
@@ -192,6 +199,7 @@ async def test_tab_indents_where_no_name_may_follow(home: Path) -> None:
         await until(pilot, lambda: area.program_text.startswith("x = 1  # "))
 
 
+@pytest.mark.slow
 async def test_the_frame_shows_the_signature_of_the_call(home: Path) -> None:
     async with CodeApp().run_test(size=SIZE) as pilot:
         code, area = await typed(pilot, "tank_drive.on(1, ")
@@ -202,6 +210,7 @@ async def test_the_frame_shows_the_signature_of_the_call(home: Path) -> None:
         await until(pilot, lambda: "right_speed" not in str(code.border_subtitle))
 
 
+@pytest.mark.slow
 async def test_names_that_nobody_defined_are_marked_and_explained(
     home: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -232,6 +241,7 @@ async def test_in_a_narrow_panel_the_hint_is_what_stays() -> None:
         await until(pilot, lambda: str(code.border_subtitle) == "did you mean `tank_drive`?")
 
 
+@pytest.mark.slow
 async def test_unknown_attributes_are_marked_once_names_were_looked_up(home: Path) -> None:
     async with CodeApp().run_test(size=SIZE) as pilot:
         code, area = await listed(pilot, "tank_drive.onn(1)\ntank_drive.o")
@@ -240,6 +250,7 @@ async def test_unknown_attributes_are_marked_once_names_were_looked_up(home: Pat
         await until(pilot, lambda: [one.name for one in area.unknown] == ["onn"])
 
 
+@pytest.mark.slow
 async def test_a_dot_lists_what_may_follow(home: Path) -> None:
     completion.preload()
     async with CodeApp().run_test(size=SIZE) as pilot:
@@ -249,6 +260,7 @@ async def test_a_dot_lists_what_may_follow(home: Path) -> None:
         await until(pilot, lambda: area.program_text == "tank_drive.off")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "keys, text",
     [

@@ -46,6 +46,7 @@ def names(text: str) -> list[str]:
     return [one.name for one in at_end(text)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "text, first",
     [
@@ -133,6 +134,7 @@ def test_the_help_of_light_has_both_scales_in_a_program_with_own_imports() -> No
     ]
 
 
+@pytest.mark.slow
 def test_a_candidate_has_a_signature_and_help(home: Path) -> None:
     found = {one.name: one for one in at_end("tank_drive.o")}
     assert found["on"] == Candidate(
@@ -146,6 +148,7 @@ def test_a_candidate_has_a_signature_and_help(home: Path) -> None:
     assert [one.kind for one in at_end("colorLeft.reflected_light_intensity_p")] == ["property"]
 
 
+@pytest.mark.slow
 def test_constants_come_last(home: Path) -> None:
     found = names(EV3DEV2 + "m.")
     assert found.index("COMMAND_STOP") > found.index("wait_until")

@@ -69,6 +69,7 @@ async def asked(pilot: Pilot[Any]) -> Question:
     return pilot.app.screen
 
 
+@pytest.mark.slow
 async def test_edited_text_runs_unsaved_and_is_stored_with_the_run(tmp_path: Path) -> None:
     path = tmp_path / "prog.py"
     async with open_code(own(path)) as (pilot, app, code):
@@ -87,6 +88,7 @@ async def test_edited_text_runs_unsaved_and_is_stored_with_the_run(tmp_path: Pat
         assert find_draft(str(path)) is None
 
 
+@pytest.mark.slow
 async def test_a_mistake_is_saved_and_marked(tmp_path: Path) -> None:
     path = tmp_path / "prog.py"
     async with open_code(own(path)) as (pilot, app, code):
@@ -96,6 +98,7 @@ async def test_a_mistake_is_saved_and_marked(tmp_path: Path) -> None:
         assert "✗ 2 if print" in screen_text(app)
 
 
+@pytest.mark.slow
 async def test_where_it_went_wrong_is_the_line_that_cannot_run(tmp_path: Path) -> None:
     path = tmp_path / "prog.py"
     async with open_code(own(path)) as (pilot, app, code):
@@ -111,6 +114,7 @@ async def test_where_it_went_wrong_is_the_line_that_cannot_run(tmp_path: Path) -
         await until(pilot, lambda: app.query_one(CodeArea).cursor_location[0] == 1)
 
 
+@pytest.mark.slow
 async def test_a_program_opened_without_its_mat_runs_only_on_one_that_is_chosen(
     tmp_path: Path,
 ) -> None:
@@ -179,6 +183,7 @@ async def test_after_an_error_typing_begins_on_its_line(
         assert app.query_one(CodeArea).cursor_location == (2, 4)
 
 
+@pytest.mark.slow
 async def test_no_line_is_marked_any_more_once_the_file_was_mended_elsewhere(
     tmp_path: Path,
 ) -> None:
@@ -193,6 +198,7 @@ async def test_no_line_is_marked_any_more_once_the_file_was_mended_elsewhere(
         assert code.error_line == 0
 
 
+@pytest.mark.slow
 async def test_ctrl_s_saves_the_world_outside_the_editor(tmp_path: Path) -> None:
     async with open_code(own(tmp_path / "prog.py")) as (pilot, _, code):
         await typed(pilot, code, "x", "escape", "escape")
@@ -283,6 +289,7 @@ async def test_a_file_that_changes_under_unsaved_edits(
         assert app.document.dirty is (answer == "k")
 
 
+@pytest.mark.slow
 async def test_a_change_of_the_plan_leaves_edits_alone(tmp_path: Path) -> None:
     async with open_code(own(tmp_path / "prog.py")) as (pilot, app, code):
         await typed(pilot, code, "x", "escape")

@@ -114,6 +114,7 @@ async def test_the_page_of_the_panel_with_the_focus(
             await until_shown(pilot, word)
 
 
+@pytest.mark.slow
 async def test_the_scroll_bar_covers_no_letter() -> None:
     async with open_guide("G") as (pilot, screen):
         page = screen._page
@@ -126,6 +127,7 @@ async def test_the_scroll_bar_covers_no_letter() -> None:
         assert page.drawn_columns == NARROW_PAGE_COLUMNS
 
 
+@pytest.mark.slow
 async def test_a_page_is_drawn_again_when_only_its_own_width_changes() -> None:
     async with open_guide(size=MEDIUM) as (pilot, screen):
         page = screen._page
@@ -137,6 +139,7 @@ async def test_a_page_is_drawn_again_when_only_its_own_width_changes() -> None:
         )
 
 
+@pytest.mark.slow
 async def test_a_new_search_replaces_the_old_one() -> None:
     async with open_guide() as (pilot, screen):
         await pilot.press("slash", *"noise", "enter", "slash", *"black")
@@ -155,6 +158,7 @@ async def test_escape_leaves_the_search_first() -> None:
         await until(pilot, lambda: not isinstance(pilot.app.screen, GuideScreen))
 
 
+@pytest.mark.slow
 async def test_escape_goes_from_a_page_to_the_answers_and_from_these_to_the_contents() -> None:
     async with open_guide() as (pilot, screen):
         answers = await asked(pilot, "save the program")
@@ -217,6 +221,7 @@ async def test_the_keys_of_the_panel_come_first(panel: str, first: str, then: st
         assert text.find("In the panel") < text.find(first) < text.find(then)
 
 
+@pytest.mark.slow
 async def test_a_search_says_so_until_it_has_found_something(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -235,6 +240,7 @@ async def test_a_search_says_so_until_it_has_found_something(
         await until(pilot, lambda: "searching …" not in screen_text(lab(pilot)))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", [(40, 12), SMALL, (200, 60)], ids=["40x12", "80x24", "200x60"])
 async def test_the_best_answers_are_in_sight_below_each_other(size: tuple[int, int]) -> None:
     async with open_guide(size=size) as (pilot, _):
@@ -265,6 +271,7 @@ async def test_the_passage_of_an_answer_is_in_sight_on_its_page(
         await until(pilot, lambda: passage in page_text(pilot))
 
 
+@pytest.mark.slow
 async def test_the_page_keys_go_on_to_further_answers_also_from_the_question() -> None:
     async with open_guide() as (pilot, _):
         answers = await asked(pilot, "where is my data saved, and how do I read it in Python")
@@ -276,6 +283,7 @@ async def test_the_page_keys_go_on_to_further_answers_also_from_the_question() -
         assert len(answers) > 3
 
 
+@pytest.mark.slow
 async def test_answers_fit_a_window_that_has_changed() -> None:
     async with open_guide() as (pilot, _):
         (first, *_) = await asked(pilot, "How do I make the robot slower?")
@@ -286,6 +294,7 @@ async def test_answers_fit_a_window_that_has_changed() -> None:
         await until_shown(pilot, words[:90])
 
 
+@pytest.mark.slow
 async def test_words_of_the_question_stand_out_and_a_section_is_named_once() -> None:
     async with open_guide() as (pilot, _):
         answers = await asked(pilot, "colours of the sensor")

@@ -76,6 +76,7 @@ def actions(app: LabApp) -> list[list[str]]:
     )
 
 
+@pytest.mark.slow
 async def test_keys_press_buttons_while_the_panel_has_the_focus() -> None:
     async with open_lab(WATCHES) as (pilot, app):
         await pilot.press("K")
@@ -207,6 +208,7 @@ WITH_BUMPER = RunSpec(
 )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("by_mouse", [False, True])
 async def test_a_bumper_is_pressed_by_key_and_by_mouse(by_mouse: bool) -> None:
     async with open_lab(replace(settings(WAITS_FOR_TOUCH), spec=WITH_BUMPER)) as (pilot, app):
@@ -241,6 +243,7 @@ while True:
 WITH_HUB = RunSpec(ROBOTS["Prime_Robot"], WorldSpec(), PROFILES["pybricks4"])
 
 
+@pytest.mark.slow
 async def test_the_mouse_does_not_press_the_keys_of_a_remote_control() -> None:
     remote = replace(program(WAITS_FOR_REMOTE), prelude="none")
     setup = replace(settings(), spec=WITH_HUB, program=remote)
@@ -266,6 +269,7 @@ while True:
 """
 
 
+@pytest.mark.slow
 async def test_a_hand_presses_as_the_first_line_says(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

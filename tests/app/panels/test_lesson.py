@@ -62,6 +62,7 @@ async def test_a_lesson_from_its_first_step_to_its_model_answer(tmp_path: Path) 
         assert states() == dict.fromkeys(("number", "drive", "do"), "done")
 
 
+@pytest.mark.slow
 async def test_lesson_that_found_no_room_is_drawn_later(tmp_path: Path) -> None:
     async with open_lab(opened(tmp_path), size=LARGE) as (pilot, app):
         await until(pilot, lambda: "1. Think" in shown(app))
@@ -71,6 +72,7 @@ async def test_lesson_that_found_no_room_is_drawn_later(tmp_path: Path) -> None:
         assert "1. Think" in shown(app)
 
 
+@pytest.mark.slow
 async def test_hints_come_one_by_one_and_are_counted(tmp_path: Path) -> None:
     async with open_lab(opened(tmp_path), size=LARGE) as (pilot, app):
         await until(pilot, lambda: "Y shows hint 1 of 2." in shown(app))
@@ -83,6 +85,7 @@ async def test_hints_come_one_by_one_and_are_counted(tmp_path: Path) -> None:
         assert "There are no more hints. M skips the step" in notices(app)
 
 
+@pytest.mark.slow
 async def test_a_run_is_judged_after_skip_and_start_over(tmp_path: Path) -> None:
     async with open_lab(opened(tmp_path), size=SMALL) as (pilot, app):
         await until(pilot, lambda: "1. Think" in shown(app))
@@ -99,6 +102,7 @@ async def test_a_run_is_judged_after_skip_and_start_over(tmp_path: Path) -> None
         await until(pilot, lambda: "✓ Drive" in shown(app))
 
 
+@pytest.mark.slow
 async def test_menu_opens_another_lesson(tmp_path: Path) -> None:
     async with open_lab(opened(tmp_path), size=SMALL) as (pilot, app):
         await until(pilot, lambda: "1. Think" in shown(app))
@@ -117,6 +121,7 @@ async def test_menu_opens_another_lesson(tmp_path: Path) -> None:
         assert app.run_controller.timeline.recording is None
 
 
+@pytest.mark.slow
 async def test_run_that_misses_a_goal_says_why_and_counts_as_a_try(tmp_path: Path) -> None:
     async with open_lab(opened(tmp_path), size=LARGE) as (pilot, app):
         app.lesson.skip_step()
@@ -183,6 +188,7 @@ async def test_step_is_done_by_doing_it(
         await until(pilot, lambda: states().get("do") == "done")
 
 
+@pytest.mark.slow
 async def test_panel_that_a_step_asks_for_is_not_open_already(tmp_path: Path) -> None:
     async with open_lab(opened(tmp_path, "show = 'instrumentation'"), size=LARGE) as (pilot, app):
         await until(pilot, lambda: app.panel_area.is_shown("instrumentation"))
@@ -229,6 +235,7 @@ async def test_page_keys_scroll_the_text_beside_every_panel(
                 await until(pilot, lambda: "Line 0\n" in shown(app), panel)
 
 
+@pytest.mark.slow
 async def test_page_keys_belong_to_the_editor_while_it_is_typed_in(tmp_path: Path) -> None:
     async with open_lab(with_lines(opened(tmp_path), 60), size=(200, 60)) as (pilot, app):
         await until(pilot, lambda: "Line 0" in shown(app))
@@ -240,6 +247,7 @@ async def test_page_keys_belong_to_the_editor_while_it_is_typed_in(tmp_path: Pat
         assert "Line 0\n" in shown(app)
 
 
+@pytest.mark.slow
 async def test_menu_shows_the_step_before_again(tmp_path: Path) -> None:
     async with open_lab(opened(tmp_path), size=SMALL) as (pilot, app):
         await until(pilot, lambda: "1. Think" in shown(app))
@@ -270,6 +278,7 @@ async def test_lesson_stands_beside_world_and_code(
         assert app.panel_area.lesson.styles.width.value == columns
 
 
+@pytest.mark.slow
 async def test_damaged_progress_is_reported_and_kept(home: Path, tmp_path: Path) -> None:
     (home / "lessons").mkdir(parents=True)
     (home / "lessons" / "progress.json").write_text("[1]")
@@ -284,6 +293,7 @@ def test_steps_can_ask_for_every_panel() -> None:
     assert set(SHOWABLE) == set(PANELS) - {"lesson"}
 
 
+@pytest.mark.slow
 async def test_answer_that_is_not_right_says_what_to_do(tmp_path: Path) -> None:
     async with open_lab(opened(tmp_path), size=SMALL) as (pilot, app):
 
@@ -299,6 +309,7 @@ async def test_answer_that_is_not_right_says_what_to_do(tmp_path: Path) -> None:
         assert app.screen.query_one(".dialog").region.y == 0
 
 
+@pytest.mark.slow
 async def test_running_an_edited_text_saves_it_and_ends_typing_and_the_former_run(
     tmp_path: Path,
 ) -> None:
@@ -319,6 +330,7 @@ async def test_running_an_edited_text_saves_it_and_ends_typing_and_the_former_ru
         assert build_program_path(app.lesson.lesson).read_text() == f"y=2\n{PROGRAM}"  # type: ignore[arg-type]
 
 
+@pytest.mark.slow
 async def test_the_last_lesson_can_be_reached_in_a_low_terminal(tmp_path: Path) -> None:
     async with open_lab(opened(tmp_path), size=SMALL) as (pilot, app):
         await pilot.press("M")
@@ -328,6 +340,7 @@ async def test_the_last_lesson_can_be_reached_in_a_low_terminal(tmp_path: Path) 
         assert listed.show_vertical_scrollbar
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size, is_shown", [(SMALL, False), (LARGE, True)])
 async def test_output_is_back_when_another_lesson_is_opened(
     size: tuple[int, int], is_shown: bool, tmp_path: Path
@@ -345,6 +358,7 @@ async def test_output_is_back_when_another_lesson_is_opened(
         )
 
 
+@pytest.mark.slow
 async def test_chart_stays_in_the_lesson_that_asks_for_it(tmp_path: Path) -> None:
     made = opened(tmp_path)
     async with open_lab(made, size=SMALL) as (pilot, app):
@@ -357,6 +371,7 @@ async def test_chart_stays_in_the_lesson_that_asks_for_it(tmp_path: Path) -> Non
         await until(pilot, lambda: again.panel_area.is_shown("chart"))
 
 
+@pytest.mark.slow
 async def test_arrow_keys_move_the_robot_when_another_lesson_begins(tmp_path: Path) -> None:
     async with open_lab(opened(tmp_path), size=SMALL) as (pilot, app):
         await pilot.press("d")

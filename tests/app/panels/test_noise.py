@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pytest
 from textual.widgets import Input, Static
 
 from tests.app.app_help import (
@@ -33,6 +34,7 @@ async def test_a_slider_acts_on_the_readings_at_once() -> None:
         assert app.run_controller.pose.x_mm == 150
 
 
+@pytest.mark.slow
 async def test_a_seed_is_for_the_next_run_and_a_wrong_one_is_refused_beside_it() -> None:
     async with open_lab(LOGS, panels_on=SHOWN, size=(80, 24)) as (pilot, app):
         before = app.run_controller.next_run
@@ -49,6 +51,7 @@ async def test_a_seed_is_for_the_next_run_and_a_wrong_one_is_refused_beside_it()
         await until(pilot, lambda: app.run_controller.next_run.spec.seed == 7)
 
 
+@pytest.mark.slow
 async def test_digits_set_the_number_of_a_slider() -> None:
     async with open_lab(LOGS, panels_on=SHOWN, size=(80, 24)) as (pilot, app):
         app.panel_area.focus_opened("noise")
@@ -59,6 +62,7 @@ async def test_digits_set_the_number_of_a_slider() -> None:
             assert str(app.query_one("#light-number", Static).render()) == str(number)
 
 
+@pytest.mark.slow
 async def test_the_panel_shows_what_a_mat_or_a_program_leaves() -> None:
     async with open_lab(LOGS, panels_on=SHOWN, size=(80, 24)) as (pilot, app):
         app.query_one("#motor", Slider).focus()

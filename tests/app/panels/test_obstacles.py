@@ -65,6 +65,7 @@ async def test_an_empty_list_says_how_to_begin(size: tuple[int, int]) -> None:
         assert all(entry.disabled for entry in app.query("Obstacles Input"))
 
 
+@pytest.mark.slow
 async def test_add_type_and_remove() -> None:
     async with open_obstacles(size=(80, 24)) as (pilot, app):
         await pilot.press("plus", "plus")
@@ -159,6 +160,7 @@ async def test_the_box_at_hand_is_marked_in_the_world() -> None:
         assert view._cells.shape != before.shape or (view._cells != before).any()
 
 
+@pytest.mark.slow
 async def test_a_set_is_chosen_and_saved(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     async with open_lab(LOGS) as (pilot, app):

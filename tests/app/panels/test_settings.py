@@ -170,6 +170,7 @@ async def test_a_robot_is_saved_edited_and_loaded_again(
         assert row(app, "preset").entry.value == "mine.toml"
 
 
+@pytest.mark.slow
 async def test_a_wrong_robot_file_changes_nothing(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -186,6 +187,7 @@ async def test_a_wrong_robot_file_changes_nothing(
         assert app.run_controller.next_run == before
 
 
+@pytest.mark.slow
 async def test_a_profile_is_chosen_and_seen_in_the_controls() -> None:
     async with open_lab(LOGS, panels_on=frozenset({"controls"})) as (pilot, app):
         await pilot.press("F")
@@ -206,6 +208,7 @@ async def test_what_a_robots_file_has_that_means_nothing_here_is_said(tmp_path: 
         )
 
 
+@pytest.mark.slow
 async def test_a_long_value_is_seen_from_its_beginning_and_escape_closes_the_panel() -> None:
     async with open_settings(size=(80, 24)) as (pilot, app):
         await pilot.press("down")

@@ -249,6 +249,7 @@ async def test_the_wheel_turns_the_robot_that_it_is_over(
     assert all(message.done for message in messages)
 
 
+@pytest.mark.slow
 async def test_a_file_would_show_what_the_panel_shows() -> None:
     async with open_lab(LOGS, "Obstacles_Test", size=(80, 24)) as (pilot, app):
         await pilot.press("R")

@@ -117,6 +117,7 @@ def test_a_wrong_file_of_poses_is_told_and_left_alone(text: str, said: str) -> N
     assert find_poses_file().read_text() == text
 
 
+@pytest.mark.slow
 async def test_saved_poses_in_the_app() -> None:
     async with open_lab(LOGS, size=(80, 24)) as (pilot, app):
         app.run_controller.place(Pose(700, 300, 45))

@@ -22,6 +22,7 @@ def test_advice_names_commands_that_exist(tuisim: Command) -> None:
     assert "--older-than" in tuisim("runs", "rm", "--help").stdout
 
 
+@pytest.mark.slow
 def test_works_without_a_terminal(tmp_path: Path) -> None:
     done = subprocess.run(
         [sys.executable, "-m", "tuisim", "doctor", "--json"],

@@ -425,6 +425,7 @@ def test_folder_deleted_or_copied_by_hand_is_noticed(
 # Noise
 
 
+@pytest.mark.slow
 def test_noise_is_found_also_after_65536_actions(logged: StoredRun) -> None:
     actions = [UserAction(tick, SetNoise(tick % 100, 0)) for tick in range(1, 70_001)]
     for tick in (2, 32_768, 65_536, 69_990):

@@ -376,6 +376,7 @@ def printed(folder: Path) -> OutputView:
     return view
 
 
+@pytest.mark.slow
 def test_much_output_takes_little_memory_and_is_read_again_from_its_file(tmp_path: Path) -> None:
     view = printed(tmp_path)
     assert view._dropped > 0
@@ -393,6 +394,7 @@ def test_much_output_takes_little_memory_and_is_read_again_from_its_file(tmp_pat
     assert view.damage == ""
 
 
+@pytest.mark.slow
 def test_output_that_a_program_changes_later_is_damage_and_no_error(tmp_path: Path) -> None:
     view = printed(tmp_path)
     index = RowIndex(view)

@@ -133,6 +133,7 @@ def test_a_program_cannot_change_what_a_template_is_prepared_for() -> None:
     assert process._Starts.templates
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("real_mats", "home")
 def test_a_template_does_not_keep_a_damaged_mat() -> None:
     text = "print(colorLeft.reflected_light_intensity_pc)"

@@ -197,6 +197,7 @@ def test_simulate_names_the_parts(home: Path) -> None:
     assert f"plugged in {late.parts}" in tuisim.simulate(late.text).note
 
 
+@pytest.mark.slow
 def test_a_batch_that_varies_the_robot_names_it(home: Path, tmp_path: Path) -> None:
     late = LATE_PROGRAMS["by getattr"]
     path = tmp_path / "late.py"

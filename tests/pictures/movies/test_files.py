@@ -79,6 +79,7 @@ def test_the_view_of_a_clip_lies_on_the_world_in_its_frames(
         assert (outside == RIM_RGB, inside == RIM_RGB) == (True, False), place
 
 
+@pytest.mark.slow
 def test_a_small_movie_has_fewer_frames_or_is_none_where_it_would_be_large(
     recorded: ClipRun, monkeypatch: pytest.MonkeyPatch
 ) -> None:

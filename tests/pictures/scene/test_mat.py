@@ -54,6 +54,7 @@ def test_light_lines_on_dark_are_as_clear_as_dark_lines_on_light() -> None:
     assert np.abs(light[on_mat] + dark[on_mat].astype(int) - 255).max() <= 1
 
 
+@pytest.mark.slow
 @for_each(cells=list(CellSet), size=[(74, 20)], across_per_down=[0.0, 0.37, 1.0, 3.1])
 def test_a_thin_line_has_no_gaps(
     cells: CellSet, size: tuple[int, int], across_per_down: float

@@ -59,6 +59,7 @@ SPEC = RunSpec(
 TRACE = Piece.from_points(np.array([700.0, 900.0]), np.array([900.0, 700.0]), SPEC.robot.pen)
 
 
+@pytest.mark.slow
 def test_it_is_what_a_screen_shows_in_a_frame() -> None:
     view = build_world_view(SPEC.robot)
     trace = PenTrace()

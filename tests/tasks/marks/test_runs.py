@@ -101,6 +101,7 @@ def _mark(folder: Path, here: Command, *names: str) -> tuple[pd.DataFrame, dict[
     return marks, {path.stem: path.read_text() for path in (folder / "told").iterdir()}
 
 
+@pytest.mark.slow
 def test_what_fits_one_world_only_is_found_by_the_others(tmp_path: Path, here: Command) -> None:
     marks, told = _mark(tmp_path, here, "right", "learnt", "tells")
     points = marks[["points", "robustness", "goal_black", "goal_said", "goal_quick"]]
@@ -139,6 +140,7 @@ def test_a_program_that_does_not_end_in_another_world_loses_what_counts_there(
     assert not [word for word in ("stopped", "direction", "120") if word in told["hangs"]]
 
 
+@pytest.mark.slow
 def test_a_program_that_hangs_at_its_end_leaves_no_run_out(tmp_path: Path, here: Command) -> None:
     """What fits the known world only would not be seen otherwise."""
     marks, _ = _mark(tmp_path, here, "dies")
@@ -197,6 +199,7 @@ def test_without_a_world_of_the_task_a_hand_presses_as_the_program_says(
         assert done.stdout.splitlines()[1].split()[:2] == ["ada", points], done.stdout
 
 
+@pytest.mark.slow
 def test_a_task_presses_buttons_and_gives_inputs_in_each_world(
     tmp_path: Path, here: Command
 ) -> None:

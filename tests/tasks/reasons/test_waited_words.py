@@ -301,6 +301,7 @@ def test_what_never_came_near_or_turned_is_named(
     assert waited_for.startswith(sentence) and bool(waited_for) == bool(sentence)
 
 
+@pytest.mark.slow
 def test_a_program_that_reads_on_thousands_of_lines_is_told_by_its_readings(
     tmp_path: Path, here: Command
 ) -> None:
@@ -324,6 +325,7 @@ def test_the_remote_drives_while_it_is_pressed(tmp_path: Path, here: Command) ->
     assert facts["waited_for"] == ""
 
 
+@pytest.mark.slow
 def test_a_batch_says_it_in_a_column(tmp_path: Path, here: Command) -> None:
     (tmp_path / "prog.py").write_text(WAIT_TOUCH)
     here("batch", "prog.py", "--seeds", "0..1", "--timeout", 6, "--out", "rows.csv")

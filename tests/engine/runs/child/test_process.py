@@ -22,6 +22,7 @@ from tuisim.settings.build import build_run_spec
 from tuisim.settings.options import Settings
 
 
+@pytest.mark.slow
 def test_runs_of_many_threads_share_one_warm_process(monkeypatch: pytest.MonkeyPatch) -> None:
     process.end_warm_process()
     begin, started, meeting = WarmProcess.__init__, [], Barrier(2)

@@ -123,6 +123,7 @@ def test_the_warm_process_ends_with_its_host(warm: WarmProcess) -> None:
     assert warm._process.returncode == 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("harm", ["SIGSTOP", "SIGKILL"])
 def test_a_program_that_harms_its_parent_does_not_keep_the_next_one_from_running(
     start: Start, monkeypatch: pytest.MonkeyPatch, harm: str

@@ -46,6 +46,7 @@ def test_the_height_of_a_text_is_that_of_a_line() -> None:
     assert Font.DEFAULT.text_width("") == 0
 
 
+@pytest.mark.slow
 def test_a_font_is_no_higher_than_the_screen() -> None:
     assert Font(size=1_000_000).height == Font(size=128).height
 
