@@ -5,6 +5,8 @@ from __future__ import annotations
 from math import inf
 
 import pytest
+from textual.app import ComposeResult
+from textual.widgets import Static
 
 from tests.app.app_help import notices, until
 from tuisim.app.notices import NoticeRow, split_message
@@ -47,6 +49,27 @@ async def test_an_answer_stays_below_until_it_is_released() -> None:
         assert row.region.bottom == 19
         app.notices.release()
         await until(pilot, lambda: not app.query(NoticeRow))
+
+
+class _Lab(TerminalApp):
+    """Panels, and the row of the keys."""
+
+    CSS = "#panels { height: 1fr; } #keys { dock: bottom; height: 1; }"
+
+    def compose(self) -> ComposeResult:
+        yield Static(id="panels")
+        yield Static(id="keys")
+
+
+async def test_an_answer_of_several_rows_covers_no_panel() -> None:
+    app = _Lab()
+    async with app.run_test(notifications=True, size=(60, 20)) as pilot:
+        app.notify(LONG, timeout=inf)
+        panels = app.query_one("#panels")
+        await until(pilot, lambda: panels.region.bottom == 17)
+        assert app.query_one(NoticeRow).region.bottom == app.query_one("#keys").region.y == 19
+        app.notices.release()
+        await until(pilot, lambda: panels.region.bottom == 19)
 
 
 async def test_an_error_stays_until_it_is_read_and_the_newest_notice_follows() -> None:

@@ -1,8 +1,7 @@
-"""Notices lie on the lower edge of the panels, above the keys."""
+"""Notices cover neither the mat nor the readings, nor the keys."""
 
 from __future__ import annotations
 
-from math import inf
 from typing import Any, cast
 
 import pytest
@@ -35,27 +34,27 @@ LONG = "words of an error that names a file and a key, and says what is allowed 
 
 @pytest.mark.quick_cases("(65, 58)", "(80, 24)", "(100, 30)")
 @pytest.mark.parametrize("size", [(65, 58), (80, 24), (100, 30), (120, 40)], ids=str)
-async def test_a_notice_lies_on_the_lower_border_and_moves_no_panel(
+async def test_a_notice_lies_on_the_border_and_leaves_axis_and_keys_free(
     size: tuple[int, int],
 ) -> None:
     async with LabApp(settings(LOGS)).run_test(size=size, notifications=True) as pilot:
         app = await ready(pilot)
-        panels = [cast(Widget, panel) for panel in app.panel_area.on_screen()]
-        regions = [panel.region for panel in panels]
-        app.notify(LONG, timeout=inf)
+        app.panel_area.bring("chart")
+        await until(pilot, lambda: bool(app.panel_area.panels["chart"].region))
+        app.say(LONG)
         await shown_row(pilot, app, LONG)
         await until(pilot, lambda: app.screen.query_one(NoticeRow).region.height > 1)
         rows = app.screen.query_one(NoticeRow).region
-        assert (rows.bottom, rows.width) == (app.panel_area.region.bottom, size[0])
-        assert rows.height <= 3 and [panel.region for panel in panels] == regions
-        app.notices.release()
+        assert rows == Region(0, 0, size[0], rows.height) and rows.height <= 3
+        axis = app.panel_area.panels["chart"].region
+        assert not rows.overlaps(Region(axis.x, axis.bottom - 3, axis.width, 3))
         app.say(SHORT)
         row = (await shown_row(pilot, app, SHORT)).region
         # Beside a shorter row, the rest of the words on the border would seem to belong to it.
         assert row == Region(0, app.panel_area.region.bottom - 1, size[0], 1)
         assert not row.overlaps(app.key_footer.region)
-        for panel in panels:
-            assert not row.overlaps(panel.region.shrink((1, 1, 1, 1)))
+        for panel in app.panel_area.on_screen():
+            assert not row.overlaps(cast(Widget, panel).region.shrink((1, 1, 1, 1)))
 
 
 @pytest.mark.slow

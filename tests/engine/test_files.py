@@ -56,7 +56,6 @@ def write(tmp_path: Path) -> Write:
     return write
 
 
-@pytest.mark.slow
 @given(robot=robots())
 def test_a_robot_reads_back_to_the_last_bit(robot: RobotSpec, tmp_path: Path) -> None:
     (tmp_path / "robot.toml").unlink(missing_ok=True)

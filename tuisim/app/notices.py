@@ -1,4 +1,4 @@
-"""Notices: one message at a time, in a few rows on the lower edge of the panels."""
+"""Notices: one message at a time, on the lower edge of the panels or, if it is long, in a few rows at the top."""
 
 from __future__ import annotations
 
@@ -66,7 +66,9 @@ def split_message(message: str, columns: int) -> list[str]:
 
 
 class NoticeRow(Static):
-    """The row of a notice above the footer; a long one has more rows. The panels below it keep their places.
+    """The row of a notice. A long one has more rows, at the top, where they cover neither keys nor a chart's axis.
+
+    One that stays is read beside the panels, which make room for it above the footer.
 
     Args:
         notice: What it shows.
@@ -86,7 +88,8 @@ class NoticeRow(Static):
         text-overflow: ellipsis;
         border-left: outer $success;
     }}
-    NoticeRow.-long {{ height: auto; }}
+    NoticeRow.-long {{ dock: top; height: auto; margin: 0; }}
+    NoticeRow.-long.-stays {{ layer: default; dock: bottom; margin-bottom: 1; }}
     NoticeRow.-warning {{ border-left: outer $warning; }}
     NoticeRow.-error {{ border-left: outer $error; }}
     """
@@ -94,6 +97,7 @@ class NoticeRow(Static):
 
     def __init__(self, notice: Notice, ended: Callable[[], None]) -> None:
         super().__init__(markup=False, classes=f"-{notice.severity}")
+        self.set_class(notice.stays, "-stays")
         self.notice = notice
         self._ended = ended
         self._parts: deque[str] = deque()
