@@ -60,4 +60,4 @@ def test_the_keys_of_a_remote_control_cannot_be_clicked(width: int, rows: int) -
 
 def test_the_light_on_a_port_is_shown_with_its_brightness() -> None:
     picture = draw_hub(BrickState(leds={"light B": 204}), (), 30, 10, has_matrix=False)
-    assert "".join(text for text, _ in picture.lines[1]).strip() == "B ☼ 80 %"
+    assert "".join(text for text, _ in picture.lines[1]).strip() == "B light 80 %"

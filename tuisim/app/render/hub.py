@@ -125,7 +125,7 @@ def _draw_lamps(face: BrickState) -> Iterator[Run]:
     """Yield the ports of the lights on ports, each with the brightness of its light."""
     for name, level in face.leds.items():
         if name.startswith(PORT_LIGHT):
-            yield f" {name.removeprefix(PORT_LIGHT)} ☼ {round(level / 2.55)} % ", _CAPTION
+            yield f" {name.removeprefix(PORT_LIGHT)} light {round(level / 2.55)} % ", _CAPTION
 
 
 def _draw_controllers(
