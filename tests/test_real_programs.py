@@ -169,11 +169,11 @@ BLIND: Mapping[str, Case] = {
     ),
     "fll_2019/main": Case(
         "1 left, 2 ultrasonic, A medium motor, D medium motor",
-        "run_crane 7.0",
+        "run_crane 6.9",
         {"wheel_diameter_mm": 81.6},
         f"{BANDS} --press enter@5-5.2 --press backspace@20-20.5",
         0,
-        (36, 797),
+        (37, 796),
     ),
     "floor_scan/scan": Case("", "row 3: 236 samples", there_mm=(1802, -478), is_plugged=True),
     "gyro_square": Case(
@@ -209,7 +209,7 @@ BLIND: Mapping[str, Case] = {
         0,
         (1119, 595),
     ),
-    "motorlevel": Case("1 touch", "parked 735 3214", REVERSED, "-b Grey_bands", 0, (1365, 139)),
+    "motorlevel": Case("1 touch", "parked 736 3215", REVERSED, "-b Grey_bands", 0, (1365, 142)),
     "odometry_tour": Case(
         "",
         "58 points saved",
@@ -244,7 +244,7 @@ BLIND: Mapping[str, Case] = {
         MIDDLE,
     ),
     "rob_subclass": Case(
-        "1 gyro, 4 ultrasonic, A left wheel, B -", "[  14.49] bye", {}, LINE, 0, (211, 1033)
+        "1 gyro, 4 ultrasonic, A left wheel, B -", "[  14.49] bye", {}, LINE, 0, (212, 1033)
     ),
     "robot_arm": Case(
         "1 touch, A medium motor, B large motor, C large motor",
