@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tuisim.base.data_class import dataclass
-from tuisim.base.errors import counted, printable
+from tuisim.base.errors import counted, printable, shortened
 from tuisim.base.faults import UNJUDGED
 from tuisim.base.source import source_lines
 from tuisim.logs.export import export_frame
@@ -217,7 +217,7 @@ def build_row(
         cells=tuple(_build_cell(column, ordered) for column in columns),
         reason=reason,
         line=line,
-        source_line=printable(lines[line - 1].strip()) if 0 < line <= len(lines) else "",
+        source_line=shortened(printable(lines[line - 1].strip())) if 0 < line <= len(lines) else "",
         seed=failed.seed if failed else 0,
         failure=failed.failure if failed else "",
         error=failed.error if failed else "",
