@@ -82,11 +82,7 @@ class LineCutter:
         Raises:
             LogError: a line is too long.
         """
-        text = self._newlines.decode(self._decode(data), final=not data)
-        if "\0" in text:
-            self._notes.say("null bytes were skipped")
-            text = text.replace("\0", "")
-        text = self._rest + text
+        text = self._rest + self._newlines.decode(self._decode(data), final=not data)
         end = text.rfind("\n") + 1
         if not data:
             text = text and text.removesuffix("\n") + "\n"
@@ -102,7 +98,11 @@ class LineCutter:
             )
         if not end:
             return None
-        block = Block(self._row, text[:end])
+        lines = text[:end]
+        if "\0" in lines:
+            self._notes.say("null bytes were skipped")
+            lines = lines.replace("\0", "")
+        block = Block(self._row, lines)
         self._row += block.text.count("\n")
         return block
 

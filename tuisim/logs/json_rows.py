@@ -45,7 +45,7 @@ class JsonReader:
         """Return a table of objects, each of which comes with its row in the file."""
         names = dict.fromkeys(name for _, cells in numbered_rows for name in cells)
         texts = {
-            _escape_surrogates(name) or _NAMELESS: pa.array(
+            _escape_surrogates(str(name)) or _NAMELESS: pa.array(
                 [_format_cell(cells.get(name)) for _, cells in numbered_rows], pa.string()
             )
             for name in names
@@ -56,7 +56,9 @@ class JsonReader:
 def _format_cell(cell: object) -> str | None:
     if cell is None:
         return None
-    return _escape_surrogates(cell) if isinstance(cell, str) else json.dumps(cell)
+    # Python prints more than JSON has: sets, bytes, numbers as names.
+    text = cell if isinstance(cell, str) else json.dumps(cell, default=repr, skipkeys=True)
+    return _escape_surrogates(text)
 
 
 def _escape_surrogates(text: str) -> str:
