@@ -17,7 +17,6 @@ from tests.app.app_help import (
     notices,
     open_lab,
     program_of,
-    ready,
     recording_of,
     until,
     until_state,
@@ -356,19 +355,6 @@ async def test_output_is_back_when_another_lesson_is_opened(
                 app.panel_area.is_shown("output") and app.panel_area.is_shown("chart") is is_shown
             ),
         )
-
-
-@pytest.mark.slow
-async def test_chart_stays_in_the_lesson_that_asks_for_it(tmp_path: Path) -> None:
-    made = opened(tmp_path)
-    async with open_lab(made, size=SMALL) as (pilot, app):
-        app.lesson.skip_step()
-        app.lesson.skip_step()
-        await pilot.press("c")
-        await until(pilot, lambda: states()["do"] == "done")
-    async with LabApp(made).run_test(size=SMALL) as pilot:
-        again = await ready(pilot)
-        await until(pilot, lambda: again.panel_area.is_shown("chart"))
 
 
 @pytest.mark.slow
