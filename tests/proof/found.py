@@ -18,6 +18,7 @@ FOUND: Sequence[tuple[str, str]] = (
     ("damage", "catalogue:554407099"),
     ("damage", "csv:1619606507:edge"),
     ("damage", "goals:1490831057"),
+    ("damage", "jsonl:2802776020"),
     ("damage", "jsonl:3488657884"),
     ("damage", "marks:115627938:value"),
     ("damage", "parquet:1485874645"),
