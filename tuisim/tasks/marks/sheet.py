@@ -191,6 +191,12 @@ def build_sheet(
     return Sheet(title, tuple(columns), rows, tuple(seeds))
 
 
+def _quote_line(text: str, number: int) -> str:
+    """Return a line of a program for a cell of the sheet; empty if the program has no line of this number."""
+    lines = source_lines(text)
+    return shortened(printable(lines[number - 1].strip())) if 0 < number <= len(lines) else ""
+
+
 def build_row(
     student: Student,
     columns: Sequence[Goal],
@@ -208,7 +214,6 @@ def build_row(
     incomplete = [outcome for outcome in ordered if _has_missed(outcome, counted_goals)]
     failed = incomplete[0] if incomplete else None
     reason, line = _find_reason(failed, counted_goals) if failed else ("", 0)
-    lines = source_lines(student.text)
     return SheetRow(
         name=student.name,
         program=student.shown_main,
@@ -217,7 +222,7 @@ def build_row(
         cells=tuple(_build_cell(column, ordered) for column in columns),
         reason=reason,
         line=line,
-        source_line=shortened(printable(lines[line - 1].strip())) if 0 < line <= len(lines) else "",
+        source_line=_quote_line(student.text, line),
         seed=failed.seed if failed else 0,
         failure=failed.failure if failed else "",
         error=failed.error if failed else "",
