@@ -5,12 +5,20 @@ from __future__ import annotations
 import subprocess
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
+from tuisim.base.source import Program
+from tuisim.commands.rerun import rerun, same
 from tuisim.engine.protocol import Ended, Message
-from tuisim.engine.runs.handle import RunHandle
+from tuisim.engine.runs.diff import RunDiff
+from tuisim.engine.runs.handle import RunHandle, RunOptions, start_run
+from tuisim.engine.runs.run_folder import StoredRun
+from tuisim.engine.runs.store import RunStore
+from tuisim.settings.build import build_run_spec
+from tuisim.settings.options import Settings
 
 PATIENCE_S = 120.0
 """How long a test waits before it fails: what never comes must not pass, and what comes late on a busy machine must."""
@@ -92,6 +100,18 @@ def until(run: RunHandle, ready: Callable[[], bool], seen: list[Message] | None 
 def until_tick(run: RunHandle, tick: int) -> None:
     """Pump until a tick is recorded, or the run is over."""
     until(run, lambda: run.telemetry.count > tick or run.ended is not None)
+
+
+def run_live_and_headless(
+    program: Program, choices: Mapping[str, Any], speed: float = 16.0
+) -> tuple[StoredRun, RunDiff]:
+    """Run a program live, then again headless; return the first run, and how the second one differs."""
+    live = start_run(program, build_run_spec(Settings(choices)), RunOptions(live=True, speed=speed))
+    over(live)
+    run = RunStore().load_run(live.run_id)
+    again = rerun(run, RunStore())
+    over(again)
+    return run, same(run, RunStore().load_run(again.run_id))
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from tests.cases import cases
-from tests.running import Start, over, until, until_tick
+from tests.running import Start, over, run_live_and_headless, until, until_tick
 from tuisim.base.errors import LogError
 from tuisim.base.source import Program
 from tuisim.commands.rerun import rerun, same
@@ -229,26 +229,16 @@ print('Light:', light.reflected_light_intensity, left.position, right.speed, arm
 def test_a_program_does_the_same_live_and_headless(
     home: Path, text: str, choices: dict[str, str]
 ) -> None:
-    spec = build_run_spec(Settings(choices))
-    live = start_run(Program("p.py", text), spec, RunOptions(live=True, speed=16.0))
-    over(live)
-    run = RunStore().load_run(live.run_id)
-    again = rerun(run, RunStore())
-    over(again)
-    assert same(run, RunStore().load_run(again.run_id)).same
+    _, diff = run_live_and_headless(Program("p.py", text), choices)
+    assert diff.same
 
 
 def test_a_motor_that_does_not_drive_is_recorded_alike_live_and_headless(home: Path) -> None:
-    spec = build_run_spec(Settings({"robot": "Explorer"}))
-    live = start_run(Program("arm.py", ARM), spec, RunOptions(live=True, speed=16.0))
-    over(live)
-    run = RunStore().load_run(live.run_id)
+    run, diff = run_live_and_headless(Program("arm.py", ARM), {"robot": "Explorer"})
     turns = [row for row in run.output.rows() if row.stream == Stream.MOTORS]
     ((position_deg, speed_dps),) = BrickState().update_face(turns).turns
     assert (round(position_deg), speed_dps) == (-83, 0.0)
-    again = rerun(run, RunStore())
-    over(again)
-    assert same(run, RunStore().load_run(again.run_id)).same
+    assert diff.same
 
 
 def test_a_run_that_cannot_be_prepared_is_not_listed(home: Path, tmp_path: Path) -> None:

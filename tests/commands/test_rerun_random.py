@@ -7,13 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.running import over
+from tests.running import run_live_and_headless
 from tuisim.base.source import Program
-from tuisim.commands.rerun import rerun, same
-from tuisim.engine.runs.handle import RunOptions, start_run
-from tuisim.engine.runs.store import RunStore
-from tuisim.settings.build import build_run_spec
-from tuisim.settings.options import Settings
 
 BEGIN = """
 from time import sleep
@@ -67,11 +62,5 @@ def test_a_random_program_does_the_same_live_and_headless(home: Path, profile: s
     for number in range(25):
         program = Program("p.py", _draw_program(draw))
         choices = {"robot": "Explorer", "profile": profile, "walls": draw.random() < 0.5}
-        spec = build_run_spec(Settings({**choices, "seed": number}))
-        live = start_run(program, spec, RunOptions(live=True, speed=100.0))
-        over(live)
-        run = RunStore().load_run(live.run_id)
-        again = rerun(run, RunStore())
-        over(again)
-        diff = same(run, RunStore().load_run(again.run_id))
+        _, diff = run_live_and_headless(program, {**choices, "seed": number}, speed=100.0)
         assert diff.same, f"seed {seed}, program {number}: {diff}\n{program.text}"
