@@ -25,11 +25,6 @@ FULL_ACTUATION = 10_000
 PAUSE_MARGIN_MS = 12
 """A controller gives up following this long before its power is used up: two turns of the firmware's loop."""
 _ONE = 1 << 16
-_ADDED = (
-    *("speed", "actuation", "integral_range", "integral_rate"),
-    *("position_tolerance", "speed_tolerance", "stall_speed"),
-)
-"""The settings of a drive base that are the sums of those of its motors."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -225,15 +220,19 @@ def combine_settings(
     Args:
         counts_per_unit: Counts of the sum or the difference per mm or degree of the robot.
     """
-    sums = {
-        name: getattr(left, name) + getattr(right, name)
-        for name in ControlSettings.__dataclass_fields__
-    }
     return replace(
         left,
         scale=round(counts_per_unit * _ONE),
-        acceleration=2 * sums["acceleration"],
-        feed_forward=sums["feed_forward"] // 2,
-        **{name: divide(sums[name], 4) for name in ("kp", "ki", "kd")},
-        **{name: sums[name] for name in _ADDED},
+        speed=left.speed + right.speed,
+        acceleration=2 * (left.acceleration + right.acceleration),
+        actuation=left.actuation + right.actuation,
+        kp=divide(left.kp + right.kp, 4),
+        ki=divide(left.ki + right.ki, 4),
+        kd=divide(left.kd + right.kd, 4),
+        integral_range=left.integral_range + right.integral_range,
+        integral_rate=left.integral_rate + right.integral_rate,
+        feed_forward=(left.feed_forward + right.feed_forward) // 2,
+        position_tolerance=left.position_tolerance + right.position_tolerance,
+        speed_tolerance=left.speed_tolerance + right.speed_tolerance,
+        stall_speed=left.stall_speed + right.stall_speed,
     )
