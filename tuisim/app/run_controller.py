@@ -204,10 +204,8 @@ class RunController:
         instant, line, pen_down = self._find_moment(record)
         state = self.state
         face = timeline.face(now_tick if timeline.at is None else timeline.at)
-        # After the robot was placed following the run, all its motors are reset.
         hz = timeline.tick_hz
         turns = face.extrapolate_turns(instant.tick / hz, hz) if record else ()
-        turns = turns or ((0.0, 0.0),) * len(spec.robot.extra_motors)
         if state is RunPhase.ENDED and not past:
             # The last record is of the tick before the program's last commands; after its end, nothing turns.
             instant = instant.stop()
@@ -228,6 +226,7 @@ class RunController:
             recorded_spec=recording.spec if recording else None,
             face=face,
             turns=turns,
+            scales=recording.commands.find_scales(record.tick) if record and recording else {},
             pressed=self._find_pressed(record),
             placed=recording is not None and self._moved and not past,
             past=past,

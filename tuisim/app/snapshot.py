@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
+from dataclasses import field
 from enum import StrEnum
 from functools import cached_property
 from typing import assert_never
@@ -76,7 +77,10 @@ class Snapshot:
     face: BrickState = _DARK
     """What the brick shows."""
     turns: tuple[tuple[float, float], ...] = ()
-    """Position in degrees and speed in degrees per second of each motor that does not drive the robot."""
+    """Position in degrees and speed in degrees per second of each motor that does not drive the robot; empty before
+    a run, and after the robot was placed following it: all motors are reset."""
+    scales: Mapping[str, float] = field(default_factory=dict)
+    """How many degrees the program counts for one of a motor, by port; 1 where it is missing."""
     pressed: frozenset[str] = frozenset()
     """The brick's buttons that are held down."""
 
@@ -102,6 +106,20 @@ class Snapshot:
     def tick_hz(self) -> int:
         """Ticks per second of the run whose record is in view."""
         return (self.recorded_spec or self.spec).profile.tick_hz
+
+    def list_turns(self) -> list[tuple[float, float]]:
+        """Return position and speed of each motor, the wheel motors first, as the program reads them."""
+        now = self.instant
+        turns = (
+            (now.left_position_deg, now.left_speed_dps),
+            (now.right_position_deg, now.right_speed_dps),
+            *(self.turns or [(0.0, 0.0)] * len(self.spec.robot.extra_motors)),
+        )
+        scales = (self.scales.get(motor.port, 1.0) for motor in self.spec.robot.motors)
+        return [
+            (scale * position_deg, scale * dps)
+            for scale, (position_deg, dps) in zip(scales, turns, strict=False)
+        ]
 
     @cached_property
     def colors(self) -> Mapping[str, ColorReading]:

@@ -187,6 +187,19 @@ def test_values() -> None:
     ]
 
 
+def test_a_motor_shows_the_angle_and_the_speed_that_its_program_reads() -> None:
+    now = replace(FURTHER, scales={"outB": -1.0, "outD": 0.5}, turns=((7.0, 0.0), (90.0, -20.0)))
+    rows = [" ".join(row.split()) for row in text(now, 40, 20)]
+    assert [row for row in rows if "tacho" in row] == [
+        "LeftMotor tacho -1234 -525 °/s",
+        "RightMotor tacho -57 -512 °/s",
+        "Motor A tacho 7 0 °/s",
+        "Motor D tacho 45 -10 °/s",
+    ]
+    cells = "".join(text(now, 90, 4))
+    assert "L -1234  -525°/s" in cells and "D    45   -10°/s" in cells
+
+
 def test_the_heading_is_named() -> None:
     rows = text(moment(Pose(1234.5, 1000.0, -148.2)), 48, 11)
     assert rows[8].split() == ["Pose", "x", "1234.5", "y", "1000.0", "heading", "-148.2°"]

@@ -166,6 +166,23 @@ def test_a_motor_has_the_port_that_it_was_plugged_in_at(stored: StoredRun) -> No
     assert (events[2].asked, events[2].came) == ("run 50 °/s", "")
 
 
+def test_a_motor_counts_as_its_program_last_set_it_up(stored: StoredRun) -> None:
+    tick_ns = 1_000_000_000 // stored.spec.profile.tick_hz
+    write_commands(
+        stored,
+        (0, 0, Call.SET_UP, (-1.0, 1.0, 0.0)),
+        (tick_ns, 1, Call.SET_UP, (1.0, 4.0, 0.0)),
+        (9 * tick_ns, 0, Call.SET_UP, (1.0, 1.0, 0.0)),
+        (9 * tick_ns, 0, Call.SET_UP, (0.0, 1.0, 0.0)),
+        (9 * tick_ns, 99, Call.SET_UP, (1.0, 1.0, 0.0)),
+    )
+    index = CommandIndex(stored)
+    index.read_all()
+    assert index.find_scales(0) == {"outB": -1.0}
+    assert index.find_scales(8) == {"outB": -1.0, "outC": 0.25}
+    assert index.find_scales(9) == {"outB": 1.0, "outC": 0.25}
+
+
 def test_events_are_bounded(stored: StoredRun, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(command_events, "_MAX_EVENTS", 3)
     write_commands(stored, *((number * 1000 * MS, 0, Call.RUN, (1.0,)) for number in range(9)))

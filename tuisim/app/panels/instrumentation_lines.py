@@ -219,11 +219,13 @@ def build_extra_motor_lines(now: Snapshot, width: int) -> list[Line]:
         _build_motor_line(
             f"Motor {motor.port[-1]}",
             motor.port[-1],
-            round(position),
+            round(position_deg),
             format_value(f"{round(dps):d}"),
             width,
         )
-        for motor, (position, dps) in zip(now.spec.robot.extra_motors, now.turns, strict=False)
+        for motor, (position_deg, dps) in zip(
+            now.spec.robot.extra_motors, now.list_turns()[2:], strict=False
+        )
     ]
 
 
@@ -268,15 +270,12 @@ def _describe_motor_state(state: int) -> Run:
 
 
 def _build_wheel_line(now: Snapshot, name: str, short: str, width: int) -> Line:
-    left = short == "L"
-    instant = now.instant
-    counts = round(instant.left_position_deg if left else instant.right_position_deg)
-    dps = round(instant.left_speed_dps if left else instant.right_speed_dps)
-    if instant.motors:
-        dps = instant.motors[0 if left else 1][1]
-    if now.stalled[0 if left else 1]:
-        return _build_motor_line(name, short, counts, ("stalled", WARNING), width)
-    return _build_motor_line(name, short, counts, format_value(f"{dps:d}"), width)
+    number = "LR".index(short)
+    position_deg, dps = now.list_turns()[number]
+    if now.instant.motors:
+        dps = now.instant.motors[number][1]
+    speed = ("stalled", WARNING) if now.stalled[number] else format_value(f"{round(dps):d}")
+    return _build_motor_line(name, short, round(position_deg), speed, width)
 
 
 def _build_motor_line(name: str, short: str, counts: int, speed: Run, width: int) -> Line:
@@ -312,23 +311,18 @@ def _build_motor_line(name: str, short: str, counts: int, speed: Run, width: int
 
 def build_motor_cells(now: Snapshot, *, with_speed: bool) -> list[Line]:
     """Return a cell for each motor: counts, and with speed also speed or state."""
-    instant = now.instant
     robot = now.spec.robot
-    wheels = (
-        ("L", instant.left_position_deg, instant.left_speed_dps),
-        ("R", instant.right_position_deg, instant.right_speed_dps),
-    )
-    turns = zip(robot.extra_motors, now.turns, strict=False)
-    extra = ((motor.port[-1], position, dps) for motor, (position, dps) in turns)
-    known = instant.motors
+    names = ("L", "R", *(motor.port[-1] for motor in robot.extra_motors))
+    known = now.instant.motors
     cells = [
         _build_motor_cell(
-            *motor,
+            name,
+            *turn,
             has_stalled=number < len(now.stalled) and now.stalled[number],
             is_held=number < len(known) and bool(known[number][3] & STATE_BITS["holding"]),
             with_speed=with_speed,
         )
-        for number, motor in enumerate((*wheels, *extra))
+        for number, (name, turn) in enumerate(zip(names, now.list_turns(), strict=False))
     ]
     return cells if robot.has_wheels else cells[2:]
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from array import array
 from collections.abc import Sequence
@@ -32,6 +33,8 @@ _REPEAT_NS = NS_PER_S // 4
 """A call to a part that comes again within this time repeats the one before."""
 _MAX_EVENTS = 1 << 17
 """Events of a run; further commands are left out. At four events a second, this is enough for nine hours."""
+_MAX_SCALES = 1 << 10
+"""Changes of what a program counts as a degree of a motor; further ones are left out."""
 _PIECE = 1 << 15
 """Number of commands that are read at a time."""
 _FINEST = 500
@@ -110,6 +113,9 @@ class CommandIndex:
         self._latest: dict[int, int] = {}
         """The latest event by its code."""
         self._ends: list[int] = []
+        self._newest_scales: dict[str, float] = {}
+        self._scales: list[tuple[int, str, float]] = []
+        """Tick, port and factor of each change of what a program counts as a degree of a motor, in order."""
         self.marks: list[tuple[int, Mark]] = []
         """Ticks of events, in order."""
 
@@ -138,6 +144,8 @@ class CommandIndex:
         times = np.maximum.accumulate(np.maximum(rows["time_ns"], self._newest_ns))
         self._newest_ns = int(times[-1])
         codes = self._read_codes(rows)
+        set_ups = rows["call"] == Call.SET_UP
+        self._take_scales(times[set_ups], codes[set_ups], rows["values"][set_ups])
         mains = rows["values"][np.arange(len(rows)), _find_mains()[rows["call"]]]
         order = np.argsort(codes, kind="stable")
         order = order[np.isin(rows["call"][order], [*CALL_WORDS])]
@@ -156,6 +164,20 @@ class CommandIndex:
         lists = [column[turn].tolist() for column in (*columns, *spreads)]
         for event in zip(*lists, strict=True):
             self._add(*event)
+
+    def _take_scales(self, times: Array, codes: Array, values: Array) -> None:
+        for time_ns, code, (sign, gear_ratio, *_) in zip(
+            times.tolist(), codes.tolist(), values.tolist(), strict=True
+        ):
+            motors = self._robots[code >> 16].motors
+            part = code & 0xFF
+            if part >= len(motors) or abs(sign) != 1 or not 0 < gear_ratio < math.inf:
+                continue
+            port = motors[part].port
+            factor = sign / gear_ratio
+            if self._newest_scales.get(port) != factor and len(self._scales) < _MAX_SCALES:
+                self._newest_scales[port] = factor
+                self._scales.append((self._find_tick(time_ns), port, factor))
 
     def _read_codes(self, rows: Array) -> Array:
         """Return a code of robot, call and part for each command; take note of parts that were plugged in."""
@@ -202,6 +224,10 @@ class CommandIndex:
         return time_ns * self._hz // NS_PER_S
 
     # Finding
+
+    def find_scales(self, tick: int) -> dict[str, float]:
+        """Return how many degrees a program counted for one of a motor at a tick, by port; 1 where it is missing."""
+        return {port: factor for when, port, factor in self._scales if when <= tick}
 
     def find_events(self, text: str = "") -> list[int]:
         """Return the numbers of the events whose part and call contain all words of a text; of all without a text."""
