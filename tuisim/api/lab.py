@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
-from math import nan
 from pathlib import Path
 from typing import TYPE_CHECKING, Never
 
@@ -19,18 +18,10 @@ from tuisim.api.descriptions import (
 )
 from tuisim.api.keywords import build_keyword_error, check_keywords
 from tuisim.base.errors import ConfigError
-from tuisim.engine.core.commands.calls import Call, SimulationCommand
-from tuisim.engine.core.commands.table import DRIVEN_LAWS, obey
-from tuisim.engine.core.motors import find_top_speed_dps
-from tuisim.engine.core.pen_marks import PenMarks
-from tuisim.engine.core.profile import NS_PER_S, PYBRICKS_4, MotorLaw
+from tuisim.engine.core.profile import PYBRICKS_4
 from tuisim.engine.core.sensors import build_reader
-from tuisim.engine.core.servo.control import Ending
-from tuisim.engine.core.servo.motor import ServoMotor
-from tuisim.engine.core.simulation import Simulation, build_simulation
-from tuisim.engine.core.tick_record import MemoryRecording, NoRecording
-from tuisim.engine.runs.replay import give_command
 from tuisim.engine.runs.run_folder import field_files
+from tuisim.engine.runs.stepped_run import SteppedRun
 from tuisim.settings.build import build_run_spec
 from tuisim.settings.options import merge_settings
 from tuisim.tasks.goals.files import load_goals
@@ -40,6 +31,7 @@ if TYPE_CHECKING:
     from PIL.Image import Image
 
     from tuisim.api.run import Run
+    from tuisim.engine.core.commands.calls import SimulationCommand
     from tuisim.engine.core.geometry import Pose
     from tuisim.engine.core.spec import RunSpec
     from tuisim.tasks.goals.spec import Goal
@@ -128,31 +120,24 @@ class Lab:
     @property
     def time_s(self) -> float:
         """The simulated time in seconds."""
-        return self._sim.compute_due_ns(self._sim.tick) / NS_PER_S
+        return self._run.time_s
 
     @property
     def pose(self) -> Pose:
         """Where the robot is: `x_mm`, `y_mm`, and `heading_deg`, counter-clockwise from +x."""
-        return self._sim.pose
+        return self._run.pose
 
     @property
     def max_speed_dps(self) -> float:
         """The highest speed of a wheel's motor, in degrees per second."""
-        return find_top_speed_dps(self._spec.robot.left_motor, self._spec.profile)
+        return self._run.max_speed_dps
 
     def reset(self, seed: int | None = None) -> dict[str, float]:
         """Begin again, with another seed if one is given; return the columns at the start."""
         if seed is not None:
             self._spec = replace(self._spec, seed=plain(seed))
-        has_marks = self._spec.world.pen_marks
-        recording = MemoryRecording()
-        is_recorded = has_marks or self._goals
-        self._sim = build_simulation(self._spec, recording if is_recorded else NoRecording())
-        self._marks = PenMarks(self._field, self._spec) if has_marks else None
-        self._live = (
-            LiveGoals(self._goals, self._sim, recording, self._field) if self._goals else None
-        )
-        self._run = _find_run(self._sim)
+        self._run = SteppedRun(self._spec, self._field, is_recorded=bool(self._goals))
+        self._live = LiveGoals(self._goals, self._run, self._field) if self._goals else None
         self._asked: tuple[float, float] | None = None
         return self.read()
 
@@ -181,9 +166,8 @@ class Lab:
             raise build_keyword_error(
                 next(iter(unknown)), ("left", "right", "period_s", "commands")
             )
-        sim = self._sim
-        end = sim.tick + (round(period_s * self._hz) or 1 if period_s else 1)
-        if end <= sim.tick:
+        ticks = round(period_s * self._hz) or 1 if period_s else 1
+        if ticks <= 0:
             raise ConfigError(f"must not be negative, got {period_s!r}", key="period_s")
         if (left is not None or right is not None) and self._asked != (left, right):
             if left is None or right is None or left != left or right != right:
@@ -191,27 +175,18 @@ class Lab:
                     f"must be two numbers, got {left!r}, {right!r}", key="left, right"
                 )
             self._asked = left, right
-            time_ns = sim.compute_due_ns(sim.tick)
-            self._run(time_ns, 0, left)
-            self._run(time_ns, 1, right)
-        for command in commands:
-            sim.advance(sim.count_ticks(command.time_ns) - sim.tick)
-            give_command(sim, command)
-        sim.advance(end - sim.tick)
+            self._run.turn_wheels(left, right)
+        self._run.advance(ticks, commands)
         return self.read()
 
     def read(self) -> dict[str, float]:
         """Return the columns now, by name, as the telemetry of a run would have them."""
         if self.columns == MOTION:
-            drive = self._sim.drive
-            return {"x_mm": drive.x_mm, "y_mm": drive.y_mm, "heading_deg": drive.heading_deg}
+            pose = self._run.pose
+            return {"x_mm": pose.x_mm, "y_mm": pose.y_mm, "heading_deg": pose.heading_deg}
         if not self.columns:
             return {}
-        instant = self._sim.build_instant()
-        field = self._field
-        if self._marks is not None:
-            self._marks.add_records(self._sim.read_records(self._marks.records))
-            field = self._marks.field
+        instant, field = self._run.build_instant(), self._run.field
         return {name: self._readers[name](instant, self._spec, field) for name in self.columns}
 
     def picture(self) -> Image:
@@ -225,33 +200,3 @@ class Lab:
         good.
         """
         return self._live.judge() if self._live is not None else (0.0, False)
-
-
-def _find_run(sim: Simulation) -> Callable[[int, int, float], None]:
-    """Return a function that lets a wheel's motor run, at the time in ns, by its number, at a speed in °/s."""
-    robot = sim.spec.robot
-    law = sim.spec.profile.motor_law
-    signs = -1.0 if robot.left_reversed else 1.0, -1.0 if robot.right_reversed else 1.0
-    most = [find_top_speed_dps(motor.kind, sim.spec.profile) for motor in robot.motors]
-
-    def clip(number: int, speed_dps: float) -> float:
-        return signs[number] * max(-most[number], min(most[number], speed_dps))
-
-    def run(time_ns: int, number: int, speed_dps: float) -> None:
-        obey(sim, time_ns, number, Call.RUN, clip(number, speed_dps))
-
-    def run_driver(time_ns: int, number: int, speed_dps: float) -> None:
-        values = float(round(clip(number, speed_dps))), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-        obey(sim, time_ns, number, Call.RUN_FOREVER, *values)
-
-    def run_servo(time_ns: int, number: int, speed_dps: float) -> None:
-        motor = sim.motors[number]
-        assert isinstance(motor, ServoMotor)
-        settings = motor.control.settings
-        rate = float(settings.counts(round(clip(number, speed_dps))))
-        values = rate, float(settings.acceleration), nan, float(Ending.HOLD)
-        obey(sim, time_ns, number, Call.RUN_AT, *values)
-
-    if law is MotorLaw.EV3DEV:
-        return run_driver
-    return run if law in DRIVEN_LAWS else run_servo

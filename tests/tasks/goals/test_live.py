@@ -9,9 +9,7 @@ import pytest
 import tuisim
 from tests.cases import cases
 from tuisim.base.errors import ConfigError
-from tuisim.engine.core.simulation import build_simulation
-from tuisim.engine.core.tick_record import MemoryRecording
-from tuisim.engine.runs.replay import give_command
+from tuisim.engine.runs.stepped_run import SteppedRun
 from tuisim.tasks.goals.files import load_goals
 from tuisim.tasks.goals.judge import judge
 from tuisim.tasks.goals.judgement import compute_points
@@ -34,14 +32,10 @@ heading_deg = 0
 def test_the_commands_of_a_run_lead_to_its_points() -> None:
     goals = load_goals("square_goals.toml").goals
     run = tuisim.simulate("square", world="square_goals.toml").stored
-    recording = MemoryRecording()
-    sim = build_simulation(run.first_spec, recording)
-    live = LiveGoals(goals, sim, recording, run.open_mat())
+    stepped = SteppedRun(run.first_spec, run.open_mat(), is_recorded=True)
+    live = LiveGoals(goals, stepped, run.open_mat())
     assert live.judge() == (0, False)
-    for command in tuisim.load_run(run.folder).commands:
-        sim.advance(sim.count_ticks(command.time_ns) - sim.tick)
-        give_command(sim, command)
-    sim.advance(len(run.telemetry.array()) - 1 - sim.tick)
+    stepped.advance(len(run.telemetry.array()) - 1, tuisim.load_run(run.folder).commands)
     assert live.judge() == (compute_points(judge(goals, run)), True)
 
 

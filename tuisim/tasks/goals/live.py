@@ -2,16 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from functools import partial
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, cast
 
 from tuisim.base.errors import ConfigError
-from tuisim.base.source import Program
 from tuisim.engine.core.conditions import ValueSource
-from tuisim.engine.core.tick_record import TICK_FIELDS, TICK_RECORD
-from tuisim.engine.protocol import End, Ended
 from tuisim.tasks.goals.brick import BRICK_COLUMNS, BRICK_TEXTS
 from tuisim.tasks.goals.comparisons import (
     CountCondition,
@@ -34,13 +29,9 @@ from tuisim.tasks.goals.spec import (
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    import numpy as np
-
     from tuisim.engine.core.field import Field
-    from tuisim.engine.core.simulation import Simulation
-    from tuisim.engine.core.tick_record import MemoryRecording
     from tuisim.engine.runs.handle import RunHandle
-    from tuisim.engine.runs.records import OutputRow
+    from tuisim.engine.runs.stepped_run import SteppedRun
 
 _OF_PROGRAM = (
     PrintCondition,
@@ -52,60 +43,19 @@ _OF_PROGRAM = (
 )
 
 
-class LiveRun:
-    """A run as judges see it, for a simulation that ends now; it is also its own recording.
-
-    Args:
-        sim: The simulation.
-        recording: The ticks so far.
-    """
-
-    program = Program("script", "")
-    answers = ()
-    folder = Path("/nonexistent")
-    """Nothing else is recorded."""
-
-    def __init__(self, sim: Simulation, recording: MemoryRecording) -> None:
-        self._sim = sim
-        self._recording = recording
-        self.spec = sim.spec
-        self.telemetry = self.output = self
-
-    @property
-    def ended(self) -> Ended:
-        """The end of the run: now."""
-        return Ended(End.FINISHED, self._sim.tick, self._sim.compute_due_ns(self._sim.tick))
-
-    def array(self) -> np.ndarray[Any, Any]:
-        """Return the records of the ticks."""
-        import numpy as np
-
-        end = TICK_RECORD.size * (1 + self._recording.count)
-        records = bytes(memoryview(self._recording.buffer)[TICK_RECORD.size : end])
-        return np.frombuffer(records, np.dtype(list(TICK_FIELDS)))
-
-    def rows(self) -> Iterator[OutputRow]:
-        """Yield no rows of output: there is no program."""
-        yield from ()
-
-
 class LiveGoals:
     """Judges goals on a simulation as if it ended now.
 
     Args:
         goals: The goals.
-        sim: A simulation that has just begun.
-        recording: Its ticks.
-        field: Its mat.
+        run: A recorded run that has just begun.
+        mat: Its mat.
     """
 
-    def __init__(
-        self, goals: Sequence[Goal], sim: Simulation, recording: MemoryRecording, field: Field
-    ) -> None:
-        # `judge` asks a run only for what LiveRun has, too.
-        run = cast("RunHandle", LiveRun(sim, recording))
-        self._judge = partial(judge, goals, run, field)
-        self._sim = sim
+    def __init__(self, goals: Sequence[Goal], run: SteppedRun, mat: Field) -> None:
+        # `judge` asks a run only for what a SteppedRun has, too.
+        self._judge = partial(judge, goals, cast("RunHandle", run), mat)
+        self._run = run
         self._open = {each.goal.name for each in self._judge() if not each.is_good}
 
     def judge(self) -> tuple[float, bool]:
@@ -120,7 +70,7 @@ class LiveGoals:
 
     def _is_lost(self, judgement: Judgement) -> bool:
         """Return whether a goal was missed before the end, and not only because the simulation ends."""
-        return judgement.state is GoalState.MISSED and judgement.changes[-1].tick < self._sim.tick
+        return judgement.state is GoalState.MISSED and judgement.changes[-1].tick < self._run.tick
 
 
 def check_goals(goals: Sequence[Goal]) -> None:
