@@ -87,9 +87,9 @@ def _encode_column(column: pa.ChunkedArray) -> tuple[list[Any], IntArray]:
     place_of = np.zeros(len(values) + 1, np.int32)
     place_of[appeared] = np.arange(len(appeared))
     codes = [place_of[read_int32(chunk)] for chunk in indices]
-    return [[*values, None][code] for code in appeared], np.concatenate(
-        codes
-    ) if codes else np.empty(0, np.int32)
+    values.append(None)
+    names = [values[code] for code in appeared]
+    return names, np.concatenate(codes) if codes else np.empty(0, np.int32)
 
 
 def _group_rows(codes: IntArray, count: int) -> list[IntArray]:
