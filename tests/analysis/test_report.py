@@ -16,7 +16,7 @@ from PIL import Image
 
 from tests.cases import cases
 from tests.conftest import Command
-from tuisim.analysis.report import list_run_facts
+from tuisim.analysis.report import MAX_STATISTICS, list_run_facts
 from tuisim.analysis.source import NOTES_FILE, Note, find_notes_file, write_notes
 from tuisim.cli import run_command
 from tuisim.engine.protocol import End
@@ -251,6 +251,18 @@ def test_the_many_bands_of_an_oscillation_hide_no_curve(
     section = page_of(tmp_path / "some-report.html").section
     assert "and 50 more" in section["Bands"]
     assert not any("shaded" in text for text in section["Chart"])
+
+
+def test_statistics_of_too_many_variables_are_those_of_the_drawn_ones_and_of_the_first(
+    here: Command, home: Path, tmp_path: Path
+) -> None:
+    rows = "".join(f"{number},v{number},{number}\n" for number in range(MAX_STATISTICS + 20))
+    (tmp_path / "some.csv").write_text(f"time,variable,value\n{rows}")
+    here("log", "report", "some.csv", "--variable", f"v{MAX_STATISTICS + 9}")
+    section = page_of(tmp_path / "some-report.html").section["Statistics"]
+    assert section[-1] == "and 20 more"
+    assert f"v{MAX_STATISTICS + 9}" in section
+    assert f"v{MAX_STATISTICS - 1}" not in section
 
 
 def test_an_export_tells_of_its_runs(here: Command, tmp_path: Path, driven: Driven) -> None:

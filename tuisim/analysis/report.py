@@ -39,6 +39,8 @@ if TYPE_CHECKING:
 SUFFIXES = (".html", ".htm")
 MAX_BANDS = 100
 """Maximum number of rows of the table of bands, and of shaded bands of a variable: more hide its curve."""
+MAX_STATISTICS = 1000
+"""Maximum number of rows of the table of statistics: a program may print a variable for each row."""
 _WIDTH_PX = 960
 _WAY = (230, 90, 0)
 _HALO = (255, 255, 255)
@@ -262,7 +264,7 @@ def _build_band_table(model: AnalysisModel) -> Mapping[str, Any]:
     }
 
 
-def _build_statistics(model: AnalysisModel) -> Table:
+def _build_statistics(model: AnalysisModel) -> Mapping[str, Any]:
     heads = [
         "variable",
         "count",
@@ -273,7 +275,8 @@ def _build_statistics(model: AnalysisModel) -> Table:
         *(f"{100 * part:g} %" for part in QUANTILES),
     ]
     rows = []
-    for trace in model.traces:
+    traces = sorted(model.traces, key=lambda trace: not trace.on)
+    for trace in traces[:MAX_STATISTICS]:
         summary = model.build_summary(trace.name)
         figures = (summary.min, summary.mean, summary.max, summary.std, *summary.quantiles)
         rows.append(
@@ -283,7 +286,7 @@ def _build_statistics(model: AnalysisModel) -> Table:
                 *(_format_number(figure, ".5g") for figure in figures),
             )
         )
-    return Table(heads, rows, numbers=1)
+    return {"table": Table(heads, rows, numbers=1), "more": len(traces) - len(rows)}
 
 
 def _build_note_table(model: AnalysisModel) -> Table:
