@@ -18,13 +18,17 @@ from tuisim.pictures.charts.traces import reduce_points
     {
         "percent": (0.0, 100.0, (0.0, 100.0)),
         "part of it": (50.2, 100.0, (40.0, 100.0)),
-        "one value": (5.0, 5.0, (4.0, 6.0)),
+        "one value": (5.0, 5.0, (3.0, 7.0)),
         "negative": (-90.0, 3.0, (-100.0, 25.0)),
         "millimetres": (0.0, 2550.0, (0.0, 3000.0)),
     },
 )
 def test_value_limits(low: float, high: float, limits: tuple[float, float]) -> None:
     assert axes.choose_limits(low, high) == pytest.approx(limits)
+
+
+def test_a_count_that_stays_the_same_has_an_axis_without_decimals() -> None:
+    assert axes.label_rows(axes.choose_limits(360.0, 360.0), 5) == {4: "358", 0: "362"}
 
 
 @given(st.floats(-1e6, 1e6), st.floats(0, 1e6))

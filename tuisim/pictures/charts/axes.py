@@ -30,7 +30,8 @@ def choose_limits(low: float, high: float, from_zero: bool = False) -> Limits:
     size = max(abs(low), abs(high), 1.0)
     if high - low < 1e-9 * size:
         # Adding 1 does not change a number with more than sixteen digits; labels with a power of ten show few.
-        room = max(1.0, (1e-6 if size < 1e15 else 1e-3) * size)
+        # With 2, the step is 1: a count has no decimals.
+        room = max(2.0, (1e-6 if size < 1e15 else 1e-3) * size)
         low, high = low - room, high + room
     step = choose_step(high - low, 4)
     return math.floor(low / step + 1e-9) * step, math.ceil(high / step - 1e-9) * step
