@@ -75,6 +75,17 @@ def test_a_name_at_the_edge_stands_within_the_chart(columns: int) -> None:
     assert all(0 <= at <= columns - len(text) for _, at, text in names)
 
 
+def test_a_name_that_would_stand_beside_a_higher_part_of_the_curve_is_left_out() -> None:
+    spans = find_spans(next(iter(chart(LEVELS)[0])), PLAIN_LIGHT)
+    places = [range(20), range(20, 40), range(40, 60)]
+
+    def is_free(row: int, first: int, stop: int) -> bool:
+        return row < 5 or stop < 40
+
+    names = place_names(spans, places, 9, 60, is_free)
+    assert [(row, text) for row, _, text in names] == [(8, "100 white"), (8, "60")]
+
+
 def test_too_many_samples_are_left_to_the_analyser() -> None:
     assert not chart([1.0] * (MAX_SAMPLES + 1))[1].spans
 

@@ -24,6 +24,8 @@ _MIN_COLUMNS = 3
 """Narrower bands have no name."""
 _OVERHANG = 2
 """Columns that a level may be wider than its band: names beside each other are in different rows."""
+_MAX_NAME_ROWS = 3
+"""Rows from the lowest one in which names stand: higher up, a name seems to belong to the curve beside it."""
 _SHIFTS = (0, 1, -1, 2, -2, 3, -3)
 """Columns from its middle to which the name of a band gives way."""
 FREE = " ┈"
@@ -69,7 +71,7 @@ def place_names(
     is_free: Callable[[int, int, int], bool],
     avoided: Sequence[int] = (),
 ) -> list[tuple[int, int, str]]:
-    """Return the names of spans on a canvas: row, first column and text, each in the lowest free row.
+    """Return the names of spans on a canvas: row, first column and text, each in the lowest free row; none without one.
 
     Args:
         spans: The spans.
@@ -92,7 +94,7 @@ def place_names(
             middle,
         )
         stop = first + len(name)
-        for row in reversed(range(rows)) if name else ():
+        for row in reversed(range(max(rows - _MAX_NAME_ROWS, 0), rows)) if name else ():
             beside = (column_at for column_at in names if column_at[0] == row)
             if is_free(row, first, stop) and not any(
                 column_at <= stop and first <= column_at + len(text)
