@@ -12,15 +12,13 @@ import numpy as np
 
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ConfigError, LogError, among
-from tuisim.engine.core.columns import Column, list_measured_names
 from tuisim.engine.core.conditions import NUMBER
 from tuisim.engine.core.drive import compute_mm_per_degree
 from tuisim.engine.core.geometry import Pose
-from tuisim.engine.core.sensors import list_owners
 from tuisim.engine.core.spec import RobotSpec, RunSpec
 from tuisim.engine.core.tree import load_run
 from tuisim.engine.runs.arrays import FloatArray
-from tuisim.engine.runs.frames import compute_owner_column
+from tuisim.engine.runs.frames import find_lacking_columns
 from tuisim.logs.columns import is_numeric, list_numeric_columns
 from tuisim.logs.expressions import FUNCTIONS, Functions, evaluate, find_names
 from tuisim.logs.log import Log, Series
@@ -153,20 +151,7 @@ def find_computed_columns(log: Log) -> dict[str, Callable[[], FloatArray]]:
     """Return functions that compute columns which a log of telemetry lacks, by the names of the columns."""
     if (spec := read_spec(log.metadata)) is None:
         return {}
-    there = set(list_numeric_columns(log.table.schema))
-    return {
-        column.name: partial(_compute_column, column.of, columns, log, spec)
-        for columns, _ in list_owners(spec)
-        for column in columns
-        if column.of is not None
-        and column.name not in there
-        and there.issuperset(list_measured_names(columns))
-    }
-
-
-def _compute_column(of: Any, columns: Sequence[Column], log: Log, spec: RunSpec) -> FloatArray:
-    measured = {name: log.numbers(name) for name in list_measured_names(columns)}
-    return compute_owner_column(of, columns, measured, spec)
+    return find_lacking_columns(spec, list_numeric_columns(log.table.schema), log.numbers)
 
 
 def find_named_columns(log: Log, text: str) -> list[str]:

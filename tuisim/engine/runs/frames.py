@@ -7,6 +7,7 @@ can is measured at all ticks at once, everything else tick by tick with the same
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from functools import partial
 from itertools import chain, pairwise, repeat
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
@@ -17,7 +18,7 @@ from tuisim.engine.core.field import Field
 from tuisim.engine.core.motor_columns import find_motor_owners
 from tuisim.engine.core.pen_marks import PenMarks
 from tuisim.engine.core.profile import NS_PER_S
-from tuisim.engine.core.sensors import MountedSensor, list_columns, list_mounted
+from tuisim.engine.core.sensors import MountedSensor, list_columns, list_mounted, list_owners
 from tuisim.engine.core.spec import NoiseSpec, RunSpec
 from tuisim.engine.core.tick_record import TICK_RECORD
 from tuisim.engine.protocol import SetNoise, UserAction
@@ -204,11 +205,11 @@ def compute_column_values(
             if column.of is None:
                 arrays[column.name] = measured[column.name]
             else:
-                arrays[column.name] = compute_owner_column(column.of, columns, measured, spec)
+                arrays[column.name] = _compute_column(column.of, columns, measured, spec)
     return arrays
 
 
-def compute_owner_column(
+def _compute_column(
     of: Callable[[Iterable[Sequence[float]], RunSpec], list[float]],
     columns: Iterable[Column],
     measured: Mapping[str, Array],
@@ -225,6 +226,33 @@ def compute_owner_column(
 
     rows = zip(*(measured[name].tolist() for name in list_measured_names(columns)), strict=True)
     return np.array(of(rows, spec), np.float64)
+
+
+def find_lacking_columns(
+    spec: RunSpec, names: Collection[str], read: Callable[[str], Array]
+) -> dict[str, Callable[[], Array]]:
+    """Return functions that compute the columns which the telemetry of a run lacks, by the names of the columns.
+
+    Args:
+        spec: The run.
+        names: The columns that there are.
+        read: Returns one of them, by its name.
+    """
+
+    def compute(of: Any, columns: Sequence[Column]) -> Array:
+        return _compute_column(
+            of, columns, {name: read(name) for name in list_measured_names(columns)}, spec
+        )
+
+    present = set(names)
+    return {
+        column.name: partial(compute, column.of, columns)
+        for columns, _ in list_owners(spec)
+        for column in columns
+        if column.of is not None
+        and column.name not in present
+        and present.issuperset(list_measured_names(columns))
+    }
 
 
 def evaluate_condition(condition: ValueCondition, values: Array) -> Array:
