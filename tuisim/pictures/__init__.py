@@ -22,6 +22,7 @@ __all__ = [
     "scene.painter",
     "scene.pen",
     "scene.pictures",
+    "scene.portrait",
     "scene.robot",
     "scene.view",
 ]

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from tests.app.app_help import open_lab, screen_text, until
-from tuisim.app.dialogs.robots import RobotPicker, describe_parts, draw_robot_picture, fit_view
+from tuisim.app.dialogs.robots import RobotPicker, describe_parts
 from tuisim.engine.core.spec import RobotSpec
+from tuisim.pictures.scene.portrait import draw_portrait
 from tuisim.pictures.scene.robot import COLORED
 from tuisim.pictures.scene.view import SQUARE
 from tuisim.settings.robots import ROBOTS
@@ -32,7 +33,7 @@ def test_each_part_is_listed_with_its_port_and_place() -> None:
 @pytest.mark.parametrize("size", [(40, 12), (40, 40), (300, 150)], ids=str)
 def test_a_robot_is_whole_in_its_picture(robot: str, size: tuple[int, int]) -> None:
     spec = ROBOTS[robot]
-    picture = draw_robot_picture(spec, fit_view(spec, *size, SQUARE), COLORED).astype(int)
+    picture = draw_portrait(spec, size, SQUARE).astype(int)
 
     drawn = (picture != picture[0, 0]).any(axis=2)
     assert drawn.any()

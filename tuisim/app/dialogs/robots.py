@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
-import numpy as np
 from rich.color import Color
 from rich.style import Style
 from textual import on
@@ -18,16 +16,12 @@ from textual.widgets import OptionList
 from tuisim.app.dialogs.chooser import MAX_NAME_COLUMNS, TABLES, ChoiceGroup, Chooser, list_files
 from tuisim.base import palette
 from tuisim.base.errors import TuisimError
-from tuisim.engine.core.geometry import Pose
-from tuisim.engine.core.outline import build_outline
-from tuisim.engine.core.spec import ColorSensorSpec, RobotSpec, SensorSpec, TouchSpec
-from tuisim.pictures.scene.mono_robot import draw_mono_robot
-from tuisim.pictures.scene.robot import COLORED, GREY, MONO, RobotColors, draw_robot
-from tuisim.pictures.scene.view import Viewport
+from tuisim.engine.core.spec import ColorSensorSpec, RobotSpec, SensorSpec
+from tuisim.pictures.scene.portrait import draw_portrait, find_part_rgb
 from tuisim.settings.robots import ROBOTS, choose_robot, load_robot
 from tuisim.terminal import cells
 from tuisim.terminal.cell_view import LinesPanel, PixelView
-from tuisim.terminal.pixels import CellPoints, Pixels, Rgb
+from tuisim.terminal.pixels import Rgb
 from tuisim.terminal.text_runs import Line
 
 if TYPE_CHECKING:
@@ -36,13 +30,10 @@ if TYPE_CHECKING:
 PROGRAM_ROBOT = "*program"
 """What the dialog returns for the robot that was built for the program; no name or path of a robot."""
 
-_PAPER_RGB: Rgb = (232, 234, 238)
 _LABEL, _VALUE = Style(color=palette.SOFT), Style(color=palette.WHITE)
 _OTHER_ROWS = 12
 """Rows of the dialog beside those of the picture and of the parts."""
 _MIN_ROWS, _MAX_ROWS = 6, 16
-_RIM_MM = 12.0
-"""Paper around a robot."""
 
 
 def build_robot_picker(plan: NextRun) -> RobotPicker:
@@ -138,17 +129,14 @@ class RobotPicture(PixelView):
             mode = self.color_mode
             cell = self.choose_cell(graphics)
             width_px, height_px = cell.cols * self.size.width, cell.rows * self.size.height
-            view = fit_view(self._find_robot, width_px, height_px, cell)
-            mono = mode.depth == cells.MONO
-            if mono:
-                colors = MONO
-            elif mode.grey:
-                colors = GREY
-            else:
-                colors = COLORED
-            self.set_fine_picture(
-                draw_robot_picture(self._find_robot, view, colors, mono=mono), graphics
+            picture = draw_portrait(
+                self._find_robot,
+                (width_px, height_px),
+                cell,
+                mono=mode.depth == cells.MONO,
+                grey=mode.grey,
             )
+            self.set_fine_picture(picture, graphics)
 
 
 class RobotParts(LinesPanel):
@@ -173,35 +161,6 @@ class RobotParts(LinesPanel):
         self._text.set_lines(self._lines)
 
 
-def fit_view(robot: RobotSpec, width_px: int, height_px: int, cell: CellPoints) -> Viewport:
-    """Return the view in which a robot, heading up, fills a picture with a rim around it."""
-    outline = build_outline(robot)
-    bumpers_mm = [y_mm + _RIM_MM for _, y_mm, _ in outline.bumpers_mm]
-    front_mm, back_mm = max([outline.front_mm, *bumpers_mm]) + _RIM_MM, outline.back_mm - _RIM_MM
-    mm_per_px = max(
-        2 * (outline.half_width_mm + _RIM_MM) / width_px,
-        (front_mm - back_mm) / (height_px * cell.tall),
-    )
-    top_mm = (front_mm + back_mm + height_px * mm_per_px * cell.tall) / 2
-    return Viewport(width_px, height_px, mm_per_px, -width_px * mm_per_px / 2, top_mm, cell)
-
-
-def draw_robot_picture(
-    robot: RobotSpec, view: Viewport, colors: RobotColors, *, mono: bool = False
-) -> Pixels:
-    """Return a robot at the middle of the axes, heading up, with all sensors that have a place."""
-    picture = np.empty((view.height_px, view.width_px, 3), np.uint8)
-    picture[:] = (255, 255, 255) if mono else _PAPER_RGB
-    outline = build_outline(robot)
-    if (sonar := robot.ultrasonic) is not None:
-        # The outline lacks this sensor, as the world draws its rays.
-        outline = replace(
-            outline, other_sensors_mm=(*outline.other_sensors_mm, (sonar.x_mm, sonar.y_mm))
-        )
-    (draw_mono_robot if mono else draw_robot)(picture, view, Pose(0.0, 0.0, 90.0), outline, colors)
-    return picture
-
-
 def describe_parts(robot: RobotSpec) -> Iterator[Line]:
     """Yield a line for the wheels, each further motor and each sensor, with its port and its place."""
     if robot.has_wheels:
@@ -214,22 +173,13 @@ def describe_parts(robot: RobotSpec) -> Iterator[Line]:
         yield _build_line(None, motor.port[-1], f"{motor.kind} motor")
     for sensor in sorted(robot.sensors, key=lambda other: other.port):
         yield _build_line(
-            _find_swatch(sensor), sensor.port[-1], f"{sensor.name}{_describe_place(sensor)}"
+            find_part_rgb(sensor), sensor.port[-1], f"{sensor.name}{_describe_place(sensor)}"
         )
 
 
 def _build_line(rgb: Rgb | None, port: str, words: str) -> Line:
     dot = ("■ ", Style(color=Color.from_rgb(*rgb))) if rgb else ("  ", _LABEL)
     return [dot, (f"{port:<4}", _LABEL), (words, _VALUE)]
-
-
-def _find_swatch(sensor: SensorSpec) -> Rgb | None:
-    """Return the colour of a sensor in the picture; None if it has no place in it."""
-    if isinstance(sensor, ColorSensorSpec):
-        return COLORED.sensor
-    if isinstance(sensor, TouchSpec):
-        return COLORED.bumper
-    return COLORED.spot if hasattr(sensor, "x_mm") else None
 
 
 def _describe_place(sensor: SensorSpec) -> str:

@@ -17,16 +17,11 @@ from tuisim.tasks.goals.judgement import GoalState, Judgement
 from tuisim.tasks.lessons.markdown import render_markdown
 from tuisim.tasks.lessons.progress import StepState
 from tuisim.tasks.lessons.spec import (
-    BreakCheck,
-    ExportCheck,
     Lesson,
     LessonStep,
-    NoteCheck,
     QuestionCheck,
     RunCheck,
     ShowCheck,
-    VisitCheck,
-    WatchCheck,
 )
 from tuisim.terminal.text_runs import Line, cut
 
@@ -266,18 +261,10 @@ def _describe_task(view: LessonView, step: LessonStep, away: Away) -> str:
             words = f"{_RUN_KEYS[away]}.{count}"
         case QuestionCheck(choices=choices):
             words = f"{_escape(away)}Q types {'the number of your choice' if choices else 'your answer'}."
-        case WatchCheck(expression=expression):
-            words = f"Next: watch {expression}."
-        case BreakCheck():
-            words = "Next: let a run stop at the breakpoint."
-        case ExportCheck(suffix=suffix):
-            words = f"Next: export to a {suffix} file."
-        case NoteCheck():
-            words = "Next: write your note."
-        case VisitCheck(from_s=from_s, to_s=to_s):
-            words = f"Next: go to an instant between {from_s:g} and {to_s:g} s."
         case ShowCheck(panel=panel):
             words = f"Next: open the panel {PANELS[panel].title}."
+        case check:
+            words = f"Next: {check.words}."
     return words
 
 

@@ -136,6 +136,11 @@ class WatchCheck:
 
     expression: str
 
+    @property
+    def words(self) -> str:
+        """What the student is to do."""
+        return f"watch {self.expression}"
+
 
 @dataclass(frozen=True, slots=True)
 class BreakCheck:
@@ -155,6 +160,11 @@ class BreakCheck:
     def __post_init__(self) -> None:
         require_regex(self.matches, "matches")
 
+    @property
+    def words(self) -> str:
+        """What the student is to do."""
+        return "let a run stop at the breakpoint"
+
 
 @dataclass(frozen=True, slots=True)
 class ExportCheck:
@@ -170,6 +180,11 @@ class ExportCheck:
 
     suffix: str
     """What the name of the file ends in, such as `.csv`."""
+
+    @property
+    def words(self) -> str:
+        """What the student is to do."""
+        return f"export to a {self.suffix} file"
 
 
 @dataclass(frozen=True, slots=True)
@@ -190,6 +205,11 @@ class NoteCheck:
 
     def __post_init__(self) -> None:
         require_regex(self.matches, "matches")
+
+    @property
+    def words(self) -> str:
+        """What the student is to do."""
+        return "write your note"
 
 
 @dataclass(frozen=True, slots=True)
@@ -212,6 +232,11 @@ class VisitCheck:
             raise ConfigError(
                 f"must be less than to_s, {self.to_s:g}, got {self.from_s:g}", key="from_s"
             )
+
+    @property
+    def words(self) -> str:
+        """What the student is to do."""
+        return f"go to an instant between {self.from_s:g} and {self.to_s:g} s"
 
 
 @dataclass(frozen=True, slots=True)
