@@ -7,15 +7,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tuisim.analysis.traces import DISTANCE, LogTrace, sample_and_hold
+from tuisim.analysis.traces import DISTANCE
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import LogError, printable
-from tuisim.logs.magnitude import limit_drawn
-from tuisim.pictures.charts.axes import Limits, choose_limits
 from tuisim.pictures.charts.bands import build_band_span
-from tuisim.pictures.charts.canvas import DOTS_X, DOTS_Y, drop_hidden_points
-from tuisim.pictures.charts.layout import ChartData, Line, Span, add_unit
-from tuisim.pictures.charts.traces import clip_line, reduce_points
+from tuisim.pictures.charts.layout import ChartData, Span
+from tuisim.pictures.charts.sample_chart import build_line, build_path_chart
 
 if TYPE_CHECKING:
     from tuisim.analysis.model import AnalysisModel
@@ -50,7 +47,17 @@ def build_chart(model: AnalysisModel, view: View, columns: int, rows: int) -> Ch
     lines = []
     for number, trace in enumerate(model.traces.list_ticked()):
         trace.prepare(x_limits, columns, False)
-        lines.append(_build_line(trace, number, view.hold, x_limits, columns))
+        lines.append(
+            build_line(
+                trace.name,
+                (trace.times_s, trace.values),
+                number,
+                trace.scale,
+                x_limits,
+                columns,
+                hold=view.hold,
+            )
+        )
     x_label = "time (s)" if model.log.layout.time else "row"
     if model.alignment == DISTANCE:
         x_label = "distance driven (mm)"
@@ -65,12 +72,6 @@ def build_chart(model: AnalysisModel, view: View, columns: int, rows: int) -> Ch
     )
 
 
-def _build_line(trace: LogTrace, number: int, hold: bool, x_limits: Limits, columns: int) -> Line:
-    xs, ys = reduce_points(trace.times_s, trace.values, x_limits, columns)
-    xs, ys = clip_line(*(sample_and_hold(xs, ys) if hold else (xs, ys)), x_limits)
-    return Line(trace.name, xs, ys, number, trace.scale)
-
-
 def _build_path_chart(
     model: AnalysisModel, names: tuple[str, str], marks: bool, columns: int, rows: int
 ) -> ChartData:
@@ -81,14 +82,8 @@ def _build_path_chart(
         good &= (places >= model.limits[0]) & (places <= model.limits[1])
     if not good.any():
         raise LogError(f"no sample has both {names[0]} and {names[1]}", file=model.log.title)
-    xs, ys = (limit_drawn(values[good]) for values in (xs, ys))
-    limits = [choose_limits(float(values.min()), float(values.max())) for values in (xs, ys)]
-    cells = max(columns // DOTS_X, 1), max(rows // DOTS_Y, 1)
-    xs, ys = drop_hidden_points(xs, ys, limits, *cells)
-    title = printable(model.log.title)
-    x_label = add_unit(names[0])
-    return ChartData(
-        title, (Line(names[1], xs, ys, 0),), limits[0], x_label, marks=marks, path=True
+    return build_path_chart(
+        printable(model.log.title), names, xs[good], ys[good], (columns, rows), marks=marks
     )
 
 

@@ -14,7 +14,7 @@ from tuisim.engine.runs.arrays import FloatArray
 from tuisim.logs.bands import compute_driven_mm
 from tuisim.logs.signals import sample_signal
 from tuisim.pictures.charts.axes import Limits, widen_times
-from tuisim.pictures.charts.traces import Pyramid, Trace, Traces
+from tuisim.pictures.charts.traces import Pyramid, Trace, Traces, sample_and_hold
 
 if TYPE_CHECKING:
     from tuisim.logs.log import Log, Series
@@ -101,13 +101,6 @@ class LogTrace(Trace):
         if not len(pyramid.times_s) or time_s < pyramid.times_s[0]:
             return None
         return float(sample_signal(pyramid.times_s, pyramid.values, np.array([time_s]))[0])
-
-
-def sample_and_hold(times_s: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the corners of a step line."""
-    if len(times_s) < 2:
-        return times_s, values
-    return np.repeat(times_s, 2)[1:], np.repeat(values, 2)[:-1]
 
 
 class LogTraces(Traces):

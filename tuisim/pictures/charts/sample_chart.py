@@ -1,4 +1,4 @@
-"""The chart of samples over simulated time."""
+"""Charts as data: samples over simulated time, one variable over time, or against another."""
 
 from __future__ import annotations
 
@@ -6,11 +6,19 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from tuisim.engine.runs.arrays import FloatArray
 from tuisim.engine.runs.samples import Sample
 from tuisim.logs.magnitude import limit_drawn
-from tuisim.pictures.charts.axes import Limits, widen_times
-from tuisim.pictures.charts.layout import ChartData, Line
-from tuisim.pictures.charts.traces import Pyramid, clip_line, find_scale_name, reduce_points
+from tuisim.pictures.charts.axes import Limits, choose_limits, widen_times
+from tuisim.pictures.charts.canvas import DOTS_X, DOTS_Y, drop_hidden_points
+from tuisim.pictures.charts.layout import ChartData, Line, add_unit
+from tuisim.pictures.charts.traces import (
+    Pyramid,
+    clip_line,
+    find_scale_name,
+    reduce_points,
+    sample_and_hold,
+)
 
 
 def build_sample_chart(
@@ -30,14 +38,66 @@ def build_sample_chart(
     low, high = (min(end[0] for end in ends), max(end[1] for end in ends)) if ends else (0.0, 1.0)
     limits = limits or widen_times(float(low), float(high))
     lines = tuple(
-        Line(
+        build_line(
             name,
-            *clip_line(
-                *reduce_points(trace.times_s, limit_drawn(trace.values), limits, columns), limits
-            ),
+            (trace.times_s, limit_drawn(trace.values)),
             number,
             find_scale_name(name),
+            limits,
+            columns,
         )
         for number, (name, trace) in enumerate(series.items())
     )
     return ChartData("", lines, limits, "time (s)")
+
+
+def build_line(
+    name: str,
+    points: tuple[FloatArray, FloatArray],
+    number: int,
+    scale: str,
+    limits: Limits,
+    columns: int,
+    *,
+    hold: bool = False,
+) -> Line:
+    """Return a line of a chart over time.
+
+    Args:
+        name: The variable.
+        points: Rising times, and values, each of shape (n,).
+        number: Index that selects colour and marker.
+        scale: The name of its scale.
+        limits: Range of time.
+        columns: Width in pixels; points that it could not show apart are left out.
+        hold: Whether it is a step line.
+    """
+    xs, ys = reduce_points(*points, limits, columns)
+    xs, ys = clip_line(*(sample_and_hold(xs, ys) if hold else (xs, ys)), limits)
+    return Line(name, xs, ys, number, scale)
+
+
+def build_path_chart(
+    title: str,
+    names: tuple[str, str],
+    xs: FloatArray,
+    ys: FloatArray,
+    size: tuple[int, int],
+    *,
+    marks: bool,
+) -> ChartData:
+    """Return the chart of one variable against another.
+
+    Args:
+        title: Its title.
+        names: The variables of the x and of the y axis.
+        xs, ys: Their values, finite, shape (n,), n at least 1.
+        size: Width and height in pixels; points that it could not show apart are left out.
+        marks: Whether points are drawn instead of lines.
+    """
+    xs, ys = limit_drawn(xs), limit_drawn(ys)
+    limits = [choose_limits(float(values.min()), float(values.max())) for values in (xs, ys)]
+    cells = max(size[0] // DOTS_X, 1), max(size[1] // DOTS_Y, 1)
+    xs, ys = drop_hidden_points(xs, ys, limits, *cells)
+    line = Line(names[1], xs, ys, 0)
+    return ChartData(title, (line,), limits[0], add_unit(names[0]), marks=marks, path=True)

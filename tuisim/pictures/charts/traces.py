@@ -233,6 +233,13 @@ def clip_line(
     )
 
 
+def sample_and_hold(times_s: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the corners of a step line."""
+    if len(times_s) < 2:
+        return times_s, values
+    return np.repeat(times_s, 2)[1:], np.repeat(values, 2)[:-1]
+
+
 def _find_visible(times_s: FloatArray, x_limits: tuple[float, float]) -> tuple[int, int]:
     first = max(int(np.searchsorted(times_s, x_limits[0], "left")) - 1, 0)
     return first, min(int(np.searchsorted(times_s, x_limits[1], "right")) + 1, len(times_s))
