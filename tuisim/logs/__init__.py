@@ -14,6 +14,7 @@ __all__ = [
     "magnitude",
     "mcap_export",
     "plateaus",
+    "preview",
     "reader",
     "signals",
     "table",

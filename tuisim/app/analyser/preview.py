@@ -18,16 +18,13 @@ from textual.widgets import Label, Select, Static
 from tuisim.app.dialogs.dialog import Dialog
 from tuisim.base import palette
 from tuisim.base.errors import TuisimError, shortened
-from tuisim.logs.choices import NO_CHOICES, WORDS, ReadChoices
-from tuisim.logs.columns import ROW, UNIT_NAMES, is_numeric, time_columns
+from tuisim.logs.choices import NO_CHOICES, ReadChoices
 from tuisim.logs.log import Log
-from tuisim.logs.reader import read_beginning, read_first_lines
+from tuisim.logs.preview import Preview
 
 _ROWS = 30
 _COLUMNS = 60
 """Maximum numbers of rows and columns that are shown."""
-_MAX_CELL, _MAX_LINE = 24, 60
-"""Maximum numbers of characters of a cell, and of a line of the file."""
 _FIELDS = {
     "header": "Heading",
     "separator": "Separator",
@@ -38,11 +35,6 @@ _FIELDS = {
 """The choices by name, with their labels, whose first letters are their keys."""
 _COLUMN_CHOICES = ("header", "separator")
 """Choices that change which columns there are."""
-
-_EXAMPLES = {".": "1.5", ",": "1,5"}
-"""Numbers that are shown in place of decimal signs, which are hard to see."""
-Offers = list[tuple[str, Any]]
-"""The options of a list: pairs of a label and a value in `ReadChoices`."""
 
 
 class PreviewDialog(Dialog[ReadChoices]):
@@ -66,10 +58,8 @@ class PreviewDialog(Dialog[ReadChoices]):
     def __init__(self, file: str, choices: ReadChoices, log: Log) -> None:
         super().__init__()
         self.TITLE_TEXT = f"How to read {Path(file).name}"
-        self._file = file
         self._choices = choices
-        self._log = log
-        self._lines = read_first_lines(file, choices.encoding)
+        self._preview = Preview(file, choices, log)
 
     def compose_content(self) -> ComposeResult:
         for names in (("header",), ("separator", "decimal"), ("time", "unit")):
@@ -86,7 +76,7 @@ class PreviewDialog(Dialog[ReadChoices]):
                         disabled=self._is_idle(name),
                     )
         with ScrollableContainer(id="rows"):
-            yield Static(_build_rows(self._log), id="table")
+            yield Static(_build_rows(self._preview), id="table")
         with VerticalScroll(id="notes", can_focus=False):
             yield Static(self._notes(), id="message", markup=False)
 
@@ -121,11 +111,11 @@ class PreviewDialog(Dialog[ReadChoices]):
     def _read(self) -> None:
         """Show the first rows as they are read now."""
         try:
-            self._log = read_beginning(self._file, self._choices)
+            self._preview.read(self._choices)
         except TuisimError as error:
             self.say(error.message, wrong=True)
             return
-        self.query_one("#table", Static).update(_build_rows(self._log))
+        self.query_one("#table", Static).update(_build_rows(self._preview))
         self.say(self._notes())
         for name in _FIELDS:
             field = self.query_one(f"#{name}", Select)
@@ -140,80 +130,41 @@ class PreviewDialog(Dialog[ReadChoices]):
         """Return whether a choice would change nothing."""
         if name == "time":
             return False
-        return not self._has_number_time if name == "unit" else not self._lines
-
-    @property
-    def _has_number_time(self) -> bool:
-        time = self._log.layout.time
-        return bool(time) and is_numeric(self._log.table.schema.field(time).type)
+        return not self._preview.has_number_time if name == "unit" else not self._preview.lines
 
     def _notes(self) -> str:
-        return "\n".join(self._log.notes)
+        return "\n".join(self._preview.log.notes)
 
-    def _list_offers(self, name: str) -> Offers:
+    def _list_offers(self, name: str) -> list[tuple[str, Any]]:
         """Return the options of a choice; the first one lets the app find the value in the file."""
         chosen = getattr(self._choices, name)
-        offers = self._list_words(name)
+        offers = self._preview.list_offers(name)
         usual = getattr(NO_CHOICES, name)
         if chosen not in (usual, *dict(offers).values()):
             # An option in the shell named a value that is not in the list.
             offers.append((str(chosen), chosen))
         is_found = chosen == usual
-        label = f"found: {self._find_word(name) or 'none'}" if is_found else "find it"
+        label = f"found: {self._preview.find_word(name) or 'none'}" if is_found else "find it"
         return [(label, usual), *offers]
 
-    def _list_words(self, name: str) -> Offers:
-        match name:
-            case "header":
-                return [(f"{row}: {text[:_MAX_LINE]}", row) for row, text in self._lines]
-            case "time":
-                names = time_columns(self._log.table)
-                return [
-                    *((shortened(column, _MAX_CELL), column) for column in names),
-                    ("row numbers", ROW),
-                ]
-            case _:
-                return [(_EXAMPLES.get(word, word), word) for word in WORDS[name]]
 
-    def _find_word(self, name: str) -> str:
-        """Return the value that was found in the file for a choice, as a label; empty if none was found."""
-        layout = self._log.layout
-        form = self._log.form
-        match name:
-            case "header":
-                return f"line {form.header}" if form.header else ""
-            case "time":
-                return shortened(layout.time or "row numbers", _MAX_CELL)
-            case "unit":
-                return UNIT_NAMES.get(layout.unit_s, "") if self._has_number_time else ""
-            case _:
-                word: str = getattr(form, name)
-                return _EXAMPLES.get(word, word)
-
-
-def _build_rows(log: Log) -> Table:
+def _build_rows(preview: Preview) -> Table:
     """Return the first rows with names and roles of the columns."""
+    log = preview.log
     rows = Table(box=None, padding=(0, 1), pad_edge=False)
     row = log.form.header
     rows.add_column(Text(f"line {row}\n" if row else ""), no_wrap=True)
     names = log.table.column_names[:_COLUMNS]
     for name in names:
-        heading = Text(f"{shortened(name, _MAX_CELL)}\n", Style(color=palette.WHITE, bold=True))
-        heading.append(_describe_role(log, name), Style(color=palette.YELLOW, bold=False))
-        numeric = is_numeric(log.table.schema.field(name).type)
+        heading = Text(
+            f"{shortened(name, Preview.MAX_CELL)}\n", Style(color=palette.WHITE, bold=True)
+        )
+        heading.append(preview.describe_role(name), Style(color=palette.YELLOW, bold=False))
+        numeric = preview.is_numeric(name)
         rows.add_column(heading, no_wrap=True, justify="right" if numeric else "left")
     for cells in zip(*(log.table.column(name)[:_ROWS].to_pylist() for name in names), strict=True):
         rows.add_row("", *(Text(_format_cell(cell)) for cell in cells))
     return rows
-
-
-def _describe_role(log: Log, name: str) -> str:
-    """Return the role that a column was taken to have, such as `time`; empty for a column of values."""
-    layout = log.layout
-    if name == layout.time:
-        return "time"
-    roles = {layout.variable: "variable", layout.run: "run"}
-    return roles.get(name) or ("" if name in layout.values else "not drawn")
 
 
 def _format_cell(value: object) -> str:
@@ -223,4 +174,4 @@ def _format_cell(value: object) -> str:
         text = ""
     else:
         text = str(value)
-    return shortened(text, _MAX_CELL)
+    return shortened(text, Preview.MAX_CELL)

@@ -1,0 +1,96 @@
+"""The first rows of a file: what was taken for heading and time, and how else it may be read."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from tuisim.base.errors import shortened
+from tuisim.logs.choices import WORDS, ReadChoices
+from tuisim.logs.columns import ROW, UNIT_NAMES, is_numeric, time_columns
+from tuisim.logs.log import Log
+from tuisim.logs.reader import read_beginning, read_first_lines
+
+_MAX_LINE = 60
+"""Maximum number of characters of a line of the file."""
+_EXAMPLES = {".": "1.5", ",": "1,5"}
+"""Numbers that are shown in place of decimal signs, which are hard to see."""
+Offers = list[tuple[str, Any]]
+"""Ways to read a file: pairs of a label and a value in `ReadChoices`."""
+
+
+class Preview:
+    """The first rows of a file.
+
+    Args:
+        path: The file.
+        choices: How it is read at first.
+        log: Its first rows, read in this way.
+
+    Raises:
+        LogError: it cannot be read.
+    """
+
+    MAX_CELL = 24
+    """Maximum number of characters of a cell."""
+
+    def __init__(self, path: str, choices: ReadChoices, log: Log) -> None:
+        self._path = path
+        self.log = log
+        """The rows as they are read now."""
+        self.lines = read_first_lines(path, choices.encoding)
+        """The first lines of a text, each with its number."""
+
+    def read(self, choices: ReadChoices) -> None:
+        """Read the rows in another way.
+
+        Raises:
+            LogError: nothing can be read with these choices.
+        """
+        self.log = read_beginning(self._path, choices)
+
+    @property
+    def has_number_time(self) -> bool:
+        """Whether the times are numbers."""
+        time = self.log.layout.time
+        return bool(time) and self.is_numeric(time)
+
+    def is_numeric(self, column: str) -> bool:
+        """Return whether a column has numbers."""
+        return is_numeric(self.log.table.schema.field(column).type)
+
+    def list_offers(self, name: str) -> Offers:
+        """Return what may be chosen, by the name of the choice in `ReadChoices`."""
+        match name:
+            case "header":
+                return [(f"{row}: {text[:_MAX_LINE]}", row) for row, text in self.lines]
+            case "time":
+                names = time_columns(self.log.table)
+                return [
+                    *((shortened(column, self.MAX_CELL), column) for column in names),
+                    ("row numbers", ROW),
+                ]
+            case _:
+                return [(_EXAMPLES.get(word, word), word) for word in WORDS[name]]
+
+    def find_word(self, name: str) -> str:
+        """Return the value that was found in the file for a choice, as a label; empty if none was found."""
+        layout = self.log.layout
+        form = self.log.form
+        match name:
+            case "header":
+                return f"line {form.header}" if form.header else ""
+            case "time":
+                return shortened(layout.time or "row numbers", self.MAX_CELL)
+            case "unit":
+                return UNIT_NAMES.get(layout.unit_s, "") if self.has_number_time else ""
+            case _:
+                word: str = getattr(form, name)
+                return _EXAMPLES.get(word, word)
+
+    def describe_role(self, column: str) -> str:
+        """Return the role that a column was taken to have, such as `time`; empty for a column of values."""
+        layout = self.log.layout
+        if column == layout.time:
+            return "time"
+        roles = {layout.variable: "variable", layout.run: "run"}
+        return roles.get(column) or ("" if column in layout.values else "not drawn")
