@@ -70,6 +70,29 @@ def test_nothing_is_written_outside_the_programs_folder(folder: Path) -> None:
     assert names == ["data/inside.txt", "log.txt", "new.txt"]
 
 
+CHANGES = {
+    "a folder": ("os.makedirs('/home/robot/logs/1', exist_ok=True)", ["logs", "logs/1"], []),
+    "a folder that is there": ("os.makedirs('/home/robot/data', exist_ok=True)", [], []),
+    "a file in a new folder": (
+        "os.mkdir('/home/robot/logs')\nopen('/home/robot/logs/1.csv', 'w').close()",
+        ["logs", "logs/1.csv"],
+        [],
+    ),
+    "a file removed": ("os.remove('/home/robot/a.txt')", [], ["a.txt"]),
+    "a file renamed": ("os.rename('/home/robot/a.txt', '/home/robot/b.txt')", ["b.txt"], ["a.txt"]),
+    "a folder removed": ("Path('/home/robot/e').mkdir()\nos.rmdir('/home/robot/e')", [], []),
+}
+
+
+@pytest.mark.parametrize("case", CHANGES)
+def test_files_and_folders_change_beside_the_program(folder: Path, case: str) -> None:
+    text, added, removed = CHANGES[case]
+    before = {str(path.relative_to(folder)) for path in folder.rglob("*")}
+    assert _run(folder, text).errors == []
+    after = {str(path.relative_to(folder)) for path in folder.rglob("*")}
+    assert (sorted(after - before), sorted(before - after)) == (added, removed)
+
+
 def test_a_file_that_is_missing_is_missing_beside_the_program(folder: Path) -> None:
     errors = _run(folder, "open('/home/robot/none.txt')").errors
     assert (

@@ -37,7 +37,8 @@ from tuisim.engine.runtime.stack import patch_faulthandler
 from tuisim.engine.runtime.tracebacks import find_line
 from tuisim.engine.shim.waits import Wait, waits_for
 
-_FILE_CALLS = ("open", "stat", "lstat", "access")
+_FILE_CALLS = ("open", "stat", "lstat", "access", "mkdir", "rmdir", "remove", "unlink")
+_TWO_FILE_CALLS = ("rename", "replace")
 _FOLDER_CALLS = ("listdir", "scandir", "chdir")
 """Functions of `os` that take the path of a folder: one that is not there is that of the program."""
 
@@ -58,15 +59,17 @@ class HomeFolder:
         vars(io)["open"] = builtins.open
         for name in _FILE_CALLS:
             self._wrap(os, name, self._find_file)
+        for name in _TWO_FILE_CALLS:
+            self._wrap(os, name, self._find_file, paths=2)
         for name in _FOLDER_CALLS:
             self._wrap(os, name, self._find_folder)
 
     @staticmethod
-    def _wrap(module: Any, name: str, moved: Callable[[Any], Any]) -> None:
+    def _wrap(module: Any, name: str, moved: Callable[[Any], Any], paths: int = 1) -> None:
         real = getattr(module, name)
 
         def call(*given: Any, **named: Any) -> Any:
-            return real(moved(given[0]), *given[1:], **named) if given else real(**named)
+            return real(*map(moved, given[:paths]), *given[paths:], **named)
 
         replace(module, name, call)
 
