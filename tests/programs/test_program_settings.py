@@ -178,6 +178,16 @@ CASES: Mapping[str, tuple[str, dict[str, Any], tuple[str, str, tuple[float, floa
         {},
         ("pybricks4", "Robot of p.py", (136, 800)),
     ),
+    "device files without a library": (
+        "open('/sys/class/tacho-motor/motor0/command', 'w').write('run-forever')\n",
+        {},
+        ("ev3", "Default_Robot", MIDDLE),
+    ),
+    "device files and a magic line": (
+        "# %%sim_magic\nprint(open('/sys/class/lego-sensor/sensor0/value0').read())\n",
+        {},
+        ("robolab", "Default_Robot", MAT),
+    ),
     "the older library": (
         "from ev3dev.ev3 import *\nm = LargeMotor('outB')\n",
         {},

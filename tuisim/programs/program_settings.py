@@ -52,6 +52,8 @@ BRICK_PROFILES = (*PROFILES_BY_LIBRARY.values(), PYBRICKS_4.name)
 """All profiles with the rules of a real brick."""
 SHEBANG = "#!/usr/bin/env pybricks-micropython"
 """The first line of a program for LEGO's MicroPython."""
+_DEVICE_FOLDERS = ("/sys/class/tacho-motor", "/sys/class/lego-sensor")
+"""The folders of the brick's motors and sensors, in which a program without a library finds them."""
 _NO_PRELUDE = "none"
 _BRICK_LIGHT = "reflected_light_intensity"
 """The attribute whose scale the course changes."""
@@ -200,9 +202,16 @@ def _collect_facts(program: Program, modules: dict[str, Module], facts: SourceFa
 
 
 def _find_library(program: Program, modules: dict[str, Module]) -> Library | None:
-    """Return the library for a brick that a program uses, by its imports, else by its first line; None for none."""
-    library = find_library(modules)
-    return Library.PYBRICKS if library is None and program.text.startswith(SHEBANG) else library
+    """Return the library for a brick that a program uses; None for none.
+
+    Its imports say so, else its first line, or the device files that it opens, which are those below ev3dev2.
+    """
+    if library := find_library(modules):
+        return library
+    if program.text.startswith(SHEBANG):
+        return Library.PYBRICKS
+    opens_devices = any(folder in program.text for folder in _DEVICE_FOLDERS)
+    return Library.EV3DEV2 if modules and opens_devices else None
 
 
 def require_library(program: Program, profile: ProfileSpec) -> None:
