@@ -215,7 +215,7 @@ def test_an_experiment_takes_place_in_a_world_file_instead_of_that_of_its_goals(
     frame = tuisim.experiment(
         POSE, seeds=[1, 2], world=tmp_path / "lab.toml", goals=tmp_path / "goals.toml", jobs=1
     )
-    assert (frame["x_mm"].tolist(), frame["goal.done"].tolist()) == ([400, 400], [True, True])
+    assert (frame["x_mm"].tolist(), frame["goal_done"].tolist()) == ([400, 400], [True, True])
 
 
 def test_a_call_is_a_program() -> None:

@@ -113,7 +113,7 @@ def test_wrong_expressions_are_found_before_anything_is_run(
 
 def test_right_expressions_are_accepted() -> None:
     check_expressions(
-        {"a": "noise.motor + Colour_last", "b": "a + `goal.reach end`"},
+        {"a": "noise.motor + Colour_last", "b": "a + `goal_reach end`"},
         ["noise.motor"],
         ["reach end"],
     )

@@ -107,7 +107,7 @@ def test_goals_are_judged_in_their_world(
 
     monkeypatch.setattr(sweep, "run_many", judged)
     assert batch(*words, "--seeds", "0..2", "--out", "rows.csv") == 0
-    assert pd.read_csv("rows.csv")[["goal.end", "points"]].to_numpy().tolist() == [
+    assert pd.read_csv("rows.csv")[["goal_end", "points"]].to_numpy().tolist() == [
         [True, 2],
         [True, 2],
         [False, 0],

@@ -14,7 +14,7 @@ from tuisim.logs.export import build_table_metadata
 from tuisim.logs.expressions import evaluate, find_names
 from tuisim.logs.signals import Summary, compute_summary
 from tuisim.logs.units import parse_unit
-from tuisim.tasks.goals.judgement import GoalState, compute_points
+from tuisim.tasks.goals.judgement import GOAL, GoalState, compute_points
 from tuisim.tasks.task import Result, Value, VariableStatistics
 
 if TYPE_CHECKING:
@@ -33,9 +33,6 @@ ENDS = ("end", "exit_code", "summary", "error_line", "time_s", *POSE, "waited_fo
 
 STATISTICS = tuple(VariableStatistics.__dataclass_fields__)
 """The columns of a sample variable are `NAME_last`, `NAME_count` and so on."""
-
-GOAL = "goal."
-"""The columns of goals are `goal.NAME`: whether the run has met it."""
 
 MAX_GROUPS = 12
 """A summary of more groups has one line for each column."""

@@ -13,7 +13,7 @@ from tuisim import __version__
 from tuisim.base.errors import counted
 from tuisim.base.faults import UNJUDGED, report_file
 from tuisim.batch.sweep import Sweep
-from tuisim.batch.table import GOAL, RUN_ID, ColumnSummary, Row
+from tuisim.batch.table import RUN_ID, ColumnSummary, Row
 from tuisim.commands import exit_status
 from tuisim.commands.batch_request import OPTIONS, Request, read_request
 from tuisim.commands.echo import (
@@ -35,6 +35,7 @@ from tuisim.logs.signals import QUANTILES
 from tuisim.settings.command_line import Arguments, command
 from tuisim.settings.options import APP, PANEL
 from tuisim.settings.shared_options import build_shared_options
+from tuisim.tasks.goals.judgement import GOAL
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -154,11 +155,12 @@ class _Batch:
         )
         for reason, count in reasons.most_common(_MAX_REASONS):
             echo(f"  {count:,} × {reason}")
-        for name in [name for name in frame.columns if name.startswith(GOAL)]:
-            met = int(frame[name].fillna(0).sum())
-            echo(
-                f"{name.removeprefix(GOAL)}: met in {met:,} of {len(frame):,} ({100 * met / len(frame):.0f} %)"
-            )
+        for goal in self.request.plan.goals:
+            if (name := f"{GOAL}{goal.name}") in frame:
+                met = int(frame[name].fillna(0).sum())
+                echo(
+                    f"{goal.name}: met in {met:,} of {len(frame):,} ({100 * met / len(frame):.0f} %)"
+                )
         lines = self.sweep.summarize(frame)
         echo_lines(_format_summary(lines[:MAX_LINES], shutil.get_terminal_size().columns))
         if len(lines) > MAX_LINES:

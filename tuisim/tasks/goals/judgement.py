@@ -12,6 +12,9 @@ from tuisim.base.data_class import dataclass
 if TYPE_CHECKING:
     from tuisim.tasks.goals.spec import Goal
 
+GOAL = "goal_"
+"""Before the name of a goal in the name of its column in a table."""
+
 
 class GoalState(StrEnum):
     """State of a goal at an instant of a run."""

@@ -16,7 +16,7 @@ from tuisim.base.errors import counted, printable, shortened
 from tuisim.base.faults import UNJUDGED
 from tuisim.base.source import source_lines
 from tuisim.logs.export import export_frame
-from tuisim.tasks.goals.judgement import compute_max_points, format_points, sum_points
+from tuisim.tasks.goals.judgement import GOAL, compute_max_points, format_points, sum_points
 from tuisim.tasks.goals.spec import Goal
 from tuisim.tasks.marks.hand_ins import GradebookKind
 from tuisim.tasks.marks.outcome import Outcome, merge_worlds
@@ -29,8 +29,6 @@ NOT_RUN = "not run"
 DIGITS = 4
 """Points and shares are rounded to so many decimals: sums of floats are not exact."""
 MARKS_FORMAT = 1
-GOAL_PREFIX = "goal_"
-"""Before the name of a goal in the name of its column."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -153,7 +151,7 @@ class Sheet:
             "runs": [row.runs for row in rows],
         }
         for index, column in enumerate(self.columns):
-            columns[f"{GOAL_PREFIX}{column.name}"] = [row.cells[index].points for row in rows]
+            columns[f"{GOAL}{column.name}"] = [row.cells[index].points for row in rows]
         columns |= {
             "reason": [row.reason for row in rows],
             "line": [row.line for row in rows],
