@@ -39,8 +39,6 @@ def test_there_is_one_row_for_each_run_whatever_the_order() -> None:
         "x_mm",
         "y_mm",
         "heading_deg",
-        "waited_for",
-        "plugged",
         "Colour_last",
         "Colour_count",
         "Colour_mean",
@@ -58,6 +56,12 @@ def test_a_column_has_the_narrowest_type_and_nan_where_nothing_was_printed() -> 
     }
     assert kinds == {"noise.motor": "i", "seed": "i", "x_mm": "f", "Colour_count": "f"}
     assert frame["Colour_last"].isna().tolist() == [False, False, True] * 2
+
+
+def test_what_runs_waited_for_is_a_column_if_one_waited() -> None:
+    rows = [{"run": 1, "waited_for": ""}, {"run": 2, "waited_for": "a press"}]
+    assert build_frame(rows)["waited_for"].tolist() == ["", "a press"]
+    assert "waited_for" not in build_frame(rows[:1])
 
 
 def test_the_program_is_a_column_if_there_are_several() -> None:

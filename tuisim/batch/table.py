@@ -28,7 +28,9 @@ PROGRAM = "program"
 POINTS = "points"
 RUN_ID = "id"
 POSE = ("x_mm", "y_mm", "heading_deg")
-ENDS = ("end", "exit_code", "summary", "error_line", "time_s", *POSE, "waited_for", "plugged")
+_RARE = ("waited_for", "plugged")
+"""Columns of runs that a table has only if one of them has a value there."""
+ENDS = ("end", "exit_code", "summary", "error_line", "time_s", *POSE, *_RARE)
 """Columns of every run after its parameters, as in `Result`."""
 
 STATISTICS = tuple(VariableStatistics.__dataclass_fields__)
@@ -84,7 +86,7 @@ def build_frame(rows: Iterable[Row], expressions: Mapping[str, str] | None = Non
     ordered = sorted(rows, key=lambda row: int(row[RUN]))
     names: dict[str, None] = {}
     for row in ordered:
-        names |= dict.fromkeys(row)
+        names |= dict.fromkeys(name for name in row if row[name] or name not in _RARE)
     columns = {name: _build_column([row.get(name) for row in ordered]) for name in names}
     for name, text in (expressions or {}).items():
         columns[name] = evaluate_expression(text, _move_statistics(columns), len(ordered))
