@@ -75,7 +75,7 @@ def test_metrics_are_told_apart_by_what_they_compute() -> None:
 def test_a_stored_run_of_an_experiment_opens_by_its_number() -> None:
     tuisim.simulate("print('A: 0')\n")
     frame = tuisim.experiment("print('A: 1')\n", seeds=[3, 5], keep="all", jobs=1)
-    runs = [tuisim.load_run(number) for number in frame["stored"]]
+    runs = [tuisim.load_run(number) for number in frame["run"]]
     assert [run.stored.spec.seed for run in runs] == [3, 5]
     assert [run.output for run in runs] == ["A: 1\n"] * 2
 

@@ -161,7 +161,7 @@ def experiment(
             the values of a run only metrics and expressions.
         expressions: Further columns by name, such as `{{"error_mm": "hypot(x_mm - 750, y_mm - 850)"}}`.
         goals: A goals file; its world is used without a `world`, where no option says otherwise.
-        keep: Which runs to store: the column `stored` then has their numbers for `load_run`.
+        keep: Which runs to store: `load_run` takes what the column `id` then has, and with `all` also the column `run`.
         jobs: Number of worker processes; 0 is one for each processor. The results do not depend on it.
         out: A file for the table, in any format of a log; an interrupted experiment that is called again goes on with
             the rows so far.

@@ -19,7 +19,7 @@ from tuisim.batch.parameters import SEED, Choice, parse_values
 from tuisim.batch.plan import Plan, Subject
 from tuisim.batch.rounds import Rounds, parse_precision
 from tuisim.batch.sweep import Sweep, Workers, is_interrupted
-from tuisim.batch.table import RUN_ID
+from tuisim.batch.table import RUN, RUN_ID
 from tuisim.engine.protocol import End
 from tuisim.engine.runs.store import RunStore
 from tuisim.logs.export import check_target
@@ -31,8 +31,6 @@ from tuisim.tasks.task import MAX_JOBS, Keep
 if TYPE_CHECKING:
     import pandas as pd
 
-STORED = "stored"
-"""The column with the numbers that runs have in the store; 0 for runs that are not kept."""
 _NOT_VARIED = ("press",)
 """Options whose value is a list."""
 
@@ -64,19 +62,23 @@ def run_experiment(
     own = *metrics, *expressions
     precision = parse_precision(until, "until", plan, own) if until else None
     target = check_target(user_path(str(out))) if out is not None else None
-    resumes = target is not None and is_interrupted(target)
     sweep = Sweep(
-        plan, expressions, target, version("tuisim"), resumes=resumes, measured=measures.identity
+        plan,
+        expressions,
+        target,
+        version("tuisim"),
+        resumes=target is not None and is_interrupted(target),
+        measured=measures.identity,
     )
     rounds = Rounds(plan, sweep, precision) if precision else None
     with show_progress(len(plan) - len(sweep.rows)) as tell:
         sweep.run(workers, tell, measures.measure, rounds)
     frames = take_columns(sweep.rows)
     frame = study.add_variants(sweep.build_frame())
-    warn_unknown(until, rounds.unknown if rounds else ())
+    if rounds:
+        warn_unknown(until, rounds.unknown)
     warn_raised(frame)
-    if columns:
-        frame = join_columns(frame, frames, own)
+    frame = number_stored(join_columns(frame, frames, own) if columns else frame)
     sweep.export(frame)
     sweep.finish()
     return frame
@@ -210,9 +212,6 @@ class Study:
         for place, name in enumerate(names, start=1):
             values = [variants[number][name] for number in numbers]
             frame.insert(place, name, [_name_value(value) for value in values])
-        if RUN_ID in frame:
-            stored = {info.id: info.number for info in RunStore().runs()}
-            frame[STORED] = [stored.get(run_id, 0) for run_id in frame[RUN_ID]]
         is_named = len(self._programs) > 1 or "program" not in frame
         return frame if is_named else frame.drop(columns="program")
 
@@ -232,10 +231,19 @@ def join_columns(
     if not frames:
         return table.iloc[:0]
     runs = [index + 1 for index, frame in frames.items() for _ in range(len(frame))]
-    stored = [STORED] if STORED in table else []
-    values = table[[*table.loc[:, :"seed"], *names, *stored]].set_index("run", drop=False).loc[runs]
+    ids = [RUN_ID] if RUN_ID in table else []
+    values = table[[*table.loc[:, :"seed"], *names, *ids]].set_index(RUN, drop=False).loc[runs]
     joined = pd.concat(frames.values(), ignore_index=True)
     return pd.concat([values.reset_index(drop=True), joined], axis=1)
+
+
+def number_stored(frame: pd.DataFrame) -> pd.DataFrame:
+    """Return a table with the numbers of the store in place of those of the experiment, if all its runs are stored."""
+    if RUN_ID not in frame:
+        return frame
+    numbers = {info.id: info.number for info in RunStore().runs()}
+    stored = [numbers.get(run_id, 0) for run_id in frame[RUN_ID]]
+    return frame.assign(run=stored) if all(stored) else frame
 
 
 def list_variants(options: Mapping[str, Any]) -> list[dict[str, Any]]:

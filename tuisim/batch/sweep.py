@@ -151,6 +151,8 @@ def read_rows(path: Path, identity: Mapping[str, Any], columns: Iterable[str]) -
         }
         for row in usual_frame.to_dict("records")
     ]
+    # A table of Python's `experiment` has the numbers of the store there.
+    rows = [{**row, RUN: number} for number, row in enumerate(rows, start=1)]
     return _select_started(rows)
 
 
