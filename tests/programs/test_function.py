@@ -184,6 +184,56 @@ def test_own_classes_go_along_with_what_they_use(load: Import) -> None:
     assert tuisim.simulate(load(controller=CONTROLLER, study=STUDY).go).output == "inf 10.0 1\n"
 
 
+DECORATORS = """\
+from functools import wraps
+FACTOR = 7
+def twice(function):
+    @wraps(function)
+    def call():
+        function()
+        function()
+    return call
+def hide(function):
+    def call():
+        function()
+    return call
+"""
+DECORATED = """\
+from decorators import hide, twice
+FACTOR = 3
+@twice
+def go():
+    print(FACTOR)
+@hide
+def hidden():
+    print(FACTOR)
+def call_hidden():
+    hidden()
+double = lambda: 2
+def call_lambda():
+    print(double())
+"""
+
+
+def test_a_decorated_function_keeps_what_it_uses_and_its_decorator(load: Import) -> None:
+    assert tuisim.simulate(load(decorators=DECORATORS, decorated=DECORATED).go).output == "3\n3\n"
+
+
+@pytest.mark.parametrize("name", ["hidden", "call_hidden"])
+def test_a_decorator_that_hides_its_function_is_refused(load: Import, name: str) -> None:
+    with pytest.raises(ConfigError, match="a decorator hides hidden"):
+        read_function(getattr(load(decorators=DECORATORS, decorated=DECORATED), name))
+
+
+def test_a_lambda_as_a_helper_is_refused(load: Import) -> None:
+    with pytest.raises(ConfigError, match="call_lambda uses double, a lambda"):
+        read_function(load(decorators=DECORATORS, decorated=DECORATED).call_lambda)
+
+
+async def wait_for_nothing() -> None:
+    pass
+
+
 def _without_source() -> Any:
     names: dict[str, Any] = {}
     exec("def typed():\n    print(1)\n", names)
@@ -197,6 +247,7 @@ def _without_source() -> Any:
         "a lambda": (lambda: None, "<lambda> .* is not a program"),
         "parameters": (build_inner, "build_inner as a program takes no arguments: number"),
         "no source": (_without_source(), "the function typed has no source"),
+        "a coroutine": (wait_for_nothing, "wait_for_nothing does nothing when it is called"),
         "no function": (3, "3 is not a program"),
     },
 )

@@ -32,10 +32,14 @@ def read_function(function: Callable[[], object]) -> ProgramSource:
         ConfigError: it is no function with a name and a source, takes arguments, uses something else, or its file has
             changed since.
     """
+    function = inspect.unwrap(function)
     if not isinstance(function, FunctionType) or function.__name__ == "<lambda>":
         raise ConfigError(
             f"{function!r} is not a program", "give the name of a file, or a function made by def"
         )
+    if inspect.iscoroutinefunction(function) or inspect.isgeneratorfunction(function):
+        message = f"{function.__name__} does nothing when it is called"
+        raise ConfigError(message, "call it from a function without async or yield")
     needed = [
         parameter.name
         for parameter in inspect.signature(function).parameters.values()
@@ -103,6 +107,8 @@ class _Reader:
         if not self._claim(name, id(function), user):
             return
         own = function.__name__
+        if own == "<lambda>":
+            raise build_refusal(name, "lambda", user)
         try:
             lines, first = inspect.getsourcelines(function)
             text = "".join(inspect.findsource(function)[0])
@@ -111,6 +117,10 @@ class _Reader:
             raise ConfigError(f"the function {own} has no source", hint) from None
         around = Surroundings.read_function(function, text)
         around.check_source([function], own)
+        # The program decorates it again.
+        is_decorated = lines[0].lstrip().startswith("@")
+        if is_decorated and inspect.unwrap(around.values.get(own)) is not function:
+            raise ConfigError(f"a decorator hides {own}", "give it functools.wraps")
         self._add_block(_Block(own, function.__code__.co_filename, first, lines), around, own)
         self._add_alias(name, own, user)
 
@@ -121,7 +131,7 @@ class _Reader:
             around = Surroundings.read_module(sys.modules[kind.__module__])
         node, text = around.find(own)
         if not isinstance(node, ast.ClassDef):
-            raise build_refusal(name, kind, user)
+            raise build_refusal(name, "type", user)
         if not self._claim(name, id(kind), user):
             return
         methods = [each for each in vars(kind).values() if isinstance(each, FunctionType)]
@@ -167,7 +177,7 @@ class _Reader:
         elif isinstance(function := inspect.unwrap(value), FunctionType):
             self.add_function(name, function, user)
         else:
-            raise build_refusal(name, value, user)
+            raise build_refusal(name, type(value).__name__, user)
 
     def _add_constant(self, name: str, around: Surroundings, user: str) -> None:
         """Add a constant as it is written, if this gives the value that it has, else its value."""
@@ -216,7 +226,7 @@ class _Reader:
         return "\n".join(lines.get(number, "") for number in range(1, last + 3)) + "\n"
 
 
-def build_refusal(name: str, value: object, user: str) -> ConfigError:
-    """Return the error for an object that cannot go along with its user."""
-    message = f"{user} uses {name}, a {type(value).__name__}, which cannot go along"
+def build_refusal(name: str, kind: str, user: str) -> ConfigError:
+    """Return the error for an object of a kind that cannot go along with its user."""
+    message = f"{user} uses {name}, a {kind}, which cannot go along"
     return ConfigError(message, "make it inside the function")
