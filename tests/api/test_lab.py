@@ -111,6 +111,12 @@ def test_a_hub_goes_by_the_rules_of_its_program() -> None:
     assert tuisim.Lab(robot="Prime_Robot", profile="robolab").spec.profile.name == "robolab"
 
 
+def test_speeds_of_numpy_leave_no_numbers_of_numpy() -> None:
+    lab = tuisim.Lab()
+    lab.step(np.float64(300), np.float32(300))
+    assert "np" not in repr((lab.pose, lab.read()))
+
+
 def test_no_motor_is_faster_than_it_can() -> None:
     lab = tuisim.Lab(columns=["left_speed_dps"])
     assert lab.step(1e6, 0, period_s=3)["left_speed_dps"] == pytest.approx(lab.max_speed_dps)
@@ -159,6 +165,7 @@ def test_what_is_wrong_is_refused(given: dict[str, Any], words: str) -> None:
     {
         "one speed": ({"left": 100}, "left, right: must be two numbers, got 100, None"),
         "no number": ({"left": np.nan, "right": 3}, "must be two numbers, got nan, 3"),
+        "a text": ({"left": 3, "right": "fast"}, "must be two numbers, got 3, 'fast'"),
         "period": ({"period_s": -1}, "period_s: must not be negative"),
         "keyword": ({"period": 1}, "did you mean period_s"),
     },

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
+from math import nan
 from pathlib import Path
-from typing import TYPE_CHECKING, Never
+from typing import TYPE_CHECKING, Any, Never
 
 from tuisim.api.descriptions import (
     TIME,
@@ -170,12 +171,8 @@ class Lab:
         if ticks <= 0:
             raise ConfigError(f"must not be negative, got {period_s!r}", key="period_s")
         if (left is not None or right is not None) and self._asked != (left, right):
-            if left is None or right is None or left != left or right != right:
-                raise ConfigError(
-                    f"must be two numbers, got {left!r}, {right!r}", key="left, right"
-                )
             self._asked = left, right
-            self._run.turn_wheels(left, right)
+            self._run.turn_wheels(*read_speeds(left, right))
         self._run.advance(ticks, commands)
         return self.read()
 
@@ -200,3 +197,18 @@ class Lab:
         good.
         """
         return self._live.judge() if self._live is not None else (0.0, False)
+
+
+def read_speeds(left: Any, right: Any) -> tuple[float, float]:
+    """Return two speeds, also of NumPy, as Python's own numbers.
+
+    Raises:
+        ConfigError: one is no number.
+    """
+    try:
+        left_dps, right_dps = float(left), float(right)
+    except (TypeError, ValueError):
+        left_dps = right_dps = nan
+    if left_dps != left_dps or right_dps != right_dps:
+        raise ConfigError(f"must be two numbers, got {left!r}, {right!r}", key="left, right")
+    return left_dps, right_dps
