@@ -60,6 +60,16 @@ def test_list_names_the_end_of_a_stopped_run_once(here: Command, home: Path) -> 
     assert here("runs").stdout.splitlines()[1].split().count("stopped") == 1
 
 
+def test_list_has_the_end_that_the_app_shows(make: Make, here: Command) -> None:
+    run = make("a: 1")
+    with (
+        closing(sqlite3.connect(run.folder.parent.parent / CATALOGUE_FILE)) as connection,
+        connection,
+    ):
+        connection.execute("UPDATE runs SET time_s = 48.607")
+    assert "48.60" in here("runs").stdout.splitlines()[1].split()
+
+
 @pytest.mark.parametrize(
     "count, shown",
     [(0, "0.0 kB"), (1234, "1.2 kB"), (29_400_000, "29.4 MB"), (5e15, "5000.0 TB")],

@@ -20,7 +20,7 @@ from tuisim.base.errors import LogError, TuisimError
 from tuisim.base.folders import user_path
 from tuisim.base.source import Program
 from tuisim.engine.files import means_file
-from tuisim.engine.runs.run_folder import restore_program
+from tuisim.engine.runs.run_folder import format_end, restore_program
 from tuisim.engine.runs.store import RunStore
 from tuisim.programs.program_file import drop_wrong_mat
 from tuisim.programs.program_settings import Decided, find_free_paths
@@ -318,9 +318,8 @@ class Loader:
         plan = plan_rerun(run.spec, run.program)
         self.lay_out(plan, program_of(run), mat)
         self._run_controller.replay(run)
-        end_s = max(0, run.telemetry.count - 1) / run.spec.profile.tick_hz
         end = (
-            f"— {end_label(run.state)} at {end_s:.2f} s",
+            f"— {end_label(run.state)} at {format_end(run.time_s)} s",
             describe_standstill(run.telemetry, run.spec),
         )
         words = f"{', '.join(filter(None, end))} · {_name_run(run)}"

@@ -19,6 +19,7 @@ from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.core.state import Instant
 from tuisim.engine.protocol import BusyLoop, End, Ended, Inspected, Paused, RunState, Unended
 from tuisim.engine.runs.brick_state import BrickState
+from tuisim.engine.runs.run_folder import format_end
 
 CHART_PERIOD_S = 0.33
 """Drawing a chart takes tens of milliseconds: three times a second is enough to follow it."""
@@ -254,11 +255,6 @@ class AppState:
 def speed_label(speed: float) -> str:
     """Return a speed as users read it: ¼×, 2×, max."""
     return {0.0: "max", 0.25: "¼×", 0.5: "½×"}.get(speed, f"{speed:g}×")
-
-
-def format_end(time_s: float) -> str:
-    """Return when a run ended, rounded down as the clock, which has reached no later tick."""
-    return f"{int(time_s * 100 + 1e-6) / 100:.2f}"
 
 
 def end_words(ended: Ended, stood: str) -> tuple[str, str]:

@@ -42,7 +42,7 @@ from tuisim.engine.runs.diff import RunDiff
 from tuisim.engine.runs.frames import describe_damage
 from tuisim.engine.runs.handle import ASK_AGAIN_S
 from tuisim.engine.runs.records import OutputRow, Stream
-from tuisim.engine.runs.run_folder import StoredRun
+from tuisim.engine.runs.run_folder import StoredRun, format_end
 from tuisim.engine.runs.side_files import MAX_PATH, FilesRead, read_reads
 from tuisim.engine.runs.store import RunStore, count_bytes
 from tuisim.engine.runs.temporary import create_temporary_home
@@ -106,7 +106,7 @@ def list_runs(as_json: bool) -> int:
                 ),
                 *(
                     run.end,
-                    f"{run.time_s or 0:.2f}",
+                    format_end(run.time_s or 0),
                     "" if run.samples is None else str(run.samples),
                 ),
                 *(f"{size(count_bytes(store.folder(run.id))):>8}", _note(run), run.tags),

@@ -21,10 +21,11 @@ from tuisim.app import background, design
 from tuisim.app.branch import BRANCH_TAG
 from tuisim.app.dialogs.chooser import ListDialog, find_field_view
 from tuisim.app.dialogs.dialog import Dialog
-from tuisim.app.snapshot import GOOD_ENDS, end_label, format_end
+from tuisim.app.snapshot import GOOD_ENDS, end_label
 from tuisim.base import palette
 from tuisim.engine.protocol import End
 from tuisim.engine.runs.catalogue import RunInfo
+from tuisim.engine.runs.run_folder import format_end
 from tuisim.engine.runs.store import RunStore
 from tuisim.pictures.scene.view import Viewport
 from tuisim.terminal.cell_view import PixelView

@@ -86,7 +86,7 @@ class StoredRun:
     def __repr__(self) -> str:
         number = f" {self.number}" if self.number else ""
         what = f"{self.program.name} under {self.spec.profile.name}"
-        return f"<run{number} of {what}: {self.state.value} after {self.time_s:.2f} s>"
+        return f"<run{number} of {what}: {self.state.value} after {format_end(self.time_s)} s>"
 
     @property
     def state(self) -> RunState:
@@ -145,6 +145,11 @@ class StoredRun:
                 f"the mat of the run is not named: {error}", file=str(self.folder)
             ) from error
         return files
+
+
+def format_end(time_s: float) -> str:
+    """Return when a run ended, rounded down as the clock, which has reached no later tick."""
+    return f"{int(time_s * 100 + 1e-6) / 100:.2f}"
 
 
 def find_state_without_end(folder: Path) -> Unended:
