@@ -312,6 +312,27 @@ class ProgramFacts:
         """The last function or class of a program that only defines, and why nothing happens; otherwise None."""
         return find_idle_definition(self._short_tree)
 
+    @cached_property
+    def _places(self) -> Mapping[int, tuple[int, range]]:
+        places: dict[int, tuple[int, range]] = {}
+        for node in ast.walk(self._short_tree):
+            if isinstance(node, ast.stmt):
+                lines = range(node.lineno, (node.end_lineno or node.lineno) + 1)
+                for line in lines:
+                    function, known = places.get(line, (0, range(0)))
+                    if isinstance(node, _Function):
+                        places[line] = node.lineno, range(0)
+                    elif not known or isinstance(node, ast.While | ast.For):
+                        places[line] = function, lines
+        return places
+
+    def find_place(self, line: int) -> tuple[int, range]:
+        """Return the first line of the function that a line is in, 0 for none, and the lines of its loop there.
+
+        Without a loop, they are those of the statement of the function or program that holds the line.
+        """
+        return self._places.get(line, (0, range(0)))
+
     def find_light_reads(self, robot: RobotSpec) -> Mapping[str, LightRead]:
         """Return which number of each colour sensor the program reads first, by name of the sensor."""
         return find_light_reads(self._program, robot)

@@ -13,6 +13,7 @@ from tests.app.app_help import until
 from tests.app.panel_help import SPEC, PanelApp, moment, screen_text, small_field
 from tests.cases import cases
 from tuisim.app.panels.arrays import Arrays
+from tuisim.app.render.arrays import find_asked_lines
 from tuisim.base.source import Program
 from tuisim.engine.core.geometry import Pose
 from tuisim.terminal.cell_view import PixelView
@@ -31,7 +32,7 @@ async def shown(size: tuple[int, int], program: Program | None = None) -> tuple[
     """Return the places of the discs, and the text of the panel."""
     app = PanelApp(Arrays())
     async with app.run_test(size=size) as pilot:
-        app.panel.show(moment(POSE, field=FIELD, program=program))
+        app.panel.show(moment(POSE, field=FIELD, program=program, line=1))
         await pilot.pause()
         await pilot.pause()
         assert all(
@@ -77,6 +78,52 @@ async def test_a_threshold_is_on_the_scale_and_in_words() -> None:
         and "code line 1 >" in text
         and "in→out" in text
     )
+
+
+LOOPS = Program(
+    "test.py",
+    """\
+def back():
+    tank_drive.on_for_seconds(-20, -20, 1)
+while colorLeft.reflected_light_intensity_pc > 5:
+    back()
+tank_drive.off()
+while True:
+    while colorLeft.reflected_light_intensity_pc < 9:
+        pass
+    tank_drive.on(20, 20)
+""",
+    "preloaded",
+)
+
+
+@cases(
+    "lines, shown",
+    {
+        "before the run": ([0], {3, 7}),
+        "its loop": ([3], {3}),
+        "a function that its loop calls": ([3, 2], {3}),
+        "after its loop": ([3, 5], set()),
+        "a loop in a loop": ([7], {7}),
+        "the loop around it": ([7, 9], set()),
+    },
+)
+def test_a_threshold_is_shown_only_while_its_loop_runs(lines: list[int], shown: set[int]) -> None:
+    asked: frozenset[int] = frozenset()
+    for line in lines:
+        asked = find_asked_lines(moment(program=LOOPS, line=line), asked)
+    assert asked == shown
+
+
+async def test_a_threshold_leaves_the_panel_after_its_loop() -> None:
+    app = PanelApp(Arrays())
+    async with app.run_test(size=(60, 14)) as pilot:
+        for line, is_shown in ((3, True), (5, False)):
+            app.panel.show(moment(POSE, field=FIELD, program=LOOPS, line=line))
+            await pilot.pause()
+            await pilot.pause()
+            text = "\n".join(screen_text(app))
+            assert ("code line 3 > 5" in text, "┃" in text) == (is_shown, is_shown)
 
 
 @pytest.mark.parametrize(

@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from textual.app import ComposeResult
 from textual.widget import Widget
 
 from tuisim.app.panels.titles import name_sensors
-from tuisim.app.render.arrays import Arrangement, arrange_discs, build_face_lines, list_border_names
+from tuisim.app.render.arrays import (
+    Arrangement,
+    arrange_discs,
+    build_face_lines,
+    find_asked_lines,
+    list_border_names,
+)
 from tuisim.pictures.scene.discs import RIM_RGB, DiscFace, draw_disc, list_disc_faces
 from tuisim.terminal.cell_view import LinesView, PixelView
 from tuisim.terminal.text_runs import Line
@@ -95,6 +102,8 @@ class Arrays(Widget):
         self._where: Arrangement | None = None
         self._snapshot: Snapshot | None = None
         self._drawn: object = None
+        self._asked = frozenset[int]()
+        """The lines whose thresholds are shown."""
 
     def on_resize(self) -> None:
         """Arrange the discs for the new size."""
@@ -130,7 +139,8 @@ class Arrays(Widget):
             now.instant.noise.light and now.instant.tick,
             now.spec.robot,
         )
-        drawn = (seen, id(now.field), self.size, now.program)
+        self._asked = find_asked_lines(now, self._asked)
+        drawn = (seen, id(now.field), self.size, now.program, self._asked)
         if drawn == self._drawn:
             return
         self._drawn = drawn
@@ -145,7 +155,8 @@ class Arrays(Widget):
         )
         self.border_subtitle = name_sensors(now, self.size.width) or usual
         for disc, face in zip(self._discs, faces, strict=True):
-            disc.show(face, has_limits=has_limits)
+            limits = (limit for limit in face.thresholds if limit.line in self._asked)
+            disc.show(replace(face, thresholds=tuple(limits)), has_limits=has_limits)
 
     def _arrange(self, faces: list[DiscFace]) -> None:
         where = arrange_discs(len(faces), self.size.width, self.size.height)

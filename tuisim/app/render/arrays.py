@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from rich.color import Color
 from rich.style import Style
@@ -11,7 +11,11 @@ from rich.style import Style
 from tuisim.base import palette
 from tuisim.engine.core.sensors.color import ColorReading
 from tuisim.pictures.scene.discs import DiscFace
+from tuisim.programs.facts import read_facts
 from tuisim.terminal.text_runs import Line, Run, cut
+
+if TYPE_CHECKING:
+    from tuisim.app.snapshot import Snapshot
 
 FULL_COLS, LARGE_COLS = 20, 40
 """Columns of a disc with one or two cells per mm; a size between them would show no more."""
@@ -90,6 +94,30 @@ def _count_lines_below(cols: int, rows: int) -> int:
 
 
 _MIN_ROWS = 4
+
+
+def find_asked_lines(now: Snapshot, before: frozenset[int]) -> frozenset[int]:
+    """Return the lines with thresholds that a program asks again and again at a moment; all of them before a run.
+
+    While a function runs, the loop that has called it goes on; the text does not tell which one that is.
+
+    Args:
+        before: What was returned for the moment shown before.
+    """
+    if now.program is None:
+        return frozenset()
+    facts = read_facts(now.program)
+    thresholds = facts.find_thresholds(now.spec.robot).values()
+    lines = frozenset(threshold.line for every in thresholds for threshold in every)
+    if not now.line:
+        return lines
+    function, _ = facts.find_place(now.line)
+    places = {line: facts.find_place(line) for line in lines}
+    return frozenset(
+        line
+        for line, (own, asking) in places.items()
+        if (line in before if function not in (0, own) else now.line in asking)
+    )
 
 
 def build_face_lines(face: DiscFace, width: int, rows: int, *, has_limits: bool) -> list[Line]:
