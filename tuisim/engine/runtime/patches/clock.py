@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping
 from functools import wraps
 from typing import Any
 
-from tuisim.engine.core.profile import NS_PER_S, Library
+from tuisim.engine.core.profile import NS_PER_S
 from tuisim.engine.protocol import BusyLoop
 from tuisim.engine.runtime import wallclock as real
 from tuisim.engine.runtime.modules import OWN_FILES
@@ -63,9 +63,6 @@ def patch_time(session: Session) -> None:
     for name in ("monotonic", "perf_counter", "process_time", "thread_time"):
         replace(time, name, clock, (0, 0))
         replace(time, f"{name}_ns", clock_ns, (0, 0))
-    if profile.motor_law.library is Library.EV3DEV2 and not profile.mend_library:
-        # The brick has Python 3.5.
-        vars(time)["clock"] = clock
     # The real functions check whether the clock exists.
     gettime = time.clock_gettime
     gettime_ns = time.clock_gettime_ns

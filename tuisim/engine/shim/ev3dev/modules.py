@@ -20,6 +20,7 @@ from tuisim.engine.shim.buttons import patch_button_module
 from tuisim.engine.shim.console import Terminal, patch_console_module
 from tuisim.engine.shim.device_files import DeviceFiles, free_of_charge, plain
 from tuisim.engine.shim.display import draw_with_the_bricks_font
+from tuisim.engine.shim.ev3dev import older_python
 from tuisim.engine.shim.ev3dev.library import connect, patch_motor_module, patch_sensor_module
 from tuisim.engine.shim.ev3dev.older_library import MissingLibrary, finish_core, surroundings
 from tuisim.engine.shim.evdev.devices import evdev_modules
@@ -126,7 +127,9 @@ def finishers(
     """Return the functions to call on modules after their import, by the module's name."""
     brick = built.files
     colors = built.colors
+    is_brick = not session.sim.spec.profile.mend_library
     return {
+        **(older_python.FINISHERS if is_brick else {}),
         "ev3dev.core": lambda module: finish_core(
             session, module, plugs, partial(ports_hint, session)
         ),
@@ -151,6 +154,8 @@ def install(session: DeviceSession, built: BuiltBrick, plugs: Plugs) -> None:
     sys.meta_path.insert(0, refuse_other((PYBRICKS,), Library.EV3DEV2))
     sys.meta_path.append(MissingLibrary())
     sys.meta_path.append(HardwareFinder(Library.EV3DEV2))
+    if not session.sim.spec.profile.mend_library:
+        older_python.install(session)
     connect(session, built.files, plugs, partial(ports_hint, session))
     sys.modules["ev3dev2_glue"] = glue_module(session)
     sys.modules[NAME] = virtual_module(session)

@@ -1,0 +1,66 @@
+"""Names that the brick's older Python has and today's lacks, and modules of the MicroPython that runs ev3dev2, too."""
+
+from __future__ import annotations
+
+import collections.abc
+import math
+import sys
+import time
+import types
+import warnings
+from collections.abc import Callable, Mapping
+
+from tuisim.engine.shim.pybricks.micropython import OF_PYTHON, MicroPythonFinder, clock_names
+from tuisim.engine.shim.session import DeviceSession
+
+
+def _finish_asyncio(module: types.ModuleType) -> None:
+    vars(module)["coroutine"] = types.coroutine
+
+
+def _finish_collections(module: types.ModuleType) -> None:
+    for name in collections.abc.__all__:
+        vars(module).setdefault(name, getattr(collections.abc, name))
+
+
+def _finish_fractions(module: types.ModuleType) -> None:
+    vars(module)["gcd"] = math.gcd
+
+
+def _finish_threading(module: types.ModuleType) -> None:
+    thread = vars(module)["Thread"]
+    thread.isAlive = thread.is_alive
+
+
+FINISHERS: Mapping[str, Callable[[types.ModuleType], None]] = {
+    "asyncio": _finish_asyncio,
+    "collections": _finish_collections,
+    "fractions": _finish_fractions,
+    "threading": _finish_threading,
+}
+"""What adds the names of Python 3.5 to a module after its import, by the module's name."""
+
+
+class _MicroPython(MicroPythonFinder):
+    """Finds MicroPython's forms of Python's modules, such as `utime`.
+
+    Args:
+        session: The program's clock.
+    """
+
+    def __init__(self, session: DeviceSession) -> None:
+        super().__init__(OF_PYTHON, {})
+        self._session = session
+
+    def exec_module(self, module: types.ModuleType) -> None:
+        """Fill the module with the names of Python's own module and, for `utime`, with its counters."""
+        super().exec_module(module)
+        if module.__name__ == "utime":
+            vars(module).update(clock_names(self._session))
+
+
+def install(session: DeviceSession) -> None:
+    """Let a program use what the brick's Python has besides modules of `FINISHERS`, without warnings of a later one."""
+    vars(time)["clock"] = time.perf_counter
+    warnings.filterwarnings("ignore", category=DeprecationWarning)
+    sys.meta_path.append(_MicroPython(session))
