@@ -19,6 +19,8 @@ from tuisim.engine.runs.records import OutputRow, Stream
 
 POLL_S = 0.05
 """The interval at which printed lines are relayed."""
+_RESET = "\x1bc"
+"""Clears the brick's display, with which many programs begin; a user's terminal would lose what it shows."""
 
 
 class RelayInterrupts:
@@ -109,7 +111,7 @@ class Follower:
         if self.cut or self.lost:
             return
         try:
-            self.out.write(text)
+            self.out.write(text.replace(_RESET, "") if self.out.isatty() else text)
             self.out.flush()
         except BrokenPipeError:
             self.cut = EXIT_BROKEN_PIPE
