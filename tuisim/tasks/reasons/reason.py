@@ -21,6 +21,7 @@ from tuisim.engine.runs.standstill import find_standstill
 from tuisim.programs.facts import read_facts
 from tuisim.tasks.goals.evidence import find_ticks
 from tuisim.tasks.goals.judgement import GoalState, Judgement
+from tuisim.tasks.reasons.blank_mat import describe_blank_mat
 from tuisim.tasks.reasons.unmet import find_early_end, find_near_miss, find_recount
 from tuisim.tasks.reasons.waited import Subject
 from tuisim.tasks.reasons.waited_words import Wait, find_waits
@@ -246,7 +247,7 @@ def describe_end(run: StoredRun) -> str:
     """Return how a run ended, in a sentence without its full stop; empty if there is nothing to say.
 
     It says where a robot lost its line for good, if a limit or the user ended the run; where light just missed what the
-    program waited for, or came between two reads; or why the program was over too early.
+    program waited for, or came between two reads; why the program was over too early; or that the mat is blank.
     """
     if run.end is None:
         return ""
@@ -261,8 +262,9 @@ def describe_end(run: StoredRun) -> str:
                 return _describe_loss(run, lost).words
     if missed := find_near_miss(run):
         return Reason(ReasonKind.LOST, missed.time_s, missed.line, missed.text).words
-    early = find_early_end(run)
-    return Reason(ReasonKind.ENDED, early.time_s, early.line, early.text).words if early else ""
+    if early := find_early_end(run):
+        return Reason(ReasonKind.ENDED, early.time_s, early.line, early.text).words
+    return describe_blank_mat(run)
 
 
 def _explain_lost(run: StoredRun, tick: int, text: str) -> Reason:

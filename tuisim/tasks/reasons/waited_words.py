@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 COLORED_MAT = "Rainbow_bands"
 COLOR_PLACES_MM: Mapping[str, int] = {"red": 240, "green": 440, "blue": 740, "yellow": 1245}
 """Where on that mat, in x, a robot looks at a colour."""
+GIVES_LINE = "-b Loop gives it a line (tuisim backgrounds)"
+"""The remedy for a program that looks for a line on the plain mat."""
 _KEYS = {"up": "↑", "down": "↓", "left": "←", "right": "→"}
 _OWNERS = {
     BUTTONS_PORT: "the brick's",
@@ -215,7 +217,7 @@ def _name_mat(awaited: Awaited, spec: RunSpec) -> str:
         return "-x, -y and -a place it elsewhere on the mat"
     if awaited.mode == "COL-COLOR" and color != "black":
         return f"-b {COLORED_MAT} has seven bands of colours (tuisim backgrounds)"
-    return "-b Loop gives it a line (tuisim backgrounds)"
+    return GIVES_LINE
 
 
 def _name_obstacle(awaited: Awaited, spec: RunSpec) -> str:

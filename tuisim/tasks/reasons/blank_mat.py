@@ -1,0 +1,41 @@
+"""A program that steers by light, on a mat with nothing to see."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tuisim.engine.core.spec import EMPTY_MAT
+from tuisim.engine.protocol import End
+from tuisim.engine.runs.readings import MODES_BY_KIND, read_readings
+from tuisim.programs.facts import read_facts
+from tuisim.tasks.reasons.waited_words import GIVES_LINE
+
+if TYPE_CHECKING:
+    from tuisim.engine.runs.run_folder import StoredRun
+
+_MIN_READINGS = 20
+"""A program that reads less often does not look for anything."""
+_LOST_LINE = "LineFollowErrorLostLine"
+"""What `follow_line` of ev3dev2 raises."""
+_MAX_LINES = 64
+"""A program that reads on more lines is not asked about each."""
+
+
+def describe_blank_mat(run: StoredRun) -> str:
+    """Return that a run which is over steered by light on plain white, and what gives it a line; else empty."""
+    world = run.spec.world
+    is_blank = world.background == EMPTY_MAT and not world.pen_marks
+    if not is_blank or run.end is None or run.end.end not in (End.FINISHED, End.RAISED):
+        return ""
+    rows = read_readings(run.folder).find(MODES_BY_KIND["color"])
+    if len(rows) < _MIN_READINGS:
+        return ""
+    lines = np.unique(rows["line"])[:_MAX_LINES].tolist()
+    facts = read_facts(run.program)
+    if _LOST_LINE not in run.end.error and not any(
+        facts.find_question(line).decides for line in lines
+    ):
+        return ""
+    return f"the mat is plain white: {GIVES_LINE}"
