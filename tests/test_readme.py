@@ -54,6 +54,11 @@ def test_everything_in_a_table_is_documented(what: str) -> None:
     assert [name for name in TABLES[what] if not is_documented(name)] == []
 
 
+def test_the_help_of_a_command_is_not_for_programmers() -> None:
+    helps = {name: entry.load().help or "" for name, entry in COMMANDS.items()}
+    assert [name for name, text in helps.items() if "Raises:" in text] == []
+
+
 def test_every_sensor_of_a_robot_file_is_documented() -> None:
     found = {
         mount.key: re.search(rf"^{mount.key} =|\[{mount.key}[.\]]", GUIDE, re.MULTILINE)

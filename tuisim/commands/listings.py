@@ -170,11 +170,7 @@ def _format_size(image: Taken) -> str:
     AS_JSON,
 )
 def robots(robot: str | None, program: str | None, out: str | None, as_json: bool) -> int:
-    """List the robots; print one, or the one that a program talks about, in TOML as a starting point for your own.
-
-    Raises:
-        ConfigError: there is no such robot or program, or the file cannot be written.
-    """
+    """List the robots; print one, or the one that a program talks about, in TOML as a starting point for your own."""
     from tuisim.settings.robots import ROBOTS, format_robot_file, load_robot
 
     if program is not None:
