@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import re
 import subprocess
 import sys
@@ -367,6 +368,12 @@ def test_descriptions_are_one_line_and_compared_by_their_values() -> None:
 def test_a_wrong_description_is_refused_where_it_is_written(describe: Any, words: str) -> None:
     with pytest.raises(ConfigError, match=words):
         describe()
+
+
+def test_the_example_of_further_parts_is_a_robot() -> None:
+    example = re.search(r"parts: .*`(.*?)`", tuisim.Robot.__doc__ or "")
+    assert example
+    assert tuisim.Robot(parts=ast.literal_eval(example[1])) != tuisim.Robot()
 
 
 def test_a_robot_and_a_world_are_those_of_a_run() -> None:

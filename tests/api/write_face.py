@@ -76,7 +76,7 @@ class Robot(RobotDescription):
     Args:
         base: The name of a robot, or a file.
 {help}
-        parts: Further keys of a robot file, such as `{{"left_sensor.diameter_mm": 20}}`; tables are written with dots.
+        parts: Further keys of a robot file, such as `{{"color_sensors.left.diameter_mm": 20}}`, with dots for tables.
 
     Raises:
         ConfigError: there is no such robot, or a value is wrong.

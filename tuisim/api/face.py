@@ -51,7 +51,7 @@ class Robot(RobotDescription):
         mass_kg: With brick and battery; only for motors as on the brick, in kg.
         battery_v: Without a load: it sets the highest speed, in V.
         hub: The hub of Pybricks in place of the EV3, such as PrimeHub.
-        parts: Further keys of a robot file, such as `{"left_sensor.diameter_mm": 20}`; tables are written with dots.
+        parts: Further keys of a robot file, such as `{"color_sensors.left.diameter_mm": 20}`, with dots for tables.
 
     Raises:
         ConfigError: there is no such robot, or a value is wrong.

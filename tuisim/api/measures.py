@@ -112,8 +112,8 @@ def compute_cell(name: str, metric: Metric, run: Run, index: int) -> Any:
         raise
     cell = value if getattr(value, "size", 1) != 1 else plain(value)
     if cell is not None and not isinstance(cell, bool | int | float | str):
-        hint = "a metric returns a number or a text"
-        raise ConfigError(f"{name} of run {index + 1} is {value!r}", hint, key="metrics")
+        message = f"{name} of run {index + 1} is a {type(value).__name__}"
+        raise ConfigError(message, "a metric returns a number or a text", key="metrics")
     return cell
 
 
