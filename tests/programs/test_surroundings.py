@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
+import numpy as np
 from IPython.core.interactiveshell import InteractiveShell
 
 import tuisim
@@ -28,6 +29,7 @@ def test_the_classes_and_constants_of_other_cells_of_a_notebook_go_along() -> No
 
 
 VALUES: dict[str, Any] = {"KP": 4.0, "m": math, "sqrt": math.sqrt, "ask": input, "call": lambda: 1}
+VALUES["array"] = np.arange(3)
 
 
 @cases(
@@ -41,6 +43,9 @@ VALUES: dict[str, Any] = {"KP": 4.0, "m": math, "sqrt": math.sqrt, "ask": input,
         "an attribute": ("KP.real", None),
         "what fails": ("KP / 0", None),
         "no constant": ("m", None),
+        "an array": ("array * 2", None),
+        "a comprehension": ("sum([KP * n for n in range(3)])", None),
+        "a comprehension of constants": ("sum([KP * n for n in [1, 2]])", "12.0"),
     },
 )
 def test_only_constants_and_mathematics_are_computed_again(text: str, value: str | None) -> None:

@@ -159,13 +159,9 @@ def compute(expression: ast.expr, values: Mapping[str, Any]) -> str | None:
     for node in ast.walk(expression):
         match node:
             case ast.Name(id=name):
-                is_pure = name not in values or _is_pure(values[name])
+                is_pure = _is_pure(values.get(name, getattr(builtins, name, None)))
             case ast.Attribute(value=ast.Name(id=name)):
                 is_pure = values.get(name) is math
-            case ast.Call(func=ast.Name(id=name)):
-                is_pure = name in values or getattr(builtins, name, None) in _PURE
-            case ast.Call(func=func):
-                is_pure = isinstance(func, ast.Attribute)
             case _:
                 is_pure = not isinstance(node, ast.Attribute | ast.NamedExpr | ast.Lambda)
         if not is_pure:
@@ -178,7 +174,8 @@ def compute(expression: ast.expr, values: Mapping[str, Any]) -> str | None:
 
 
 def _is_pure(value: object) -> bool:
-    return value is math or getattr(value, "__module__", None) == "math" or is_plain(value)
+    is_known = any(value is each for each in (math, *_PURE))
+    return is_known or getattr(value, "__module__", None) == "math" or is_plain(value)
 
 
 def is_plain(value: object) -> bool:
