@@ -189,7 +189,10 @@ def test_a_mean_that_is_known_needs_no_further_seeds() -> None:
         "constant": ({"constants": {"GAINS": 1}}, "has no constant GAINS"),
         "no seeds": ({"seeds": []}, "seeds: has no values"),
         "no function": ({"metrics": {"n": 3}}, "metrics: must be functions of a run"),
-        "no value": ({"metrics": {"n": lambda run: [1, 2]}, "jobs": 1}, "n of run 1 is a list .a metric"),
+        "no value": (
+            {"metrics": {"n": lambda run: [1, 2]}, "jobs": 1},
+            "n of run 1 is a list .a metric",
+        ),
         "expression": ({"expressions": {"x_mm": "1"}}, "^expressions x_mm: cannot be"),
         "letters": ({"answers": "yes"}, "answers: must be a list of texts, got 'yes'"),
         "mat": ({"background": ["Loop", "Lop"]}, "^background: no such mat 'Lop'"),

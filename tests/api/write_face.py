@@ -44,7 +44,7 @@ Vary: TypeAlias = _Value | Iterable[_Value] | None
 File: TypeAlias = str | Path
 """The name of something built in, or a file."""
 Program: TypeAlias = str | Path | Callable[[], object]
-Sizes: TypeAlias = str | Mapping[str, Any]
+Sizes: TypeAlias = Literal["none", "typical"] | str | Mapping[str, Any]
 Values: TypeAlias = Mapping[str, Any]
 Metrics: TypeAlias = Mapping[str, Callable[[Run], Any]]
 Keep: TypeAlias = Literal["all", "failed", "none"]

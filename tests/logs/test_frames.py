@@ -6,14 +6,16 @@ import warnings
 from dataclasses import fields
 from inspect import signature
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args, get_type_hints
 
+import pandas
 import pytest
 
 from tests.cases import cases
 from tuisim.base.errors import LogError
 from tuisim.commands.log import COLUMNS
-from tuisim.logs.choices import ReadChoices
+from tuisim.logs import frames
+from tuisim.logs.choices import WORDS, ReadChoices
 from tuisim.logs.frames import read_log
 from tuisim.logs.reader import open_log
 
@@ -91,3 +93,10 @@ def test_read_log_has_the_options_of_the_commands() -> None:
     names = {option.name for option in COLUMNS}
     assert set(signature(read_log).parameters) - {"path"} == names
     assert {field.name for field in fields(ReadChoices)} == names
+
+
+def test_an_editor_knows_the_words_of_a_choice() -> None:
+    types = get_type_hints(read_log, {**vars(frames), "pd": pandas})
+    assert {name: get_args(types[name]) for name in WORDS} == {
+        name: ("", *words) for name, words in WORDS.items()
+    }

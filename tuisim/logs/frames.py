@@ -7,7 +7,7 @@ import os
 import warnings
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 import pyarrow as pa
@@ -35,13 +35,13 @@ def read_log(
     path: str | Path,
     *,
     time: str | None = None,
-    unit: str = "",
+    unit: Literal["", "s", "ms", "us", "ns", "min"] = "",
     value: Sequence[str] = (),
     header: int = 0,
     table: int = 1,
     encoding: str = "",
-    separator: str = "",
-    decimal: str = "",
+    separator: Literal["", "comma", "semicolon", "tab", "bar", "blank"] = "",
+    decimal: Literal["", ".", ","] = "",
 ) -> pd.DataFrame:
     """Return the table in a file. Without choices, an export of tuisim is as it was written, to the last bit.
 
