@@ -17,7 +17,6 @@ from tuisim.commands.log import COLUMNS
 from tuisim.logs import frames
 from tuisim.logs.choices import WORDS, ReadChoices
 from tuisim.logs.frames import read_log
-from tuisim.logs.reader import open_log
 
 FOREIGN = "a_title\nZeit;rot;blau;Wort\n100;1,5;5;a\n200;2,5;6;b\n300;3,5;7;c\n"
 
@@ -29,7 +28,9 @@ def test_read_log_takes_files_from_elsewhere(tmp_path: Path) -> None:
         warnings.simplefilter("always")
         frame = read_log(path)
     assert {str(warning.message) for warning in caught} == {
-        f"{path}: {note}" for note in open_log(path).notes
+        f"{path}: 1 line above the table not read (row 1)",
+        f"{path}: text, not numbers: 'Wort'",
+        f"{path}: the times in 'Zeit' are whole numbers in large steps: read as milliseconds (unit= selects another)",
     }
     assert (frame.index.name, frame.index.tolist()) == ("time_s", [0.1, 0.2, 0.3])
     assert frame.to_dict("list") == {
@@ -72,7 +73,8 @@ def test_read_log_takes_the_choices_of_the_commands(
         "separator": ({"separator": ";"}, "no separator ';'"),
         "decimal": ({"decimal": "point"}, "no decimal 'point'"),
         "unit": ({"unit": "hours"}, "no unit 'hours'"),
-        "table": ({"table": 2}, "has 1 table"),
+        "header": ({"header": 99}, "no line 99 for header="),
+        "table": ({"table": 2}, "table= takes 1 to 1"),
         "encoding": ({"encoding": "none"}, "no encoding 'none'"),
         "encoding of no text": ({"encoding": "hex"}, "no encoding 'hex'"),
         "encoding of text only": ({"encoding": "rot13"}, "no encoding 'rot13'"),

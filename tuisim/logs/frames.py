@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import warnings
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -46,7 +47,7 @@ def read_log(
     """Return the table in a file. Without choices, an export of tuisim is as it was written, to the last bit.
 
     Of another file, or with choices, the index is the time in seconds, if there is one; warnings say what was guessed
-    or left out, and name the argument that decides as an option, such as `--unit`.
+    or left out, and name the argument that decides.
 
     Args:
         path: A CSV, Parquet, JSON, JSONL, Arrow or text file.
@@ -66,10 +67,14 @@ def read_log(
     source = Path(path)
     if choices == NO_CHOICES and (frame := _read_export(source)) is not None:
         return frame
-    log = open_log(source, choices)
+    try:
+        log = open_log(source, choices)
+    except LogError as error:
+        error.message, error.hint = _name_arguments(error.message), _name_arguments(error.hint)
+        raise
     for note in log.notes:
         # The caller of `tuisim.read_log`, which checks the names of its arguments in between.
-        warnings.warn(f"{log.title}: {note}", stacklevel=3)
+        warnings.warn(f"{log.title}: {_name_arguments(note)}", stacklevel=3)
     layout = log.layout
     rows = log.table
     if choices.value:
@@ -77,6 +82,11 @@ def read_log(
         rows = rows.select([name for name in rows.column_names if name in chosen])
     frame = build_typed_frame(rows)
     return frame if layout.time == ROW else frame.set_index(log.times_s).rename_axis("time_s")
+
+
+def _name_arguments(text: str) -> str:
+    """Return a text that names the arguments of `read_log` where it names the options of a command."""
+    return re.sub(r"--(\w+)( (?=\d))?", r"\1=", text)
 
 
 def _read_export(source: Path) -> pd.DataFrame | None:
