@@ -101,6 +101,19 @@ while not bumper.pressed():
     wait(10)
 """
 
+SERVE = """
+from http.server import BaseHTTPRequestHandler, HTTPServer
+HTTPServer(("127.0.0.1", 0), BaseHTTPRequestHandler).serve_forever()
+"""
+SELECT = """
+import select, socket
+with socket.socket() as server:
+    server.listen()
+    while True:
+        if select.select([server], [], [], 0.1)[0]:
+            break
+"""
+
 PROGRAMS = {
     "button": (
         WAIT_BUTTON,
@@ -122,7 +135,15 @@ PROGRAMS = {
     ),
     "socket": (
         ACCEPT,
-        "socket.accept in line 6: nobody connected: --speed 1 gives the other program time to connect",
+        "a server in line 6: nobody connected: --speed 1 gives the other program time to connect",
+    ),
+    "a server": (
+        SERVE,
+        "a server in line 3: nobody connected: --speed 1 gives the other program time to connect",
+    ),
+    "a server that looks at times": (
+        SELECT,
+        "a server in line 6: nobody connected: --speed 1 gives the other program time to connect",
     ),
     "on purpose": (PLAY, ""),
 }

@@ -124,7 +124,7 @@ def describe_awaited(awaited: Awaited) -> str:
         case Subject.GYRO:
             return f"gyro {describe_place(port)} was never turned"
         case Subject.CONNECTION:
-            return f"socket.accept in line {awaited.line}: nobody connected"
+            return f"a server in line {awaited.line}: nobody connected"
         case Subject.DATA:
             return f"a socket in line {awaited.line}: nothing arrived"
         case Subject.GAMEPAD:

@@ -7,7 +7,7 @@ import os
 import select
 import stat
 import types
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import wraps
 from typing import Any, NoReturn, TypeVar
 
@@ -106,7 +106,8 @@ class FileWaits:
             if timeout == 0 and not devices:
                 return look() or ([], [], [])
             limit = _convert_to_ns(timeout, NS_PER_S)
-            return self.poll_files(look, limit, devices) or ([], [], [])
+            noting = self._build_noting(look, map(_find_descriptor, sockets[0]))
+            return self.poll_files(noting, limit, devices) or ([], [], [])
 
         replace(select, "select", simulated, (3, 4))
         if (real_poll := self._classes["poll"]) is not None:
@@ -155,9 +156,28 @@ class FileWaits:
         @wraps(look)
         def select_simulated(selector: Any, timeout: float | None = None) -> Any:
             limit = _convert_to_ns(timeout, NS_PER_S)
-            return self.poll_files(lambda: look(selector, 0), limit, _has_devices(selector))
+            if limit is not None and limit <= 0:
+                return self.poll_files(lambda: look(selector, 0), limit)
+            descriptors = [key.fd for key in selector.get_map().values()]
+            noting = self._build_noting(lambda: look(selector, 0), descriptors)
+            return self.poll_files(noting, limit, _has_devices(selector))
 
         return select_simulated
+
+    def _build_noting(
+        self, look: Callable[[], Found], descriptors: Iterable[int]
+    ) -> Callable[[], Found]:
+        """Return a look that, if some files are sockets of servers, records each time that nobody has connected."""
+        if not any(map(_is_server, descriptors)):
+            return look
+
+        def look_and_note() -> Found:
+            ready = look()
+            if not ready:
+                self._session.note_reading(READING_CODES[SOCKET_PORT, "accept"])
+            return ready
+
+        return look_and_note
 
     # socket
 
@@ -242,6 +262,17 @@ def _is_socket(file: Any) -> bool:
     except (AttributeError, OSError, TypeError, ValueError):
         # The real function raises its error.
         return True
+
+
+def _is_server(descriptor: int) -> bool:
+    """Return whether a file is a socket that listens for connections."""
+    import socket as module
+
+    try:
+        with module.socket(fileno=os.dup(descriptor)) as listener:
+            return bool(listener.getsockopt(module.SOL_SOCKET, module.SO_ACCEPTCONN))
+    except OSError:
+        return False
 
 
 class _RefusedEpoll:
