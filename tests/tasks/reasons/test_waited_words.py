@@ -101,6 +101,15 @@ while not bumper.pressed():
     wait(10)
 """
 
+MENU = """
+from ev3dev2.button import Button
+button = Button()
+while not button.enter:
+    if button.up:
+        print("up")
+    elif button.down:
+        print("down")
+"""
 SERVE = """
 from http.server import BaseHTTPRequestHandler, HTTPServer
 HTTPServer(("127.0.0.1", 0), BaseHTTPRequestHandler).serve_forever()
@@ -118,6 +127,10 @@ PROGRAMS = {
     "button": (
         WAIT_BUTTON,
         "read the brick's buttons N times, none was pressed: --press enter@1, or K in the app",
+    ),
+    "a menu": (
+        MENU,
+        "read the brick's buttons enter, up and down N times, none was pressed: --press enter@1, or K in the app",
     ),
     "touch": (WAIT_TOUCH, "touch sensor on in1 was never pressed: --press in1@2"),
     "button of a hub": (

@@ -101,7 +101,7 @@ def describe_awaited(awaited: Awaited) -> str:
     match awaited.subject:
         case Subject.BUTTONS:
             return _describe_presses(awaited) or (
-                f"read {_OWNERS[port]} buttons {awaited.times:,} times, none was pressed"
+                f"read {_OWNERS[port]} buttons{_name_choice(awaited)} {awaited.times:,} times, none was pressed"
             )
         case Subject.TOUCH:
             presses = _describe_presses(awaited)
@@ -131,6 +131,12 @@ def describe_awaited(awaited: Awaited) -> str:
             return f"looked for a gamepad {awaited.times:,} times, none is simulated"
         case other:
             assert_never(other)
+
+
+def _name_choice(awaited: Awaited) -> str:
+    """Return which buttons a program asks for, after a blank, if any of several will do; else empty."""
+    has_choice = len(awaited.sought) > 1 and not awaited.needs_all
+    return f" {', '.join(awaited.sought[:-1])} and {awaited.sought[-1]}" if has_choice else ""
 
 
 def _describe_presses(awaited: Awaited) -> str:
