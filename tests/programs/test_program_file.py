@@ -37,6 +37,11 @@ def test_an_example_is_found_by_its_name_unless_a_file_has_it(
         ("none.py", None, "there is no such program"),
         ("notes.ipynb", b"{}", "is a notebook"),
         ("picture.txt", b"0 mm  100 mm\n", "is text, not a program"),
+        (
+            "drive.sh",
+            b"#!/bin/bash\necho run-forever > $M/command\n",
+            "is a shell script, not a program in Python",
+        ),
         ("null.py", b"x = 1\0\n", "null characters"),
         ("bytes.py", b"x = '\xff'\n", "bytes.py: is not Python text"),
         ("coding.py", b"# coding: klingon\n", "is not Python text"),

@@ -127,6 +127,9 @@ MAX_PROGRAM_BYTES = 4 << 20
 LOG_SUFFIXES = (".csv", ".tsv", ".parquet", ".jsonl", ".arrow")
 """What files with measurements end in."""
 
+_OTHER_TEXTS = {".txt": "text", ".sh": "a shell script"}
+"""What a file with such a suffix is, unless it is Python."""
+
 FILE_FIELDS = {"background", "robot", "obstacles", "profile", "mats"}
 """Settings that may name a file or a folder."""
 
@@ -414,8 +417,9 @@ def read_program(path: Path, *, as_python: bool = False, alone: bool = False) ->
         opens = f"`tuisim analyse {shlex.quote(file_name)}` opens it"
         raise ConfigError("is a log, not a program", opens, file=file_name)
     text = _decode(data, file_name, as_python)
-    if path.suffix.lower() == ".txt" and not _is_python(text):
-        raise ConfigError("is text, not a program", hint, file=file_name)
+    other = _OTHER_TEXTS.get(path.suffix.lower())
+    if other and not _is_python(text):
+        raise ConfigError(f"is {other}, not a program in Python", hint, file=file_name)
     return build_program(text, path, path.name, alone=alone)
 
 
