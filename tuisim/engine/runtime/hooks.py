@@ -18,7 +18,7 @@ from tuisim.engine.runtime.patches.replacement import replace
 from tuisim.engine.runtime.session import Session, StopProgram
 from tuisim.engine.runtime.tracebacks import ErrorReport, add_namesake_note, report_error
 from tuisim.engine.shim.evdev.devices import point_at_gamepads
-from tuisim.engine.shim.unsupported.modules import point_at_package
+from tuisim.engine.shim.unsupported.modules import point_at_keys, point_at_package
 
 
 def format_safely(write: Callable[[object], str], value: object) -> str:
@@ -70,6 +70,7 @@ class ErrorHooks:
             add_namesake_note(error, self._session.program_file)
             point_at_package(error, os.path.dirname(self._session.program_file) or os.curdir)
             point_at_gamepads(error)
+            point_at_keys(error, self._session.sim.spec.profile.motor_law.library)
         report = report_error(error, self._session.program_file, self._source(), alone)
         text, summary = self._output.stabilize(report.text, report.summary)
         return ErrorReport(text, report.line, summary)

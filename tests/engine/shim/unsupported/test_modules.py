@@ -40,6 +40,14 @@ USES = {
         "from pixycamev3.pixy2 import Pixy2\nPixy2()",
         "pixycamev3.pixy2.Pixy2: the Pixy camera is not",
     ),
+    "keyboard": (
+        "from pynput import keyboard\nkeyboard.Listener(on_press=print)",
+        "pynput.keyboard.Listener: a keyboard is not simulated (to drive by hand, use",
+    ),
+    "a brick driven from outside": (
+        "import rpyc",
+        "rpyc: a brick that a computer drives from outside is not simulated (leave it out",
+    ),
     "GPIO": ("import RPi.GPIO as GPIO", "RPi: the Raspberry Pi is not simulated"),
 }
 
@@ -50,6 +58,15 @@ def test_the_program_ends_with_its_name(run: Run, text: str, words: str) -> None
     assert done.errors[-1].startswith(f"NotSimulated: {words}")
     assert done.errors[-1].endswith(")")
     assert (done.ended.exit_code, done.ended.error_line) == (1, text.count("\n") + 1)
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["import termios\ntermios.tcgetattr(0)", "import curses\ncurses.setupterm('no such terminal')"],
+)
+def test_a_program_that_needs_a_terminal_is_told_how_to_drive_by_hand(run: Run, text: str) -> None:
+    words = "A program has no terminal here, and no single keys (to drive by hand, use the brick's buttons"
+    assert run(text, prelude="none").errors[-1].startswith(words)
 
 
 @pytest.mark.parametrize(

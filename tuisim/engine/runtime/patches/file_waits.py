@@ -125,7 +125,7 @@ class FileWaits:
         if opened is None and not _is_socket(file):
             raise NotSimulated(
                 "waiting for a file is not part of the simulated brick",
-                "wait for sockets or the brick's files; use queue.Queue between threads",
+                "wait for sockets or the brick's files; input() reads lines, queue.Queue joins threads",
             )
         return opened
 

@@ -52,6 +52,7 @@ _RADIO = (
 _BUS = "the sensors of {sensors} are simulated"
 CAMERA = "use a ColorSensor for colours, and an UltrasonicSensor for distances"
 _GAMEPAD = "to drive by hand, use the brick's buttons or {remote}"
+_KEYS = f"{_GAMEPAD}; input() asks for whole lines"
 _MICROPHONE = (
     "the simulated world has no sound: start with a TouchSensor or a button; {sound} makes sounds"
 )
@@ -75,6 +76,7 @@ class Hardware:
 _SMBUS = Hardware("the I2C bus of the brick", _BUS, ("SMBus",))
 _USB = Hardware("the brick's USB port", _BUS)
 _SOUND_CARD = Hardware("the brick's sound card", _MICROPHONE)
+_KEYBOARD = Hardware("a keyboard", _KEYS)
 
 ON_THE_BRICK: Mapping[str, Hardware] = {
     "bluetooth": Hardware(
@@ -110,6 +112,9 @@ ON_THE_BRICK: Mapping[str, Hardware] = {
     "pyudev": _USB,
     "pixycamev3": Hardware("the Pixy camera", CAMERA),
     "approxeng": Hardware("a gamepad", _GAMEPAD),
+    "keyboard": _KEYBOARD,
+    "pynput": _KEYBOARD,
+    "getch": _KEYBOARD,
     "alsaaudio": _SOUND_CARD,
     "pyaudio": _SOUND_CARD,
     "sounddevice": _SOUND_CARD,
@@ -118,6 +123,10 @@ ON_THE_BRICK: Mapping[str, Hardware] = {
 
 _PI = Hardware("the Raspberry Pi", "the simulated brick is an EV3: use {library}")
 _PI_CAMERA = Hardware("the camera of the Raspberry Pi", CAMERA)
+_FROM_PC = Hardware(
+    "a brick that a computer drives from outside",
+    "leave it out, and import {library}: the program runs on the simulated brick",
+)
 _BRICKPI = Hardware("the BrickPi", "the simulated brick is an EV3: use {library}")
 
 ELSEWHERE: Mapping[str, Hardware] = {
@@ -135,6 +144,8 @@ ELSEWHERE: Mapping[str, Hardware] = {
         name: Hardware("LEGO's own Python for SPIKE", f"in Pybricks, for the same hub: {instead}")
         for name, instead in SPIKE_MODULES.items()
     },
+    "rpyc": _FROM_PC,
+    "ev3_dc": _FROM_PC,
     "ev3sim": Hardware(
         "the simulator ev3sim", "leave out its import: the rest of the program needs only {library}"
     ),
@@ -328,6 +339,17 @@ def refuse_bluetooth(module: types.ModuleType, library: Library) -> None:
         real(self, family, *given, **named)
 
     module.socket.__init__ = __init__
+
+
+_TERMINALS = ("termios", "_curses")
+"""Modules whose errors end a program without a terminal."""
+
+
+def point_at_keys(error: BaseException, library: Library) -> None:
+    """Note on an error of a program that needs a terminal, to read single keys, what it can do instead."""
+    if type(error).__module__ in _TERMINALS:
+        instead = _KEYBOARD.told_to(library).instead
+        error.add_note(f"A program has no terminal here, and no single keys ({instead}).")
 
 
 def point_at_package(error: BaseException, folder: str) -> None:
