@@ -17,11 +17,9 @@ from tuisim.base.data_class import dataclass
 from tuisim.engine.core.css_colors import Rgb
 from tuisim.engine.core.spec import TOUCH
 from tuisim.engine.runs.brick_state import (
-    DISPLAY_HEIGHT,
-    DISPLAY_WIDTH,
-    ROW_BYTES,
     BrickState,
     TextScreen,
+    unpack_display,
 )
 from tuisim.terminal.text_runs import Run
 
@@ -151,17 +149,16 @@ def _draw_text_screen(screen: TextScreen, width: int, rows: int) -> list[list[Ru
 
 @lru_cache(maxsize=8)
 def _display(picture: bytes, width: int, rows: int) -> list[list[Run]]:
-    scale = min(width / DISPLAY_WIDTH, 2 * rows / DISPLAY_HEIGHT, 1.0)
-    ink = np.unpackbits(np.frombuffer(picture, np.uint8)).reshape(DISPLAY_HEIGHT, ROW_BYTES * 8)[
-        :, :DISPLAY_WIDTH
-    ]
+    ink = unpack_display(picture)
+    display_rows, display_columns = ink.shape
+    scale = min(width / display_columns, 2 * rows / display_rows, 1.0)
     dots = scale < HALF_BLOCK_SCALE
     # A dot is half as wide and half as high as a half block.
     fine = min(2 * scale, 1.0) if dots else scale
     per_row = 4 if dots else 2
-    high = max(per_row, round(fine * DISPLAY_HEIGHT) // per_row * per_row)
-    across = max(2, round(fine * DISPLAY_WIDTH) // 2 * 2)
-    shares = shrink_pixels(ink, min(high, DISPLAY_HEIGHT), min(across, DISPLAY_WIDTH))
+    high = max(per_row, round(fine * display_rows) // per_row * per_row)
+    across = max(2, round(fine * display_columns) // 2 * 2)
+    shares = shrink_pixels(ink, min(high, display_rows), min(across, display_columns))
     drawn = (
         _draw_dots(shares, min(_DOT_SHARE, _LINE_PX * fine)) if dots else _draw_half_blocks(shares)
     )

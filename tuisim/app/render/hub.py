@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import replace
 from typing import Final
 
@@ -13,15 +13,7 @@ from tuisim.app import design
 from tuisim.app.render.brick import BrickPicture, ButtonBox, draw_bumpers
 from tuisim.base import palette
 from tuisim.engine.core.hub_spec import CONTROLLERS
-from tuisim.engine.runs.brick_state import (
-    HUB_LIGHT_NAMES,
-    PIXEL_NAMES,
-    PORT_LIGHT,
-    REMOTE_LIGHT_NAMES,
-    SIDE_PIXELS,
-    XBOX_LIGHT_NAMES,
-    BrickState,
-)
+from tuisim.engine.runs.brick_state import BrickState
 from tuisim.terminal.text_runs import Run
 
 _PLAIN = Style()
@@ -30,8 +22,6 @@ _BUTTON = Style(color=design.LIGHT, bgcolor=design.BUTTON, bold=True)
 _PRESSED = Style(color=palette.BLACK, bgcolor=design.PRESSED, bold=True)
 _SYMBOLS: Final = {"left": "◀", "enter": "●", "right": "▶", "up": "B"}
 """The buttons by their names in the session, from the left; the last one is that of Bluetooth."""
-_LIGHTS: Final = {"remote": REMOTE_LIGHT_NAMES, "xbox": XBOX_LIGHT_NAMES}
-"""The LEDs of the controllers that can be connected, by the keys of `CONTROLLERS`."""
 _SIDES: Final = {"left": "L", "right": "R", "dpad": "D", "center": "●"}
 _WAYS: Final = {
     "up": "▲",
@@ -67,8 +57,8 @@ def draw_hub(
         has_matrix: Whether it has a matrix, and more than one button.
     """
     keys = [*_draw_controllers(face, pressed, width)][: height - 1]
-    rows = SIDE_PIXELS if has_matrix and height > SIDE_PIXELS + len(keys) else 0
-    lines = [_draw_pixels(face, row, width) for row in range(rows)]
+    matrix = face.matrix if has_matrix else []
+    lines = [_draw_pixels(row, width) for row in matrix if height > len(matrix) + len(keys)]
     names = [*_SYMBOLS] if has_matrix else ["enter"]
     line, boxes = _draw_buttons(face, pressed, names, width, len(lines))
     lines.append(line)
@@ -88,11 +78,10 @@ def draw_hub(
     return BrickPicture(lines, boxes)
 
 
-def _draw_pixels(face: BrickState, row: int, width: int) -> list[Run]:
+def _draw_pixels(levels: Sequence[int], width: int) -> list[Run]:
     """Return one row of the matrix; the shape of a pixel is for terminals and users without colour."""
-    line: list[Run] = [(" " * max(0, (width - 3 * SIDE_PIXELS) // 2), _PLAIN)]
-    for name in PIXEL_NAMES[SIDE_PIXELS * row : SIDE_PIXELS * (row + 1)]:
-        level = face.leds.get(name, 0)
+    line: list[Run] = [(" " * max(0, (width - 3 * len(levels)) // 2), _PLAIN)]
+    for level in levels:
         shade = round(_DARK + (_LIT - _DARK) * level / 255)
         color = Color.from_rgb(shade, shade, shade if level < 1 else round(0.85 * shade))
         line.append((" ■ " if level else " · ", Style(color=color)))
@@ -103,7 +92,7 @@ def _draw_buttons(
     face: BrickState, pressed: Collection[str], names: Sequence[str], width: int, row: int
 ) -> tuple[list[Run], tuple[ButtonBox, ...]]:
     """Return the row of the buttons between two pieces of the status light, and their areas."""
-    light = "   ", _mix_light(face, HUB_LIGHT_NAMES)
+    light = "   ", _build_light(face.find_light())
     first = max(0, (width - 4 * len(names) - 7) // 2)
     line: list[Run] = [(" " * first, _PLAIN), light, (" ", _PLAIN)]
     first += 4
@@ -115,30 +104,29 @@ def _draw_buttons(
     return [*line, light], tuple(boxes)
 
 
-def _mix_light(face: BrickState, names: Sequence[str]) -> Style:
-    """Return the style of a light whose red, green and blue LEDs have these names."""
-    levels = [max(_DARK // 2, face.leds.get(name, 0)) for name in names]
-    return Style(bgcolor=Color.from_rgb(*levels))
+def _build_light(levels: Iterable[int]) -> Style:
+    """Return the style of a light from its red, green and blue."""
+    return Style(bgcolor=Color.from_rgb(*(max(_DARK // 2, level) for level in levels)))
 
 
 def _draw_lamps(face: BrickState) -> Iterator[Run]:
     """Yield the ports of the lights on ports, each with the brightness of its light."""
-    for name, level in face.leds.items():
-        if name.startswith(PORT_LIGHT):
-            yield f" {name.removeprefix(PORT_LIGHT)} light {round(level / 2.55)} % ", _CAPTION
+    for port, level in face.port_lights.items():
+        yield f" {port} light {round(level / 2.55)} % ", _CAPTION
 
 
 def _draw_controllers(
     face: BrickState, pressed: Collection[str], width: int
 ) -> Iterator[tuple[list[Run], list[ButtonBox]]]:
     """Yield rows of keys of the connected controllers, each with the light of the controller, and the keys' areas."""
-    for port, lights in _LIGHTS.items():
-        if lights[0] not in face.leds:
+    for port, port_keys in CONTROLLERS.items():
+        levels = face.find_light(port)
+        if not levels:
             continue
-        light = " ", _mix_light(face, lights)
+        light = " ", _build_light(levels)
         line = [light]
         boxes = list[ButtonBox]()
-        for key in CONTROLLERS[port]:
+        for key in port_keys:
             side, _, way = key.removeprefix(f"{port}.").removeprefix("joystick_").partition("_")
             label = f" {_SIDES.get(side, side.upper())}{_WAYS[way]} "
             first = boxes[-1].end + 1 if boxes else 2

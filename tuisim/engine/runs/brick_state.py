@@ -12,10 +12,14 @@ import json
 import zlib
 from collections.abc import Iterable, Mapping
 from dataclasses import field, replace
-from typing import assert_never
+from typing import TYPE_CHECKING, assert_never
 
 from tuisim.base.data_class import dataclass
 from tuisim.engine.runs.records import OutputRow, Stream
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
 
 DISPLAY_WIDTH, DISPLAY_HEIGHT = 178, 128
 """Size of the display in pixels."""
@@ -29,6 +33,7 @@ REMOTE_LIGHT_NAMES = ("remote red", "remote green", "remote blue")
 """The LEDs of a connected remote control."""
 XBOX_LIGHT_NAMES = ("xbox red", "xbox green", "xbox blue")
 """The LEDs of a connected game controller."""
+_LIGHTS = {"": HUB_LIGHT_NAMES, "remote": REMOTE_LIGHT_NAMES, "xbox": XBOX_LIGHT_NAMES}
 PORT_LIGHT = "light "
 """Before the port in the name of a light on a port of a hub."""
 SIDE_PIXELS = 5
@@ -73,6 +78,31 @@ class BrickState:
     turns_tick: int = 0
     sound: str = ""
     """What the brick said or played last; in brackets unless it is speech."""
+
+    @property
+    def matrix(self) -> list[list[int]]:
+        """Brightness of the pixels of a hub's matrix, by rows."""
+        levels = [self.leds.get(name, 0) for name in PIXEL_NAMES]
+        return [levels[start : start + SIDE_PIXELS] for start in range(0, len(levels), SIDE_PIXELS)]
+
+    @property
+    def port_lights(self) -> dict[str, int]:
+        """Brightness of the lights on ports of a hub, by port."""
+        return {
+            name.removeprefix(PORT_LIGHT): level
+            for name, level in self.leds.items()
+            if name.startswith(PORT_LIGHT)
+        }
+
+    def find_light(self, controller: str = "") -> tuple[int, ...]:
+        """Return red, green and blue of a hub's status light, or of that of a controller; empty if it is not connected.
+
+        Args:
+            controller: A key of `CONTROLLERS`; empty for the hub.
+        """
+        names = _LIGHTS[controller]
+        is_shown = not controller or names[0] in self.leds
+        return tuple(self.leds.get(name, 0) for name in names if is_shown)
 
     def extrapolate_turns(self, time_s: float, tick_hz: int) -> tuple[tuple[float, float], ...]:
         """Return `turns` extrapolated to a later time."""
@@ -134,6 +164,14 @@ def build_console_row(screen: TextScreen) -> str:
 def build_motors_row(turns: Iterable[tuple[float, float]]) -> str:
     """Return the text of an output row for the motors: `BrickState.turns`, valid from the row's tick on."""
     return json.dumps(list(turns))
+
+
+def unpack_display(picture: bytes) -> NDArray[np.uint8]:
+    """Return a picture in the format of `BrickState.picture` as an array: 1 is dark, shape (height, width)."""
+    import numpy as np
+
+    bits = np.unpackbits(np.frombuffer(picture, np.uint8))
+    return bits.reshape(DISPLAY_HEIGHT, ROW_BYTES * 8)[:, :DISPLAY_WIDTH]
 
 
 DRAWN_STREAMS = frozenset({Stream.LED, Stream.DISPLAY, Stream.CONSOLE, Stream.MOTORS})
