@@ -10,7 +10,6 @@ import sys
 from collections.abc import Sequence
 from dataclasses import asdict
 from datetime import UTC, datetime, timedelta
-from math import degrees
 from pathlib import Path
 from typing import Any
 
@@ -32,8 +31,7 @@ from tuisim.commands.exit_status import describe, describe_last_state
 from tuisim.commands.movies import movie, picture
 from tuisim.commands.rerun import list_changed_files, rerun, same
 from tuisim.engine.core import tree
-from tuisim.engine.core.drift import draw_echo_bias_mm, draw_errors, draw_light_gain, find_drift
-from tuisim.engine.core.spec import ColorSensorSpec, RunSpec, UltrasonicSpec
+from tuisim.engine.core.drift import describe_errors
 from tuisim.engine.core.values import quote
 from tuisim.engine.files import toml_form
 from tuisim.engine.protocol import Unended
@@ -178,23 +176,6 @@ def _list_files_read(run: StoredRun) -> tuple[FilesRead, tuple[str, ...]]:
         return FilesRead(), (str(error),)
 
 
-def _describe_drawn(spec: RunSpec) -> str:
-    """Return in words the errors of wheels and sensors that drift has drawn with the seed of the run."""
-    drift = find_drift(spec)
-    drawn = draw_errors(drift, spec.seed)
-    sizes = {"left wheel": drawn.left, "right wheel": drawn.right, "spacing": drawn.spacing}
-    parts = [f"{name} {100 * (times - 1):+.2f} %" for name, times in sizes.items()]
-    parts += [f"gyro {drawn.gyro_dps:+.3f} °/s", f"light from {degrees(drawn.bright_rad):.0f}°"]
-    for sensor in spec.robot.sensors:
-        if drift.light_gain_pc and isinstance(sensor, ColorSensorSpec):
-            gain = draw_light_gain(sensor.port, drift, spec.seed)
-            parts.append(f"{sensor.name} light {100 * (gain - 1):+.1f} %")
-        elif drift.echo_bias_mm and isinstance(sensor, UltrasonicSpec):
-            bias_mm = draw_echo_bias_mm(sensor.port, drift, spec.seed)
-            parts.append(f"{sensor.name} {bias_mm:+d} mm")
-    return ", ".join(parts)
-
-
 def _show(run: StoredRun, *, as_json: bool) -> None:
     """Print a run; rows are printed while they are read, because there may be millions."""
     rows = (row for row in run.output.rows() if row.stream in STREAMS)
@@ -224,7 +205,7 @@ def _show(run: StoredRun, *, as_json: bool) -> None:
     ]:
         echo(f"values: {', '.join(chosen)}")
     if not run.spec.world.drift.is_none:
-        echo(f"drawn: {_describe_drawn(run.spec)}")
+        echo(f"drawn: {describe_errors(run.spec)}")
     if facts["arguments"]:
         echo(f"arguments: {shlex.join(facts['arguments'])}")
     read, damage = _list_files_read(run)

@@ -21,7 +21,7 @@ from tuisim.engine.core.drift_spec import NO_DRIFT, DriftSpec
 from tuisim.engine.core.drive import Drive, compute_mm_per_degree, round_to_float32, turn_rate_dps
 from tuisim.engine.core.motors import find_top_speed_dps
 from tuisim.engine.core.noise import draw_numbers, draw_slip
-from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
+from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, ColorSensorSpec, UltrasonicSpec
 
 if TYPE_CHECKING:
     from tuisim.engine.core.spec import RunSpec
@@ -292,3 +292,20 @@ def can_strain_gyro(spec: RunSpec) -> bool:
     )
     fastest_dps = MAX_OVERSHOOT * degrees(fastest_mm / spec.robot.wheel_spacing_mm)
     return fastest_dps > spec.profile.gyro_max_dps
+
+
+def describe_errors(spec: RunSpec) -> str:
+    """Return in words the errors of wheels and sensors that drift has drawn with the seed of the run."""
+    drift = find_drift(spec)
+    drawn = draw_errors(drift, spec.seed)
+    sizes = {"left wheel": drawn.left, "right wheel": drawn.right, "spacing": drawn.spacing}
+    parts = [f"{name} {100 * (times - 1):+.2f} %" for name, times in sizes.items()]
+    parts += [f"gyro {drawn.gyro_dps:+.3f} °/s", f"light from {degrees(drawn.bright_rad):.0f}°"]
+    for sensor in spec.robot.sensors:
+        if drift.light_gain_pc and isinstance(sensor, ColorSensorSpec):
+            gain = draw_light_gain(sensor.port, drift, spec.seed)
+            parts.append(f"{sensor.name} light {100 * (gain - 1):+.1f} %")
+        elif drift.echo_bias_mm and isinstance(sensor, UltrasonicSpec):
+            bias_mm = draw_echo_bias_mm(sensor.port, drift, spec.seed)
+            parts.append(f"{sensor.name} {bias_mm:+d} mm")
+    return ", ".join(parts)
