@@ -18,10 +18,9 @@ from tuisim.engine.mat_cache import FieldFiles, prepare
 from tuisim.engine.mats import background
 from tuisim.engine.protocol import End, Ended
 from tuisim.engine.runs.handle import RunHandle, describe_falsified
-from tuisim.engine.runs.records import OUTPUT_FILE, TELEMETRY_FILE, OutputRow, Stream
-from tuisim.engine.runs.run_folder import RUN_FILE, StoredRun, find_diameters
+from tuisim.engine.runs.records import OutputRow, Stream
+from tuisim.engine.runs.run_folder import StoredRun, find_diameters
 from tuisim.engine.runs.samples import list_samples
-from tuisim.engine.runs.side_files import SIDE_FILES
 from tuisim.engine.runs.store import RunStore
 from tuisim.engine.runs.temporary import TemporaryRun
 from tuisim.logs.magnitude import find_scale
@@ -73,7 +72,7 @@ def _run_task(task: Task, folder: Path) -> Result:
             judgements = _judge(task, run)
             result = _build_result(task, run, replayed_end, judgements)
             if task.returns_files:
-                result = replace(result, files=_read_files(temporary, ended))
+                result = replace(result, files=temporary.read_files(ended))
         except LogError as error:
             if has_machine_cause(error):
                 return build_unjudged(task, str(error))
@@ -150,15 +149,6 @@ def _is_kept(task: Task, run: StoredRun, ended: Ended, judgements: Sequence[Judg
         is_good = ended.end is End.FINISHED and not ended.exit_code
         return not is_good or not all(judgement.is_good for judgement in judgements)
     return task.keep is Keep.ALL
-
-
-def _read_files(temporary: TemporaryRun, ended: Ended) -> dict[str, bytes]:
-    """Return what a run has recorded, by the names of its files."""
-    temporary.write_end(ended)
-    paths = (
-        temporary.folder / name for name in (RUN_FILE, TELEMETRY_FILE, OUTPUT_FILE, *SIDE_FILES)
-    )
-    return {path.name: path.read_bytes() for path in paths if path.is_file()}
 
 
 def _keep(temporary: TemporaryRun, ended: Ended) -> str:

@@ -20,6 +20,7 @@ from tuisim.base.source import Program
 from tuisim.engine.core.plugged import PluggedPart
 from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.protocol import Ended
+from tuisim.engine.runs.records import OUTPUT_FILE, TELEMETRY_FILE
 from tuisim.engine.runs.removal import remove_tree
 from tuisim.engine.runs.run_folder import (
     RUN_FILE,
@@ -28,7 +29,7 @@ from tuisim.engine.runs.run_folder import (
     read_run,
     write_run_file,
 )
-from tuisim.engine.runs.side_files import hold, is_held
+from tuisim.engine.runs.side_files import SIDE_FILES, hold, is_held
 from tuisim.engine.runs.store import NewRun
 
 _MEMORY = Path("/dev/shm")
@@ -205,3 +206,14 @@ class TemporaryRun:
         """
         self._data["end"] = asdict(end)
         write_run_file(self.folder, self._data)
+
+    def read_files(self, end: Ended) -> dict[str, bytes]:
+        """Write the end of the run; return all that the run has recorded, by the names of its files.
+
+        Raises:
+            LogError: the end cannot be written.
+        """
+        self.write_end(end)
+        names = (RUN_FILE, TELEMETRY_FILE, OUTPUT_FILE, *SIDE_FILES)
+        paths = (self.folder / name for name in names)
+        return {path.name: path.read_bytes() for path in paths if path.is_file()}
