@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -20,7 +20,7 @@ from tuisim.engine.core.tree import load_run
 from tuisim.engine.runs.arrays import FloatArray
 from tuisim.engine.runs.frames import find_lacking_columns
 from tuisim.logs.columns import is_numeric, list_numeric_columns
-from tuisim.logs.expressions import FUNCTIONS, Functions, evaluate, find_names
+from tuisim.logs.expressions import CONSTANTS, FUNCTIONS, Functions, evaluate, find_names
 from tuisim.logs.log import Log, Series
 from tuisim.logs.signals import (
     compute_derivative,
@@ -152,6 +152,21 @@ def find_computed_columns(log: Log) -> dict[str, Callable[[], FloatArray]]:
     if (spec := read_spec(log.metadata)) is None:
         return {}
     return find_lacking_columns(spec, list_numeric_columns(log.table.schema), log.numbers)
+
+
+def list_expression_words(log: Log) -> Iterator[str]:
+    """Yield the words allowed in an expression: variables, columns, functions."""
+    known = dict.fromkeys(
+        (
+            *(name.partition(" #")[0] for name in log.names),
+            *list_numeric_columns(log.table.schema),
+            TIME,
+        )
+    )
+    yield from (name if name.isidentifier() else f"`{name}`" for name in known)
+    yield from find_computed_columns(log)
+    yield from (f"{name}(" for name in (*SIGNALS, *FUNCTIONS))
+    yield from CONSTANTS
 
 
 def find_named_columns(log: Log, text: str) -> list[str]:

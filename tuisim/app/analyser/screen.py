@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 from time import monotonic
@@ -30,9 +30,7 @@ from tuisim.app.layout.forms import is_tall
 from tuisim.base import palette
 from tuisim.base.errors import LogError, TuisimError
 from tuisim.logs.choices import NO_CHOICES, ReadChoices
-from tuisim.logs.columns import list_numeric_columns
-from tuisim.logs.derived import SIGNALS, TIME, find_computed_columns
-from tuisim.logs.expressions import CONSTANTS, FUNCTIONS
+from tuisim.logs.derived import list_expression_words
 from tuisim.logs.log import Log
 from tuisim.logs.reader import read_beginning
 from tuisim.logs.table import FAST_ROWS, TableTask
@@ -47,22 +45,6 @@ _PATIENCE = 10.0
 """The pause between two readings of a growing log, as a multiple of the last reading time."""
 
 Made = TypeVar("Made")
-
-
-def list_expression_words(log: Log) -> Iterator[str]:
-    """Yield the words allowed in an expression: variables, columns, functions."""
-    known = dict.fromkeys(
-        (
-            *(name.partition(" #")[0] for name in log.names),
-            *list_numeric_columns(log.table.schema),
-            TIME,
-        )
-    )
-    yield from (name if name.isidentifier() else f"`{name}`" for name in known)
-    yield from find_computed_columns(log)
-    yield from (f"{name}(" for name in (*SIGNALS, *FUNCTIONS))
-    yield from CONSTANTS
-    yield RECKONING
 
 
 class LogScreen(ActionHost, ClosesOnce[None]):
@@ -382,7 +364,7 @@ class LogScreen(ActionHost, ClosesOnce[None]):
             do(text)
             self.update()
 
-        words = tuple(list_expression_words(self.model.log)) if completes else ()
+        words = (*list_expression_words(self.model.log), RECKONING) if completes else ()
         self.app.push_screen(LinePrompt(title, apply, value, forms, words))
 
     def ask_choices(self) -> None:
