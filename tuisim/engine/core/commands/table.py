@@ -8,7 +8,9 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from tuisim.base.data_class import dataclass
-from tuisim.engine.core.commands import driver, motors, robot, servo
+from tuisim.engine.core.brick_motor import BrickMotor
+from tuisim.engine.core.browser_motor import BrowserMotor
+from tuisim.engine.core.commands import driver, robot, servo
 from tuisim.engine.core.commands.calls import MAX_NUMBER, MAX_VALUES, Call, Values
 from tuisim.engine.core.motors import MEDIUM_MAX_SPEED_DPS
 from tuisim.engine.core.plugged import PART_CODES
@@ -18,6 +20,61 @@ from tuisim.engine.core.servo.settings import FULL_ACTUATION
 if TYPE_CHECKING:
     from tuisim.engine.core.servo.bases import DriveBases
     from tuisim.engine.core.simulation import Simulation
+
+DrivenMotor = BrickMotor | BrowserMotor
+
+
+def start(motor: DrivenMotor, _time_ns: int, values: Values) -> None:
+    """Run at a speed until the next command."""
+    motor.run(*values)
+
+
+def start_timed(motor: DrivenMotor, _time_ns: int, values: Values) -> None:
+    """Run at a speed until a tick."""
+    motor.run_until(*values)
+
+
+def start_move(motor: DrivenMotor, _time_ns: int, values: Values) -> None:
+    """Run to a position, at a speed, backwards or not."""
+    goal_deg, speed_dps, backwards = values
+    motor.run_to(goal_deg, speed_dps, bool(backwards))
+
+
+def stop(motor: DrivenMotor, _time_ns: int, _values: Values) -> None:
+    """Stop."""
+    motor.stop()
+
+
+def set_count(motor: DrivenMotor, _time_ns: int, values: Values) -> None:
+    """Set the number that the encoder shows as its present position."""
+    motor.position_deg = values[0]
+
+
+def limit_ramps(motor: BrickMotor, _time_ns: int, values: Values) -> None:
+    """Limit the acceleration of the move that has begun, and its deceleration before its end."""
+    motor.slowest_ramp_dps2, motor.approach_dps2 = values
+
+
+def set_speed(motor: BrowserMotor, _time_ns: int, values: Values) -> None:
+    """Set the speed that the register follows."""
+    motor.speed_sp = values[0]
+
+
+def set_backwards(motor: BrowserMotor, _time_ns: int, values: Values) -> None:
+    """Set the direction of moves to a position, also of one that is under way or over."""
+    motor.backwards = bool(values[0])
+
+
+def set_roll(motor: BrowserMotor, _time_ns: int, values: Values) -> None:
+    """Set in which direction the wheel rolls: 1 as the encoder counts, -1 the other way.
+
+    Raises:
+        ValueError: the value is neither.
+    """
+    if abs(values[0]) != 1.0:
+        raise ValueError(f"{values[0]!r} is not a direction")
+    motor.roll_sign = values[0]
+
 
 Range = tuple[float, float]
 
@@ -84,17 +141,15 @@ CALLS: Mapping[Call, CallSpec] = {
         may_be_missing=True,
         target=Target.ROBOT,
     ),
-    Call.RUN: CallSpec(motors.start, (_ANY,), DRIVEN_LAWS, speed_place=0),
-    Call.RUN_UNTIL: CallSpec(motors.start_timed, (_ANY, _ANY), DRIVEN_LAWS, speed_place=0),
-    Call.RUN_TO: CallSpec(motors.start_move, (_ANY, _ANY, _FLAG), DRIVEN_LAWS, speed_place=1),
-    Call.STOP: CallSpec(motors.stop, (), DRIVEN_LAWS),
-    Call.SET_COUNT: CallSpec(motors.set_count, (_ANY,), DRIVEN_LAWS),
-    Call.LIMIT_RAMPS: CallSpec(
-        motors.limit_ramps, (_POSITIVE, _POSITIVE), frozenset({MotorLaw.BRICK})
-    ),
-    Call.SET_SPEED: CallSpec(motors.set_speed, (_ANY,), frozenset({MotorLaw.NBEV3DEVSIM})),
-    Call.SET_BACKWARDS: CallSpec(motors.set_backwards, (_FLAG,), frozenset({MotorLaw.NBEV3DEVSIM})),
-    Call.SET_ROLL: CallSpec(motors.set_roll, ((-1.0, 1.0),), frozenset({MotorLaw.NBEV3DEVSIM})),
+    Call.RUN: CallSpec(start, (_ANY,), DRIVEN_LAWS, speed_place=0),
+    Call.RUN_UNTIL: CallSpec(start_timed, (_ANY, _ANY), DRIVEN_LAWS, speed_place=0),
+    Call.RUN_TO: CallSpec(start_move, (_ANY, _ANY, _FLAG), DRIVEN_LAWS, speed_place=1),
+    Call.STOP: CallSpec(stop, (), DRIVEN_LAWS),
+    Call.SET_COUNT: CallSpec(set_count, (_ANY,), DRIVEN_LAWS),
+    Call.LIMIT_RAMPS: CallSpec(limit_ramps, (_POSITIVE, _POSITIVE), frozenset({MotorLaw.BRICK})),
+    Call.SET_SPEED: CallSpec(set_speed, (_ANY,), frozenset({MotorLaw.NBEV3DEVSIM})),
+    Call.SET_BACKWARDS: CallSpec(set_backwards, (_FLAG,), frozenset({MotorLaw.NBEV3DEVSIM})),
+    Call.SET_ROLL: CallSpec(set_roll, ((-1.0, 1.0),), frozenset({MotorLaw.NBEV3DEVSIM})),
     **{
         call: CallSpec(
             driver.build_effect(command), _SET_POINTS, frozenset({MotorLaw.EV3DEV}), speed_place=0

@@ -7,8 +7,8 @@ import pytest
 
 from tests.cases import cases, for_each
 from tuisim.engine.runs.arrays import FloatArray
+from tuisim.logs.bands import measure_widths
 from tuisim.logs.levels import Levels, measure_levels
-from tuisim.logs.widths import measure_widths
 
 GREYS = (100.0, 86.0, 100.0, 50.0, 0.0, 83.0)
 
