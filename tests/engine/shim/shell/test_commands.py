@@ -187,12 +187,16 @@ DID: dict[str, tuple[str, list[str], list[str]]] = {
 LINE = "join programs by ; or &&, use open for files and subprocess.Popen beside the program"
 ONLY = "use Python, or setfont, clear, beep, echo, espeak, aplay, amixer, stty, cat, sleep"
 PLAY = "use aplay FILE, or espeak --stdout TEXT | aplay"
+PART = "run it as a part of this program: exec(open('mission.py').read())"
 REFUSED = {
     "os.system('ls -l')": ("ls", ONLY),
     "subprocess.run(['/bin/rm', '-r', '.'])": ("/bin/rm", ONLY),
     "subprocess.run('beep -f 440')": ("beep -f 440", ONLY),
     "subprocess.run('nosuch', shell=True)": ("nosuch", ONLY),
     "os.popen('beep; ls')": ("ls", ONLY),
+    "os.system('python3')": ("python3", ONLY),
+    "subprocess.call(['python3', 'mission.py'])": ("python3", PART),
+    "os.system('brickrun -r ./mission.py')": ("brickrun", PART.replace("'m", "'./m")),
     "os.popen('beep 2>&1')": ("'2>' in a shell line", LINE),
     "os.system('echo x | espeak')": ("'|' in a shell line", LINE),
     "os.system('beep || beep')": ("'||' in a shell line", LINE),

@@ -114,6 +114,18 @@ def parse_line(text: str) -> list[Call]:
     return calls
 
 
+_RUNNERS = ("python", "python3", "micropython", "pybricks-micropython", "brickrun")
+"""Programs that run a program."""
+
+
+def _name_instead(call: Call) -> str:
+    """Return what a program can use instead of a command that the brick here does not have."""
+    files = [word for word in call.words[1:] if word.endswith(".py")]
+    if call.name in _RUNNERS and files:
+        return f"run it as a part of this program: exec(open({files[-1]!r}).read())"
+    return f"use Python, or {', '.join(COMMANDS)}"
+
+
 class Shell:
     """Runs the programs of the brick."""
 
@@ -134,7 +146,7 @@ class Shell:
                 raise refuse(f"{call.joint!r} in a shell line", SHELL_HINT)
             before = call.name
             if before not in COMMANDS:
-                raise refuse(call.words[0], f"use Python, or {', '.join(COMMANDS)}")
+                raise refuse(call.words[0], _name_instead(call))
         return self._run(calls, streams)
 
     def _run(self, calls: Sequence[Call], streams: Streams) -> Steps:
