@@ -59,7 +59,7 @@ class Choice(_Control):
     DEFAULT_CSS = "Choice { height: 1; width: 1fr; }"
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("left", "step(-1)", "Before", show=False),
-        Binding("right,enter,space", "step(1)", "Next", show=False),
+        Binding("right,enter", "step(1)", "Next", show=False),
     ]
 
     @dataclass

@@ -70,7 +70,7 @@ async def test_keys_tick_traces() -> None:
     async with open_chart() as (pilot, app):
         await opened(app, pilot)
         seen = []
-        for key in ("down", "space", "1", "up", "space", "2"):
+        for key in ("down", "enter", "1", "up", "enter", "2"):
             await pilot.press(key)
             seen.append(rows(app)[0].strip())
 
@@ -82,6 +82,17 @@ async def test_keys_tick_traces() -> None:
         "[ ] Colour  [ ] gyro_deg",
         "[ ] Colour  [x] gyro_deg",
     ]
+
+
+async def test_space_goes_on_with_a_paused_run_and_escape_leaves_the_chart() -> None:
+    async with open_chart() as (pilot, app):
+        await opened(app, pilot)
+        await pilot.press("space")
+        assert rows(app)[0].strip() == "[x] Colour  [ ] gyro_deg"
+        await pilot.press("left", "escape")
+        assert app.panel.has_focus
+        await pilot.press("escape")
+        assert not app.panel.has_focus
 
 
 async def test_the_mouse_ticks_traces() -> None:

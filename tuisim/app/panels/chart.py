@@ -40,7 +40,7 @@ class Chart(LinesPanel, can_focus=True):
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("up", "select(-1)", "Previous trace"),
         Binding("down", "select(1)", "Next trace"),
-        Binding("space", "tick", "Show or hide the selected trace"),
+        Binding("enter", "tick", "Show or hide the selected trace"),
         *(
             Binding(str(number), f"tick({number})", "Show or hide this trace", show=False)
             for number in range(1, 10)
@@ -49,7 +49,7 @@ class Chart(LinesPanel, can_focus=True):
         Binding("right", "move_cursor(1)", "Cursor forward"),
         Binding("shift+left", "move_cursor(-10)", "Cursor far back", show=False),
         Binding("shift+right", "move_cursor(10)", "Cursor far forward", show=False),
-        Binding("escape", "drop_cursor", "Remove the cursor"),
+        Binding("escape", "leave", "Remove the cursor; without one, leave the chart"),
         Binding("f", "freeze", "Follow or freeze"),
         Binding("delete", "clear", "Clear chart"),
     ]
@@ -98,7 +98,7 @@ class Chart(LinesPanel, can_focus=True):
         self._traces.clear()
         self._state = replace(self._state, x_limits=None)
         self._read(None)
-        self.action_drop_cursor()
+        self._drop_cursor()
         self._schedule_drawing()
 
     def show(self, snapshot: Snapshot) -> None:
@@ -229,7 +229,12 @@ class Chart(LinesPanel, can_focus=True):
         column = axes.find_column(now, picture.x_limits, picture.columns) + columns
         self._put_cursor(axes.find_column_value(column, picture.x_limits, picture.columns))
 
-    def action_drop_cursor(self) -> None:
+    def action_leave(self) -> None:
+        if self._state.cursor_s is None:
+            self.screen.set_focus(None)
+        self._drop_cursor()
+
+    def _drop_cursor(self) -> None:
         if self._state.cursor_s is not None:
             self._state = replace(self._state, cursor_s=None)
             self.post_message(self.CursorMoved(None))
