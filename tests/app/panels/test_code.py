@@ -59,6 +59,15 @@ async def test_a_reload_keeps_cursor_and_scroll_and_can_be_undone() -> None:
         assert area.document.get_line(10) == "new"
 
 
+async def test_a_text_saved_to_another_file_keeps_its_cursor() -> None:
+    async with CodeApp().run_test(size=(60, 12)) as pilot:
+        code, area = await alone(pilot, "x = 1\ny = 2\n")
+        await pilot.press("enter", "down", "end")
+        code.set_program("saved.py", area.program_text, "folder/saved.py")
+        await pilot.pause()
+        assert area.cursor_location == (1, 5)
+
+
 async def test_the_line_that_runs_stays_in_sight_when_the_panel_shrinks() -> None:
     async with CodeApp().run_test(size=(60, 30)) as pilot:
         code, area = await alone(pilot, "\n".join(f"x{n} = {n}" for n in range(200)))

@@ -235,8 +235,10 @@ class Code(Vertical):
             self._area.light(0)
             self._area.set_error(0)
             self._area.placeholder = "" if name else self._nothing_open
-            self._area.load_program(text)
-            self._area.scroll_to(y=0, animate=False, force=True)
+            # A text saved to another file is edited further: its cursor and its history stay.
+            if text != self._shown:
+                self._area.load_program(text)
+                self._area.scroll_to(y=0, animate=False, force=True)
             self._assistant.load_program(key)
             if not name:
                 self.stop_typing()
