@@ -113,7 +113,8 @@ def test_a_hub_goes_by_the_rules_of_its_program() -> None:
 
 def test_speeds_of_numpy_leave_no_numbers_of_numpy() -> None:
     lab = tuisim.Lab()
-    lab.step(np.float64(300), np.float32(300))
+    speeds: Any = np.float64(300), np.float32(300)
+    lab.step(*speeds)
     assert "np" not in repr((lab.pose, lab.read()))
 
 

@@ -139,7 +139,7 @@ class Lab:
             self._spec = replace(self._spec, seed=plain(seed))
         self._run = SteppedRun(self._spec, self._field, is_recorded=bool(self._goals))
         self._live = LiveGoals(self._goals, self._run, self._field) if self._goals else None
-        self._asked: tuple[float, float] | None = None
+        self._asked: tuple[float | None, float | None] | None = None
         return self.read()
 
     def step(

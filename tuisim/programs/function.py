@@ -10,7 +10,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from textwrap import dedent
 from types import FunctionType
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from tuisim.base.errors import ConfigError
 from tuisim.base.source import PRELUDE_TEXTS, source_lines
@@ -118,8 +118,8 @@ class _Reader:
         around = Surroundings.read_function(function, text)
         around.check_source([function], own)
         # The program decorates it again.
-        is_decorated = lines[0].lstrip().startswith("@")
-        if is_decorated and inspect.unwrap(around.values.get(own)) is not function:
+        public: Any = around.values.get(own)
+        if lines[0].lstrip().startswith("@") and inspect.unwrap(public) is not function:
             raise ConfigError(f"a decorator hides {own}", "give it functools.wraps")
         self._add_block(_Block(own, function.__code__.co_filename, first, lines), around, own)
         self._add_alias(name, own, user)
