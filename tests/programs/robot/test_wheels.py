@@ -26,6 +26,14 @@ WHEELS: Mapping[str, tuple[str, str]] = {
         "motor_links = LargeMotor(OUTPUT_D)\nmotor_rechts = LargeMotor(OUTPUT_A)",
         "A right wheel, B -, C -, D left wheel",
     ),
+    "Chinese names": (
+        "左电机 = LargeMotor(OUTPUT_D)\n右电机 = LargeMotor(OUTPUT_A)",
+        "A right wheel, B -, C -, D left wheel",
+    ),
+    "Russian names": (
+        "мотор_левый = LargeMotor(OUTPUT_D)\nмоторПравый = LargeMotor(OUTPUT_A)",
+        "A right wheel, B -, C -, D left wheel",
+    ),
     "short names": (
         "mL = LargeMotor(OUTPUT_D)\nmR = LargeMotor(OUTPUT_A)",
         "A right wheel, B -, C -, D left wheel",

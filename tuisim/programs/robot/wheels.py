@@ -274,7 +274,7 @@ def _find_named(mentions: Mentions) -> Iterator[tuple[str, Size]]:
     if evaluation is None:
         return
     for scope in mentions.scopes:
-        for name, bindings in scope.names.items():
+        for name, bindings in (*scope.names.items(), *scope.attributes.items()):
             for binding in bindings if _is_size(name) else ():
                 match binding:
                     case Bound(node=node, path=(), is_item=False):

@@ -6,7 +6,13 @@ import re
 from collections.abc import Iterable
 from enum import StrEnum
 
-_PART = re.compile(r"[A-Z]?[a-zà-ÿ]+|[A-Z]+(?![a-zà-ÿ])|\d+")
+_CHINESE = (
+    "前进 后退 直行 直径 直徑 半径 周长 轮径 轮距 轴距 轮子 车轮 左 右 前 后 後 中 轮 臂 爪 手 夹"
+)
+"""Words, the longer ones first: nothing separates them in a name."""
+_PART = re.compile(
+    rf"[A-Z]?[a-zà-ɏ]+|[A-Z]+(?![a-zà-ɏ])|[А-ЯЁІ]?[а-яёі]+|[А-ЯЁІ]+|\d+|{_CHINESE.replace(' ', '|')}"
+)
 
 
 class Side(StrEnum):
@@ -23,12 +29,12 @@ class Side(StrEnum):
 
 _SIDES = {
     Side.LEFT: "left l lft lm ml links linker linke linkes gauche izquierda izquierdo izq esquerda esquerdo sinistra "
-    "sinistro sx lewy lewa levy vanster venstre",
+    "sinistro sx lewy lewa levy lijevi vanster venstre esquerra vasen kiri sol левый левая левое лев лівий 左",
     Side.RIGHT: "right r rgt rm mr rechts rechter rechte rechtes droite droit derecha derecho der direita direito "
-    "destra destro dx prawy prawa pravy hoger hoyre",
-    Side.FRONT: "front forward ahead vorne vorn avant delante frente voor",
-    Side.BACK: "back rear behind hinten heck arriere atras achter",
-    Side.MIDDLE: "middle mid center centre mitte milieu centro",
+    "destra destro dx prawy prawa pravy desni hoger hoyre dreta oikea kanan sağ правый правая правое прав правий 右",
+    Side.FRONT: "front forward ahead vorne vorn avant delante frente voor перед передний 前",
+    Side.BACK: "back rear behind hinten heck arriere atras achter зад задний 后 後",
+    Side.MIDDLE: "middle mid center centre mitte milieu centro 中",
 }
 _SIDES_BY_WORD = {word: side for side, words in _SIDES.items() for word in words.split()}
 _LONG = {side.value: side for side in (Side.LEFT, Side.RIGHT)}
@@ -37,7 +43,8 @@ _TOOL_WORDS = (
     "arm arms claw grip gripper grabber grab hand lift lifter lever crane fork forklift tool attachment attach head "
     "neck turret tilt shoot shooter cannon greifer kran hub pince bras garra tail flag hook catapult elbow wrist "
     "base elevator steer steering lenkung medium extra top legs turntable carriage roller rollers conveyor chute "
-    "feed feeder belt pen x y z"
+    "feed feeder belt pen x y z brazo pinza pala cabeza grua braccio testa tete kopf heber schaufel gabel рука клешня "
+    "臂 爪 手 夹"
 )
 _TOOLS = frozenset(_TOOL_WORDS.split())
 
@@ -51,21 +58,30 @@ _LARGE = _split_words(
 )
 _FORWARDS = _split_words(
     "forward forwards ahead vorwaerts vorwärts geradeaus avancer avance adelante avanzar avanti vooruit frente framat "
-    "naprzod"
+    "naprzod вперед вперёд 前进 前 直行"
 )
 _BACKWARDS = _split_words(
-    "back backward backwards reverse zurueck zurück reculer atras atrás indietro achteruit"
+    "back backward backwards reverse zurueck zurück reculer atras atrás indietro achteruit назад 后退"
 )
 _WHEEL = _split_words(
-    "wheel wheels tire tyre reifen raddurchmesser radumfang roue rueda roda ruota wiel"
+    "wheel wheels tire tyre reifen raddurchmesser radumfang radradius roue roues rueda ruedas roda rodas ruota ruote "
+    "wiel wielen 轮径 轮子 车轮 轮"
 )
 _DIAMETER = _split_words(
-    "diameter diam dia d durchmesser raddurchmesser diametre diamètre diametro diámetro mm cm"
+    "diameter diam dia d durchmesser raddurchmesser diametre diamètre diametro diámetro mm cm 轮径 直径 直徑"
 )
-_RADIUS = _split_words("radius rad r radio rayon raio raggio")
-_GIRTH = _split_words("circumference circ umfang radumfang circonference circunferencia perimeter")
-_TRACK = _split_words("track wheelbase spurweite achsabstand radabstand")
-_APART = _split_words("distance spacing separation gap base track apart")
+_RADIUS = _split_words("radius rad r radradius radio rayon raio raggio 半径")
+_GIRTH = _split_words(
+    "circumference circ umfang radumfang circonference circunferencia perimeter perimetro 周长"
+)
+_TRACK = _split_words("track wheelbase spurweite achsabstand radabstand 轮距 轴距")
+_APART = _split_words(
+    "distance dist spacing separation gap base track apart distancia separacion distanza abstand ecart"
+)
+_BETWEEN = _split_words("between of the entre de las zwischen den des les le")
+_PER_TURN = _split_words(
+    "rotation rotations rot rev revolution turn umdrehung rotacion vuelta tour giro"
+)
 _UNITS_MM = {"mm": 1.0, "cm": 10.0}
 
 
@@ -101,19 +117,22 @@ def is_radius(name: str) -> bool:
 
 
 def is_girth(name: str) -> bool:
-    """Return whether a name is that of the circumference of a wheel."""
-    return _is_of_wheel(name, _GIRTH)
+    """Return whether a name is that of the circumference of a wheel, or of its way per turn: `CM_PER_ROTATION`."""
+    parts = {*_split_name(name)}
+    way = parts & _UNITS_MM.keys() or parts & _APART
+    is_way_per_turn = bool(parts & {"per", "pro", "por", "par"} and parts & _PER_TURN and way)
+    return is_way_per_turn or _is_of_wheel(name, _GIRTH)
 
 
 def _is_of_wheel(name: str, measure: frozenset[str]) -> bool:
-    parts = {*_split_name(name)}
+    parts = {*_split_name(name)} - _BETWEEN
     known = _WHEEL | measure | _UNITS_MM.keys()
     return parts <= known and bool(parts & _WHEEL) and bool(parts & measure)
 
 
 def is_spacing(name: str) -> bool:
     """Return whether a name is that of the distance between the wheels."""
-    parts = {*_split_name(name)} - {"axle", "width"}
+    parts = {*_split_name(name)} - _BETWEEN - {"axle", "width"}
     if not parts <= _WHEEL | _TRACK | _APART | _UNITS_MM.keys():
         return False
     return bool(parts & _TRACK) or (bool(parts & _WHEEL) and bool(parts & _APART))
