@@ -179,8 +179,8 @@ class Lab:
     def read(self) -> dict[str, float]:
         """Return the columns now, by name, as the telemetry of a run would have them."""
         if self.columns == MOTION:
-            pose = self._run.pose
-            return {"x_mm": pose.x_mm, "y_mm": pose.y_mm, "heading_deg": pose.heading_deg}
+            drive = self._run.drive
+            return {"x_mm": drive.x_mm, "y_mm": drive.y_mm, "heading_deg": drive.heading_deg}
         if not self.columns:
             return {}
         instant, field = self._run.build_instant(), self._run.field

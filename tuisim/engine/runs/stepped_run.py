@@ -54,6 +54,8 @@ class SteppedRun:
         self._sim = build_simulation(spec, sink)
         self._marks = PenMarks(mat, spec) if has_marks else None
         self._run = _find_run(self._sim)
+        self.drive = self._sim.drive
+        """The motion of the robot, which changes with each tick."""
 
     @property
     def tick(self) -> int:
