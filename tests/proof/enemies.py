@@ -21,10 +21,10 @@ from tests.proof.commands import check_said
 from tests.proof.kind import FaultError, Kind, home, in_time
 from tests.tasks.marks.attackers import DISK, FILES, MEMORY, OWN_RUN, PROC, PROCESSES, SECRET
 from tuisim.base.faults import report_file
+from tuisim.base.folders import remove_tree
 from tuisim.cli import EXIT_OUR_MISTAKE
 from tuisim.engine.protocol import EVENTS, End
 from tuisim.engine.runs.catalogue import RunInfo
-from tuisim.engine.runs.removal import remove_tree
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.engine.runs.side_files import ACTIONS_FILE, SIDE_FILES, STOP_FILE
 from tuisim.engine.runs.store import RunStore

@@ -17,9 +17,9 @@ from pathlib import Path
 from typing import Any
 
 from tuisim.base.faults import describe_fault
+from tuisim.base.folders import remove_tree
 from tuisim.engine.protocol import End
 from tuisim.engine.runs.child.process import start_warm_process
-from tuisim.engine.runs.removal import remove_tree
 from tuisim.engine.runs.temporary import create_batch_folder
 from tuisim.tasks.execute import build_unjudged, build_unknown_result, execute
 from tuisim.tasks.task import Result, Task

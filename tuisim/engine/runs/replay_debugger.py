@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import TuisimError
+from tuisim.base.folders import remove_tree
 from tuisim.engine import protocol
 from tuisim.engine.protocol import BEFORE_NEXT_TICK, Ended, Inspected, LineHistory, Paused
-from tuisim.engine.runs.removal import remove_tree
 from tuisim.engine.runs.temporary import create_owned_folder
 
 if TYPE_CHECKING:

@@ -12,6 +12,7 @@ from typing import Any, TypeVar
 from tuisim.base.atomic import replacing
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ConfigError, LogError, TuisimError, shortened
+from tuisim.base.folders import remove_tree
 from tuisim.base.regular_file import read_regular
 from tuisim.base.source import Program
 from tuisim.engine.core.field import Field
@@ -22,7 +23,6 @@ from tuisim.engine.core.tree import dump_run, restore
 from tuisim.engine.mat_cache import FieldFiles, prepare
 from tuisim.engine.mats import background
 from tuisim.engine.protocol import End, Ended, RunState, SetNoise, Unended, UserAction
-from tuisim.engine.runs.removal import remove_tree
 from tuisim.engine.runs.side_files import MAX_BYTES, is_held, read_actions
 from tuisim.engine.runs.views import OutputView, TelemetryView, TickRecord, open_views
 

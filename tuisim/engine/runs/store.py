@@ -15,7 +15,7 @@ from typing import Any
 from tuisim.base.atomic import make_private_folder, private
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import LogError
-from tuisim.base.folders import home_folder
+from tuisim.base.folders import home_folder, remove_tree
 from tuisim.base.regular_file import of_the_machine, open_regular
 from tuisim.base.source import Program
 from tuisim.engine.core.plugged import PluggedPart
@@ -24,7 +24,6 @@ from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.protocol import RUN_STATES, End, Ended, Unended
 from tuisim.engine.runs.catalogue import HOME_HINT, Catalogue, RunInfo, lock_home
 from tuisim.engine.runs.records import OUTPUT_FILE, TELEMETRY_FILE
-from tuisim.engine.runs.removal import remove_tree
 from tuisim.engine.runs.run_folder import (
     MAX_INTEGER,
     RUN_FILE,

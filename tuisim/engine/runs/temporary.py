@@ -16,12 +16,12 @@ from types import TracebackType
 from typing import Any
 
 from tuisim.base.errors import LogError
+from tuisim.base.folders import remove_tree
 from tuisim.base.source import Program
 from tuisim.engine.core.plugged import PluggedPart
 from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.protocol import Ended
 from tuisim.engine.runs.records import OUTPUT_FILE, TELEMETRY_FILE
-from tuisim.engine.runs.removal import remove_tree
 from tuisim.engine.runs.run_folder import (
     RUN_FILE,
     StoredRun,

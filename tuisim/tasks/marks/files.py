@@ -13,9 +13,9 @@ from pathlib import Path, PurePosixPath
 from typing import BinaryIO
 
 from tuisim.base.errors import ConfigError, LogError
+from tuisim.base.folders import remove_tree
 from tuisim.base.regular_file import open_regular
 from tuisim.engine.runs.child.isolation import MOST_FILES
-from tuisim.engine.runs.removal import remove_tree
 
 LEFT_OUT = shutil.ignore_patterns(
     *("__pycache__", "__MACOSX", "._*", ".DS_Store", ".git", ".venv", "venv", "node_modules")

@@ -10,12 +10,12 @@ from pathlib import Path
 
 from tuisim.base.data_class import dataclass
 from tuisim.base.faults import describe_fault
+from tuisim.base.folders import remove_tree
 from tuisim.base.source import user_python_path
 from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.core.tree import dump_run
 from tuisim.engine.presses import press_actions
 from tuisim.engine.runs.handle import RunOptions
-from tuisim.engine.runs.removal import remove_tree
 from tuisim.engine.runs.temporary import create_temporary_home
 from tuisim.tasks.goals.trial_world import TrialWorld
 from tuisim.tasks.marks.journal import Journal

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tuisim.engine.runs.removal import remove_tree
+from tuisim.base.folders import remove_tree
 
 NAME = "d" * 20
 
