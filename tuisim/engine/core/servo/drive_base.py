@@ -16,8 +16,10 @@ from tuisim.engine.core.servo.motor import ServoMotor
 from tuisim.engine.core.servo.settings import (
     COUNTS_PER_DEG,
     FIRMWARES,
+    MODELS,
     ControlSettings,
     combine_settings,
+    compute_motor_settings,
 )
 from tuisim.engine.core.servo.trajectory import MILLI, Measure, Segment
 
@@ -67,6 +69,18 @@ def compute_usual_settings(
         ]
         counts = [int(count) for count in exact]
     return (*units,), (*counts,)  # type: ignore[return-value]
+
+
+def compute_new_pace(law: MotorLaw, wheel_diameter_mm: float, axle_track_mm: float) -> Pace:
+    """Return how a new drive base with large motors moves, in mm and degrees."""
+    motor = compute_motor_settings(law, "large")
+    settings = compute_base_settings(motor, motor, wheel_diameter_mm, axle_track_mm)
+    return compute_usual_settings(law, *settings)[0]
+
+
+def describe_new_motors(law: MotorLaw) -> dict[str, dict[str, str]]:
+    """Return the settings of a new motor in words, by kind and by name of the setting."""
+    return {kind: compute_motor_settings(law, kind).describe() for kind in MODELS}
 
 
 def _move_relative(

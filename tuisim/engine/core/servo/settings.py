@@ -69,6 +69,16 @@ class ControlSettings:
         """Return a number of counts in the program's units, rounded; the firmware multiplies by a rounded inverse."""
         return _multiply(counts, (_ONE * _ONE + self.scale // 2) // self.scale)
 
+    def describe(self) -> dict[str, str]:
+        """Return limits and tolerances of a motor in words, by their names."""
+        moves_done = f"{self.units(self.position_tolerance)} deg, below {self.units(self.speed_tolerance)} deg/s"
+        return {
+            "highest speed": f"{self.units(self.speed)} deg/s",
+            "acceleration and deceleration": f"{self.units(self.acceleration)} deg/s²",
+            "a move is done within": moves_done,
+            "stalled": f"below {self.units(self.stall_speed)} deg/s for {self.stall_time_ms} ms",
+        }
+
 
 def _multiply(number: int, factor: int) -> int:
     """Return a number times `factor` / 65,536, rounded."""
