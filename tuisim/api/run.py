@@ -110,9 +110,7 @@ class Run:
         Raises:
             LogError: they are not recorded, or damaged.
         """
-        from tuisim.engine.runs.command_records import read_commands
-
-        return tuple(read_commands(self.stored.folder).unpack())
+        return self.stored.read_commands()
 
     def judge(self, goals: str | Path) -> pd.DataFrame:
         """Return how the run did on a goals file, which is also a world for `simulate`: one row for each goal.

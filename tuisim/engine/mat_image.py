@@ -112,6 +112,15 @@ def size_of(content: bytes) -> tuple[int, int]:
         return picture.size
 
 
+def read_pixels(path: Path, fit: str) -> NDArray[np.uint8]:
+    """Return the pixels of the field with the image in a file on it, see `decode`.
+
+    Raises:
+        BackgroundError: the file cannot be read, or `decode` raises it.
+    """
+    return decode(read_file(path), path, fit)
+
+
 def decode(content: bytes, path: Path, fit: str) -> NDArray[np.uint8]:
     """Return the pixels of the field with an image on it.
 

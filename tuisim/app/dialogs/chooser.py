@@ -28,7 +28,7 @@ from tuisim.base.errors import LogError, TuisimError
 from tuisim.base.folders import user_path
 from tuisim.engine.core.profile import PROFILES
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
-from tuisim.engine.mat_image import decode, read_file
+from tuisim.engine.mat_image import read_pixels
 from tuisim.engine.mats import find_mat
 from tuisim.engine.obstacles import OBSTACLES, load_obstacles
 from tuisim.logs.export import is_companion
@@ -509,7 +509,7 @@ class MatPicker(Chooser):
 
     def _decode(self, name: str, port: Viewport, outside_rgb: tuple[int, int, int]) -> Pixels:
         mat_file = find_mat(name, self._folder)
-        mat = decode(read_file(mat_file.image), mat_file.image, mat_file.fit or "stretch")
+        mat = read_pixels(mat_file.image, mat_file.fit or "stretch")
         return shrink(mat, port, outside_rgb)
 
     def _show_decoded(self, key: tuple[str, Viewport], picture: Pixels) -> None:

@@ -7,7 +7,7 @@ from bisect import bisect_right
 from collections.abc import Mapping, Sequence
 from dataclasses import fields, replace
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from tuisim.base.atomic import replacing
 from tuisim.base.data_class import dataclass
@@ -25,6 +25,9 @@ from tuisim.engine.mats import background
 from tuisim.engine.protocol import End, Ended, RunState, SetNoise, Unended, UserAction
 from tuisim.engine.runs.side_files import MAX_BYTES, is_held, read_actions
 from tuisim.engine.runs.views import OutputView, TelemetryView, TickRecord, open_views
+
+if TYPE_CHECKING:
+    from tuisim.engine.core.commands.calls import SimulationCommand
 
 RUN_FILE = "run.json"
 RUN_FORMAT = 3
@@ -102,6 +105,16 @@ class StoredRun:
             return self.end.time_ns / NS_PER_S
         last = self.telemetry.last()
         return compute_due_ns(last.tick, self.spec.profile.tick_hz) / NS_PER_S if last else 0.0
+
+    def read_commands(self) -> tuple[SimulationCommand, ...]:
+        """Return the calls of the program to motors, gyro and pen.
+
+        Raises:
+            LogError: they are not recorded, or damaged.
+        """
+        from tuisim.engine.runs.command_records import read_commands
+
+        return tuple(read_commands(self.folder).unpack())
 
     def find_noise(self, record: TickRecord) -> NoiseSpec:
         """Return the noise at the tick of a telemetry record."""

@@ -17,8 +17,8 @@ from msgspec import Meta
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ConfigError
 from tuisim.base.folders import user_path
-from tuisim.engine import mat_image
 from tuisim.engine.core.spec import BACKGROUND_FITS, FIELD_HEIGHT_MM, FIELD_WIDTH_MM
+from tuisim.engine.mat_image import read_pixels
 from tuisim.tasks.goals.condition import MAX_PLACES, Share, X, Y
 from tuisim.tasks.goals.spec import DrawCondition
 
@@ -81,7 +81,7 @@ def draw_from_table(table: PictureTable, folder: Path) -> DrawCondition:
 def _find_dark_points(path: Path, fit: str) -> Array:
     import numpy as np
 
-    pixels = mat_image.decode(mat_image.read_file(path), path, fit)
+    pixels = read_pixels(path, fit)
     rows, cols = np.nonzero(pixels.mean(axis=2) < _DARK)
     if not len(rows):
         raise ConfigError("has no dark pixels", "a picture is dark on light", file=str(path))

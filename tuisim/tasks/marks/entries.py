@@ -11,7 +11,7 @@ from tuisim.base.errors import ConfigError, ProfileError, printable
 from tuisim.base.faults import describe_fault
 from tuisim.base.folders import backgrounds_folder
 from tuisim.engine.core.spec import RunSpec
-from tuisim.engine.mat_image import decode, read_file
+from tuisim.engine.mat_image import read_pixels
 from tuisim.engine.mats import background
 from tuisim.programs.program_file import ProgramSource
 from tuisim.programs.program_settings import ProgramSettings, build_program_settings
@@ -109,7 +109,7 @@ def _check_background(spec: RunSpec) -> None:
     image = background(spec.world.background).image
     if not image.is_relative_to(backgrounds_folder()):
         # An image that cannot be read in a run would look like a fault of this machine.
-        decode(read_file(image), image, spec.world.background_fit)
+        read_pixels(image, spec.world.background_fit)
 
 
 def _describe_error(error: ConfigError, student: Student) -> str:
