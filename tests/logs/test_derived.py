@@ -17,12 +17,12 @@ from tuisim.app.analyser.panes import PANES
 from tuisim.base.errors import LogError
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.spec import RobotSpec
+from tuisim.engine.runs.frames import compute_dead_reckoning
 from tuisim.logs.bands import distance_mm
 from tuisim.logs.columns import guess_columns
 from tuisim.logs.derived import (
     NEEDED,
     build_reckoned_series,
-    compute_dead_reckoning,
     compute_derived,
     compute_error_mm,
     parse_definition,

@@ -13,12 +13,10 @@ import numpy as np
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ConfigError, LogError, among
 from tuisim.engine.core.conditions import NUMBER
-from tuisim.engine.core.drive import compute_mm_per_degree
-from tuisim.engine.core.geometry import Pose
-from tuisim.engine.core.spec import RobotSpec, RunSpec
+from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.core.tree import load_run
 from tuisim.engine.runs.arrays import FloatArray
-from tuisim.engine.runs.frames import find_lacking_columns
+from tuisim.engine.runs.frames import DeadReckoning, compute_dead_reckoning, find_lacking_columns
 from tuisim.logs.columns import is_numeric, list_numeric_columns
 from tuisim.logs.expressions import CONSTANTS, FUNCTIONS, Functions, evaluate, find_names
 from tuisim.logs.log import Log, Series
@@ -217,43 +215,6 @@ def _average(values: Any, width: Any) -> FloatArray:
 def _refuse_resample(values: Any, period_s: Any) -> FloatArray:
     raise LogError(
         "resample must be the outermost function", "such as resample(slope(Colour), 0.1)"
-    )
-
-
-@dataclass(frozen=True, slots=True)
-class DeadReckoning:
-    """Poses from wheel counts, each array of shape (n,)."""
-
-    x_mm: FloatArray
-    y_mm: FloatArray
-    heading_deg: FloatArray
-
-
-def compute_dead_reckoning(
-    left_position_deg: FloatArray, right_position_deg: FloatArray, start: Pose, robot: RobotSpec
-) -> DeadReckoning:
-    """Return the poses of the robot if its wheels do not slip.
-
-    Between two counts the robot drives an arc, whose chord points halfway between the
-    headings at both ends.
-
-    Args:
-        left_position_deg: Position of the left wheel's motor since the start, shape (n,).
-        right_position_deg: Position of the right wheel's motor.
-        start: Pose at the first count.
-    """
-    left_per_degree, right_per_degree = compute_mm_per_degree(robot)
-    left = np.diff(left_position_deg, prepend=left_position_deg[:1]) * left_per_degree
-    right = np.diff(right_position_deg, prepend=right_position_deg[:1]) * right_per_degree
-    turn_rad = (right - left) / robot.wheel_spacing_mm
-    heading_rad = np.radians(start.heading_deg) + np.cumsum(turn_rad)
-    halfway = heading_rad - turn_rad / 2.0
-    # A chord is shorter than its arc; sinc is sin(pi x) / (pi x).
-    chord = (left + right) / 2.0 * np.sinc(turn_rad / (2.0 * np.pi))
-    return DeadReckoning(
-        start.x_mm + np.cumsum(chord * np.cos(halfway)),
-        start.y_mm + np.cumsum(chord * np.sin(halfway)),
-        np.degrees(heading_rad),
     )
 
 

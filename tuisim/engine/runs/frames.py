@@ -12,16 +12,22 @@ from itertools import chain, pairwise, repeat
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
 
+import numpy as np
+
+from tuisim.base.data_class import dataclass
 from tuisim.engine.core.columns import MOTION, Column, list_measured_names
 from tuisim.engine.core.conditions import ValueCondition
+from tuisim.engine.core.drive import compute_mm_per_degree
 from tuisim.engine.core.field import Field
+from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.motor_columns import find_motor_owners
 from tuisim.engine.core.pen_marks import PenMarks
 from tuisim.engine.core.profile import NS_PER_S
 from tuisim.engine.core.sensors import MountedSensor, list_columns, list_mounted, list_owners
-from tuisim.engine.core.spec import NoiseSpec, RunSpec
+from tuisim.engine.core.spec import NoiseSpec, RobotSpec, RunSpec
 from tuisim.engine.core.tick_record import TICK_RECORD
 from tuisim.engine.protocol import SetNoise, UserAction
+from tuisim.engine.runs.arrays import FloatArray
 from tuisim.engine.runs.motor_records import read_motor_columns
 from tuisim.engine.runs.records import TELEMETRY_FILE
 from tuisim.engine.runs.run_folder import StoredRun, find_noise
@@ -33,6 +39,44 @@ if TYPE_CHECKING:
     import pandas as pd
 
     Array = np.ndarray[Any, Any]
+
+
+@dataclass(frozen=True, slots=True)
+class DeadReckoning:
+    """Poses from wheel counts, each array of shape (n,)."""
+
+    x_mm: FloatArray
+    y_mm: FloatArray
+    heading_deg: FloatArray
+
+
+def compute_dead_reckoning(
+    left_position_deg: FloatArray, right_position_deg: FloatArray, start: Pose, robot: RobotSpec
+) -> DeadReckoning:
+    """Return the poses of the robot if its wheels do not slip.
+
+    Between two counts the robot drives an arc, whose chord points halfway between the
+    headings at both ends.
+
+    Args:
+        left_position_deg: Position of the left wheel's motor since the start, shape (n,).
+        right_position_deg: Position of the right wheel's motor.
+        start: Pose at the first count.
+    """
+    left_per_degree, right_per_degree = compute_mm_per_degree(robot)
+    left = np.diff(left_position_deg, prepend=left_position_deg[:1]) * left_per_degree
+    right = np.diff(right_position_deg, prepend=right_position_deg[:1]) * right_per_degree
+    turn_rad = (right - left) / robot.wheel_spacing_mm
+    heading_rad = np.radians(start.heading_deg) + np.cumsum(turn_rad)
+    halfway = heading_rad - turn_rad / 2.0
+    # A chord is shorter than its arc; sinc is sin(pi x) / (pi x).
+    chord = (left + right) / 2.0 * np.sinc(turn_rad / (2.0 * np.pi))
+    return DeadReckoning(
+        start.x_mm + np.cumsum(chord * np.cos(halfway)),
+        start.y_mm + np.cumsum(chord * np.sin(halfway)),
+        np.degrees(heading_rad),
+    )
+
 
 FieldAt: TypeAlias = Callable[[tuple[float, ...]], Field]
 """Returns the mat as the sensors see it in the tick of a record, which has the fields of `TICK_RECORD`."""
