@@ -19,6 +19,7 @@ from tuisim.base.errors import closest, did_you_mean
 from tuisim.base.meant import find_meant_names, map_functions, map_modules
 from tuisim.base.source import PRELUDE_TEXTS, source_lines
 from tuisim.base.syntax_tree import parse_module
+from tuisim.programs.mistakes import find_fault
 from tuisim.programs.program_file import parse_unfinished
 from tuisim.programs.robot.course import list_global_names
 
@@ -154,7 +155,7 @@ _WORD = re.compile(r"[^\W\d]\w*")
 
 @dataclass(frozen=True, slots=True)
 class UnknownName:
-    """A name or an attribute that does not exist, and where it is in the text."""
+    """A name or an attribute that does not exist, or a line that is not Python, and where it is in the text."""
 
     name: str
     row: int
@@ -166,11 +167,13 @@ class UnknownName:
     """The names that may have been meant."""
     owner: str = ""
     """The name of the object that lacks the attribute; empty for an unknown name."""
+    fault: str = ""
+    """Why the line is not Python; empty for a name."""
 
     @property
     def message(self) -> str:
         """What is wrong, and the hint."""
-        wrong = (
+        wrong = self.fault or (
             f"`{self.owner}` has no `{self.name}`"
             if self.owner
             else f"`{self.name}` is not defined"
@@ -187,6 +190,23 @@ class _SeenNames:
     defined: set[str] = field(default_factory=set)
     within: dict[str, str] = field(default_factory=dict)
     """Local variables with a function that has them."""
+
+
+def find_faulty_line(text: str, name: str) -> UnknownName | None:
+    """Return the line because of which a program is not Python; None if it is, or if no line is known.
+
+    Args:
+        text: The program as it stands in the editor.
+        name: The name of its file.
+    """
+    program = parse_unfinished(text, name)
+    fault, line = find_fault(program.text) or ("", 0)
+    lines = program.text.split("\n")
+    if not 0 < line <= len(lines):
+        return None
+    words = lines[line - 1].strip()
+    start = len(_read_indent(lines[line - 1]))
+    return UnknownName(words, line - 1, start, start + len(words), fault=fault)
 
 
 def find_unknown_names(text: str, name: str) -> tuple[UnknownName, ...] | None:

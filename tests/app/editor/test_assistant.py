@@ -229,6 +229,41 @@ async def test_names_that_nobody_defined_are_marked_and_explained(
         assert not area.unknown
 
 
+async def test_a_bracket_that_is_not_closed_is_marked_once_the_cursor_has_left_its_line(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(assistant, "CHECK_DELAY_S", 3600.0)
+    async with CodeApp().run_test(size=SIZE) as pilot:
+        code, area = await typed(pilot, "    print(str(1)", "if True:\n")
+        code._assistant.check_names()
+        assert not area.unknown
+        area.insert_text("\nb = 2")
+        await pilot.pause()
+        code._assistant.check_names()
+        assert [(fault.row, fault.start, fault.name) for fault in area.unknown] == [
+            (1, 4, "print(str(1)")
+        ]
+        area.move_cursor((1, 16))
+        await until(pilot, lambda: str(code.border_subtitle) == "'(' was never closed")
+        area.insert_text(")")
+        code._assistant.check_names()
+        assert not area.unknown
+
+
+async def test_a_fault_in_the_line_of_the_cursor_is_marked_when_the_cursor_leaves(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(assistant, "CHECK_DELAY_S", 3600.0)
+    async with CodeApp().run_test(size=SIZE) as pilot:
+        code, area = await typed(pilot, "a = 1\nif a\nb = 2")
+        area.move_cursor((1, 4))
+        await pilot.pause()
+        code._assistant.check_names()
+        assert not area.unknown
+        await pilot.press("down")
+        await until(pilot, lambda: [fault.fault for fault in area.unknown] == ["expected ':'"])
+
+
 async def test_a_program_is_checked_when_it_is_opened() -> None:
     async with CodeApp().run_test(size=SIZE) as pilot:
         _, area = await alone(pilot, "prnt('a')\n")

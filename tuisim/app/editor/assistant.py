@@ -12,7 +12,12 @@ from tuisim.app import background
 from tuisim.app.editor import completion
 from tuisim.app.editor.area import CodeArea
 from tuisim.app.editor.candidate_list import format_signature
-from tuisim.programs.names import AttributeCheck, UnknownName, find_unknown_names
+from tuisim.programs.names import (
+    AttributeCheck,
+    UnknownName,
+    find_faulty_line,
+    find_unknown_names,
+)
 from tuisim.terminal.text_runs import cut
 
 CHECK_DELAY_S = 0.5
@@ -24,7 +29,7 @@ MAX_LINES = 5000
 
 
 class Assistant:
-    """Helps to type in one text: marks unknown names, and shows signatures and what may follow a dot.
+    """Helps to type in one text: marks faults and unknown names, shows signatures and what may follow a dot.
 
     Args:
         area: The text, with its list of names.
@@ -37,6 +42,10 @@ class Assistant:
         self._attribute_check = AttributeCheck(completion.find_members)
         self._names: tuple[UnknownName, ...] = ()
         self._attributes: tuple[UnknownName, ...] = ()
+        self._fault: UnknownName | None = None
+        """The line that is not Python."""
+        self._fresh_fault: UnknownName | None = None
+        """The same in the line that is typed in; it is marked once the cursor has left the line."""
         self._signature: completion.Signature | None = None
         self._check_timer: Timer | None = None
         self._ask_timer: Timer | None = None
@@ -70,6 +79,7 @@ class Assistant:
         self._signature = None
         self._area.candidates.close()
         self._names = self._attributes = ()
+        self._fault = self._fresh_fault = None
         self._mark()
         self.check_names()
 
@@ -87,6 +97,10 @@ class Assistant:
         """After the cursor has moved, shorten the list of names and look up the signature of the call around it."""
         self._area.follow_word()
         row, column = self._area.cursor_location
+        if self._fresh_fault is not None and self._fresh_fault.row != row:
+            self._fault = self._fresh_fault
+            self._fresh_fault = None
+            self._mark()
         if self._area.typing and completion.is_in_call(self._area.document.lines, row, column):
             self._ask_timer = self._restart_timer(self._ask_timer, ASK_DELAY_S, self.ask_signature)
         else:
@@ -127,9 +141,13 @@ class Assistant:
             self._area.candidates.is_offered = True
 
     def check_names(self) -> None:
-        """Look for names that are not defined, and mark them."""
+        """Look for a line that is not Python and for names that are not defined, and mark them."""
         if self._area.document.line_count > MAX_LINES:
             return
+        fault = find_faulty_line(self._area.program_text, self._area.path)
+        is_fresh = self._area.typing and fault and fault.row == self._area.cursor_location[0]
+        self._fault, self._fresh_fault = (None, fault) if is_fresh else (fault, None)
+        self._mark()
         names = find_unknown_names(self._area.program_text, self._area.path)
         if names is not None:
             self._names = names
@@ -148,7 +166,8 @@ class Assistant:
             self._mark()
 
     def _mark(self) -> None:
-        self._area.set_unknown((*self._names, *self._attributes))
+        faults = () if self._fault is None else (self._fault,)
+        self._area.set_unknown((*faults, *self._names, *self._attributes))
         self._changed()
 
     # Signature
