@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from tuisim.app import background
 from tuisim.app.file_watch import FileWatch
-from tuisim.app.run_update import describe_standstill
+from tuisim.app.run_update import describe_contacts
 from tuisim.app.setup import next_run as plans
 from tuisim.app.setup.mat import SOON, Mat, make_blank_mat, mat_key, prepare_mat, prepare_stored_mat
 from tuisim.app.setup.next_run import NextRun, plan_rerun, read_first_line
@@ -320,7 +320,7 @@ class Loader:
         self._run_controller.replay(run)
         end = (
             f"— {end_label(run.state)} at {format_end(run.time_s)} s",
-            describe_standstill(run.telemetry, run.spec),
+            describe_contacts(run.telemetry, run.spec),
         )
         words = f"{', '.join(filter(None, end))} · {_name_run(run)}"
         self._app.run_changed(words, run.end.error_line if run.end else 0)

@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from tuisim.app.earlier_run import find_pose, is_comparable
-from tuisim.app.run_update import RunUpdate, describe_remarks, describe_standstill
+from tuisim.app.run_update import RunUpdate, describe_contacts, describe_remarks
 from tuisim.app.setup import next_run as plans
 from tuisim.app.setup.next_run import NextRun
 from tuisim.app.snapshot import RunPhase, Snapshot
@@ -575,7 +575,7 @@ class RunController:
                     spoken.append(event)
                 case protocol.BusyLoop() | protocol.Plugged() if self._branch is None:
                     remarks += describe_remarks(event, recording)
-        stood = describe_standstill(recording.telemetry, recording.spec) if ended else ""
+        stood = describe_contacts(recording.telemetry, recording.spec) if ended else ""
         if not self.in_past:
             remarks += self._waits.look(
                 recording, ended, self.state is RunPhase.RUNNING, self.find_mat

@@ -10,6 +10,7 @@ from tuisim.app.snapshot import describe_busy_loop
 from tuisim.base.data_class import dataclass
 from tuisim.engine import protocol
 from tuisim.engine.core.spec import RunSpec
+from tuisim.engine.runs.push import find_push
 from tuisim.engine.runs.records import OutputRow
 from tuisim.engine.runs.standstill import find_standstill
 from tuisim.engine.runs.views import TelemetryView
@@ -27,7 +28,7 @@ class RunUpdate:
     ended: protocol.Ended | None = None
     """Set once, in the poll that receives the end."""
     stood: str = ""
-    """Set in the same poll: where something solid stopped the robot, in words; may be empty."""
+    """Set in the same poll: where something solid stopped or pushed the robot, in words; may be empty."""
     spoken: tuple[protocol.Spoke, ...] = ()
     """Texts and sounds from the program."""
     prompt: str | None = None
@@ -56,11 +57,11 @@ def describe_remarks(
         yield words
 
 
-def describe_standstill(telemetry: TelemetryView, spec: RunSpec) -> str:
-    """Return `Standstill.words` of a run; empty if there is nothing to say.
+def describe_contacts(telemetry: TelemetryView, spec: RunSpec) -> str:
+    """Return where something solid stopped or pushed the robot of a run, in words; empty if nothing did.
 
     Raises:
         LogError: the recording is damaged.
     """
-    standstill = find_standstill(telemetry, spec)
-    return standstill.words if standstill else ""
+    contacts = find_standstill(telemetry, spec), find_push(telemetry, spec)
+    return ", ".join(contact.words for contact in contacts if contact)

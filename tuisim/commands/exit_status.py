@@ -14,6 +14,7 @@ from tuisim.commands.echo import echo_error, echo_error_lines, echo_json
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, RunSpec
 from tuisim.engine.protocol import NO_ANSWER, End, describe_state
+from tuisim.engine.runs.push import Push, find_push
 from tuisim.engine.runs.records import Stream
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.engine.runs.samples import counts_of
@@ -57,6 +58,7 @@ def describe(run: StoredRun, most_bytes: int | None = None) -> dict[str, Any]:
     end = run.end
     pose = last.pose if last else run.spec.world.start
     stood = find_standstill(run.telemetry, run.spec)
+    push = find_push(run.telemetry, run.spec)
     counts = (
         counts_of(run.output) if most_bytes is None or run.output.length <= most_bytes else None
     )
@@ -78,6 +80,7 @@ def describe(run: StoredRun, most_bytes: int | None = None) -> dict[str, Any]:
         "y_mm": pose.y_mm,
         "heading_deg": pose.heading_deg,
         "standstill": asdict(stood) if stood else None,
+        "push": asdict(push) if push else None,
         "left_field": has_left_field(run.telemetry, run.spec),
         "waited_for": describe_wait(run),
         "went_wrong": describe_end(run),
@@ -96,12 +99,13 @@ def describe_last_state(facts: dict[str, Any]) -> str:
     what = describe_state(facts["state"], facts["summary"])
     pose = Pose(facts["x_mm"], facts["y_mm"], facts["heading_deg"])
     stood = f"{Standstill(**facts['standstill']).words} · " if facts["standstill"] else ""
+    pushed = f"{Push(**facts['push']).words} · " if facts["push"] else ""
     left = "left the field · " if facts["left_field"] else ""
     waited = "".join(f"{facts[name]} · " for name in ("waited_for", "went_wrong") if facts[name])
     samples = "" if facts["samples"] is None else f"{counted(facts['samples'], 'sample')} · "
     return (
         f"{facts['program']}: {what} · {facts['time_s']:.3f} s, tick {facts['tick']} · "
-        f"{pose.describe()} · {left}{stood}{waited}{samples}run {facts['run']}"
+        f"{pose.describe()} · {left}{stood}{pushed}{waited}{samples}run {facts['run']}"
     )
 
 

@@ -10,7 +10,7 @@ import pytest
 from tests.cases import cases
 from tests.engine.core.motors import commanded
 from tests.engine.runs.run_recorder import Recorder
-from tuisim.app.run_update import describe_standstill
+from tuisim.app.run_update import describe_contacts
 from tuisim.commands.exit_status import has_left_field
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.profile import PROFILES
@@ -46,7 +46,7 @@ def words(record: Record, spec: RunSpec, moves: Moves) -> str:
         else:
             recorder.drive(*speeds, ticks)
     run = recorder.end()
-    return describe_standstill(run.telemetry, run.spec)
+    return describe_contacts(run.telemetry, run.spec)
 
 
 SAID: dict[str, tuple[RunSpec, Moves, str]] = {

@@ -35,6 +35,10 @@ AT_THE_WALL = """\
 # %%sim_magic_preloaded -b Empty_Map -o Wall -x 700 -y 600 --solid
 tank_drive.on_for_seconds(SpeedPercent(40), SpeedPercent(40), 6)
 """
+BESIDE_THE_WALL = """\
+# %%sim_magic_preloaded -b Empty_Map --solid --walls on -x 82 -y 500 -a 180
+tank_drive.on_for_rotations(SpeedPercent(20), SpeedPercent(-20), 180 / 56 / 4)
+"""
 WAITS = """\
 # %%sim_magic_imports -r Explorer -b Empty_Map
 from ev3dev2.sensor.lego import TouchSensor
@@ -81,6 +85,11 @@ CASES = {
     ),
     "in a thread": (IN_A_THREAD, ReasonKind.RAISED, "1.00 s, line 4: ZeroDivisionError: division"),
     "at a wall": (AT_THE_WALL, ReasonKind.BLOCKED, "line 2: the robot stood at an obstacle from"),
+    "turns beside a wall": (
+        BESIDE_THE_WALL,
+        ReasonKind.BLOCKED,
+        "0.49 s, line 2: the robot was pushed 28 mm aside by the wall while it turned, from",
+    ),
     "waits": (WAITS, ReasonKind.BLOCKED, "2.00 s, line 4: from here on it waited: touch sensor on"),
     "lost": (WRONG_SIGN, ReasonKind.LOST, "line 4: the right sensor left the black, and did"),
     "never stopped": (

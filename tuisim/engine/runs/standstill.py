@@ -140,7 +140,7 @@ def _find_stretches(records: NDArray[Any], spec: RunSpec) -> Iterator[_Stretch]:
     shortest = compute_stall_ticks(spec.profile.tick_hz)
     now: _Stretch | None = None
     for start, end in find_spans(pushes).tolist():
-        if at := _describe_touched(solids, records, start, spec):
+        if at := describe_touched(solids, records, start, spec):
             goes_on = now is not None and start - now.end < shortest and runs[now.end : start].all()
             if now is not None and not goes_on and now.end - now.start >= shortest:
                 yield now
@@ -149,7 +149,7 @@ def _find_stretches(records: NDArray[Any], spec: RunSpec) -> Iterator[_Stretch]:
         yield now
 
 
-def _describe_touched(solids: Solids, records: NDArray[Any], tick: int, spec: RunSpec) -> str:
+def describe_touched(solids: Solids, records: NDArray[Any], tick: int, spec: RunSpec) -> str:
     """Return what the robot touches at a tick, in words; empty if it is nothing."""
     gaps = solids.measure_gaps_mm(_build_pose(records, tick))
     number = next((number for number, gap in enumerate(gaps) if gap < _CONTACT_MM), None)

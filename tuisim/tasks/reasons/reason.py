@@ -15,6 +15,7 @@ from tuisim.engine.core.profile import NS_PER_S
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 from tuisim.engine.protocol import End
 from tuisim.engine.runs.diff import find_first_difference_s, is_repeat
+from tuisim.engine.runs.push import find_push
 from tuisim.engine.runs.readings import MODES_BY_KIND, READING_PORTS, read_readings
 from tuisim.engine.runs.records import Stream
 from tuisim.engine.runs.standstill import find_standstill
@@ -159,10 +160,14 @@ def _find_tracebacks(run: StoredRun) -> Iterator[Reason]:
 
 
 def _find_blocked(run: StoredRun, all_waits: Sequence[Wait]) -> Iterator[Reason]:
-    """Yield where something solid stopped the robot, and what the program waited for in vain."""
-    if stood := find_standstill(run.telemetry, run.spec):
-        line = _find_line(run, stood.since_s)
-        yield Reason(ReasonKind.BLOCKED, stood.since_s, line, f"the robot {stood.words}")
+    """Yield where something solid stopped or pushed the robot, and what the program waited for in vain."""
+    for contact in (
+        find_standstill(run.telemetry, run.spec),
+        find_push(run.telemetry, run.spec),
+    ):
+        if contact:
+            line = _find_line(run, contact.since_s)
+            yield Reason(ReasonKind.BLOCKED, contact.since_s, line, f"the robot {contact.words}")
     waits = "waited" if run.end else "waits"
     for wait in all_waits:
         text = f"from here on it {waits}{wait.text}"
