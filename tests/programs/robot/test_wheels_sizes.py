@@ -23,6 +23,30 @@ SAID_SIZES: Mapping[str, tuple[str, tuple[float, float]]] = {
     "in Chinese": ("轮子直径 = 68.8\n轴距 = 150", (68.8, 150.0)),
     "the way per turn": ("CM_PER_ROTATION = 21.6", (68.8, 180.0)),
     "degrees per turn": ("DEGREES_PER_ROTATION = 360", (56.0, 180.0)),
+    "a circumference alone": ("circumference = 21.6", (68.8, 180.0)),
+    "a circumference by pi": ("import math\numfang = math.pi * 6.88", (68.8, 180.0)),
+    "a formula": (
+        "def to_degrees(cm): return cm / (3.1416 * 6.88) * 360\nto_degrees(5)",
+        (68.8, 180.0),
+    ),
+    "a formula with a radius": (
+        "import math\ndef to_turns(mm): return mm / (2 * math.pi * 34.4)\nto_turns(5)",
+        (68.8, 180.0),
+    ),
+    "a formula with the circumference": ("degrees = 30 / 21.6 * 360", (68.8, 180.0)),
+    "a formula with 360 first": ("degrees = 360 * 30 / 21.6", (68.8, 180.0)),
+    "turns by the circumference": (
+        "tank = MoveTank(OUTPUT_A, OUTPUT_D)\ntank.on_for_rotations(5, 5, 30 / 21.6)",
+        (68.8, 180.0),
+    ),
+    "a formula beside a name": (
+        "WHEEL_DIAMETER = 43.2\ndegrees = 30 / 21.6 * 360",
+        (43.2, 180.0),
+    ),
+    "a formula of angles": (
+        "import math\nturn = 90 * math.pi / 180 + 45 / 30 * 360 + 5 / (math.pi * 2)",
+        (56.0, 180.0),
+    ),
     "a default": ("def turn(deg, track_mm=88): pass\nturn(5)", (56.0, 88.0)),
     "a track of music": ("TRACK = 12", (56.0, 180.0)),
     "no size of a robot": ("WHEEL_MM = 5000", (56.0, 180.0)),

@@ -11,6 +11,7 @@ from tuisim.base.data_class import dataclass
 from tuisim.engine.core.hub_spec import HUB_PORTS
 from tuisim.engine.core.profile import Library
 from tuisim.engine.core.spec import NO_PORT, RobotSpec
+from tuisim.programs.robot.formulas import find_formula_size, read_girth
 from tuisim.programs.robot.library import DeviceKind
 from tuisim.programs.robot.mentions import Mention, Mentions, Pair, Where
 from tuisim.programs.robot.scopes import Bound, Parameter, Scope
@@ -247,6 +248,19 @@ def find_sizes(mentions: Mentions) -> dict[str, Size | None]:
     By their fields of `RobotSpec`; None for one that the program does not name, or not clearly.
     """
     named = [*_find_named(mentions)]
+    wheels = [pair for pair in named if not is_spacing(pair[0])]
+    # A constant `track` without wheels may be a track of music.
+    spacings = [pair for pair in named if is_spacing(pair[0])]
+    if not wheels:
+        spacings = [pair for pair in spacings if pair[0].lower() != "track"]
+        wheels = [*_find_in_formulas(mentions)]
+    return {
+        "wheel_diameter_mm": _pick_diameter(wheels),
+        "wheel_spacing_mm": _pick_only(spacings, _SPACINGS_MM),
+    }
+
+
+def _pick_diameter(named: Sequence[tuple[str, Size]]) -> Size | None:
     wheels = [
         *((name, size) for name, size in named if is_diameter(name)),
         *((name, Size(2 * size.mm, size.where)) for name, size in named if is_radius(name)),
@@ -256,16 +270,15 @@ def find_sizes(mentions: Mentions) -> dict[str, Size | None]:
         for name, size in named
         if is_girth(name)
     ]
-    # A constant `track` without wheels may be a track of music.
-    spacings = [
-        pair
-        for pair in named
-        if is_spacing(pair[0]) and (pair[0].lower() != "track" or wheels or girths)
-    ]
-    return {
-        "wheel_diameter_mm": _pick_only(wheels, _DIAMETERS_MM) or _pick_only(girths, _DIAMETERS_MM),
-        "wheel_spacing_mm": _pick_only(spacings, _SPACINGS_MM),
-    }
+    return _pick_only(wheels, _DIAMETERS_MM) or _pick_only(girths, _DIAMETERS_MM)
+
+
+def _find_in_formulas(mentions: Mentions) -> Iterator[tuple[str, Size]]:
+    """Yield the sizes of wheels in formulas, by the names that they could have."""
+    for scope in mentions.scopes:
+        for node in scope.body:
+            if (size := find_formula_size(node)) and isinstance(node, ast.expr):
+                yield size[0], Size(size[1], Where(scope.module.file, node.lineno))
 
 
 def _find_named(mentions: Mentions) -> Iterator[tuple[str, Size]]:
@@ -280,6 +293,8 @@ def _find_named(mentions: Mentions) -> Iterator[tuple[str, Size]]:
                     case Bound(node=node, path=(), is_item=False):
                         values = evaluation.values(node, binding.scope)
                         where = Where(scope.module.file, node.lineno)
+                        if is_girth(name) and (size := read_girth(node)):
+                            yield size[0], Size(size[1], where)
                     case Parameter(function=function):
                         values = tuple(value for value, _ in evaluation.arguments(binding))
                         where = Where(scope.module.file, function.lineno)

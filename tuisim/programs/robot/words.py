@@ -82,6 +82,7 @@ _BETWEEN = _split_words("between of the entre de las zwischen den des les le")
 _PER_TURN = _split_words(
     "rotation rotations rot rev revolution turn umdrehung rotacion vuelta tour giro"
 )
+_LONG_WORD = 6
 _UNITS_MM = {"mm": 1.0, "cm": 10.0}
 
 
@@ -108,7 +109,7 @@ def is_aside(names: Iterable[str]) -> bool:
 
 def is_diameter(name: str) -> bool:
     """Return whether a name is that of the diameter of a wheel."""
-    return _is_of_wheel(name, _DIAMETER)
+    return _is_of_wheel(name, _DIAMETER) or _is_alone(name, _DIAMETER)
 
 
 def is_radius(name: str) -> bool:
@@ -121,7 +122,13 @@ def is_girth(name: str) -> bool:
     parts = {*_split_name(name)}
     way = parts & _UNITS_MM.keys() or parts & _APART
     is_way_per_turn = bool(parts & {"per", "pro", "por", "par"} and parts & _PER_TURN and way)
-    return is_way_per_turn or _is_of_wheel(name, _GIRTH)
+    return is_way_per_turn or _is_of_wheel(name, _GIRTH) or _is_alone(name, _GIRTH)
+
+
+def _is_alone(name: str, measure: frozenset[str]) -> bool:
+    """Return whether a name is a long word for a measure, perhaps with a unit: then it can only be that of a wheel."""
+    parts = {*_split_name(name)} - _UNITS_MM.keys()
+    return len(parts) == 1 and parts <= measure and len(*parts) >= _LONG_WORD
 
 
 def _is_of_wheel(name: str, measure: frozenset[str]) -> bool:
