@@ -8,13 +8,12 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, assert_never
 
 from tuisim.base.data_class import dataclass
-from tuisim.engine.core.collision import TOUCH_MM, Solids
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.hub_spec import CONTROLLERS, HUB_PORTS, find_touch_keys
 from tuisim.engine.core.outline import build_outline
-from tuisim.engine.core.sensors.infrared import PROXIMITY_RANGE_MM, proximity
-from tuisim.engine.core.sensors.ultrasonic import measure_distance_mm
-from tuisim.engine.core.spec import EMPTY_MAT, InfraredSpec, RunSpec, UltrasonicSpec, WorldSpec
+from tuisim.engine.core.sensors import measure_obstacle
+from tuisim.engine.core.sensors.infrared import PROXIMITY_RANGE_MM
+from tuisim.engine.core.spec import EMPTY_MAT, InfraredSpec, RunSpec, UltrasonicSpec
 from tuisim.engine.obstacles import OBSTACLES
 from tuisim.engine.runs.readings import BUTTONS_PORT, HUB_BUTTONS_PORT, KEYS_BY_PORT
 from tuisim.engine.runs.run_folder import StoredRun
@@ -292,7 +291,7 @@ def find_obstacle(
         limit: How near it has to be, in mm or in % for an infrared sensor; None for anywhere.
     """
     sets = {name: replace(spec.world, obstacles=boxes) for name, boxes in OBSTACLES.items()}
-    distances = {name: _measure(sensor, spec, world, pose) for name, world in sets.items()}
+    distances = {name: measure_obstacle(sensor, spec, world, pose) for name, world in sets.items()}
     nearest = min(distances, key=distances.__getitem__)
     if distances[nearest] < (math.inf if limit is None else limit):
         return f"-o {nearest}"
@@ -304,22 +303,6 @@ def find_obstacle(
     for name, world in sets.items():
         for box in world.obstacles:
             x_mm = math.floor(box.x_mm - sensor.y_mm - way_mm)
-            if _measure(sensor, spec, world, replace(pose, x_mm=float(x_mm))) < limit:
+            if measure_obstacle(sensor, spec, world, replace(pose, x_mm=float(x_mm))) < limit:
                 return f"-o {name} -x {x_mm}"
     return ""
-
-
-def _measure(
-    sensor: UltrasonicSpec | InfraredSpec, spec: RunSpec, world: WorldSpec, pose: Pose
-) -> float:
-    """Return how far a sensor sees an obstacle of a world; infinite if it sees none or the robot would touch one."""
-    bare = replace(world, obstacles=())
-    if isinstance(sensor, UltrasonicSpec):
-        distance = measure_distance_mm(pose, sensor, world)
-        free = measure_distance_mm(pose, sensor, bare)
-        is_seen = spec.profile.min_echo_mm <= distance < free
-    else:
-        distance = proximity(pose, sensor, world)
-        is_seen = distance < proximity(pose, sensor, bare)
-    gaps = Solids(world, spec.robot).measure_gaps_mm((pose.x_mm, pose.y_mm, pose.heading_deg))
-    return distance if is_seen and min(gaps, default=0.0) >= -TOUCH_MM else math.inf

@@ -11,10 +11,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from functools import lru_cache, partial
+from math import inf
 from typing import Any, NamedTuple
 
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ConfigError, nearest
+from tuisim.engine.core.collision import TOUCH_MM, Solids
 from tuisim.engine.core.columns import (
     MOTION,
     Column,
@@ -23,6 +25,7 @@ from tuisim.engine.core.columns import (
     measure_motion,
 )
 from tuisim.engine.core.field import Field
+from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.motor_columns import find_motor_owners
 from tuisim.engine.core.profile import PROFILES
 from tuisim.engine.core.sensors import color, gyro, infrared, touch, ultrasonic
@@ -35,6 +38,7 @@ from tuisim.engine.core.spec import (
     SensorSpec,
     TouchSpec,
     UltrasonicSpec,
+    WorldSpec,
 )
 from tuisim.engine.core.state import Instant
 
@@ -170,3 +174,19 @@ def build_mounted_sensor(sensor: SensorSpec) -> MountedSensor:
 def list_mounted(robot: RobotSpec) -> tuple[MountedSensor, ...]:
     """Return the robot's sensors, in the order of the telemetry columns."""
     return tuple(map(build_mounted_sensor, robot.sensors))
+
+
+def measure_obstacle(
+    sensor: UltrasonicSpec | InfraredSpec, spec: RunSpec, world: WorldSpec, pose: Pose
+) -> float:
+    """Return how far a sensor sees an obstacle of a world; infinite if it sees none or the robot would touch one."""
+    bare = replace(world, obstacles=())
+    if isinstance(sensor, UltrasonicSpec):
+        distance = ultrasonic.measure_distance_mm(pose, sensor, world)
+        free = ultrasonic.measure_distance_mm(pose, sensor, bare)
+        is_seen = spec.profile.min_echo_mm <= distance < free
+    else:
+        distance = infrared.proximity(pose, sensor, world)
+        is_seen = distance < infrared.proximity(pose, sensor, bare)
+    gaps = Solids(world, spec.robot).measure_gaps_mm((pose.x_mm, pose.y_mm, pose.heading_deg))
+    return distance if is_seen and min(gaps, default=0.0) >= -TOUCH_MM else inf
