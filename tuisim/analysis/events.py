@@ -212,6 +212,14 @@ def parse_threshold(text: str) -> Threshold | None:
     return Threshold(condition.name, condition.operator, condition.value, hysteresis=width)
 
 
+def parse_event(text: str) -> EventChoice | None:
+    """Parse a threshold or a search for commands; return None if the text is neither."""
+    threshold = parse_threshold(text)
+    if threshold is None and (words := parse_command_search(text)) is not None:
+        return CommandChoice(words)
+    return threshold
+
+
 def parse_events(text: str, log: Log) -> tuple[EventChoice, ...]:
     """Return the events that a text chooses, see `FORM`; none if it is empty.
 
@@ -220,18 +228,15 @@ def parse_events(text: str, log: Log) -> tuple[EventChoice, ...]:
     """
     choices: list[EventChoice] = []
     for part in text.split(",") if text.strip() else ():
-        threshold = parse_threshold(part)
-        if threshold is None and (words := parse_command_search(part)) is not None:
-            choices.append(CommandChoice(words))
-            continue
-        if threshold is None:
+        choice = parse_event(part)
+        if choice is None:
             raise LogError(f"{part.strip()!r} is not a threshold", FORM)
         names = dict.fromkeys(name.partition(" #")[0] for name in log.names)
-        if threshold.name not in log.names and threshold.name not in names:
+        if isinstance(choice, Threshold) and choice.name not in (*log.names, *names):
             raise LogError(
-                f"no variable {threshold.name!r}", among(threshold.name, names), file=log.title
+                f"no variable {choice.name!r}", among(choice.name, names), file=log.title
             )
-        choices.append(threshold)
+        choices.append(choice)
     return tuple(choices)
 
 

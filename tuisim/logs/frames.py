@@ -23,7 +23,7 @@ from tuisim.logs.export import EXPORTERS, build_typed_frame, find_companion
 from tuisim.logs.expressions import evaluate
 from tuisim.logs.log import Log, Series
 from tuisim.logs.reader import join_tables, open_log, read_companion, read_parts
-from tuisim.logs.signals import Between, sample_unsorted_signal
+from tuisim.logs.signals import Between, build_even_moments, sample_unsorted_signal
 from tuisim.logs.text_tables import read_exported_csv
 from tuisim.logs.units import TEXT, TIMEDELTA
 from tuisim.logs.warnings import Notes
@@ -134,7 +134,17 @@ def _build_column(name: str, rows: Sequence[Mapping[str, Any]]) -> pa.Array:
     return column.cast(pa.float64()) if column.null_count and is_number else column
 
 
-def build_sampled_frame(
+def build_even_frame(
+    all_series: Sequence[Series], period_s: float, between: Between
+) -> pd.DataFrame:
+    """Return the values of each series at a fixed period: one column each, with unique names."""
+    start_s = min(float(series.time_s.min()) for series in all_series)
+    stop_s = max(float(series.time_s.max()) for series in all_series)
+    moments_s = build_even_moments(start_s, stop_s, period_s)
+    return _build_sampled_frame(moments_s, all_series, between)
+
+
+def _build_sampled_frame(
     moments_s: FloatArray, all_series: Sequence[Series], between: Between = Between.HOLD
 ) -> pd.DataFrame:
     """Return the values of each series at given times: one column each, with unique names."""
@@ -170,4 +180,4 @@ def _build_wide_frame(log: Log) -> pd.DataFrame:
         )
     series = [member for member in map(log.series, log.names) if len(member.rows)]
     moments = np.unique(np.concatenate([member.time_s for member in series]))
-    return build_sampled_frame(moments, series)
+    return _build_sampled_frame(moments, series)

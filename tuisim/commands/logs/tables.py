@@ -15,7 +15,7 @@ from tuisim.analysis.events import (
     CommandChoice,
     EventChoice,
     Threshold,
-    parse_threshold,
+    parse_event,
 )
 from tuisim.base.errors import ConfigError, LogError, counted
 from tuisim.commands.echo import (
@@ -34,7 +34,7 @@ from tuisim.commands.echo import (
 from tuisim.commands.logs.sources import choose_names, is_file, open_single, open_sources
 from tuisim.engine.core.conditions import Operator
 from tuisim.engine.runs.arrays import FloatArray
-from tuisim.engine.runs.command_events import CommandIndex, parse_command_search
+from tuisim.engine.runs.command_events import CommandIndex
 from tuisim.logs import signals
 from tuisim.logs.bands import (
     BandReport,
@@ -47,7 +47,7 @@ from tuisim.logs.bands import (
 from tuisim.logs.csv_cells import write_csv
 from tuisim.logs.derived import build_reckoned_series
 from tuisim.logs.export import build_table_metadata, check_target, export_frame, export_log
-from tuisim.logs.frames import build_computed_frame, build_sampled_frame
+from tuisim.logs.frames import build_computed_frame, build_even_frame
 from tuisim.logs.log import Log, LogTable, Series
 from tuisim.logs.mcap_export import POSE, SUFFIX, export_mcap, load_writer
 from tuisim.settings.command_line import Arguments
@@ -203,12 +203,12 @@ def _parse_threshold_option(arguments: Arguments) -> EventChoice:
         return Threshold("", Operator.EQUAL, repr(arguments.at), hysteresis=arguments.hysteresis)
     if arguments.variable:
         raise ConfigError("names the variable already", "leave --variable out", key="--when")
-    threshold = parse_threshold(arguments.when)
-    if threshold is None and (words := parse_command_search(arguments.when)) is not None:
-        return CommandChoice(words)
-    if threshold is None:
+    choice = parse_event(arguments.when)
+    if choice is None:
         raise ConfigError(f"{arguments.when!r} is not a threshold", THRESHOLD_FORM, key="--when")
-    return replace(threshold, hysteresis=threshold.hysteresis or arguments.hysteresis)
+    if isinstance(choice, CommandChoice):
+        return choice
+    return replace(choice, hysteresis=choice.hysteresis or arguments.hysteresis)
 
 
 def _print_each(arguments: Arguments, column: str, change: Callable[[Series], FloatArray]) -> int:
@@ -268,10 +268,7 @@ def even(arguments: Arguments) -> int:
     if arguments.period is None:
         raise ConfigError("no period given", "such as --period 0.1", key="resample")
     all_series = [log.series(name) for name in choose_names(log, arguments)]
-    start = min(float(series.time_s.min()) for series in all_series)
-    stop = max(float(series.time_s.max()) for series in all_series)
-    moments = signals.build_even_moments(start, stop, arguments.period)
-    show_frame(build_sampled_frame(moments, all_series, arguments.between), arguments)
+    show_frame(build_even_frame(all_series, arguments.period, arguments.between), arguments)
     return 0
 
 
