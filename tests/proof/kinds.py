@@ -14,6 +14,7 @@ from tests.proof.kernel import KERNEL
 from tests.proof.kind import Kind
 from tests.proof.monkey import MONKEY
 from tests.proof.numbers import NUMBERS
+from tests.proof.replays import REPLAYS
 from tests.proof.security import SECURITY
 from tests.proof.stateful import STATEFUL
 from tests.proof.zoo import ZOO
@@ -28,6 +29,7 @@ KINDS: dict[str, Kind] = {
     # Where nothing can be isolated, there is nothing to try.
     **({} if refusal() else {"limits": LIMITS}),
     "class": HANDED_IN,
+    "replays": REPLAYS,
     "failures": FAILURES,
     "numbers": NUMBERS,
     "monkey": MONKEY,
