@@ -289,9 +289,13 @@ DEEDS: Mapping[str, str] = {
     "reads a file": "open('FIELD/secret.txt').read()",
     "writes a file": "open('FIELD/secret.txt', 'r+').close()",
     "changes another's program": "open('FIELD/class/ben/main.py', 'a').close()",
+    "changes tuisim": "import tuisim\nopen(tuisim.__file__, 'r+b').close()",
     "sees the copies of others": "import os\nassert len(os.listdir('..')) > 1",
     "starts a process": OWN_RUN + "pid = libc.fork()\nif not pid: libc._exit(0)\nassert pid > 0",
-    "reads the memory of others": "import os\nopen(f'/proc/{os.getppid() or 4711}/mem', 'rb').close()",
+    "changes the memory of others": "import os\nopen(f'/proc/{os.getppid() or 4711}/mem', 'r+b').close()",
+    "changes the limits of others": "import os, resource\n"
+    "limits = resource.getrlimit(resource.RLIMIT_NOFILE)\n"
+    "resource.prlimit(os.getppid() or 4711, resource.RLIMIT_NOFILE, limits)",
     "sends signals": "import os\nos.kill(os.getppid() or 4711, 0)",
     "uses the network": "import socket\nsocket.create_connection(('127.0.0.1', PORT), 5)",
     "takes memory": OWN_RUN
