@@ -8,9 +8,10 @@ import pytest
 
 from tests.app.app_help import open_lab, ready, until, until_shown, until_typing
 from tests.cases import cases
+from tests.conftest import Command
 from tuisim.app.app import AppSettings, LabApp
 from tuisim.app.dialogs.chooser import MatPicker
-from tuisim.app.dialogs.new_program import NewProgramDialog, Skeleton, build_program_text
+from tuisim.app.dialogs.new_program import READINGS, NewProgramDialog, Skeleton, build_program_text
 from tuisim.app.dialogs.question import Question
 from tuisim.app.editor.area import CodeArea
 from tuisim.programs.program_file import read_program
@@ -41,6 +42,27 @@ async def test_a_new_program_is_chosen_by_keys(
         await until_typing(pilot)
         assert app.query_one(CodeArea).program_text == build_program_text(*wanted)
         assert app.run_controller.next_run.spec.world.background == wanted[0]
+
+
+@pytest.mark.parametrize("skeleton", [Skeleton.PYBRICKS, Skeleton.PRIME_HUB])
+@pytest.mark.parametrize("sensor", [*READINGS])
+def test_a_pybricks_program_logs_each_sensor(
+    here: Command, tmp_path: Path, sensor: str, skeleton: Skeleton
+) -> None:
+    text = build_program_text("Loop", sensor, skeleton)
+    path = tmp_path / "new.py"
+    path.write_text(text.replace("range(60)", "range(2)"))
+    done = here("run", path)
+    assert not done.returncode, done.stderr
+    assert done.stdout.count(f"{READINGS[sensor].sample}: ") == 2
+
+
+async def test_each_list_has_a_heading() -> None:
+    plain = AppSettings(spec=build_run_spec(Settings()), settings=Settings())
+    async with open_lab(plain, size=(80, 24)) as (pilot, _):
+        await pilot.press("ctrl+t")
+        for heading in ("Mat", "Sensor", "Program"):
+            await until_shown(pilot, f" {heading} ")
 
 
 @pytest.mark.slow

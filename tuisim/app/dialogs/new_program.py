@@ -23,6 +23,8 @@ class Skeleton(StrEnum):
     LOG = "log"
     UNTIL = "until"
     LIBRARY = "library"
+    PYBRICKS = "pybricks"
+    PRIME_HUB = "prime_hub"
     EMPTY = "empty"
 
 
@@ -30,6 +32,8 @@ SKELETON_TITLES = {
     Skeleton.LOG: "Drive and log",
     Skeleton.UNTIL: "Drive until …",
     Skeleton.LIBRARY: "Real robot's imports",
+    Skeleton.PYBRICKS: "Pybricks: EV3",
+    Skeleton.PRIME_HUB: "Pybricks: PrimeHub",
     Skeleton.EMPTY: "Empty",
 }
 
@@ -47,22 +51,33 @@ class SkeletonSensor(NamedTuple):
     """Class and port, as the prelude makes the object."""
     goes_on: str
     """Condition under which the robot drives on."""
+    method: str
+    """Method of its object in Pybricks."""
+    hub_made: str
+    """Class and port of Pybricks on a PrimeHub."""
     speeds: tuple[int, int] = (50, 50)
     """Speeds of the left and the right wheel in percent."""
+    turn_rate_dps: int = 0
 
 
 _LIGHT = "reflected_light_intensity_pc"
 READINGS = {
     "colorLeft": SkeletonSensor(
-        "left light sensor", "Light", _LIGHT, "ColorSensor(INPUT_2)", "> 5"
+        *("left light sensor", "Light", _LIGHT, "ColorSensor(INPUT_2)", "> 5"),
+        *("reflection", "ColorSensor(Port.C)"),
     ),
     "colorRight": SkeletonSensor(
-        "right light sensor", "Light", _LIGHT, "ColorSensor(INPUT_3)", "> 5"
+        *("right light sensor", "Light", _LIGHT, "ColorSensor(INPUT_3)", "> 5"),
+        *("reflection", "ColorSensor(Port.D)"),
     ),
     "ultrasonic": SkeletonSensor(
-        "ultrasonic sensor", "Distance", "distance_centimeters", "UltrasonicSensor(INPUT_1)", "> 20"
+        *("ultrasonic sensor", "Distance", "distance_centimeters", "UltrasonicSensor(INPUT_1)"),
+        *("> 20", "distance", "UltrasonicSensor(Port.E)"),
     ),
-    "gyro": SkeletonSensor("gyro", "Angle", "angle", "GyroSensor(INPUT_4)", "< 90", (30, 10)),
+    "gyro": SkeletonSensor(
+        *("gyro", "Angle", "angle", "GyroSensor(INPUT_4)", "< 90"),
+        *("angle", "hub.imu", (30, 10), 30),
+    ),
 }
 """The sensors by the names of their objects in the prelude."""
 
@@ -89,14 +104,48 @@ tank = MoveTank(OUTPUT_B, OUTPUT_C)
 {instance} = {made}
 
 """
+_PYBRICKS = """\
+from pybricks.ev3devices import {type}, Motor
+from pybricks.hubs import EV3Brick
+from pybricks.parameters import Port
+from pybricks.robotics import DriveBase
+from pybricks.tools import wait
+
+hub = EV3Brick()
+robot = DriveBase(Motor(Port.B), Motor(Port.C), wheel_diameter=56, axle_track=180)
+{instance} = {type}(Port.S{port[6]})
+
+"""
+_PRIME_HUB = """\
+from pybricks.hubs import PrimeHub
+from pybricks.parameters import Direction, Port
+from pybricks.pupdevices import {imports}
+from pybricks.robotics import DriveBase
+from pybricks.tools import wait
+
+hub = PrimeHub()
+left = Motor(Port.A, Direction.COUNTERCLOCKWISE)
+robot = DriveBase(left, Motor(Port.B), wheel_diameter=56, axle_track=112)
+{instance} = {hub_made}
+
+"""
+_LOG_PYBRICKS = """\
+robot.drive(100, {turn_rate_dps})
+for step in range(60):
+    print("{sample}: " + str({instance}.{method}()))
+    wait(100)
+robot.stop()
+"""
 _SAYS = {
     Skeleton.LOG: "Log the {noun} sixty times while driving.",
     Skeleton.UNTIL: "Drive until the {noun} reaches a limit.",
     Skeleton.LIBRARY: "Log the {noun} sixty times while driving, as on a real robot.",
+    Skeleton.PYBRICKS: "Log the {noun} sixty times while driving (Pybricks).",
+    Skeleton.PRIME_HUB: "Log the {noun} sixty times while driving (Pybricks).",
     Skeleton.EMPTY: "A new program.",
 }
 _EXPLAINS = "# Chooses the mat, and defines tank_drive, colorLeft and other names.\n"
-_EXPLAINS_BRICK = "# Chooses the mat; the program runs as on a brick.\n"
+_EXPLAINS_BRICK = "# Chooses the mat; the program runs as on a brick or hub.\n"
 BRICK_MAGIC = "sim_magic", "--profile ev3"
 """Magic and words of a program with imports: it runs as on the brick."""
 
@@ -128,12 +177,20 @@ def build_program_text(mat: str, sensor: str, skeleton: Skeleton) -> str:
             words |= {"drive": "tank", "value": reading.value.removesuffix("_pc")}
             magic = replace_mat("# %%{} {}\n".format(*BRICK_MAGIC), "", mat) + _EXPLAINS_BRICK
             return head + magic + "\nimport time\n\n" + (_LIBRARY + _LOG).format(**words)
+        case Skeleton.PYBRICKS | Skeleton.PRIME_HUB:
+            words["imports"] = "Motor" if sensor == "gyro" else f"{kind}, Motor"
+            if skeleton is Skeleton.PRIME_HUB and sensor == "gyro":
+                words["method"] = "heading"
+            body = _PYBRICKS if skeleton is Skeleton.PYBRICKS else _PRIME_HUB
+            begins = replace_mat(head + "# %%sim_magic\n", "", mat) + _EXPLAINS_BRICK
+            return begins + "\n" + (body + _LOG_PYBRICKS).format(**words)
         case Skeleton.LOG | Skeleton.UNTIL:
             body = _LOG if skeleton is Skeleton.LOG else _UNTIL
             return begins + "\nimport time\n\n" + body.format(**words)
 
 
-_LISTS = ("mat", "sensor", "skeleton")
+_LISTS = {"mat": "Mat", "sensor": "Sensor", "skeleton": "Program"}
+"""The titles of the lists, by id."""
 
 
 class NewProgramDialog(Dialog[str]):
@@ -170,6 +227,7 @@ class NewProgramDialog(Dialog[str]):
                     id=name,
                     markup=False,
                 )
+                listed.border_title = _LISTS[name]
                 listed.highlighted = (
                     [*offers].index(self._current) if self._current in offers else 0
                 )
@@ -189,7 +247,7 @@ class NewProgramDialog(Dialog[str]):
         if not event.character or not event.is_printable or not isinstance(listed, OptionList):
             return
         event.stop()
-        titles = [*self._offers[_LISTS.index(listed.id or "")].values()]
+        titles = [*self._offers[[*_LISTS].index(listed.id or "")].values()]
         for typed in (self._typed + event.character.lower(), event.character.lower()):
             if (index := _find_title(titles, typed)) is not None:
                 self._typed = typed
