@@ -143,19 +143,19 @@ def test_names_are_whole(width: int, height: int) -> None:
             "reflected_light_intensity",
             "red 220/255 mean 86.3 %",
             "red 220/255 White",
-            "S1 220/255",
+            "in2 220/255",
         ),
         "percent": (
             "reflected_light_intensity_pc",
             "red 86.3 % mean 86.3 %",
             "red 86.3 % White",
-            "S1 86.3%",
+            "in2 86.3%",
         ),
         "mean": (
             "full_reflected_light_intensity",
             "red 86.3 % mean 86.3 %",
             "mean 86.3 % White",
-            "S1 86.3%",
+            "in2 86.3%",
         ),
     },
 )
@@ -226,7 +226,7 @@ def test_how_the_run_ended_is_said() -> None:
 @pytest.mark.parametrize("height", [4, 5])
 def test_names_of_colors_take_a_row_that_is_free(height: int) -> None:
     rows = text(moment(), 40, height)
-    assert rows[3].split() == ["S1", "White", "S2", "Blue"]
+    assert rows[3].split() == ["in2", "White", "in3", "Blue"]
     assert not any("White" in row for row in text(moment(), 40, 3))
 
 
@@ -273,10 +273,10 @@ def test_further_parts() -> None:
 @pytest.mark.parametrize(
     "width, height, shown",
     [
-        (78, 2, "L R S1 S2 US Gyro x y"),
-        (46, 3, "L R S1 S2 US Gyro x y h"),
-        (30, 2, "L R S1 S2"),
-        (78, 1, "L R S1 S2"),
+        (78, 2, "L R in2 in3 US Gyro x y"),
+        (46, 3, "L R in2 in3 US Gyro x y h"),
+        (30, 2, "L R in2 in3"),
+        (78, 1, "L R in2 in3"),
     ],
 )
 def test_in_few_lines_the_readings_stand_side_by_side(width: int, height: int, shown: str) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from tuisim.app.panels.instrumentation_lines import (
     COLUMN,
     MAX_NAME_CELLS,
+    PORT_CELLS,
     VALUE,
     WARNING,
     add_states,
@@ -69,11 +70,11 @@ def build_lines(now: Snapshot, width: int, height: int) -> list[Line]:
     if tall := _build_tall_lines(now, width, height):
         return tall
     motors = add_states(build_wheel_lines(now, width), now, width)
-    sensors = list_seen(now, "Sensor")
+    sensors = list_seen(now)
     further = [*build_extra_motor_lines(now, width), *_build_sensor_lines(now, width)]
     small = height < 7 + len(sensors) + len(further)
     if small:
-        short = [build_sensor_line(name, seen, width) for name, seen in sensors]
+        short = [build_sensor_line(*sensor, width) for sensor in sensors]
         whole = [*motors, *short, _build_ranging_line(now, width), _place_and_time(now, width)]
         whole += further
         return whole if len(whole) <= height else _build_columns_text(now, width, max(height, 1))
@@ -85,8 +86,8 @@ def build_lines(now: Snapshot, width: int, height: int) -> list[Line]:
         _build_state_line(now, width),
     ]
     if height < 7 + 2 * len(sensors) + len(further):
-        return [*motors, *(build_sensor_line(name, seen, width) for name, seen in sensors), *rest]
-    full = [line for name, seen in sensors for line in build_sensor_lines(name, seen, width)]
+        return [*motors, *(build_sensor_line(*sensor, width) for sensor in sensors), *rest]
+    full = [line for sensor in sensors for line in build_sensor_lines(*sensor, width)]
     if height < 10 + 2 * len(sensors) + len(further):
         return [*motors, *full, *rest]
     return [*motors, [], *full, [], *ranging, [], *rest[len(ranging) :]]
@@ -105,11 +106,7 @@ def _build_tall_lines(now: Snapshot, width: int, height: int) -> list[Line]:
     extra = build_extra_motor_lines(now, width)
     groups = [
         [line for pair in zip(wheels, drivers, strict=False) for line in pair],
-        [
-            line
-            for name, seen in list_seen(now, "Sensor")
-            for line in build_sensor_lines(name, seen, width)
-        ],
+        [line for sensor in list_seen(now) for line in build_sensor_lines(*sensor, width)],
         [
             _build_ultrasonic_line(now, width),
             _build_gyro_line(now, width),
@@ -185,14 +182,14 @@ def _build_columns_text(now: Snapshot, width: int, height: int) -> list[Line]:
 def _build_color_names(now: Snapshot, width: int) -> Line:
     """Return the names of colours in a line, as many as fit."""
     line: Line = []
-    for number, sensor in enumerate(now.spec.robot.color_sensors, 1):
+    for sensor in now.spec.robot.color_sensors:
         seen = now.colors.get(sensor.name)
         more = [
-            format_label(f"S{number}", 3),
+            format_unit(" " * _GAP * bool(line)),
+            format_label(sensor.port, PORT_CELLS),
             format_value(f"{seen.name if seen else '–':<{MAX_NAME_CELLS}}"),
-            format_unit(" " * _GAP),
         ]
-        if _measure_line(line) + _measure_line(more) - _GAP <= width:
+        if _measure_line(line) + _measure_line(more) <= width:
             line += more
     return line
 
@@ -207,7 +204,7 @@ def _arrange_cells(now: Snapshot, height: int, detail: int) -> tuple[list[list[L
     """
     robot = now.spec.robot
     motors = build_motor_cells(now, with_speed=detail > 0)
-    sensors = [build_color_cell(name, seen, detail > 1) for name, seen in list_seen(now, "S")]
+    sensors = [build_color_cell(port, seen, detail > 1) for _, port, seen in list_seen(now)]
     ranging: list[Line] = []
     if now.ultrasonic_mm is not None:
         ranging.append(

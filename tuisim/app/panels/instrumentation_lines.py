@@ -58,6 +58,9 @@ def format_values(*texts: str) -> list[Run]:
 MAX_NAME_CELLS = 7
 """Cells for the name of a colour, so that readings do not move when a sensor sees another colour."""
 
+PORT_CELLS = 4
+"""Cells for a port of the EV3, such as `in2`, and the space after it."""
+
 
 @dataclass(frozen=True, slots=True)
 class LightSeen:
@@ -82,33 +85,35 @@ class LightSeen:
         return f"/{self.reflected_max}" if self.read is LightRead.REFLECTED else "%"
 
 
-def list_seen(now: Snapshot, word: str) -> list[tuple[str, LightSeen | None]]:
-    """Return a name for each colour sensor, a word with its number, and what it sees; None before the mat is known."""
+def list_seen(now: Snapshot) -> list[tuple[str, str, LightSeen | None]]:
+    """Return the name and the port of each colour sensor, and what it sees; None before the mat is known."""
     robot = now.spec.robot
     reads = read_facts(now.program).find_light_reads(robot) if now.program else {}
-    lines: list[tuple[str, LightSeen | None]] = []
+    lines: list[tuple[str, str, LightSeen | None]] = []
     for number, sensor in enumerate(robot.color_sensors, 1):
         color = now.colors.get(sensor.name)
         read = reads.get(sensor.name, LightRead.PERCENT)
         seen = LightSeen(color, read, now.spec.profile.reflected_max) if color else None
-        lines.append((f"{word}{number}", seen))
+        lines.append((f"Sensor{number}", sensor.port, seen))
     return lines
 
 
-def build_color_cell(name: str, seen: LightSeen | None, with_name: bool) -> Line:
+def build_color_cell(port: str, seen: LightSeen | None, with_name: bool) -> Line:
     """Return a sensor as a cell of a column."""
     if seen is None:
-        return [format_label(name, 3), format_unit("–")]
+        return [format_label(port, PORT_CELLS), format_unit("–")]
     cell: Line = [
-        format_label(name, 3),
+        format_label(port, PORT_CELLS),
         format_value(seen.value),
-        format_unit(f"{seen.unit:<{7 - len(seen.value)}}"),
+        format_unit(seen.unit),
         build_swatch(seen.color),
     ]
     return [*cell, format_value(f" {seen.color.name:<{MAX_NAME_CELLS}}")] if with_name else cell
 
 
-def build_sensor_lines(name: str, seen: LightSeen | None, width: int) -> tuple[Line, Line]:
+def build_sensor_lines(
+    name: str, port: str, seen: LightSeen | None, width: int
+) -> tuple[Line, Line]:
     """Return a sensor in two lines, the second one with its channels and its colour."""
     if seen is None:
         return [format_label(name), format_unit("–")], []
@@ -147,7 +152,7 @@ def build_sensor_lines(name: str, seen: LightSeen | None, width: int) -> tuple[L
             format_value(short_mean),
         ),
         (
-            format_label(name[:1] + name[-1:], 3),
+            format_label(port, PORT_CELLS - 1),
             format_value(short_red),
             format_unit(" mean"),
             format_value(short_mean),
@@ -175,14 +180,13 @@ def build_sensor_lines(name: str, seen: LightSeen | None, width: int) -> tuple[L
     return first, second
 
 
-def build_sensor_line(name: str, seen: LightSeen | None, width: int) -> Line:
+def build_sensor_line(name: str, port: str, seen: LightSeen | None, width: int) -> Line:
     """Return a sensor in one line."""
-    short = name[:1] + name[-1:]
     if seen is None:
         return fit_line(
             width,
             (format_label(name, 9), format_unit("–")),
-            (format_label(short, 3), format_unit("–")),
+            (format_label(port, PORT_CELLS), format_unit("–")),
         )
     what = "mean " if seen.read is LightRead.MEAN else "red "
     after = (build_swatch(seen.color), format_value(f" {seen.color.name}"))
@@ -196,7 +200,12 @@ def build_sensor_line(name: str, seen: LightSeen | None, width: int) -> Line:
             *after,
         ),
         (format_label(name, 9), format_value(seen.value), format_unit(f"{seen.unit} "), *after),
-        (format_label(short, 3), format_value(seen.value), format_unit(f"{seen.unit} "), *after),
+        (
+            format_label(port, PORT_CELLS),
+            format_value(seen.value),
+            format_unit(seen.unit),
+            *after,
+        ),
     )
 
 
