@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable
 from io import StringIO
 from pathlib import Path
@@ -13,6 +14,10 @@ import pytest
 from tests.cases import cases
 from tests.conftest import Command
 from tests.running import told
+from tuisim.analysis.chart import build_spans
+from tuisim.analysis.model import AnalysisModel
+from tuisim.analysis.source import LogRequest
+from tuisim.app.analyser.panes import pane_lines
 from tuisim.cli import run_command
 from tuisim.commands.log import OPTIONS, SUBCOMMANDS, Subcommand
 
@@ -39,6 +44,43 @@ def test_bands_under_noise(here: Command) -> None:
     assert tuple(band["grey"] for band in found) == ORDER
     for band in found:
         assert band["true_level"] == pytest.approx(band["grey_percent"], abs=2.0)
+
+
+def test_a_heading_means_one_level_in_shell_report_analyser_and_chart(
+    here: Command, tmp_path: Path
+) -> None:
+    here("run", "log_greys", "-N", "20")
+    first = json.loads(here("log", "bands", "last", "--json").stdout)[0]
+    level, true_level = f"{first['level']:.2f}", f"{first['true_level']:.2f}"
+    assert level != true_level
+
+    head, row, *_ = here("log", "bands", "last").stdout.splitlines()
+    assert row[: head.index("LEVEL") + len("LEVEL")].endswith(f" {level}")
+    assert row[: head.index("TRUE LEVEL") + len("TRUE LEVEL")].endswith(f" {true_level}")
+
+    here("log", "report", "last", "--out", str(tmp_path / "r.html"))
+    page = (tmp_path / "r.html").read_text(encoding="utf-8")
+    assert re.findall("<th[^>]*>(level|true level)</th>", page) == ["level", "true level"]
+
+    *_, opened = LogRequest(runs=("last",)).open_pieces()
+    model = AnalysisModel(opened)
+    model.find_bands(model.list_unsearched())
+    head, row, *_ = (
+        "".join(text for text, _ in line) for line in pane_lines("bands", model, 0, 120, 20)
+    )
+    columns = [part.strip() for part in re.split("  +", head)]
+    cells = [part.strip() for part in re.split("  +", row)]
+    assert cells[columns.index("level")] == level
+    assert cells[columns.index("true level")] == true_level
+    assert build_spans(model.bands())[0].texts[0] == f"{first['level']:.4g} {first['grey']}"
+
+
+def test_without_noise_no_true_level_stands_beside_the_level(here: Command, tmp_path: Path) -> None:
+    (tmp_path / "own.csv").write_text(
+        "time,Colour\n" + "".join(f"{row / 10},{50 + row % 2}\n" for row in range(20))
+    )
+    said = here("log", "bands", str(tmp_path / "own.csv")).stdout
+    assert " LEVEL " in said and "TRUE LEVEL" not in said
 
 
 @pytest.fixture

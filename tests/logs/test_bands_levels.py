@@ -157,7 +157,7 @@ def test_bands_of_one_level_are_told_together() -> None:
     columns: dict[str, Any] = {
         "number": np.arange(4),
         "grey": ["grey", "", "grey", "white"],
-        "true_level": np.array([50.0, 7.0, 56.0, 100.0]),
+        "level": np.array([50.0, 7.0, 56.0, 100.0]),
         "samples": np.array([10, 4, 20, 1]),
     }
     assert describe_levels(BandReport("Grey", columns, 1, 36)) == (

@@ -90,6 +90,6 @@ def _build_path_chart(
 def build_spans(bands: Iterable[Band]) -> tuple[Span, ...]:
     """Return bands as spans of a chart over time."""
     return tuple(
-        build_band_span(band.variable, band.start_s, band.stop_s, band.true_level, band.grey)
+        build_band_span(band.variable, band.start_s, band.stop_s, band.level, band.grey)
         for band in bands
     )

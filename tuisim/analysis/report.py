@@ -233,7 +233,7 @@ def _format_number(value: float, format_spec: str) -> str:
 
 def _build_band_table(model: AnalysisModel) -> Mapping[str, Any]:
     heads = ["variable", "name", "band", "from s", "to s", "samples", "level", "spread", "width mm"]
-    pairs = zip(model.list_reports(), model.describe_bands(), strict=True)
+    pairs = list(zip(model.list_reports(), model.describe_bands(), strict=True))
     bands = model.bands()
     rows = [
         [
@@ -253,8 +253,8 @@ def _build_band_table(model: AnalysisModel) -> Mapping[str, Any]:
         ]
         for band in bands[:MAX_BANDS]
     ]
-    if any(band.true_level != band.level for band in bands[:MAX_BANDS]):
-        heads.append("without noise")
+    if any(report.has_true_levels for report, _ in pairs):
+        heads.append("true level")
         for row, band in zip(rows, bands[:MAX_BANDS], strict=True):
             row.append(f"{band.true_level:.2f}")
     return {

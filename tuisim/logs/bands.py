@@ -90,6 +90,11 @@ class BandReport:
         return len(self.columns["number"])
 
     @cached_property
+    def has_true_levels(self) -> bool:
+        """Whether clamped noise has moved a level, so that the true levels say more than the levels."""
+        return bool(np.any(self.columns["true_level"] != self.columns["level"]))
+
+    @cached_property
     def bands(self) -> tuple[Band, ...]:
         """The bands as objects; a long log has a hundred thousand, which take long to make."""
         return tuple(map(Band, *map(unpack_column, self.columns.values())))
@@ -203,14 +208,14 @@ def describe_levels(report: BandReport) -> str:
         return f"{report.variable}: no level: its values stand still nowhere"
     levels: dict[str, list[tuple[str, float, int]]] = {}
     for band in zip(
-        *(unpack_column(report.columns[name]) for name in ("grey", "true_level", "samples")),
+        *(unpack_column(report.columns[name]) for name in ("grey", "level", "samples")),
         strict=True,
     ):
         levels.setdefault(band[0] or f"{band[1]:.4g}", []).append(band)
     parts = []
     for bands in levels.values():
         samples = sum(count for *_, count in bands)
-        level = sum(true_level * count for _, true_level, count in bands) / samples
+        level = sum(level * count for _, level, count in bands) / samples
         if len(bands) > 1:
             times = f" ({len(bands)}x)"
         elif samples == 1:

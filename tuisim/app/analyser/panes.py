@@ -104,11 +104,18 @@ class _LazyRows(Sequence[Cells], Generic[Item]):
         )
 
 
-def _format_band(band: Band) -> Cells:
+def _list_bands(model: AnalysisModel) -> Sequence[Cells]:
+    is_moved = any(report.has_true_levels for report in model.list_reports())
+    return _LazyRows(model.bands(), partial(_format_band, is_moved=is_moved))
+
+
+def _format_band(band: Band, *, is_moved: bool) -> Cells:
+    """Return a band as cells, the one of its true level empty unless noise has moved levels of the log."""
     return (
         band.variable,
         str(band.number),
-        f"{band.true_level:.2f}",
+        f"{band.level:.2f}",
+        f"{band.true_level:.2f}" if is_moved else "",
         band.grey or "–",
         f"{band.start_s:.2f}",
         f"{band.stop_s:.2f}",
@@ -197,8 +204,8 @@ PANES: Mapping[str, Pane] = {
     "table": Pane("Table", lambda _: (), ()),
     "bands": Pane(
         "Bands",
-        lambda model: _LazyRows(model.bands(), _format_band),
-        ("variable", "#", "level", "name", "from s", "to s", "n", "mm", "std"),
+        _list_bands,
+        ("variable", "#", "level", "true level", "name", "from s", "to s", "n", "mm", "std"),
         AnalysisModel.describe_bands,
         "No bands: no variable shown stays at a level",
     ),

@@ -98,7 +98,7 @@ def bands(arguments: Arguments) -> int:
         "samples": "",
         **({"strays": ""} if any(np.any(report.columns["strays"]) for report in reports) else {}),
         "level": ".2f",
-        "true_level": ".2f",
+        **({"true_level": ".2f"} if any(report.has_true_levels for report in reports) else {}),
         "spread": ".2f",
         "grey": "",
         "width_mm": "",

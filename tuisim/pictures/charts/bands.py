@@ -50,7 +50,7 @@ def find_spans(trace: Trace, light: Light) -> tuple[Span, ...]:
     levels = measure_levels(trace.values, light if can_be_light(trace.name) else None)
     ends = trace.times_s[levels.start].tolist(), trace.times_s[levels.stop - 1].tolist()
     names = [grey.name if grey and not trace.scale else "" for grey in levels.greys]
-    rows = zip(*ends, levels.true_level.tolist(), names, strict=True)
+    rows = zip(*ends, levels.level.tolist(), names, strict=True)
     return tuple(
         build_band_span(trace.name, start_s, stop_s, level, name)
         for start_s, stop_s, level, name in rows

@@ -99,9 +99,7 @@ def note(screen: LogScreen) -> None:
         name = band.variable
         start_s = band.start_s
         stop_s = band.stop_s
-        value = f"band {band.number}: {band.true_level:.2f}" + (
-            f" {band.grey}" if band.grey else ""
-        )
+        value = f"band {band.number}: {band.level:.2f}" + (f" {band.grey}" if band.grey else "")
         title = f"Note on {name} from {start_s:.2f} s to {stop_s:.2f} s"
     elif model.mark_s is not None:
         start_s, stop_s = sorted((_mark_time_s(model), start_s))
