@@ -34,6 +34,21 @@ from tuisim.terminal.picture_options import CellSet
 PUSHES = "from time import sleep\ntank_drive.on(50, 50)\nsleep(2)\ntank_drive.off()\n"
 
 
+async def test_at_the_end_the_app_shows_the_speeds_of_its_last_tick() -> None:
+    turning = "from time import sleep\ntank_drive.on(50, 20)\nsleep(0.3)\n"
+    async with open_lab(turning, autorun=True) as (pilot, app):
+        await until_state(pilot, RunPhase.ENDED)
+        snapshot = app.run_controller.build_snapshot()
+        last = recording_of(app).telemetry.last()
+        assert last is not None and last.left_speed_dps > last.right_speed_dps > 0
+        assert snapshot.list_turns()[:2] == [
+            (last.left_position_deg, last.left_speed_dps),
+            (last.right_position_deg, last.right_speed_dps),
+        ]
+        at_the_end = last.build_instant(snapshot.spec, snapshot.spec.world.noise)
+        assert snapshot.gyro_rate_dps == at_the_end.gyro_rate_dps != 0
+
+
 @pytest.mark.slow
 async def test_the_end_says_that_the_robot_stood_at_a_wall() -> None:
     setup = settings(PUSHES, autorun=True, speed=0.0)
@@ -82,17 +97,6 @@ async def test_the_robot_can_be_placed_during_a_run() -> None:
         await until(pilot, lambda: app.run_controller.pose.y_mm >= 700)
         await pilot.press("S")
         await until_state(pilot, RunPhase.ENDED)
-        recording = recording_of(app)
-        last = recording.telemetry.last()
-        assert last is not None
-        # The recording ends in the middle of the drive; what is shown is a robot that stands.
-        assert (
-            last.left_speed_dps > 0,
-            app.run_controller.build_snapshot().instant.left_speed_dps,
-        ) == (
-            True,
-            0.0,
-        )
         await pilot.press("R")
         await until_state(pilot, RunPhase.RUNNING)
         # A run begins where the last one began, unless the robot was placed at rest.

@@ -206,10 +206,6 @@ class RunController:
         face = timeline.face(now_tick if timeline.at is None else timeline.at)
         hz = timeline.tick_hz
         turns = face.extrapolate_turns(instant.tick / hz, hz) if record else ()
-        if state is RunPhase.ENDED and not past:
-            # The last record is of the tick before the program's last commands; after its end, nothing turns.
-            instant = instant.stop()
-            turns = tuple((position_deg, 0.0) for position_deg, _ in turns)
         return Snapshot(
             state=state,
             end=self._end if state == RunPhase.ENDED else None,

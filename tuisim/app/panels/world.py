@@ -393,9 +393,9 @@ class WorldView(PixelView):
         longest_mm = max(length for _, length in snapshot.rays)
         turned_mm = math.radians(abs(now.heading_deg - cast.heading_deg)) * longest_mm
         lengthened_mm = max(abs(a[1] - b[1]) for a, b in zip(last.rays, snapshot.rays, strict=True))
-        still = (
-            moved_mm + turned_mm > 0
-            and snapshot.instant.left_speed_dps == snapshot.instant.right_speed_dps == 0
+        still = moved_mm + turned_mm > 0 and (
+            snapshot.state in AT_REST
+            or snapshot.instant.left_speed_dps == snapshot.instant.right_speed_dps == 0
         )
         return still or max(moved_mm, turned_mm, lengthened_mm) > _RAY_LAG_PX * self._port.mm_per_px
 

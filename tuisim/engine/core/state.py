@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from math import inf
 from typing import TypeAlias
 
@@ -49,8 +48,3 @@ class Instant:
         """The clockwise rate of turn, in whole degrees per second, limited to what the gyro can measure."""
         fastest = self.profile.gyro_max_dps or inf
         return round(max(-fastest, min(fastest, -self.turn_rate_dps)))
-
-    def stop(self) -> Instant:
-        """Return the same instant with all motors standing, and without commands to them."""
-        motors = ((0, 0, 0, 0),) * len(self.motors)
-        return replace(self, left_speed_dps=0.0, right_speed_dps=0.0, motors=motors)
