@@ -119,6 +119,21 @@ def test_a_named_robot_stays_as_it_is(home: Path, tmp_path: Path) -> None:
     assert "DeviceNotFound" in done.errors[-1]
 
 
+FOUR_WHEELS = """\
+from ev3dev2.motor import MoveTank, OUTPUT_A, OUTPUT_B, OUTPUT_C, OUTPUT_D
+front, rear = MoveTank(OUTPUT_A, OUTPUT_D), MoveTank(OUTPUT_B, OUTPUT_C)
+front.on_for_rotations(30, 30, 1, block=False)
+rear.on_for_rotations(30, 30, 1)
+"""
+
+
+def test_of_two_pairs_in_the_text_the_one_that_was_chosen_drives(
+    home: Path, tmp_path: Path
+) -> None:
+    done = run_program(tmp_path, FOUR_WHEELS)
+    assert (done.run.plugged, done.pose[0] - 1181 > 170) == ([], True)
+
+
 def test_a_trial_plugs_in_nothing(home: Path, tmp_path: Path) -> None:
     done = run_program(tmp_path, TRIED)
     assert (done.lines, done.run.plugged) == (["no Touch", "no Infrared"], [])

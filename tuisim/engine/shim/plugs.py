@@ -149,7 +149,8 @@ class Plugs:
             return
         robot = session.sim.spec.robot
         wheels = (robot.left_port, robot.right_port)
-        if ports == wheels or ({*ports} == {*wheels} and {*ports} <= {*session.shown_ports}):
+        # Of two pairs that the text shows, it has chosen one.
+        if ports == wheels or {*ports, *wheels} <= {*session.shown_ports}:
             return
         if not all(self._is_there(part, port) or self._can_give_way(port) for port in ports):
             return
