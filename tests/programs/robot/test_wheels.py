@@ -116,3 +116,25 @@ def test_motors_of_an_arm_are_no_wheels() -> None:
     assert [(touch.pressed_by, touch.pressed_at) for touch in robot.touch_sensors] == [
         ("outC", "low")
     ]
+
+
+DOUBTS: Mapping[str, tuple[str, tuple[str, ...]]] = {
+    "a car": (
+        "drive = LargeMotor(OUTPUT_A)\nsteering = MediumMotor(OUTPUT_B)",
+        ("a car that steers is not simulated: this robot stands, because two motors drive it",),
+    ),
+    "a head": (
+        "kopf = MediumMotor(OUTPUT_A)\nsonic = UltrasonicSensor()\nMoveTank(OUTPUT_B, OUTPUT_C)",
+        ("no motor turns a sensor here: each keeps its direction",),
+    ),
+    "a head without a sensor": ("head = MediumMotor(OUTPUT_A)", ()),
+    "an arm beside a sensor": ("arm = MediumMotor(OUTPUT_A)\nsonic = UltrasonicSensor()", ()),
+}
+
+
+@pytest.mark.parametrize("case", DOUBTS)
+def test_what_the_robot_here_cannot_do_is_said(case: str) -> None:
+    text, doubts = DOUBTS[case]
+    found = built(text)
+    assert found is not None
+    assert found.doubts == doubts

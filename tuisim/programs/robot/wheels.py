@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import math
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from itertools import combinations
 
 from tuisim.base.data_class import dataclass
@@ -20,9 +21,11 @@ from tuisim.programs.robot.words import (
     find_side,
     is_diameter,
     is_girth,
+    is_head,
     is_large,
     is_radius,
     is_spacing,
+    is_steering,
     is_tool,
     parse_unit_mm,
 )
@@ -50,7 +53,7 @@ class WheelMotors:
     """The line that shows it; None if none does."""
     pair: Pair | None = None
     doubt: str = ""
-    """The other way in which the program can be read, in words; empty for none."""
+    """Another way to read the program, or what a robot here cannot do, in words; empty for none."""
 
 
 def find_wheels(
@@ -73,11 +76,35 @@ def find_wheels(
         # Motors of the EV3 with such names are medium ones.
         named = [device for device in devices if device.kind.is_motor and is_tool(device.names)]
         tools = {*tools, *(device.port for device in named)}
-    return (
+    wheels = (
         _choose_pair(mentions.pairs)
         or _choose_single(devices, kinds, tools)
         or _choose_usual(devices, kinds, usual, tools)
     )
+    ports = (wheels.left, wheels.right)
+    doubts = (
+        wheels.doubt,
+        _CAR if kinds.keys().isdisjoint(ports) and _steers(devices) else "",
+        _HEAD if _turns_sensor(devices, ports) else "",
+    )
+    return replace(wheels, doubt="; ".join(filter(None, doubts)))
+
+
+_CAR = "a car that steers is not simulated: this robot stands, because two motors drive it"
+_HEAD = "no motor turns a sensor here: each keeps its direction"
+
+
+def _steers(devices: Sequence[Mention]) -> bool:
+    return any(device.kind.is_motor and is_steering(device.names) for device in devices)
+
+
+def _turns_sensor(devices: Sequence[Mention], wheels: Collection[str]) -> bool:
+    """Return whether a program has a sensor of distance, and a motor whose name says that it turns the sensor."""
+    has_sensor = any(
+        device.kind in (DeviceKind.ULTRASONIC, DeviceKind.INFRARED) for device in devices
+    )
+    others = [device for device in devices if device.kind.is_motor and device.port not in wheels]
+    return has_sensor and any(is_head(device.names) for device in others)
 
 
 def _choose_pair(pairs: Sequence[Pair]) -> WheelMotors | None:

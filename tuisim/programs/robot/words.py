@@ -42,17 +42,21 @@ _LONG = {side.value: side for side in (Side.LEFT, Side.RIGHT)}
 _TOOL_WORDS = (
     "arm arms claw grip gripper grabber grab hand lift lifter lever crane fork forklift tool attachment attach head "
     "neck turret tilt shoot shooter cannon greifer kran hub pince bras garra tail flag hook catapult elbow wrist "
-    "base elevator steer steering lenkung medium extra top legs turntable carriage roller rollers conveyor chute "
+    "base elevator medium extra top legs turntable carriage roller rollers conveyor chute "
     "feed feeder belt pen x y z brazo pinza pala cabeza grua braccio testa tete kopf heber schaufel gabel рука клешня "
     "臂 爪 手 夹"
 )
-_TOOLS = frozenset(_TOOL_WORDS.split())
 
 
 def _split_words(text: str) -> frozenset[str]:
     return frozenset(text.split())
 
 
+_STEERING = _split_words("steer steering lenkung direccion volant sterzo руль 转向")
+_HEADS = _split_words(
+    "head neck kopf hals cabeza cuello tete testa us sonic sonar ultrasonic sensor eye eyes radar scan scanner servo"
+)
+_TOOLS = _split_words(_TOOL_WORDS) | _STEERING
 _LARGE = _split_words(
     "large big groß großer große großes gross grosser grosse grosses grande gran gros groot grote stor duzy"
 )
@@ -159,6 +163,16 @@ def is_forwards(name: str) -> bool:
 def is_large(names: Iterable[str]) -> bool:
     """Return whether names say that a motor is a large one."""
     return any(part in _LARGE for name in names for part in _split_name(name))
+
+
+def is_steering(names: Iterable[str]) -> bool:
+    """Return whether names say that a motor steers, as in a car."""
+    return any(part in _STEERING for name in names for part in _split_name(name))
+
+
+def is_head(names: Iterable[str]) -> bool:
+    """Return whether names say that a motor turns a sensor."""
+    return any(part in _HEADS for name in names for part in _split_name(name))
 
 
 def is_tool(names: Iterable[str]) -> bool:
