@@ -85,6 +85,30 @@ def test_its_own_names_work(run_on: RunOn, text: str, lines: list[str]) -> None:
     assert done.lines == lines, done.errors
 
 
+@pytest.mark.parametrize(
+    ("sound", "time_ms"),
+    [("beep(440, 3000)", "3000"), ("play_notes(['C4/1', 'D4/1'])", "4000")],
+)
+def test_a_sound_lasts_although_a_motor_ends_its_move_before(
+    run_on: RunOn, sound: str, time_ms: str
+) -> None:
+    text = (
+        "from pybricks.ev3devices import Motor\nfrom pybricks.parameters import Port\n"
+        "watch = StopWatch()\nMotor(Port.A).run_angle(500, 90, wait=False)\n"
+        f"ev3.speaker.{sound}\nprint(watch.time())"
+    )
+    assert run_on(HEAD + text, robot="eyes", profile=PROFILE).lines == [time_ms]
+
+
+def test_a_sound_that_takes_no_time_can_be_awaited(run_on: RunOn) -> None:
+    text = (
+        "from pybricks.tools import run_task\nasync def main():\n"
+        "    await ev3.speaker.play_notes([])\n    await ev3.speaker.beep(440, -1)\n    print('done')\n"
+        "run_task(main())"
+    )
+    assert run_on(HEAD + text, profile=PROFILE).lines == ["done"]
+
+
 def test_buttons_of_the_remote_are_a_set(run_on: RunOn) -> None:
     text = (
         "from pybricks.ev3devices import InfraredSensor\nfrom pybricks.parameters import Port\n"

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import _thread
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from enum import Enum
 from typing import Any
 
 from tuisim.engine.core.profile import MS, NS_PER_S
 from tuisim.engine.shim.pybricks import hubs
-from tuisim.engine.shim.pybricks import speaker as tones
-from tuisim.engine.shim.pybricks.brick import Connected, Waiting, invalid_argument, whole
+from tuisim.engine.shim.pybricks.brick import Connected, whole
 from tuisim.engine.shim.pybricks.hsv_color import Color
-from tuisim.engine.shim.tones import Tone, song_of, tones_heard
+from tuisim.engine.shim.pybricks.speaker import TonePlayer
+from tuisim.engine.shim.pybricks.tools import wait
+from tuisim.engine.shim.sound import Loudspeaker
+from tuisim.engine.shim.tones import Heard
 from tuisim.engine.shim.unsupported.modules import Hardware, refused_part
 
 DARK = (0, 0)
@@ -89,11 +91,10 @@ class AnimatedLight:
         self._animation.play(self._show, [(color, interval) for color in colors])
 
 
-class Speaker(Connected):
+class Speaker(TonePlayer):
     """The speaker."""
 
     def __init__(self) -> None:
-        self._tones = tones.Speaker()
         self._volume = 100
 
     def volume(self, volume: int | None = None) -> int | None:
@@ -104,27 +105,9 @@ class Speaker(Connected):
         self._volume = max(0, min(100, whole(volume)))
         return None
 
-    def beep(self, frequency: float = 500, duration: float = 100) -> None:
-        """Play a tone of a frequency in Hz for a duration in ms."""
-        if whole(duration) < 0:
-            return self._tones.beep(frequency, duration)
-        return self._play([Tone(max(0, whole(frequency)), whole(duration))])
-
-    def play_notes(self, notes: Iterable[str], tempo: float = 120) -> None:
-        """Play notes such as `C4/4`, in quarter notes per minute."""
-        if whole(tempo) <= 0:
-            raise invalid_argument()
-        return self._play(
-            [tones.note_of(note, tones.WHOLE_NOTE_MS_AT_1 // whole(tempo)) for note in notes]
-        )
-
-    def _play(self, tones: Sequence[Tone]) -> None:
-        return self.brick.finish(self._sound(tones))
-
-    def _sound(self, tones: Sequence[Tone]) -> Waiting[None]:
-        heard = song_of([*tones]) if len(tones) != 1 else tones_heard(tones)
-        self.brick.session.speak(heard.text, 0, heard.tones_row, heard.file)
-        yield self.brick.now_us + heard.length_ns // 1000
+    def _play(self, heard: Heard) -> None:
+        Loudspeaker(self.brick.session).play(heard, 0)
+        return wait(heard.length_ns // MS)
 
 
 class System(Connected):

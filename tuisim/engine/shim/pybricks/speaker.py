@@ -9,6 +9,7 @@ from typing import Any
 from tuisim.engine.core.profile import MS
 from tuisim.engine.shim.pybricks.brick import Connected, invalid_argument, text_of, whole
 from tuisim.engine.shim.pybricks.media import SOUNDS, name_of
+from tuisim.engine.shim.pybricks.tools import wait
 from tuisim.engine.shim.sound import LOUDEST, Loudspeaker, Mixer
 from tuisim.engine.shim.tones import Heard, Tone, file_heard, song_of, speech_heard, tones_heard
 
@@ -72,16 +73,13 @@ def set_volumes(mixer: Mixer, volumes: Mapping[str, int]) -> None:
         mixer.do(("set", control, f"{percent}%"))
 
 
-class Speaker(Connected):
-    """The speaker of the brick. It stores the volume, which changes nothing that is recorded."""
+class TonePlayer(Connected):
+    """What the speaker of every version plays: tones and notes."""
 
-    def __init__(self) -> None:
-        self._words_a_minute = START_WORDS_A_MINUTE
-
-    def _play(self, heard: Heard) -> None:
+    def _play(self, heard: Heard) -> Any:
         Loudspeaker(self.brick.session).play(heard, heard.length_ns)
 
-    def beep(self, frequency: float = 500, duration: float = 100) -> None:
+    def beep(self, frequency: float = 500, duration: float = 100) -> Any:
         """Play a tone of a frequency in Hz for a duration in ms, and wait for its end.
 
         A negative duration returns at once; the tone then lasts until the next beep.
@@ -89,18 +87,12 @@ class Speaker(Connected):
         frequency_hz = max(0, whole(frequency))
         length_ms = whole(duration)
         if length_ms >= 0:
-            self._play(tones_heard((Tone(frequency_hz, length_ms),)))
-            return
-        self._play(
-            Heard(
-                f"[tone {frequency_hz} Hz until the next beep]",
-                0,
-                (Tone(frequency_hz, UNTIL_NEXT_MS),),
-            )
-        )
-        self.brick.command()
+            return self._play(tones_heard((Tone(frequency_hz, length_ms),)))
+        text = f"[tone {frequency_hz} Hz until the next beep]"
+        self._play(Heard(text, 0, (Tone(frequency_hz, UNTIL_NEXT_MS),)))
+        return wait(0)
 
-    def play_notes(self, notes: Iterable[str], tempo: float = 120) -> None:
+    def play_notes(self, notes: Iterable[str], tempo: float = 120) -> Any:
         """Play notes, and wait for their end.
 
         Args:
@@ -118,8 +110,15 @@ class Speaker(Connected):
             for note in notes:
                 tones.append(note_of(note, whole_ms))
         finally:
-            if tones:
-                self._play(song_of(tones))
+            playing = self._play(song_of(tones)) if tones else wait(0)
+        return playing
+
+
+class Speaker(TonePlayer):
+    """The speaker of the EV3. It stores the volume, which changes nothing that is recorded."""
+
+    def __init__(self) -> None:
+        self._words_a_minute = START_WORDS_A_MINUTE
 
     def play_file(self, file: str | None = None, *, file_name: str | None = None) -> None:
         """Play a sound file, and wait for its end.

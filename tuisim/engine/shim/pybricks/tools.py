@@ -20,7 +20,7 @@ def wait(time: float) -> None:
     time_ms = whole(time)
     brick.check_buttons()
     if brick.in_task:
-        return brick.finish(_until(brick.now_us + time_ms * 1000))
+        return brick.finish(wait_until(brick.now_us + time_ms * 1000))
     if time_ms > 0:
         brick.session.spend(time_ms * MS)
     else:
@@ -28,7 +28,8 @@ def wait(time: float) -> None:
     return None
 
 
-def _until(end_us: int) -> Waiting[None]:
+def wait_until(end_us: int) -> Waiting[None]:
+    """Wait until a time in microseconds, even if a motor ends its move before."""
     while Connected.brick.now_us < end_us:
         yield end_us
 

@@ -12,6 +12,7 @@ from tuisim.engine.shim.pybricks.brick import Connected, FirmwareError, Waiting,
 from tuisim.engine.shim.pybricks.brick_4 import Buttons
 from tuisim.engine.shim.pybricks.hsv_color import Color
 from tuisim.engine.shim.pybricks.hub.face import shine
+from tuisim.engine.shim.pybricks.tools import wait
 from tuisim.engine.shim.pybricks.hub.parameters import Button
 from tuisim.engine.shim.unsupported.modules import Hardware, refused_part
 
@@ -52,15 +53,13 @@ class Controller(Connected):
 
     def connect(self) -> None:
         """Connect the controller again."""
-        return self.brick.finish(self._change(True))
+        self._set_connected(True)
+        return wait(0)
 
     def disconnect(self) -> None:
         """Disconnect the controller."""
-        return self.brick.finish(self._change(False))
-
-    def _change(self, is_connected: bool) -> Waiting[None]:
-        self._set_connected(is_connected)
-        yield self.brick.now_us
+        self._set_connected(False)
+        return wait(0)
 
 
 class Keys(Buttons):

@@ -12,7 +12,7 @@ from tuisim.engine.shim.pybricks.brick_4 import Animation
 from tuisim.engine.shim.pybricks.hub.face import DARK, Pixels, show_pixels
 from tuisim.engine.shim.pybricks.hub.pictures import CHARACTERS, DIGITS, ICONS
 from tuisim.engine.shim.pybricks.matrix import Matrix, Side
-from tuisim.engine.shim.pybricks.tools import wait
+from tuisim.engine.shim.pybricks.tools import wait, wait_until
 
 LAST = SIDE_PIXELS - 1
 MAX_NUMBER = 99
@@ -130,9 +130,9 @@ class Display(Connected):
     def _spell(self, text: str, on_ms: int, off_ms: int) -> Waiting[None]:
         for char in text:
             self.char(char)
-            yield self.brick.now_us + 1000 * on_ms
+            yield from wait_until(self.brick.now_us + 1000 * on_ms)
             self.off()
-            yield self.brick.now_us + 1000 * off_ms
+            yield from wait_until(self.brick.now_us + 1000 * off_ms)
 
     # The menu
 
