@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from functools import lru_cache
 
 import numpy as np
@@ -104,18 +104,20 @@ def draw_brick(
     rows = max(0, height - pad_rows - bumper_rows - sound_rows)
     screen = _draw_screen(face, width, rows) if rows else []
     pad, buttons = _pad(face, pressed, width, pad_rows, len(screen))
-    sound = (
-        face.sound.removeprefix("[").removeprefix("♪ ").removesuffix("]")
-        if face.sound[:1] == "["
-        else face.sound
-    )
-    heard: list[Run] = [(f"♪ {sound}"[:width] if sound else "", _CAPTION)]
     lines = [*screen, *pad]
     if bumper_rows:
         line, boxes = draw_bumpers(bumpers, pressed, width, len(lines))
         lines.append(line)
         buttons += boxes
-    return BrickPicture([*lines, *([heard] if sound_rows else [])], buttons)
+    return BrickPicture([*lines, *([draw_sound(face, width)] if sound_rows else [])], buttons)
+
+
+def draw_sound(face: BrickState, width: int) -> list[Run]:
+    """Return the row of what the brick plays or says."""
+    sound = face.sound
+    if sound.startswith("["):
+        sound = sound.removeprefix("[").removeprefix("♪ ").removesuffix("]")
+    return [(f"♪ {sound}"[:width] if sound else "", _CAPTION)]
 
 
 # The display
@@ -284,16 +286,29 @@ def draw_bumpers(
     ports: Sequence[str], pressed: Collection[str], width: int, row: int
 ) -> tuple[list[Run], tuple[ButtonBox, ...]]:
     """Return the row of the touch sensors' bumpers, as many as fit, and their areas."""
-    labels = [f" {port} {_BUMPER} " for port in ports]
-    while len(labels) > 1 and sum(map(len, labels)) + len(labels) - 1 > width:
-        labels.pop()
-    first = max(0, (width - sum(map(len, labels)) - len(labels) + 1) // 2)
-    line: list[Run] = [(" " * first, _PLAIN)]
+    labels = {port: f" {port} {_BUMPER} " for port in ports}
+    while len(labels) > 1 and len(" ".join(labels.values())) > width:
+        labels.popitem()
+    first = max(0, (width - len(" ".join(labels.values()))) // 2)
+    line, boxes = draw_keys(labels, ports if TOUCH in pressed else pressed, first, row)
+    return [(" " * first, _PLAIN), *line], boxes
+
+
+def draw_keys(
+    labels: Mapping[str, str], pressed: Collection[str], first: int, row: int
+) -> tuple[list[Run], tuple[ButtonBox, ...]]:
+    """Return keys side by side, with a blank between them, and their areas.
+
+    Args:
+        labels: What stands on the keys, by their names.
+        pressed: The keys that are held down.
+        first, row: The column and the row of the first key.
+    """
+    line: list[Run] = []
     boxes = []
-    for port, label in zip(ports, labels, strict=False):
-        is_down = port in pressed or TOUCH in pressed
-        line += [(label, _PRESSED if is_down else _BUTTON), (" ", _PLAIN)]
-        boxes.append(ButtonBox(row, first, first + len(label), port))
+    for name, label in labels.items():
+        line += [(label, _PRESSED if name in pressed else _BUTTON), (" ", _PLAIN)]
+        boxes.append(ButtonBox(row, first, first + len(label), name))
         first += len(label) + 1
     return line[:-1], tuple(boxes)
 

@@ -9,8 +9,7 @@ from typing import Final
 from rich.color import Color
 from rich.style import Style
 
-from tuisim.app import design
-from tuisim.app.render.brick import BrickPicture, ButtonBox, draw_bumpers
+from tuisim.app.render.brick import BrickPicture, ButtonBox, draw_bumpers, draw_keys, draw_sound
 from tuisim.base import palette
 from tuisim.engine.core.hub_spec import CONTROLLERS
 from tuisim.engine.runs.brick_state import BrickState
@@ -18,8 +17,6 @@ from tuisim.terminal.text_runs import Run
 
 _PLAIN = Style()
 _CAPTION = Style(color=palette.LABEL)
-_BUTTON = Style(color=design.LIGHT, bgcolor=design.BUTTON, bold=True)
-_PRESSED = Style(color=palette.BLACK, bgcolor=design.PRESSED, bold=True)
 _SYMBOLS: Final = {"left": "◀", "enter": "●", "right": "▶", "up": "B"}
 """The buttons by their names in the session, from the left; the last one is that of Bluetooth."""
 _SIDES: Final = {"left": "L", "right": "R", "dpad": "D", "center": "●"}
@@ -73,8 +70,7 @@ def draw_hub(
         lines.append(bumper_line)
         boxes += more
     if face.sound and height > len(lines):
-        sound = face.sound.strip("[]").removeprefix("♪ ")
-        lines.append([(f"♪ {sound}"[:width], _CAPTION)])
+        lines.append(draw_sound(face, width))
     return BrickPicture(lines, boxes)
 
 
@@ -94,14 +90,10 @@ def _draw_buttons(
     """Return the row of the buttons between two pieces of the status light, and their areas."""
     light = "   ", _build_light(face.find_light())
     first = max(0, (width - 4 * len(names) - 7) // 2)
-    line: list[Run] = [(" " * first, _PLAIN), light, (" ", _PLAIN)]
-    first += 4
-    boxes = []
-    for name in names:
-        line += [(f" {_SYMBOLS[name]} ", _PRESSED if name in pressed else _BUTTON), (" ", _PLAIN)]
-        boxes.append(ButtonBox(row, first, first + 3, name))
-        first += 4
-    return [*line, light], tuple(boxes)
+    labels = {name: f" {_SYMBOLS[name]} " for name in names}
+    keys, boxes = draw_keys(labels, pressed, first + 4, row)
+    gap = " ", _PLAIN
+    return [(" " * first, _PLAIN), light, gap, *keys, gap, light], boxes
 
 
 def _build_light(levels: Iterable[int]) -> Style:
@@ -117,24 +109,19 @@ def _draw_lamps(face: BrickState) -> Iterator[Run]:
 
 def _draw_controllers(
     face: BrickState, pressed: Collection[str], width: int
-) -> Iterator[tuple[list[Run], list[ButtonBox]]]:
+) -> Iterator[tuple[list[Run], tuple[ButtonBox, ...]]]:
     """Yield rows of keys of the connected controllers, each with the light of the controller, and the keys' areas."""
     for port, port_keys in CONTROLLERS.items():
         levels = face.find_light(port)
         if not levels:
             continue
-        light = " ", _build_light(levels)
-        line = [light]
-        boxes = list[ButtonBox]()
+        rows = [dict[str, str]()]
         for key in port_keys:
             side, _, way = key.removeprefix(f"{port}.").removeprefix("joystick_").partition("_")
             label = f" {_SIDES.get(side, side.upper())}{_WAYS[way]} "
-            first = boxes[-1].end + 1 if boxes else 2
-            if boxes and first + len(label) > width:
-                yield line, boxes
-                line = [light]
-                boxes = []
-                first = 2
-            line += [(" ", _PLAIN), (label, _PRESSED if key in pressed else _BUTTON)]
-            boxes.append(ButtonBox(0, first, first + len(label), key))
-        yield line, boxes
+            if rows[-1] and len(" ".join((" ", *rows[-1].values(), label))) > width:
+                rows.append({})
+            rows[-1][key] = label
+        for labels in rows:
+            keys, boxes = draw_keys(labels, pressed, 2, 0)
+            yield [(" ", _build_light(levels)), (" ", _PLAIN), *keys], boxes

@@ -10,11 +10,12 @@ from __future__ import annotations
 import base64
 import json
 import zlib
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import field, replace
 from typing import TYPE_CHECKING, assert_never
 
 from tuisim.base.data_class import dataclass
+from tuisim.engine.core.hub_spec import CONTROLLERS
 from tuisim.engine.runs.records import OutputRow, Stream
 
 if TYPE_CHECKING:
@@ -27,13 +28,11 @@ ROW_BYTES = -(-DISPLAY_WIDTH // 8)
 """Bytes per row of the picture; the bits after the last pixel are 0."""
 
 LED_NAMES = ("left red", "left green", "right red", "right green")
-HUB_LIGHT_NAMES = ("red", "green", "blue")
-"""The LEDs of a hub's status light."""
-REMOTE_LIGHT_NAMES = ("remote red", "remote green", "remote blue")
-"""The LEDs of a connected remote control."""
-XBOX_LIGHT_NAMES = ("xbox red", "xbox green", "xbox blue")
-"""The LEDs of a connected game controller."""
-_LIGHTS = {"": HUB_LIGHT_NAMES, "remote": REMOTE_LIGHT_NAMES, "xbox": XBOX_LIGHT_NAMES}
+LIGHT_NAMES: Mapping[str, Sequence[str]] = {
+    owner: [f"{owner} {color}".strip() for color in ("red", "green", "blue")]
+    for owner in ("", *CONTROLLERS)
+}
+"""The LEDs of a hub's status light, and of connected controllers by what stands for their port."""
 PORT_LIGHT = "light "
 """Before the port in the name of a light on a port of a hub."""
 SIDE_PIXELS = 5
@@ -100,7 +99,7 @@ class BrickState:
         Args:
             controller: A key of `CONTROLLERS`; empty for the hub.
         """
-        names = _LIGHTS[controller]
+        names = LIGHT_NAMES[controller]
         is_shown = not controller or names[0] in self.leds
         return tuple(self.leds.get(name, 0) for name in names if is_shown)
 

@@ -17,7 +17,6 @@ from tuisim.engine.shim.sound import Loudspeaker
 from tuisim.engine.shim.tones import Heard
 from tuisim.engine.shim.unsupported.modules import Hardware, refused_part
 
-DARK = (0, 0)
 HUES: Mapping[int, str] = {15: "RED", 45: "ORANGE", 90: "YELLOW", 180: "GREEN", 330: "", 360: "RED"}
 """The colour of the light for a hue, by the highest of its hues; others leave it dark."""
 
@@ -128,12 +127,7 @@ class System(Connected):
 
     def set_stop_button(self, button: Any) -> None:
         """Let a button, or several pressed together, stop the program; with None, no button stops it."""
-        if button is None:
-            buttons = []
-        elif isinstance(button, Enum):
-            buttons = [button]
-        else:
-            buttons = [*button]
+        buttons = [button] if isinstance(button, Enum) else button or ()
         self.brick.stop_buttons = frozenset(self._session_names[pressed] for pressed in buttons)
 
     def name(self) -> str:
@@ -176,9 +170,7 @@ class System(Connected):
 class Buttons(hubs.Buttons):
     """The buttons of a hub or a controller."""
 
-    def pressed(self) -> set[Any]:
-        """Return the pressed buttons."""
-        return {*super().pressed()}
+    COLLECT = set
 
 
 class Battery(hubs.Battery):
@@ -201,10 +193,10 @@ class Light(AnimatedLight, hubs.Light):  # type: ignore[misc]
 
     def _show_nearest(self, color: Color | None) -> None:
         if color is None or color.v <= 0 or not color.s:
-            self._shine(*DARK)
+            self._shine(0, 0)
             return
         name = next(name for hue, name in HUES.items() if color.h <= hue)
-        self._shine(*hubs.LIGHTS.get(name, DARK))
+        self._shine(*hubs.LIGHTS.get(name, (0, 0)))
 
 
 class EV3Brick(hubs.EV3Brick):

@@ -7,13 +7,12 @@ from collections.abc import Sequence
 from typing import Any, ClassVar
 
 from tuisim.engine.core.hub_spec import CONTROLLERS, WAYS
-from tuisim.engine.runs.brick_state import REMOTE_LIGHT_NAMES, XBOX_LIGHT_NAMES
-from tuisim.engine.shim.pybricks.brick import Connected, FirmwareError, Waiting, text_of, whole
+from tuisim.engine.shim.pybricks.brick import Connected, FirmwareError, Waiting, text_of
 from tuisim.engine.shim.pybricks.brick_4 import Buttons
 from tuisim.engine.shim.pybricks.hsv_color import Color
 from tuisim.engine.shim.pybricks.hub.face import shine
-from tuisim.engine.shim.pybricks.tools import wait
 from tuisim.engine.shim.pybricks.hub.parameters import Button
+from tuisim.engine.shim.pybricks.tools import wait
 from tuisim.engine.shim.unsupported.modules import Hardware, refused_part
 
 DPAD = ((0, 0), (0, 1), (1, 1), (1, 0), (1, -1), (0, -1), (-1, -1), (-1, 0), (-1, 1))
@@ -27,7 +26,6 @@ class Controller(Connected):
     """A remote control or game controller that is connected to the hub by radio."""
 
     PORT: ClassVar[str]
-    LEDS: ClassVar[Sequence[str]]
 
     def __init__(self, name: str | None, connect: bool) -> None:
         self.brick.require_no_task()
@@ -38,7 +36,7 @@ class Controller(Connected):
 
     def _set_connected(self, is_connected: bool) -> None:
         self._is_connected = is_connected
-        shine(Color.WHITE if is_connected else None, self.LEDS)
+        shine(Color.WHITE if is_connected else None, self.PORT)
 
     def check(self) -> None:
         """Check that the controller is connected.
@@ -67,18 +65,18 @@ class Keys(Buttons):
 
     def __init__(self, controller: Controller) -> None:
         port = controller.PORT
-        members = ((key, key.removeprefix(f"{port}.").upper()) for key in CONTROLLERS[port])
         known = Button.__members__
-        super().__init__({key: known[name] for key, name in members if name in known}, port)
+        names = {key: key.removeprefix(f"{port}.").upper() for key in CONTROLLERS[port]}
+        super().__init__({key: known[name] for key, name in names.items() if name in known}, port)
         self._controller = controller
 
-    def pressed(self) -> set[Button]:
+    def pressed(self) -> Any:
         """Return the pressed buttons."""
         self._controller.check()
         return super().pressed()
 
 
-class RemoteLight(Connected):
+class RemoteLight:
     """The light of a remote control."""
 
     def __init__(self, remote: Controller) -> None:
@@ -87,7 +85,7 @@ class RemoteLight(Connected):
     def on(self, color: Any) -> None:
         """Turn the light on in a colour."""
         self._remote.check()
-        shine(color, REMOTE_LIGHT_NAMES)
+        shine(color, self._remote.PORT)
 
     def off(self) -> None:
         """Turn the light off."""
@@ -98,7 +96,6 @@ class Remote(Controller):
     """The remote control of Powered Up."""
 
     PORT = "remote"
-    LEDS = REMOTE_LIGHT_NAMES
 
     def __init__(
         self, name: str | None = None, timeout: int | None = 10_000, connect: bool = True
@@ -123,7 +120,6 @@ class XboxController(Controller):
     """The controller of an Xbox."""
 
     PORT = "xbox"
-    LEDS = XBOX_LIGHT_NAMES
     state = refused_part("XboxController", "state", RAW)
 
     def __init__(
@@ -182,6 +178,4 @@ class XboxController(Controller):
     ) -> None:
         """Let the controller vibrate, which nothing shows here."""
         self.check()
-        for number in (duration, count, delay):
-            whole(number)
         self.brick.command()

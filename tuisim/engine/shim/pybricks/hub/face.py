@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from tuisim.engine.runs.brick_state import (
-    HUB_LIGHT_NAMES,
+    LIGHT_NAMES,
     PIXEL_NAMES,
     PORT_LIGHT,
     SIDE_PIXELS,
@@ -21,14 +21,14 @@ Pixels = tuple[int, ...]
 DARK: Pixels = (0,) * SIDE_PIXELS**2
 
 
-def shine(color: Any, names: Sequence[str] = HUB_LIGHT_NAMES) -> None:
+def shine(color: Any, owner: str = "") -> None:
     """Show a colour, or darkness for None.
 
     Args:
         color: The colour.
-        names: The LEDs: by default those of the hub's status light.
+        owner: Whose light shows it, one of `LIGHT_NAMES`: by default the hub's.
     """
-    _show(dict(zip(names, (0, 0, 0) if color is None else color.rgb, strict=True)))
+    _show(dict(zip(LIGHT_NAMES[owner], (0, 0, 0) if color is None else color.rgb, strict=True)))
 
 
 def show_pixels(pixels: Sequence[int]) -> None:
@@ -48,7 +48,7 @@ def _convert(brightness: int) -> int:
 def _show(levels: dict[str, int]) -> None:
     brick = Connected.brick
     brick.session.command()
-    before = brick.led_levels or dict.fromkeys((*HUB_LIGHT_NAMES, *PIXEL_NAMES), 0)
+    before = brick.led_levels or dict.fromkeys((*LIGHT_NAMES[""], *PIXEL_NAMES), 0)
     levels = {**before, **levels}
     if levels != before:
         brick.led_levels = levels
