@@ -75,14 +75,9 @@ def run_control(motor: ServoMotor, time_ns: int, values: Values) -> None:
 
 def move(motor: ServoMotor, time_ns: int, values: Values) -> None:
     """Let the motor's controller move. Values: target, rate, acceleration, whether the target is relative."""
-    target, rate, acceleration, relative = values
+    *numbers, relative = values
     motor.control.move_to_position(
-        time_ns // 1000,
-        motor.measure_start,
-        int(target),
-        int(rate),
-        int(acceleration),
-        relative=bool(relative),
+        time_ns // 1000, motor.measure_start, *map(int, numbers), relative=bool(relative)
     )
 
 
@@ -132,8 +127,7 @@ def move_base(base: DriveBase, time_ns: int, values: Values) -> None:
 
 def drive_base(base: DriveBase, time_ns: int, values: Values) -> None:
     """Drive on at a speed and a rate of turn."""
-    speed, turn_rate = map(int, values)
-    base.drive(time_ns // 1000, speed, turn_rate)
+    base.drive(time_ns // 1000, *map(int, values))
 
 
 def stop_base(base: DriveBase, time_ns: int, values: Values) -> None:
@@ -149,8 +143,7 @@ def set_base(base: DriveBase, _time_ns: int, values: Values) -> None:
 
 def set_slowing(base: DriveBase, _time_ns: int, values: Values) -> None:
     """Set with which accelerations a drive base stops, if not with those with which it speeds up."""
-    straight, turn = map(int, values)
-    base.set_slowing(straight, turn)
+    base.set_slowing(*map(int, values))
 
 
 def use_gyro(base: DriveBase, time_ns: int, values: Values) -> None:

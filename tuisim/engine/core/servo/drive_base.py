@@ -51,21 +51,18 @@ def compute_usual_settings(
 ) -> tuple[Pace, Pace]:
     """Return speeds and accelerations of a new drive base, in mm and degrees, and in counts (maybe more exact)."""
     firmware = FIRMWARES[law]
-    limits = (
-        (distance, distance.speed, firmware.straight_speed),
-        (distance, distance.acceleration, firmware.straight_acceleration),
-        (heading, heading.speed, firmware.turn_rate),
-        (heading, heading.acceleration, firmware.turn_acceleration),
-    )
+    controls = distance, distance, heading, heading
+    limits = distance.speed, distance.acceleration, heading.speed, heading.acceleration
+    rows = [*zip(controls, limits, firmware.pace, strict=True)]
     if firmware.divides_units:
-        units = [control.units(limit) * part // whole for control, limit, (part, whole) in limits]
-        counts = [control.counts(unit) for unit, (control, *_) in zip(units, limits, strict=True)]
+        units = [control.units(limit) * part // whole for control, limit, (part, whole) in rows]
+        counts = [control.counts(unit) for control, unit in zip(controls, units, strict=True)]
     else:
-        exact = [limit * part / whole for _, limit, (part, whole) in limits]
+        exact = [limit * part / whole for _, limit, (part, whole) in rows]
         # As in the firmware, which has whole thousandths of a motor's degree per unit.
         units = [
             int(count / COUNTS_PER_STEP) // int(control.counts_per_unit / COUNTS_PER_STEP + 1e-3)
-            for count, (control, *_) in zip(exact, limits, strict=True)
+            for control, count in zip(controls, exact, strict=True)
         ]
         counts = [int(count) for count in exact]
     return (*units,), (*counts,)  # type: ignore[return-value]
@@ -224,17 +221,14 @@ class DriveBase:
 
     # Commands
 
-    def _count(self, usual: Pace) -> Pace:
-        distance = self.distance.settings.counts
-        heading = self.heading.settings.counts
-        return distance(usual[0]), distance(usual[1]), heading(usual[2]), heading(usual[3])
-
     def set_usual(self, usual: Pace) -> None:
         """Set the usual speeds and accelerations, in mm and degrees; unchanged values stay as exact as before."""
+        distance = self.distance.settings
+        heading = self.heading.settings
         speed, acceleration, rate, turn_acceleration = (
-            before if value == known else count
-            for value, known, before, count in zip(
-                usual, self.usual, self._pace, self._count(usual), strict=True
+            before if value == known else control.counts(value)
+            for value, known, before, control in zip(
+                usual, self.usual, self._pace, (distance, distance, heading, heading), strict=True
             )
         )
         self._slowing = None, None
@@ -399,9 +393,8 @@ class DriveBase:
         if now_us == self._behind_us:
             return
         self._behind_us, self._at_us = now_us, -1
-        millis = (motor.milli for motor in self.motors)
-        rates = (motor.counts_per_s for motor in self.motors)
-        (left, right), (left_rate, right_rate) = millis, rates
+        left, right = (motor.milli for motor in self.motors)
+        left_rate, right_rate = (motor.counts_per_s for motor in self.motors)
         self.distance.note_lag(now_us, passed_us, left + right, left_rate + right_rate)
         turned = left - right - self._offset
         self.heading.note_lag(now_us, passed_us, turned, left_rate - right_rate)

@@ -6,7 +6,7 @@ Sources: Pybricks 2.0.0, `lib/pbio/src/{servo,control,drivebase}.c` and `extmod/
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from math import pi
 from typing import TYPE_CHECKING
@@ -98,20 +98,10 @@ class MotorModel:
     def find_steady_dps(self, actuation: int, battery_v: float) -> float:
         """Return the speed that a power leads to in the end; 0 if friction holds the motor."""
         ideal_dps = battery_v * abs(actuation) / FULL_ACTUATION / self.back_emf_v_s * 180 / pi
-        speed = max(0.0, ideal_dps - self.friction_dps)
+        friction_v = self.resistance_ohm * self.friction_nm / self.torque_nm_per_a
+        friction_dps = friction_v / self.back_emf_v_s * 180 / pi
+        speed = max(0.0, ideal_dps - friction_dps)
         return speed if actuation >= 0 else -speed
-
-    @property
-    def friction_dps(self) -> float:
-        """The speed that corresponds to the voltage that friction costs."""
-        return (
-            self.resistance_ohm
-            * self.friction_nm
-            / self.torque_nm_per_a
-            / self.back_emf_v_s
-            * 180
-            / pi
-        )
 
 
 MODELS: Mapping[str, MotorModel] = {
@@ -132,8 +122,7 @@ class ServoKind:
     acceleration: int
     gains: tuple[int, int, int]
     feed_forward: int
-    position_tolerance_deg: int | None = None
-    """None for that of the firmware."""
+    position_tolerance_deg: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,13 +130,9 @@ class Firmware:
     """The settings of one version of the firmware."""
 
     motors: Mapping[str, ServoKind]
-    position_tolerance_deg: int
     stall_speed_dps: int
-    straight_speed: tuple[int, int]
-    """The usual speed of a drive base, as a fraction of its limit; so are the next three."""
-    straight_acceleration: tuple[int, int]
-    turn_rate: tuple[int, int]
-    turn_acceleration: tuple[int, int]
+    pace: Sequence[tuple[int, int]]
+    """The usual speed and acceleration of a drive base, and those of its turns, as fractions of their limits."""
     divides_units: bool
     """Whether these are fractions of limits that are rounded to units of the program."""
     speed_window_ms: int
@@ -157,12 +142,12 @@ class Firmware:
 THIRD = (1, 3)
 FIRMWARES: Mapping[MotorLaw, Firmware] = {
     MotorLaw.PYBRICKS: Firmware(
-        {"large": ServoKind(800, 1600, (400, 1200, 5), 0), "medium": ServoKind(1000, 4000, (300, 400, 3), 20)},
-        5, 15, THIRD, THIRD, THIRD, THIRD, divides_units=True, speed_window_ms=0,
+        {"large": ServoKind(800, 1600, (400, 1200, 5), 0, 5), "medium": ServoKind(1000, 4000, (300, 400, 3), 20, 5)},
+        15, (THIRD, THIRD, THIRD, THIRD), divides_units=True, speed_window_ms=0,
     ),
     MotorLaw.PYBRICKS_4: Firmware(
-        {"large": ServoKind(800, 2000, (400, 1200, 5), 0), "medium": ServoKind(1200, 2000, (300, 400, 3), 20)},
-        10, 20, (2, 5), (3, 8), THIRD, (3, 8), divides_units=False, speed_window_ms=100,
+        {"large": ServoKind(800, 2000, (400, 1200, 5), 0, 10), "medium": ServoKind(1200, 2000, (300, 400, 3), 20, 10)},
+        20, ((2, 5), (3, 8), THIRD, (3, 8)), divides_units=False, speed_window_ms=100,
     ),
 }  # fmt: skip
 
@@ -176,7 +161,6 @@ def compute_motor_settings(law: MotorLaw, kind: str, gear_ratio: float = 1.0) ->
     """
     firmware = FIRMWARES[law]
     motor = firmware.motors.get(kind) or _build_hub_kind(kind)
-    tolerance_deg = motor.position_tolerance_deg or firmware.position_tolerance_deg
     kp, ki, kd = motor.gains
     return ControlSettings(
         scale=round(COUNTS_PER_DEG * gear_ratio * _ONE),
@@ -189,7 +173,7 @@ def compute_motor_settings(law: MotorLaw, kind: str, gear_ratio: float = 1.0) ->
         integral_range=45,
         integral_rate=10,
         feed_forward=motor.feed_forward * 100,
-        position_tolerance=tolerance_deg * COUNTS_PER_DEG,
+        position_tolerance=motor.position_tolerance_deg * COUNTS_PER_DEG,
         speed_tolerance=50 * COUNTS_PER_DEG,
         stall_speed=firmware.stall_speed_dps * COUNTS_PER_DEG,
         stall_time_ms=200,
