@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import errno
 import sys
-from collections.abc import Callable, Generator, Mapping
+from collections.abc import Callable, Generator, Mapping, Sequence
 from dataclasses import field
 from math import nan
 from typing import Any, ClassVar, Generic, TypeVar
@@ -18,9 +18,8 @@ from tuisim.engine.core.servo.motor import ServoMotor
 from tuisim.engine.runs.readings import READING_CODES
 from tuisim.engine.shim.brick import BuiltBrick
 from tuisim.engine.shim.display import Screen
-from tuisim.engine.shim.leds import Lights
 from tuisim.engine.shim.plugs import PART_OF_DRIVER, PART_OF_KIND, Plugs
-from tuisim.engine.shim.power import Battery
+from tuisim.engine.shim.pybricks.parameters import find_port
 from tuisim.engine.shim.sensors import LegoSensor
 from tuisim.engine.shim.session import DeviceSession
 from tuisim.engine.shim.sound import Mixer
@@ -70,16 +69,6 @@ class Brick:
     """Brightness of the LEDs of a hub, 0 to 255, by their names in `BrickState.leds`; empty until one was lit."""
     in_task: bool = False
     """Whether the program runs a task of version 4, in which nothing blocks."""
-
-    @property
-    def lights(self) -> Lights:
-        """The lights of the brick's buttons."""
-        return self.built.lights
-
-    @property
-    def battery(self) -> Battery:
-        """The battery of the brick."""
-        return self.built.battery
 
     def find_motor(self, port: str) -> ServoMotor | None:
         """Return the motor on a port such as `outA`, after plugging one in if possible; None if there is none."""
@@ -230,6 +219,23 @@ class Connected:
 
     port: Any = None
     """The port to which the device is connected."""
+
+    def take_port(self, port: Any, names: Sequence[str]) -> str:
+        """Note the port to which the device is connected, and return its name in the robot.
+
+        Args:
+            port: The port.
+            names: Those of the robot for such devices.
+
+        Raises:
+            TypeError: it is no port.
+            ValueError: it is not among these.
+        """
+        name = find_port(port)
+        if name not in names:
+            raise ValueError("Invalid port")
+        self.port = port
+        return name
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({self.port or ''})"

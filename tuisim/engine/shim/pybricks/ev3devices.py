@@ -13,7 +13,6 @@ from tuisim.engine.shim.pybricks.parameters import (
     Color,
     Direction,
     Port,
-    find_port,
 )
 from tuisim.engine.shim.sensors import ColorDevice, GyroDevice
 
@@ -63,13 +62,10 @@ class Sensor(Connected):
 
     def __init__(self, port: AnyPort) -> None:
         self.brick.require_no_task()
-        name = find_port(port)
-        if name not in self.brick.session.sim.spec.robot.input_ports:
-            raise ValueError("Invalid port")
+        name = self.take_port(port, self.brick.session.sim.spec.robot.input_ports)
         sensor = self.brick.find_sensor(name, self.KIND)
         if sensor is None:
             raise no_device(self.brick.hint(SENSOR_CLASS))
-        self.port = port
         self._sensor = sensor
 
     def _read(self, mode: str) -> tuple[int, ...]:
@@ -139,6 +135,9 @@ class InfraredSensor(Sensor):
 
     KIND = "infrared"
 
+    COLLECT: ClassVar[type[Any]] = list
+    """Makes the collections of buttons that it returns."""
+
     def distance(self) -> int:
         """Return the distance to the next object, 0 for near to 100 for far."""
         return self._read("IR-PROX")[0]
@@ -155,14 +154,14 @@ class InfraredSensor(Sensor):
         heading, distance = self._read("IR-SEEK")[at : at + 2]
         return (None, None) if distance == NO_BEACON else (distance, DEG_PER_HEADING * heading)
 
-    def buttons(self, channel: int) -> list[Button]:
+    def buttons(self, channel: int) -> Any:
         """Return the pressed buttons of the remote."""
-        return list(REMOTE_BUTTONS[self._read("IR-REMOTE")[self._channel(channel)]])
+        return self.COLLECT(REMOTE_BUTTONS[self._read("IR-REMOTE")[self._channel(channel)]])
 
-    def keypad(self) -> list[Button]:
+    def keypad(self) -> Any:
         """Return the pressed buttons of the remote on channel 1, any number of them."""
         bits = self._read("IR-REM-A")[0]
-        return [button for bit, button in KEYPAD_BITS.items() if bits & bit]
+        return self.COLLECT(button for bit, button in KEYPAD_BITS.items() if bits & bit)
 
 
 class GyroSensor(Sensor):
@@ -170,15 +169,15 @@ class GyroSensor(Sensor):
 
     KIND = "gyro"
 
-    def __init__(self, port: Port, *direction: Direction, **named: Direction) -> None:
+    def __init__(
+        self,
+        port: Port,
+        direction: Direction = Direction.CLOCKWISE,
+        *,
+        positive_direction: Direction | None = None,
+    ) -> None:
         super().__init__(port)
-        chosen = [
-            *direction,
-            *(named[key] for key in ("direction", "positive_direction") if key in named),
-        ]
-        if len(chosen) > 1 or len(chosen) != len(direction) + len(named):
-            raise TypeError("GyroSensor takes a port and a direction")
-        self._sign = (chosen[0] if chosen else Direction.CLOCKWISE).sign
+        self._sign = (positive_direction or direction).sign
         self._zero = 0
         self._zero = self._angle()
 

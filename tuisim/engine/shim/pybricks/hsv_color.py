@@ -68,8 +68,8 @@ class Color(metaclass=_NamedColors):
     def __iter__(self) -> Iterator[int]:
         return iter((self.h, self.s, self.v))
 
-    def __getitem__(self, index: int) -> int:
-        return (self.h, self.s, self.v)[index]
+    def __getitem__(self, index: int) -> Any:
+        return (*self,)[index]
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Color) and (*self,) == (*other,)
@@ -94,7 +94,7 @@ class Color(metaclass=_NamedColors):
         return Color(self.h + whole(angle), self.s, self.v)
 
     def __lshift__(self, angle: float) -> Color:
-        return Color(self.h - whole(angle), self.s, self.v)
+        return self >> -angle
 
 
 for _name, _hsv in {

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from enum import Enum
-from typing import Any
+from typing import Any, ClassVar
 
 from tuisim.engine.runs.readings import BUTTONS_PORT
 from tuisim.engine.shim.leds import MAX_BRIGHTNESS
@@ -44,11 +44,14 @@ class Buttons(Connected):
     ) -> None:
         self._buttons, self._place = buttons, place
 
+    COLLECT: ClassVar[type[Any]] = list
+    """Makes the collections of buttons that it returns."""
+
     def pressed(self) -> Any:
         """Return the pressed buttons."""
         self.brick.read("pressed", self._place)
         pressed = self.brick.session.pressed
-        return [button for name, button in self._buttons.items() if name in pressed]
+        return self.COLLECT(button for name, button in self._buttons.items() if name in pressed)
 
 
 class Light(Connected):
@@ -66,7 +69,7 @@ class Light(Connected):
 
     def _shine(self, red: int, green: int) -> None:
         self.brick.command()
-        lights = self.brick.lights
+        lights = self.brick.built.lights
         lights.shine({name: red if name.endswith("red") else green for name in lights.lights})
 
 
@@ -76,12 +79,12 @@ class Battery(Connected):
     def voltage(self) -> int:
         """Return the voltage in mV."""
         self.brick.read()
-        return round(1000 * self.brick.battery.voltage_v())
+        return round(1000 * self.brick.built.battery.voltage_v())
 
     def current(self) -> int:
         """Return the current in mA."""
         self.brick.read()
-        return round(1000 * self.brick.battery.current_a())
+        return round(1000 * self.brick.built.battery.current_a())
 
 
 class EV3Brick(Connected):

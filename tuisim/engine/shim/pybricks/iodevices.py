@@ -28,11 +28,8 @@ class Ev3devSensor(Sensor):
             NotSimulated: it is a mode of a sensor that is not simulated.
         """
         if mode not in self._sensor.modes:
-            self._refuse(mode)
+            try:
+                self._sensor.set_mode(mode)
+            except OSError:
+                raise OSError(errno.EIO, f"EIO:\n\nThe sensor has no mode {mode!r}.") from None
         return self._read(mode)
-
-    def _refuse(self, mode: str) -> None:
-        try:
-            self._sensor.set_mode(mode)
-        except OSError:
-            raise OSError(errno.EIO, f"EIO:\n\nThe sensor has no mode {mode!r}.") from None

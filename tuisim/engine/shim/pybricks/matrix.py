@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import struct
-from collections.abc import Callable, Iterator, Sequence
-from enum import Enum
+from collections.abc import Iterator, Sequence
+from operator import add
 from typing import Any
 
 from tuisim.engine.shim.pybricks.brick import invalid_argument
-from tuisim.engine.shim.pybricks.parameters import shown_by_name
+from tuisim.engine.shim.pybricks.parameters import NamedEnum
 
 Rows = tuple[tuple[float, ...], ...]
 
@@ -37,30 +37,23 @@ class Matrix:
         """The transposed matrix."""
         return Matrix([*zip(*self._rows, strict=True)])
 
-    @property
-    def _numbers(self) -> list[float]:
-        return [value for row in self._rows for value in row]
-
-    def __getitem__(self, index: Any) -> float:
+    def __getitem__(self, index: Any) -> Any:
         if isinstance(index, tuple):
             row, column = map(int, index)
             return self._rows[row][column]
-        return self._numbers[int(index)]
+        return [*self][int(index)]
 
     def __iter__(self) -> Iterator[float]:
-        return iter(self._numbers)
+        return (value for row in self._rows for value in row)
 
-    def _each(self, other: Matrix, compute: Callable[[float, float], float]) -> Matrix:
+    def __add__(self, other: Matrix) -> Matrix:
         if not isinstance(other, Matrix) or other.shape != self.shape:
             raise invalid_argument()
         pairs = zip(self._rows, other._rows, strict=True)
-        return Matrix([[*map(compute, row, with_row)] for row, with_row in pairs])
+        return Matrix([[*map(add, *pair)] for pair in pairs])
 
-    def __add__(self, other: Matrix) -> Matrix:
-        return self._each(other, lambda a, b: a + b)
-
-    def __sub__(self, other: Matrix) -> Matrix:
-        return self._each(other, lambda a, b: a - b)
+    def __sub__(self, other: Matrix) -> Any:
+        return self + -other
 
     def __neg__(self) -> Any:
         return self * -1
@@ -112,8 +105,7 @@ class Axis:
     Z = vector(0, 0, 1)
 
 
-@shown_by_name
-class Side(Enum):
+class Side(NamedEnum):
     """The sides of a hub."""
 
     TOP, BOTTOM, FRONT, BACK, LEFT, RIGHT = range(1, 7)

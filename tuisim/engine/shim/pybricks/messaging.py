@@ -119,6 +119,9 @@ class MailboxHandlerMixIn(Connected):
         self._waiting: dict[str, list[Any]] = {}
         self._peers: list[tuple[str, MailboxHandlerMixIn]] = []
 
+    def __enter__(self) -> Self:
+        return self
+
     def read_from_mailbox(self, mbox: str) -> Any:
         """Return the newest bytes in a mailbox; None if none have arrived."""
         self.brick.command()
@@ -184,9 +187,6 @@ class BluetoothMailboxServer(MailboxHandlerMixIn):
         super().__init__()
         BluetoothMailboxServer.newest = self
 
-    def __enter__(self) -> Self:
-        return self
-
     def __exit__(self, *_error: object) -> None:
         self.server_close()
 
@@ -225,9 +225,6 @@ class BluetoothMailboxClient(MailboxHandlerMixIn):
     def __init__(self) -> None:
         super().__init__()
         BluetoothMailboxClient.exists = True
-
-    def __enter__(self) -> Self:
-        return self
 
     def __exit__(self, *_error: object) -> None:
         self.close()

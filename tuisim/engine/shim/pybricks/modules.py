@@ -20,15 +20,13 @@ from tuisim.engine.shim.pybricks.brick import Brick, Connected
 from tuisim.engine.shim.pybricks.unsimulated import (
     HUB_CLASSES,
     IO_DEVICES,
+    MODULES,
     NXT_DEVICES,
     VERSION_4,
     explain_hub,
     refuse_all,
     refuse_hub,
     refused_classes,
-)
-from tuisim.engine.shim.pybricks.unsimulated import (
-    MODULES as REFUSED,
 )
 from tuisim.engine.shim.session import DeviceSession
 from tuisim.engine.shim.sound import Mixer
@@ -128,11 +126,11 @@ def refuse_name(hub: str, module: str, name: str) -> NoReturn:
     """
     from tuisim.engine.shim.pybricks.earlier import EARLIER, EARLIER_MODULES
 
-    if name.startswith("__"):
-        raise AttributeError(f"module {module!r} has no attribute {name!r}")
-    if hint := EARLIER_MODULES.get(module) or EARLIER.get(module, {}).get(name):
+    hint = EARLIER_MODULES.get(module) or EARLIER.get(module, {}).get(name)
+    is_inner = name.startswith("__")
+    if hint and not is_inner:
         raise refused_as(ImportError, f"{module}.{name} is not in Pybricks 4", hint)
-    for owner in dict.fromkeys((hub, "", "PrimeHub")):
+    for owner in dict.fromkeys(() if is_inner else (hub, "", "PrimeHub")):
         for place, names in read_version_4(owner).items():
             if name in names:
                 hint = f"{place} of {owner or 'the EV3'} has it"
@@ -155,7 +153,7 @@ def install(
     names = _choose_names(brick, law, hub)
     speaker.set_volumes(brick.mixer, speaker.START_VOLUMES)
     made = {name: types.ModuleType(name) for name in names}
-    made |= {name: HardwareModule(name, hardware) for name, hardware in REFUSED.items()}
+    made |= {name: HardwareModule(name, hardware) for name, hardware in MODULES.items()}
     vars(made["pybricks.bluetooth"]).update(BLUETOOTH)
     for name, module in made.items():
         vars(module).update(names.get(name, {}))

@@ -22,7 +22,7 @@ from tuisim.engine.shim.pybricks.brick import (
     not_permitted,
     whole,
 )
-from tuisim.engine.shim.pybricks.parameters import Direction, Port, Stop, find_port
+from tuisim.engine.shim.pybricks.parameters import Direction, Port, Stop
 from tuisim.engine.shim.pybricks.unsimulated import LOGGER
 from tuisim.engine.shim.unsupported.modules import refused_part
 
@@ -78,19 +78,13 @@ class DCMotor(Connected):
     def _set_up(
         self, port: Port, direction: Direction, ratio: float, *, keeps_angle: bool = False
     ) -> None:
-        found = self.brick.find_motor(self._port_name(port))
+        name = self.take_port(port, self.brick.session.sim.spec.robot.output_ports)
+        self.port_names = (name,)
+        found = self.brick.find_motor(name)
         if found is None:
             raise no_device(self.brick.hint(MOTOR_CLASS))
         self._motor: ServoMotor = found
         self.tell(Call.SET_UP, float(direction.sign), ratio, float(keeps_angle))
-
-    def _port_name(self, port: Port) -> str:
-        name = find_port(port)
-        if name not in self.brick.session.sim.spec.robot.output_ports:
-            raise ValueError("Invalid port")
-        self.port_names = (name,)
-        self.port = port
-        return name
 
     @property
     def simulated(self) -> ServoMotor:
@@ -118,8 +112,7 @@ class DCMotor(Connected):
 
     def dc(self, duty: float) -> None:
         """Run at a power in percent, without control of the speed."""
-        self._command()
-        self.tell(Call.RUN_FREELY, max(-100, min(100, whole(duty))) * PERCENT)
+        self._run_freely(max(-100, min(100, whole(duty))) * PERCENT)
 
     def stop(self) -> None:
         """Let the motor coast."""
@@ -177,10 +170,8 @@ class Motor(DCMotor):
         """Run at a speed in degrees per second."""
         self._command()
         settings = self._motor.control.settings
-        self._run_endlessly(settings.counts(whole(speed)), settings.acceleration)
-
-    def _run_endlessly(self, rate: int, acceleration: int) -> None:
-        self.tell(Call.RUN_AT, rate, acceleration, None, Ending.HOLD)
+        rate = settings.counts(whole(speed))
+        self.tell(Call.RUN_AT, rate, settings.acceleration, None, Ending.HOLD)
 
     def _follow(self, ending: Ending = Ending.HOLD) -> None:
         self.tell(Call.FOLLOW, ending)
@@ -287,14 +278,14 @@ class Motor(DCMotor):
             lambda _: motor.guide is None or motor.control.stalled, lambda: None
         )
         angle = self.angle()
-        match ending_of(self.ENDINGS, then):
-            case Ending.HOLD:
-                self.hold()
-            case Ending.BRAKE:
-                self.brake()
-            case _:
-                self.stop()
+        self._rest(ending_of(self.ENDINGS, then))
         return angle
+
+    def _rest(self, ending: Ending) -> None:
+        if ending is Ending.HOLD:
+            self.hold()
+        else:
+            self._run_freely(0 if ending is Ending.BRAKE else None)
 
 
 class Control(Connected):

@@ -3,22 +3,19 @@
 from __future__ import annotations
 
 from enum import Enum
-from typing import Any, TypeVar
-
-Members = TypeVar("Members", bound=type[Enum])
+from typing import Any
 
 
-def shown_by_name(members: Members) -> Members:
-    """Let members of an enumeration be printed as the firmware does, such as `Port.A`; return the enumeration."""
+class NamedEnum(Enum):
+    """An enumeration whose members are printed as the firmware does, such as `Port.A`."""
 
-    def shown(self: Enum) -> str:
+    def __repr__(self) -> str:
         return f"{type(self).__name__}.{self.name}"
 
-    members.__repr__ = members.__str__ = shown  # type: ignore[assignment, method-assign]
-    return members
+    __str__ = __repr__
 
 
-class AnyPort(Enum):
+class AnyPort(NamedEnum):
     """The ports of a brick or a hub."""
 
     @property
@@ -38,7 +35,6 @@ def find_port(port: Any) -> str:
     return port.device_port
 
 
-@shown_by_name
 class Port(AnyPort):
     """The ports of the brick."""
 
@@ -51,15 +47,13 @@ class Port(AnyPort):
         return f"in{self.name[1]}" if self.name.startswith("S") else f"out{self.name}"
 
 
-@shown_by_name
-class Stop(Enum):
+class Stop(NamedEnum):
     """What a motor does after a move."""
 
     COAST, BRAKE, HOLD = range(3)
 
 
-@shown_by_name
-class Direction(Enum):
+class Direction(NamedEnum):
     """The direction that counts as positive."""
 
     CLOCKWISE, COUNTERCLOCKWISE = range(2)
@@ -70,23 +64,20 @@ class Direction(Enum):
         return 1 if self is Direction.CLOCKWISE else -1
 
 
-@shown_by_name
-class Button(Enum):
+class Button(NamedEnum):
     """Buttons of the brick and of the infrared remote."""
 
     LEFT_DOWN, DOWN, RIGHT_DOWN, LEFT, CENTER, RIGHT, LEFT_UP, UP, RIGHT_UP = range(1, 10)
     BEACON = 8
 
 
-@shown_by_name
-class Color(Enum):
+class Color(NamedEnum):
     """Colours of the sensor, the light and the screen."""
 
     BLACK, BLUE, GREEN, YELLOW, RED, WHITE, BROWN, ORANGE, PURPLE = range(1, 10)
 
 
-@shown_by_name
-class Align(Enum):
+class Align(NamedEnum):
     """Where version 1.0 shows an image."""
 
     BOTTOM_LEFT, BOTTOM, BOTTOM_RIGHT, LEFT, CENTER, RIGHT, TOP_LEFT, TOP, TOP_RIGHT = range(1, 10)

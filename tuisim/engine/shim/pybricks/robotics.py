@@ -38,9 +38,9 @@ class DriveBase(Connected):
                 raise TypeError(f"a Motor is needed, not {type(motor).__name__}")
         kind = PART_OF_KIND[left_motor.simulated.kind]
         self.brick.plugs.make_wheels(*left_motor.port_names, *right_motor.port_names, kind)
-        if left_motor.simulated is right_motor.simulated or wheel_diameter <= 0 or axle_track <= 0:
-            raise invalid_argument()
-        if left_motor.simulated.control.settings != right_motor.simulated.control.settings:
+        left, right = left_motor.simulated, right_motor.simulated
+        are_alike = left.control.settings == right.control.settings
+        if left is right or not are_alike or wheel_diameter <= 0 or axle_track <= 0:
             raise invalid_argument()
         self.left, self.right = left_motor, right_motor
         if DriveBase.current is not None:
@@ -48,7 +48,7 @@ class DriveBase(Connected):
         DriveBase.current = self
         self.port_names = (*left_motor.port_names, *right_motor.port_names)
         sim = self.brick.session.sim
-        numbers = (sim.find_number(motor.simulated) for motor in (left_motor, right_motor))
+        numbers = sim.find_number(left), sim.find_number(right)
         self.brick.tell(0, Call.BUILD_BASE, *numbers, float(wheel_diameter), float(axle_track))
         self._number = sim.bases.newest
         self._base = base = sim.bases[self._number]

@@ -68,11 +68,9 @@ class StopWatch(Connected):
 
     def resume(self) -> None:
         """Go on counting."""
-        self._counted_ns, self._began_ns, self._runs = (
-            self._passed_ns(),
-            self.brick.session.now,
-            True,
-        )
+        self._counted_ns = self._passed_ns()
+        self._began_ns = self.brick.session.now
+        self._runs = True
 
     def reset(self) -> None:
         """Set the time to 0; a stopwatch that runs goes on."""

@@ -124,10 +124,9 @@ def refuse_all(classes: Mapping[str, Sequence[str]], instead: str) -> dict[str, 
         instead: What a program can use instead.
     """
     return {
-        module: {
-            name: refused_part(module, name, Hardware(f"the class {name}", instead))
-            for name in names
-        }
+        module: refused_classes(
+            module, {name: Hardware(f"the class {name}", instead) for name in names}
+        )
         for module, names in classes.items()
     }
 

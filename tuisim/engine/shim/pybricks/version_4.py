@@ -6,7 +6,6 @@ In a task, which `run_task` runs, a blocking call returns at once what the task 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from enum import Enum
 from math import atan2, degrees, hypot, radians
 from typing import Any, ClassVar
 
@@ -26,7 +25,7 @@ from tuisim.engine.shim.pybricks.brick import (
 )
 from tuisim.engine.shim.pybricks.hsv_color import Color as Color
 from tuisim.engine.shim.pybricks.motor import gear_ratio
-from tuisim.engine.shim.pybricks.parameters import Button, Direction, Port, shown_by_name
+from tuisim.engine.shim.pybricks.parameters import Direction, NamedEnum, Port
 from tuisim.engine.shim.pybricks.unsimulated import MODEL
 from tuisim.engine.shim.unsupported.modules import refused_part
 
@@ -39,8 +38,7 @@ MIN_ACCELERATION_DPS2, MAX_ACCELERATION_DPS2 = 50, 20_000
 """The limits of the acceleration of a motor that a setting may ask for."""
 
 
-@shown_by_name
-class Stop(Enum):
+class Stop(NamedEnum):
     """What a motor does after a move."""
 
     COAST, BRAKE, HOLD, NONE, COAST_SMART, BRAKE_SMART = range(6)
@@ -98,12 +96,11 @@ class Motor(motor.Motor):
 
     def done(self) -> bool:
         """Return whether no move is under way."""
-        return self.move_done(self.brick.read("state", *self.port_names), self._motor.control)
+        return self.control.done()
 
     def stalled(self) -> bool:
         """Return whether something blocks the motor."""
-        self.brick.read("state", *self.port_names)
-        return self._motor.control.stalled
+        return self.control.stalled()
 
     def load(self) -> int:
         """Return the load in mNm: nothing but an obstacle loads a simulated motor."""
@@ -300,12 +297,14 @@ class DriveBase(robotics.DriveBase):
         """Set the current distance in mm and angle in degrees."""
         self.stop()
         super().reset()
+        base = self._base
         total, difference = self._zeros
-        if self._base.uses_gyro:
+        total -= base.distance.settings.counts(whole(distance))
+        if base.uses_gyro:
             self.brick.tell(0, Call.SET_GYRO, whole(angle))
-            difference = self._base.heading.settings.counts(whole(angle))
-        counts = self._base.distance.settings.counts, self._base.heading.settings.counts
-        self._zeros = total - counts[0](whole(distance)), difference - counts[1](whole(angle))
+            self._zeros = total, 0
+        else:
+            self._zeros = total, difference - base.heading.settings.counts(whole(angle))
 
 
 class GyroDriveBase(DriveBase):
@@ -328,13 +327,7 @@ class ColorSensor(ev3devices.ColorSensor):
 class InfraredSensor(ev3devices.InfraredSensor):
     """An infrared sensor."""
 
-    def buttons(self, channel: int) -> set[Button]:  # type: ignore[override]
-        """Return the pressed buttons of the remote."""
-        return set(super().buttons(channel))
-
-    def keypad(self) -> set[Button]:  # type: ignore[override]
-        """Return the pressed buttons of the remote on channel 1, any number of them."""
-        return set(super().keypad())
+    COLLECT = set
 
 
 class GyroSensor(ev3devices.GyroSensor):

@@ -16,15 +16,9 @@ class Motor(motor.Motor):
 
     def stop(self, stop_type: Stop = Stop.COAST) -> None:
         """Let the motor coast, brake or hold."""
-        match stop_type:
-            case Stop.COAST:
-                super().stop()
-            case Stop.BRAKE:
-                self.brake()
-            case Stop.HOLD:
-                self.hold()
-            case _:
-                raise _invalid_stop()
+        if not isinstance(stop_type, Stop):
+            raise _invalid_stop()
+        self._rest(self.ENDINGS[stop_type])
 
     def stalled(self) -> bool:
         """Return whether something blocks the motion."""

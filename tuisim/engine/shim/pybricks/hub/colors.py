@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import cos, radians, sin
+from math import cos, dist, radians, sin
 from typing import Any
 
 MAX_GREY_SATURATION = 40
@@ -38,7 +38,8 @@ def find_nearest(measured: tuple[int, int, int], colors: Sequence[Any]) -> Any:
     """Return the colour that is nearest to a measured hue, saturation and value."""
     hue, saturation, value = measured
     if not all(_is_ideal(color) for color in colors):
-        return min(colors, key=lambda color: _measure_distance(measured, (*color,)))
+        place = _find_place(measured)
+        return min(colors, key=lambda color: dist(place, _find_place((*color,))))
     is_grey = saturation <= MAX_GREY_SATURATION or value <= MAX_DARK_VALUE
     alike = [color for color in colors if (color.s == 0) == is_grey] or colors
     if alike[0].s == 0:
@@ -50,13 +51,8 @@ def _is_ideal(color: Any) -> bool:
     return (color.s, color.v) == (100, 100) or (color.h, color.s) == (0, 0)
 
 
-def _measure_distance(color: tuple[int, int, int], other: tuple[int, int, int]) -> float:
-    """Return the squared distance of two colours in a double cone."""
-    places = zip(_find_place(color), _find_place(other), strict=True)
-    return sum((place - other_place) ** 2 for place, other_place in places)
-
-
 def _find_place(color: tuple[int, int, int]) -> tuple[float, float, float]:
+    """Return the place of a colour in a double cone."""
     hue, saturation, value = color
     chroma = max(0, value) * saturation
     angle = radians(hue)

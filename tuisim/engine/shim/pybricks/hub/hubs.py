@@ -26,19 +26,13 @@ BUTTON_NAMES: Mapping[str, Button] = {
 
 
 class Charger(Connected):
-    """The charger, which is not connected."""
+    """The charger, which is not connected: its connection, its state and its current in mA are 0."""
 
     def connected(self) -> int:
-        """Return the kind of the USB port to which the charger is connected: none."""
+        """Return 0."""
         return 0
 
-    def status(self) -> int:
-        """Return the state of the charger: it does not charge."""
-        return 0
-
-    def current(self) -> int:
-        """Return the current of the charger in mA."""
-        return 0
+    status = current = connected
 
 
 class Hub(Connected):

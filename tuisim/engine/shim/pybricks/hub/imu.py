@@ -20,8 +20,12 @@ GRAVITY_MM_S2 = 9806.65
 STILL_DPS = 2.0
 """Below this rate a hub is at rest, if nothing moves its motors."""
 UNCORRECTED = (
-    *(STILL_DPS, 2500.0, (0.0, 0.0, 0.0), (360.0, 360.0, 360.0)),
-    *((GRAVITY_MM_S2, -GRAVITY_MM_S2) * 3, 360.0),
+    STILL_DPS,
+    2500.0,
+    (0.0, 0.0, 0.0),
+    (360.0, 360.0, 360.0),
+    (GRAVITY_MM_S2, -GRAVITY_MM_S2) * 3,
+    360.0,
 )
 """The settings of a hub that was not calibrated."""
 MAX_CORRECTION_DEG = 15
@@ -39,7 +43,7 @@ class Accelerometer(Connected):
     """
 
     def __init__(self, top: Matrix, front: Matrix) -> None:
-        if sum(a * b for a, b in zip(top, front, strict=True)):
+        if top.T * front:
             raise invalid_argument()
         left = cross(top, front)
         self._sides = {
@@ -146,8 +150,12 @@ class IMU(Accelerometer):
             ValueError: the correction of the heading is far from a whole turn.
         """
         given = (
-            *(angular_velocity_threshold, acceleration_threshold, angular_velocity_bias),
-            *(angular_velocity_scale, acceleration_correction, heading_correction),
+            angular_velocity_threshold,
+            acceleration_threshold,
+            angular_velocity_bias,
+            angular_velocity_scale,
+            acceleration_correction,
+            heading_correction,
         )
         if all(value is None for value in given):
             return self._settings
@@ -162,7 +170,6 @@ class IMU(Accelerometer):
 def _along(axis: Matrix | None, values: Matrix) -> Any:
     if axis is None:
         return values
-    length = sum(part * part for part in axis) ** 0.5
-    if axis.shape != Axis.X.shape or not length:
+    if axis.shape != Axis.X.shape or not (square := axis.T * axis):
         raise invalid_argument()
-    return round_number(sum(a * b for a, b in zip(axis, values, strict=True)) / length)
+    return round_number(axis.T * values / square**0.5)

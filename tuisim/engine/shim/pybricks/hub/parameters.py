@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-from enum import Enum
-
-from tuisim.engine.shim.pybricks.parameters import AnyPort, shown_by_name
+from tuisim.engine.shim.pybricks.parameters import AnyPort, NamedEnum
 
 
-@shown_by_name
 class Port(AnyPort):
     """The ports of the hub, for motors and sensors alike."""
 
     A, B, C, D, E, F = map(ord, "ABCDEF")
 
 
-@shown_by_name
-class Button(Enum):
+class Button(NamedEnum):
     """Buttons of the hub, of the remote control and of a game controller."""
 
     (LEFT, RIGHT, CENTER, BLUETOOTH, LEFT_PLUS, LEFT_MINUS, RIGHT_PLUS, RIGHT_MINUS) = range(1, 9)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, ClassVar, TypeVar
 
 from tuisim.engine.core.sensors import color
@@ -12,7 +12,7 @@ from tuisim.engine.shim.pybricks.brick import Connected, Waiting, no_device, who
 from tuisim.engine.shim.pybricks.hub.colors import find_nearest, measure_hsv
 from tuisim.engine.shim.pybricks.hub.face import show_light
 from tuisim.engine.shim.pybricks.hub.parameters import Port
-from tuisim.engine.shim.pybricks.parameters import find_port
+from tuisim.engine.shim.pybricks.tools import wait, wait_until
 from tuisim.engine.shim.pybricks.version_4 import Color
 from tuisim.engine.shim.sensors import ColorDevice
 
@@ -30,50 +30,42 @@ class Sensor(ev3devices.Sensor):
     SWITCH_US: ClassVar[int] = 0
     """How long the first reading in another mode takes."""
 
-    def _read_as(self, mode: str, convert: Callable[[], Result]) -> Result:
-        """Measure in a mode and return the converted result; in a task, an object to await."""
+    def _read_as(self, mode: str, convert: Callable[[int], Result]) -> Result:
+        """Measure in a mode and return the converted number; in a task, an object to await."""
         return self.brick.finish(self._measure(mode, convert))
 
-    def _measure(self, mode: str, convert: Callable[[], Result]) -> Waiting[Result]:
+    def _measure(self, mode: str, convert: Callable[[int], Result]) -> Waiting[Result]:
         sensor = self._sensor
         if sensor.mode == mode:
-            sensor.measure(mode)
-        else:
-            sensor.mode = mode
-            yield self.brick.now_us + self.SWITCH_US
-            sensor.measure_switched(mode)
-        return convert()
+            return convert(sensor.measure(mode)[0])
+        sensor.mode = mode
+        yield from wait_until(self.brick.now_us + self.SWITCH_US)
+        return convert(sensor.measure_switched(mode)[0])
 
 
-class Lights(Connected):
+class Lights:
     """The lights around the eye of a sensor, which nothing shows."""
 
     def on(self, brightness: Any = 100) -> None:
         """Turn the lights on: one brightness in percent for all, or one for each."""
-        return self.brick.finish(self._wait())
+        return wait(10)
 
     def off(self) -> None:
         """Turn the lights off."""
-        return self.brick.finish(self._wait())
-
-    def _wait(self) -> Waiting[None]:
-        yield self.brick.now_us + 10_000
+        return wait(10)
 
 
 class Light(Connected):
     """A light on a port: nothing senses it, and the panel of the hub shows it."""
 
     def __init__(self, port: Port) -> None:
-        self.port = port
-        name = find_port(port)
-        if name not in self.brick.session.sim.spec.robot.output_ports:
-            raise ValueError("Invalid port")
+        name = self.take_port(port, self.brick.session.sim.spec.robot.output_ports)
         if name in self.brick.built.motors or name in self.brick.built.sensors:
             raise no_device(self.brick.hint(SENSOR_CLASS))
 
     def on(self, brightness: float = 100) -> None:
         """Turn the light on with a brightness in percent."""
-        show_light(find_port(self.port), whole(brightness))
+        show_light(self.port.device_port, whole(brightness))
 
     def off(self) -> None:
         """Turn the light off."""
@@ -85,37 +77,40 @@ class ColorSensor(Sensor):
 
     KIND = "color"
     SWITCH_US = 30_000
-    DETECTABLE = (Color.RED, Color.YELLOW, Color.GREEN, Color.BLUE, Color.WHITE, Color.NONE)
+    lights = Lights()
+    _colors: Sequence[Any] = (
+        *(Color.RED, Color.YELLOW, Color.GREEN, Color.BLUE, Color.WHITE, Color.NONE),
+    )
 
     def __init__(self, port: Port) -> None:
         super().__init__(port)
         self._sensor.mode = ""
-        self._colors: tuple[Any, ...] = self.DETECTABLE
-        self.lights = Lights()
 
-    def _raw(self) -> tuple[int, int, int]:
+    def _read_light(self, convert: Callable[..., Result]) -> Result:
+        """Measure red, green and blue, and return what `convert` makes of them."""
         assert isinstance(self._sensor, ColorDevice)
-        return color.measure_hub_channels(self._sensor.channels())
+        channels = self._sensor.channels
+        return self._read_as("RGB-RAW", lambda _: convert(*color.measure_hub_channels(channels())))
 
     def reflection(self) -> int:
         """Return the reflected light in percent."""
-        return self._read_as("RGB-RAW", lambda: sum(self._raw()) * 100 // (3 * color.HUB_WHITE))
+        return self._read_light(lambda *channels: int(sum(channels) * 100 // (3 * color.HUB_WHITE)))
 
     def ambient(self) -> int:
         """Return the ambient light in percent."""
-        return self._read_as("COL-AMBIENT", lambda: self._sensor.modes["COL-AMBIENT"].measure()[0])
+        return self._read_as("COL-AMBIENT", int)
 
     def hsv(self, surface: bool = True) -> Any:
         """Return hue, saturation and value."""
-        return self._read_as("RGB-RAW", lambda: Color(*measure_hsv(*self._raw())))
+        return self._read_light(lambda *channels: Color(*measure_hsv(*channels)))
 
     def color(self, surface: bool = True) -> Any:
         """Return the nearest of the detectable colours."""
-        return self._read_as(
-            "RGB-RAW", lambda: find_nearest(measure_hsv(*self._raw()), self._colors)
+        return self._read_light(
+            lambda *channels: find_nearest(measure_hsv(*channels), self._colors)
         )
 
-    def detectable_colors(self, colors: Any = None) -> tuple[Any, ...] | None:
+    def detectable_colors(self, colors: Any = None) -> Sequence[Any] | None:
         """Return the colours that `color` tells apart, or set them."""
         if colors is None:
             return self._colors
@@ -128,23 +123,15 @@ class UltrasonicSensor(Sensor):
 
     KIND = "ultrasonic"
     SWITCH_US = 50_000
-
-    def __init__(self, port: Port) -> None:
-        super().__init__(port)
-        self.lights = Lights()
+    lights = Lights()
 
     def distance(self) -> int:
         """Return the distance to the next object in mm, 2000 for none."""
-        return self._read_as(
-            "US-DIST-CM",
-            lambda: min(FARTHEST_MM, self._sensor.modes["US-DIST-CM"].measure()[0]),
-        )
+        return self._read_as("US-DIST-CM", lambda distance_mm: min(FARTHEST_MM, distance_mm))
 
     def presence(self) -> bool:
         """Return whether the sensor hears another ultrasonic sensor."""
-        return self._read_as(
-            "US-LISTEN", lambda: bool(self._sensor.modes["US-LISTEN"].measure()[0])
-        )
+        return self._read_as("US-LISTEN", bool)
 
 
 class ForceSensor(Sensor):
@@ -153,9 +140,7 @@ class ForceSensor(Sensor):
     KIND = "touch"
 
     def _push(self, pressed: Result, released: Result) -> Result:
-        return self._read_as(
-            "TOUCH", lambda: pressed if self._sensor.modes["TOUCH"].measure()[0] else released
-        )
+        return self._read_as("TOUCH", lambda is_pressed: pressed if is_pressed else released)
 
     def force(self) -> float:
         """Return the force in N."""

@@ -1,6 +1,4 @@
 """Waits, a stopwatch, matrices, tasks and a menu."""
 
+from tuisim.engine.shim.names.version_4.pybricks.tools import *  # noqa: F403 - and what only hubs have
 from tuisim.engine.shim.pybricks.hub.display import hub_menu
-from tuisim.engine.shim.pybricks.matrix import Axis, Matrix, cross, vector
-from tuisim.engine.shim.pybricks.tools import wait
-from tuisim.engine.shim.pybricks.version_4 import StopWatch, multitask, read_input_byte, run_task
