@@ -55,6 +55,8 @@ class ControlSettings:
     """...for this long is stalled."""
     speed_window_ms: int = 0
     """The speed that decides whether a move is done is the mean over this time; 0 takes the present one."""
+    torque_unm: int = 0
+    """The torque at full power, in micro-Nm; it is only told."""
 
     @property
     def counts_per_unit(self) -> float:
@@ -123,6 +125,7 @@ class ServoKind:
     gains: tuple[int, int, int]
     feed_forward: int
     position_tolerance_deg: int
+    torque_unm: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -146,7 +149,10 @@ FIRMWARES: Mapping[MotorLaw, Firmware] = {
         15, (THIRD, THIRD, THIRD, THIRD), divides_units=True, speed_window_ms=0,
     ),
     MotorLaw.PYBRICKS_4: Firmware(
-        {"large": ServoKind(800, 2000, (400, 1200, 5), 0, 10), "medium": ServoKind(1200, 2000, (300, 400, 3), 20, 10)},
+        {
+            "large": ServoKind(800, 2000, (400, 1200, 5), 0, 10, 448_976),
+            "medium": ServoKind(1200, 2000, (300, 400, 3), 20, 10, 206_319),
+        },
         20, ((2, 5), (3, 8), THIRD, (3, 8)), divides_units=False, speed_window_ms=100,
     ),
 }  # fmt: skip
@@ -177,6 +183,7 @@ def compute_motor_settings(law: MotorLaw, kind: str, gear_ratio: float = 1.0) ->
         speed_tolerance=50 * COUNTS_PER_DEG,
         stall_speed=firmware.stall_speed_dps * COUNTS_PER_DEG,
         stall_time_ms=200,
+        torque_unm=motor.torque_unm,
         speed_window_ms=firmware.speed_window_ms,
     )
 
@@ -197,7 +204,7 @@ def _build_hub_kind(kind: str) -> ServoKind:
     kp, ki, kd = (
         round(gain * FULL_ACTUATION / motor.torque_unm / COUNTS_PER_DEG) for gain in motor.gains
     )
-    return ServoKind(motor.speed_dps, 2000, (kp, ki, kd), 0, motor.tolerance_deg)
+    return ServoKind(motor.speed_dps, 2000, (kp, ki, kd), 0, motor.tolerance_deg, motor.torque_unm)
 
 
 def _find_hub_motor(kind: str) -> HubMotor:

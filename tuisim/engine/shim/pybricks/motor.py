@@ -29,6 +29,7 @@ from tuisim.engine.shim.unsupported.modules import refused_part
 PERCENT = FULL_ACTUATION // 100
 FACTORS: Mapping[str, int] = {
     **dict.fromkeys(("kp", "ki", "kd", "stall_time_ms"), 1),
+    "torque_unm": 1000,
     **dict.fromkeys(("actuation", "feed_forward"), PERCENT),
 }
 """How many of a controller's numbers are one of the program's, for each setting that is not in counts."""
@@ -83,17 +84,13 @@ class DCMotor(Connected):
         found = self.brick.find_motor(name)
         if found is None:
             raise no_device(self.brick.hint(MOTOR_CLASS))
-        self._motor: ServoMotor = found
-        self.tell(Call.SET_UP, float(direction.sign), ratio, float(keeps_angle))
-
-    @property
-    def simulated(self) -> ServoMotor:
+        self.simulated: ServoMotor = found
         """The simulated motor."""
-        return self._motor
+        self.tell(Call.SET_UP, float(direction.sign), ratio, float(keeps_angle))
 
     def tell(self, call: Call, *values: float | None) -> None:
         """Pass a call with its values to the simulated motor; None stands for a value that is not given."""
-        self.brick.tell(self.brick.session.sim.find_number(self._motor), call, *values)
+        self.brick.tell(self.brick.session.sim.find_number(self.simulated), call, *values)
 
     def _command(self) -> None:
         """Count a command.
@@ -102,7 +99,7 @@ class DCMotor(Connected):
             OSError: a drive base moves or holds the motor.
         """
         self.brick.command()
-        motor = self._motor
+        motor = self.simulated
         if motor.guide is not None and not motor.follows_itself:
             raise not_permitted()
 
@@ -134,19 +131,21 @@ class Motor(DCMotor):
         self, port: Port, positive_direction: Direction = Direction.CLOCKWISE, gears: Any = None
     ) -> None:
         self._set_up(port, positive_direction, gear_ratio(gears))
-        self.control = Control(self, self._motor.control)
+        self.control = Control(self, self.simulated.control)
 
     # Readings
 
     def angle(self) -> int:
         """Return the angle in degrees."""
         now_us = self.brick.read("position", *self.port_names)
-        return self._motor.control.settings.units(round(self._motor.find_milli(now_us) / MILLI))
+        return self.simulated.control.settings.units(
+            round(self.simulated.find_milli(now_us) / MILLI)
+        )
 
     def speed(self) -> int:
         """Return the speed in degrees per second."""
         now_us = self.brick.read("speed", *self.port_names)
-        return self._motor.control.settings.units(self._motor.find_counts_per_s(now_us))
+        return self.simulated.control.settings.units(self.simulated.find_counts_per_s(now_us))
 
     def reset_angle(self, angle: float | None = None) -> None:
         """Set the current angle to a value in degrees; a motion ends there."""
@@ -156,7 +155,7 @@ class Motor(DCMotor):
                 "EOPNOTSUPP: the EV3's motors have no absolute encoder; give an angle",
             )
         self._command()
-        self.tell(Call.SET_MILLI, self._motor.control.settings.counts(whole(angle)) * MILLI)
+        self.tell(Call.SET_MILLI, self.simulated.control.settings.counts(whole(angle)) * MILLI)
 
     # Motions without an end
 
@@ -169,7 +168,7 @@ class Motor(DCMotor):
     def run(self, speed: float) -> None:
         """Run at a speed in degrees per second."""
         self._command()
-        settings = self._motor.control.settings
+        settings = self.simulated.control.settings
         rate = settings.counts(whole(speed))
         self.tell(Call.RUN_AT, rate, settings.acceleration, None, Ending.HOLD)
 
@@ -179,7 +178,7 @@ class Motor(DCMotor):
     def track_target(self, target_angle: float) -> None:
         """Turn to an angle as fast as possible, and hold it."""
         self._command()
-        counts = self._motor.control.settings.counts(whole(target_angle))
+        counts = self.simulated.control.settings.counts(whole(target_angle))
         self.tell(Call.HOLD_MILLI, counts * MILLI)
         self._follow()
 
@@ -190,7 +189,7 @@ class Motor(DCMotor):
     ) -> None:
         """Run at a speed for a time in milliseconds."""
         self._command()
-        settings = self._motor.control.settings
+        settings = self.simulated.control.settings
         time_us = whole(time) * MS_US
         if not 0 <= time_us <= MAX_DURATION_US:
             raise invalid_argument()
@@ -220,7 +219,7 @@ class Motor(DCMotor):
         self, speed: int, angle: int, then: Stop, wait: bool, call: str, *, relative: bool
     ) -> None:
         self._command()
-        settings = self._motor.control.settings
+        settings = self.simulated.control.settings
         try:
             self.tell(
                 Call.MOVE,
@@ -234,7 +233,7 @@ class Motor(DCMotor):
         return self._begin(then, wait, call)
 
     def _begin(self, then: Stop, wait: bool, call: str) -> None:
-        motor = self._motor
+        motor = self.simulated
         self._follow(ending_of(self.ENDINGS, then))
         if wait:
             done = self.brick.until_done(
@@ -245,21 +244,25 @@ class Motor(DCMotor):
 
     def _done(self, now_us: int, call: str) -> bool:
         """Return whether the motor's move is over; tell the user once if something blocks it."""
-        motor = self._motor
+        motor = self.simulated
         if motor.guide is None:
             return True
         if motor.control.stalled and not motor.control.timed:
             self.brick.say_stalled(f"the motor on {self.port_names[0]} is", call)
         return self.move_done(now_us, motor.control)
 
+    def change_setting(self, _control: Controller, setting: int, value: int) -> None:
+        """Change a setting of the motor's controller, by its number."""
+        self.tell(Call.SET_CONTROL, setting, value)
+
     def has_let_go(self) -> bool:
         """Return whether the move is over and nothing holds the motor any more."""
-        return self._motor.lets_go and self.move_done(self.brick.now_us, self._motor.control)
+        return self.simulated.lets_go and self.move_done(self.brick.now_us, self.simulated.control)
 
     def move_done(self, now_us: int, control: Controller) -> bool:
         """Return whether a controller of the motor has no move under way."""
         return control.done(
-            now_us, self._motor.find_milli(now_us), self._motor.find_counts_per_s(now_us)
+            now_us, self.simulated.find_milli(now_us), self.simulated.find_counts_per_s(now_us)
         )
 
     def run_until_stalled(
@@ -273,7 +276,7 @@ class Motor(DCMotor):
         return self.brick.finish(self._until_stalled(then))
 
     def _until_stalled(self, then: Stop) -> Waiting[int]:
-        motor = self._motor
+        motor = self.simulated
         yield from self.brick.until_done(
             lambda _: motor.guide is None or motor.control.stalled, lambda: None
         )
@@ -296,13 +299,11 @@ class Control(Connected):
         control: The controller.
     """
 
+    SETTINGS_WHILE_ACTIVE: ClassVar[bool] = False
+
     def __init__(self, owner: Any, control: Controller) -> None:
         self._owner = owner
         self._control = control
-
-    def _change(self, setting: int, value: int) -> None:
-        """Change one setting of the simulated controller, by its number."""
-        self._owner.tell(Call.SET_CONTROL, setting, value)
 
     @property
     def scale(self) -> float:
@@ -324,15 +325,14 @@ class Control(Connected):
                 else settings.units(getattr(settings, name))
                 for name in values
             )
-        if self._control.trajectory is not None and not self._owner.has_let_go():
+        is_active = self._control.trajectory is not None and not self._owner.has_let_go()
+        if is_active and not self.SETTINGS_WHILE_ACTIVE:
             raise not_permitted()
         if any(value < 0 for value in given.values()):
             raise invalid_argument()
         for name, value in given.items():
-            self._change(
-                SETTINGS.index(name),
-                value * FACTORS[name] if name in FACTORS else settings.counts(value),
-            )
+            number = value * FACTORS[name] if name in FACTORS else settings.counts(value)
+            self._owner.change_setting(self._control, SETTINGS.index(name), number)
         return None
 
     def limits(

@@ -24,8 +24,7 @@ from tuisim.engine.shim.unsupported.modules import refused_part
 class DriveBase(Connected):
     """A robot with two driven wheels."""
 
-    SETTINGS_WHILE_ACTIVE: ClassVar[bool] = False
-
+    CONTROL: ClassVar[type[Control]] = Control
     current: ClassVar[DriveBase | None] = None
     """The newest drive base: it stops the one before."""
     log = refused_part("DriveBase", "log", LOGGER)
@@ -52,10 +51,8 @@ class DriveBase(Connected):
         self.brick.tell(0, Call.BUILD_BASE, *numbers, float(wheel_diameter), float(axle_track))
         self._number = sim.bases.newest
         self._base = base = sim.bases[self._number]
-        self.distance_control, self.heading_control = (
-            BaseControl(self, base.distance, 0),
-            BaseControl(self, base.heading, 1),
-        )
+        self.distance_control = self.CONTROL(self, base.distance)
+        self.heading_control = self.CONTROL(self, base.heading)
         self._zeros = 0, 0
         self.reset()
 
@@ -180,6 +177,10 @@ class DriveBase(Connected):
         total, difference = self._base.find_millis(self.brick.command())
         self._zeros = round(total / MILLI), round(difference / MILLI)
 
+    def change_setting(self, control: Controller, setting: int, value: int) -> None:
+        """Change a setting of a controller of the drive base, by its number."""
+        self.tell(Call.SET_BASE_CONTROL, control is self._base.heading, setting, value)
+
     def has_let_go(self) -> bool:
         """Return False: after every move of a drive base, its motors are held."""
         return False
@@ -210,7 +211,7 @@ class DriveBase(Connected):
         )
         if all(one is None for one in given):
             return base.usual
-        if base.active and not self.SETTINGS_WHILE_ACTIVE:
+        if base.active and not self.CONTROL.SETTINGS_WHILE_ACTIVE:
             raise not_permitted()
         chosen = [
             usual if value is None else self._check_setting(abs(whole(value)), at)
@@ -228,19 +229,3 @@ class DriveBase(Connected):
         """
         settings = (self._base.distance if at < 2 else self._base.heading).settings
         return min(value, settings.units(settings.acceleration if at % 2 else settings.speed))
-
-
-class BaseControl(Control):
-    """The settings of a controller of a drive base.
-
-    Args:
-        owner, control: As of `Control`.
-        number: 0 for the distance, 1 for the heading.
-    """
-
-    def __init__(self, owner: DriveBase, control: Controller, number: int) -> None:
-        super().__init__(owner, control)
-        self._number = number
-
-    def _change(self, setting: int, value: int) -> None:
-        self._owner.tell(Call.SET_BASE_CONTROL, self._number, setting, value)

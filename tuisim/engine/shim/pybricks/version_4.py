@@ -10,8 +10,9 @@ from math import atan2, degrees, hypot, radians
 from typing import Any, ClassVar
 
 from tuisim.engine.core.commands.calls import Call
+from tuisim.engine.core.commands.servo import SETTINGS
 from tuisim.engine.core.servo.control import Ending
-from tuisim.engine.core.servo.settings import COUNTS_PER_DEG
+from tuisim.engine.core.servo.settings import COUNTS_PER_DEG, FULL_ACTUATION
 from tuisim.engine.core.servo.trajectory import MILLI
 from tuisim.engine.shim.pybricks import ev3devices, motor, robotics, tools
 from tuisim.engine.shim.pybricks.brick import (
@@ -24,18 +25,19 @@ from tuisim.engine.shim.pybricks.brick import (
     whole,
 )
 from tuisim.engine.shim.pybricks.hsv_color import Color as Color
-from tuisim.engine.shim.pybricks.motor import gear_ratio
+from tuisim.engine.shim.pybricks.motor import PERCENT, gear_ratio
 from tuisim.engine.shim.pybricks.parameters import Direction, NamedEnum, Port
 from tuisim.engine.shim.pybricks.unsimulated import MODEL
 from tuisim.engine.shim.unsupported.modules import refused_part
 
-NOMINAL_VOLTAGE_MV = 9000
-MAX_SPEED_DPS = 2000
-"""The highest speed of a motor that a setting of a drive base may ask for, even if no motor is so fast."""
+SPEEDS_DPS = 0, 2000
+"""The speeds of a motor that a setting may ask for, even if no motor is so fast..."""
+ACCELERATIONS_DPS2 = 50, 20_000
+"""...and the accelerations."""
+MIN_PROFILE_DEG = 5
+"""The least tolerance of the position that a program can choose for a motor."""
 MIN_RADIUS_MM = 10
 """An arc is at least so wide."""
-MIN_ACCELERATION_DPS2, MAX_ACCELERATION_DPS2 = 50, 20_000
-"""The limits of the acceleration of a motor that a setting may ask for."""
 
 
 class Stop(NamedEnum):
@@ -65,13 +67,19 @@ class Motor(motor.Motor):
         if profile is not None and whole(profile) < 0:
             raise invalid_argument()
         self._set_up(port, positive_direction, gear_ratio(gears), keeps_angle=not reset_angle)
-        self.control = Control(self, self._motor.control)
+        self.control = Control(self, self.simulated.control)
+        if profile is not None:
+            self.control.target_tolerances(position=max(MIN_PROFILE_DEG, whole(profile)))
 
     def _command(self) -> None:
         """Count a command; if a drive base moves or holds the motor, it lets both of its motors coast."""
         self.brick.command()
-        guide = self._motor.guide
-        if guide is not None and not self._motor.follows_itself and DriveBase.current is not None:
+        guide = self.simulated.guide
+        if (
+            guide is not None
+            and not self.simulated.follows_itself
+            and DriveBase.current is not None
+        ):
             DriveBase.current.stop()
 
     _zero_deg = 0
@@ -109,11 +117,13 @@ class Motor(motor.Motor):
 
     def settings(self, max_voltage: float | None = None) -> tuple[int] | None:
         """Return the highest voltage in mV, or set it."""
-        control = self._motor.control
+        control = self.simulated.control
+        full_mv = 6000 if self.simulated.kind == "small-angular" else 9000
         if max_voltage is None:
-            return (control.settings.actuation * NOMINAL_VOLTAGE_MV // 10_000,)
-        self.control.limits(
-            actuation=max(1, min(100, 100 * whole(max_voltage) // NOMINAL_VOLTAGE_MV))
+            return (control.settings.actuation * full_mv // FULL_ACTUATION,)
+        actuation = FULL_ACTUATION * whole(max_voltage) // full_mv
+        self.change_setting(
+            control, SETTINGS.index("actuation"), max(PERCENT, min(FULL_ACTUATION, actuation))
         )
         return None
 
@@ -124,23 +134,26 @@ class Motor(motor.Motor):
             robotics.DriveBase.current = None
 
 
-class Control(motor.Control):
-    """The settings of a motor's controller."""
+def _check_range(value: float, lowest: int, highest: int) -> None:
+    if not lowest <= value <= highest:
+        raise invalid_argument()
 
-    def limits(  # type: ignore[override]
-        self,
-        speed: float | None = None,
-        acceleration: Any = None,
-        torque: float | None = None,
-        actuation: float | None = None,
+
+class Control(motor.Control):
+    """The settings of a controller, which may be changed at any time."""
+
+    SETTINGS_WHILE_ACTIVE = True
+
+    def limits(
+        self, speed: float | None = None, acceleration: Any = None, torque: float | None = None
     ) -> tuple[int, ...] | None:
-        """Return the highest speed, acceleration and power, or set them; a torque, in mNm, limits nothing."""
+        """Return the highest speed, acceleration and torque in mNm, or set them; the torque limits nothing."""
         if isinstance(acceleration, tuple):
             acceleration = acceleration[0]
-        if torque is not None and speed is None and acceleration is None and actuation is None:
-            self.brick.command()
-            return None
-        return super().limits(speed, acceleration, actuation)
+        for value, lowest, highest in ((speed, *SPEEDS_DPS), (acceleration, *ACCELERATIONS_DPS2)):
+            if value is not None:
+                _check_range(whole(value) * self.scale / COUNTS_PER_DEG, lowest, highest)
+        return self._access(speed=speed, acceleration=acceleration, torque_unm=torque)
 
     def pid(  # type: ignore[override]
         self,
@@ -161,9 +174,9 @@ class Control(motor.Control):
 
 
 class DriveBase(robotics.DriveBase):
-    """A robot with two driven wheels. Its settings may be changed while it drives."""
+    """A robot with two driven wheels."""
 
-    SETTINGS_WHILE_ACTIVE = True
+    CONTROL = Control
 
     _stops: tuple[int, ...] = ()
     """The decelerations of `straight` and `turn`, if `settings` has set any."""
@@ -250,29 +263,23 @@ class DriveBase(robotics.DriveBase):
         values = straight_speed, straight_acceleration, turn_rate, turn_acceleration
         pairs = [value if isinstance(value, tuple) else (value, value) for value in values]
         current = super().settings(*(first for first, _ in pairs))
+        usual = self._base.usual[1::2]
         if current is not None:
-            stops = [*zip(current[1::2], self._stops or current[1::2], strict=True)]
-            straight, turn = (pair if pair[0] != pair[1] else pair[0] for pair in stops)
+            stops = zip(usual, self._stops or usual, strict=True)
+            straight, turn = (start if start == stop else (start, stop) for start, stop in stops)
             return current[0], straight, current[2], turn
-        usual = self._base.usual
         self._stops = tuple(
-            usual[index]
-            if pairs[index][1] is None
-            else self._check_setting(abs(whole(pairs[index][1])), index)
-            for index in (1, 3)
+            start if stop is None else self._check_setting(abs(whole(stop)), index)
+            for index, start, (_, stop) in zip((1, 3), usual, pairs[1::2], strict=True)
         )
-        if self._stops != usual[1::2]:
+        if self._stops != usual:
             self.tell(Call.SET_SLOWING, *self._stops)
         return None
 
     def _check_setting(self, value: int, index: int) -> int:
         control = (self._base.distance if index < 2 else self._base.heading).settings
         motor_units = value * control.counts_per_unit / (2 * COUNTS_PER_DEG)
-        lowest, highest = (
-            (MIN_ACCELERATION_DPS2, MAX_ACCELERATION_DPS2) if index % 2 else (0, MAX_SPEED_DPS)
-        )
-        if not lowest <= motor_units <= highest:
-            raise invalid_argument()
+        _check_range(motor_units, *(ACCELERATIONS_DPS2 if index % 2 else SPEEDS_DPS))
         return value
 
     def brake(self) -> None:

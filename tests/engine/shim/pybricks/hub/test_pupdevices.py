@@ -20,6 +20,7 @@ from tuisim.engine.shim.pybricks import robotics, version_4
 from tuisim.engine.shim.pybricks.hub.parameters import Port
 from tuisim.engine.shim.pybricks.hub.pupdevices import Light
 from tuisim.engine.shim.pybricks.parameters import Direction
+from tuisim.engine.shim.pybricks.version_4 import DriveBase, Motor
 
 with gzip.open(Path(__file__).with_name("reference.jsonl.gz"), "rt", encoding="utf-8") as _file:
     RECORDED = {one["id"]: one for one in map(json.loads, _file)}
@@ -197,3 +198,30 @@ def test_a_light_shines_on_its_port_only_where_nothing_else_is() -> None:
     assert [json.loads(row)["light F"] for row, _ in lab.shown] == [204, 0]
     with pytest.raises(OSError, match="ENODEV"):
         Light(Port.A)
+
+
+def test_a_motor_tells_its_limits_in_the_units_of_the_hub() -> None:
+    Lab(MotorLaw.PYBRICKS_4, {"A": "medium-angular", "B": "small-angular"}, hub="PrimeHub")
+    ports: Any = Port
+    motor: Any = Motor(ports.A, profile=4)
+    assert motor.control.limits() == (1000, 2000, 199)
+    assert motor.control.target_tolerances() == (50, 5)
+    assert motor.settings() == (9000,) and Motor(ports.B).settings() == (6000,)
+    for wrong in ({"speed": 2001}, {"acceleration": 49}, {"acceleration": 20_001}):
+        with pytest.raises(ValueError, match="Invalid argument"):
+            motor.control.limits(**wrong)
+    motor.run(100)
+    motor.control.limits(500, (800, 900), torque=150)
+    assert motor.control.limits() == (500, 800, 150)
+
+
+def test_the_controllers_of_a_drive_base_take_what_those_of_motors_take() -> None:
+    Lab(MotorLaw.PYBRICKS_4, dict.fromkeys("AB", "medium-angular"), hub="PrimeHub")
+    robotics.DriveBase.current = None
+    ports: Any = Port
+    base: Any = DriveBase(Motor(ports.A), Motor(ports.B), 56, 112)
+    base.drive(100, 0)
+    base.heading_control.limits(acceleration=500, torque=100)
+    base.distance_control.pid(integral_deadzone=3)
+    assert base.heading_control.limits() == (500, 500, 100)
+    assert base.distance_control.limits() == (489, 1955, 199)
