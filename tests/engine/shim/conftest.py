@@ -26,6 +26,7 @@ from tuisim.engine.core.spec import (
 )
 from tuisim.engine.presses import press_actions
 from tuisim.engine.runs.handle import RunHandle, RunOptions, start_run
+from tuisim.settings.robots import ROBOTS as BUILT_IN
 
 START = Pose(500.0, 571.5, 0.0)
 SQUARE = RobotSpec(wheel_spacing_mm=168.0)
@@ -109,6 +110,7 @@ ROBOTS = {
     "reversed": RobotSpec(left_reversed=True, right_reversed=True),
     "geared": RobotSpec(gear_ratio=0.5),
     "newer gyro": RobotSpec(gyro=GyroSpec(keeps_angle=True)),
+    "hub": BUILT_IN["Prime_Robot"],
 }
 WORLDS = {
     "empty": FAR_WALL,

@@ -6,6 +6,7 @@ import errno
 import os
 import select
 import stat
+import sys
 import types
 from collections.abc import Callable, Iterable
 from functools import wraps
@@ -53,6 +54,7 @@ class FileWaits:
 
     def __init__(self, session: Session, devices: OpenFiles) -> None:
         self._session = session
+        self.is_on_hub = bool(session.sim.spec.robot.hub)
         self.devices = devices
         self._select = select.select
         self._classes = {name: getattr(select, name, None) for name in _SELECTORS.values()}
@@ -327,7 +329,9 @@ class _Polling:
         return bool(self._polled)
 
     def register(self, file: Any, *events: int) -> None:
-        """Add a file."""
+        """Add a file; on a hub, nobody types at the program's input."""
+        if file is sys.stdin and self._waits.is_on_hub:
+            return
         opened = self._waits.find_device(file)
         if opened is None:
             self._real.register(file, *events)

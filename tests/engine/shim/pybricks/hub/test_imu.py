@@ -6,6 +6,7 @@ from typing import Any
 
 import pytest
 
+from tests.engine.shim.conftest import RunOn
 from tests.engine.shim.pybricks.lab import Lab
 from tuisim.engine.core.profile import MotorLaw
 from tuisim.engine.shim.pybricks import robotics
@@ -59,3 +60,22 @@ def test_a_hub_without_a_gyro_has_no_heading() -> None:
     assert hub.imu.tilt() == (0, 0)
     with pytest.raises(AttributeError, match="heading"):
         hub.imu.heading()
+
+
+def test_a_hub_whose_motors_are_held_is_not_stationary(run_on: RunOn) -> None:
+    text = (
+        "from pybricks.hubs import PrimeHub\nfrom pybricks.parameters import Port\n"
+        "from pybricks.pupdevices import Motor\nhub = PrimeHub()\nmotor = Motor(Port.A)\n"
+        "def tell(): print(hub.imu.stationary())\n"
+        "tell()\nmotor.hold()\ntell()\nmotor.brake()\ntell()\nmotor.stop()\ntell()"
+    )
+    done = run_on(text, robot="hub", profile="pybricks4")
+    assert done.lines == ["True", "False", "False", "True"], done.errors
+
+
+def test_nobody_types_at_a_hub(run_on: RunOn) -> None:
+    text = (
+        "from uselect import poll\nfrom usys import stdin\nkeyboard = poll()\n"
+        "keyboard.register(stdin)\nprint(keyboard.poll(0))"
+    )
+    assert run_on(text, robot="hub", profile="pybricks4").lines == ["[]"]

@@ -114,10 +114,10 @@ class IMU(Accelerometer):
         return True
 
     def stationary(self) -> bool:
-        """Return whether the hub is at rest."""
+        """Return whether the hub is at rest, and no motor is held."""
         self._read("GYRO-RATE")
         motors = self.brick.session.sim.motors
-        return abs(self._rate_dps) < STILL_DPS and not any(motor.speed_dps for motor in motors)
+        return abs(self._rate_dps) < STILL_DPS and all(map(_is_at_rest, motors))
 
     def angular_velocity(self, axis: Matrix | None = None, calibrated: bool = True) -> Any:
         """Return the rate of turn in degrees per second about an axis; without an axis, about all three."""
@@ -165,6 +165,11 @@ class IMU(Accelerometer):
         pairs = zip(given, self._settings, strict=True)
         self._settings = tuple(before if value is None else value for value, before in pairs)
         return None
+
+
+def _is_at_rest(motor: Any) -> bool:
+    """Return whether a motor coasts and stands."""
+    return motor.guide is None and motor.duty is None and not motor.speed_dps
 
 
 def _along(axis: Matrix | None, values: Matrix) -> Any:
