@@ -118,8 +118,7 @@ class Brick(LinesPanel, can_focus=True):
         bumpers = [sensor.port for sensor in robot.touch_sensors]
         shown = now.face, now.pressed, max(1, size.width), max(1, size.height), bumpers
         if self._hub:
-            has_matrix = self._hub in HUBS_WITH_MATRIX
-            self._picture = draw_hub(*shown, has_matrix=has_matrix)
+            self._picture = draw_hub(*shown, has_matrix=self._hub in HUBS_WITH_MATRIX)
         else:
             self._picture = draw_brick(*shown)
         self._text.set_lines(self._picture.lines)

@@ -137,8 +137,7 @@ def stop_base(base: DriveBase, time_ns: int, values: Values) -> None:
 
 def set_base(base: DriveBase, _time_ns: int, values: Values) -> None:
     """Set speeds and accelerations with which a drive base moves unless the program gives others."""
-    speed, acceleration, turn_rate, turn_acceleration = map(int, values)
-    base.set_usual((speed, acceleration, turn_rate, turn_acceleration))
+    base.set_usual(*map(int, values))
 
 
 def set_slowing(base: DriveBase, _time_ns: int, values: Values) -> None:

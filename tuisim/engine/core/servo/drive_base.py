@@ -42,7 +42,7 @@ def compute_base_settings(
     )
 
 
-Pace = tuple[int, int, int, int]
+Pace = tuple[int, ...]
 """Speed, acceleration, rate of turn and its acceleration."""
 
 
@@ -65,7 +65,7 @@ def compute_usual_settings(
             for control, count in zip(controls, exact, strict=True)
         ]
         counts = [int(count) for count in exact]
-    return (*units,), (*counts,)  # type: ignore[return-value]
+    return (*units,), (*counts,)
 
 
 def compute_new_pace(law: MotorLaw, wheel_diameter_mm: float, axle_track_mm: float) -> Pace:
@@ -221,11 +221,11 @@ class DriveBase:
 
     # Commands
 
-    def set_usual(self, usual: Pace) -> None:
+    def set_usual(self, *usual: int) -> None:
         """Set the usual speeds and accelerations, in mm and degrees; unchanged values stay as exact as before."""
         distance = self.distance.settings
         heading = self.heading.settings
-        speed, acceleration, rate, turn_acceleration = (
+        self._pace = tuple(
             before if value == known else control.counts(value)
             for value, known, before, control in zip(
                 usual, self.usual, self._pace, (distance, distance, heading, heading), strict=True
@@ -233,7 +233,6 @@ class DriveBase:
         )
         self._slowing = None, None
         self.usual = usual
-        self._pace = (speed, acceleration, rate, turn_acceleration)
 
     def set_slowing(self, straight: int, turn: int) -> None:
         """Set with which accelerations straight moves and turns stop, in mm and degrees per second squared."""

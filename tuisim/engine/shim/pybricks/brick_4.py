@@ -24,8 +24,7 @@ HUES: Mapping[int, str] = {15: "RED", 45: "ORANGE", 90: "YELLOW", 180: "GREEN", 
 class Animation:
     """Shows frames one after another in the background until it is stopped or other frames are shown."""
 
-    def __init__(self) -> None:
-        self._number = 0
+    _number = 0
 
     def stop(self) -> None:
         """End the animation; the frame that is shown stays."""
@@ -77,8 +76,7 @@ class AnimatedLight:
 
     def off(self) -> None:
         """Turn the light off."""
-        self._animation.stop()
-        self._show(None)
+        self.on(None)
 
     def blink(self, color: Any, durations: Sequence[int]) -> None:
         """Blink in a colour; durations in ms are of on and off in turn."""
@@ -93,8 +91,7 @@ class AnimatedLight:
 class Speaker(TonePlayer):
     """The speaker."""
 
-    def __init__(self) -> None:
-        self._volume = 100
+    _volume = 100
 
     def volume(self, volume: int | None = None) -> int | None:
         """Return the volume in percent, or set it."""

@@ -168,6 +168,7 @@ class GyroSensor(Sensor):
     """A gyro. Reading the speed and then the angle restarts the angle from 0, as on the brick."""
 
     KIND = "gyro"
+    _zero = 0
 
     def __init__(
         self,
@@ -178,7 +179,6 @@ class GyroSensor(Sensor):
     ) -> None:
         super().__init__(port)
         self._sign = (positive_direction or direction).sign
-        self._zero = 0
         self._zero = self._angle()
 
     def _switched(self, mode: str) -> tuple[int, ...]:

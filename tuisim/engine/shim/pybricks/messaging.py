@@ -148,15 +148,12 @@ class MailboxHandlerMixIn(Connected):
 
     def wait_for_mailbox_update(self, mbox: str) -> None:
         """Block until bytes arrive in a mailbox."""
-        self._wait(mbox)
-
-    def _wait(self, event: str) -> None:
         # Imported here and not earlier: its functions must be patched first.
         import _thread
 
         lock = _thread.allocate_lock()
         lock.acquire()
-        self._waiting.setdefault(event, []).append(lock)
+        self._waiting.setdefault(mbox, []).append(lock)
         lock.acquire()
 
     def _wake(self, event: str) -> None:
@@ -200,7 +197,7 @@ class BluetoothMailboxServer(MailboxHandlerMixIn):
         until_ns = session.now + CLIENT_WITHIN_MS * MS
         while len(self._peers) < count:
             if BluetoothMailboxClient.exists:
-                self._wait(_CONNECTION)
+                self.wait_for_mailbox_update(_CONNECTION)
             elif session.now >= until_ns:
                 raise NotSimulated(
                     "BluetoothMailboxServer.wait_for_connection: no other brick is simulated",

@@ -117,8 +117,7 @@ class TonePlayer(Connected):
 class Speaker(TonePlayer):
     """The speaker of the EV3. It stores the volume, which changes nothing that is recorded."""
 
-    def __init__(self) -> None:
-        self._words_a_minute = START_WORDS_A_MINUTE
+    _words_a_minute = START_WORDS_A_MINUTE
 
     def play_file(self, file: str | None = None, *, file_name: str | None = None) -> None:
         """Play a sound file, and wait for its end.

@@ -48,10 +48,11 @@ def ticks_us() -> int:
 class StopWatch(Connected):
     """A stopwatch; it runs from its creation on."""
 
+    _counted_ns = 0
+    _runs = True
+
     def __init__(self) -> None:
         self._began_ns = self.brick.session.now
-        self._counted_ns = 0
-        self._runs = True
 
     def _passed_ns(self) -> int:
         return self._counted_ns + (self.brick.session.now - self._began_ns if self._runs else 0)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 from collections.abc import Sequence
+from math import atan2, degrees
 from typing import Any, ClassVar
 
 from tuisim.engine.core.hub_spec import CONTROLLERS, WAYS
@@ -15,8 +16,6 @@ from tuisim.engine.shim.pybricks.hub.parameters import Button
 from tuisim.engine.shim.pybricks.tools import wait
 from tuisim.engine.shim.unsupported.modules import Hardware, refused_part
 
-DPAD = ((0, 0), (0, 1), (1, 1), (1, 0), (1, -1), (0, -1), (-1, -1), (-1, 0), (-1, 1))
-"""The directions that `dpad` tells, to the right and up: none, then clockwise from the top."""
 RAW = Hardware("the raw report of a game controller", "use its joysticks, triggers and buttons")
 FULL = 100
 """How far a hand presses a stick or a trigger, in percent."""
@@ -27,9 +26,11 @@ class Controller(Connected):
 
     PORT: ClassVar[str]
 
+    _is_connected = False
+
     def __init__(self, name: str | None, connect: bool) -> None:
         self.brick.require_no_task()
-        self._name, self._is_connected = name or type(self).__name__, False
+        self._name = name or type(self).__name__
         self.buttons = Keys(self)
         if connect:
             self._set_connected(True)
@@ -138,10 +139,10 @@ class XboxController(Controller):
         self.brick.read("pressed", self.PORT)
         return [f"{self.PORT}.{name}" in self.brick.session.pressed for name in names]
 
-    def _find_direction(self, part: str, scale: int = FULL) -> tuple[int, int]:
-        """Return how far a part is pressed to the right, and up."""
+    def _find_direction(self, part: str) -> tuple[int, int]:
+        """Return how far a part is pressed to the right, and up, in percent."""
         up, down, left, right = self._read(*(f"{part}_{way}" for way in WAYS))
-        return scale * (right - left), scale * (up - down)
+        return FULL * (right - left), FULL * (up - down)
 
     def joystick_left(self) -> tuple[int, int]:
         """Return how far the left stick is to the right, and up, in percent."""
@@ -158,7 +159,8 @@ class XboxController(Controller):
 
     def dpad(self) -> int:
         """Return the direction of the pad: 0 for none, then 1 to 8 clockwise from the top."""
-        return DPAD.index(self._find_direction("dpad", 1))
+        right, up = self._find_direction("dpad")
+        return round(degrees(atan2(right, up)) / 45) % 8 + 1 if right or up else 0
 
     def profile(self) -> int:
         """Return the chosen profile: 0, as a controller without profiles does."""

@@ -57,11 +57,12 @@ class Display(Connected):
     current: ClassVar[Display | None] = None
     """That of the newest hub, on which `hub_menu` shows."""
 
+    _pixels = DARK
+    _up = Side.TOP
+
     def __init__(self) -> None:
         Display.current = self
         self._animation = Animation()
-        self._pixels = DARK
-        self._up = Side.TOP
 
     def _show(self, pixels: Pixels) -> None:
         self._animation.stop()
