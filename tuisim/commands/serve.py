@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import socket
 import sys
 from typing import TYPE_CHECKING, Any
 
@@ -113,12 +112,8 @@ def serve(**given: Any) -> int:
 
 
 def _announce(gate: Gate, port: int) -> None:
-    from tuisim.web.gate import is_any_address
-
-    host = socket.gethostname() if is_any_address(gate.listens_on) else gate.listens_on
-    host = f"[{host}]" if ":" in host else host
     echo(
-        f"Open http://{host}:{port}/{gate.token}/ in a browser. Whoever has this address can run programs as you; "
+        f"Open {gate.format_address(port)} in a browser. Whoever has this address can run programs as you; "
         "ctrl+c ends the server."
     )
     sys.stdout.flush()

@@ -8,7 +8,6 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
-from dataclasses import replace
 from queue import Empty, SimpleQueue
 from tempfile import TemporaryDirectory
 from threading import Event, Lock
@@ -17,7 +16,7 @@ from typing import Any
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import HostError
 from tuisim.base.source import Program
-from tuisim.web.gate import Gate, create_token
+from tuisim.web.gate import Gate
 from tuisim.web.server import BackgroundServer, Server, ServerLimits
 from tuisim.web.session import build_app_command
 from tuisim.web.visit import Visit, VisitLimits
@@ -68,8 +67,7 @@ class AppView:
     def create_address(self, origins: tuple[str, ...]) -> dict[str, Any]:
         """Return the port and a new token; a page with an earlier token can no longer open the app."""
         server = self._server.server
-        frames = dict.fromkeys((*server.gate.frames, *origins))
-        server.gate = replace(server.gate, token=create_token(), frames=tuple(frames))
+        server.gate = server.gate.renew(origins)
         return {"port": self._server.port, "token": server.gate.token}
 
     @property

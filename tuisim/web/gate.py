@@ -9,10 +9,11 @@ import asyncio
 import errno
 import re
 import secrets
+import socket
 import time
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator, Callable, Iterable
 from contextlib import asynccontextmanager
-from dataclasses import field
+from dataclasses import field, replace
 from ipaddress import ip_address
 from typing import Any
 from urllib.parse import urlsplit
@@ -135,6 +136,18 @@ class Gate:
     frames: tuple[str, ...] = ()
     """Origins of pages, such as `http://localhost:8888`, that may show the page in a frame; a proxy may pass the server
     off as a part of theirs."""
+
+    def renew(self, frames: Iterable[str]) -> Gate:
+        """Return the gate with another token, and with further pages that may show the page."""
+        return replace(
+            self, token=create_token(), frames=tuple(dict.fromkeys((*self.frames, *frames)))
+        )
+
+    def format_address(self, port: int) -> str:
+        """Return the address to open in a browser, for a server on a port."""
+        host = socket.gethostname() if is_any_address(self.listens_on) else self.listens_on
+        host = f"[{host}]" if ":" in host else host
+        return f"http://{host}:{port}/{self.token}/"
 
     def is_allowed(self, path: str, host: str, origin: str | None, *, from_a_page: bool) -> bool:
         """Return whether to answer a request.
