@@ -31,7 +31,7 @@ from tuisim.pictures.charts.layout import lay_out_chart
 from tuisim.pictures.html.render import Table, render_page
 from tuisim.pictures.movies.clip import ClipRun
 from tuisim.pictures.movies.files import make_small_movie
-from tuisim.pictures.scene.pictures import draw_end, find_area, find_view
+from tuisim.pictures.scene.pictures import draw_end, find_end_view
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -162,7 +162,7 @@ def _draw_world(run: StoredRun, pins: Sequence[Pin], *, many: bool) -> Picture:
     which = f"run {run.number}: " if many else ""
     text = f"{which}the mat {mat} and the robot at its end pose; its path in orange, from the ring"
     text += "; numbers: where goals were met (✓) or missed (✗)" if pins else ""
-    view = find_view(run.spec, find_area(run.spec, run.telemetry.array()))
+    view = find_end_view(run)
     return Picture(text, encode_picture(picture), picture.size, view, place_pins(pins, view))
 
 
@@ -177,7 +177,7 @@ def _draw_way(run: StoredRun) -> Image:
 
     picture = draw_end(run)
     records: Any = run.telemetry.array()
-    view = find_view(run.spec, find_area(run.spec, records))
+    view = find_end_view(run)
     path: Any = view.to_px(records["x_mm"], records["y_mm"])
     way = list(zip(*(places.tolist() for places in path), strict=True))
     draw = ImageDraw.Draw(picture)

@@ -20,7 +20,6 @@ from tuisim.engine.core.field import Field
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.spec import PRESSABLE, NoiseSpec, RunSpec
 from tuisim.engine.core.state import Instant
-from tuisim.engine.core.tick_record import FLAG_PEN_DOWN
 from tuisim.engine.protocol import RunState
 from tuisim.engine.runs.handle import RunOptions, start_run
 from tuisim.engine.runs.recorded_run import Recording
@@ -271,11 +270,7 @@ class RunController:
             return self._still, 0, self.next_run.spec.robot.pen.down
         noise = recording.find_noise(record) if self._is_of_run else self.next_run.spec.world.noise
         # Before a run, the pen is where the next run will have it.
-        down = (
-            bool(record.flags & FLAG_PEN_DOWN)
-            if self._is_of_run
-            else self.next_run.spec.robot.pen.down
-        )
+        down = record.is_pen_down if self._is_of_run else self.next_run.spec.robot.pen.down
         exact = dict(known for known in (self.paused_line, self.chosen_line) if known)
         instant = recording.instant(record, self.spec, noise)
         line = exact.get(record.tick, record.line)

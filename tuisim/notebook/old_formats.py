@@ -209,7 +209,6 @@ def build_robot_state(
         wheels: The registers of the wheel motors.
     """
     from tuisim.engine.core.sensors import measure_sensors
-    from tuisim.engine.core.tick_record import FLAG_LEFT_RUNNING, FLAG_PEN_DOWN, FLAG_RIGHT_RUNNING
     from tuisim.notebook.image_log import add_alpha, read_arrays
 
     start = spec.world.start
@@ -223,20 +222,20 @@ def build_robot_state(
     state: dict[str, Any] = {
         **_place("", pose.x_mm, pose.y_mm, _wrap_heading(pose.heading_deg, highest_deg)),
         **_place("_", start.x_mm, start.y_mm, start.heading_deg),
-        "penDown": bool(record.flags & FLAG_PEN_DOWN),
+        "penDown": record.is_pen_down,
         "_wheelNoise": noise.motor,
         "_sensorNoise": noise.light,
         "leftWheel": _build_wheel(
             wheels.left,
             record.left_position_deg,
             record.left_speed_dps,
-            record.flags & FLAG_LEFT_RUNNING,
+            record.running[0],
         ),
         "rightWheel": _build_wheel(
             wheels.right,
             record.right_position_deg,
             record.right_speed_dps,
-            record.flags & FLAG_RIGHT_RUNNING,
+            record.running[1],
         ),
     }
     for number, side in enumerate(SIDES, 1):
@@ -267,7 +266,7 @@ def _place(prefix: str, x_mm: float, y_mm: float, heading_deg: float) -> dict[st
 
 
 def _build_wheel(
-    registers: MotorRegisters, position_deg: float, speed_dps: float, runs: int
+    registers: MotorRegisters, position_deg: float, speed_dps: float, runs: bool
 ) -> dict[str, Any]:
     return {
         "polarity": registers.polarity,

@@ -25,7 +25,6 @@ from tuisim.engine.core.drift import find_drift
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.core.state import Instant
-from tuisim.engine.core.tick_record import FLAG_PEN_DOWN
 from tuisim.engine.runs.recorded_run import Recording
 from tuisim.logs.derived import read_spec
 from tuisim.terminal.cell_view import LinesView
@@ -82,7 +81,7 @@ class RunWorld:
         record = recording.telemetry.record(tick)
         instant = record.build_instant(self.spec, recording.find_noise(record))
         field = recording.find_field(tick, self.mat.field) if self.mat.field else None
-        pen = bool(record.flags & FLAG_PEN_DOWN)
+        pen = record.is_pen_down
         return self._build_snapshot(instant, field, record.line, pen)
 
     def _build_logged(self, time_s: float, row: int) -> Snapshot:

@@ -28,7 +28,14 @@ from tuisim.engine.core.drift import find_drift
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.spec import NoiseSpec, RunSpec
 from tuisim.engine.core.state import Instant
-from tuisim.engine.core.tick_record import PRESS_FLAGS, TICK_FIELDS, TICK_RECORD
+from tuisim.engine.core.tick_record import (
+    FLAG_LEFT_RUNNING,
+    FLAG_PEN_DOWN,
+    FLAG_RIGHT_RUNNING,
+    PRESS_FLAGS,
+    TICK_FIELDS,
+    TICK_RECORD,
+)
 from tuisim.engine.runs.brick_state import DRAWN_STREAMS, is_sound
 from tuisim.engine.runs.records import (
     HEADER_BYTES,
@@ -81,6 +88,16 @@ class TickRecord:
     def pose(self) -> Pose:
         """The robot's pose."""
         return Pose(self.x_mm, self.y_mm, self.heading_deg)
+
+    @property
+    def is_pen_down(self) -> bool:
+        """Whether the pen draws."""
+        return bool(self.flags & FLAG_PEN_DOWN)
+
+    @property
+    def running(self) -> tuple[bool, bool]:
+        """Whether the left and the right wheel's motor have a command."""
+        return bool(self.flags & FLAG_LEFT_RUNNING), bool(self.flags & FLAG_RIGHT_RUNNING)
 
     def build_instant(self, spec: RunSpec, noise: NoiseSpec) -> Instant:
         """Return the instant of a record with the noise at its tick, for the functions of `engine.core.sensors`."""

@@ -72,6 +72,11 @@ def find_view(spec: RunSpec, area: Area = FIELD) -> Viewport:
     return build_world_view(spec.robot, MM_PER_PX * larger, area)
 
 
+def find_end_view(run: StoredRun) -> Viewport:
+    """Return the view of `draw_end`."""
+    return find_view(run.spec, find_area(run.spec, run.telemetry.array()))
+
+
 def fit_view(robot: RobotSpec, width_px: int, height_px: int, area: Area = FIELD) -> Viewport:
     """Return the view of `build_world_view` in the largest scale with which the picture fits a size."""
     reach_mm = measure_reach_mm(build_outline(robot))
