@@ -7,13 +7,18 @@ from functools import partial
 from typing import TypeVar
 
 import numpy as np
+import pytest
 
 from tests.cases import cases
 from tests.pictures.charts.test_layout import log_of
 from tuisim.analysis.chart import View
 from tuisim.analysis.chart import build_chart as plotted
+from tuisim.base.source import Program
+from tuisim.engine.core.profile import ROBOLAB
+from tuisim.engine.core.spec import RobotSpec, RunSpec, WorldSpec
+from tuisim.engine.runs.run_folder import field_files
 from tuisim.engine.runs.samples import Sample
-from tuisim.notebook.display import CHART_SIZE
+from tuisim.notebook.display import CHART_SIZE, Scene, list_instruments, start_record
 from tuisim.pictures.charts.files import draw_svg
 from tuisim.pictures.charts.layout import ChartData, Stroke, Words, lay_out_chart
 from tuisim.pictures.charts.sample_chart import build_sample_chart
@@ -53,6 +58,22 @@ def test_samples_are_drawn_as_log_plot_draws_them() -> None:
     there = plotted(model, View(), *CHART_SIZE)
     drawings = [lay_out_chart(chart, *CHART_SIZE, titled=False) for chart in (here, there)]
     assert draw_svg(replace(drawings[0], title="")) == draw_svg(replace(drawings[1], title=""))
+
+
+@pytest.mark.parametrize(
+    "read, words",
+    [
+        ("reflected_light_intensity", "red 255 of 255, mean 100.0 %"),
+        ("reflected_light_intensity_pc", "red 100.0 %, mean 100.0 %"),
+        ("full_reflected_light_intensity", "mean 100.0 %, red 100.0 %"),
+    ],
+)
+def test_the_table_tells_the_number_that_the_program_reads(read: str, words: str) -> None:
+    spec = RunSpec(RobotSpec(), WorldSpec(background="Grey_bands"), ROBOLAB)
+    asking = Program("prog.py", f"v = colorLeft.{read}\n", "preloaded")
+    scene = Scene(spec, field_files(spec), asking, start_record(spec))
+    rows = dict(list_instruments(scene))
+    assert rows["Sensor1 (left)"].startswith(words)
 
 
 @cases(

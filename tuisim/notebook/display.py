@@ -18,7 +18,6 @@ from tuisim.engine.core.end_stops import build_start_flags
 from tuisim.engine.core.field import Field
 from tuisim.engine.core.geometry import shown_heading_deg
 from tuisim.engine.core.sensors import measure_sensors
-from tuisim.engine.core.sensors.color import ColorReading
 from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.mat_cache import FieldFiles
 from tuisim.engine.runs.samples import Sample
@@ -27,7 +26,7 @@ from tuisim.pictures.charts.files import draw_image, encode_png
 from tuisim.pictures.charts.layout import lay_out_chart
 from tuisim.pictures.charts.sample_chart import build_sample_chart
 from tuisim.pictures.movies.arrays import FACE_PX, draw_arrays
-from tuisim.pictures.scene.discs import list_disc_faces
+from tuisim.pictures.scene.discs import DiscFace, list_disc_faces
 from tuisim.pictures.scene.pen import Piece
 from tuisim.pictures.scene.pictures import draw_world
 from tuisim.settings.options import Settings
@@ -74,11 +73,17 @@ def build_table(title: str, rows: Sequence[Row], *, keep_blanks: bool = False) -
     }
 
 
-def _format_reading(name: str, values: dict[str, float], spec: RunSpec) -> str:
-    if f"{name}_red" in values:
-        red, green, blue = (values[f"{name}_{channel}"] for channel in ("red", "green", "blue"))
-        seen = ColorReading(red, green, blue, spec.profile.brick_colors)
-        return f"red {seen.red_percent:.1f} %, mean {seen.mean_percent:.1f} %, rgb {seen.rgb}, {seen.name}"
+def _format_light(face: DiscFace) -> str:
+    """Return what a colour sensor sees in words, first what the program reads."""
+    seen = face.seen
+    value = face.value_words.removeprefix("mean ")
+    numbers = f"red {value}, mean {seen.mean_percent:.1f} %"
+    if face.read.uses_all_channels(seen):
+        numbers = f"mean {value}, red {seen.red_percent:.1f} %"
+    return f"{numbers}, rgb {seen.rgb}, {seen.name}"
+
+
+def _format_reading(name: str, values: dict[str, float]) -> str:
     return ", ".join(
         f"{value:g}{_find_unit(column)}"
         for column, value in values.items()
@@ -130,6 +135,7 @@ def list_instruments(scene: Scene) -> list[Row]:
         ("LeftMotor", f"{record.left_position_deg:.0f} counts, {record.left_speed_dps:.0f} °/s"),
         ("RightMotor", f"{record.right_position_deg:.0f} counts, {record.right_speed_dps:.0f} °/s"),
     ]
+    faces = {face.name: face for face in list_disc_faces(spec, instant, field, scene.program)}
     for sensor in spec.robot.sensors:
         values = measure_sensors([sensor], instant, spec, field)
         name = getattr(sensor, "name", "gyro")
@@ -138,7 +144,8 @@ def list_instruments(scene: Scene) -> list[Row]:
             if name in _LEFT_RIGHT
             else name.capitalize()
         )
-        rows.append((columns, _format_reading(name, values, scene.spec)))
+        text = _format_light(faces[name]) if name in faces else _format_reading(name, values)
+        rows.append((columns, text))
     return [*rows, ("Clock", f"{record.tick / spec.profile.tick_hz:.2f} s")]
 
 

@@ -11,9 +11,14 @@ from tests.app.app_help import program
 from tests.app.panel_help import SPEC, PanelApp, moment, screen_text
 from tests.cases import cases
 from tuisim.app.panels.instrumentation import Instrumentation, build_lines
+from tuisim.app.panels.instrumentation_lines import (
+    LightSeen,
+    build_sensor_line,
+    build_sensor_lines,
+)
 from tuisim.app.snapshot import RunPhase, Snapshot
 from tuisim.engine.core.geometry import Pose
-from tuisim.engine.core.sensors.color import ColorReading
+from tuisim.engine.core.sensors.color import ColorReading, LightRead
 from tuisim.engine.core.spec import MotorSpec
 from tuisim.engine.protocol import End
 
@@ -153,7 +158,7 @@ def test_names_are_whole(width: int, height: int) -> None:
         ),
         "mean": (
             "full_reflected_light_intensity",
-            "red 86.3 % mean 86.3 %",
+            "mean 86.3 % red 86.3 %",
             "mean 86.3 % White",
             "in2 86.3%",
         ),
@@ -167,6 +172,17 @@ def test_a_light_is_shown_in_the_unit_that_the_program_reads(
         rows = [" ".join(row.split()) for row in text(now, width, height)]
         assert any(words in row for row in rows), (rows, words)
         assert max(map(len, text(now, width, height))) <= width
+
+
+def test_a_hub_shows_the_light_of_all_channels_which_its_program_reads_before_the_red_one() -> None:
+    seen = LightSeen(ColorReading(185.0, 0.0, 75.0, is_hubs=True), LightRead.REFLECTION, 100)
+    lines = (
+        build_sensor_lines("Sensor1", "C", seen, 44)[0],
+        build_sensor_line("Sensor1", "C", seen, 40),
+    )
+    words = [" ".join("".join(part for part, _ in line).split()) for line in lines]
+    assert words[0] == "Sensor1 mean 33 % red 72.5 %"
+    assert words[1].startswith("Sensor1 mean 33 %")
 
 
 def test_values() -> None:

@@ -92,6 +92,25 @@ def test_rings_are_means_from_the_inside() -> None:
 
 
 @pytest.mark.parametrize(
+    "read, is_hubs, words",
+    [
+        (LightRead.PERCENT, False, "100 100 100"),
+        (LightRead.REFLECTED, False, "255 255 255"),
+        (LightRead.REFLECTION, False, "100 100 100"),
+        (LightRead.REFLECTION, True, "33 33 33"),
+        (LightRead.MEAN, False, "33 33 33"),
+    ],
+)
+def test_rings_of_an_even_red_are_the_value_that_the_program_gets(
+    read: LightRead, is_hubs: bool, words: str
+) -> None:
+    seen = ColorReading(255.0, 0.0, 0.0, is_hubs=is_hubs)
+    face = replace(FACE, box=bytes([255, 0, 0]) * 400, seen=seen, read=read)
+    assert " ".join(face.ring_words) == words
+    assert face.value_words.removeprefix("mean ").startswith(words.split()[0])
+
+
+@pytest.mark.parametrize(
     "read, most, words",
     [
         (LightRead.PERCENT, 255, "82.7 %"),

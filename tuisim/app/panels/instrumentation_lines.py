@@ -80,6 +80,11 @@ class LightSeen:
         return f"{number:5.0f}" if self.read is LightRead.REFLECTION else f"{number:5.1f}"
 
     @property
+    def word(self) -> str:
+        """The channels of which the number is: the red one, or the mean of all."""
+        return "mean" if self.read.uses_all_channels(self.color) else "red"
+
+    @property
     def unit(self) -> str:
         """The unit behind the value."""
         return f"/{self.reflected_max}" if self.read is LightRead.REFLECTED else "%"
@@ -118,44 +123,42 @@ def build_sensor_lines(
     if seen is None:
         return [format_label(name), format_unit("–")], []
     color = seen.color
-    red = f"{color.red_percent:5.1f}"
-    red_unit = " %"
-    mean = f"{color.mean_percent:5.1f}"
-    if seen.read is LightRead.REFLECTED:
-        red = seen.value
-        red_unit = seen.unit
+    value = seen.value
+    unit = seen.unit if seen.read is LightRead.REFLECTED else " %"
+    words = seen.word, "red" if seen.word == "mean" else "mean"
+    other = f"{color.red_percent if seen.word == 'mean' else color.mean_percent:5.1f}"
     # 100 without a decimal leaves a space after the word before it.
-    short_red, short_mean = (
-        f"{value[:3]:>5}" if value == "100.0" else f"{value:>5}" for value in (red, mean)
+    short_value, short_other = (
+        f"{text[:3]:>5}" if text == "100.0" else f"{text:>5}" for text in (value, other)
     )
     first = fit_line(
         width,
         (
             format_label(name),
-            format_unit("red "),
-            format_value(red),
-            format_unit(f"{red_unit}  mean "),
-            format_value(mean),
+            format_unit(f"{words[0]} "),
+            format_value(value),
+            format_unit(f"{unit}  {words[1]} "),
+            format_value(other),
             format_unit(" %"),
         ),
         (
             format_label(name, 8),
-            format_unit("red"),
-            format_value(short_red),
-            format_unit(" mean"),
-            format_value(short_mean),
+            format_unit(words[0]),
+            format_value(short_value),
+            format_unit(f" {words[1]}"),
+            format_value(short_other),
         ),
         (
             format_label(name, 8),
-            format_value(short_red),
-            format_unit(" mean"),
-            format_value(short_mean),
+            format_value(short_value),
+            format_unit(f" {words[1]}"),
+            format_value(short_other),
         ),
         (
             format_label(port, PORT_CELLS - 1),
-            format_value(short_red),
-            format_unit(" mean"),
-            format_value(short_mean),
+            format_value(short_value),
+            format_unit(f" {words[1]}"),
+            format_value(short_other),
         ),
     )
     channels = [f"{channel}" for channel in color.rgb]
@@ -188,13 +191,12 @@ def build_sensor_line(name: str, port: str, seen: LightSeen | None, width: int) 
             (format_label(name, 9), format_unit("–")),
             (format_label(port, PORT_CELLS), format_unit("–")),
         )
-    what = "mean " if seen.read is LightRead.MEAN else "red "
     after = (build_swatch(seen.color), format_value(f" {seen.color.name}"))
     return fit_line(
         width,
         (
             format_label(name),
-            format_unit(what),
+            format_unit(f"{seen.word} "),
             format_value(seen.value),
             format_unit(f"{seen.unit:>2}  "),
             *after,

@@ -47,7 +47,7 @@ def draw_face(face: DiscFace, width: int, height: int, *, has_limits: bool) -> D
     below = [
         f"{face.value_words}, {face.seen.name}",
         *([limits] if has_limits else []),
-        f"rings {' '.join(face.ring_words)} %",
+        f"rings {' '.join(face.ring_words)} {face.unit}",
     ]
     lines = max(min(len(below), (height - _MIN_DISC_PX - _SCALE_PX) // LINE_PX - 1), 0)
     side = max(min(width - PAD, height - _SCALE_PX - (1 + lines) * LINE_PX), 1)

@@ -53,15 +53,14 @@ class DiscFace:
     def value_words(self) -> str:
         """The value that the program reads, in words."""
         value = self.read.compute_value(self.seen, self.reflected_max)
-        match self.read:
-            case LightRead.REFLECTED:
-                return f"{value:.0f} of {self.reflected_max}"
-            case LightRead.MEAN:
-                return f"mean {value:.1f} %"
-            case LightRead.REFLECTION:
-                return f"{value:.0f} %"
-            case _:
-                return f"{value:.1f} %"
+        is_whole = self.read in (LightRead.REFLECTED, LightRead.REFLECTION)
+        word = "mean " if self.read is LightRead.MEAN else ""
+        return f"{word}{value:.{0 if is_whole else 1}f} {self.unit}"
+
+    @property
+    def unit(self) -> str:
+        """The unit of the value, with its largest number where that is not 100 %."""
+        return f"of {self.reflected_max}" if self.read is LightRead.REFLECTED else "%"
 
     @property
     def share(self) -> float:
@@ -102,14 +101,16 @@ class DiscFace:
 
     @property
     def rings(self) -> tuple[float, ...]:
-        """The mean red of each of `RINGS`, in percent: red is what programs read as light."""
-        red = np.frombuffer(self.box, np.uint8)[::3]
-        side = round(len(red) ** 0.5)
+        """The mean light of each of `RINGS`, of the channels and on the scale of the value that the program reads."""
+        pixels = np.frombuffer(self.box, np.uint8).reshape(-1, 3)
+        light = pixels.mean(axis=1) if self.read.uses_all_channels(self.seen) else pixels[:, 0]
+        white = self.read.find_white(self.reflected_max)
+        side = round(len(light) ** 0.5)
         offsets = np.arange(side) - side / 2
         ring = np.hypot(offsets[:, None], offsets[None, :]).ravel() / (side / 2) * len(RINGS)
-        rings = [red[(ring >= first) & (ring < first + 1)] for first in range(len(RINGS))]
+        rings = [light[(ring >= first) & (ring < first + 1)] for first in range(len(RINGS))]
         # The disc of a sensor of 2 mm has no middle.
-        return tuple(float(part.mean()) / 255 * 100 if len(part) else math.nan for part in rings)
+        return tuple(float(part.mean()) / 255 * white if len(part) else math.nan for part in rings)
 
     @property
     def ring_words(self) -> list[str]:

@@ -181,6 +181,10 @@ class LightRead(StrEnum):
             case _:
                 assert_never(self)
 
+    def uses_all_channels(self, seen: ColorReading) -> bool:
+        """Return whether the value is of all channels, and not of the red one alone."""
+        return self is LightRead.MEAN or (self is LightRead.REFLECTION and seen.is_hubs)
+
     def find_white(self, reflected_max: int) -> int:
         """Return the value that a program gets on white."""
         return reflected_max if self is LightRead.REFLECTED else 100
