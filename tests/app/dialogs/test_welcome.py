@@ -120,6 +120,12 @@ async def test_all_that_the_first_welcome_offers_is_in_sight(tmp_path: Path) -> 
         assert "This is a robot lab." in screen_text(lab(pilot))
 
 
+async def test_the_ways_to_begin_are_whole_on_a_narrow_screen(home: Path) -> None:
+    async with open_lab(FIRST, size=(65, 58)) as (pilot, _):
+        for words in ("mat, sensor and skeleton", "logs them", "a line follower", "an example"):
+            await until_shown(pilot, words)
+
+
 @pytest.mark.slow
 async def test_the_footer_below_the_welcome_names_only_keys_that_work_there() -> None:
     async with open_lab("print(1)", size=(80, 24)) as (pilot, app):

@@ -33,10 +33,10 @@ _TEXT = (
     "measure. How do you want to begin?"
 )
 _CHOICES = {
-    Begin.NEW: ("A new program", "Choose its mat, a sensor and a skeleton"),
-    Begin.EXAMPLE: ("Run the example", "It drives over grey bands and logs them"),
-    Begin.LEARN: ("Learn", "Lessons, from the first run to a line follower"),
-    Begin.OPEN: ("Open a file", "Your own program, or one of the examples"),
+    Begin.NEW: ("A new program", "Choose mat, sensor and skeleton"),
+    Begin.EXAMPLE: ("Run the example", "Drives over grey bands, logs them"),
+    Begin.LEARN: ("Learn", "Lessons up to a line follower"),
+    Begin.OPEN: ("Open a file", "Your own program or an example"),
 }
 _KEY_WORDS = (
     "Always: {open} opens a file, {lesson-menu} the lessons, {help} shows all keys, {quit} quits."
