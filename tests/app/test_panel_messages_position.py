@@ -16,9 +16,9 @@ async def test_bad_position_is_refused_with_a_reason() -> None:
         for field, typed, message in (
             ("x", "abc", "X: a number from -10000 to 10000, not 'abc'"),
             ("x", "nan", "X: a number from -10000 to 10000, not 'nan'"),
-            ("x", "150", "Enter: type, then place"),
+            ("x", "150", "Enter: type and place"),
             ("y", "1e9", "Y: a number from -10000 to 10000, not '1e9'"),
-            ("y", "500", "Enter: type, then place"),
+            ("y", "500", "Enter: type and place"),
             ("angle", "", "Angle: a number from -36000 to 36000, not 'nothing'"),
         ):
             entry = app.query_one(f"#{field}", Input)

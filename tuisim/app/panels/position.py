@@ -46,7 +46,7 @@ class Positioning(FormPanel, can_focus=True):
     Its key focuses the panel, where letters are still keys of the app; enter or tab then focuses the first field.
     """
 
-    USE = "Enter: type, then place"
+    USE = "Enter: type and place"
     BINDINGS: ClassVar[list[BindingType]] = [Binding("enter", "type", "Type the place", show=False)]
     FOOTER_KEYS: ClassVar[tuple[KeyWord, ...]] = (("enter", "numbers"),)
 
