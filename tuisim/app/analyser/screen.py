@@ -356,7 +356,7 @@ class LogScreen(ActionHost, ClosesOnce[None]):
             title: Title of the dialog.
             do: Applies the line; a TuisimError is shown and the line can be corrected.
             value: Initial text.
-            forms: The accepted forms.
+            forms: The accepted forms, with `Colour` for the selected variable.
             completes: Whether to offer the words of expressions as completions.
         """
 
@@ -364,8 +364,10 @@ class LogScreen(ActionHost, ClosesOnce[None]):
             do(text)
             self.update()
 
+        name = self.model.selected.partition(" #")[0] or "Colour"
+        own = [(form.replace("Colour", name), meaning) for form, meaning in forms]
         words = (*list_expression_words(self.model.log), RECKONING) if completes else ()
-        self.app.push_screen(LinePrompt(title, apply, value, forms, words))
+        self.app.push_screen(LinePrompt(title, apply, value, own, words))
 
     def ask_choices(self) -> None:
         """Ask how the file is to be read."""

@@ -23,6 +23,15 @@ STEPS: list[tuple[list[str], Callable[[AnalysisModel], bool]]] = [
 ]
 
 
+async def test_the_examples_of_thresholds_name_a_variable_of_the_log(tmp_path: Path) -> None:
+    file = tmp_path / "log.csv"
+    file.write_text("time,name,value\n0,Way,1\n1,Way,2\n")
+    async with open_analyser(file=str(file), size=(80, 24)) as (pilot, _, _):
+        await pilot.press("c")
+        await until(pilot, lambda: "Way < 50, Way > 80" in text_of(pilot))
+        assert "Colour" not in text_of(pilot)
+
+
 @pytest.mark.slow
 async def test_long_logs_are_worked_on_beside_the_screen(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch

@@ -22,7 +22,7 @@ _THRESHOLDS = (
     ("Colour > 50", "where it rises above 50"),
     ("Colour = 50", "both"),
     ("Colour = 50 +- 5", "only if it goes 5 beyond on either side"),
-    ("Colour < 50, Left > 3", "several"),
+    ("Colour < 50, Colour > 80", "several"),
     ("command", "commands of a run's program to motors and sensors, and their effect"),
     ("command left run", "only commands with these words in the part or the command"),
     ("(nothing)", "none"),
