@@ -12,7 +12,13 @@ from tests.tasks.goals.recorded import goals_of
 from tests.tasks.reasons.runs import WRONG_SIGN, run_text
 from tuisim.engine.runs.recorded_run import Recording
 from tuisim.tasks.goals.judge import judge
-from tuisim.tasks.reasons.reason import Reason, ReasonKind, describe_end, find_reasons
+from tuisim.tasks.reasons.reason import (
+    Reason,
+    ReasonKind,
+    describe_end,
+    find_reasons,
+    sort_by_cause,
+)
 
 MISTAKE = """\
 tank_drive.on_for_seconds(SpeedPercent(20), SpeedPercent(20), 1)
@@ -194,6 +200,28 @@ def test_the_last_line_of_a_run_says_how_it_ended_wrong(text: str, words: str) -
     sentence = describe_end(run_text(text))
     assert words in sentence
     assert bool(sentence) == bool(words)
+
+
+TURNS_TOO_LITTLE = """\
+# %%sim_magic_preloaded -b Empty_Map --solid --walls on -x 1200 -y 900 -a 0
+tank_drive.on_for_degrees(SpeedPercent(20), SpeedPercent(-20), 90)
+tank_drive.on_for_seconds(SpeedPercent(60), SpeedPercent(60), 8)
+"""
+
+
+def test_a_wrong_turn_comes_before_the_wall_to_which_it_led() -> None:
+    reasons = find_reasons(run_text(TURNS_TOO_LITTLE))
+    assert [reason.kind for reason in reasons] == [ReasonKind.MISTAKEN, ReasonKind.BLOCKED]
+
+
+def test_a_line_that_was_seen_again_led_to_nothing_later() -> None:
+    wall = Reason(ReasonKind.BLOCKED, 6.0, 0, "the robot stood at the wall")
+    error = Reason(ReasonKind.RAISED, 8.0, 0, "NameError")
+    later = Reason(ReasonKind.MISTAKEN, 7.0, 0, "this line turned the robot by 28°")
+    lost = Reason(ReasonKind.LOST, 1.0, 0, "the left sensor left the black")
+    assert sort_by_cause([wall, lost, later, error]) == (error, lost, wall, later)
+    seen_again = replace(lost, until_s=3.0)
+    assert sort_by_cause([wall, seen_again, later]) == (wall, seen_again, later)
 
 
 GOALS = """\

@@ -4,8 +4,10 @@ first difference from an earlier run of the same text and settings.
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from enum import IntEnum, auto
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -64,6 +66,8 @@ class Reason:
     """The program's line then; 0 if there is none."""
     text: str
     """What happened, a sentence that begins small and has no full stop."""
+    until_s: float = math.inf
+    """Until when it may have led to other reasons: a line that a sensor saw again leads to nothing later."""
 
     @property
     def words(self) -> str:
@@ -80,7 +84,7 @@ def find_reasons(
 ) -> tuple[Reason, ...]:
     """Return every reason why a run went wrong, most important first, those of one kind by time.
 
-    Missed goals and what a sensor lost are one kind here.
+    Missed goals and what a sensor lost are one kind here. What may have led to a later reason comes before it.
 
     Args:
         run: The run; it may still be running.
@@ -101,17 +105,34 @@ def find_reasons(
             *_find_blocked(run, waits),
             *_find_lost(run, mat, is_seen),
         ]
-        left_mat = [*_find_left_mat(run)]
-        reasons += [*left_mat, *_find_mistaken(run, mat, bool(left_mat)), *_find_ended(run, mat)]
+        reasons += [*_find_left_mat(run), *_find_mistaken(run, mat), *_find_ended(run, mat)]
     if earlier is not None and is_repeat(run, earlier):
         reasons += _find_difference(run, earlier)
-    return tuple(sorted(reasons, key=_rank))
+    return sort_by_cause(reasons)
 
 
-def _rank(reason: Reason) -> tuple[ReasonKind, float]:
-    """Return a sort key: a goal is often missed because of what a sensor lost before."""
-    kind = ReasonKind.LOST if reason.kind is ReasonKind.MISSED else reason.kind
-    return kind, reason.time_s
+_CAUSES = frozenset({ReasonKind.LOST, ReasonKind.MISTAKEN})
+_EFFECTS = frozenset({ReasonKind.BLOCKED, ReasonKind.LOST, ReasonKind.MISSED})
+
+
+def sort_by_cause(reasons: Sequence[Reason]) -> tuple[Reason, ...]:
+    """Return reasons of a run in the order of `find_reasons`."""
+    return tuple(sorted(reasons, key=lambda reason: (_rank(reason, reasons), reason.time_s)))
+
+
+def _rank(reason: Reason, reasons: Sequence[Reason]) -> ReasonKind:
+    """Return the most important kind among those that a reason may have led to, and its own."""
+    effects: list[Reason] = []
+    if reason.kind in _CAUSES:
+        effects = [
+            effect
+            for effect in reasons
+            if effect.kind in _EFFECTS and reason.time_s < effect.time_s < reason.until_s
+        ]
+    return min(
+        ReasonKind.LOST if each.kind is ReasonKind.MISSED else each.kind
+        for each in (reason, *effects)
+    )
 
 
 def _find_line(run: StoredRun, time_s: float) -> int:
@@ -223,16 +244,16 @@ def _find_left_mat(run: StoredRun) -> Iterator[Reason]:
         yield _explain_lost(run, int(is_off.argmax()), "the robot left the mat")
 
 
-def _find_mistaken(run: StoredRun, mat: Field | None, has_left_mat: bool) -> Iterator[Reason]:
+def _find_mistaken(run: StoredRun, mat: Field | None) -> Iterator[Reason]:
     """Yield where the program probably did something else than it was meant to.
 
-    It turned the wheels by an angle meant for the robot, which may be why it left the mat, or counted a band twice.
+    It turned the wheels by an angle meant for the robot, or counted a band twice.
     """
     from tuisim.tasks.reasons.unwatched import find_mistaken_turn
 
     if turn := find_mistaken_turn(run):
-        kind = ReasonKind.LOST if has_left_mat else ReasonKind.MISTAKEN
-        yield Reason(kind, turn.tick / run.spec.profile.tick_hz, turn.line, turn.text)
+        time_s = turn.tick / run.spec.profile.tick_hz
+        yield Reason(ReasonKind.MISTAKEN, time_s, turn.line, turn.text)
     if recount := find_recount(run, mat):
         yield Reason(ReasonKind.MISTAKEN, recount.time_s, recount.line, recount.text)
 
@@ -301,8 +322,10 @@ def _describe_loss(run: StoredRun, lost: LostLine) -> Reason:
         return _explain_lost(run, lost.tick, f"{text}, and did not see it again")
     sensor, tick = lost.seen_again
     who = "it" if sensor == lost.sensor else f"the {sensor} one"
-    after_s = (tick - lost.tick) / run.spec.profile.tick_hz
-    return _explain_lost(run, lost.tick, f"{text}; {who} saw it again after {after_s:.1f} s")
+    hz = run.spec.profile.tick_hz
+    after_s = (tick - lost.tick) / hz
+    reason = _explain_lost(run, lost.tick, f"{text}; {who} saw it again after {after_s:.1f} s")
+    return replace(reason, until_s=tick / hz)
 
 
 def _find_difference(run: StoredRun, earlier: Recording) -> Iterator[Reason]:
