@@ -16,9 +16,9 @@ REASONS = (
 
 def test_each_reason_comes_in_turn_and_then_the_end() -> None:
     tour = ReasonTour()
-    recording = SimpleNamespace()
+    recording = SimpleNamespace(newest=100)
     run: Any = recording
-    tour.begin(run)
+    tour.begin(run, has_ended=True)
     tour.take(run, REASONS, None)
     assert tour.advance() == REASONS[0]
     assert tour.words == (
@@ -34,10 +34,27 @@ def test_each_reason_comes_in_turn_and_then_the_end() -> None:
     assert tour.advance() == REASONS[0]
 
 
+def test_a_run_that_has_gone_on_shows_its_first_reason_again() -> None:
+    tour = ReasonTour()
+    run: Any = SimpleNamespace(newest=100)
+    tour.begin(run, has_ended=False)
+    tour.take(run, REASONS, None)
+    tour.advance()
+    tour.take(run, REASONS, None)
+    assert tour.advance() == REASONS[1]
+    run.newest = 200
+    tour.take(run, REASONS, None)
+    assert tour.advance() == REASONS[0]
+    assert not tour.is_about(run, has_ended=True)
+    tour.begin(run, has_ended=True)
+    tour.take(run, REASONS, None)
+    assert tour.advance() == REASONS[0]
+
+
 def test_a_single_reason_has_no_number() -> None:
     tour = ReasonTour()
-    run: Any = SimpleNamespace()
-    tour.begin(run)
+    run: Any = SimpleNamespace(newest=100)
+    tour.begin(run, has_ended=True)
     tour.take(run, REASONS[1:], None)
     tour.advance()
     assert tour.words == "0.50 s: the robot left the mat"
@@ -45,10 +62,10 @@ def test_a_single_reason_has_no_number() -> None:
 
 def test_reasons_of_a_run_that_is_no_longer_in_view_are_dropped() -> None:
     tour = ReasonTour()
-    first: Any = SimpleNamespace()
-    second: Any = SimpleNamespace()
-    tour.begin(first)
-    tour.begin(second)
+    first: Any = SimpleNamespace(newest=100)
+    second: Any = SimpleNamespace(newest=100)
+    tour.begin(first, has_ended=True)
+    tour.begin(second, has_ended=True)
     tour.take(first, REASONS, None)
     assert tour.reasons == ()
     runs: Any = SimpleNamespace(timeline=SimpleNamespace(recording=second), earlier=None)

@@ -20,33 +20,46 @@ class ReasonTour:
         self.earlier: Recording | None = None
         """The run before that was compared with."""
         self._of: Recording | None = None
+        self._has_ended = False
+        """Whether the run is over as far as they are known."""
+        self._newest = -1
+        """The last tick up to which they are known."""
         self._at: int | None = None
         """Index of the one in view; None before the first, and after the last."""
 
-    def is_about(self, recording: Recording | None) -> bool:
-        """Return whether these are, or will be, the reasons of a run."""
-        return recording is not None and self._of is recording
+    def is_about(self, recording: Recording | None, has_ended: bool) -> bool:
+        """Return whether these are, or will be, the reasons of a run that goes on, or that has ended."""
+        is_same = recording is not None and self._of is recording
+        return is_same and self._has_ended is has_ended
 
     def has_gone_wrong(self, runs: RunController) -> bool:
         """Return whether the run in view is known to have gone wrong, or repeats the one beside it."""
         recording = runs.timeline.recording
         earlier = runs.earlier
-        has_gone_wrong = self.is_about(recording) and bool(self.reasons)
+        has_gone_wrong = recording is not None and self._of is recording and bool(self.reasons)
         can_differ = recording is not None and earlier is not None and is_repeat(recording, earlier)
         return has_gone_wrong or can_differ
 
-    def begin(self, recording: Recording) -> None:
-        """Begin with a run, whose reasons are not known yet; forget those of another run."""
+    def begin(self, recording: Recording, has_ended: bool) -> None:
+        """Begin with a run, whose reasons are not known yet; forget those of another run, and which one is in view."""
+        if self._of is not recording:
+            self.reasons = ()
+            self.earlier = None
         self._of = recording
+        self._has_ended = has_ended
         self._at = None
-        self.reasons = ()
-        self.earlier = None
 
     def take(
         self, recording: Recording, reasons: tuple[Reason, ...], earlier: Recording | None
     ) -> None:
-        """Store the reasons of a run, unless the tour is about another run by now."""
+        """Store the reasons of a run, unless the tour is about another run by now.
+
+        If the run has gone on since, the first one is next.
+        """
         if self._of is recording:
+            if recording.newest != self._newest:
+                self._newest = recording.newest
+                self._at = None
             self.reasons = reasons
             self.earlier = earlier
 

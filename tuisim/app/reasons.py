@@ -34,9 +34,11 @@ def look(context: ActionContext) -> None:
     """Find the reasons of the run in view in the background, once, when it has ended."""
     recording = context.runs.timeline.recording
     tour = context.reasons
-    if recording is None or context.runs.state is not RunPhase.ENDED or tour.is_about(recording):
+    if recording is None or context.runs.state is not RunPhase.ENDED:
         return
-    tour.begin(recording)
+    if tour.is_about(recording, has_ended=True):
+        return
+    tour.begin(recording, has_ended=True)
     find(
         context,
         recording,

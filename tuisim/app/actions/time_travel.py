@@ -195,11 +195,16 @@ def go_wrong(context: ActionContext) -> None:
         return
     context.runs.pause()
     tour = context.reasons
-    if not tour.is_about(recording):
-        tour.begin(recording)
+    has_ended = not context.runs.in_run
+    if not tour.is_about(recording, has_ended):
+        tour.begin(recording, has_ended)
     before = tour.earlier or context.runs.earlier
 
     def show(reasons_so_far: reasons.FoundReasons) -> None:
+        if context.runs.timeline.recording is recording and context.runs.in_run is has_ended:
+            # It has ended meanwhile, and what it waited for may have come.
+            go_wrong(context)
+            return
         reasons.note(context, recording, reasons_so_far)
         if context.runs.timeline.recording is recording:
             _show_reason(context, reasons_so_far[1])
