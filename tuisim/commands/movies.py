@@ -16,7 +16,6 @@ from tuisim.settings.command_line import WordType, argument, command, option
 if TYPE_CHECKING:
     from tuisim.engine.runs.run_folder import StoredRun
     from tuisim.pictures.movies.clip import ClipPanel, ClipRun
-    from tuisim.pictures.movies.painter import Size
 
 _PANELS = "world, chart, arrays"
 _MIN_CHARTED_PX = 360
@@ -64,17 +63,16 @@ def movie(
     size: str,
 ) -> int:
     """Save a run as a movie: the world, the chart, the sensor arrays, with time and values."""
-    from tuisim.pictures.charts.files import check_format
-    from tuisim.pictures.movies.files import MOVIE_SUFFIXES, Clip
+    from tuisim.pictures.movies.files import Clip, check_file, parse_clip_size
 
     run = RunStore().load_run(word)
     path = Path(out or _build_default_name(run, "movie.gif"))
-    check_format(path, "movie", MOVIE_SUFFIXES)
+    check_file(path, "movie")
     if speed is not None:
         _check_number(speed, 0.01, 1000, "--speed")
     _check_number(fps, 1, 50, "--fps")
     chosen = _parse_panels(panels)
-    sides = _parse_size_option(size)
+    sides = parse_clip_size(size) if size else None
     with Progress(f"drawing {path.name}"):
         recorded = _load_recorded(run)
         span_s = recorded.clip_span_s(start_s, stop_s)
@@ -102,14 +100,13 @@ def movie(
 )
 def picture(word: str, out: str | None, time_s: float | None, panels: str | None, size: str) -> int:
     """Save one instant of a run as a picture: the world, the chart, the sensor arrays."""
-    from tuisim.pictures.charts.files import check_format
-    from tuisim.pictures.movies.files import PICTURE_FORMATS, save_picture
+    from tuisim.pictures.movies.files import check_file, parse_clip_size, save_picture
 
     run = RunStore().load_run(word)
     path = Path(out or _build_default_name(run, "picture.png"))
-    check_format(path, "picture", PICTURE_FORMATS)
+    check_file(path, "picture")
     chosen = _parse_panels(panels)
-    sides = _parse_size_option(size)
+    sides = parse_clip_size(size) if size else None
     with Progress(f"drawing {path.name}"):
         recorded = _load_recorded(run)
         at_s = recorded.end_s if time_s is None else time_s
@@ -140,7 +137,7 @@ def _check_number(value: float, low: float, high: float, key: str) -> None:
         raise ConfigError(f"must be from {low:g} to {high:g}, got {value:g}", key=key)
 
 
-def _choose_panels(recorded: ClipRun, size: Size | None) -> tuple[ClipPanel, ...]:
+def _choose_panels(recorded: ClipRun, size: tuple[int, int] | None) -> tuple[ClipPanel, ...]:
     """Return the panels of a picture: the world, and the chart if there are samples and the picture is high enough."""
     from tuisim.pictures.movies.clip import ClipPanel
 
@@ -162,16 +159,3 @@ def _parse_panels(text: str | None) -> tuple[ClipPanel, ...]:
     if not names:
         raise ConfigError("no panel given", f"some of {_PANELS}", key="--panels")
     return tuple(panel for panel in ClipPanel if panel in names)
-
-
-def _parse_size_option(text: str) -> Size | None:
-    from tuisim.pictures.charts.files import describe_limits, parse_size
-    from tuisim.pictures.movies.painter import LEAST, MOST
-
-    if not text:
-        return None
-    size = parse_size(text, LEAST, MOST)
-    if size is None:
-        allowed = f"width and height in pixels, {describe_limits(LEAST, MOST)}"
-        raise ConfigError(f"no such size {text!r}", allowed, key="--size")
-    return size

@@ -14,7 +14,6 @@ __all__ = [
     "movies.arrays",
     "movies.clip",
     "movies.files",
-    "movies.painter",
     "scene.discs",
     "scene.mat",
     "scene.mono_robot",

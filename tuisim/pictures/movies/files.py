@@ -13,9 +13,16 @@ from PIL.Image import Dither, Image, Quantize, fromarray, new
 
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ConfigError
-from tuisim.pictures.charts.files import check_format, draw_svg, encode_png, write_whole
+from tuisim.pictures.charts.files import (
+    check_format,
+    describe_limits,
+    draw_svg,
+    encode_png,
+    parse_size,
+    write_whole,
+)
 from tuisim.pictures.movies.clip import ClipPanel, ClipRun, Shot, count_shots, plan_shots
-from tuisim.pictures.movies.painter import FramePainter, Size, find_frame_view
+from tuisim.pictures.movies.painter import LEAST, MOST, FramePainter, Size, find_frame_view
 from tuisim.pictures.scene.view import Viewport
 
 PALETTE_FRAMES = 6
@@ -134,7 +141,7 @@ class Clip:
             ExportError: it cannot be written; an existing file is unchanged.
             LogError: the mat no longer exists.
         """
-        check_format(path, "movie", MOVIE_SUFFIXES)
+        check_file(path, "movie")
         _check_size(self)
         content = _encode_gif(self, watch)
         write_whole(path, content)
@@ -229,6 +236,28 @@ def save_picture(
         ExportError: it cannot be written; an existing file is unchanged.
         LogError: the mat no longer exists.
     """
-    check_format(path, "picture", PICTURE_FORMATS)
+    check_file(path, "picture")
     painter = FramePainter(recorded, panels, recorded.clip_span_s(None, None), size)
     write_whole(path, PICTURE_FORMATS[path.suffix.lower()](painter, recorded, time_s))
+
+
+def check_file(path: Path, what: str) -> None:
+    """Check that a `movie` or a `picture` can be written to a file.
+
+    Raises:
+        ExportError: unknown suffix, or it cannot be written.
+    """
+    check_format(path, what, MOVIE_SUFFIXES if what == "movie" else PICTURE_FORMATS)
+
+
+def parse_clip_size(text: str) -> Size:
+    """Parse the size of a movie or a picture in pixels, such as `800x600`.
+
+    Raises:
+        ConfigError: it is no size, or not within the limits.
+    """
+    size = parse_size(text, LEAST, MOST)
+    if size is None:
+        allowed = f"width and height in pixels, {describe_limits(LEAST, MOST)}"
+        raise ConfigError(f"no such size {text!r}", allowed, key="--size")
+    return size
