@@ -10,8 +10,8 @@ from textwrap import fill as fill_text
 from tests.sources import ROOT
 from tuisim.api.descriptions import OPTIONS_BY_NAME
 from tuisim.engine.core.values import Choice, Color, Flag, NamedPart, Number, Part, Value, Whole
-from tuisim.engine.presses import Presses
 from tuisim.settings.options import WORLD, Name
+from tuisim.settings.presses import Presses
 from tuisim.settings.robots import list_table_values
 
 FACE = ROOT / "tuisim" / "api" / "face.py"

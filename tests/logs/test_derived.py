@@ -24,7 +24,6 @@ from tuisim.logs.derived import (
     NEEDED,
     build_reckoned_series,
     compute_derived,
-    compute_error_mm,
     parse_definition,
     read_spec,
 )
@@ -176,7 +175,7 @@ class TestReckoning:
 
     def test_error_and_distance(self) -> None:
         got = compute_dead_reckoning(column(0, 0), column(0, 0), Pose(0, 0, 0), RobotSpec())
-        assert_allclose(compute_error_mm(got, column(0, 3), column(0, 4)), [0, 5])
+        assert_allclose(got.compute_error_mm(column(0, 3), column(0, 4)), [0, 5])
         assert_allclose(distance_mm(column(0, 3, 3), column(0, 4, 6)), [0, 5, 7])
 
 

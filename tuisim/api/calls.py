@@ -11,7 +11,6 @@ from tuisim.api.descriptions import plain, read_options, read_world
 from tuisim.api.run import Run
 from tuisim.base.errors import ConfigError
 from tuisim.base.source import Program
-from tuisim.engine.presses import press_actions
 from tuisim.engine.runs.handle import RunOptions, start_run
 from tuisim.engine.runs.store import RunStore
 from tuisim.programs.function import read_function
@@ -19,6 +18,7 @@ from tuisim.programs.plugged_words import describe_plugged
 from tuisim.programs.program_file import ProgramSource, build_program, find_program, read_program
 from tuisim.programs.program_settings import ProgramSettings, build_program_settings
 from tuisim.settings.build import build_run_spec
+from tuisim.settings.presses import press_actions
 
 
 def read_source(program: str | Path | Callable[[], object]) -> ProgramSource:

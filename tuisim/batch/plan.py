@@ -17,12 +17,12 @@ from tuisim.batch.parameters import SEED, Choice, Grid, build_grid, check_seeds
 from tuisim.batch.table import check_expressions
 from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.core.tree import dump_run
-from tuisim.engine.presses import press_actions
 from tuisim.engine.runs.handle import RunOptions, set_surroundings
 from tuisim.programs.program_settings import require_library
 from tuisim.settings.build import build_run_spec
 from tuisim.settings.options import Settings
 from tuisim.settings.overrides import resolve_keys
+from tuisim.settings.presses import press_actions
 from tuisim.tasks.goals.spec import Goal
 from tuisim.tasks.task import Keep, Task, Value
 

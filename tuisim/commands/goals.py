@@ -25,12 +25,12 @@ from tuisim.commands.echo import (
 )
 from tuisim.commands.run_options import build_jobs_option, build_timeout_option
 from tuisim.engine.core.values import MAX_SEED
-from tuisim.engine.presses import press_actions
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.engine.runs.store import RunStore
 from tuisim.settings.build import build_run_spec, extract_settings
 from tuisim.settings.command_line import Group, WordType, argument, command, option
 from tuisim.settings.options import START, merge_settings
+from tuisim.settings.presses import press_actions
 from tuisim.tasks.goals.files import GoalsFile, list_example_names, load_goals
 from tuisim.tasks.goals.judge import judge
 from tuisim.tasks.goals.judgement import (

@@ -27,7 +27,6 @@ from tuisim.commands.run_options import build_input_option, build_timeout_option
 from tuisim.engine.breakpoints import parse_breakpoints, parse_watch
 from tuisim.engine.core.profile import NS_PER_S
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, RunSpec
-from tuisim.engine.presses import press_actions
 from tuisim.engine.protocol import Answer, InputWanted, Inspect, Inspected, Message, Paused, Resume
 from tuisim.engine.runs.handle import RunHandle, RunOptions, start_run
 from tuisim.engine.runs.run_folder import StoredRun
@@ -35,6 +34,7 @@ from tuisim.engine.runs.store import RunStore
 from tuisim.logs.export import EXPORTERS, check_targets, export_samples, export_telemetry
 from tuisim.settings.command_line import Arguments, WordType, argument, choice, command, option
 from tuisim.settings.options import APP, PANEL
+from tuisim.settings.presses import press_actions
 from tuisim.settings.shared_options import build_shared_options
 from tuisim.settings.user_config import FILE, Section, load_config
 

@@ -16,7 +16,7 @@ from tuisim.engine.core.conditions import NUMBER
 from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.core.tree import load_run
 from tuisim.engine.runs.arrays import FloatArray
-from tuisim.engine.runs.frames import DeadReckoning, compute_dead_reckoning, find_lacking_columns
+from tuisim.engine.runs.frames import compute_dead_reckoning, find_lacking_columns
 from tuisim.logs.columns import is_numeric, list_numeric_columns
 from tuisim.logs.expressions import CONSTANTS, FUNCTIONS, Functions, evaluate, find_names
 from tuisim.logs.log import Log, Series
@@ -218,11 +218,6 @@ def _refuse_resample(values: Any, period_s: Any) -> FloatArray:
     )
 
 
-def compute_error_mm(reckoned: DeadReckoning, x_mm: FloatArray, y_mm: FloatArray) -> FloatArray:
-    """Return the distances between the dead-reckoning positions and the true ones in mm, shape (n,)."""
-    return np.hypot(reckoned.x_mm - x_mm, reckoned.y_mm - y_mm)
-
-
 NEEDED = ("left_position_deg", "right_position_deg", "x_mm", "y_mm", "heading_deg")
 RECKONED_COLUMNS = ("reckoned_x_mm", "reckoned_y_mm", "reckoned_heading_deg", "error_mm")
 
@@ -251,7 +246,7 @@ def build_reckoned_series(log: Log) -> list[Series]:
         reckoned.x_mm,
         reckoned.y_mm,
         reckoned.heading_deg,
-        compute_error_mm(reckoned, x_mm, y_mm),
+        reckoned.compute_error_mm(x_mm, y_mm),
     )
     time_s = log.times_s
     rows = np.arange(log.rows)

@@ -21,7 +21,6 @@ from tuisim.base.errors import ConfigError, HostError, counted
 from tuisim.base.source import Program
 from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.mat_cache import FieldFiles
-from tuisim.engine.presses import press_actions
 from tuisim.engine.protocol import Answer, Ended, Message, Reply, Wheels, describe_state
 from tuisim.engine.runs.handle import RunHandle, RunOptions, start_run
 from tuisim.engine.runs.records import OutputRow, Stream
@@ -34,6 +33,7 @@ from tuisim.notebook.image_log import SENT_DATA, ArrayReader, ImageLog, parse_si
 from tuisim.notebook.old_formats import format_sent
 from tuisim.pictures.scene.pen import Piece, build_pen_trace
 from tuisim.programs.plugged_words import list_parts
+from tuisim.settings.presses import press_actions
 
 if TYPE_CHECKING:
     from tuisim.notebook.app_view import AppView

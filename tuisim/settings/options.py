@@ -26,7 +26,7 @@ from tuisim.engine.core.values import (
     WrongValue,
     list_values,
 )
-from tuisim.engine.presses import Presses
+from tuisim.settings.presses import Presses
 from tuisim.terminal.picture_options import AUTO, NO_PIXELS, CellSet, Protocol
 
 CELLS = (AUTO, *CellSet)

@@ -22,7 +22,6 @@ from tuisim.engine.core.values import list_values, quote
 from tuisim.engine.files import Location, Scalar
 from tuisim.engine.mats import find_mat
 from tuisim.engine.obstacles import load_obstacles, obstacle_lines, obstacles_from_list
-from tuisim.engine.presses import MAX_PRESSES
 from tuisim.settings.build import build_run_spec, extract_settings
 from tuisim.settings.options import (
     OPTION_PANELS,
@@ -31,6 +30,7 @@ from tuisim.settings.options import (
     has_world_values,
     merge_settings,
 )
+from tuisim.settings.presses import MAX_PRESSES
 from tuisim.settings.profiles import format_profile, load_profile, parse_profile
 from tuisim.settings.robots import RobotChoice, format_robot, load_robot, parse_robot
 

@@ -24,8 +24,8 @@ from tuisim.engine.core.spec import (
     UltrasonicSpec,
     WorldSpec,
 )
-from tuisim.engine.presses import press_actions
 from tuisim.engine.runs.handle import RunHandle, RunOptions, start_run
+from tuisim.settings.presses import press_actions
 from tuisim.settings.robots import ROBOTS as BUILT_IN
 
 START = Pose(500.0, 571.5, 0.0)

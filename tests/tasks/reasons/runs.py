@@ -5,13 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 
 from tests.running import PATIENCE_S
-from tuisim.engine.presses import press_actions
 from tuisim.engine.runs.handle import RunOptions, start_run
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.engine.runs.store import RunStore
 from tuisim.programs.program_file import parse_program
 from tuisim.programs.program_settings import build_program_settings
 from tuisim.settings.build import build_run_spec
+from tuisim.settings.presses import press_actions
 
 PROGRAMS = Path(__file__).parents[3] / "programs"
 LIMIT_S = 30.0

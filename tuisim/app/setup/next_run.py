@@ -18,7 +18,6 @@ from tuisim.engine.core import tree
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.spec import EMPTY_MAT, NoiseSpec, Obstacle, RobotSpec, RunSpec
 from tuisim.engine.obstacles import load_obstacles
-from tuisim.engine.presses import press_actions
 from tuisim.engine.protocol import UserAction
 from tuisim.programs.program_file import ProgramSource, build_program
 from tuisim.programs.program_settings import (
@@ -37,6 +36,7 @@ from tuisim.settings.options import (
     Settings,
     merge_settings,
 )
+from tuisim.settings.presses import press_actions
 from tuisim.settings.profiles import load_profile
 from tuisim.settings.robots import DEFAULT_ROBOT, RobotChoice, choose_robot
 

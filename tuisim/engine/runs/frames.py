@@ -49,6 +49,12 @@ class DeadReckoning:
     y_mm: FloatArray
     heading_deg: FloatArray
 
+    def compute_error_mm(self, x_mm: FloatArray, y_mm: FloatArray) -> FloatArray:
+        """Return the distances from the true positions in mm, shape (n,)."""
+        import numpy as np
+
+        return np.hypot(self.x_mm - x_mm, self.y_mm - y_mm)
+
 
 def compute_dead_reckoning(
     left_position_deg: FloatArray, right_position_deg: FloatArray, start: Pose, robot: RobotSpec

@@ -6,7 +6,6 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from tuisim.base.data_class import dataclass
 from tuisim.base.source import source_lines
-from tuisim.engine.presses import press_actions
 from tuisim.engine.runs.handle import RunOptions, start_run
 from tuisim.engine.runs.recorded_run import Recording
 from tuisim.engine.runs.run_folder import StoredRun
@@ -16,6 +15,7 @@ from tuisim.programs.program_file import parse_program
 from tuisim.programs.program_settings import build_program_settings
 from tuisim.settings.build import build_run_spec
 from tuisim.settings.options import merge_settings
+from tuisim.settings.presses import press_actions
 from tuisim.tasks.goals.judgement import GoalState, Judgement
 from tuisim.tasks.goals.trial_world import TrialWorld
 from tuisim.tasks.lessons.spec import Lesson, LessonStep, RunCheck, Way

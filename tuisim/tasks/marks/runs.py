@@ -14,9 +14,9 @@ from tuisim.base.folders import remove_tree
 from tuisim.base.source import user_python_path
 from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.core.tree import dump_run
-from tuisim.engine.presses import press_actions
 from tuisim.engine.runs.handle import RunOptions
 from tuisim.engine.runs.temporary import create_temporary_home
+from tuisim.settings.presses import press_actions
 from tuisim.tasks.goals.trial_world import TrialWorld
 from tuisim.tasks.marks.journal import Journal
 from tuisim.tasks.marks.outcome import Outcome, build_outcome

@@ -7,9 +7,9 @@ import pytest
 from tests.cases import cases
 from tuisim.base.errors import ConfigError
 from tuisim.engine.core.spec import PRESSABLE
-from tuisim.engine.presses import Press, parse_press
 from tuisim.engine.protocol import SetButtons
 from tuisim.settings.options import PRESSES, parse
+from tuisim.settings.presses import Press, parse_press
 
 GIVEN = {
     "plain": ("enter@1", Press("enter", 1.0, 1.1)),

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from tests.cases import cases
-from tuisim.engine.presses import press_actions
 from tuisim.engine.protocol import SetButtons, UserAction
+from tuisim.settings.presses import press_actions
 
 HELD = {
     "none": ((), ()),
