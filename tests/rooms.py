@@ -35,7 +35,7 @@ PARTS_OF_ENGINE = (
     "shim",
     "runs",
     "mats",
-    "mat_cache | obstacles | presses",
+    "mat_cache | obstacles",
     "mat_image | files",
     "protocol | breakpoints | brick_home",
     "core",

@@ -7,6 +7,7 @@ __all__ = [
     "options",
     "overrides",
     "preferences",
+    "presses",
     "profiles",
     "robots",
     "shared_options",
