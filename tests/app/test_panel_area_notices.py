@@ -41,20 +41,14 @@ async def test_a_notice_lies_on_the_border_and_leaves_axis_and_keys_free(
         app = await ready(pilot)
         app.panel_area.bring("chart")
         await until(pilot, lambda: bool(app.panel_area.panels["chart"].region))
-        app.say(LONG)
-        await shown_row(pilot, app, LONG)
-        await until(pilot, lambda: app.screen.query_one(NoticeRow).region.height > 1)
-        rows = app.screen.query_one(NoticeRow).region
-        assert rows == Region(0, 0, size[0], rows.height) and rows.height <= 3
-        axis = app.panel_area.panels["chart"].region
-        assert not rows.overlaps(Region(axis.x, axis.bottom - 3, axis.width, 3))
-        app.say(SHORT)
-        row = (await shown_row(pilot, app, SHORT)).region
-        # Beside a shorter row, the rest of the words on the border would seem to belong to it.
-        assert row == Region(0, app.panel_area.region.bottom - 1, size[0], 1)
-        assert not row.overlaps(app.key_footer.region)
-        for panel in app.panel_area.on_screen():
-            assert not row.overlaps(cast(Widget, panel).region.shrink((1, 1, 1, 1)))
+        for message in (LONG, SHORT):
+            app.say(message)
+            row = (await shown_row(pilot, app, message)).region
+            # Beside a shorter row, the rest of the words on the border would seem to belong to it.
+            assert row == Region(0, app.panel_area.region.bottom - 1, size[0], 1)
+            assert not row.overlaps(app.key_footer.region)
+            for panel in app.panel_area.on_screen():
+                assert not row.overlaps(cast(Widget, panel).region.shrink((1, 1, 1, 1)))
 
 
 @pytest.mark.slow

@@ -1,4 +1,4 @@
-"""Notices: one message at a time, on the lower edge of the panels or, if it is long, in a few rows at the top."""
+"""Notices: one message at a time, in a row on the lower edge of the panels; a long one in parts, one after another."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import time
 from collections import deque
 from collections.abc import Callable
 from math import inf
-from textwrap import indent, wrap
+from textwrap import wrap
 from typing import Any
 
 from textual.app import App
@@ -23,8 +23,6 @@ _MORE = " …"
 """At the end of a part that another one follows."""
 _NUMBER = "1/2 "
 """Before each of several parts."""
-_MAX_ROWS = 3
-"""Rows of a part."""
 _EDGES = 3
 """Columns of the row beside its text."""
 
@@ -45,30 +43,24 @@ class Notice:
 
 
 def split_message(message: str, columns: int) -> list[str]:
-    """Return the parts of a message that are shown one after the other, each of up to three rows of that many columns.
+    """Return the parts of a message that are shown one after the other, each in a row of that many columns.
 
     Several parts are numbered, so that the reader knows that others follow, or came before.
     """
     text = " ".join(message.split())
-    columns = max(columns, len(_NUMBER) + len(_MORE) + 1)
     if len(text) <= columns:
         return [text]
-    if len(rows := wrap(text, columns)) <= _MAX_ROWS:
-        return ["\n".join(rows)]
-    rows = wrap(text, columns - len(_NUMBER) - len(_MORE))
-    parts = ["\n".join(rows[first : first + _MAX_ROWS]) for first in range(0, len(rows), _MAX_ROWS)]
-    ends = [*(_MORE for _ in parts[1:]), ""]
-    numbered = zip(range(1, len(parts) + 1), parts, ends, strict=True)
+    parts = wrap(text, max(columns - len(_NUMBER) - len(_MORE), 1))
     return [
-        f"{number}/{len(parts)} {indent(part, ' ' * len(_NUMBER)).strip()}{end}"
-        for number, part, end in numbered
+        f"{number}/{len(parts)} {part}{_MORE if number < len(parts) else ''}"
+        for number, part in enumerate(parts, start=1)
     ]
 
 
 class NoticeRow(Static):
-    """The row of a notice. A long one has more rows, at the top, where they cover neither keys nor a chart's axis.
+    """The row of a notice, on the border of the lowest panels: it covers nothing, and moves nothing.
 
-    One that stays is read beside the panels, which make room for it above the footer.
+    A notice that stays begins anew after its last part.
 
     Args:
         notice: What it shows.
@@ -88,8 +80,6 @@ class NoticeRow(Static):
         text-overflow: ellipsis;
         border-left: outer $success;
     }}
-    NoticeRow.-long {{ dock: top; height: auto; margin: 0; }}
-    NoticeRow.-long.-stays {{ layer: default; dock: bottom; margin-bottom: 1; }}
     NoticeRow.-warning {{ border-left: outer $warning; }}
     NoticeRow.-error {{ border-left: outer $error; }}
     """
@@ -97,19 +87,21 @@ class NoticeRow(Static):
 
     def __init__(self, notice: Notice, ended: Callable[[], None]) -> None:
         super().__init__(markup=False, classes=f"-{notice.severity}")
-        self.set_class(notice.stays, "-stays")
         self.notice = notice
         self._ended = ended
-        self._parts: deque[str] = deque()
+        self._parts: list[str] = []
+        self._count = 0
+        """How many parts have been shown."""
         self._part_until_s = inf
 
     @property
     def is_read(self) -> bool:
         """Whether the user has had the time to read all of it."""
-        return not self._parts and time.monotonic() >= self._part_until_s
+        more = self._count - len(self._parts)
+        return more > 0 or (more == 0 and time.monotonic() >= self._part_until_s)
 
     def on_mount(self) -> None:
-        self._parts.extend(split_message(self.notice.message, self.app.size.width - _EDGES))
+        self._parts = split_message(self.notice.message, self.app.size.width - _EDGES)
         self._show_next()
 
     def on_resize(self) -> None:
@@ -117,7 +109,7 @@ class NoticeRow(Static):
 
     def _leave_dialog(self) -> None:
         """Move to the lower border of a dialog whose text the row would cover."""
-        if not self.is_attached or self.has_class("-long"):
+        if not self.is_attached:
             return
         for frame in self.screen.query(".dialog"):
             if self.region.overlaps(frame.region.shrink((1, 1, 1, 1))):
@@ -128,15 +120,17 @@ class NoticeRow(Static):
         self._ended()
 
     def _show_next(self) -> None:
-        if not self._parts:
+        count = len(self._parts)
+        if self._count >= count and not self.notice.stays:
             self._ended()
             return
-        part = self._parts.popleft()
-        self.set_class("\n" in part, "-long")
+        part = self._parts[self._count % count]
+        self._count += 1
         self.update(part)
         reading_s = max(_MIN_PART_S, len(part) / CHARACTERS_A_SECOND)
         self._part_until_s = time.monotonic() + reading_s
-        shown_s = reading_s if self._parts else max(reading_s, self.notice.timeout_s)
+        goes_on = self._count < count or (self.notice.stays and count > 1)
+        shown_s = reading_s if goes_on else max(reading_s, self.notice.timeout_s)
         if shown_s < inf:
             self.set_timer(shown_s, self._show_next)
 
