@@ -101,8 +101,8 @@ class PanelArea(Container):
         self._asked = dict(self._given)
         """Panels that were asked for, the latest last."""
         self._chosen: dict[str, bool] = {}
-        """Panels that the user has shown or hidden by their keys, which are kept with the preset."""
-        self.preset = self._kept_preset = Preset.STANDARD
+        """Panels that the user has shown or hidden by their keys, which can be kept with the preset."""
+        self.preset = Preset.STANDARD
         self.alone = ""
         """Id of the maximized panel, empty for none."""
         self.clicked = ""
@@ -166,11 +166,7 @@ class PanelArea(Container):
         if show:
             self.front = panel
         self._chosen.pop(panel, None)
-        # A panel that a terminal of this size hides by default is needed only now, and is not kept.
-        if self._find_size() in PANELS[panel].sizes:
-            self._chosen[panel] = show
-        if self.preset == self._kept_preset:
-            self.keep_panels()
+        self._chosen[panel] = show
 
     def can_take_focus(self, panel: str) -> bool:
         """Return whether a panel that is shown beside others can get the focus, and does not have it yet.
@@ -261,7 +257,6 @@ class PanelArea(Container):
 
     def keep_panels(self) -> None:
         """Keep the preset, and the panels shown or hidden by their keys, for the next start in this size."""
-        self._kept_preset = self.preset
         save_layout(self._find_size(), KeptLayout(self.preset, self._chosen))
 
     def _find_size(self) -> TerminalSize:
@@ -271,7 +266,7 @@ class PanelArea(Container):
         """Load the arrangement that was stored for this size of the terminal."""
         self._is_loaded = True
         layout = load_layout(self._find_size())
-        self.preset = self._kept_preset = layout.preset
+        self.preset = layout.preset
         self._chosen = layout.asked
         self._asked = {
             **{panel: on for panel, on in layout.asked.items() if panel not in self._given},

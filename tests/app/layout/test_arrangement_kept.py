@@ -29,13 +29,16 @@ def test_what_is_known_stays() -> None:
     assert load_layout(TerminalSize.SMALL) == KeptLayout(Preset.DRIVE, {"output": False})
 
 
-async def test_panels_hidden_by_default_in_this_size_are_not_kept_for_the_next_start() -> None:
+async def test_panels_are_kept_for_the_next_start_only_by_the_key_that_says_so() -> None:
     async with open_lab(LOGS, size=(80, 24)) as (pilot, app):
-        await pilot.press("G", "X", "c", "O")
-        await until(pilot, lambda: app.panel_area.is_shown("chart"))
-    assert load_layout(TerminalSize.SMALL).asked == {"output": True}
-
-
-def test_a_kept_panel_that_is_hidden_by_default_in_this_size_is_forgotten() -> None:
-    save_layout(TerminalSize.SMALL, KeptLayout(asked={"positioning": True, "output": False}))
-    assert load_layout(TerminalSize.SMALL).asked == {"output": False}
+        await pilot.press("X", "i")
+        await until(pilot, lambda: not app.panel_area.is_shown("instrumentation"))
+    assert load_layout(TerminalSize.SMALL) == KeptLayout()
+    async with open_lab(LOGS, size=(80, 24)) as (pilot, app):
+        assert app.panel_area.is_shown("instrumentation")
+        await pilot.press("X", "shift+f9")
+    assert load_layout(TerminalSize.SMALL).asked == {"positioning": True}
+    async with open_lab(LOGS, size=(80, 24)) as (pilot, app):
+        assert app.panel_area.is_shown("positioning")
+        await pilot.press("f6", "f6", "shift+f9")
+    assert load_layout(TerminalSize.SMALL) == KeptLayout()

@@ -400,7 +400,7 @@ def load_layout(size: TerminalSize) -> KeptLayout:
     rows = layout_table.get("panels")
     for row in rows if isinstance(rows, list) else []:
         match row:
-            case [str(panel), bool(on)] if panel in PANELS and size in PANELS[panel].sizes:
+            case [str(panel), bool(on)] if panel in PANELS:
                 layout.asked[panel] = on
             case _:
                 pass
