@@ -32,6 +32,13 @@ WAITED_FOR = {
         "angle",
         2,
     ),
+    "a number that is added": (
+        "x = 5\nwhile 2 + us.distance() - x > 50:\n    pass",
+        "<=",
+        53,
+        "distance",
+        2,
+    ),
     "a break": ("while True:\n    if gyro.angle > 90:\n        break\n", ">", 90, "angle", 2),
     "one of two": (
         "while btn.enter == False and us.distance() > 50:\n    wait(5)",
@@ -74,6 +81,8 @@ def test_a_comparison_with_a_constant_is_waited_for(
         "def go(goal):\n    while gyro.angle < goal:\n        pass\ngo(find())",
         "while 0 < gyro.angle < 90:\n    pass",
         "while max(a.angle, b.angle) < 90:\n    pass",
+        "while 10 - a.angle > 90:\n    pass",
+        "while a.angle + b.angle > 90:\n    pass",
         "v = 1\nwhile v > 0:\n    v = look()",
         "v = 1\ndef press():\n    global v\n    v = 0\ndef go():\n    while v > 0:\n        pass",
         "v = 1\ndef go():\n    while v > 0:\n        rest()\ndef press():\n    global v\n    v = 0",

@@ -215,7 +215,26 @@ def _read_comparison(
     limit = _find_constant(right, constants)
     if limit is None:
         left, limit, ending = right, _find_constant(left, constants), TURNED.get(ending, ending)
-    return None if limit is None or not ending else (left, ending, limit)
+    return None if limit is None or not ending else _split_sum(left, ending, limit, constants)
+
+
+def _split_sum(
+    value: ast.expr, ending: str, limit: Word, constants: Mapping[str, Word]
+) -> tuple[ast.expr, str, Word]:
+    """Return a comparison without the numbers that are added to its value: their sum is part of the limit."""
+    while isinstance(limit, int | float):
+        match value:
+            case ast.BinOp(left=left, op=ast.Add() | ast.Sub() as op, right=right):
+                sign = 1 if isinstance(op, ast.Add) else -1
+                number = _find_constant(right, constants)
+                if number is None and sign > 0:
+                    left, number = right, _find_constant(left, constants)
+                if not isinstance(number, int | float):
+                    break
+                value, limit = left, limit - sign * number
+            case _:
+                break
+    return value, ending, limit
 
 
 def _has_any(loop: _Loop, *kinds: type[ast.AST]) -> bool:
