@@ -49,6 +49,14 @@ async def test_at_the_end_the_app_shows_the_speeds_of_its_last_tick() -> None:
         assert snapshot.gyro_rate_dps == at_the_end.gyro_rate_dps != 0
 
 
+async def test_a_line_that_is_nearly_a_sample_is_told_once() -> None:
+    printing = "for number in range(3):\n    print('Angle L:', number)\n"
+    async with open_lab(printing, autorun=True) as (pilot, app):
+        await until_state(pilot, RunPhase.ENDED)
+        await until(pilot, lambda: "is no sample" in screen_text(app))
+        assert screen_text(app).count("is no sample") == 1
+
+
 @pytest.mark.slow
 async def test_the_end_says_that_the_robot_stood_at_a_wall() -> None:
     setup = settings(PUSHES, autorun=True, speed=0.0)

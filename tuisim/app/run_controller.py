@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from tuisim.app.earlier_run import find_pose, is_comparable
-from tuisim.app.run_update import RunUpdate, describe_contacts, describe_remarks
+from tuisim.app.run_update import NearSampleWatch, RunUpdate, describe_contacts, describe_remarks
 from tuisim.app.setup import next_run as plans
 from tuisim.app.setup.next_run import NextRun
 from tuisim.app.snapshot import RunPhase, Snapshot
@@ -135,6 +135,7 @@ class RunController:
         """Whether the robot was placed since the last run, so that the run's last record no longer applies."""
         self._pending = Pending()
         self._waits = WaitWatch()
+        self._near_samples = NearSampleWatch()
         self.propose: Callable[[protocol.Message], bool] = lambda _: False
         """Proposes a branch with a user action if the past is in view, and returns whether it is."""
         self.paused_line: tuple[int, int] | None = None
@@ -572,6 +573,7 @@ class RunController:
                 recording, ended, self.state is RunPhase.RUNNING, self.find_mat
             )
         rows = recording.take_rows(ROWS_A_POLL)
+        remarks += self._near_samples.look(recording, rows)
         prompt = self.run.waiting_for_input if self.run and self.in_run else None
         return RunUpdate(
             rows, ended, stood, tuple(spoken), prompt, branched, tuple(pauses), tuple(remarks)

@@ -12,6 +12,7 @@ from tuisim.engine import protocol
 from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.runs.push import find_push
 from tuisim.engine.runs.records import OutputRow
+from tuisim.engine.runs.samples import describe_near_sample
 from tuisim.engine.runs.standstill import find_standstill
 from tuisim.engine.runs.views import TelemetryView
 from tuisim.programs.plugged_words import describe_newest
@@ -55,6 +56,21 @@ def describe_remarks(
         yield describe_busy_loop(event)
     elif words := describe_newest(recording.plugged, recording.spec):
         yield words
+
+
+class NearSampleWatch:
+    """Tells once for each run which printed line is nearly a sample."""
+
+    def __init__(self) -> None:
+        self._told: Recording | None = None
+        """The run of which it was told."""
+
+    def look(self, recording: Recording, rows: list[OutputRow]) -> list[str]:
+        """Return the words for the output about new rows of a run; none if there is nothing to tell."""
+        if self._told is recording or not (words := describe_near_sample(rows)):
+            return []
+        self._told = recording
+        return [words]
 
 
 def describe_contacts(telemetry: TelemetryView, spec: RunSpec) -> str:

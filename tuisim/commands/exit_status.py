@@ -6,6 +6,7 @@ import signal
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import asdict
+from itertools import islice
 from types import FrameType
 from typing import Any, assert_never
 
@@ -17,7 +18,7 @@ from tuisim.engine.protocol import NO_ANSWER, End, describe_state
 from tuisim.engine.runs.push import Push, find_push
 from tuisim.engine.runs.records import Stream
 from tuisim.engine.runs.run_folder import StoredRun
-from tuisim.engine.runs.samples import counts_of
+from tuisim.engine.runs.samples import counts_of, describe_near_sample
 from tuisim.engine.runs.standstill import Standstill, find_standstill
 from tuisim.engine.runs.views import TelemetryView
 from tuisim.programs.plugged_words import describe_plugged
@@ -27,6 +28,9 @@ from tuisim.tasks.reasons.waited_words import describe_wait
 EXIT_RAISED = 1
 EXIT_BAD_OUTPUT = 2
 EXIT_LIMIT = 3
+
+_MAX_ROWS_READ = 10_000
+"""Rows among which a line that is nearly a sample is looked for: a program may print millions."""
 
 
 def choose_exit_code(end: End, exit_code: int) -> int:
@@ -123,6 +127,8 @@ def report(run: StoredRun, exit_code: int, *, as_json: bool) -> None:
         return
     if plugged := describe_plugged(run):
         echo_error(f"note: {plugged}")
+    if near_sample := describe_near_sample(islice(run.output.rows(), _MAX_ROWS_READ)):
+        echo_error(f"note: {near_sample}")
     echo_error(describe_last_state(facts))
 
 

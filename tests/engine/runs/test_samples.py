@@ -5,7 +5,13 @@ from __future__ import annotations
 from tests.cases import cases
 from tuisim.engine.core.conditions import ValueCondition, ValueSource
 from tuisim.engine.runs.records import OutputRow, Stream
-from tuisim.engine.runs.samples import Sample, list_samples, parse_sample, select_rows
+from tuisim.engine.runs.samples import (
+    Sample,
+    describe_near_sample,
+    list_samples,
+    parse_sample,
+    select_rows,
+)
 
 SAMPLES = {
     "whole number": ("Ultrasonic: 2550", ("Ultrasonic", 2550.0, None)),
@@ -90,3 +96,41 @@ def test_lines_of_which_a_condition_is_true(
     rows = [OutputRow(text, tick, tick, 1, Stream.STDOUT) for tick, text in enumerate(printed)]
     condition = ValueCondition(name, sign, value, source)
     assert [row.text for row in select_rows(condition, rows)] == texts
+
+
+@cases(
+    "text, sample",
+    {
+        "two words": ("Angle L: 5", "Angle_L: 5"),
+        "a unit": ("T: 5 mm", "T: 5"),
+        "a rate": ("Speed: -5.5 deg/s", "Speed: -5.5"),
+        "a comma": ("Licht: 3,5", "Licht: 3.5"),
+        "a blank before the colon": ("Colour : 12", "Colour: 12"),
+    },
+)
+def test_a_line_that_is_nearly_a_sample_is_told_with_the_sample_that_it_may_become(
+    text: str, sample: str
+) -> None:
+    assert parse_sample(sample) is not None
+    words = describe_near_sample([OutputRow("Good: 5", 0, 0, 6, Stream.STDOUT), row_of(text)])
+    assert words.startswith(f"{text!r} in line 7 is no sample")
+    assert words.endswith(f"print {sample!r}")
+
+
+@cases(
+    "text",
+    {
+        "a sample": "Colour: 5",
+        "a sample with a time": "Colour: 5 0.3",
+        "a sentence": "The robot has turned: 5 times so far",
+        "a number with its largest": "Result: 5 of 7",
+        "a time of day": "Time: 12:30",
+        "a tuple": "rgb: (1, 2, 3)",
+    },
+)
+def test_other_text_is_not_called_nearly_a_sample(text: str) -> None:
+    assert describe_near_sample([row_of(text)]) == ""
+
+
+def row_of(text: str) -> OutputRow:
+    return OutputRow(text, 0, 0, 7, Stream.STDOUT)

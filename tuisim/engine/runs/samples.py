@@ -27,6 +27,12 @@ _PLAIN_SAMPLE = re.compile(
 )
 """Matches most samples in the bytes of the recording; a line that it does not match may still be a sample."""
 
+_NEAR_SAMPLE = re.compile(
+    r"(?:\^log[ \t]+)?(?P<name>[^\W\d]\w*(?: \w+){0,3}) ?:[ \t]*(?P<number>[+-]?\d+(?:[.,]\d+)?)"
+    r"(?: ?(?:%|°|[A-Za-z]{1,3})(?:/s)?)?\s*"
+)
+"""A name of several words, a number with a comma, or a unit behind it; also most samples."""
+
 
 @dataclass(frozen=True, slots=True)
 class Sample:
@@ -61,6 +67,20 @@ def parse_sample(text: str) -> tuple[str, float, float | None] | None:
     ):
         return None
     return name, value, time
+
+
+def describe_near_sample(rows: Iterable[OutputRow]) -> str:
+    """Return which printed line is nearly a sample, and how it becomes one, in words; empty if none is."""
+    for row in rows:
+        if row.stream not in SAMPLE_STREAMS or not (match := _NEAR_SAMPLE.fullmatch(row.text)):
+            continue
+        if parse_sample(row.text) is None:
+            name, number = "_".join(match["name"].split()), match["number"].replace(",", ".")
+            return (
+                f"{row.text.strip()!r} in line {row.line} is no sample, which is one word, a colon and a number: "
+                f"print {f'{name}: {number}'!r}"
+            )
+    return ""
 
 
 @dataclass(frozen=True, slots=True)
