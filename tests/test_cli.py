@@ -92,7 +92,10 @@ def test_the_last_line_says_that_the_robot_stood_at_the_wall(tmp_path: Path, her
 def test_the_last_line_says_that_the_robot_left_the_field(tmp_path: Path, here: Command) -> None:
     (tmp_path / "push.py").write_text(PUSHES)
     done = here("run", "push.py", "-x", "2200")
-    assert " · left the field · 0 samples · run " in done.stderr.splitlines()[-1]
+    assert (
+        " · left the field, which has no walls (--walls on) · 0 samples · run "
+        in done.stderr.splitlines()[-1]
+    )
     assert json.loads(here("run", "push.py", "-x", "2200", "--json").stdout)["left_field"]
     near = json.loads(here("run", "push.py", "-x", "1000", "--json").stdout)
     assert not near["left_field"]

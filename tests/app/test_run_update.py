@@ -7,6 +7,7 @@ from dataclasses import replace
 from tests.app.app_help import ready, settings, until
 from tests.engine.shim.late_programs import LATE_PROGRAMS
 from tuisim.app.app import LabApp
+from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.sensors import list_column_names
 from tuisim.programs.program_file import parse_program
 from tuisim.programs.program_settings import build_program_settings
@@ -27,6 +28,18 @@ def begin(text: str) -> LabApp:
             decided=found.decided,
         )
     )
+
+
+async def test_the_end_says_that_the_robot_left_a_field_without_walls() -> None:
+    setup = settings("tank_drive.on_for_seconds(50, 50, 1)\n", autorun=True, speed=0.0)
+    world = replace(setup.spec.world, walls=False, floor=True, start=Pose(2300.0, 571.5, 0.0))
+    app = LabApp(replace(setup, spec=replace(setup.spec, world=world)))
+    async with app.run_test(size=(160, 50)) as pilot:
+        await ready(pilot)
+        await until(pilot, lambda: app.panel_area.output is not None)
+        output = app.panel_area.output
+        assert output is not None
+        await until(pilot, lambda: "left the field, which has no walls" in output.copy_text().text)
 
 
 async def test_a_part_that_is_plugged_in_is_named_and_seen() -> None:

@@ -13,7 +13,7 @@ from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.runs.push import find_push
 from tuisim.engine.runs.records import OutputRow
 from tuisim.engine.runs.samples import describe_near_sample
-from tuisim.engine.runs.standstill import find_standstill
+from tuisim.engine.runs.standstill import LEFT_FIELD, find_standstill, has_left_field
 from tuisim.engine.runs.views import TelemetryView
 from tuisim.programs.plugged_words import describe_newest
 
@@ -29,7 +29,7 @@ class RunUpdate:
     ended: protocol.Ended | None = None
     """Set once, in the poll that receives the end."""
     stood: str = ""
-    """Set in the same poll: where something solid stopped or pushed the robot, in words; may be empty."""
+    """Set in the same poll: the words of `describe_contacts`; may be empty."""
     spoken: tuple[protocol.Spoke, ...] = ()
     """Texts and sounds from the program."""
     prompt: str | None = None
@@ -74,10 +74,11 @@ class NearSampleWatch:
 
 
 def describe_contacts(telemetry: TelemetryView, spec: RunSpec) -> str:
-    """Return where something solid stopped or pushed the robot of a run, in words; empty if nothing did.
+    """Return where something solid stopped or pushed the robot of a run, or that it left the field, in words, or "".
 
     Raises:
         LogError: the recording is damaged.
     """
     contacts = find_standstill(telemetry, spec), find_push(telemetry, spec)
-    return ", ".join(contact.words for contact in contacts if contact)
+    left = [LEFT_FIELD] if has_left_field(telemetry, spec) else []
+    return ", ".join([*(contact.words for contact in contacts if contact), *left])

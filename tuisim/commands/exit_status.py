@@ -13,14 +13,17 @@ from typing import Any, assert_never
 from tuisim.base.errors import SIGNALLED, counted
 from tuisim.commands.echo import echo_error, echo_error_lines, echo_json
 from tuisim.engine.core.geometry import Pose
-from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, RunSpec
 from tuisim.engine.protocol import NO_ANSWER, End, describe_state
 from tuisim.engine.runs.push import Push, find_push
 from tuisim.engine.runs.records import Stream
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.engine.runs.samples import counts_of, describe_near_sample
-from tuisim.engine.runs.standstill import Standstill, find_standstill
-from tuisim.engine.runs.views import TelemetryView
+from tuisim.engine.runs.standstill import (
+    LEFT_FIELD,
+    Standstill,
+    find_standstill,
+    has_left_field,
+)
 from tuisim.programs.plugged_words import describe_plugged
 from tuisim.tasks.reasons.reason import describe_end
 from tuisim.tasks.reasons.waited_words import describe_wait
@@ -104,7 +107,7 @@ def describe_last_state(facts: dict[str, Any]) -> str:
     pose = Pose(facts["x_mm"], facts["y_mm"], facts["heading_deg"])
     stood = f"{Standstill(**facts['standstill']).words} · " if facts["standstill"] else ""
     pushed = f"{Push(**facts['push']).words} · " if facts["push"] else ""
-    left = "left the field · " if facts["left_field"] else ""
+    left = f"{LEFT_FIELD} · " if facts["left_field"] else ""
     waited = "".join(f"{facts[name]} · " for name in ("waited_for", "went_wrong") if facts[name])
     samples = "" if facts["samples"] is None else f"{counted(facts['samples'], 'sample')} · "
     return (
@@ -158,16 +161,3 @@ def handle_signals(handler: Callable[[int, FrameType | None], None]) -> Iterator
     finally:
         for number, earlier in before.items():
             signal.signal(number, earlier)
-
-
-def has_left_field(telemetry: TelemetryView, spec: RunSpec) -> bool:
-    """Return whether a robot on an open floor has been off the field.
-
-    Raises:
-        LogError: the recording is damaged.
-    """
-    if not spec.world.is_open:
-        return False
-    records = telemetry.array()
-    sides = (records["x_mm"], FIELD_WIDTH_MM), (records["y_mm"], FIELD_HEIGHT_MM)
-    return any(bool(((at_mm < 0) | (at_mm > size_mm)).any()) for at_mm, size_mm in sides)

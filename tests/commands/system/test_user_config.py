@@ -34,6 +34,8 @@ def test_every_setting_is_listed_with_its_source(config: Path, here: Command) ->
     sources = {one["setting"]: (one["value"], one["from"]) for one in done["settings"]}
     assert sources["app.quiet"] == (True, "config.toml")
     assert sources["app.fps"] == (20, "default")
+    # Whether there are walls is the program's to say.
+    assert sources["simulation.walls"] == (True, "default, or from the program")
     assert sources["keys.run"] == ("f5", "config.toml")
     assert ["app.quiet", "true", "config.toml"] in [line.split() for line in lines]
 

@@ -11,11 +11,10 @@ from tests.cases import cases
 from tests.engine.core.motors import commanded
 from tests.engine.runs.run_recorder import Recorder
 from tuisim.app.run_update import describe_contacts
-from tuisim.commands.exit_status import has_left_field
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.profile import PROFILES
 from tuisim.engine.core.spec import NoiseSpec, Obstacle, RobotSpec, RunSpec, WorldSpec
-from tuisim.engine.runs.standstill import find_standstill
+from tuisim.engine.runs.standstill import find_standstill, has_left_field
 
 Record = Callable[..., Recorder]
 

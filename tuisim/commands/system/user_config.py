@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from tuisim.base.errors import ConfigError
 from tuisim.commands.echo import AS_JSON, draw_table, echo, echo_json, echo_lines
+from tuisim.programs.program_settings import PROGRAM_PATHS
 from tuisim.settings.command_line import command, option
 from tuisim.settings.user_config import FILE, SETTINGS, UserConfig, load_config, write_template
 
@@ -38,7 +39,7 @@ def config(as_json: bool, init: bool) -> int:
     settings = load_config().checked()
     _check_in_app(settings)
     rows = [
-        (path, settings.value(path), FILE if path in settings.written else "default")
+        (path, settings.value(path), FILE if path in settings.written else _describe_default(path))
         for path in SETTINGS
     ]
     rows += [(f"keys.{name}", ", ".join(keys), FILE) for name, keys in settings.keys.items()]
@@ -65,6 +66,10 @@ def _check_in_app(settings: UserConfig) -> None:
 
     apply_keys(ACTIONS, settings)
     check_theme(settings)
+
+
+def _describe_default(path: str) -> str:
+    return "default, or from the program" if SETTINGS[path].sets in PROGRAM_PATHS else "default"
 
 
 def _format_value(value: object) -> str:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import counted
 from tuisim.engine.core.profile import NS_PER_S, compute_due_ns
-from tuisim.engine.core.spec import RunSpec
+from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, RunSpec
 from tuisim.engine.core.tick_record import FLAG_LEFT_RUNNING, FLAG_RIGHT_RUNNING
 from tuisim.engine.runs.views import TelemetryView
 
@@ -30,6 +30,7 @@ _STILL = 1e-3
 """A robot that moves less, in mm or degrees, stands: wheels that push anew press it on by parts of that."""
 
 WALL = "the wall"
+LEFT_FIELD = "left the field, which has no walls (--walls on)"
 _WALLS = 4
 """`Solids.measure_gaps_mm` begins with the walls."""
 
@@ -172,3 +173,16 @@ def _find_next_move(records: NDArray[Any], start: int, end: int) -> int | None:
         moved |= np.abs(records[name][start + 1 : end + 1] - records[name][start]) > _STILL
     ticks = np.flatnonzero(moved)
     return start + 1 + int(ticks[0]) if len(ticks) else None
+
+
+def has_left_field(telemetry: TelemetryView, spec: RunSpec) -> bool:
+    """Return whether a robot on an open floor has been off the field.
+
+    Raises:
+        LogError: the recording is damaged.
+    """
+    if not spec.world.is_open:
+        return False
+    records = telemetry.array()
+    sides = (records["x_mm"], FIELD_WIDTH_MM), (records["y_mm"], FIELD_HEIGHT_MM)
+    return any(bool(((at_mm < 0) | (at_mm > size_mm)).any()) for at_mm, size_mm in sides)
