@@ -47,6 +47,23 @@ STOPS: Mapping[str, tuple[str, tuple[float | None, float | None]]] = {
         "m.run_forever(speed_sp=-100)\nwhile 'stalled' not in m.state: pass",
         (-45, 225),
     ),
+    "whether it stalls in time": (
+        "m.on(-10)\nprint(m.wait_until('stalled', 3000))",
+        (-45, 225),
+    ),
+    "by its list of states": (
+        "m.on(-10)\nm.wait(lambda state: 'stalled' in state, 3000)",
+        (-45, 225),
+    ),
+    "until its position stays": (
+        "m.on(-10)\nlast = None\nwhile m.position != last:\n    last = m.position\nm.on_to_position(10, 90)",
+        (-45, 225),
+    ),
+    "until its position is known": (
+        "m.on(-10)\nwhile m.position != -90: pass",
+        (None, None),
+    ),
+    "only printed": ("m.on(-10)\nprint(m.is_stalled)", (None, None)),
     "no direction": ("m.on(speed)\nwhile not m.is_stalled: pass", (-225, 225)),
     "until it does not move": ("m.on(-10)\nm.wait_until_not_moving()", (-45, 225)),
     "a move that ends by itself": (
@@ -111,6 +128,27 @@ def test_a_motor_that_drives_until_it_stalls_has_end_stops(case: str) -> None:
 
 def test_a_wheel_that_drives_until_it_stalls_has_no_end_stops() -> None:
     assert changed("m = LargeMotor(OUTPUT_B)\nm.on(10)\nwhile not m.is_stalled: pass") == ""
+
+
+TOUCH_WAITS: Mapping[str, tuple[str, str]] = {
+    "not": ("while not ts.is_pressed: pass", "outA"),
+    "a value": ("while ts.value() == 0: pass", "outA"),
+    "False": ("while ts.is_pressed == False: pass", "outA"),
+    "not 1": ("while ts.value() != 1: pass", "outA"),
+    "released": ("while ts.is_released: pass", "outA"),
+    "a way out": ("while True:\n    if ts.is_pressed:\n        arm.off()\n        break", "outA"),
+    "a way out by value": ("while 1:\n    if ts.value() == 1: break", "outA"),
+    "while it is pressed": ("while ts.is_pressed: pass", ""),
+    "no way out": ("while True:\n    if ts.is_pressed: print(1)\n    else: break", ""),
+}
+
+
+@pytest.mark.parametrize("case", TOUCH_WAITS)
+def test_an_arm_presses_the_touch_sensor_that_the_program_waits_for(case: str) -> None:
+    wait, port = TOUCH_WAITS[case]
+    found = built(f"arm = MediumMotor(OUTPUT_A)\nts = TouchSensor(INPUT_1)\narm.on(-5)\n{wait}")
+    assert found is not None
+    assert found.choice.spec.touch_sensors[0].pressed_by == port
 
 
 def test_a_touch_sensor_that_ends_the_way_of_an_arm_is_pressed_by_it() -> None:

@@ -15,6 +15,11 @@ from tuisim.programs.robot.library import INVERSED, NORMAL, DeviceKind, Moves
 from tuisim.programs.robot.mentions import Mentions, Pair, Where
 from tuisim.programs.robot.scopes import FUNCTIONS, Bound, Scope
 from tuisim.programs.robot.values import Instance, OwnClass, OwnFunction, Value
+from tuisim.programs.robot.waiting_loops import (
+    find_awaited_touch,
+    find_state_test,
+    find_stopped_motors,
+)
 from tuisim.programs.robot.words import is_forwards
 
 
@@ -85,19 +90,16 @@ class _MechanicsReader:
                     self._turn(self._find_known(base, scope), text, _find_where(node, scope))
             case ast.Attribute(value=base, attr="is_stalled"):
                 self._stall(base, scope, node)
-            case ast.While(test=ast.Compare(left=left, ops=[ast.Gt() | ast.GtE() | ast.NotEq()])):
-                motor = _find_motor(left)
-                if motor is not None and self._is_endless(motor, scope):
-                    self._stall(motor, scope, node)
-            case (
-                ast.Compare(left=state, comparators=[ast.Attribute(value=base, attr="state")])
-                | ast.Call(func=ast.Attribute(value=base, attr="wait_until"), args=[state, *_])
-            ):
-                if "stalled" in self.evaluation.values(state, scope):
-                    self._stall(base, scope, node)
+            case ast.While():
+                for motor, is_sure in find_stopped_motors(node):
+                    if is_sure or self._is_endless(motor, scope):
+                        self._stall(motor, scope, node)
+            case ast.Compare() | ast.Call() if test := find_state_test(node):
+                if "stalled" in self.evaluation.values(test.state, scope):
+                    self._stall(test.motor, scope, node, () if test.waits else None)
             case ast.Call(func=ast.Attribute(value=base, attr="wait_until_not_moving")):
                 if self._is_endless(base, scope):
-                    self._stall(base, scope, node)
+                    self._stall(base, scope, node, ())
             case ast.Call(func=ast.Attribute(value=base, attr=name)):
                 self._read_call(node, name, base, scope)
 
@@ -286,22 +288,9 @@ class _MechanicsReader:
     def _read_press(self, statements: list[ast.stmt], scope: Scope) -> None:
         """Note a motor that runs until a touch sensor is pressed, if no other motor moves before."""
         last = statements[-1]
-        match last:
-            case (
-                ast.While(
-                    test=ast.UnaryOp(
-                        op=ast.Not(),
-                        operand=(
-                            ast.Attribute(value=base, attr="is_pressed")
-                            | ast.Call(func=ast.Attribute(value=base, attr="value" | "pressed"))
-                        ),
-                    )
-                )
-                | ast.Expr(value=ast.Call(func=ast.Attribute(value=base, attr="wait_for_pressed")))
-            ):
-                pass
-            case _:
-                return
+        base = find_awaited_touch(last)
+        if base is None:
+            return
         touches = self._find_ports(base, scope, DeviceKind.TOUCH)
         nodes = [inner for statement in statements for inner in ast.walk(statement)]
         moved = {
@@ -400,19 +389,6 @@ class _MechanicsReader:
             if isinstance(value, Instance):
                 pairs += [pair for pair in self.mentions.pairs if pair.makes(value)]
         return pairs
-
-
-def _find_motor(node: ast.expr) -> ast.expr | None:
-    """Return the motor whose speed, or absolute speed, an expression is; None if it is not a speed."""
-    match node:
-        case ast.Call(func=ast.Name(id="abs"), args=[inner]):
-            return _find_motor(inner)
-        case (
-            ast.Attribute(value=base, attr="speed")
-            | ast.Call(func=ast.Attribute(value=base, attr="speed"))
-        ):
-            return base
-    return None
 
 
 def _find_where(node: ast.AST, scope: Scope) -> Where:
