@@ -151,8 +151,8 @@ def test_input(
             "t_ms,red\n0,1\n9,2\n",
             "time is the column 't_ms', in milliseconds (--time COLUMN selects another",
         ),
-        ("boot,red\n0,1\n9,2\n", "no time column: row numbers are used (--time COLUMN"),
-        ("row,red\n1,1\n2,2\n", "no time column: row numbers are used (--time COLUMN"),
+        ("boot,red\n0,1\n9,2\n", "no time column: row numbers from 0 are used (--time COLUMN"),
+        ("row,red\n1,1\n2,2\n", "no time column: row numbers from 0 are used (--time COLUMN"),
     ],
     ids=["a name", "none", "numbers of rows"],
 )

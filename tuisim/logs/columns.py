@@ -403,7 +403,7 @@ def has_guessed_order(table: pa.Table, layout: Layout) -> bool:
 def time_in_words(layout: Layout) -> str:
     """Return a sentence on which column is the time."""
     if layout.time in (ROW, "row"):
-        return "no time column: row numbers are used"
+        return "no time column: row numbers from 0 are used"
     unit = UNIT_NAMES.get(layout.unit_s, f"{layout.unit_s:g} s")
     return f"time is the column {layout.time!r}, in {unit}{' since 1970' if layout.since_first else ''}"
 

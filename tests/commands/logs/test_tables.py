@@ -36,6 +36,11 @@ def test_events_are_what_the_program_asked(here: Command, log: Path) -> None:
     assert refused.returncode == 2 and "only runs have commands" in refused.stderr
 
 
+def test_an_event_has_the_row_that_the_analyser_shows(here: Command, log: Path) -> None:
+    (event,) = json.loads(here("log", "events", str(log), "--when", "left > 4.5", "--json").stdout)
+    assert (event["value"], event["row"]) == (5.0, 6)
+
+
 def test_reckoning_without_noise_is_exact(here: Command) -> None:
     here("run", "square", "-M", "300")
     here("log", "reckon", "last", "--out", "reckoned.csv")

@@ -146,7 +146,6 @@ def events(arguments: Arguments) -> int:
             series = log.series(name)
             for crossing in threshold.find_crossings(series):
                 direction = "rises" if crossing.rising else "falls"
-                row = int(series.rows[crossing.sample])
                 rows.append(
                     {
                         "log": log.title,
@@ -154,7 +153,8 @@ def events(arguments: Arguments) -> int:
                         "time_s": crossing.time_s,
                         "crossing": direction,
                         "value": crossing.value,
-                        "row": row,
+                        # From 1, as in the analyser.
+                        "row": int(series.rows[crossing.sample]) + 1,
                     }
                 )
     show_rows(
