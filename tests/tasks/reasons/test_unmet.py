@@ -161,9 +161,26 @@ while PrimeHub().imu.heading() < 90:
 """
 
 
+REVERSED = """\
+# %%sim_magic -b Empty_Map
+from pybricks.hubs import PrimeHub
+from pybricks.parameters import Direction, Port
+from pybricks.pupdevices import Motor
+left = Motor(Port.A, Direction.COUNTERCLOCKWISE)
+left.run(-100)
+Motor(Port.B).run(-100)
+while left.angle() > -9999:
+    pass
+"""
+
+
 @cases(
     "text, words",
     {
+        "a reversed motor": (
+            REVERSED,
+            "the motor on A to read -9999° or less: it went from -0.1 to -",
+        ),
         "no colour": (
             GREYS,
             "the colour sensor on in3 to see red: it saw only black, blue, no colour, white",

@@ -20,6 +20,7 @@ from tuisim.engine.core.spec import (
     UltrasonicSpec,
 )
 from tuisim.engine.protocol import End
+from tuisim.engine.runs.command_events import CommandIndex
 from tuisim.engine.runs.frames import compute_column_values
 from tuisim.engine.runs.readings import READING_MODES, READING_PORTS, read_readings
 from tuisim.engine.runs.records import Stream
@@ -217,6 +218,13 @@ class _Search:
     def _readings(self) -> Array:
         """The readings of the program."""
         return read_readings(self._run.folder, is_over=self._run.end is not None).rows
+
+    @cached_property
+    def _scales(self) -> dict[str, float]:
+        """How many degrees the program counts for one of a motor, by port; 1 where it is missing."""
+        index = CommandIndex(self._run)
+        index.read_all()
+        return index.find_scales(len(self._records))
 
     @cached_property
     def _field(self) -> Field:
@@ -439,6 +447,7 @@ class _Search:
             return None
         column, factor, unit = _TURNS[loop.attribute]
         values = self._records[f"{wheel}_position_{column}"][ticks] * factor
+        values = values * self._scales.get(port, 1.0)
         return _Series(f"the motor on {port}", column, unit, ticks, values)
 
     def _measure_sensor(
@@ -470,11 +479,14 @@ class _Search:
         return _Series(device, column, unit, ticks, values)
 
     def _find_wheel(self, ports: list[str]) -> str:
-        """Return `left` or `right` if the only port is that of the wheel's motor; otherwise, or with gears, empty."""
+        """Return `left` or `right` if the only port is that of the wheel's motor; otherwise, or with gears, empty.
+
+        How a program of ev3dev2 counts a motor that is mounted the other way round is not known.
+        """
         robot = self._run.spec.robot
         wheels = {
-            robot.left_port: "" if robot.left_reversed else "left",
-            robot.right_port: "" if robot.right_reversed else "right",
+            robot.left_port: "" if robot.left_reversed and self._has_codes else "left",
+            robot.right_port: "" if robot.right_reversed and self._has_codes else "right",
         }
         return wheels.get(ports[0], "") if len(ports) == 1 and robot.gear_ratio == 1 else ""
 
