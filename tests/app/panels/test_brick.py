@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from tests.app.app_help import notices, open_lab, program, settings, until
+from tests.app.panel_help import PanelApp, moment
 from tuisim.app.app import LabApp
 from tuisim.app.panels.brick import Brick
 from tuisim.app.snapshot import RunPhase
@@ -17,6 +18,8 @@ from tuisim.engine.core.profile import PROFILES
 from tuisim.engine.core.spec import RobotSpec, RunSpec, TouchSpec, WorldSpec
 from tuisim.settings.robots import ROBOTS
 
+FRAME_COLS = 6
+"""Columns of a frame beside the words in it."""
 WATCHES = """\
 from ev3dev2.button import Button
 from ev3dev2.led import Leds
@@ -77,6 +80,17 @@ def actions(app: LabApp) -> list[list[str]]:
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("robot", ["Default_Robot", "Prime_Robot"])
+async def test_the_keys_of_the_brick_fit_in_the_frame_of_a_narrow_panel(robot: str) -> None:
+    app = PanelApp(Brick())
+    async with app.run_test(size=(65, 14)) as pilot:
+        now = moment()
+        app.panel.show(replace(now, spec=replace(now.spec, robot=ROBOTS[robot])))
+        app.panel.focus()
+        await pilot.pause()
+        assert 0 < len(str(app.panel.border_subtitle)) <= 65 - FRAME_COLS
+
+
 async def test_keys_press_buttons_while_the_panel_has_the_focus() -> None:
     async with open_lab(WATCHES) as (pilot, app):
         await pilot.press("K")
@@ -127,7 +141,7 @@ async def test_a_digit_presses_a_force_sensor_whose_port_is_a_letter() -> None:
         await until(pilot, lambda: isinstance(app.focused, Brick))
         await until(pilot, lambda: app.run_controller.run is not None and "ready" in printed(app))
         assert app.panel_area.brick is not None
-        assert "force sensor" in str(app.panel_area.brick.border_subtitle)
+        assert "1…4 force" in str(app.panel_area.brick.border_subtitle)
         await pilot.press("1")
         await until(pilot, lambda: "bump" in printed(app))
 

@@ -29,10 +29,8 @@ TAP_S = 0.25
 SEEN_S = 0.05
 """Minimum hold in simulated time: programs poll the buttons only now and then."""
 
-_HUB_HELP = (
-    "← → enter ↑ press · 1 … 4 a force sensor · shift holds · the mouse presses all · + size"
-)
-_HELP = "arrows enter backspace press · shift holds · 1 … 4 press a touch sensor · + size"
+_HUB_HELP = "← → enter ↑ press · 1…4 force · shift holds · mouse: all"
+_HELP = "arrows enter ⌫ press · shift holds · 1…4 touch · + size"
 _TOUCH_KEYS = "1234"
 
 
