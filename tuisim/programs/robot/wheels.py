@@ -18,6 +18,7 @@ from tuisim.programs.robot.mentions import Mention, Mentions, Pair, Where
 from tuisim.programs.robot.scopes import Bound, Parameter, Scope
 from tuisim.programs.robot.words import (
     Side,
+    find_girth,
     find_side,
     is_diameter,
     is_girth,
@@ -293,9 +294,9 @@ def _pick_diameter(named: Sequence[tuple[str, Size]]) -> Size | None:
         *((name, Size(2 * size.mm, size.where)) for name, size in named if is_radius(name)),
     ]
     girths = [
-        (name, Size(round(size.mm / math.pi, 2), size.where))
+        (name, Size(round(girth / math.pi, 2), size.where))
         for name, size in named
-        if is_girth(name)
+        if (girth := size.mm if is_girth(name) else find_girth(name, size.mm))
     ]
     return _pick_only(wheels, _DIAMETERS_MM) or _pick_only(girths, _DIAMETERS_MM)
 
@@ -345,7 +346,8 @@ def _read_dict(node: ast.Dict, scope: Scope) -> Iterator[tuple[str, Size]]:
 
 
 def _is_size(name: str) -> bool:
-    return is_diameter(name) or is_radius(name) or is_girth(name) or is_spacing(name)
+    is_girth_name = is_girth(name) or bool(find_girth(name, 1.0))
+    return is_girth_name or is_diameter(name) or is_radius(name) or is_spacing(name)
 
 
 def _read_number(value: object) -> float:
@@ -358,8 +360,8 @@ def _pick_only(named: list[tuple[str, Size]], limits: tuple[float, float]) -> Si
     low, high = limits
     sizes: list[Size] = []
     for name, size in named:
-        # A number without a unit is in mm or cm: the one that is within the limits.
-        units = [unit] if (unit := parse_unit_mm(name)) else [1.0, 10.0]
+        # A number without a unit is in mm, cm or m: the one that is within the limits.
+        units = [unit] if (unit := parse_unit_mm(name)) else [1.0, 10.0, 1000.0]
         sizes += [
             Size(round(size.mm * unit, 1), size.where)
             for unit in units
