@@ -41,10 +41,20 @@ async def test_the_mat_at_hand_is_shown(size: tuple[int, int]) -> None:
             pilot, lambda: view._cells.shape == bands.shape and bool((view._cells != bands).any())
         )
         assert "Seven coloured bands" in str(app.screen.query_one("#title", Static).render())
-        # All of the dialog can be seen: the field is its last row.
+        # All of the dialog can be seen.
         field = app.screen.query_one(Input)
         assert field.region.height == 1
-        assert app.screen.query_one(".dialog").region.contains_region(field.region)
+        assert app.screen.query_one(".dialog").region.contains_region(mats.region)
+
+
+@pytest.mark.parametrize("key", ["b", "r"])
+async def test_the_field_is_above_the_list_as_in_other_dialogs(key: str) -> None:
+    async with open_lab(LOGS, size=(80, 24)) as (pilot, app):
+        await pilot.press(key)
+        await until(pilot, lambda: bool(app.screen.query(OptionList)))
+        listed = app.screen.query_one(OptionList)
+        await until(pilot, lambda: bool(listed.region))
+        assert app.screen.query_one(Input).region.y < listed.region.y
 
 
 async def test_no_picture_stands_beside_the_title_of_another(

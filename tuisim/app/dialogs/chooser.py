@@ -448,6 +448,7 @@ class MatPicker(Chooser):
         self._pictures: dict[tuple[str, Viewport], Pixels] = {}
 
     def compose_content(self) -> ComposeResult:
+        yield from self.compose_field()
         listed = self.build_list()
         listed.styles.width = min(max(map(len, self._mats), default=0) + 5, MAX_NAME_COLUMNS)
         with Horizontal(classes="mats"):
@@ -455,7 +456,6 @@ class MatPicker(Chooser):
             with Vertical():
                 yield _MatPicture()
                 yield Static(id="title", markup=False)
-        yield from self.compose_field()
 
     def on_mount(self) -> None:
         self.call_after_refresh(self._begin)

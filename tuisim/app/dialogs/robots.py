@@ -72,6 +72,7 @@ class RobotPicker(Chooser):
         self._robots = dict(robots)
 
     def compose_content(self) -> ComposeResult:
+        yield from self.compose_field()
         listed = self.build_list()
         names = (len(name) for group in self._groups for _, name, _ in group.entries)
         listed.styles.width = min(max(names, default=0) + 5, MAX_NAME_COLUMNS)
@@ -80,7 +81,6 @@ class RobotPicker(Chooser):
             with Vertical():
                 yield RobotPicture()
                 yield RobotParts()
-        yield from self.compose_field()
 
     def clear_preview(self) -> None:
         """Show no robot."""
