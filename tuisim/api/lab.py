@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Never
 
 from tuisim.api.descriptions import (
-    TIME,
     RobotDescription,
     WorldDescription,
     plain,
@@ -99,10 +98,8 @@ class Lab:
         self.columns = read_columns(columns, spec)
         """The names of the columns that `step` returns."""
         self._readers = {
-            name: read for name in self.columns if (read := build_reader(name, spec)) is not None
+            name: build_reader(name, spec) or (lambda *_: self.time_s) for name in self.columns
         }
-        if TIME in self.columns:
-            self._readers[TIME] = lambda *_: self.time_s
         self._field = field_files(spec).open_field(has_floor=spec.world.is_open)
         self._spec = spec
         self._hz = spec.profile.tick_hz
@@ -181,10 +178,7 @@ class Lab:
         if self.columns == MOTION:
             drive = self._run.drive
             return {"x_mm": drive.x_mm, "y_mm": drive.y_mm, "heading_deg": drive.heading_deg}
-        if not self.columns:
-            return {}
-        instant, field = self._run.build_instant(), self._run.field
-        return {name: self._readers[name](instant, self._spec, field) for name in self.columns}
+        return self._run.read(self._readers) if self._readers else {}
 
     def picture(self) -> Image:
         """Return the world now as a Pillow image, without the pen's trace."""

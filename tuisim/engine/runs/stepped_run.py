@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from math import nan
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -77,17 +77,16 @@ class SteppedRun:
         """The highest speed of a wheel's motor."""
         return find_top_speed_dps(self.spec.robot.left_motor, self.spec.profile)
 
-    @property
-    def field(self) -> Field:
-        """The mat now, with what the pen has drawn so far."""
-        if self._marks is None:
-            return self._mat
-        self._marks.add_records(self._sim.read_records(self._marks.records))
-        return self._marks.field
-
-    def build_instant(self) -> Instant:
-        """Return what sensors see now."""
-        return self._sim.build_instant()
+    def read(
+        self, readers: Mapping[str, Callable[[Instant, RunSpec, Field], float]]
+    ) -> dict[str, float]:
+        """Return what readers read now, by their names; sensors see what the pen has drawn so far."""
+        mat = self._mat
+        if self._marks is not None:
+            self._marks.add_records(self._sim.read_records(self._marks.records))
+            mat = self._marks.field
+        instant = self._sim.build_instant()
+        return {name: read(instant, self.spec, mat) for name, read in readers.items()}
 
     def turn_wheels(self, left_dps: float, right_dps: float) -> None:
         """Let the wheels' motors run on at these speeds."""
