@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from tuisim.engine.breakpoints import FORMS
-from tuisim.engine.core.drift_spec import DriftSpec
 from tuisim.engine.core.profile import MS, PROFILES, ProfileSpec
 from tuisim.engine.core.sensors import list_column_names, list_mounted
 from tuisim.engine.core.spec import RobotSpec, RunSpec, WorldSpec
@@ -130,7 +129,7 @@ def list_drift_sizes() -> Table:
     """Return the sizes of drift, each with its typical size and its source."""
     numbers = [
         (key, number)
-        for key, number in list_values(DriftSpec).items()
+        for key, number in list_values(type(WorldSpec().drift)).items()
         if isinstance(number, NamedNumber)
     ]
     rows = [
