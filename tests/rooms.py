@@ -61,7 +61,6 @@ STARTS_APP = (
     "commands.app -> tuisim.app.**",
     "commands.app -> tuisim.terminal.probe",
     "commands.system.user_config -> tuisim.app.actions.keys",
-    "commands.system.user_config -> tuisim.app.keymap",
     "commands.system.doctor -> tuisim.terminal.*",
 )
 """The commands that start the app, and the one that asks the terminal what the app would ask."""

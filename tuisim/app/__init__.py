@@ -4,5 +4,4 @@ __all__ = [
     "actions.keys",
     "analyser.app",
     "app",
-    "keymap",
 ]

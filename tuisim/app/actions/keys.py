@@ -14,10 +14,12 @@ from typing import TypeAlias
 from tuisim.app.action import Action
 from tuisim.app.actions import ActionContext, app, files, lesson, program, robot, time_travel
 from tuisim.app.actions.files import open_analyser
+from tuisim.app.keymap import apply_keys, check_theme
 from tuisim.app.layout.arrangement import Preset
 from tuisim.app.panels import PANELS
 from tuisim.app.snapshot import IN_RUN, RunPhase, Situation
 from tuisim.engine.protocol import LineStep
+from tuisim.settings.user_config import UserConfig
 
 PROGRAM = "Program"
 DEBUG = "Debugging"
@@ -732,3 +734,13 @@ def list_working(now: Situation) -> tuple[str, ...]:
     names = dict.fromkeys(name for name, action in ACTIONS.items() if not action.why_not(now))
     first = [step for step in _find_next_steps(now) if step in names]
     return tuple(dict.fromkeys((*first, *names)))
+
+
+def check_config(config: UserConfig) -> None:
+    """Check the keys and the name of the theme in the user's settings, which only the app knows.
+
+    Raises:
+        ConfigError: something in the settings is wrong.
+    """
+    apply_keys(ACTIONS, config)
+    check_theme(config)

@@ -6,7 +6,7 @@ from tuisim.base.errors import ConfigError
 from tuisim.commands.echo import AS_JSON, draw_table, echo, echo_json, echo_lines
 from tuisim.programs.program_settings import PROGRAM_PATHS
 from tuisim.settings.command_line import command, option
-from tuisim.settings.user_config import FILE, SETTINGS, UserConfig, load_config, write_template
+from tuisim.settings.user_config import FILE, SETTINGS, load_config, write_template
 
 
 @command(
@@ -37,7 +37,9 @@ def config(as_json: bool, init: bool) -> int:
         echo(f"written: {write_template()}")
         return 0
     settings = load_config().checked()
-    _check_in_app(settings)
+    from tuisim.app.actions.keys import check_config
+
+    check_config(settings)
     rows = [
         (path, settings.value(path), FILE if path in settings.written else _describe_default(path))
         for path in SETTINGS
@@ -57,15 +59,6 @@ def config(as_json: bool, init: bool) -> int:
     cells = [(path, _format_value(value), source) for path, value, source in rows]
     echo_lines(draw_table(("setting", "value", "from"), cells))
     return 0
-
-
-def _check_in_app(settings: UserConfig) -> None:
-    """Check the keys and the name of the theme in the user's settings, which only the app knows."""
-    from tuisim.app.actions.keys import ACTIONS
-    from tuisim.app.keymap import apply_keys, check_theme
-
-    apply_keys(ACTIONS, settings)
-    check_theme(settings)
 
 
 def _describe_default(path: str) -> str:
