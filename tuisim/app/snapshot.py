@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+import dataclasses
 import re
 from collections.abc import Mapping
-from dataclasses import field
 from enum import StrEnum
 from functools import cached_property
 from typing import assert_never
@@ -80,7 +80,7 @@ class Snapshot:
     turns: tuple[tuple[float, float], ...] = ()
     """Position in degrees and speed in degrees per second of each motor that does not drive the robot; empty before
     a run, and after the robot was placed following it: all motors are reset."""
-    scales: Mapping[str, float] = field(default_factory=dict)
+    scales: Mapping[str, float] = dataclasses.field(default_factory=dict)
     """How many degrees the program counts for one of a motor, by port; 1 where it is missing."""
     pressed: frozenset[str] = frozenset()
     """The brick's buttons that are held down."""
