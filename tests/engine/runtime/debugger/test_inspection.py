@@ -53,3 +53,11 @@ def test_values_that_never_come_do_not_hold_up_the_rest(start: Start, name: str)
         (v.name, v.value) for v in looked.variables
     ]
     assert driver.finish(StepLine(LineStep.OUT)).end == "finished"
+
+
+def test_imports_are_no_variables_not_even_of_functions_that_are_replaced(start: Start) -> None:
+    text = "from time import time\nfrom math import sqrt\nimport random\nx = 1\nprint(x)\n"
+    driver = Driver(start(text, live=True, speed=0.0, breaks=("5",)))
+    driver.paused()
+    assert driver.values() == {"x": "1"}
+    assert driver.finish(StepLine(LineStep.OUT)).end == "finished"

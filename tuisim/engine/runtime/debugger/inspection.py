@@ -21,6 +21,7 @@ from tuisim.engine.protocol import FrameState, Inspect, Inspected, ThreadState, 
 from tuisim.engine.runtime.debugger.fork import run_apart
 from tuisim.engine.runtime.debugger.tracer import Tracer
 from tuisim.engine.runtime.debugger.value_text import Renderer, cut, evaluate, name_type
+from tuisim.engine.runtime.patches.replacement import Replacement
 from tuisim.engine.runtime.scheduler import FOREVER, ScheduledThread, Scheduler
 from tuisim.engine.runtime.session import Session
 from tuisim.engine.runtime.stack import PACKAGE_FOLDER
@@ -204,7 +205,7 @@ TOO_LONG = "values that the program's own code computes take too long"
 MAX_NAMES = 200
 MAX_FRAMES = 200
 MAX_WATCHES = 50
-_UNSHOWN = (types.ModuleType, types.FunctionType, types.BuiltinFunctionType, type)
+_UNSHOWN = (types.ModuleType, types.FunctionType, types.BuiltinFunctionType, type, Replacement)
 """Types of globals that are not listed: imports and definitions, not data."""
 
 Names = list[tuple[str, str, str]]

@@ -15,7 +15,7 @@ _patched: dict[str, types.ModuleType] = {}
 _SAME = ("__name__", "__qualname__", "__module__", "__doc__", "__self__", "__text_signature__")
 
 
-class _Replacement:
+class Replacement:
     """A callable that, like a builtin and unlike a function, does not become a method in a class body.
 
     Args:
@@ -69,7 +69,7 @@ def build_replacement(
                 return real(*given, **named)
             return does(*given)
 
-    return type(real.__class__.__name__, (_Replacement,), {"__call__": staticmethod(call)})(real)
+    return type(real.__class__.__name__, (Replacement,), {"__call__": staticmethod(call)})(real)
 
 
 def replace(
