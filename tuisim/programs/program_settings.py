@@ -184,9 +184,12 @@ def _collect_facts(program: Program, modules: dict[str, Module], facts: SourceFa
     from tuisim.programs.robot.brick_syntax import find_refused_lines
     from tuisim.programs.robot.library import SENSES_WALLS
     from tuisim.programs.robot.mentions import read_mentions
+    from tuisim.programs.robot.port_texts import add_port_texts
     from tuisim.programs.robot.report import find_usual, has_hidden_parts
 
     mentions = read_mentions(modules)
+    if find_library(modules) is None:
+        mentions = add_port_texts(mentions, modules.values())
     usual = find_usual(mentions.hub)
     robot = build_robot(mentions, program.name, usual)
     return replace(

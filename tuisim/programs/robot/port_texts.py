@@ -1,0 +1,37 @@
+"""The motors of a program that has no library: it looks for ports, such as `outA`, in the files of the brick."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+
+from tuisim.programs.robot.library import DeviceKind
+from tuisim.programs.robot.mentions import Mention, Mentions, Where
+from tuisim.programs.robot.source import Module
+
+_PORT = re.compile(r"(?:ev3-ports:)?(out[A-D])")
+
+
+def add_port_texts(mentions: Mentions, modules: Iterable[Module]) -> Mentions:
+    """Return what a program says about its robot, with motors on the ports in its texts if it makes no device."""
+    if mentions.devices or mentions.pairs:
+        return mentions
+    motors: dict[str, Mention] = {}
+    for module in modules:
+        for motor in _find_motors(module):
+            known = motors.setdefault(motor.port, motor)
+            motors[motor.port] = known if known.names else motor
+    return replace(mentions, devices=tuple(motors.values()))
+
+
+def _find_motors(module: Module) -> Iterator[Mention]:
+    names: dict[ast.AST, tuple[str, ...]] = {}
+    for node in ast.walk(module.tree):
+        match node:
+            case ast.Assign(targets=[ast.Name(id=name)], value=value):
+                names |= dict.fromkeys(ast.walk(value), (name,))
+            case ast.Constant(value=str(text)) if match := _PORT.fullmatch(text):
+                where = Where(module.file, node.lineno)
+                yield Mention(DeviceKind.MOTOR, match[1], where, names.get(node, ()))
