@@ -186,7 +186,12 @@ def list_forms(timeline: Timeline) -> list[tuple[str, str]]:
     """Return the accepted forms, with what they mean at the instant in view."""
     # Nothing can be found after the newest instant: the search goes from the start.
     which = "the first" if timeline.tick >= timeline.newest else "the next"
-    return [(form, meaning.replace("{which}", which)) for form, meaning in _FORMS]
+    recording = timeline.recording
+    name = next(_list_printed_names(recording), "Colour") if recording else "Colour"
+    return [
+        (form.replace("Colour", name), meaning.replace("{which}", which))
+        for form, meaning in _FORMS
+    ]
 
 
 _HINT = (
@@ -383,10 +388,15 @@ def _find_sample(search: _Search, condition: ValueCondition) -> int:
     return tick
 
 
-def _read_printed_names(recording: Recording) -> list[str]:
-    """Return the names of the samples that a run has printed."""
+def _list_printed_names(recording: Recording) -> Iterator[str]:
+    """Yield the name of each sample that a run has printed."""
     printed = (row for row in recording.rows.rows(0) if row.stream in TEXT_STREAMS)
-    return sorted({sample[0] for row in printed if (sample := parse_sample(row.text))})
+    return (sample[0] for row in printed if (sample := parse_sample(row.text)))
+
+
+def _read_printed_names(recording: Recording) -> list[str]:
+    """Return the names of the samples that a run has printed, each once."""
+    return sorted({*_list_printed_names(recording)})
 
 
 def _find_change(search: _Search, condition: ValueCondition, mat: Field | None) -> int:
