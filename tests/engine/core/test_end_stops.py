@@ -8,11 +8,12 @@ import pytest
 
 from tests.engine.core.memory_sink import MemorySink
 from tests.engine.core.motors import COMMANDED, commanded
-from tuisim.engine.core.end_stops import NEAR_DEG, end_flag
+from tuisim.engine.core.end_stops import NEAR_DEG
 from tuisim.engine.core.motors import POSITION, STOPPED
 from tuisim.engine.core.profile import PROFILES
 from tuisim.engine.core.simulation import Simulation, build_simulation
 from tuisim.engine.core.spec import MotorSpec, RobotSpec, RunSpec, WorldSpec
+from tuisim.engine.core.state import end_flag
 from tuisim.engine.core.tick_record import END_FLAGS, TICK_RECORD
 
 ROBOT = RobotSpec(

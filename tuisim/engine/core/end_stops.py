@@ -11,16 +11,10 @@ import math
 from tuisim.engine.core.driver.simulated import SimulatedMotor
 from tuisim.engine.core.motors import Motor
 from tuisim.engine.core.spec import MOTOR_ENDS, MotorSpec, RobotSpec
-from tuisim.engine.core.tick_record import FLAG_FIRST_END
+from tuisim.engine.core.state import end_flag
 
 NEAR_DEG = 2.0
 """A motor is at a stop from this distance on: a touch sensor that it presses there gives way before it stops."""
-
-
-def end_flag(robot: RobotSpec, port: str, end: str) -> int:
-    """Return the flag of a tick record that says that the motor on a port is at one of its `MOTOR_ENDS`."""
-    number = [motor.port for motor in robot.extra_motors].index(port)
-    return FLAG_FIRST_END << len(MOTOR_ENDS) * number + MOTOR_ENDS.index(end)
 
 
 def build_start_flags(robot: RobotSpec) -> int:

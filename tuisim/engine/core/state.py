@@ -9,7 +9,8 @@ from tuisim.base.data_class import dataclass
 from tuisim.engine.core.drift_spec import NO_DRIFT, DriftSpec
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.profile import ROBOLAB, ProfileSpec
-from tuisim.engine.core.spec import NoiseSpec
+from tuisim.engine.core.spec import MOTOR_ENDS, NoiseSpec, RobotSpec
+from tuisim.engine.core.tick_record import FLAG_FIRST_END
 
 MotorValues: TypeAlias = tuple[int, int, int, int]
 """Values of one motor, in the order of `MOTOR_FIELDS`."""
@@ -48,3 +49,9 @@ class Instant:
         """The clockwise rate of turn, in whole degrees per second, limited to what the gyro can measure."""
         fastest = self.profile.gyro_max_dps or inf
         return round(max(-fastest, min(fastest, -self.turn_rate_dps)))
+
+
+def end_flag(robot: RobotSpec, port: str, end: str) -> int:
+    """Return the flag of a tick record that says that the motor on a port is at one of its `MOTOR_ENDS`."""
+    number = [motor.port for motor in robot.extra_motors].index(port)
+    return FLAG_FIRST_END << len(MOTOR_ENDS) * number + MOTOR_ENDS.index(end)

@@ -6,7 +6,6 @@ from collections.abc import Collection
 from typing import TYPE_CHECKING
 
 from tuisim.engine.core.columns import Column
-from tuisim.engine.core.end_stops import end_flag
 from tuisim.engine.core.geometry import Pose, world_point
 from tuisim.engine.core.hub_spec import HUB_PORTS
 from tuisim.engine.core.spec import (
@@ -18,6 +17,7 @@ from tuisim.engine.core.spec import (
     TouchSpec,
     WorldSpec,
 )
+from tuisim.engine.core.state import end_flag
 from tuisim.engine.core.tick_record import FLAG_FIRST_HAND
 
 if TYPE_CHECKING:
