@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import _thread
 from collections.abc import Callable, Mapping, Sequence
 from enum import Enum
 from typing import Any
 
-from tuisim.engine.core.profile import MS, NS_PER_S
+from tuisim.engine.core.profile import MS
 from tuisim.engine.shim.pybricks import hubs
+from tuisim.engine.shim.pybricks.animation import Animation
 from tuisim.engine.shim.pybricks.brick import Connected, whole
 from tuisim.engine.shim.pybricks.hsv_color import Color
 from tuisim.engine.shim.pybricks.speaker import TonePlayer
@@ -19,44 +19,6 @@ from tuisim.engine.shim.unsupported.modules import Hardware, refused_part
 
 HUES: Mapping[int, str] = {15: "RED", 45: "ORANGE", 90: "YELLOW", 180: "GREEN", 330: "", 360: "RED"}
 """The colour of the light for a hue, by the highest of its hues; others leave it dark."""
-
-
-class Animation:
-    """Shows frames one after another in the background until it is stopped or other frames are shown."""
-
-    _number = 0
-
-    def stop(self) -> None:
-        """End the animation; the frame that is shown stays."""
-        self._number += 1
-
-    def play(self, show: Callable[[Any], None], frames: Sequence[tuple[Any, int]]) -> None:
-        """Show frames again and again.
-
-        Args:
-            show: Shows a frame.
-            frames: Each with the time in ms that it stays.
-
-        Raises:
-            ValueError: there is no frame, or one has no time.
-        """
-        if not frames or any(whole(time) <= 0 for _, time in frames):
-            raise ValueError("Invalid argument")
-        self._number += 1
-        _thread.start_new_thread(self._keep_on, (self._number, show, frames))
-
-    def _keep_on(
-        self, number: int, show: Callable[[Any], None], frames: Sequence[tuple[Any, int]]
-    ) -> None:
-        # A lock that is never released: waiting on it does not count as a program line that spends time.
-        alarm = _thread.allocate_lock()
-        alarm.acquire()
-        while number == self._number:
-            for frame, time in frames:
-                if number != self._number:
-                    return
-                show(frame)
-                alarm.acquire(True, whole(time) * MS / NS_PER_S)
 
 
 class AnimatedLight:

@@ -7,8 +7,8 @@ from typing import Any, ClassVar
 
 from tuisim.engine.runs.brick_state import SIDE_PIXELS
 from tuisim.engine.runs.readings import HUB_BUTTONS_PORT
+from tuisim.engine.shim.pybricks.animation import Animation
 from tuisim.engine.shim.pybricks.brick import Connected, Waiting, invalid_argument, text_of, whole
-from tuisim.engine.shim.pybricks.brick_4 import Animation
 from tuisim.engine.shim.pybricks.hub.face import DARK, Pixels, show_pixels
 from tuisim.engine.shim.pybricks.hub.pictures import CHARACTERS, DIGITS, ICONS
 from tuisim.engine.shim.pybricks.matrix import Matrix, Side
