@@ -33,9 +33,9 @@ AT_BOX = replace(SPEC.world, obstacles=(Obstacle(540.0, 500.0, 50.0, 143.0),))
 WITH_REMOTE = replace(SPEC.world, remote=(RemotePress(("top_left",), 1.0, 2.0),))
 
 
-def poll(recorder: Recorder, port: str, mode: str, line: int = 5, seconds: int = 7) -> None:
+def poll(recorder: Recorder, port: str, mode: str, line: int = 5, seconds: float = 7) -> None:
     """Read something every tenth of a second."""
-    for _ in range(10 * seconds):
+    for _ in range(round(10 * seconds)):
         recorder.read(port, mode, line)
         recorder.simulation.line = line
         recorder.simulation.advance(10)
@@ -159,13 +159,14 @@ def test_what_a_run_waited_for(
     ("end", "seconds", "is_told"),
     [
         (End.STOPPED, 2, True),
+        (End.STOPPED, 0.5, False),
         (End.FINISHED, 7, True),
         (End.FINISHED, 2, False),
         (End.RAISED, 7, False),
     ],
 )
 def test_only_a_run_that_was_stopped_or_stood_still_waited(
-    record: Record, end: End, seconds: int, is_told: bool
+    record: Record, end: End, seconds: float, is_told: bool
 ) -> None:
     recorder = record(SPEC)
     poll(recorder, "in1", "TOUCH", seconds=seconds)

@@ -289,6 +289,12 @@ MEASURED = {
         f"{ULTRASONIC}{TURNS}while us.distance_centimeters > 25: pass",
         "from 0.01 s on, line 5 waited for the ultrasonic sensor on in1 to read 25 cm or less: 55.1",
     ),
+    "a band, by a robot that spins": (
+        "# %%sim_magic_preloaded -b Grey_bands\ntank_drive.on(30, -30)\n"
+        "while colorLeft.reflected_light_intensity_pc > 5: pass",
+        "from 0.01 s on, line 3 waited for the colour sensor on in2 to read 5 % or less: it stayed at 100; "
+        "the robot only turns on the spot",
+    ),
     "nearer than a wall": (
         f"{ULTRASONIC}STOP_CM = 0.2\nwhile us.distance_centimeters > STOP_CM: pass",
         "from 0.01 s on, line 4 waited for the ultrasonic sensor on in1 to read 0.2 cm or less: it stayed "

@@ -62,10 +62,10 @@ MAX_AWAITED = 2
 """More things at once are no help."""
 _ENDS = frozenset({End.TIME_LIMIT, End.STOPPED})
 """Ends in the middle of a wait."""
+_MIN_WAIT_S = 1.0
+"""A run that somebody stops earlier has not waited in vain."""
 _SAME_LIGHT = 25
 """A colour sensor whose channels change by less, of 255, sees the same."""
-_MOVED_MM = 50.0
-"""A robot that got no farther looks at the same place."""
 _MAX_POSES = 4000
 """Distances are measured again at so many poses."""
 
@@ -147,8 +147,8 @@ class Awaited:
     """Whether the program has seen what was pressed, and waits for more."""
     pose: Pose | None = None
     """Where the robot was at the first reading."""
-    has_moved: bool = False
-    """Whether the robot was elsewhere at the last reading."""
+    end: Pose | None = None
+    """Where it was at the last reading."""
     mode: str = ""
     """What was read, one of `READING_MODES`."""
 
@@ -184,7 +184,10 @@ def find_awaited(run: StoredRun) -> tuple[Awaited, ...]:
 def find_at_end(run: Recorded, end: End) -> tuple[Awaited, ...]:
     """Return what a run waited for, if it was stopped or its robot stood still at the end; otherwise nothing."""
     is_over = end is End.FINISHED and is_standing(run.telemetry, run.spec)
-    return find_in_recording(run) if end in _ENDS or is_over else ()
+    is_cut_off = end in _ENDS and not (
+        end is End.STOPPED and run.telemetry.count <= _MIN_WAIT_S * run.spec.profile.tick_hz
+    )
+    return find_in_recording(run) if is_cut_off or is_over else ()
 
 
 def is_standing(telemetry: TelemetryView, spec: RunSpec) -> bool:
@@ -353,7 +356,7 @@ class _Search:
             pressed=presses,
             waits_again=self._has_seen(subject, port, find_hits(presses, sought)),
             pose=first,
-            has_moved=math.dist((first.x_mm, first.y_mm), (last.x_mm, last.y_mm)) > _MOVED_MM,
+            end=last,
             mode=mode,
         )
 

@@ -38,6 +38,10 @@ _OWNERS = {
 }
 """Whose buttons are read at each of `KEYS_BY_PORT`."""
 _SHORT_PRESS_S = 0.1
+_MOVED_MM = 50.0
+"""A robot that got no farther between the first and the last reading looks at the same place."""
+_TURNED_DEG = 45.0
+"""One that turned farther than this is meant to move."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -212,10 +216,25 @@ def _name_presses(awaited: Awaited, default: str) -> str:
     return f"add {options}" if awaited.waits_again and not awaited.needs_all else options
 
 
+def _only_turns(awaited: Awaited) -> bool:
+    if not (awaited.pose and awaited.end) or _has_moved(awaited):
+        return False
+    return abs(awaited.end.heading_deg - awaited.pose.heading_deg) > _TURNED_DEG
+
+
+def _has_moved(awaited: Awaited) -> bool:
+    if not (awaited.pose and awaited.end):
+        return False
+    places = ((pose.x_mm, pose.y_mm) for pose in (awaited.pose, awaited.end))
+    return math.dist(*places) > _MOVED_MM
+
+
 def _name_mat(awaited: Awaited, spec: RunSpec) -> str:
+    if _only_turns(awaited):
+        return "the robot only turns on the spot"
     color = _find_color(awaited)
     if color in COLOR_PLACES_MM:
-        if awaited.has_moved and spec.world.background != COLORED_MAT:
+        if _has_moved(awaited) and spec.world.background != COLORED_MAT:
             return f"-b {COLORED_MAT} has it"
         return f"-b {COLORED_MAT} -x {COLOR_PLACES_MM[color]} has it there"
     if spec.world.background != EMPTY_MAT:
@@ -227,7 +246,7 @@ def _name_mat(awaited: Awaited, spec: RunSpec) -> str:
 
 def _name_obstacle(awaited: Awaited, spec: RunSpec) -> str:
     # A robot that drives gets near an obstacle by itself.
-    limit = None if awaited.has_moved else awaited.limit
+    limit = None if _has_moved(awaited) else awaited.limit
     pose = awaited.pose or spec.world.start
     options = ""
     for sensor in spec.robot.sensors:
