@@ -270,7 +270,7 @@ class BreakpointReporter:
 
 def _export(done: Sequence[StoredRun], arguments: Arguments) -> None:
     """Write every export; report failures on stderr, and raise the first after all have been tried."""
-    writers: list[tuple[str, Callable[[str], None]]] = [
+    writers: list[tuple[str, Callable[[str], int]]] = [
         (target, lambda target: export_samples(done, target)) for target in arguments.export
     ]
     if arguments.telemetry is not None:

@@ -118,8 +118,8 @@ def export_frame(frame: pd.DataFrame, path: str | Path, metadata: Metadata) -> N
         raise ExportError(f"cannot write {target}: {error.strerror or error}") from error
 
 
-def export_samples(runs: Sequence[StoredRun], path: str | Path) -> None:
-    """Write the samples of one or more runs, see `frames.build_samples_frame`.
+def export_samples(runs: Sequence[StoredRun], path: str | Path) -> int:
+    """Write the samples of one or more runs, see `frames.build_samples_frame`; return how many rows there are.
 
     Raises:
         ExportError: it cannot be written.
@@ -130,10 +130,11 @@ def export_samples(runs: Sequence[StoredRun], path: str | Path) -> None:
 
     frame = build_samples_frame(runs)
     export_frame(frame, path, log_metadata("samples", frame, runs))
+    return len(frame)
 
 
-def export_telemetry(run: StoredRun, path: str | Path) -> None:
-    """Write every tick of a run, see `frames.build_telemetry_frame`.
+def export_telemetry(run: StoredRun, path: str | Path) -> int:
+    """Write every tick of a run, see `frames.build_telemetry_frame`; return how many rows there are.
 
     Raises:
         ExportError: it cannot be written.
@@ -144,6 +145,7 @@ def export_telemetry(run: StoredRun, path: str | Path) -> None:
 
     frame = build_telemetry_frame(run)
     export_frame(frame, path, log_metadata("telemetry", frame, [run]))
+    return len(frame)
 
 
 def export_log(log: Log, table: LogTable, path: str | Path) -> None:

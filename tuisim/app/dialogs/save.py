@@ -15,7 +15,7 @@ from textual.widgets import Input, Static
 
 from tuisim.app.dialogs.dialog import Dialog
 from tuisim.app.dialogs.question import Form, build_form_table
-from tuisim.base.errors import ConfigError, TuisimError, shortened
+from tuisim.base.errors import ConfigError, TuisimError, counted, shortened
 from tuisim.base.folders import user_path
 from tuisim.engine.runs.store import RunStore
 from tuisim.logs.export import (
@@ -227,15 +227,15 @@ class ExportDialog(FileDialog):
         """Write the file in the background: it may be large."""
         self.say("Writing …")
         work = partial(_write_log, self._run_id, target, self._telemetry)
-        self.wait_while(work, self._report_written, lambda error: self.report_failure(str(error)))
+        report = partial(self._report_written, target)
+        self.wait_while(work, report, lambda error: self.report_failure(str(error)))
 
-    def _report_written(self, target: Path) -> None:
-        self.app.notify(f"Log saved to {describe_files(target)}", markup=False)
+    def _report_written(self, target: Path, rows: int) -> None:
+        self.app.notify(f"{counted(rows, 'row')} saved to {describe_files(target)}", markup=False)
         offer(self.app, target)
         self.dismiss(target)
 
 
-def _write_log(run_id: str, target: Path, telemetry: bool) -> Path:
+def _write_log(run_id: str, target: Path, telemetry: bool) -> int:
     run = RunStore().load_run(run_id)
-    export_telemetry(run, target) if telemetry else export_samples([run], target)
-    return target
+    return export_telemetry(run, target) if telemetry else export_samples([run], target)
