@@ -22,7 +22,7 @@ VALUES: dict[str, Any] = {
     "movies": [],
     "chart": {"svg": "<svg></svg>", "is_shaded": True, "not_drawn": EVIL},
     "bands": {"words": [EVIL], "table": Table((EVIL,), [], 1), "more": 1234},
-    "statistics": Table((EVIL,), [], 1),
+    "statistics": {"table": Table((EVIL,), [], 1), "more": 0},
     "notes": Table((EVIL,), [(EVIL,)], 1),
     "reading_notes": [EVIL],
     "programs": [(EVIL, [EVIL, ""])],
