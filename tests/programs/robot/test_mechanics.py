@@ -92,6 +92,8 @@ STOPS: Mapping[str, tuple[str, tuple[float | None, float | None]]] = {
         ("def vorwaerts():\n    t.on(-40, -40)", True),
         ("def drive_forward(speed=40):\n    t.on_for_rotations(-speed, -speed, 2)", True),
         ("def forward():\n    t.on_for_degrees(-40, -40, -90)", False),
+        ("def forward():\n    t.on_for_degrees(40, 40, -90)", True),
+        ("def forward(a):\n    t.on_for_degrees(40, 40, a)\nforward(9)\nforward(-9)", False),
         ("def move_forward_or_back():\n    t.on(-40, -40)", False),
         ("def avanzar():\n    t.on(-40, 40)", False),
         ("t.set_polarity('inversed')\ndef forward():\n    t.on(-40, -40)", False),
@@ -99,7 +101,9 @@ STOPS: Mapping[str, tuple[str, tuple[float | None, float | None]]] = {
     ids=[
         "fixed",
         "by default",
+        "a negative way and speed",
         "a negative way",
+        "to and fro",
         "both directions",
         "a turn",
         "with polarity turned",

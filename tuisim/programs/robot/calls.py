@@ -84,3 +84,8 @@ def find_default(function: Function, name: str) -> ast.expr | None:
         *zip(arguments.kwonlyargs, arguments.kw_defaults, strict=True),
     ]
     return next((default for argument, default in pairs if argument.arg == name), None)
+
+
+def is_negated(nodes: Sequence[ast.expr]) -> bool:
+    """Return whether one of some arguments is written with a minus."""
+    return any(isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub) for node in nodes)

@@ -8,12 +8,12 @@ from dataclasses import field
 
 from tuisim.base.data_class import dataclass
 from tuisim.programs.robot import library
-from tuisim.programs.robot.calls import CallOrder
+from tuisim.programs.robot.calls import CallOrder, is_negated
 from tuisim.programs.robot.end_stops import EndStop, Mechanics, StopPress, Target
 from tuisim.programs.robot.evaluation import Evaluation
 from tuisim.programs.robot.library import INVERSED, NORMAL, DeviceKind, Moves
 from tuisim.programs.robot.mentions import Mentions, Pair, Where
-from tuisim.programs.robot.scopes import FUNCTIONS, Bound, Scope
+from tuisim.programs.robot.scopes import FUNCTIONS, Bound, Scope, list_blocks
 from tuisim.programs.robot.values import Instance, OwnClass, OwnFunction, Value
 from tuisim.programs.robot.waiting_loops import (
     find_awaited_touch,
@@ -60,7 +60,7 @@ class _MechanicsReader:
         for scope in self.mentions.scopes:
             for node in scope.body:
                 self._read(node, scope)
-            for block in _list_blocks(scope):
+            for block in list_blocks(scope):
                 for before, statement in zip([None, *block], block, strict=False):
                     self._read_press([*([before] if before else []), statement], scope)
             if isinstance(scope.node, FUNCTIONS) and is_forwards(scope.node.name):
@@ -145,14 +145,17 @@ class _MechanicsReader:
                 continue
             if node.func.attr not in self.moves.endless | self.moves.ending - self.moves.unsigned:
                 continue
-            if any(
+            lengths = self._find_lengths(node, node.func.attr, scope)
+            sign = -1 if is_negated(lengths) else 1
+            if sign > 0 and any(
                 length < 0
-                for length_node in self._find_lengths(node, node.func.attr, scope)
+                for length_node in lengths
                 for length in self._find_numbers(length_node, scope)
             ):
                 return
             for port in self._find_known(node.func.value, scope):
-                speeds.setdefault(port, []).extend(self._find_speeds(node, scope))
+                turned = [sign * speed for speed in self._find_speeds(node, scope)]
+                speeds.setdefault(port, []).extend(turned)
                 where.setdefault(port, _find_where(node, scope))
         for port, port_speeds in speeds.items():
             if port_speeds and max(port_speeds) < 0:
@@ -393,17 +396,3 @@ class _MechanicsReader:
 
 def _find_where(node: ast.AST, scope: Scope) -> Where:
     return Where(scope.module.file, getattr(node, "lineno", 0))
-
-
-def _list_blocks(scope: Scope) -> Iterator[list[ast.stmt]]:
-    """Yield every sequence of statements of a scope."""
-    yield scope.node.body
-    for node in scope.body:
-        for name in ("body", "orelse", "finalbody"):
-            block = getattr(node, name, None)
-            if (
-                isinstance(block, list)
-                and block
-                and not isinstance(node, ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef)
-            ):
-                yield block

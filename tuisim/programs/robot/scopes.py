@@ -208,3 +208,17 @@ def _bind_target(scope: Scope, target: ast.expr, bound: Bound) -> None:
                 _bind_target(
                     scope, inside, Bound(bound.node, scope, (*bound.path, index), bound.is_item)
                 )
+
+
+def list_blocks(scope: Scope) -> Iterator[list[ast.stmt]]:
+    """Yield every sequence of statements of a scope."""
+    yield scope.node.body
+    for node in scope.body:
+        for name in ("body", "orelse", "finalbody"):
+            block = getattr(node, name, None)
+            if (
+                isinstance(block, list)
+                and block
+                and not isinstance(node, ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef)
+            ):
+                yield block
