@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import pytest
 
 from tests.programs.robot.reading import USUAL, built
@@ -41,3 +43,24 @@ def test_one_looks_ahead_and_one_aside() -> None:
     assert found is not None
     looks = {one.port: one for one in found.choice.spec.sensors if isinstance(one, UltrasonicSpec)}
     assert {port: one.angle_deg for port, one in looks.items()} == {"in1": 90.0, "in4": 0.0}
+
+
+SIDES: Mapping[str, tuple[str, tuple[str, ...]]] = {
+    "swapped": ("left, right = ColorSensor('in3'), ColorSensor('in2')", ("in3", "in2")),
+    "swapped in Spanish": (
+        "sensor_izq = ColorSensor(INPUT_3)\nsensor_der = ColorSensor(INPUT_2)",
+        ("in3", "in2"),
+    ),
+    "only the right one": ("right = ColorSensor(INPUT_2)", ("in3", "in2")),
+    "as usual": ("left, right = ColorSensor('in2'), ColorSensor('in3')", ("in2", "in3")),
+    "without sides": ("a, b = ColorSensor('in3'), ColorSensor('in2')", ("in2", "in3")),
+    "in front": ("front = ColorSensor('in2')", ("in2", "in3")),
+}
+
+
+@pytest.mark.parametrize("case", SIDES)
+def test_colour_sensors_are_on_the_sides_that_their_names_say(case: str) -> None:
+    text, ports = SIDES[case]
+    found = built(text)
+    eyes = (found.choice.spec if found else USUAL).color_sensors
+    assert {eye.name: eye.port for eye in eyes} == dict(zip(("left", "right"), ports, strict=True))

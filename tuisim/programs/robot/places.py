@@ -43,7 +43,9 @@ def add_sides(mentions: Sequence[Mention]) -> list[Mention]:
 
 
 def say_other_sides(mentions: Mapping[str, Mention], usual: Mapping[str, SensorSpec]) -> bool:
-    """Return whether a program's colour sensors are placed otherwise: one is new, and one is on another side.
+    """Return whether a program's colour sensors are placed otherwise: one is on another side than in the usual robot.
+
+    Names that say a side for some of the usual sensors only count beside a new one.
 
     Args:
         mentions: The devices that the program makes, by port.
@@ -56,7 +58,8 @@ def say_other_sides(mentions: Mapping[str, Mention], usual: Mapping[str, SensorS
         port: usual[port].name for port in colors if isinstance(usual.get(port), ColorSensorSpec)
     }
     sides = {port: find_side(colors[port].names) for port in known}
-    return len(known) < len(colors) and any(
+    are_said = all(side in (Side.LEFT, Side.RIGHT) for side in sides.values())
+    return (len(known) < len(colors) or are_said) and any(
         side and side != known[port] for port, side in sides.items()
     )
 
