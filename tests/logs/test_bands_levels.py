@@ -159,7 +159,20 @@ def test_bands_of_one_level_are_told_together() -> None:
         "grey": ["grey", "", "grey", "white"],
         "level": np.array([50.0, 7.0, 56.0, 100.0]),
         "samples": np.array([10, 4, 20, 1]),
+        "spread": np.zeros(4),
     }
     assert describe_levels(BandReport("Grey", columns, 1, 36)) == (
         "Grey: 3 levels: 54.00 grey (2x), 7.00, 100.00 white (one sample); 1 of 36 samples lies on edges or slopes"
     )
+
+
+def test_noisy_bands_of_one_level_are_one_level() -> None:
+    columns: dict[str, Any] = {
+        "number": np.arange(5),
+        "grey": [""] * 5,
+        "level": np.array([92.08, 17.84, 92.23, 18.10, 95.0]),
+        "samples": np.array([60, 60, 60, 60, 60]),
+        "spread": np.array([0.7, 0.8, 0.75, 0.83, 0.74]),
+    }
+    words = describe_levels(BandReport("Helligkeit", columns, 0, 300))
+    assert words.startswith("Helligkeit: 3 levels: 92.16 (2x), 17.97 (2x), 95.00; ")

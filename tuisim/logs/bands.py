@@ -206,14 +206,9 @@ def describe_levels(report: BandReport) -> str:
     """Return the levels of a report in words, for people."""
     if not report.count:
         return f"{report.variable}: no level: its values stand still nowhere"
-    levels: dict[str, list[tuple[str, float, int]]] = {}
-    for band in zip(
-        *(unpack_column(report.columns[name]) for name in ("grey", "level", "samples")),
-        strict=True,
-    ):
-        levels.setdefault(band[0] or f"{band[1]:.4g}", []).append(band)
+    levels = _group_levels(report)
     parts = []
-    for bands in levels.values():
+    for bands in levels:
         samples = sum(count for *_, count in bands)
         level = sum(level * count for _, level, count in bands) / samples
         if len(bands) > 1:
@@ -228,6 +223,32 @@ def describe_levels(report: BandReport) -> str:
     lie = "lies" if report.transitions == 1 else "lie"
     edges = f"{report.transitions} of {report.total} samples {lie} on edges or slopes"
     return f"{report.variable}: {known}; {edges}"
+
+
+def _group_levels(report: BandReport) -> list[list[tuple[str, float, int]]]:
+    """Return grey, level and samples of the bands, those of one level together, in order of their first bands.
+
+    Bands are of one level if they have the same grey or, without one, if their levels are no farther apart than their
+    samples spread.
+    """
+    columns = (unpack_column(report.columns[name]) for name in ("grey", "level", "samples"))
+    bands = list(zip(*columns, strict=True))
+    spreads = unpack_column(report.columns["spread"])
+    keys: list[object] = [grey for grey, *_ in bands]
+    first: int | None = None
+    for index in sorted(range(len(bands)), key=lambda place: bands[place][1]):
+        if keys[index]:
+            continue
+        if first is None or (
+            bands[index][1] - bands[first][1] > max(spreads[index], spreads[first])
+            and f"{bands[index][1]:.4g}" != f"{bands[first][1]:.4g}"
+        ):
+            first = index
+        keys[index] = first
+    groups: dict[object, list[tuple[str, float, int]]] = {}
+    for key, band in zip(keys, bands, strict=True):
+        groups.setdefault(key, []).append(band)
+    return list(groups.values())
 
 
 _FAR_OF_STEP, _FAR_OF_SPREAD = 0.75, 4.0
