@@ -24,6 +24,7 @@ UNLEVEL = {
     "an angle": [90.0, 181.0, 271.0, 361.0],
     "a growing slope": (np.linspace(0.0, 1.0, 10) ** 2 * 100.0).tolist(),
     "a wave": (50.0 + 30.0 * np.sin(np.linspace(0.0, 6.0, 15))).tolist(),
+    "a saw-tooth far from zero": (120.0 + np.arange(300.0) % 7).tolist(),
     "a few far-apart samples": [361.0, 90.0, 300.0, 181.0],
     "three steps down": [60.0, 41.0, 12.0],
 }

@@ -35,6 +35,14 @@ This is half the ratio of von Neumann (1941), which is about 1 for samples that 
 standard deviation is 0.1 for 100 samples.
 """
 
+_SWINGS = 0.65
+_SWING_OF_VALUE = 0.01
+_SWING_SAMPLES = 30
+"""A piece of so many samples swings if so large a fraction of its steps goes on in the direction of the one before.
+
+Of samples that do not depend on each other, a third does. A spread below this fraction of its highest value is small.
+"""
+
 _UNSURE_OF_RANGE, _UNSURE_OF_VALUE = 0.1, 0.05
 """A mean that is less certain than these fractions of the log's range and of its own highest value is no level."""
 
@@ -154,7 +162,8 @@ def _find_moving(values: FloatArray, plateaus: PlateauArray, ground: Ground) -> 
     steep = drift > _SLOPE_OF_RANGE * ground.range
     root = np.sqrt(lengths - plateaus["strays"])
     unsure = spread > _UNSURE_OF_RANGE * ground.range * root
-    judged = np.flatnonzero(wide | steep | unsure)
+    long = (lengths >= _SWING_SAMPLES) & (spread > _STILL_OF_RANGE * ground.range)
+    judged = np.flatnonzero(wide | steep | unsure | long)
     for some, part in group_by_length(values, read_spans(plateaus[judged])):
         some = judged[some]
         highest = np.abs(part).max(axis=1)
@@ -162,6 +171,9 @@ def _find_moving(values: FloatArray, plateaus: PlateauArray, ground: Ground) -> 
             wide[some]
             & (spread[some] > _STILL_OF_VALUE * highest)
             & _find_wandering(part, spread[some], ground.sigma)
+        )
+        moving[some] |= (
+            long[some] & (spread[some] > _SWING_OF_VALUE * highest) & _find_swinging(part)
         )
         moving[some] |= steep[some] & (drift[some] > _SLOPE_OF_VALUE * highest)
         moving[some] |= unsure[some] & (spread[some] > _UNSURE_OF_VALUE * highest * root[some])
@@ -174,6 +186,15 @@ def _find_wandering(part: FloatArray, spread: FloatArray, sigma: float) -> BoolA
     max_fraction = _SHORT_WANDERS if is_short else _WANDERS
     wanders: BoolArray = _compare_neighbours(part, sigma) < max_fraction * spread**2
     return wanders | go_one_way(part) if is_short else wanders
+
+
+def _find_swinging(part: FloatArray) -> BoolArray:
+    """Return which rows, shape (m, length), mostly go on in one direction, as a saw-tooth or a wave does."""
+    if part.shape[1] < _SWING_SAMPLES:
+        return np.zeros(len(part), bool)
+    steps = np.diff(part, axis=1)
+    swinging: BoolArray = (steps[:, 1:] * steps[:, :-1] > 0.0).mean(axis=1) > _SWINGS
+    return swinging
 
 
 def _compare_neighbours(part: FloatArray, sigma: float) -> FloatArray:
