@@ -32,13 +32,18 @@ COUNTS_PER_STEP = 2 * COUNTS_PER_DEG / 1000
 
 
 def compute_base_settings(
-    left: ControlSettings, right: ControlSettings, wheel_diameter_mm: float, axle_track_mm: float
+    motor: ControlSettings, wheel_diameter_mm: float, axle_track_mm: float
 ) -> tuple[ControlSettings, ControlSettings]:
-    """Return the settings of a drive base's controllers: of the distance in mm, and of the heading in degrees."""
-    per_deg = left.counts_per_unit
+    """Return the settings of a drive base's controllers: of the distance in mm, and of the heading in degrees.
+
+    Args:
+        motor: The settings of each of its motors.
+        wheel_diameter_mm, axle_track_mm: The robot's sizes.
+    """
+    per_deg = motor.counts_per_unit
     return (
-        combine_settings(left, right, 2 * per_deg * 360 / (pi * wheel_diameter_mm)),
-        combine_settings(left, right, 2 * per_deg * axle_track_mm / wheel_diameter_mm),
+        combine_settings(motor, 2 * per_deg * 360 / (pi * wheel_diameter_mm)),
+        combine_settings(motor, 2 * per_deg * axle_track_mm / wheel_diameter_mm),
     )
 
 
@@ -71,7 +76,7 @@ def compute_usual_settings(
 def compute_new_pace(law: MotorLaw, wheel_diameter_mm: float, axle_track_mm: float) -> Pace:
     """Return how a new drive base with large motors moves, in mm and degrees."""
     motor = compute_motor_settings(law, "large")
-    settings = compute_base_settings(motor, motor, wheel_diameter_mm, axle_track_mm)
+    settings = compute_base_settings(motor, wheel_diameter_mm, axle_track_mm)
     return compute_usual_settings(law, *settings)[0]
 
 
@@ -100,7 +105,7 @@ class DriveBase:
     """Moves two motors together. It is the `Guide` of both while it moves them or holds them.
 
     Args:
-        left, right: The motors.
+        left, right: The motors, which have the same settings.
         wheel_diameter_mm, axle_track_mm: The robot's sizes.
         find_gyro_deg: Returns the heading that the robot's gyro shows, clockwise.
     """
@@ -136,8 +141,8 @@ class DriveBase:
         self.left = left
         self.right = right
         self.motors = (left, right)
-        ours = left.control.settings, right.control.settings
-        distance, heading = compute_base_settings(*ours, wheel_diameter_mm, axle_track_mm)
+        motor = left.control.settings
+        distance, heading = compute_base_settings(motor, wheel_diameter_mm, axle_track_mm)
         self.distance = Controller(distance, slips=True)
         """Controls the sum; its units are mm."""
         self.heading = Controller(heading, slips=True)

@@ -122,7 +122,7 @@ class ServoKind:
 
     speed: int
     acceleration: int
-    gains: tuple[int, int, int]
+    gains: tuple[int, ...]
     feed_forward: int
     position_tolerance_deg: int
     torque_unm: int = 0
@@ -136,6 +136,8 @@ class Firmware:
     stall_speed_dps: int
     pace: Sequence[tuple[int, int]]
     """The usual speed and acceleration of a drive base, and those of its turns, as fractions of their limits."""
+    integral: tuple[int, int]
+    """`ControlSettings.integral_range` and `integral_rate`."""
     divides_units: bool
     """Whether these are fractions of limits that are rounded to units of the program."""
     speed_window_ms: int
@@ -146,14 +148,14 @@ THIRD = (1, 3)
 FIRMWARES: Mapping[MotorLaw, Firmware] = {
     MotorLaw.PYBRICKS: Firmware(
         {"large": ServoKind(800, 1600, (400, 1200, 5), 0, 5), "medium": ServoKind(1000, 4000, (300, 400, 3), 20, 5)},
-        15, (THIRD, THIRD, THIRD, THIRD), divides_units=True, speed_window_ms=0,
+        15, (THIRD, THIRD, THIRD, THIRD), (45, 10), divides_units=True, speed_window_ms=0,
     ),
     MotorLaw.PYBRICKS_4: Firmware(
         {
             "large": ServoKind(800, 2000, (400, 1200, 5), 0, 10, 448_976),
             "medium": ServoKind(1200, 2000, (300, 400, 3), 20, 10, 206_319),
         },
-        20, ((2, 5), (3, 8), THIRD, (3, 8)), divides_units=False, speed_window_ms=100,
+        20, ((2, 5), (3, 8), THIRD, (3, 8)), (16, 30), divides_units=False, speed_window_ms=100,
     ),
 }  # fmt: skip
 
@@ -176,8 +178,8 @@ def compute_motor_settings(law: MotorLaw, kind: str, gear_ratio: float = 1.0) ->
         kp=kp,
         ki=ki,
         kd=kd,
-        integral_range=45,
-        integral_rate=10,
+        integral_range=firmware.integral[0],
+        integral_rate=firmware.integral[1],
         feed_forward=motor.feed_forward * 100,
         position_tolerance=motor.position_tolerance_deg * COUNTS_PER_DEG,
         speed_tolerance=50 * COUNTS_PER_DEG,
@@ -201,10 +203,10 @@ def find_model(kind: str) -> MotorModel:
 def _build_hub_kind(kind: str) -> ServoKind:
     """Return the settings of a hub's motor, with gains in hundredths of a percent of the power per count."""
     motor = _find_hub_motor(kind)
-    kp, ki, kd = (
+    gains = tuple(
         round(gain * FULL_ACTUATION / motor.torque_unm / COUNTS_PER_DEG) for gain in motor.gains
     )
-    return ServoKind(motor.speed_dps, 2000, (kp, ki, kd), 0, motor.tolerance_deg, motor.torque_unm)
+    return ServoKind(motor.speed_dps, 2000, gains, 0, motor.tolerance_deg, motor.torque_unm)
 
 
 def _find_hub_motor(kind: str) -> HubMotor:
@@ -213,27 +215,25 @@ def _find_hub_motor(kind: str) -> HubMotor:
     return MOTORS[kind]
 
 
-def combine_settings(
-    left: ControlSettings, right: ControlSettings, counts_per_unit: float
-) -> ControlSettings:
+def combine_settings(motor: ControlSettings, counts_per_unit: float) -> ControlSettings:
     """Return the settings of one controller of a drive base, which moves the sum or the difference of two motors.
 
     Args:
+        motor: The settings of each motor.
         counts_per_unit: Counts of the sum or the difference per mm or degree of the robot.
     """
     return replace(
-        left,
+        motor,
         scale=round(counts_per_unit * _ONE),
-        speed=left.speed + right.speed,
-        acceleration=2 * (left.acceleration + right.acceleration),
-        actuation=left.actuation + right.actuation,
-        kp=divide(left.kp + right.kp, 4),
-        ki=divide(left.ki + right.ki, 4),
-        kd=divide(left.kd + right.kd, 4),
-        integral_range=left.integral_range + right.integral_range,
-        integral_rate=left.integral_rate + right.integral_rate,
-        feed_forward=(left.feed_forward + right.feed_forward) // 2,
-        position_tolerance=left.position_tolerance + right.position_tolerance,
-        speed_tolerance=left.speed_tolerance + right.speed_tolerance,
-        stall_speed=left.stall_speed + right.stall_speed,
+        speed=2 * motor.speed,
+        acceleration=4 * motor.acceleration,
+        actuation=2 * motor.actuation,
+        kp=divide(motor.kp, 2),
+        ki=divide(motor.ki, 2),
+        kd=divide(motor.kd, 2),
+        integral_range=2 * motor.integral_range,
+        integral_rate=2 * motor.integral_rate,
+        position_tolerance=2 * motor.position_tolerance,
+        speed_tolerance=2 * motor.speed_tolerance,
+        stall_speed=2 * motor.stall_speed,
     )

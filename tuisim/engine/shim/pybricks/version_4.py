@@ -64,8 +64,6 @@ class Motor(motor.Motor):
         reset_angle: bool = True,
         profile: int | None = None,
     ) -> None:
-        if profile is not None and whole(profile) < 0:
-            raise invalid_argument()
         self._set_up(port, positive_direction, gear_ratio(gears), keeps_angle=not reset_angle)
         self.control = Control(self, self.simulated.control)
         if profile is not None:
@@ -163,9 +161,11 @@ class Control(motor.Control):
         integral_deadzone: float | None = None,
         integral_rate: float | None = None,
     ) -> tuple[int, ...] | None:
-        """Return the gains of the controller, or set them."""
+        """Return the gains in micro-Nm per degree (and second) with two more numbers, or set them."""
+        scale = self._control.settings.torque_unm * COUNTS_PER_DEG / FULL_ACTUATION
+        kp, ki, kd = (None if gain is None else round(gain / scale) for gain in (kp, ki, kd))
         gains = super().pid(kp, ki, kd, integral_deadzone, integral_rate)
-        return gains and gains[:5]
+        return gains and (*(round(gain * scale) for gain in gains[:3]), *gains[3:5])
 
     def load(self) -> int:
         """Return the load in mNm."""

@@ -211,6 +211,9 @@ def test_a_motor_tells_its_limits_in_the_units_of_the_hub() -> None:
         with pytest.raises(ValueError, match="Invalid argument"):
             motor.control.limits(**wrong)
     motor.run(100)
+    assert motor.control.pid() == pytest.approx((15_117, 7558, 1889, 8, 15), rel=0.01)
+    motor.control.pid(kp=30_000)
+    assert motor.control.pid()[0] == pytest.approx(30_000, rel=0.01)
     motor.control.limits(500, (800, 900), torque=150)
     assert motor.control.limits() == (500, 800, 150)
 

@@ -139,7 +139,7 @@ class Display(Connected):
 
     def _read_buttons(self) -> frozenset[str]:
         self.brick.read("pressed", HUB_BUTTONS_PORT)
-        return self.brick.session.pressed & {"left", "right", "enter"}
+        return self.brick.session.pressed
 
     def _show_symbol(self, symbol: Any) -> None:
         show = self.char if isinstance(symbol, str) else self.number
