@@ -111,6 +111,7 @@ class ControlledRun(Protocol):
     now: int
     flags: int
     pressed: frozenset[str]
+    stop_buttons: frozenset[str]
     debugger: DebugHooks | None
 
     @property
@@ -409,6 +410,8 @@ class RunControl:
                 return
             case protocol.SetButtons(pressed=pressed):
                 session.pressed = frozenset(pressed)
+                if session.stop_buttons and session.stop_buttons <= session.pressed:
+                    session.ask_stop(End.FINISHED, "stopped by the hub's button")
             case protocol.Answer(text=text):
                 self.answers.append(text)
             case protocol.Reply(messages=messages):

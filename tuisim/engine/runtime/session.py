@@ -120,6 +120,7 @@ class Session:
         self.shown_ports: tuple[str, ...] | None = None
         self.pressed: frozenset[str] = frozenset()
         """The brick's buttons that are pressed."""
+        self.stop_buttons: frozenset[str] = frozenset()
         self._due = sim.compute_due_ns(1)
         hz = sim.spec.profile.tick_hz
         self._hz = hz

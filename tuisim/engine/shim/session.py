@@ -33,6 +33,8 @@ class DeviceSession(Protocol):
 
     pressed: frozenset[str]
     """The pressed buttons of the brick, by their names in the library."""
+    stop_buttons: frozenset[str]
+    """The buttons that stop the program when all of them are pressed; none if empty."""
 
     @property
     def field(self) -> Field:

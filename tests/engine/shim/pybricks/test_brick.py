@@ -5,11 +5,6 @@ from __future__ import annotations
 import pytest
 
 from tests.engine.shim.conftest import RunOn
-from tests.engine.shim.pybricks.lab import Lab
-from tuisim.engine.core.profile import MotorLaw
-from tuisim.engine.shim.pybricks.hub.hubs import PrimeHub
-from tuisim.engine.shim.pybricks.hub.parameters import Button
-from tuisim.engine.shim.pybricks.tools import wait
 
 PROFILE = "lego-micropython"
 HEAD = """
@@ -32,26 +27,39 @@ def test_no_private_name_is_proposed(run_on: RunOn, call: str) -> None:
     assert "'_" not in errors and "Pybricks 4" not in errors
 
 
-@pytest.fixture
-def lab() -> Lab:
-    return Lab(MotorLaw.PYBRICKS_4, {}, hub="PrimeHub")
+HUB = """
+from pybricks.hubs import PrimeHub
+from pybricks.parameters import Button
+from pybricks.tools import wait
+hub = PrimeHub()
+"""
 
 
-def test_the_centre_button_stops_a_program_on_a_hub(lab: Lab) -> None:
-    PrimeHub()
-    lab.pressed = frozenset({"left"})
-    wait(10)
-    lab.pressed = frozenset({"enter"})
-    with pytest.raises(SystemExit):
-        wait(10)
-
-
-def test_a_program_can_keep_the_centre_button_for_itself(lab: Lab) -> None:
-    hub = PrimeHub()
-    lab.pressed = frozenset({"enter"})
-    hub.system.set_stop_button(None)
-    wait(10)
-    assert hub.buttons.pressed() == {Button.CENTER}
-    hub.system.set_stop_button((Button.CENTER, Button.BLUETOOTH))
-    with pytest.raises(SystemExit):
-        hub.buttons.pressed()
+@pytest.mark.parametrize(
+    ("text", "presses", "end_ms"),
+    [
+        ("wait(5000)", ("left@1-1.1", "enter@2-2.1"), 2000),
+        ("hub.display.text('A', on=5000)", ("enter@2-2.1",), 2000),
+        (
+            "for stop in (None, False):\n    hub.system.set_stop_button(stop)\n    wait(1000)",
+            ("enter@0.5-1.5",),
+            2000,
+        ),
+        (
+            "hub.system.set_stop_button([Button.LEFT, Button.RIGHT])\nwait(3000)",
+            ("left@1-2", "right@1.5-2"),
+            1500,
+        ),
+        (
+            "hub.system.set_stop_button([Button.LEFT, Button.RIGHT])\nwait(3000)",
+            ("left@1-2", "right@2-3"),
+            3000,
+        ),
+    ],
+)
+def test_a_hub_is_not_stopped_at_once_by_the_buttons_that_stop_it(
+    run_on: RunOn, text: str, presses: tuple[str, ...], end_ms: int
+) -> None:
+    done = run_on(HUB + text, robot="hub", profile="pybricks4", presses=presses)
+    assert not done.errors
+    assert done.ended.time_ns // 1_000_000 == end_ms

@@ -63,8 +63,6 @@ class Brick:
     """Returns, after a colon, what to use in place of an attribute that a class does not have; empty if unknown."""
     said: set[str] = field(default_factory=set)
     """The subjects of messages that have been printed, see `say_once`."""
-    stop_buttons: frozenset[str] = frozenset()
-    """The buttons that stop the program, by their names in the session: those of a hub."""
     led_levels: Mapping[str, int] = field(default_factory=dict)
     """Brightness of the LEDs of a hub, 0 to 255, by their names in `BrickState.leds`; empty until one was lit."""
     in_task: bool = False
@@ -106,22 +104,12 @@ class Brick:
             mode, ports: What is recorded of the reading, as in `engine.runs.readings.READING_CODES`.
         """
         session = self.session
-        self.check_buttons()
         if not session.free:
             codes = [READING_CODES[port, mode] for port in ports]
             session.spend(session.sim.spec.profile.attribute_read_ns, *codes[:1])
             for code in codes[1:]:
                 session.note_reading(code)
         return session.now // 1000
-
-    def check_buttons(self) -> None:
-        """End the program if one of the buttons that stop it is pressed.
-
-        Raises:
-            SystemExit: one is pressed.
-        """
-        if self.stop_buttons and self.stop_buttons & self.session.pressed:
-            raise SystemExit
 
     def tell(self, part: int, call: Call, *values: float | None) -> None:
         """Pass a call with its values to a simulated motor or drive base, at the present time.
@@ -176,7 +164,6 @@ class Brick:
     def block(self, waiting: Waiting[Result]) -> Result:
         """Block until a wait is over, and return its result."""
         while True:
-            self.check_buttons()
             try:
                 until_us = waiting.send(None)
             except StopIteration as end:

@@ -87,7 +87,8 @@ class System(Connected):
     def set_stop_button(self, button: Any) -> None:
         """Let a button, or several pressed together, stop the program; with None, no button stops it."""
         buttons = [button] if isinstance(button, Enum) else button or ()
-        self.brick.stop_buttons = frozenset(self._session_names[pressed] for pressed in buttons)
+        names = frozenset(self._session_names[pressed] for pressed in buttons)
+        self.brick.session.stop_buttons = names
 
     def name(self) -> str:
         """Return the name of the hub."""

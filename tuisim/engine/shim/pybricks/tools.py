@@ -18,7 +18,6 @@ def wait(time: float) -> None:
     """Wait for a time in milliseconds."""
     brick = Connected.brick
     time_ms = whole(time)
-    brick.check_buttons()
     if brick.in_task:
         return brick.finish(wait_until(brick.now_us + time_ms * 1000))
     if time_ms > 0:

@@ -4,12 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-import pytest
-
 from tests.engine.shim.pybricks.lab import Lab
 from tuisim.engine.core.profile import MotorLaw
 from tuisim.engine.shim.pybricks.hub.hubs import PrimeHub
-from tuisim.engine.shim.pybricks.hub.parameters import Button
 
 
 def test_a_hub_tells_what_programs_look_up() -> None:
@@ -20,14 +17,3 @@ def test_a_hub_tells_what_programs_look_up() -> None:
         *("name", "reset_reason", "host_connected_ble", "host_connected_usb"),
         *("program_id", "program_start_type"),
     }
-
-
-def test_false_lets_no_button_stop_the_program_as_none_does() -> None:
-    lab = Lab(MotorLaw.PYBRICKS_4, {}, hub="PrimeHub")
-    hub: Any = PrimeHub()
-    lab.pressed = frozenset({"enter"})
-    hub.system.set_stop_button(False)
-    assert hub.buttons.pressed() == {Button.CENTER}
-    hub.system.set_stop_button((Button.CENTER, Button.LEFT))
-    with pytest.raises(SystemExit):
-        hub.buttons.pressed()

@@ -147,8 +147,9 @@ class Display(Connected):
 
     def _choose(self, symbols: Sequence[Any]) -> Any:
         """Let the user choose a symbol by the buttons, and return it."""
-        before = self.brick.stop_buttons
-        self.brick.stop_buttons = frozenset()
+        session = self.brick.session
+        before = session.stop_buttons
+        session.stop_buttons = frozenset()
         place = 0
         held = self._read_buttons()
         self._show_symbol(symbols[place])
@@ -160,7 +161,7 @@ class Display(Connected):
             held = pressed
             wait(POLL_MS)
         self.off()
-        self.brick.stop_buttons = before
+        session.stop_buttons = before
         return symbols[place]
 
 

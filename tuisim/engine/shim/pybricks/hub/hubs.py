@@ -52,7 +52,7 @@ class Hub(Connected):
         self.brick.command()
         if self.SENSES is not None:
             self.imu = self.SENSES(top_side or Axis.Z, front_side or Axis.X)
-        self.brick.stop_buttons = frozenset({"enter"})
+        self.brick.session.stop_buttons = frozenset({"enter"})
         self.light = AnimatedLight(shine)
         self.battery, self.system = Battery(), System(type(self).__name__, BUTTON_NAMES)
         buttons = {name: BUTTON_NAMES[name] for name in self.BUTTONS}
