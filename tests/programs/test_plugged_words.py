@@ -31,6 +31,7 @@ MOTORS = tuple(PluggedPart(one.port, "LargeMotor", 50, 3) for one in WHEELS)
         ),
         ((*MOTORS, *WHEELS), "wheels on outA (left) and outD (line 12)"),
         ((ARM,), "medium motor on outB"),
+        ((PluggedPart("C", "MediumAngularMotor", 5, 7),), "medium angular motor on C (line 7)"),
         ((TOO_LATE,), "large motor on outD, no wheel's since the robot had driven (line 14)"),
     ],
 )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from tuisim.engine.core.plugged import LATE, LEFT, RIGHT, PluggedPart
+from tuisim.engine.core.plugged import LATE, LEFT, MOTOR_KIND_OF, RIGHT, PluggedPart
 from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.programs.robot.library import DEVICES, SENSES_WALLS
@@ -22,7 +22,7 @@ def describe_plugged(run: StoredRun) -> str:
 
 def _name_remedy(parts: Sequence[PluggedPart], spec: RunSpec) -> str:
     """Return the option that gives a sensor walls to see; empty if none needs walls, or if there are some."""
-    is_blind = spec.world.is_open and any(DEVICES[part.part] in SENSES_WALLS for part in parts)
+    is_blind = spec.world.is_open and any(DEVICES.get(part.part) in SENSES_WALLS for part in parts)
     return "; there are no walls: --walls on" if is_blind else ""
 
 
@@ -43,7 +43,7 @@ def list_parts(parts: Sequence[PluggedPart]) -> str:
             # The motor has become that of a wheel, which comes later in the list.
             continue
         line = f" (line {part.line})" if part.line else ""
-        kind = DEVICES[part.part]
+        kind = DEVICES.get(part.part) or f"{MOTOR_KIND_OF[part.part].replace('-', ' ')} motor"
         if part.role == LEFT:
             other = right.get((part.tick, part.line), "")
             words.append(f"wheels on {part.port} (left) and {other}{line}")
