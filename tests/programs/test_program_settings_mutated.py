@@ -117,3 +117,16 @@ def test_an_impossible_size_gives_the_default_robot_and_a_sentence() -> None:
     assert "robot" not in decided.layer
     with pytest.raises(RobotError, match="got 12000"):
         choose_robot(source, "it")
+
+
+def test_an_impossible_robot_of_a_hub_has_the_hub_and_a_sentence() -> None:
+    text = (
+        "from pybricks.hubs import PrimeHub\nfrom pybricks.parameters import Port\n"
+        "from pybricks.pupdevices import ColorSensor, Motor\n"
+        "arm = Motor(Port.C)\neye = ColorSensor(Port.C)\n"
+    )
+    decided = build_program_settings(parse_program(text, "p.py")).decided
+    assert decided.layer["robot"].spec.hub == "PrimeHub"
+    assert decided.note.startswith(
+        "p.py runs on a robot built from it: PrimeHub; the rest of it is impossible (middle.port: two parts are on C); "
+    )

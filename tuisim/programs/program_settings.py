@@ -180,7 +180,12 @@ def read_source_facts(program: Program) -> SourceFacts:
 
 
 def _collect_facts(program: Program, modules: dict[str, Module], facts: SourceFacts) -> SourceFacts:
-    from tuisim.programs.robot.assembly import build_robot, find_shown_ports
+    from tuisim.programs.robot.assembly import (
+        BuiltRobot,
+        RobotPart,
+        build_robot,
+        find_shown_ports,
+    )
     from tuisim.programs.robot.brick_syntax import find_refused_lines
     from tuisim.programs.robot.library import SENSES_WALLS
     from tuisim.programs.robot.mentions import read_mentions
@@ -191,7 +196,14 @@ def _collect_facts(program: Program, modules: dict[str, Module], facts: SourceFa
     if find_library(modules) is None:
         mentions = add_port_texts(mentions, modules.values())
     usual = find_usual(mentions.hub)
-    robot = build_robot(mentions, program.name, usual)
+    try:
+        robot = build_robot(mentions, program.name, usual)
+    except RobotError as error:
+        if not usual.hub:
+            raise
+        # The default robot has an EV3.
+        impossible = f"the rest of it is impossible ({error.message})"
+        robot = BuiltRobot(RobotChoice(usual), (RobotPart(usual.hub, "hub"),), (impossible,))
     return replace(
         facts,
         of_course=has_course_names(modules, program.text),

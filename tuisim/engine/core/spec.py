@@ -536,7 +536,7 @@ class RobotSpec(Spec):
                 require_one_of(sensor.port, "port", self.input_ports, f"{sensor.name}.port")
             if sensor.port in used:
                 raise RobotError(
-                    f"two sensors are on {sensor.port}",
+                    f"two {'parts' if self.hub else 'sensors'} are on {sensor.port}",
                     "give each its own port, or remove one, such as `ultrasonic = false`",
                     key=f"{sensor.name}.port",
                 )
