@@ -215,9 +215,11 @@ class Connected:
             names: Those of the robot for such devices.
 
         Raises:
+            RuntimeError: a task runs.
             TypeError: it is no port.
             ValueError: it is not among these.
         """
+        self.brick.require_no_task()
         name = find_port(port)
         if name not in names:
             raise ValueError("Invalid port")

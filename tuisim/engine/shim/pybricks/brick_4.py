@@ -42,8 +42,8 @@ class AnimatedLight:
 
     def blink(self, color: Any, durations: Sequence[int]) -> None:
         """Blink in a colour; durations in ms are of on and off in turn."""
-        colors = [None if number % 2 else color for number in range(len(durations))]
-        self._animation.play(self._show, [*zip(colors, durations, strict=True)])
+        frames = [(None if number % 2 else color, time) for number, time in enumerate(durations)]
+        self._animation.play(self._show, frames)
 
     def animate(self, colors: Sequence[Any], interval: int) -> None:
         """Show colours one after another, each for a time in ms."""

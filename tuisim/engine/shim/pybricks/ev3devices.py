@@ -61,7 +61,6 @@ class Sensor(Connected):
     """One of `engine.core.sensors.SENSORS`; empty for any of them."""
 
     def __init__(self, port: AnyPort) -> None:
-        self.brick.require_no_task()
         name = self.take_port(port, self.brick.session.sim.spec.robot.input_ports)
         sensor = self.brick.find_sensor(name, self.KIND)
         if sensor is None:

@@ -59,11 +59,10 @@ class Color(metaclass=_NamedColors):
         self.name = ""
 
     @property
-    def rgb(self) -> tuple[int, int, int]:
+    def rgb(self) -> tuple[int, ...]:
         """Red, green and blue, 0 to 255."""
         channels = hsv_to_rgb(self.h / 360, self.s / 100, max(0, self.v) / 100)
-        red, green, blue = (round(255 * channel) for channel in channels)
-        return red, green, blue
+        return tuple(round(255 * channel) for channel in channels)
 
     def __iter__(self) -> Iterator[int]:
         return iter((self.h, self.s, self.v))

@@ -24,7 +24,8 @@ class Matrix:
 
     def __init__(self, rows: Sequence[Sequence[float]]) -> None:
         self._rows: Rows = tuple(tuple(map(_single, row)) for row in rows)
-        if not self._rows or len({len(row) for row in self._rows}) != 1 or not self._rows[0]:
+        lengths = {len(row) for row in self._rows}
+        if len(lengths) != 1 or 0 in lengths:
             raise invalid_argument()
 
     @property

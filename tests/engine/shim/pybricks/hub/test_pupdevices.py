@@ -228,3 +228,14 @@ def test_the_controllers_of_a_drive_base_take_what_those_of_motors_take() -> Non
     base.distance_control.pid(integral_deadzone=3)
     assert base.heading_control.limits() == (500, 500, 100)
     assert base.distance_control.limits() == (489, 1955, 199)
+
+
+def test_no_motor_is_made_in_a_task() -> None:
+    Lab(MotorLaw.PYBRICKS_4, {"A": "medium-angular"}, hub="PrimeHub")
+    ports: Any = Port
+
+    async def make() -> None:
+        Motor(ports.A)
+
+    with pytest.raises(RuntimeError, match="before multitasking starts"):
+        version_4.run_task(make())
