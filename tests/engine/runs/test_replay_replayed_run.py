@@ -5,6 +5,7 @@ from __future__ import annotations
 import shutil
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,6 +14,8 @@ from tests.cases import cases
 from tests.running import Run
 from tuisim.base.errors import LogError
 from tuisim.engine.protocol import SetButtons, UserAction
+from tuisim.engine.runs import replay as replay_module
+from tuisim.engine.runs.records import HEADER_BYTES, TELEMETRY_FILE
 from tuisim.engine.runs.replay import replay_run
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.engine.runs.side_files import COMMANDS_FILE
@@ -69,6 +72,23 @@ def test_what_no_command_does_has_not_happened(stored: Stored, text: str) -> Non
         assert np.array_equal(ours, theirs)
     again = RunStore().load_run(told.folder)
     assert replay_run(again, ())[1] == ""
+
+
+def test_what_a_process_of_the_program_writes_into_the_replay_is_not_judged(
+    stored: Stored, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    run = stored(PLACED["by the simulation"] + "\ntime.sleep(0.2)\n")
+    real = replay_module._replace_files
+
+    def replace_and_change(*parts: Any) -> None:
+        real(*parts)
+        with (run.folder / TELEMETRY_FILE).open("r+b") as file:
+            file.seek(HEADER_BYTES + 64 * 30 + 8)
+            file.write(b"\0" * 8)
+
+    monkeypatch.setattr(replay_module, "_replace_files", replace_and_change)
+    with pytest.raises(LogError, match="was changed after its end"):
+        replay_run(run, ())
 
 
 @pytest.mark.parametrize("profile", ["robolab", "ev3", "nbev3devsim"])

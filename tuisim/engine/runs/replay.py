@@ -257,6 +257,8 @@ def replay_run(
     run = replace(run, telemetry=TelemetryView(run.folder), actions=done)
     run.telemetry.read_new()
     run.telemetry.holds = True
+    if run.telemetry.array().tobytes() != ticks.telemetry:
+        raise LogError("was changed after its end", file=str(run.folder))
     return (
         run,
         f"{compute_due_ns(min(parted, last_tick), run.spec.profile.tick_hz) / NS_PER_S:.2f} s",
