@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 import shlex
-import shutil
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
@@ -38,14 +37,9 @@ def _class(where: Path) -> None:
     )
 
 
-def _experiments(where: Path) -> None:
-    program("square.py", where)
-    shutil.copy(ROOT / "backgrounds" / "Loop.png", where / "mat.png")
-
-
 PREPARED: dict[str, Callable[[Path], None]] = {
     "marking": _class,
-    "experiments": _experiments,
+    "experiments": lambda where: program("square.py", where),
     "world-files": lambda where: program("follow_line.py", where),
 }
 """What the reader of a page has already."""

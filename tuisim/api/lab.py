@@ -181,7 +181,11 @@ class Lab:
         return self._run.read(self._readers) if self._readers else {}
 
     def picture(self) -> Image:
-        """Return the world now as a Pillow image, without the pen's trace."""
+        """Return the world now as a Pillow image, without the pen's trace.
+
+        The robot may be at the edge of the mat, so there is a rim around it: `info["extent_mm"]` of the image has the
+        edges of all of it, as the `extent` of matplotlib's `imshow`.
+        """
         from tuisim.pictures.scene.pictures import draw_world
 
         return draw_world(self._spec, field_files(self._spec).read_pixels(), self.pose)

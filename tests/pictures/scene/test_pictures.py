@@ -110,6 +110,17 @@ def test_a_white_mat_has_a_frame(corner: tuple[float, float]) -> None:
     assert pixel(picture, spec.robot, (x_mm + 6 * outward, y_mm)) not in ((255, 255, 255), edge)
 
 
+def test_a_picture_says_where_its_edges_are() -> None:
+    picture = draw_world(spec_of(), WHITE, MIDDLE)
+    left_mm, right_mm, lower_mm, upper_mm = picture.info["extent_mm"]
+    width_px, height_px = picture.size
+    whites = np.argwhere((np.asarray(picture) == 255).all(axis=2))
+    (top, left), (bottom, right) = whites.min(axis=0), whites.max(axis=0) + 1
+    edges_mm = [left_mm + px / width_px * (right_mm - left_mm) for px in (left, right)]
+    edges_mm += [upper_mm - px / height_px * (upper_mm - lower_mm) for px in (bottom, top)]
+    assert edges_mm == pytest.approx([0, FIELD_WIDTH_MM, 0, FIELD_HEIGHT_MM], abs=3)
+
+
 @pytest.mark.parametrize("size_px", [(300, 150), (300, 400), (900, 500), (1200, 401)])
 def test_a_world_fills_a_size_that_it_fits_into(size_px: tuple[int, int]) -> None:
     view = fit_view(SPEC.robot, *size_px)

@@ -141,13 +141,16 @@ def draw_world(
         area: The part of the world to show.
 
     Returns:
-        The picture, in the size of `find_view`.
+        The picture, in the size of `find_view`; `info["extent_mm"]` has its edges.
     """
     from PIL import Image
 
     scene = build_scene(spec, pose or spec.world.start, rays=rays)
     painter = build_painter(mat, traces, has_floor=spec.world.is_open)
-    return Image.fromarray(painter.paint(find_view(spec, area), scene))
+    view = find_view(spec, area)
+    image = Image.fromarray(painter.paint(view, scene))
+    image.info["extent_mm"] = view.extent_mm
+    return image
 
 
 def read_pose(record: TickRecord | None) -> Pose | None:

@@ -59,6 +59,12 @@ class Viewport:
         """The height of a pixel in mm."""
         return self.mm_per_px * self.cell.tall
 
+    @property
+    def extent_mm(self) -> tuple[float, float, float, float]:
+        """World x of the left and right edge, and world y of the lower and upper edge, in the order of matplotlib."""
+        right_mm, lower_mm = self.to_mm(self.width_px, self.height_px)
+        return self.left_mm, right_mm, lower_mm, self.top_mm
+
     def to_px(self, x_mm: float, y_mm: float) -> tuple[float, float]:
         """Return the picture column and row of a world point; whole numbers are pixel corners."""
         return (x_mm - self.left_mm) / self.mm_per_px, (self.top_mm - y_mm) / self.mm_per_row
