@@ -141,7 +141,7 @@ class Run:
         )
 
     def picture(self) -> Image:
-        """Return the world at the end of the run, with the pen's trace, as a Pillow image; edges as of `Lab.picture`."""
+        """Return the world at the end of the run, with the pen's trace, as a Pillow image, as `Lab.picture` does."""
         from tuisim.pictures.scene.pictures import draw_end
 
         return draw_end(self.stored)
