@@ -124,6 +124,7 @@ def test_box_corner(pose: Pose, corner: tuple[int, int]) -> None:
         "saturation 19 counts as grey": ((100, 81, 81), 6),
         "saturation 20 has a colour": ((100, 80, 80), 5),
         "dark, no colour": ((60, 59, 59), 1),
+        "black with noise": ((4, 4, 5), 2),
         "hue 29": ((240, 119, 0), 5),
         "hue 30": ((240, 120, 0), 4),
         "hue 89": ((121, 240, 0), 4),
