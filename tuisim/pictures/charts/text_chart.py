@@ -341,7 +341,7 @@ def _empty(traces: Traces, width: int, height: int, selected: str | None) -> lis
     Args:
         selected: The trace that the keys show; None while the keys do something else.
     """
-    how = ("↑ ↓ and space show a trace",) if selected is not None and width >= 26 else ()
+    how = ("↑ ↓ and enter show a trace",) if selected is not None and width >= 26 else ()
     if any(trace.logged for trace in traces):
         words: tuple[str, ...] = ("No trace is ticked.", *how)
     else:
