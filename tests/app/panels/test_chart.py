@@ -95,6 +95,13 @@ async def test_space_goes_on_with_a_paused_run_and_escape_leaves_the_chart() -> 
         assert not app.panel.has_focus
 
 
+async def test_a_chart_without_a_tick_names_the_keys_of_the_panel() -> None:
+    async with open_chart() as (pilot, app):
+        await opened(app, pilot)
+        await pilot.press("enter")
+        assert "↑ ↓ and enter show a trace" in "".join(rows(app))
+
+
 async def test_the_mouse_ticks_traces() -> None:
     async with open_chart() as (pilot, app):
         rows(app)

@@ -82,7 +82,7 @@ def test_a_chart_without_a_tick_says_so() -> None:
     assert ["No trace is ticked" in words for words in said] == [True, False]
     assert not any("space" in words for words in said)
     focused = ChartPainter().paint(logged, ChartState("Colour"), 80, 16)
-    assert "↑ ↓ and enter show a trace" in "\n".join(text(focused))
+    assert "v and space show a trace" in "\n".join(text(focused))
     assert ["Nothing logged yet" in words for words in said] == [False, True]
 
 

@@ -67,7 +67,7 @@ class Chart(LinesPanel, can_focus=True):
         self._traces = Traces()
         self._text: PlotView = PlotView(self._redraw)
         self._painter = ChartPainter()
-        self._state = ChartState()
+        self._state = ChartState(tick_keys="↑ ↓ and enter")
         self._picture: ChartPicture | None = None
         self._dirty = True
         self._dragging = False

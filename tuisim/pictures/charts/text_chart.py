@@ -76,6 +76,8 @@ class ChartState:
     """Columns on the left and the right of the canvas at least."""
     zoomed: bool = False
     """Whether the time range is zoomed: the vertical axis then fits the visible data."""
+    tick_keys: str = "v and space"
+    """The keys that choose and tick a trace, by default those of the analyser."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,7 +133,7 @@ class ChartPainter:
         lines, boxes = _draw_tick_boxes(traces, state.selected, by_mark, width)
         if not drawn:
             return ChartPicture(
-                (lines + _empty(traces, width, height - len(lines), state.selected))[:height], boxes
+                (lines + _empty(traces, width, height - len(lines), state))[:height], boxes
             )
         with_line = height >= _LINE_ROWS
         rows = max(height - len(lines) - 1 - with_line, 1)
@@ -335,13 +337,14 @@ def format_values(drawn: Sequence[Trace], cursor_s: float, unit: str, width: int
     return line
 
 
-def _empty(traces: Traces, width: int, height: int, selected: str | None) -> list[list[Run]]:
+def _empty(traces: Traces, width: int, height: int, state: ChartState) -> list[list[Run]]:
     """Return the text of a chart without curves: how to log a value, or that no trace is ticked.
 
     Args:
-        selected: The trace that the keys show; None while the keys do something else.
+        state: With the trace that its keys show, if they do not do something else.
     """
-    how = ("↑ ↓ and enter show a trace",) if selected is not None and width >= 26 else ()
+    has_keys = state.selected is not None and width >= 26
+    how = (f"{state.tick_keys} show a trace",) if has_keys else ()
     if any(trace.logged for trace in traces):
         words: tuple[str, ...] = ("No trace is ticked.", *how)
     else:
