@@ -13,6 +13,7 @@ from tuisim.settings.presses import Press, parse_press
 
 GIVEN = {
     "plain": ("enter@1", Press("enter", 1.0, 1.1)),
+    "a name of Pybricks": ("center@1", Press("enter", 1.0, 1.1)),
     "held": ("up@0.5-2", Press("up", 0.5, 2.0)),
     "a touch sensor": ("in1@2-2.5", Press("in1", 2.0, 2.5)),
     "every touch sensor": ("touch@2", Press("touch", 2.0, 2.1)),

@@ -13,6 +13,8 @@ from tuisim.engine.protocol import SetButtons, UserAction
 DEFAULT_PRESS_S = 0.1
 MAX_PRESS_S = 1e6
 MAX_PRESSES = 10_000
+_OTHER_NAMES = {"center": "enter", "back": "backspace"}
+"""What Pybricks calls buttons of the EV3, and what they are called here."""
 _SECONDS = Number(0.0, MAX_PRESS_S)
 
 
@@ -35,6 +37,7 @@ def parse_press(text: str) -> Press:
     name, sign, times = text.partition("@")
     if not sign:
         raise WrongValue(f"must be NAME@FROM or NAME@FROM-UNTIL, got {text!r}", "such as enter@1.5")
+    name = _OTHER_NAMES.get(name, name)
     if name not in PRESSABLE:
         raise WrongValue(f"{name!r} cannot be pressed", nearest(name, PRESSABLE))
     # A leading minus is a sign: negative times are refused.
