@@ -17,7 +17,8 @@ from tuisim.engine.core.spec import InfraredSpec, Obstacle, RobotSpec, RunSpec, 
 from tuisim.engine.protocol import End
 from tuisim.engine.runs.records import Stream
 from tuisim.engine.runs.side_files import READINGS_FILE
-from tuisim.tasks.reasons.waited import Subject, find_awaited
+from tuisim.tasks.reasons.subjects import Subject
+from tuisim.tasks.reasons.waited import find_awaited
 
 Record = Callable[..., Recorder]
 Moves = Callable[[Recorder], None]

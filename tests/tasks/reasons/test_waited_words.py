@@ -17,7 +17,8 @@ from tuisim.engine.core.spec import RobotSpec, RunSpec, WorldSpec
 from tuisim.engine.mats import background
 from tuisim.engine.runs.run_folder import field_files
 from tuisim.tasks.reasons.hand_presses import HandPress
-from tuisim.tasks.reasons.waited import Awaited, Subject
+from tuisim.tasks.reasons.subjects import Subject
+from tuisim.tasks.reasons.waited import Awaited
 from tuisim.tasks.reasons.waited_words import (
     COLOR_PLACES_MM,
     COLORED_MAT,
@@ -355,6 +356,16 @@ def test_a_gamepad_that_never_comes_is_named(tmp_path: Path, here: Command) -> N
     (tmp_path / "prog.py").write_text(PAD)
     facts = json.loads(here("run", "prog.py", "--timeout", 6, "--json").stdout)
     assert facts["waited_for"].startswith("looked for a gamepad 7 times, none is simulated: ")
+
+
+def test_a_menu_of_which_one_button_was_pressed_waits_for_the_others(
+    tmp_path: Path, here: Command
+) -> None:
+    (tmp_path / "prog.py").write_text(MENU)
+    done = here("run", "prog.py", "--press", "up@1", "--timeout", 9, "--json")
+    assert json.loads(done.stdout)["waited_for"] == (
+        "up was pressed at 1 s, and the program waits for more: add --press enter@2, or K in the app"
+    )
 
 
 def test_the_remote_drives_while_it_is_pressed(tmp_path: Path, here: Command) -> None:

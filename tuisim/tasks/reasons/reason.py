@@ -25,8 +25,8 @@ from tuisim.programs.facts import read_facts
 from tuisim.tasks.goals.evidence import find_ticks
 from tuisim.tasks.goals.judgement import GoalState, Judgement
 from tuisim.tasks.reasons.blank_mat import describe_blank_mat
+from tuisim.tasks.reasons.subjects import Subject
 from tuisim.tasks.reasons.unmet import find_early_end, find_near_miss, find_recount
-from tuisim.tasks.reasons.waited import Subject
 from tuisim.tasks.reasons.waited_words import Wait, find_waits
 
 if TYPE_CHECKING:

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from enum import Enum, auto
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -24,8 +23,6 @@ from tuisim.engine.core.remote_spec import REMOTE_BY_HAND
 from tuisim.engine.core.sensors import build_mounted_sensor
 from tuisim.engine.core.sensors.color import find_color_code
 from tuisim.engine.core.spec import (
-    INPUT_PORTS,
-    TOUCH,
     ColorSensorSpec,
     InfraredSpec,
     RunSpec,
@@ -37,7 +34,6 @@ from tuisim.engine.protocol import End, SetButtons, UserAction
 from tuisim.engine.runs.brick_state import BrickState
 from tuisim.engine.runs.readings import (
     KEYS_BY_PORT,
-    MODES_BY_KIND,
     READING_MODES,
     READING_PORTS,
     read_readings,
@@ -48,6 +44,16 @@ from tuisim.engine.runs.views import OutputView, TelemetryView
 from tuisim.programs.facts import Question, read_facts
 from tuisim.tasks.goals.evidence import find_ticks
 from tuisim.tasks.reasons.hand_presses import HandPress, find_hits, find_presses
+from tuisim.tasks.reasons.subjects import (
+    HAND_SUBJECTS,
+    HANDS,
+    MEASURED,
+    MODES,
+    OUTSIDE_SUBJECTS,
+    PRESSED,
+    SEEN,
+    Subject,
+)
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -70,53 +76,9 @@ _MAX_POSES = 4000
 """Distances are measured again at so many poses."""
 
 
-class Subject(Enum):
-    """What a program can wait for."""
-
-    BUTTONS = auto()
-    TOUCH = auto()
-    REMOTE = auto()
-    BEACON = auto()
-    COLOR = auto()
-    DISTANCE = auto()
-    PROXIMITY = auto()
-    GYRO = auto()
-    CONNECTION = auto()
-    DATA = auto()
-    GAMEPAD = auto()
-
-
-_MODES: dict[Subject, tuple[str, ...]] = {
-    Subject.BUTTONS: MODES_BY_KIND["buttons"],
-    Subject.TOUCH: MODES_BY_KIND["touch"],
-    Subject.REMOTE: ("IR-REMOTE", "IR-REM-A"),
-    Subject.BEACON: ("IR-SEEK",),
-    Subject.COLOR: ("COL-REFLECT", "COL-COLOR", "REF-RAW", "RGB-RAW"),
-    Subject.DISTANCE: ("US-DIST-CM", "US-DIST-IN", "US-SI-CM", "US-SI-IN"),
-    Subject.PROXIMITY: ("IR-PROX",),
-    Subject.GYRO: ("GYRO-ANG", "GYRO-G&A", "GYRO-FAS"),
-    Subject.CONNECTION: ("accept",),
-    Subject.DATA: ("receive",),
-    Subject.GAMEPAD: MODES_BY_KIND["gamepad"],
-}
-_HANDS: dict[Subject, tuple[str, ...]] = {
-    Subject.TOUCH: (TOUCH, *INPUT_PORTS),
-    Subject.REMOTE: tuple(REMOTE_BY_HAND),
-}
-"""What can be pressed by hand for a subject that is read at other places than `KEYS_BY_PORT`."""
-_HAND_SUBJECTS = (Subject.BUTTONS, Subject.REMOTE)
-"""While the robot moves, a look at these is a guard, not a wait."""
-_PRESSED = (*_HAND_SUBJECTS, Subject.TOUCH)
-"""While the program logs or plays, a look at these that only ends it is a guard."""
-SEEN = (Subject.COLOR, Subject.DISTANCE, Subject.PROXIMITY)
-"""A robot that drives waits for these first."""
 _MAX_LINES = 64
-_MEASURED = (Subject.DISTANCE, Subject.PROXIMITY, Subject.GYRO)
-"""A program that only computes with these waits for nothing."""
 _SAME_HEADING_DEG = 2.0
 """A robot that turns less is not turned by hand."""
-_OUTSIDE_SUBJECTS = (Subject.CONNECTION, Subject.DATA, Subject.GAMEPAD)
-"""Each recorded look at these was in vain."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -245,12 +207,12 @@ class _Search:
         if not len(self._rows) or not len(self._records):
             return
         subjects = [
-            subject for subject in Subject if not (subject in _HAND_SUBJECTS and self._drives)
+            subject for subject in Subject if not (subject in HAND_SUBJECTS and self._drives)
         ]
         if self._drives:
             subjects.sort(key=lambda candidate: candidate not in SEEN)
         for subject in subjects:
-            if subject in _HAND_SUBJECTS and self._is_turning():
+            if subject in HAND_SUBJECTS and self._is_turning():
                 continue
             for port in READING_PORTS:
                 rows = self._find_readings(subject, port)
@@ -273,7 +235,7 @@ class _Search:
         """Return for each reading whether it is of a subject and a port."""
         import numpy as np
 
-        modes = [READING_MODES.index(mode) for mode in _MODES[subject]]
+        modes = [READING_MODES.index(mode) for mode in MODES[subject]]
         is_meant: Array = np.isin(self._rows["mode"], modes)
         is_meant &= self._rows["port"] == READING_PORTS.index(port)
         return is_meant
@@ -291,10 +253,10 @@ class _Search:
     def _is_asking(self, subject: Subject, line: int) -> bool:
         """Return whether a reading of a subject on a line can be what the program waits for."""
         question = self._ask(line)
-        if subject in _OUTSIDE_SUBJECTS:
+        if subject in OUTSIDE_SUBJECTS:
             return True
-        is_guard = subject in _PRESSED and question.is_last and self._is_logging_or_playing()
-        is_computed = subject in _MEASURED and not question.is_test
+        is_guard = subject in PRESSED and question.is_last and self._is_logging_or_playing()
+        is_computed = subject in MEASURED and not question.is_test
         return question.decides and not is_guard and not is_computed
 
     def _is_logging_or_playing(self) -> bool:
@@ -331,15 +293,13 @@ class _Search:
         sought = _list_sought(subject, port, mode, questions)
         needs_all = len(sought) > 1 and any(question.needs_all for question in questions)
         limit = self._find_limit(mode, questions[0])
+        presses = self._find_presses(subject, port)
+        if subject is Subject.BUTTONS and {*sought} - {press.name for press in presses}:
+            # A menu goes on until the right one is pressed.
+            rows = self._skip_answered(rows, presses)
         value = self._describe_constant(subject, port, rows, sought, needs_all, limit)
         if value is None:
             return None
-        presses = find_presses(
-            self._run.actions,
-            _HANDS.get(subject, KEYS_BY_PORT.get(port, ())),
-            self._hz,
-            len(self._records),
-        )
         times_s = self._rows["time_ns"][rows] / NS_PER_S
         first, last = map(self._find_pose, rows[[0, -1]])
         return Awaited(
@@ -360,13 +320,28 @@ class _Search:
             mode=mode,
         )
 
+    def _find_presses(self, subject: Subject, port: str) -> tuple[HandPress, ...]:
+        names = HANDS.get(subject, KEYS_BY_PORT.get(port, ()))
+        return find_presses(self._run.actions, names, self._hz, len(self._records))
+
+    def _skip_answered(self, rows: Array, presses: Sequence[HandPress]) -> Array:
+        """Return the readings after the last press if the program has read on for long since then, else all."""
+        import numpy as np
+
+        if not presses:
+            return rows
+        is_later = self._ticks[rows] / self._hz > presses[-1].until_s
+        later: Array = rows[np.flatnonzero(is_later)]
+        times_s = self._rows["time_ns"][later] / NS_PER_S
+        return later if len(later) > 1 and times_s[-1] - presses[-1].until_s >= WINDOW_S else rows
+
     def _find_pose(self, row: int) -> Pose:
         return self._run.telemetry.record(int(self._ticks[row])).pose
 
     def _find_limit(self, mode: str, question: Question) -> float | None:
         """Return the distance that the program compares with, in mm or in % for an infrared sensor; else None."""
         limit = question.find_limit()
-        if limit is None or mode not in _MODES[Subject.DISTANCE]:
+        if limit is None or mode not in MODES[Subject.DISTANCE]:
             return limit
         is_pybricks = self._run.spec.profile.motor_law.library is Library.PYBRICKS
         if is_pybricks or "value" in question.words:
@@ -385,7 +360,7 @@ class _Search:
         """Return what was read each time, in words; None if it changed, or if what the program waits for came."""
         import numpy as np
 
-        if subject in _OUTSIDE_SUBJECTS:
+        if subject in OUTSIDE_SUBJECTS:
             return "" if subject is not Subject.GAMEPAD or len(rows) > 1 else None
         ticks = np.unique(self._ticks[rows])
         sensor = next(

@@ -18,8 +18,9 @@ from tuisim.engine.obstacles import OBSTACLES
 from tuisim.engine.runs.readings import BUTTONS_PORT, HUB_BUTTONS_PORT, KEYS_BY_PORT
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.tasks.reasons.hand_presses import find_hits
+from tuisim.tasks.reasons.subjects import SEEN, Subject
 from tuisim.tasks.reasons.unmet import Unmet, describe_place, find_unmet
-from tuisim.tasks.reasons.waited import SEEN, Awaited, Subject, find_awaited
+from tuisim.tasks.reasons.waited import Awaited, find_awaited
 
 if TYPE_CHECKING:
     from tuisim.engine.core.field import Field
@@ -204,15 +205,16 @@ def name_remedy(awaited: Awaited, spec: RunSpec, is_live: bool = False) -> str:
 
 def _name_presses(awaited: Awaited, default: str) -> str:
     """Return the options that press what the program asks for, when it looks and for long enough."""
-    names = awaited.sought or (default,)
+    pressed = {press.name for press in awaited.pressed}
+    names = tuple(sorted(awaited.sought, key=pressed.__contains__)) or (default,)
     is_touch, is_remote = awaited.subject is Subject.TOUCH, awaited.subject is Subject.REMOTE
     from_s = math.floor(awaited.since_s) + (2 if is_touch else 1)
     held_s = 2 if is_remote else int(awaited.needs_all)
     if awaited.pace_s > _SHORT_PRESS_S:
         held_s = max(held_s, math.ceil(awaited.pace_s))
     until = f"-{from_s + held_s}" if held_s else ""
-    pressed = names if awaited.needs_all else names[:1]
-    options = " ".join(f"--press {name}@{from_s}{until}" for name in pressed)
+    needed = names if awaited.needs_all else names[:1]
+    options = " ".join(f"--press {name}@{from_s}{until}" for name in needed)
     return f"add {options}" if awaited.waits_again and not awaited.needs_all else options
 
 
