@@ -107,6 +107,15 @@ def test_functions_of_another_file_go_along_by_whatever_name(load: Import) -> No
     assert tuisim.simulate(main.go).output == "A: 10\n"
 
 
+def test_a_class_of_two_names_is_one(load: Import) -> None:
+    main = load(
+        own_helpers="class Side: pass\n",
+        own_main="from own_helpers import Side as Way, Side\ndef go(): print(Side is Way)\n",
+    )
+    run = tuisim.simulate(main.go)
+    assert run.output == "True\n", run.error
+
+
 def test_constants_of_one_name_in_two_files_are_not_mixed(load: Import) -> None:
     main = load(
         own_helpers="SPEED = 20\ndef get_speed(): return SPEED\n",
@@ -182,6 +191,51 @@ def go(start: np.ndarray = None):
 
 def test_own_classes_go_along_with_what_they_use(load: Import) -> None:
     assert tuisim.simulate(load(controller=CONTROLLER, study=STUDY).go).output == "inf 10.0 1\n"
+
+
+VALUES = """\
+from dataclasses import dataclass
+from enum import Enum
+from typing import NamedTuple
+KP = 0.5
+@dataclass
+class Gains:
+    p: float
+    base: int = 3
+class Step(NamedTuple):
+    turns: float
+    way: tuple = ()
+class Side(Enum):
+    LEFT = "left"
+    RIGHT = "right"
+GAINS = Gains(KP); FIRST = Step(1.5, (1, 2))
+START = Side.LEFT
+"""
+USING = """\
+def go(side=START): print(GAINS, FIRST.way, side is Side.LEFT, START.value)
+"""
+
+
+def test_instances_of_plain_values_go_along_with_their_class(load: Import) -> None:
+    names = "GAINS, FIRST, START, Side"
+    other = load(values=VALUES, using=f"from values import {names}\n{USING}").go
+    alone = load(alone=VALUES + USING).go
+    for program in (alone, other):
+        run = tuisim.simulate(program)
+        assert run.output == "Gains(p=0.5, base=3) (1, 2) True left\n", run.error
+    with pytest.raises(ConfigError, match="GAINS has been computed from KP"):
+        tuisim.experiment(alone, constants={"KP": [1, 2]})
+
+
+@pytest.mark.parametrize(
+    "slip", ["x: int = field(init=False, default=1)", "def __post_init__(self): 0"]
+)
+def test_instances_that_their_fields_do_not_make_are_refused(load: Import, slip: str) -> None:
+    text = (
+        f"from dataclasses import dataclass, field\n@dataclass\nclass A:\n    y: int\n    {slip}\n"
+    )
+    with pytest.raises(ConfigError, match="go uses GAINS, a A, which cannot go along"):
+        read_function(load(slips=f"{text}GAINS = A(1)\ndef go(): print(GAINS)\n").go)
 
 
 DECORATORS = """\

@@ -28,6 +28,18 @@ def test_the_classes_and_constants_of_other_cells_of_a_notebook_go_along() -> No
     assert tuisim.simulate(shell.user_ns["go"]).output == "2.0\n"
 
 
+def test_an_instance_of_another_cell_leaves_the_lines_of_the_function() -> None:
+    shell = InteractiveShell()
+    for cell in (
+        "from typing import NamedTuple\n\nclass Step(NamedTuple):\n    turns: float",
+        "\n\nSTEP = Step(2)",
+        "# here\n\ndef go():\n    print(STEP.turns)\n    raise ValueError",
+    ):
+        shell.run_cell(cell, store_history=True)
+    run = tuisim.simulate(shell.user_ns["go"])
+    assert (run.output, run.stored.end and run.stored.end.error_line) == ("2\n", 5)
+
+
 VALUES: dict[str, Any] = {"KP": 4.0, "m": math, "sqrt": math.sqrt, "ask": input, "call": lambda: 1}
 VALUES["array"] = np.arange(3)
 

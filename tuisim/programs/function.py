@@ -18,7 +18,13 @@ from tuisim.base.syntax_tree import parse_module
 from tuisim.programs.constants import quote_annotations, write_literal
 from tuisim.programs.program_file import ProgramSource, parse_program
 from tuisim.programs.robot.course import list_global_names
-from tuisim.programs.surroundings import Surroundings, compute, is_plain, write_import
+from tuisim.programs.surroundings import (
+    Surroundings,
+    compute,
+    is_plain,
+    write_import,
+    write_instance,
+)
 
 
 def read_function(function: Callable[[], object]) -> ProgramSource:
@@ -61,7 +67,7 @@ def read_function(function: Callable[[], object]) -> ProgramSource:
 
 
 class _Block(NamedTuple):
-    """The lines of a function or a class."""
+    """The lines of a function, a class or an instance."""
 
     name: str
     file: str
@@ -121,8 +127,8 @@ class _Reader:
         public: Any = around.values.get(own)
         if lines[0].lstrip().startswith("@") and inspect.unwrap(public) is not function:
             raise ConfigError(f"a decorator hides {own}", "give it functools.wraps")
-        self._add_block(_Block(own, function.__code__.co_filename, first, lines), around, own)
-        self._add_alias(name, own, user)
+        if self._claim_own(name, own, user):
+            self._add_block(_Block(own, function.__code__.co_filename, first, lines), around, own)
 
     def _add_class(self, name: str, kind: type, around: Surroundings, user: str) -> None:
         """Add a class that is used by a name, and what it uses."""
@@ -132,14 +138,13 @@ class _Reader:
         node, text = around.find(own)
         if not isinstance(node, ast.ClassDef):
             raise build_refusal(name, "type", user)
-        if not self._claim(name, id(kind), user):
+        if not self._claim(name, id(kind), user) or not self._claim_own(name, own, user):
             return
         methods = [each for each in vars(kind).values() if isinstance(each, FunctionType)]
         around.check_source(methods, own)
         first = min([node.lineno, *(each.lineno for each in node.decorator_list)])
         lines = [f"{line}\n" for line in source_lines(text)[first - 1 : node.end_lineno]]
-        self._add_block(_Block(own, around.file, first, lines), around, own)
-        self._add_alias(name, own, user)
+        self._add_block(_Block(own, around.name_file(text), first, lines), around, own)
 
     def _add_block(self, block: _Block, around: Surroundings, user: str) -> None:
         text = quote_annotations(dedent("".join(block.lines)).rstrip())
@@ -149,9 +154,12 @@ class _Reader:
             self._add(name, around, user)
         self._blocks.append(block._replace(lines=text.split("\n")))
 
-    def _add_alias(self, name: str, own: str, user: str) -> None:
-        if name != own and self._claim(own, self._owners[name], user):
-            self._aliases.append(f"{name} = {own}")
+    def _claim_own(self, name: str, own: str, user: str) -> bool:
+        """Return whether what a new name stands for, a function or class, is new under its own name, too."""
+        if name == own:
+            return True
+        self._aliases.append(f"{name} = {own}")
+        return self._claim(own, self._owners[name], user)
 
     def _claim(self, name: str, owner: object, user: str) -> bool:
         """Return whether a name is new.
@@ -176,6 +184,8 @@ class _Reader:
             self._add_class(name, value, around, user)
         elif isinstance(function := inspect.unwrap(value), FunctionType):
             self.add_function(name, function, user)
+        elif expression := write_instance(value):
+            self._add_instance(name, expression, around, user)
         else:
             raise build_refusal(name, type(value).__name__, user)
 
@@ -199,6 +209,18 @@ class _Reader:
             self._statements.append(f"{name} = {write_literal(value)}")
             self.fixed |= dict.fromkeys(source.list_sources(name), name)
 
+    def _add_instance(self, name: str, expression: str, around: Surroundings, user: str) -> None:
+        """Add a value that a class gives, after its class."""
+        value = around.values[name]
+        if not self._claim(name, id(value), user):
+            return
+        origin, source = around.find_origin(name)
+        self._add_class(type(value).__name__, type(value), source, name)
+        node, text = around.find(name)
+        place = around.name_file(text), getattr(node, "lineno", 0)
+        self._blocks.append(_Block(name, *place, [f"{name} = {expression}"]))
+        self.fixed |= dict.fromkeys(source.list_sources(origin), name)
+
     def write(self, name: str) -> str:
         """Return the program that calls a function."""
         own = self._blocks[-1].file
@@ -208,6 +230,7 @@ class _Reader:
         # All on one line, so that the functions keep theirs; on the first if it is free, since defaults need them.
         place = max(reserved) + 1 if 1 in reserved else 1
         lines = {place: "; ".join(self._statements)}
+        defined = place
         for block in self._blocks:
             numbered = block.numbered
             is_early = block.is_evaluated and block.first <= place
@@ -215,11 +238,13 @@ class _Reader:
                 # A class may have its other name as a base.
                 names = [alias for alias in self._aliases if alias.endswith(f" = {block.name}")]
                 moved = [*block.lines, *names]
-                first = place + 1
+                first = (max(place, defined) if block.is_evaluated else place) + 1
                 while not reserved.isdisjoint(range(first, first + len(moved))):
                     first += 1
                 place = first + len(moved) - 1
                 numbered = dict(enumerate(moved, first))
+            elif block.is_evaluated:
+                defined = max(numbered)
             lines |= numbered
         last = max(lines)
         lines[last + 2] = "; ".join([*self._aliases, f"{name}()"])

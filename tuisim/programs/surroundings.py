@@ -10,6 +10,8 @@ import math
 import sys
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
+from dataclasses import fields, is_dataclass
+from enum import Enum
 from importlib.util import resolve_name
 from types import CellType, CodeType, FunctionType, ModuleType
 from typing import Any, Self
@@ -101,6 +103,10 @@ class Surroundings:
                         return statement, text
         return _UNKNOWN, ""
 
+    def name_file(self, text: str) -> str:
+        """Return the file with a text of `find`; empty for another cell of a notebook."""
+        return self.file if text.rstrip() == self._text.rstrip() else ""
+
     def find_expression(self, name: str) -> ast.expr | None:
         """Return what a statement assigns to a name alone."""
         match self.find(name)[0]:
@@ -185,6 +191,27 @@ def is_plain(value: object) -> bool:
     except ConfigError:
         return False
     return True
+
+
+def write_instance(value: Any) -> str:
+    """Return an expression that has an equal value by its class: a member of an Enum, or a NamedTuple or dataclass of
+    constants. It is empty for anything else.
+    """
+    kind = type(value)
+    if isinstance(value, Enum):
+        return f"{kind.__name__}.{value.name}" if value.name in kind.__members__ else ""
+    if is_dataclass(kind):
+        of_kind = fields(kind)
+        is_direct = "__init__" in vars(kind) and not hasattr(kind, "__post_init__")
+        names = [field.name for field in of_kind if field.init and is_direct]
+        has_all = len(names) == len(of_kind)
+    else:
+        names = [*getattr(kind, "_fields", ())]
+        has_all = isinstance(value, tuple) and bool(names)
+    parts = {name: getattr(value, name) for name in names}
+    if not has_all or not all(map(is_plain, parts.values())):
+        return ""
+    return f"{kind.__name__}({', '.join(f'{name}={write_literal(part)}' for name, part in parts.items())})"
 
 
 def write_import(name: str, value: Any) -> str:
