@@ -299,6 +299,10 @@ BAD = {
         goal("keep = 'x_mm'"),
         "line 7: goal[2].keep.comparisons[1]: 'x_mm' is not a comparison",
     ),
+    "samples without the word for them": (
+        goal("count = { of = 'samples', at_least = 3 }"),
+        "such as left_red_pc < 10; sample NAME; print matches REGEX",
+    ),
     "an instant that is kept": (
         goal("keep = 'sample Grey'"),
         "goal[2].keep.comparisons[1]: is only true at instants",

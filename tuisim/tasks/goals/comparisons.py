@@ -56,7 +56,7 @@ def _parse_comparison(text: str, key: str) -> ValueCondition:
     if condition is None:
         raise ConfigError(
             f"{text!r} is not a comparison",
-            f"{describe_comparison()}, such as left_red_pc < 10",
+            f"{describe_comparison()}, such as left_red_pc < 10; sample NAME; print matches REGEX",
             key=key,
         )
     if condition.operator is Operator.MATCHES:
