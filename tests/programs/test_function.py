@@ -50,6 +50,10 @@ def use_world() -> None:
     print(WORLD)
 
 
+def use_module() -> None:
+    print(pytest.__version__)
+
+
 def test_a_function_takes_along_what_it_uses_and_points_into_its_file() -> None:
     run = tuisim.simulate(drive)
     line = drive.__code__.co_firstlineno + 3
@@ -298,6 +302,7 @@ def _without_source() -> Any:
     "program, words",
     {
         "a value that cannot go along": (use_world, "use_world uses WORLD, a World, which cannot"),
+        "a module": (use_module, "a module, which cannot go along .import it inside"),
         "a lambda": (lambda: None, "<lambda> .* is not a program"),
         "parameters": (build_inner, "build_inner as a program takes no arguments: number"),
         "no source": (_without_source(), "the function typed has no source"),

@@ -254,4 +254,5 @@ class _Reader:
 def build_refusal(name: str, kind: str, user: str) -> ConfigError:
     """Return the error for an object of a kind that cannot go along with its user."""
     message = f"{user} uses {name}, a {kind}, which cannot go along"
-    return ConfigError(message, "make it inside the function")
+    verb = "import" if kind == "module" else "make"
+    return ConfigError(message, f"{verb} it inside the function")
