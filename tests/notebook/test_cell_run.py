@@ -11,6 +11,7 @@ from IPython.core.interactiveshell import InteractiveShell
 
 from tests.cases import cases
 from tests.notebook.conftest import Cell, Kernel
+from tuisim.engine.runs.store import RunStore
 from tuisim.notebook import cell_run
 from tuisim.notebook.cell_output import CellOutput
 from tuisim.notebook.display import Stage
@@ -42,6 +43,12 @@ def check_that_all_is_well(cell: Cell) -> None:
     assert list(frame[frame.run == 1].value) == [1.0]
     assert cell("%%sim_magic -RW\nprint('next')\n").out == "next\n"
     assert cell("roboSim.state").result["x_mm"] == 700
+
+
+def test_a_line_that_is_nearly_a_sample_is_told_in_the_status(cell: Cell) -> None:
+    cell("%%sim_magic -RW\nprint('Angle L: 5')\nprint('Angle: 6')\n")
+    status = cell_run.describe_end(RunStore().load_run("last"))
+    assert " · 1 sample · 'Angle L: 5' in line " in status
 
 
 @pytest.mark.slow_cases("among its lines")

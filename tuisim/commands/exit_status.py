@@ -6,7 +6,6 @@ import signal
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import asdict
-from itertools import islice
 from types import FrameType
 from typing import Any, assert_never
 
@@ -31,9 +30,6 @@ from tuisim.tasks.reasons.waited_words import describe_wait
 EXIT_RAISED = 1
 EXIT_BAD_OUTPUT = 2
 EXIT_LIMIT = 3
-
-_MAX_ROWS_READ = 10_000
-"""Rows among which a line that is nearly a sample is looked for: a program may print millions."""
 
 
 def choose_exit_code(end: End, exit_code: int) -> int:
@@ -130,7 +126,7 @@ def report(run: StoredRun, exit_code: int, *, as_json: bool) -> None:
         return
     if plugged := describe_plugged(run):
         echo_error(f"note: {plugged}")
-    if near_sample := describe_near_sample(islice(run.output.rows(), _MAX_ROWS_READ)):
+    if near_sample := describe_near_sample(run.output.rows()):
         echo_error(f"note: {near_sample}")
     echo_error(describe_last_state(facts))
 

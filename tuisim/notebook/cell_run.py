@@ -25,7 +25,7 @@ from tuisim.engine.protocol import Answer, Ended, Message, Reply, Wheels, descri
 from tuisim.engine.runs.handle import RunHandle, RunOptions, start_run
 from tuisim.engine.runs.records import OutputRow, Stream
 from tuisim.engine.runs.run_folder import StoredRun, field_files
-from tuisim.engine.runs.samples import Sample, list_samples
+from tuisim.engine.runs.samples import Sample, describe_near_sample, list_samples
 from tuisim.engine.runs.store import RunStore
 from tuisim.notebook.cell_output import CellOutput
 from tuisim.notebook.display import Scene, Stage, start_record
@@ -268,8 +268,9 @@ def describe_end(run: StoredRun, *, hurry: bool = False) -> str:
     status = f"{state} · {run.time_s:.3f} s{plugged}"
     if hurry and run.output.length > BYTES_IN_A_HURRY:
         return status
-    samples = len(list_samples(run.output.rows()))
-    return f"{status} · {counted(samples, 'sample')}"
+    samples = counted(len(list_samples(run.output.rows())), "sample")
+    words = [status, samples, describe_near_sample(run.output.rows())]
+    return " · ".join(filter(None, words))
 
 
 class Interruption:

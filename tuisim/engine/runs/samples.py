@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable, Iterable, Iterator
+from itertools import islice
 from typing import TYPE_CHECKING
 
 from tuisim.base.data_class import dataclass
@@ -32,6 +33,8 @@ _NEAR_SAMPLE = re.compile(
     r"(?: ?(?:%|°|[A-Za-z]{1,3})(?:/s)?)?\s*"
 )
 """A name of several words, a number with a comma, or a unit behind it; also most samples."""
+_MAX_ROWS_READ = 10_000
+"""Rows among which such a line is looked for: a program may print millions."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,8 +73,8 @@ def parse_sample(text: str) -> tuple[str, float, float | None] | None:
 
 
 def describe_near_sample(rows: Iterable[OutputRow]) -> str:
-    """Return which printed line is nearly a sample, and how it becomes one, in words; empty if none is."""
-    for row in rows:
+    """Return which of the first rows is nearly a sample, and how it becomes one, in words; empty if none is."""
+    for row in islice(rows, _MAX_ROWS_READ):
         if row.stream not in SAMPLE_STREAMS or not (match := _NEAR_SAMPLE.fullmatch(row.text)):
             continue
         if parse_sample(row.text) is None:
