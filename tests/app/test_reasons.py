@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from functools import partial
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 from textual.pilot import Pilot
@@ -19,8 +21,11 @@ from tests.app.app_help import (
     until_state,
 )
 from tests.cases import cases
+from tuisim.app import reasons
+from tuisim.app.actions.time_travel import go_wrong
 from tuisim.app.app import LabApp
 from tuisim.app.notices import NoticeRow
+from tuisim.app.reason_tour import ReasonTour
 from tuisim.app.snapshot import RunPhase
 from tuisim.engine.runs.handle import RunOptions
 from tuisim.tasks.goals.files import load_goals
@@ -134,6 +139,31 @@ async def test_the_goals_that_are_open_are_judged(tmp_path: Path) -> None:
         await run_from_start(pilot, app, STRAIGHT)
         app.goals.change(load_goals(path))
         await ask(pilot, app, "a goal was missed: ")
+
+
+def test_reasons_of_a_run_that_ended_while_they_were_looked_for_are_looked_for_again(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    runs = SimpleNamespace(
+        timeline=SimpleNamespace(recording=SimpleNamespace(newest=1), at=None),
+        in_run=True,
+        earlier=None,
+        pause=lambda: None,
+    )
+    document = SimpleNamespace(go_to_mistake=str)
+    context: Any = SimpleNamespace(runs=runs, document=document, reasons=ReasonTour())
+    searches: list[bool] = []
+
+    def end_meanwhile(*given: Any, **_: Any) -> None:
+        searches.append(runs.in_run)
+        if runs.in_run:
+            runs.in_run = False
+            given[3](((), None))
+
+    monkeypatch.setattr(reasons, "find", end_meanwhile)
+    go_wrong(context)
+    assert searches == [True, False]
+    assert context.reasons.is_about(runs.timeline.recording, has_ended=True)
 
 
 WAITS = """\
