@@ -62,7 +62,10 @@ def draw_hub(
     for key_line, key_boxes in keys:
         boxes += tuple(replace(box, row=len(lines)) for box in key_boxes)
         lines.append(key_line)
-    lamps = [*_draw_lamps(face)]
+    lamps: list[Run] = [
+        (f" {port} light {round(level / 2.55)} % ", _CAPTION)
+        for port, level in face.port_lights.items()
+    ]
     if lamps and height > len(lines):
         lines.append(lamps)
     if bumpers and height > len(lines):
@@ -99,12 +102,6 @@ def _draw_buttons(
 def _build_light(levels: Iterable[int]) -> Style:
     """Return the style of a light from its red, green and blue."""
     return Style(bgcolor=Color.from_rgb(*(max(_DARK // 2, level) for level in levels)))
-
-
-def _draw_lamps(face: BrickState) -> Iterator[Run]:
-    """Yield the ports of the lights on ports, each with the brightness of its light."""
-    for port, level in face.port_lights.items():
-        yield f" {port} light {round(level / 2.55)} % ", _CAPTION
 
 
 def _draw_controllers(

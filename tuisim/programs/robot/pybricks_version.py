@@ -70,9 +70,5 @@ def _list_call_names(call: ast.Call, name: str) -> Iterator[str]:
         yield "Color(h, s, v)"
     elif name in METHODS and isinstance(call.func, ast.Attribute):
         yield f"{name}()"
-    elif name in ("straight", "turn") and any(_is_ending(value) for value in call.args[1:]):
+    elif name in ("straight", "turn") and len(call.args) > 1:
         yield f"then of {name}()"
-
-
-def _is_ending(value: ast.expr) -> bool:
-    return isinstance(value, ast.Attribute) and ast.unparse(value.value).endswith("Stop")

@@ -22,10 +22,9 @@ from tuisim.engine.core.motors import (
 )
 from tuisim.engine.core.servo.control import Controller, Ending
 from tuisim.engine.core.servo.settings import (
-    BATTERY_V,
     COUNTS_PER_DEG,
     compute_motor_settings,
-    find_model,
+    find_steady_dps,
 )
 from tuisim.engine.core.servo.trajectory import MILLI, Segment
 
@@ -94,7 +93,6 @@ class ServoMotor:
         "kind",
         "law",
         "mode",
-        "model",
         "position_deg",
         "sign",
         "speed_dps",
@@ -104,7 +102,7 @@ class ServoMotor:
         self._hz = tick_hz
         self._tick_s = 1.0 / tick_hz
         self._tick_us = 1_000_000 // tick_hz
-        self.law, self.kind, self.model, self.axle = law, kind, find_model(kind), axle
+        self.law, self.kind, self.axle = law, kind, axle
         self.mode = STOPPED
         self.position_deg = 0.0
         self.speed_dps = 0.0
@@ -220,7 +218,7 @@ class ServoMotor:
     def _limit_speed(self) -> None:
         """Compute the highest speed that the motor's power allows."""
         self._actuation = self.control.actuation
-        self._fastest_deg = self.model.find_steady_dps(self._actuation, BATTERY_V) * self._tick_s
+        self._fastest_deg = find_steady_dps(self.kind, self._actuation) * self._tick_s
 
     def run_freely(self, now_us: int, duty: int | None) -> None:
         """Follow no guide any more, and run with a power.

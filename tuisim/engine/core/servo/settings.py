@@ -97,14 +97,6 @@ class MotorModel:
     torque_nm_per_a: float
     friction_nm: float
 
-    def find_steady_dps(self, actuation: int, battery_v: float) -> float:
-        """Return the speed that a power leads to in the end; 0 if friction holds the motor."""
-        ideal_dps = battery_v * abs(actuation) / FULL_ACTUATION / self.back_emf_v_s * 180 / pi
-        friction_v = self.resistance_ohm * self.friction_nm / self.torque_nm_per_a
-        friction_dps = friction_v / self.back_emf_v_s * 180 / pi
-        speed = max(0.0, ideal_dps - friction_dps)
-        return speed if actuation >= 0 else -speed
-
 
 MODELS: Mapping[str, MotorModel] = {
     "large": MotorModel(5.504587, 0.473084, 0.274603, 0.016476),
@@ -190,14 +182,13 @@ def compute_motor_settings(law: MotorLaw, kind: str, gear_ratio: float = 1.0) ->
     )
 
 
-def find_model(kind: str) -> MotorModel:
-    """Return the limits of a kind of motor."""
-    if kind in MODELS:
-        return MODELS[kind]
-    plant = _find_hub_motor(kind).plant
-    return MotorModel(
-        plant.resistance_ohm, plant.back_emf_v_s, plant.torque_nm_per_a, plant.friction_nm
-    )
+def find_steady_dps(kind: str, actuation: int) -> float:
+    """Return the speed that a power of a kind of motor leads to in the end; 0 if friction holds the motor."""
+    model = MODELS.get(kind) or _find_hub_motor(kind).plant
+    ideal_dps = BATTERY_V * abs(actuation) / FULL_ACTUATION / model.back_emf_v_s * 180 / pi
+    friction_v = model.resistance_ohm * model.friction_nm / model.torque_nm_per_a
+    speed = max(0.0, ideal_dps - friction_v / model.back_emf_v_s * 180 / pi)
+    return speed if actuation >= 0 else -speed
 
 
 def _build_hub_kind(kind: str) -> ServoKind:
