@@ -334,7 +334,7 @@ class ProgramFacts:
         return self._places.get(line, (0, range(0)))
 
     def find_light_reads(self, robot: RobotSpec) -> Mapping[str, LightRead]:
-        """Return which number of each colour sensor the program reads first, by name of the sensor."""
+        """Return which number of each colour sensor the program compares or reads first, by name of the sensor."""
         return find_light_reads(self._program, robot)
 
     def find_thresholds(self, robot: RobotSpec) -> Mapping[str, tuple[ProgramThreshold, ...]]:

@@ -112,5 +112,11 @@ def test_each_sensor_has_the_number_that_the_program_reads_of_it() -> None:
     program = Program("p.py", text, "preloaded")
     reads = find_light_reads(program, RobotSpec())
     assert reads == {"left": LightRead.PERCENT, "right": LightRead.REFLECTED}
+    compared = replace(
+        program,
+        text="from ev3dev2.sensor.lego import ColorSensor\neye = ColorSensor('in2')\n"
+        "print(eye.reflected_light_intensity)\nwhile eye.full_reflected_light_intensity > 9: pass",
+    )
+    assert find_light_reads(compared, RobotSpec())["left"] is LightRead.MEAN
     unread = find_light_reads(replace(program, text="print(eye.reflection())"), RobotSpec())
     assert set(unread.values()) == {LightRead.REFLECTION}

@@ -135,8 +135,7 @@ def list_disc_faces(
     faces = []
     for sensor in spec.robot.color_sensors:
         limits = thresholds.get(sensor.name, ())
-        first = reads.get(sensor.name, LightRead.PERCENT)
-        read = next((threshold.read for threshold in limits if not threshold.read.is_color), first)
+        read = reads.get(sensor.name, LightRead.PERCENT)
         box = read_pixel_array(sensor, instant, field)
         seen = measure_color(sensor, instant, field)
         faces.append(DiscFace(sensor.name, box, seen, read, spec.profile.reflected_max, limits))

@@ -69,7 +69,7 @@ def find_light_read(text: str) -> LightRead:
 
 @lru_cache(maxsize=4)
 def find_light_reads(program: Program, robot: RobotSpec) -> Mapping[str, LightRead]:
-    """Return which number of each colour sensor a program reads first, by name of the sensor.
+    """Return which number of each colour sensor a program compares first, or else reads first, by name of the sensor.
 
     Of a sensor of which its text shows none it is `find_light_read`.
     """
@@ -81,7 +81,13 @@ def find_light_reads(program: Program, robot: RobotSpec) -> Mapping[str, LightRe
             reads[port] = min(reads.get(port, (line, read)), (line, read))
     except RecursionError:
         reads = {}
-    return {sensor.name: reads.get(sensor.port, (0, usual))[1] for sensor in robot.color_sensors}
+    light_reads = {
+        sensor.name: reads.get(sensor.port, (0, usual))[1] for sensor in robot.color_sensors
+    }
+    for name, thresholds in find_thresholds(program, robot).items():
+        compared = (limit.read for limit in thresholds if not limit.read.is_color)
+        light_reads[name] = next(compared, light_reads[name])
+    return light_reads
 
 
 @lru_cache(maxsize=4)
