@@ -6,7 +6,6 @@ import re
 from typing import TYPE_CHECKING, assert_never
 
 from textual import events, on
-from textual.widget import Widget
 
 from tuisim.app.actions import ActionContext, time_travel
 from tuisim.app.dialogs.dialog import ClosesOnce
@@ -91,11 +90,12 @@ class PanelMessages(LabHost):
             area.lesson.set_typing(message.typing, is_low=area.is_stacked)
 
     def on_click(self, event: events.Click) -> None:
-        in_a_dialog = self.screen is not self.context.panels.screen
-        if isinstance(event.widget, Widget) and not event.widget.can_focus and not in_a_dialog:
+        area = self.context.panels
+        owner = area.find_owner(event.widget)
+        if owner != area.find_focused_panel() and self.screen is area.screen:
             # The instant in view stays: a drag along the timeline ends with a click, too.
-            self.context.panels.focus_world()
-            self.context.panels.clicked = self.context.panels.find_owner(event.widget)
+            area.focus_world()
+            area.clicked = owner
 
     def on_code_area_letters_changed(self) -> None:
         self.handle_situation_change()

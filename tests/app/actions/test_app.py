@@ -34,7 +34,9 @@ async def test_every_panels_key_shows_and_hides_it() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("panel", "key"), [("chart", "c"), ("noise", "z")])
+@pytest.mark.parametrize(
+    ("panel", "key"), [("chart", "c"), ("noise", "z"), ("instrumentation", "i"), ("arrays", "A")]
+)
 async def test_the_key_of_a_panel_that_is_shown_focuses_it_first(panel: str, key: str) -> None:
     async with open_lab(size=(200, 60)) as (pilot, app):
         assert app.panel_area.is_shown(panel) and app.panel_area.find_focused_panel() == "world"

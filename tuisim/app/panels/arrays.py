@@ -88,7 +88,7 @@ class _Disc(Widget):
         self._text.set_lines(lines)
 
 
-class Arrays(Widget):
+class Arrays(Widget, can_focus=True):
     """The sensor arrays panel."""
 
     DEFAULT_CSS = """

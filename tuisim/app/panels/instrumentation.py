@@ -36,7 +36,7 @@ _CELL = 16
 """Columns of a further reading among them."""
 
 
-class Instrumentation(LinesPanel):
+class Instrumentation(LinesPanel, can_focus=True):
     """The instrumentation panel. It has four forms, by height: 11 lines, 9 lines, 6 lines, and columns of cells."""
 
     def __init__(self) -> None:
