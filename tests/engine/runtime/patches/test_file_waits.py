@@ -83,12 +83,12 @@ def test_it_is_the_runs(run: Run, text: str, lines: list[str] | None) -> None:
     assert first.lines == (run(text, prelude="none").lines if lines is None else lines)
 
 
-FILES = "waiting for a file is not part of the simulated brick (wait for sockets or the brick's files; use queue.Queue"
+FILES = "waiting for a file is not part of the simulated brick (wait for sockets or the brick's files; input() "
 REFUSED = {
-    "select.select([r], [], [], 1)": f"{FILES} between threads)",
-    "select.select([], [], [sys.stdin])": f"{FILES} between threads)",
-    "select.poll().register(r)": f"{FILES} between threads)",
-    "selectors.DefaultSelector().register(r, 1)": f"{FILES} between threads)",
+    "select.select([r], [], [], 1)": f"{FILES}reads lines, queue.Queue joins threads)",
+    "select.select([], [], [sys.stdin])": f"{FILES}reads lines, queue.Queue joins threads)",
+    "select.poll().register(r)": f"{FILES}reads lines, queue.Queue joins threads)",
+    "selectors.DefaultSelector().register(r, 1)": f"{FILES}reads lines, queue.Queue joins threads)",
     "select.epoll().register(r, 1)": "select.epoll is not part of the simulated brick (use select.poll)",
 }
 
