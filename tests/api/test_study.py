@@ -181,6 +181,10 @@ def test_a_mean_that_is_known_needs_no_further_seeds() -> None:
         "metric": ({"metrics": {"x_mm": len}}, "'x_mm' is a column already"),
         "until": ({"until": "n ± 1"}, "until: there will be no column 'n'"),
         "seeds twice": ({"parameters": {"seed": [1]}}, "the seed varies by seeds="),
+        "a table": (
+            {"parameters": {"obstacle": [[{"x_mm": 9}]]}},
+            r"^obstacle: varies numbers, texts and truth values, got .*obstacles by world=",
+        ),
         "no values": ({"sensornoise": []}, "sensornoise: has no values"),
         "no constants": (
             {"program": "print(1)", "constants": {"K": 1}},

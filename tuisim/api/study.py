@@ -26,7 +26,7 @@ from tuisim.logs.export import check_target
 from tuisim.programs.constants import set_constants
 from tuisim.programs.program_file import ProgramSource
 from tuisim.tasks.goals.files import load_goals
-from tuisim.tasks.task import MAX_JOBS, Keep
+from tuisim.tasks.task import MAX_JOBS, Keep, Value
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -279,7 +279,14 @@ def _read_choice(name: str, values: Any) -> Choice:
     listed = list(values) if isinstance(values, Iterable) else [values]
     if not listed:
         raise ConfigError("has no values", key=name)
-    return tuple(map(plain, listed))
+    choice: list[Any] = [plain(value) for value in listed]
+    for value in choice:
+        if not isinstance(value, Value):
+            hint = "a table by its keys, such as noise.light; obstacles by world= in a loop"
+            raise ConfigError(
+                f"varies numbers, texts and truth values, got {value!r}", hint, key=name
+            )
+    return tuple(choice)
 
 
 def _name_value(value: object) -> object:
