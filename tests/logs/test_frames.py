@@ -51,6 +51,7 @@ def test_read_log_takes_files_from_elsewhere(tmp_path: Path) -> None:
             [0.005, 0.006, 0.007],
         ),
         "a value": ({"value": ["rot"]}, "Zeit rot", [0.1, 0.2, 0.3]),
+        "a value as a text": ({"value": "rot"}, "Zeit rot", [0.1, 0.2, 0.3]),
         "rows": ({"time": ""}, "Zeit rot blau Wort", [0, 1, 2]),
         "a heading": ({"header": 3, "time": ""}, "100 1,5 5 a", [0, 1]),
         "a separator": ({"separator": "comma", "time": ""}, "100;1 5;5;a", [0, 1]),

@@ -63,7 +63,8 @@ def read_log(
     Raises:
         LogError: it cannot be read, has no row, there is no such column, or a choice is not allowed.
     """
-    choices = ReadChoices(time, unit, tuple(value), header, table, encoding, separator, decimal)
+    values = (value,) if isinstance(value, str) else tuple(value)
+    choices = ReadChoices(time, unit, values, header, table, encoding, separator, decimal)
     source = Path(path)
     if choices == NO_CHOICES and (frame := _read_export(source)) is not None:
         return frame
