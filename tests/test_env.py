@@ -104,6 +104,13 @@ def test_a_function_rewards_and_ends() -> None:
     assert observation.tolist() == pytest.approx([values["left_red_pc"]])
 
 
+def test_a_reward_that_is_no_number_is_refused_by_its_name() -> None:
+    env = LabEnv("x_mm", lambda before, after: None)  # type: ignore[arg-type, return-value]
+    env.reset(seed=0)
+    with pytest.raises(ConfigError, match="reward: must return a number, got None"):
+        env.step(np.ones(2, np.float32))
+
+
 @pytest.mark.parametrize("speed, points", [(0.2, 3.0), (0.0, 0.0)])
 def test_goals_reward_and_end(speed: float, points: float, tmp_path: Path) -> None:
     (tmp_path / "goals.toml").write_text(GOALS)

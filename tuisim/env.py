@@ -89,7 +89,8 @@ class LabEnv(gymnasium.Env[Vector, Vector]):
         self._is_over = is_over
         self._period_s = period_s
         self._before: Values = self.lab.read()
-        self._points, _ = self.lab.judge()
+        self._has_goals = goals is not None
+        self._points, _ = self._judge()
         self.observation_space = _build_space(self.columns)
         self.action_space = Box(-1.0, 1.0, (2,), np.float32)
 
@@ -100,16 +101,19 @@ class LabEnv(gymnasium.Env[Vector, Vector]):
         super().reset(seed=seed)
         drawn = int(self.np_random.integers(MAX_SEED)) if seed is None else seed
         self._before = self.lab.reset(drawn)
-        self._points, _ = self.lab.judge()
+        self._points, _ = self._judge()
         return self._observe(self._before), dict(self._before)
 
     def step(self, action: Vector) -> tuple[Vector, float, bool, bool, dict[str, Any]]:
         """Drive for a period; return observation, reward, whether it is over, False, and all columns."""
         left, right = (float(share) * self.lab.max_speed_dps for share in action)
         values = self.lab.step(left, right, period_s=self._period_s)
-        points, has_all = self.lab.judge()
-        reward = float(self._reward(self._before, values)) if self._reward else 0.0
-        reward += points - self._points
+        points, has_all = self._judge()
+        value = self._reward(self._before, values) if self._reward else 0.0
+        try:
+            reward = float(value) + points - self._points
+        except (TypeError, ValueError):
+            raise ConfigError(f"must return a number, got {value!r}", key="reward") from None
         self._before = values
         self._points = points
         is_over = has_all or bool(self._is_over and self._is_over(values))
@@ -118,6 +122,9 @@ class LabEnv(gymnasium.Env[Vector, Vector]):
     def render(self) -> Any:
         """Return the world as an array of shape (height, width, 3) in the mode `rgb_array`, else None."""
         return np.asarray(self.lab.picture()) if self.render_mode else None
+
+    def _judge(self) -> tuple[float, bool]:
+        return self.lab.judge() if self._has_goals else (0.0, False)
 
     def _observe(self, values: Values) -> Vector:
         return np.array([values[name] for name in self.columns], np.float32)

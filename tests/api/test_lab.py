@@ -176,6 +176,11 @@ def test_a_wrong_step_is_refused(given: dict[str, Any], words: str) -> None:
         tuisim.Lab().step(**given)
 
 
+def test_a_lab_without_goals_judges_nothing() -> None:
+    with pytest.raises(ConfigError, match="this lab has no goals"):
+        tuisim.Lab().judge()
+
+
 STEPS = 3000
 
 

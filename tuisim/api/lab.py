@@ -193,8 +193,13 @@ class Lab:
     def judge(self) -> tuple[float, bool]:
         """Return the points if the run ended now, and whether all goals not met at the start are met or missed for
         good.
+
+        Raises:
+            ConfigError: the lab has no goals.
         """
-        return self._live.judge() if self._live is not None else (0.0, False)
+        if self._live is None:
+            raise ConfigError("this lab has no goals to judge by", "give it a goals file as goals=")
+        return self._live.judge()
 
 
 def read_speeds(left: Any, right: Any) -> tuple[float, float]:
