@@ -326,7 +326,10 @@ def _misspell() -> None:
 
 def test_a_run_is_one_line_and_a_notebook_shows_it() -> None:
     run = tuisim.simulate("print('A: 1')\nraise ValueError('<b>')\n")
-    assert re.fullmatch(r"<run \d+ of program under robolab: raised after 0\.\d\d s>", repr(run))
+    assert re.fullmatch(
+        r"<run \d+ of program under robolab: raised after 0\.\d\d s: ValueError: <b> \(line 2\)>",
+        repr(run),
+    )
     assert repr(run.stored) == repr(run)
     assert tuisim.load_run(run.number).stored.folder == run.stored.folder
     page = run._repr_html_()

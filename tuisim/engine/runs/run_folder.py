@@ -89,7 +89,8 @@ class StoredRun:
     def __repr__(self) -> str:
         number = f" {self.number}" if self.number else ""
         what = f"{self.program.name} under {self.spec.profile.name}"
-        return f"<run{number} of {what}: {self.state.value} after {format_end(self.time_s)} s>"
+        summary = f": {self.end.summary}" if self.end and self.end.error else ""
+        return f"<run{number} of {what}: {self.state.value} after {format_end(self.time_s)} s{summary}>"
 
     @property
     def state(self) -> RunState:
