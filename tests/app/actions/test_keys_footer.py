@@ -180,6 +180,6 @@ async def test_letters_are_no_keys_of_a_dialog_while_its_field_has_the_focus() -
         await pilot.press("T")
         await until(pilot, lambda: "esc close" in last_line(pilot))
         assert isinstance(pilot.app.focused, Input)
-        assert "e edit" not in last_line(pilot)
+        assert "on or off" not in last_line(pilot)
         pilot.app.screen.query_one(OptionList).focus()
-        await until(pilot, lambda: "e edit" in last_line(pilot))
+        await until(pilot, lambda: "on or off" in last_line(pilot))

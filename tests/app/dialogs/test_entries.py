@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import pytest
 from textual.app import App
 from textual.widgets import Input, OptionList
 
 from tuisim.app.dialogs.entries import BreaksDialog, WatchesDialog
+from tuisim.engine.breakpoints import parse_break
 from tuisim.engine.core.profile import PROFILES
 from tuisim.engine.core.spec import RobotSpec, RunSpec, WorldSpec
 
@@ -28,3 +31,24 @@ async def test_tab_completes_the_name_of_a_column(
         assert app.screen.query_one(Input).has_focus
         await pilot.press("tab")
         assert app.screen.query_one(OptionList).has_focus
+
+
+@pytest.mark.parametrize(
+    ("dialog", "typed"),
+    [
+        (lambda keep: WatchesDialog(("1+1",), RUN, keep), "e+2"),
+        (lambda keep: BreaksDialog((parse_break("3", RUN),), RUN, keep), "time 2"),
+    ],
+    ids=["watch", "breakpoint"],
+)
+async def test_text_typed_while_the_list_has_the_focus_becomes_an_entry(
+    dialog: Any, typed: str
+) -> None:
+    entries: list[Any] = []
+    app: App[None] = App()
+    async with app.run_test(size=(100, 40)) as pilot:
+        app.push_screen(dialog(entries.extend))
+        await pilot.pause()
+        assert app.screen.query_one(OptionList).has_focus
+        await pilot.press(*("space" if letter == " " else letter for letter in typed), "enter")
+        assert len(entries) == 2 and typed in str(entries[1])

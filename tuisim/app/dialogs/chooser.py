@@ -19,7 +19,7 @@ from textual.widgets import Input, OptionList, Static
 from textual.widgets.option_list import Option
 
 from tuisim.app import background
-from tuisim.app.dialogs.dialog import MOVE_KEYS, Dialog, name_and_title
+from tuisim.app.dialogs.dialog import MOVE_KEYS, FieldDialog, name_and_title
 from tuisim.app.dialogs.paths import complete_path, is_path, list_completions
 from tuisim.app.dialogs.save import parse_path
 from tuisim.app.error_words import shorten_error
@@ -94,7 +94,7 @@ def _is_readable(fits: Callable[[Path], object], path: Path) -> bool:
     return True
 
 
-class ListDialog(Dialog[str]):
+class ListDialog(FieldDialog[str]):
     """A dialog with a list, usually with a field for a path; it returns what was chosen or typed."""
 
     BINDINGS: ClassVar[list[BindingType]] = [*MOVE_KEYS]
@@ -103,19 +103,6 @@ class ListDialog(Dialog[str]):
         # Earlier notices would cover the lowest rows of a small window.
         self.app.clear_notifications()
         self.query_one(OptionList).focus()
-
-    def on_key(self, event: events.Key) -> None:
-        if (
-            event.character
-            and event.is_printable
-            and not event.character.isspace()
-            and self.query(Input)
-        ):
-            field = self.query_one(Input)
-            if not field.has_focus:
-                event.stop()
-                field.focus()
-                field.insert_text_at_cursor(event.character)
 
     @on(OptionList.OptionSelected)
     def _handle_selection(self, event: OptionList.OptionSelected) -> None:

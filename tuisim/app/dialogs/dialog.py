@@ -261,3 +261,20 @@ class Dialog(ClosesOnce[Result], Generic[Result]):
     def action_move(self, action: str) -> None:
         """Do an action of the list, see `MOVE_KEYS`."""
         getattr(self.query_one(OptionList), f"action_{action}")()
+
+
+class FieldDialog(Dialog[Result], Generic[Result]):
+    """A dialog with a list and a field: text that is typed while the list has the focus goes into the field."""
+
+    def on_key(self, event: Key) -> None:
+        if (
+            event.character
+            and event.is_printable
+            and not event.character.isspace()
+            and self.query(Input)
+        ):
+            field = self.query_one(Input)
+            if not field.has_focus:
+                event.stop()
+                field.focus()
+                field.insert_text_at_cursor(event.character)

@@ -13,7 +13,7 @@ from textual.binding import Binding, BindingType
 from textual.widgets import Input, OptionList, Static
 from textual.widgets.option_list import Option
 
-from tuisim.app.dialogs.dialog import Dialog, Result, name_and_title
+from tuisim.app.dialogs.dialog import FieldDialog, Result, name_and_title
 from tuisim.app.dialogs.question import LineInput, build_form_table
 from tuisim.app.setup.poses import MAX_NAME, delete_pose, load_poses, save_pose
 from tuisim.base.errors import TuisimError
@@ -25,7 +25,7 @@ from tuisim.engine.core.spec import RunSpec
 Entry = TypeVar("Entry")
 
 
-class _List(Dialog[Result]):
+class _List(FieldDialog[Result]):
     """A list of entries, with a field to add one."""
 
     _entries: Sized
@@ -56,7 +56,6 @@ class _TextList(_List[None], Generic[Entry]):
 
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("delete,backspace", "remove", "Delete", show=False),
-        Binding("e", "edit", "Edit", show=False),
         Binding("space", "switch", "On or off", show=False),
     ]
     PLACEHOLDER: ClassVar[str] = ""
@@ -119,11 +118,12 @@ class _TextList(_List[None], Generic[Entry]):
             self._report(index)
 
     @on(OptionList.OptionSelected)
-    def action_edit(self) -> None:
+    def _edit_selected(self) -> None:
         if (index := self._selected_index) is not None:
             self._editing = index
             field = self.query_one(Input)
             field.value = self.format_entry(self._entries[index])
+            field.action_select_all()
             field.focus()
 
     def action_switch(self) -> None:

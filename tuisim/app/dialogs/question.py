@@ -175,7 +175,7 @@ class LineInput(Input):
     ]
 
     def __init__(self, value: str, words: Sequence[str], placeholder: str) -> None:
-        super().__init__(value, placeholder, compact=True, select_on_focus=True)
+        super().__init__(value, placeholder, compact=True, select_on_focus=False)
         self._words = words
 
     def action_accept(self) -> None:
@@ -271,6 +271,7 @@ class LinePrompt(Dialog[bool]):
     def on_mount(self) -> None:
         # A notice would cover a dialog at the bottom.
         self.app.clear_notifications()
+        self.query_one(Input).action_select_all()
 
     @on(Input.Submitted)
     def _apply_line(self, event: Input.Submitted) -> None:
