@@ -44,7 +44,7 @@ async def test_it_is_told_and_the_dialog_lists_its_ports(claw: Path) -> None:
     async with open_lab(opened(claw)) as (pilot, app):
         await until(
             pilot,
-            lambda: any("built from it: medium motor on outA" in notice for notice in notices(app)),
+            lambda: any("a robot built from it. r shows it" in notice for notice in notices(app)),
         )
         await pilot.press("r")
         await until_shown(pilot, "Robot of claw.py")

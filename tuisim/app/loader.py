@@ -226,8 +226,13 @@ class Loader:
 
     def tell(self, decided: Decided) -> None:
         """Say in notices what the source of a program has decided, and what the brick would refuse in it."""
-        if decided.said:
-            self._app.say(f"{decided.said}. {{robot}} and {{profile}} choose others")
+        if decided.brief:
+            ways = (
+                "{robot} shows it"
+                if "robot" in decided.layer
+                else "{robot} and {profile} choose others"
+            )
+            self._app.say(f"{decided.brief}. {ways}")
         if decided.refusal:
             self._app.say(decided.refusal)
 

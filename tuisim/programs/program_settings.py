@@ -108,6 +108,8 @@ class Decided:
     """By path; below everything that somebody has chosen."""
     said: str = ""
     """The decisions in one line; empty for none."""
+    brief: str = ""
+    """`said` without the parts of the robot, which the app shows in its list of robots."""
     hint: str = ""
     """How to change it in the shell."""
     robot: RobotChoice | None = None
@@ -443,8 +445,8 @@ def _describe_course_rules(source: ProgramSource, facts: SourceFacts) -> str:
 
 def _describe_decision(
     source: ProgramSource, facts: SourceFacts, layer: Mapping[str, Any], free: Collection[str]
-) -> tuple[str, str]:
-    """Return what the source of a program decided, and how to change it; both are empty if it decided nothing.
+) -> tuple[str, str, str]:
+    """Return what the source of a program decided, the same in brief, and how to change it; empty if it is nothing.
 
     Args:
         source: The program.
@@ -455,7 +457,7 @@ def _describe_decision(
     program = source.program
     if facts.for_other_hub:
         # No profile is for that hub, so no setting helps.
-        return "", ""
+        return "", "", ""
     profile = layer.get("profile", "")
     uses = f" with Pybricks 4, whose {facts.version_4_name} it uses"
     version = uses if profile == PYBRICKS_4.name else ""
@@ -466,16 +468,23 @@ def _describe_decision(
     if facts.robot and "robot" in layer:
         from tuisim.programs.robot.report import describe_robot
 
-        runs_on = f"{program.name} runs on a robot built from it: {describe_robot(facts.robot)}"
-        parts = [runs_on, *facts.robot.doubts, facts.unread]
+        runs_on = f"{program.name} runs on a robot built from it"
+        further = [*facts.robot.doubts, facts.unread]
         options = "-r or --profile" if rules else "-r"
         view_hint = (
             f"; `tuisim robots --from {shlex.quote(program.path)}` shows the robot"
             if program.path
             else ""
         )
-        return "; ".join(filter(None, [*parts, rules])), f"{options} to change it{view_hint}"
+        parts = f"{runs_on}: {describe_robot(facts.robot)}"
+        whole, brief = (
+            "; ".join(filter(None, words))
+            for words in ([parts, *further, rules], [runs_on, *further])
+        )
+        return whole, brief, f"{options} to change it{view_hint}"
     if rules:
         runs = f"{program.name} runs {rules}"
-        return "; ".join(filter(None, [runs, facts.unread])), "--profile to change it"
-    return (f"{program.name}: {facts.unread}", "-r to name a robot") if facts.unread else ("", "")
+        words = "; ".join(filter(None, [runs, facts.unread]))
+        return words, words, "--profile to change it"
+    unread = f"{program.name}: {facts.unread}" if facts.unread else ""
+    return unread, unread, "-r to name a robot"
