@@ -231,6 +231,12 @@ def test_instances_of_plain_values_go_along_with_their_class(load: Import) -> No
         tuisim.experiment(alone, constants={"KP": [1, 2]})
 
 
+def test_a_member_of_an_enum_of_python_imports_it(load: Import) -> None:
+    text = "from http import HTTPStatus\nGONE = HTTPStatus.GONE\n"
+    shown = "def go(): print(GONE.value, GONE is HTTPStatus.GONE)\n"
+    assert tuisim.simulate(load(states=text + shown).go).output == "410 True\n"
+
+
 @pytest.mark.parametrize(
     "slip", ["x: int = field(init=False, default=1)", "def __post_init__(self): 0"]
 )

@@ -31,8 +31,8 @@ def read_function(function: Callable[[], object]) -> ProgramSource:
     """Return a program that calls a function.
 
     Each line has the number that it has in the file of the function. Imports of libraries for a brick and of Python's
-    own, plain constants, functions and classes that it uses are copied as they are written; names without a definition
-    are those of the prelude.
+    own, plain constants, functions and classes that it uses are copied as they are written, and instances with plain
+    values as calls of their class; names without a definition are those of the prelude.
 
     Raises:
         ConfigError: it is no function with a name and a source, takes arguments, uses something else, or its file has
@@ -215,7 +215,12 @@ class _Reader:
         if not self._claim(name, id(value), user):
             return
         origin, source = around.find_origin(name)
-        self._add_class(type(value).__name__, type(value), source, name)
+        kind = type(value)
+        if statement := write_import(kind.__name__, kind):
+            if self._claim(kind.__name__, statement, user):
+                self._statements.append(statement)
+        else:
+            self._add_class(kind.__name__, kind, source, name)
         node, text = around.find(name)
         place = around.name_file(text), getattr(node, "lineno", 0)
         self._blocks.append(_Block(name, *place, [f"{name} = {expression}"]))
