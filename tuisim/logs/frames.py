@@ -44,7 +44,8 @@ def read_log(
     separator: Literal["", "comma", "semicolon", "tab", "bar", "blank"] = "",
     decimal: Literal["", ".", ","] = "",
 ) -> pd.DataFrame:
-    """Return the table in a file. Without choices, an export of tuisim is as it was written, to the last bit.
+    """Return the table in a file. Without choices, an export of tuisim is as it was written, to the last
+    bit, except that empty texts of a CSV file are no values.
 
     Of another file, or with choices, the index is the time in seconds, if there is one; warnings say what was guessed
     or left out, and name the argument that decides.
