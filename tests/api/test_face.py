@@ -352,6 +352,10 @@ def test_descriptions_are_one_line_and_compared_by_their_values() -> None:
         "no such robot": (lambda: tuisim.Robot("Nope"), "no such robot"),
         "wrong size": (lambda: tuisim.Robot(wheel_diameter_mm=-1), "wheel_diameter_mm"),
         "unknown part": (lambda: tuisim.Robot(parts={"arm": {}}), "arm"),
+        "misspelt sensor": (
+            lambda: tuisim.Robot(parts={"color_sensors.lefft.diameter_mm": 20}),
+            r"lefft.port: is missing .did you mean left\?",
+        ),
         "option of a call": (
             lambda: tuisim.World(profile="ev3"),  # type: ignore[call-arg]
             r"tuisim\.simulate\(profile=…\) has it",

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from tuisim.base.data_class import dataclass
-from tuisim.base.errors import ConfigError, RobotError
+from tuisim.base.errors import ConfigError, RobotError, closest, did_you_mean
 from tuisim.engine import files
 from tuisim.engine.core.hub_spec import HUB_PORTS, INSIDE
 from tuisim.engine.core.spec import (
@@ -261,11 +261,12 @@ def _parse_named(
         elif name in sensors:
             sensors[name] = files.read_part(sensor, sensors[name], place)
         else:
-            if isinstance(sensor, dict):
-                # A sensor that is added needs a port: there is no default.
-                files.required(
-                    files.table(sensor, place, [*list_values(mount.spec)][1:]), "port", place
-                )
+            # A sensor that is added needs a port: there is no default.
+            if isinstance(sensor, dict) and "port" not in files.table(
+                sensor, place, [*list_values(mount.spec)][1:]
+            ):
+                hint = did_you_mean(closest(name, sensors))
+                raise place.at("port").wrong("is missing", hint)
             sensors[name] = files.read_part(sensor, mount.spec, place, name=name)
     # A file that names all sensors also sets their order.
     order = [name for name in names if name in sensors]
