@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from functools import partial
 from pathlib import Path
+from threading import Event
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from textual.widgets import OptionList
 
 from tests.app.app_help import (
     lab,
@@ -28,6 +30,7 @@ from tuisim.app.dialogs.new_program import NewProgramDialog
 from tuisim.app.dialogs.welcome import Welcome
 from tuisim.app.editor.area import CodeArea
 from tuisim.app.editor.text_file import keep_draft
+from tuisim.app.setup.recent import Recent, list_recent
 from tuisim.app.snapshot import IN_RUN, RunPhase
 from tuisim.cli import run_command
 from tuisim.commands import app as command
@@ -47,8 +50,9 @@ def is_closed(app: LabApp) -> bool:
 async def test_the_welcome_appears_once(size: tuple[int, int], home: Path) -> None:
     for is_first in (True, False):
         async with open_lab(FIRST, size=size) as (pilot, app):
-            assert isinstance(app.screen, Welcome) is is_first
-            if is_first:
+            if not is_first:
+                assert is_closed(app)
+            else:
                 await until_shown(pilot, "4 Open a file")
                 await pilot.press("escape")
                 await until(pilot, partial(is_closed, app))
@@ -104,6 +108,27 @@ async def test_a_later_start_offers_unsaved_text_to_go_on_with(
         assert app.query_one(CodeArea).program_text == text
         assert app.document.dirty
         assert name or app.run_controller.next_run.spec.world.background == "Loop"
+
+
+async def test_the_selected_entry_of_the_welcome_never_changes_by_itself(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    keep_draft("", "print('kept')\n")
+    is_found = Event()
+
+    def list_late(name: str) -> list[Recent]:
+        is_found.wait()
+        return list_recent(name)
+
+    monkeypatch.setattr("tuisim.app.setup.recent.list_recent", list_late)
+    app = LabApp(FIRST)
+    async with app.run_test(size=(80, 24)) as pilot:
+        for _ in range(5):
+            await pilot.pause()
+        selected = [listed.highlighted for listed in app.screen.query(OptionList)]
+        is_found.set()
+        await until_shown(pilot, "5 new.py")
+        assert {*selected, app.screen.query_one(OptionList).highlighted} == {5}
 
 
 @pytest.mark.slow

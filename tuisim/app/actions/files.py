@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import shlex
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from functools import partial
 from pathlib import Path
@@ -94,28 +94,22 @@ EXAMPLE = "log_greys.py"
 
 def greet(context: ActionContext) -> None:
     """Show the welcome at the first start; at later ones only if there is recent work to continue."""
+    show_welcome(context, is_greeting=bool(get_preference(_WELCOMED_PREFERENCE)))
+
+
+def show_welcome(context: ActionContext, *, is_greeting: bool = False) -> None:
+    """Show the welcome: the ways to begin, and recent work to continue; a greeting without such work is left out."""
     from tuisim.app.setup.recent import list_recent
 
-    if not get_preference(_WELCOMED_PREFERENCE):
-        show_welcome(context)
-        return
-
     def show_entries(entries: list[Recent]) -> None:
-        if entries:
-            _push_welcome(context, lambda: entries)
+        # At once with every entry, so that Enter takes the one that is seen as selected.
+        if entries or not is_greeting:
+            _push_welcome(context, entries)
 
     background.run(context.panels, partial(list_recent, NEW_NAME), show_entries, group="welcome")
 
 
-def show_welcome(context: ActionContext) -> None:
-    """Show the welcome: the ways to begin, and recent work to continue."""
-    from tuisim.app.setup.recent import list_recent
-
-    _push_welcome(context, partial(list_recent, NEW_NAME))
-
-
-def _push_welcome(context: ActionContext, find: Callable[[], list[Recent]]) -> None:
-    """Show the welcome; `find` returns the recent work to list, and is called in a thread."""
+def _push_welcome(context: ActionContext, recent: Sequence[Recent]) -> None:
     from tuisim.app.dialogs.welcome import Begin, Welcome
     from tuisim.app.setup.recent import Recent
 
@@ -136,7 +130,9 @@ def _push_welcome(context: ActionContext, find: Callable[[], list[Recent]]) -> N
             case Recent():
                 context.document.run_when_saved(partial(_resume_recent, context, what))
 
-    context.app.push_screen(Welcome(not get_preference(_WELCOMED_PREFERENCE), find), handle_choice)
+    context.app.push_screen(
+        Welcome(not get_preference(_WELCOMED_PREFERENCE), recent), handle_choice
+    )
 
 
 def _resume_recent(context: ActionContext, what: Recent) -> None:

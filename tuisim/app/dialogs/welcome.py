@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Iterator, Sequence
 from enum import StrEnum
 from typing import ClassVar
 
@@ -50,7 +50,7 @@ class Welcome(Dialog[Begin | Recent]):
 
     Args:
         is_first: Whether this is the first start, so that the text says what the app is.
-        find: Returns the recent work to list; called in a thread.
+        recent: The recent work to list; its first entry is selected.
     """
 
     TITLE_TEXT: str = "Welcome to tuisim"
@@ -60,20 +60,16 @@ class Welcome(Dialog[Begin | Recent]):
         for number in range(1, _MAX_NUMBERED + 1)
     ]
 
-    def __init__(self, is_first: bool, find: Callable[[], list[Recent]]) -> None:
+    def __init__(self, is_first: bool, recent: Sequence[Recent]) -> None:
         super().__init__()
         self._is_first = is_first
-        self._find = find
-        self._entries: list[Begin | Recent] = [*Begin]
+        self._entries: list[Begin | Recent] = [*Begin, *recent]
         self._app_keys: list[Binding] = []
 
     def compose_content(self) -> ComposeResult:
         if self._is_first:
             yield Static(_TEXT, classes="start", markup=False)
-        yield OptionList(
-            *(_build_option(number, *_CHOICES[what]) for number, what in enumerate(Begin, start=1)),
-            markup=False,
-        )
+        yield OptionList(*self._build_options(), markup=False)
         yield Static()
         yield Static(fill_keys(self.app, _KEY_WORDS), markup=False)
 
@@ -87,27 +83,24 @@ class Welcome(Dialog[Begin | Recent]):
         for binding in self._app_keys:
             for key in binding.key.split(","):
                 find_bindings(self).bind(key, binding.action, binding.description, show=False)
-        self.query_one(OptionList).focus()
-        self.wait_while(
-            self._find, self._add, lambda error: self.app.notify(str(error), markup=False)
-        )
+        listed = self.query_one(OptionList)
+        listed.focus()
+        if len(self._entries) > len(Begin):
+            # Below the heading.
+            listed.highlighted = len(Begin) + 1
+
+    def _build_options(self) -> Iterator[Option | None]:
+        for number, entry in enumerate(self._entries, start=1):
+            if number == len(Begin) + 1:
+                yield None
+                yield Option(Text("Go on with", "italic"), disabled=True)
+            words = (entry.name, entry.title) if isinstance(entry, Recent) else _CHOICES[entry]
+            yield _build_option(number, *words)
 
     def _collect_bindings(self) -> list[Binding]:
         # The frame names the numbers. Those keys of the app that the text names work here as well.
         own = (binding for binding in super()._collect_bindings() if not binding.key.isdigit())
         return [*own, *self._app_keys]
-
-    def _add(self, entries: list[Recent]) -> None:
-        """Add recent work to the list, and highlight its first entry."""
-        if not entries:
-            return
-        listed = self.query_one(OptionList)
-        listed.add_options([None, Option(Text("Go on with", "italic"), disabled=True)])
-        first = listed.option_count
-        for entry in entries:
-            self._entries.append(entry)
-            listed.add_option(_build_option(len(self._entries), entry.name, entry.title))
-        listed.highlighted = first
 
     @on(OptionList.OptionSelected)
     def _take_selected(self, event: OptionList.OptionSelected) -> None:
