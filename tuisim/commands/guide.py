@@ -141,7 +141,7 @@ def find_page(name: str) -> Page:
     if name not in known:
         raise ConfigError(
             f"no such page {name!r}",
-            did_you_mean(closest(name, known, 3, 0.5)) or "`tuisim guide` lists the pages",
+            did_you_mean(closest(name, known)) or "`tuisim guide` lists the pages",
             key="guide",
         )
     return known[name]
