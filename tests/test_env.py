@@ -140,4 +140,9 @@ def test_goals_reward_and_end(speed: float, points: float, tmp_path: Path) -> No
 )
 def test_a_wrong_task_is_refused_when_it_is_made(given: dict[str, Any], words: str) -> None:
     with pytest.raises(ConfigError, match=words):
-        gymnasium.make("tuisim/Goals-v0", columns=("x_mm",), **given)
+        gymnasium.make("tuisim/Goals-v0", columns=("x_mm",), goals="goals.toml", **given)
+
+
+def test_the_task_of_goals_needs_goals() -> None:
+    with pytest.raises(TypeError, match="argument: 'goals'"):
+        gymnasium.make("tuisim/Goals-v0", columns=("x_mm",))

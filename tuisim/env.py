@@ -205,6 +205,11 @@ def avoid_obstacles(**how: Any) -> LabEnv:
     return _build_task(columns, measure_progress, "Obstacles_Test", is_over, **how)
 
 
+def reach_goals(columns: Sequence[str], goals: str | Path, **how: Any) -> LabEnv:
+    """Return the task to earn the points of a goals file."""
+    return LabEnv(columns, goals=goals, **how)
+
+
 def _build_task(
     columns: tuple[str, ...],
     reward: Callable[[Values, Values], float],
@@ -217,7 +222,7 @@ def _build_task(
     return LabEnv(columns, reward, is_over, **{**usual, **how})
 
 
-gymnasium.register("tuisim/Goals-v0", entry_point="tuisim.env:LabEnv", max_episode_steps=600)
+gymnasium.register("tuisim/Goals-v0", entry_point="tuisim.env:reach_goals", max_episode_steps=600)
 for _name, _task in (
     ("LineFollower", follow_line),
     ("Bands", stop_on_band),
