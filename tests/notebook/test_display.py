@@ -14,6 +14,7 @@ from tests.pictures.charts.test_layout import log_of
 from tuisim.analysis.chart import View
 from tuisim.analysis.chart import build_chart as plotted
 from tuisim.base.source import Program
+from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.profile import ROBOLAB
 from tuisim.engine.core.spec import RobotSpec, RunSpec, WorldSpec
 from tuisim.engine.runs.run_folder import field_files
@@ -74,6 +75,12 @@ def test_the_table_tells_the_number_that_the_program_reads(read: str, words: str
     scene = Scene(spec, field_files(spec), asking, start_record(spec))
     rows = dict(list_instruments(scene))
     assert rows["Sensor1 (left)"].startswith(words)
+
+
+def test_the_gyro_of_a_robot_that_starts_turned_shows_zero() -> None:
+    spec = RunSpec(RobotSpec(), WorldSpec(start=Pose(700, 500, 90)), ROBOLAB)
+    rows = dict(list_instruments(Scene(spec, field_files(spec), None, start_record(spec))))
+    assert rows["Gyro"].startswith("0")
 
 
 @cases(

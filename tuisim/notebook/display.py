@@ -120,9 +120,9 @@ def start_record(spec: RunSpec) -> TickRecord:
     """Return the state of the robot at its start, before any run."""
     start = spec.world.start
     flags = build_start_flags(spec.robot)
-    return TickRecord(
-        0, 0, start.x_mm, start.y_mm, start.heading_deg, 0.0, 0.0, 0.0, 0.0, 0.0, flags, 0
-    )
+    still = (0.0, 0.0, 0.0, 0.0)
+    heading_deg = start.heading_deg
+    return TickRecord(0, 0, start.x_mm, start.y_mm, heading_deg, *still, heading_deg, flags, 0)
 
 
 def list_instruments(scene: Scene) -> list[Row]:
