@@ -151,7 +151,8 @@ def test_reasons_of_a_run_that_ended_while_they_were_looked_for_are_looked_for_a
         pause=lambda: None,
     )
     document = SimpleNamespace(go_to_mistake=str)
-    context: Any = SimpleNamespace(runs=runs, document=document, reasons=ReasonTour())
+    app = SimpleNamespace(answer=lambda _: None)
+    context: Any = SimpleNamespace(runs=runs, document=document, reasons=ReasonTour(), app=app)
     searches: list[bool] = []
 
     def end_meanwhile(*given: Any, **_: Any) -> None:
@@ -164,6 +165,30 @@ def test_reasons_of_a_run_that_ended_while_they_were_looked_for_are_looked_for_a
     go_wrong(context)
     assert searches == [True, False]
     assert context.reasons.is_about(runs.timeline.recording, has_ended=True)
+
+
+def test_a_press_while_a_reason_is_looked_for_says_so_and_skips_none(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    runs = SimpleNamespace(
+        timeline=SimpleNamespace(recording=SimpleNamespace(newest=1), at=None),
+        in_run=False,
+        earlier=None,
+        pause=lambda: None,
+    )
+    answers: list[str] = []
+    context: Any = SimpleNamespace(
+        runs=runs,
+        document=SimpleNamespace(go_to_mistake=str),
+        reasons=ReasonTour(),
+        app=SimpleNamespace(answer=answers.append),
+    )
+    searches: list[Any] = []
+    monkeypatch.setattr(reasons, "find", lambda *given, **_: searches.append(given[3]))
+    go_wrong(context)
+    go_wrong(context)
+    assert len(searches) == 1
+    assert answers == ["Looking for what went wrong …"] * 2
 
 
 WAITS = """\

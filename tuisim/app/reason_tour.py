@@ -19,6 +19,8 @@ class ReasonTour:
         self.reasons: tuple[Reason, ...] = ()
         self.earlier: Recording | None = None
         """The run before that was compared with."""
+        self.is_searching = False
+        """Whether the key has been pressed, and its answer is still being found."""
         self._of: Recording | None = None
         self._has_ended = False
         """Whether the run is over as far as they are known."""
@@ -45,6 +47,7 @@ class ReasonTour:
         if self._of is not recording:
             self.reasons = ()
             self.earlier = None
+            self.is_searching = False
         self._of = recording
         self._has_ended = has_ended
         self._at = None

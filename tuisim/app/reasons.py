@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from tuisim.app.actions import ActionContext
+    from tuisim.base.errors import TuisimError
     from tuisim.engine.core.field import Field
     from tuisim.engine.runs.recorded_run import Recording
     from tuisim.tasks.goals.judgement import Judgement
@@ -87,8 +88,14 @@ def find(
             before = find_run_before(recording)
         return _read(recording.folder, goals, judgements, before, mat), before
 
-    failed = context.app.complain if searches else lambda _: None
-    background.run(context.panels, find_reasons, then, failed, group="reasons", exclusive=True)
+    def handle_error(error: TuisimError) -> None:
+        if searches:
+            context.reasons.is_searching = False
+            context.app.complain(error)
+
+    background.run(
+        context.panels, find_reasons, then, handle_error, group="reasons", exclusive=True
+    )
 
 
 def _read(

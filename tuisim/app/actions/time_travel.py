@@ -198,9 +198,14 @@ def go_wrong(context: ActionContext) -> None:
     has_ended = not context.runs.in_run
     if not tour.is_about(recording, has_ended):
         tour.begin(recording, has_ended)
+    context.app.answer("Looking for what went wrong …")
+    if tour.is_searching:
+        return
+    tour.is_searching = True
     before = tour.earlier or context.runs.earlier
 
     def show(reasons_so_far: reasons.FoundReasons) -> None:
+        tour.is_searching = False
         if context.runs.timeline.recording is recording and context.runs.in_run is has_ended:
             # It has ended meanwhile, and what it waited for may have come.
             go_wrong(context)
