@@ -347,7 +347,9 @@ _TERMINALS = ("termios", "_curses")
 
 def point_at_keys(error: BaseException, library: Library) -> None:
     """Note on an error of a program that needs a terminal, to read single keys, what it can do instead."""
-    if type(error).__module__ in _TERMINALS:
+    # Not by the name of the error's class: a program's own class may refuse to tell it.
+    kinds = [vars(sys.modules[name]).get("error") for name in _TERMINALS if name in sys.modules]
+    if type(error) in kinds:
         instead = _KEYBOARD.told_to(library).instead
         error.add_note(f"A program has no terminal here, and no single keys ({instead}).")
 
