@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from textual.widgets import Input, OptionList
+from textual.widgets import Input, OptionList, Static
 
 from tests.app.app_help import (
     LOGS,
@@ -293,3 +293,25 @@ LIKELIEST = {
 @cases("this, number", LIKELIEST)
 def test_a_run_is_compared_with_the_likeliest_one(this: RunInfo, number: int) -> None:
     assert LISTED[find_likeliest(LISTED, this)].number == number
+
+
+@pytest.mark.slow
+async def test_path_and_columns_of_many_runs_are_whole_also_after_a_resize(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    listed = [info(number) for number in range(1, 13)]
+    monkeypatch.setattr("tuisim.app.dialogs.runs._load_runs", lambda: listed)
+    async with open_lab("x = 1\n", size=(80, 24)) as (pilot, app):
+        dialog = RunChooser()
+        await app.push_screen(dialog)
+        await until(pilot, lambda: dialog.query_one(OptionList).option_count == 12)
+        for size in ((80, 24), (65, 58), (120, 40)):
+            await pilot.press("down")
+            highlighted = dialog.query_one(OptionList).highlighted
+            await pilot.resize_terminal(*size)
+            await pilot.pause()
+            frame = dialog.query_one(".dialog").content_region
+            assert frame.contains_region(dialog.query_one(PixelView).region)
+            heads = dialog.query_one(".heads", Static)
+            assert str(heads.render()).split() == build_header(size[0]).split()
+            assert dialog.query_one(OptionList).highlighted == highlighted

@@ -84,6 +84,9 @@ _LEFT_OUT = {
 """Columns of the list that are left out, by the least number of columns of the terminal."""
 _MIN_NOTE_COLUMNS = 100
 """Columns of a terminal from which the list has notes."""
+_OTHER_ROWS = 15
+"""Rows of the dialog around its list, with the path."""
+_MIN_LIST_ROWS = 5
 
 
 def _arrange(texts: Mapping[str, str], columns: int) -> dict[str, str]:
@@ -223,7 +226,14 @@ class RunChooser(ListDialog):
         self._draw_way()
 
     def on_resize(self) -> None:
-        """Draw the path again once its view has its size; a low dialog shows none."""
+        """Fit the list; draw the path again once its view has its size: a low dialog shows none."""
+        options = self.query_one(OptionList)
+        options.styles.max_height = max(_MIN_LIST_ROWS, self.size.height * 9 // 10 - _OTHER_ROWS)
+        self.query_one(".heads", Static).update(build_header(self.size.width))
+        if self._runs:
+            highlighted = options.highlighted
+            self._list(self.query_one(Input).value)
+            options.highlighted = highlighted
         self.call_after_refresh(self._draw_way)
 
     def _draw_way(self) -> None:
