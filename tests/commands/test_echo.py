@@ -16,7 +16,7 @@ import pytest
 from tests.cases import cases
 from tests.conftest import Command
 from tests.running import PATIENCE_S
-from tuisim.commands.echo import Progress, echo, echo_error, hide_progress, tell
+from tuisim.commands.echo import Progress, echo, echo_error, echo_wrapped, hide_progress, tell
 
 
 class Terminal(io.StringIO):
@@ -59,6 +59,16 @@ def show(monkeypatch: pytest.MonkeyPatch) -> Show:
     monkeypatch.setattr("tuisim.commands.echo.SHOWN_AFTER_S", 0.0)
     monkeypatch.setattr("tuisim.commands.echo._QUIET_S", 0.0)
     return take
+
+
+@pytest.mark.parametrize("write", [echo_error, echo_wrapped])
+def test_a_long_line_is_broken_between_words_in_a_terminal(
+    show: Show, monkeypatch: pytest.MonkeyPatch, write: Callable[[str], None]
+) -> None:
+    monkeypatch.setenv("COLUMNS", "20")
+    terminal = show()
+    write("a file is written over by another")
+    assert terminal.getvalue().splitlines() == ["a file is written", "over by another"]
 
 
 def test_work_is_told_with_its_part(show: Show) -> None:

@@ -37,8 +37,14 @@ def echo(line: str = "") -> None:
 
 def echo_wrapped(line: str) -> None:
     """Write one line to stdout, broken between words where a terminal is narrower."""
-    width = _measure_columns() if sys.stdout.isatty() else len(line)
-    echo_lines("\n".join(wrap(line, max(width, 1), break_long_words=False, break_on_hyphens=False)))
+    _print(_wrap(line, sys.stdout), sys.stdout)
+
+
+def _wrap(line: str, stream: TextIO) -> list[str]:
+    """Return the lines of a line where a terminal is narrower; words stay whole."""
+    if not stream.isatty() or len(line) <= (width := _measure_columns()):
+        return [line]
+    return wrap(printable(line), max(width, 1), break_long_words=False, break_on_hyphens=False)
 
 
 def _measure_columns() -> int:
@@ -95,8 +101,8 @@ def _encode_json(data: Any) -> str:
 
 
 def echo_error(line: str) -> None:
-    """Write one line to stderr."""
-    _print([line], sys.stderr)
+    """Write one line to stderr, broken between words where a terminal is narrower."""
+    _print(_wrap(line, sys.stderr), sys.stderr)
 
 
 def echo_written(file: str | Path, what: str = "") -> None:
