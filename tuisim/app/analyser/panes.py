@@ -133,7 +133,7 @@ def _format_event(event: Event | CommandRow) -> Cells:
     crossing = event.crossing
     return (
         event.variable,
-        "above" if crossing.rising else "below",
+        "rises" if crossing.rising else "falls",
         f"{crossing.time_s:.3f}",
         _format_figure(event.since_s, ".3f"),
         _format_figure(crossing.value),
@@ -228,7 +228,7 @@ PANES: Mapping[str, Pane] = {
     "events": Pane(
         "Events",
         lambda model: _LazyRows(model.events.list_events(model.log), _format_event),
-        ("variable", "comes", "at s", "after s", "value", "row", "event"),
+        ("variable", "crossing", "at s", "after s", "value", "row", "event"),
         empty="No events: c asks for a threshold, such as Colour < 50, or for commands",
         wraps=True,
     ),

@@ -10,6 +10,7 @@ from tests.app.analyser.test_screen import open_analyser, text_of, typed
 from tests.app.app_help import LOGS, program, until
 from tuisim.analysis.events import CommandRow
 from tuisim.app.analyser.chart import draw_event_marks
+from tuisim.app.analyser.panes import PANES
 from tuisim.app.dialogs.runs import Differences
 from tuisim.engine.core.spec import NoiseSpec
 from tuisim.engine.runs.handle import RunOptions, start_run
@@ -35,6 +36,7 @@ async def test_commands_are_events(run: StoredRun) -> None:
         assert {event.event.part for event in asked} == {"right motor C"}
         assert model.row == events[0].row and "╷" in text_of(pilot)
         assert "right motor C #1" in text_of(pilot) and asked[0].event.asked in text_of(pilot)
+        assert {cells[1] for cells in PANES["events"].rows(model)} == {"", "falls"}
         selected = model.selected
         screen.choose(events.index(asked[-1]))
         assert (model.row, model.selected) == (asked[-1].row, selected)
