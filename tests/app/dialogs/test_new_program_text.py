@@ -15,7 +15,8 @@ def test_each_text_names_its_mat_and_compiles(sensor: str, skeleton: Skeleton) -
     source = parse_program(build_program_text("my mats/a b.png", sensor, skeleton), "new.py")
     compile(source.program.text, "new.py", "exec")
     assert source.options["background"] == "my mats/a b.png"
-    assert source.program.prelude == ("none" if skeleton is Skeleton.LIBRARY else "preloaded")
+    brings_library = skeleton in (Skeleton.LIBRARY, Skeleton.PYBRICKS, Skeleton.PRIME_HUB)
+    assert source.program.prelude == ("none" if brings_library else "preloaded")
 
 
 def test_the_first_offer_logs_every_grey_band(run: Run) -> None:
