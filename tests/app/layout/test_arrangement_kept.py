@@ -31,7 +31,7 @@ def test_what_is_known_stays() -> None:
 
 async def test_panels_are_kept_for_the_next_start_only_by_the_key_that_says_so() -> None:
     async with open_lab(LOGS, size=(80, 24)) as (pilot, app):
-        await pilot.press("X", "i")
+        await pilot.press("X", "i", "i")
         await until(pilot, lambda: not app.panel_area.is_shown("instrumentation"))
     assert load_layout(TerminalSize.SMALL) == KeptLayout()
     async with open_lab(LOGS, size=(80, 24)) as (pilot, app):
