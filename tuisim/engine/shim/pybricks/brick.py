@@ -207,7 +207,7 @@ class Connected:
     port: Any = None
     """The port to which the device is connected."""
 
-    def take_port(self, port: Any, names: Sequence[str]) -> str:
+    def _take_port(self, port: Any, names: Sequence[str]) -> str:
         """Note the port to which the device is connected, and return its name in the robot.
 
         Args:

@@ -61,7 +61,7 @@ class Sensor(Connected):
     """One of `engine.core.sensors.SENSORS`; empty for any of them."""
 
     def __init__(self, port: AnyPort) -> None:
-        name = self.take_port(port, self.brick.session.sim.spec.robot.input_ports)
+        name = self._take_port(port, self.brick.session.sim.spec.robot.input_ports)
         sensor = self.brick.find_sensor(name, self.KIND)
         if sensor is None:
             raise no_device(self.brick.hint(SENSOR_CLASS))

@@ -79,7 +79,7 @@ class DCMotor(Connected):
     def _set_up(
         self, port: Port, direction: Direction, ratio: float, *, keeps_angle: bool = False
     ) -> None:
-        name = self.take_port(port, self.brick.session.sim.spec.robot.output_ports)
+        name = self._take_port(port, self.brick.session.sim.spec.robot.output_ports)
         self.port_names = (name,)
         found = self.brick.find_motor(name)
         if found is None:

@@ -59,7 +59,7 @@ class Light(Connected):
     """A light on a port: nothing senses it, and the panel of the hub shows it."""
 
     def __init__(self, port: Port) -> None:
-        name = self.take_port(port, self.brick.session.sim.spec.robot.output_ports)
+        name = self._take_port(port, self.brick.session.sim.spec.robot.output_ports)
         if name in self.brick.built.motors or name in self.brick.built.sensors:
             raise no_device(self.brick.hint(SENSOR_CLASS))
 
