@@ -54,7 +54,7 @@ def test_events_stand_where_they_are_in_the_chart_and_in_the_pane() -> None:
     pane = PANES["events"]
     assert list(pane.rows(model)[0]) == [
         "Colour #1",
-        "below",
+        "falls",
         "4.500",
         "–",
         "40",
