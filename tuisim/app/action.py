@@ -367,7 +367,7 @@ class KeyFooter(ActionWords):
 
     def render(self) -> Text:
         width = self.size.width
-        status = f"  {self._status} " if self._status else ""
+        status = f"  {self._status}" if self._status else ""
         key_style = self.get_component_rich_style("footer--key", partial=True)
         line = Text(no_wrap=True, end="")
         max_count = find_max_entries(width)
