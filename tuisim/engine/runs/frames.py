@@ -12,8 +12,6 @@ from itertools import chain, pairwise, repeat
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
 
-import numpy as np
-
 from tuisim.base.data_class import dataclass
 from tuisim.engine.core.columns import MOTION, Column, list_measured_names
 from tuisim.engine.core.conditions import ValueCondition
@@ -27,7 +25,6 @@ from tuisim.engine.core.sensors import MountedSensor, list_columns, list_mounted
 from tuisim.engine.core.spec import NoiseSpec, RobotSpec, RunSpec
 from tuisim.engine.core.tick_record import TICK_RECORD
 from tuisim.engine.protocol import SetNoise, UserAction
-from tuisim.engine.runs.arrays import FloatArray
 from tuisim.engine.runs.motor_records import read_motor_columns
 from tuisim.engine.runs.records import TELEMETRY_FILE
 from tuisim.engine.runs.run_folder import StoredRun, find_noise
@@ -37,6 +34,8 @@ from tuisim.engine.runs.views import TickRecord
 if TYPE_CHECKING:
     import numpy as np
     import pandas as pd
+
+    from tuisim.engine.runs.arrays import FloatArray
 
     Array = np.ndarray[Any, Any]
 
@@ -69,6 +68,8 @@ def compute_dead_reckoning(
         right_position_deg: Position of the right wheel's motor.
         start: Pose at the first count.
     """
+    import numpy as np
+
     left_per_degree, right_per_degree = compute_mm_per_degree(robot)
     left = np.diff(left_position_deg, prepend=left_position_deg[:1]) * left_per_degree
     right = np.diff(right_position_deg, prepend=right_position_deg[:1]) * right_per_degree
