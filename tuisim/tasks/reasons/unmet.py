@@ -20,7 +20,6 @@ from tuisim.engine.core.spec import (
     UltrasonicSpec,
 )
 from tuisim.engine.protocol import End
-from tuisim.engine.runs.command_events import CommandIndex
 from tuisim.engine.runs.frames import compute_column_values
 from tuisim.engine.runs.readings import READING_MODES, READING_PORTS, read_readings
 from tuisim.engine.runs.records import Stream
@@ -222,6 +221,9 @@ class _Search:
     @cached_property
     def _scales(self) -> dict[str, float]:
         """How many degrees the program counts for one of a motor, by port; 1 where it is missing."""
+        # Imported on demand: few runs wait for a motor.
+        from tuisim.engine.runs.command_events import CommandIndex
+
         index = CommandIndex(self._run)
         index.read_all()
         return index.find_scales(len(self._records))
