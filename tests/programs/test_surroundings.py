@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -15,28 +16,32 @@ from tuisim.programs.function import read_function
 from tuisim.programs.surroundings import compute
 
 
-def test_the_classes_and_constants_of_other_cells_of_a_notebook_go_along() -> None:
+def run_cells(*cells: str) -> Callable[[], None]:
+    """Run cells in a notebook of their own; return the function `go` that they define."""
     shell = InteractiveShell()
-    for cell in (
+    for cell in cells:
+        shell.run_cell(cell, store_history=True)
+    go: Callable[[], None] = shell.user_ns["go"]
+    return go
+
+
+def test_the_classes_and_constants_of_other_cells_of_a_notebook_go_along() -> None:
+    go = run_cells(
         "KP = 4\nKD = KP / 2",
         "class Half:\n    value = KD",
         "def go(): print(Half.value)",
-    ):
-        shell.run_cell(cell, store_history=True)
-    source = read_function(shell.user_ns["go"])
-    assert "KD = KP / 2" in source.program.text
-    assert tuisim.simulate(shell.user_ns["go"]).output == "2.0\n"
+    )
+    assert "KD = KP / 2" in read_function(go).program.text
+    assert tuisim.simulate(go).output == "2.0\n"
 
 
 def test_an_instance_of_another_cell_leaves_the_lines_of_the_function() -> None:
-    shell = InteractiveShell()
-    for cell in (
+    go = run_cells(
         "from typing import NamedTuple\n\nclass Step(NamedTuple):\n    turns: float",
         "\n\nSTEP = Step(2)",
         "# here\n\ndef go():\n    print(STEP.turns)\n    raise ValueError",
-    ):
-        shell.run_cell(cell, store_history=True)
-    run = tuisim.simulate(shell.user_ns["go"])
+    )
+    run = tuisim.simulate(go)
     assert (run.output, run.stored.end and run.stored.end.error_line) == ("2\n", 5)
 
 
